@@ -1,0 +1,110 @@
+"""Every error a user can meet: one clear line that says what, where, what was expected, what to do.
+
+Input: the four parts.  Output: an exception whose ``str`` is one printable line, and whose
+``exit_code`` is the command line's answer (1: not proved or drifted, 2: spec or command wrong).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, ClassVar, final
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+MAX_QUOTE = 60
+
+
+@dataclass(eq=False)
+class PiezoError(Exception):
+    """Base of all errors of this package; never raised itself.
+
+    Attributes
+    ----------
+    what : the fault, in a few words.
+    where : the place: a dotted path in the spec, a file, an option.
+    expected : what would have been right.
+    remedy : what to do now.
+    """
+
+    what: str
+    where: str = ""
+    expected: str = ""
+    remedy: str = ""
+
+    exit_code: ClassVar[int] = 2
+
+    def __str__(self) -> str:
+        """Return the error as one line of printable text."""
+        parts = [f"{self.where}: {self.what}" if self.where else self.what]
+        if self.expected:
+            parts.append(f"expected {self.expected}")
+        if self.remedy:
+            parts.append(self.remedy)
+        return one_line("; ".join(parts))
+
+
+@final
+class SpecError(PiezoError):
+    """A spec that cannot be read, or says something impossible."""
+
+
+@final
+class NetworkError(PiezoError):
+    """A network whose junction laws have no, or more than one, solution."""
+
+
+@final
+class UsageError(PiezoError):
+    """A call or a command with wrong arguments."""
+
+
+@final
+class FileError(PiezoError):
+    """A file that cannot be read or written."""
+
+
+@final
+class RunError(PiezoError):
+    """A simulation that left its domain or could not go on; says when and why."""
+
+
+@final
+class ProofError(PiezoError):
+    """A required property that is refuted or open."""
+
+    exit_code: ClassVar[int] = 1
+
+
+@final
+class DriftError(PiezoError):
+    """Generated files that are not what their specs give."""
+
+    exit_code: ClassVar[int] = 1
+
+
+def one_line(text: str) -> str:
+    """Return `text` with every control or non-ASCII character escaped, so that it is one line."""
+    return "".join(c if " " <= c <= "~" else ascii(c)[1:-1] for c in text)
+
+
+def quote(value: object) -> str:
+    """Return a short, printable, quoted form of something a user wrote."""
+    text = value if isinstance(value, str) else repr(value)
+    short = text if len(text) <= MAX_QUOTE else f"{text[: MAX_QUOTE - 3]}..."
+    return one_line(f"'{short}'")
+
+
+def listing(names: Iterable[str], most: int = 12) -> str:
+    """Return names as a list for a message, cut after `most` of them."""
+    known = list(names)
+    cut = ", ".join(known[:most]) or "none"
+    return f"{cut}, and {len(known) - most} more" if len(known) > most else cut
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """Return "did you mean 'x'?" for the known name nearest to `word`, or the known names."""
+    names = list(known)
+    match = get_close_matches(word[:MAX_QUOTE], names, n=1, cutoff=0.6)
+    return f"did you mean '{match[0]}'?" if match else f"known: {listing(names)}"
