@@ -1,0 +1,1 @@
+"""Specs: text to a checked, frozen model.  Nothing here imports SymPy."""

@@ -1,0 +1,274 @@
+"""Derivatives and antiderivatives of laws, as trees that stay as short as a person would write.
+
+Input: a tree and a name.  Output: a tree.  Used for the energies of storage elements (the integral
+of a co-state law) and for the generated Jacobians.  Constant factors are folded as exact rationals,
+so that the text does not depend on the version of any algebra system.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from piezo_sym.spec.expressions import (
+    ONE,
+    ZERO,
+    Add,
+    Call,
+    Cmp,
+    Div,
+    Expr,
+    If,
+    LaneSum,
+    Mul,
+    Neg,
+    Num,
+    Pow,
+    Sym,
+    names,
+    walk,
+)
+
+
+def add(*terms: Expr) -> Expr:
+    """Return the sum of `terms`, zeros left out and sums flattened."""
+    flat: list[Expr] = []
+    for term in terms:
+        flat.extend(term.terms if isinstance(term, Add) else (term,))
+    kept = [term for term in flat if term != ZERO]
+    if not kept:
+        return ZERO
+    return kept[0] if len(kept) == 1 else Add(tuple(kept))
+
+
+def neg(arg: Expr) -> Expr:
+    """Return minus `arg`."""
+    match arg:
+        case Num(value):
+            return Num(-value)
+        case Neg(inner):
+            return inner
+        case If(then, condition, other):
+            return If(neg(then), condition, neg(other))
+    return Neg(arg)
+
+
+def mul(left: Expr, right: Expr) -> Expr:
+    """Return a product; numbers come to the front, signs come out, a choice takes the factor in."""
+    match left, right:
+        case (Num(a), Num(b)):
+            return Num(a * b)
+        case (_, Num(value)):
+            return _scaled(value, left)
+        case (Num(value), _):
+            return _scaled(value, right)
+        case (Neg(arg), _):
+            return neg(mul(arg, right))
+        case (_, Neg(arg)):
+            return neg(mul(left, arg))
+        case (If(then, condition, other), _) if _indicator(left):
+            return If(mul(then, right), condition, mul(other, right))
+        case (_, If(then, condition, other)) if _indicator(right):
+            return If(mul(left, then), condition, mul(left, other))
+        case (_, Div(top, bottom)):
+            return Div(mul(left, top), bottom)
+        case (Mul(Num(value), inner), _):
+            return _scaled(value, mul(inner, right))
+        case (_, Mul(Num(value), inner)):
+            return _scaled(value, mul(left, inner))
+        case (_, Mul(first, second)):
+            return mul(mul(left, first), second)
+    return Mul(left, right)
+
+
+def _indicator(node: Expr) -> bool:
+    """Return whether `node` is a choice of constants, which a factor can enter."""
+    return isinstance(node, If) and all(
+        isinstance(part, Num) or _indicator(part) for part in (node.then, node.other)
+    )
+
+
+def _scaled(factor: Fraction, arg: Expr) -> Expr:
+    if factor == 0:
+        return ZERO
+    if factor == 1:
+        return arg
+    match arg:
+        case Num(value):
+            return Num(factor * value)
+        case Neg(inner):
+            return neg(_scaled(factor, inner))
+        case Mul(Num(value), rest):
+            return _scaled(factor * value, rest)
+        case Div(top, Num(value)):
+            return _scaled(factor / value, top)
+        case Div(top, Mul(Num(value), rest)):
+            return div(_scaled(factor / value, top), rest)
+    return neg(_scaled(-factor, arg)) if factor < 0 else Mul(Num(factor), arg)
+
+
+def div(top: Expr, bottom: Expr) -> Expr:
+    """Return a quotient; signs come out, numbers fold, a quotient of a quotient is one quotient."""
+    match top, bottom:
+        case (Num(value), _) if value == 0:
+            return ZERO
+        case (_, Num(value)):
+            return _scaled(1 / value, top)
+        case (Neg(arg), _):
+            return neg(div(arg, bottom))
+        case (_, Neg(arg)):
+            return neg(div(top, arg))
+        case (Mul(Num(a), above), Mul(Num(b), below)):
+            return _scaled(a / b, div(above, below))
+        case (Div(above, below), _) if below == bottom:
+            return Div(above, Pow(bottom, Fraction(2)))
+        case (If(then, condition, other), _) if _indicator(top):
+            return If(div(then, bottom), condition, div(other, bottom))
+    return ONE if top == bottom else Div(top, bottom)
+
+
+def power(base: Expr, exponent: Fraction) -> Expr:
+    """Return a power; exponents 0 and 1 vanish."""
+    if exponent == 0:
+        return ONE
+    return base if exponent == 1 else Pow(base, exponent)
+
+
+def derivative(node: Expr, name: str) -> Expr:
+    """Return the derivative of `node` by the name `name`; at a kink, that of one of its sides."""
+    if name not in names(node):
+        return ZERO
+    match node:
+        case Sym():
+            return ONE
+        case Neg(arg):
+            return neg(derivative(arg, name))
+        case Add(terms):
+            return add(*(derivative(term, name) for term in terms))
+        case Mul(left, right):
+            return add(mul(derivative(left, name), right), mul(left, derivative(right, name)))
+        case Div(left, right):
+            fall = div(mul(left, derivative(right, name)), power(right, Fraction(2)))
+            return add(div(derivative(left, name), right), neg(fall))
+        case Pow(base, exponent):
+            outer = mul(Num(exponent), power(base, exponent - 1))
+            return mul(outer, derivative(base, name))
+        case Call(function, args):
+            slopes = _slopes(function, args)
+            inner = [derivative(arg, name) for arg in args]
+            return add(*(mul(s, d) for s, d in zip(slopes, inner, strict=True)))
+        case If(then, condition, other):
+            return _choice(derivative(then, name), condition, derivative(other, name))
+        case LaneSum(arg, bank):
+            return LaneSum(derivative(arg, name), bank)
+    return ZERO
+
+
+def _choice(then: Expr, condition: Cmp, other: Expr) -> Expr:
+    return then if then == other else If(then, condition, other)
+
+
+def _slopes(function: str, args: tuple[Expr, ...]) -> tuple[Expr, ...]:
+    """Return the derivative of a function by each of its arguments."""
+    z = args[0]
+    match function:
+        case "exp":
+            return (Call("exp", args),)
+        case "log":
+            return (div(ONE, z),)
+        case "sqrt":
+            return (div(Num(Fraction(1, 2)), Call("sqrt", args)),)
+        case "sin":
+            return (Call("cos", args),)
+        case "cos":
+            return (neg(Call("sin", args)),)
+        case "tanh":
+            return (add(ONE, neg(power(Call("tanh", args), Fraction(2)))),)
+        case "abs":
+            return (Call("sign", args),)
+        case "sign":
+            return (ZERO,)
+    return _slopes_of_two(function, z, args[1])
+
+
+def _slopes_of_two(function: str, z: Expr, w: Expr) -> tuple[Expr, Expr]:
+    beyond = Cmp(">", Call("abs", (z,)), w)
+    side = Call("sign", (z,))
+    match function:
+        case "min":
+            return If(ONE, Cmp("<=", z, w), ZERO), If(ZERO, Cmp("<=", z, w), ONE)
+        case "max":
+            return If(ONE, Cmp(">=", z, w), ZERO), If(ZERO, Cmp(">=", z, w), ONE)
+        case "deadzone":
+            return If(ONE, beyond, ZERO), If(neg(side), beyond, ZERO)
+    return If(ZERO, beyond, ONE), If(side, beyond, ZERO)  # saturate
+
+
+def antiderivative(node: Expr, name: str) -> Expr | None:
+    """Return an antiderivative of `node` by `name`, or None where there is none of a simple form.
+
+    Known forms: sums and multiples of c*(a*x + b)**n and c*exp(a*x + b), c, a, b free of x.
+    """
+    if name not in names(node):
+        return mul(node, Sym(name))
+    match node:
+        case Neg(arg):
+            inner = antiderivative(arg, name)
+            return None if inner is None else neg(inner)
+        case Add(terms) if _slope(node, name) is None:
+            parts = [antiderivative(term, name) for term in terms]
+            known = [part for part in parts if part is not None]
+            return add(*known) if len(known) == len(parts) else None
+        case Mul(left, right) if name not in names(left):
+            inner = antiderivative(right, name)
+            return None if inner is None else mul(left, inner)
+        case Mul(left, right) if name not in names(right):
+            inner = antiderivative(left, name)
+            return None if inner is None else mul(right, inner)
+        case Div(left, right) if name not in names(right):
+            inner = antiderivative(left, name)
+            return None if inner is None else _over(inner, right)
+        case Call("exp", (arg,)):
+            slope = _slope(arg, name)
+            return None if slope is None else _divided(node, slope)
+    return _power_rule(node, name)
+
+
+def _power_rule(node: Expr, name: str) -> Expr | None:
+    base, exponent = (node.base, node.exponent) if isinstance(node, Pow) else (node, Fraction(1))
+    slope = _slope(base, name)
+    if slope is None or exponent == -1:
+        return None
+    raised = power(base, exponent + 1)
+    match slope:
+        case Div(Num(value), bottom):
+            return Div(mul(bottom, raised), Num((exponent + 1) * value))
+    return Div(raised, mul(Num(exponent + 1), slope))
+
+
+def _over(top: Expr, bottom: Expr) -> Expr:
+    """Return ``top/bottom``, with ``a/2/b`` written ``a/(2*b)``."""
+    if isinstance(top, Div) and isinstance(top.right, Num):
+        return Div(top.left, mul(top.right, bottom))
+    return div(top, bottom)
+
+
+def _divided(top: Expr, slope: Expr) -> Expr:
+    """Return ``top/slope``, with ``1/(1/c)`` written ``c``."""
+    match slope:
+        case Div(Num(value), bottom):
+            return mul(_scaled(1 / value, bottom), top)
+    return div(top, slope)
+
+
+def _slope(node: Expr, name: str) -> Expr | None:
+    """Return a where node = a*x + b with a, b free of x, else None."""
+    if not _smooth(node):
+        return None
+    slope = derivative(node, name)
+    return slope if slope != ZERO and name not in names(slope) else None
+
+
+def _smooth(node: Expr) -> bool:
+    return not any(isinstance(part, If | Call) for part in walk(node))
+
+

@@ -1,0 +1,80 @@
+"""References and laws of a spec: what they name exists, and the text is of the law language."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from piezo_sym.errors import SpecError, listing, nearest, quote
+from piezo_sym.spec.elements import KINDS
+from piezo_sym.spec.expressions import Node, names
+from piezo_sym.spec.parse import parse_law
+from piezo_sym.spec.tables import (
+    Tables,
+    banks,
+    bodies,
+    conditions,
+    law_fields,
+    references,
+    states,
+    temperatures,
+)
+
+
+def check_references(spec: Tables) -> None:
+    """Check that inputs and bodies that elements name are declared."""
+    for name, element in spec.elements.items():
+        for field, to, given in references(element):
+            known = bodies(spec) if to == "thermal_mass" else tuple(spec.inputs)
+            if given not in known:
+                raise _unknown_reference(f"elements.{name}.{field}", to, given, known)
+
+
+def _unknown_reference(where: str, to: str, given: str, known: tuple[str, ...]) -> SpecError:
+    what = f"{quote(given)} is no {to} of this spec"
+    if known:
+        return SpecError(what, where, remedy=nearest(given, known))
+    if to == "thermal_mass":
+        body = "[elements.body] kind = \"thermal_mass\", temperature = \"T_0*exp(S/c_0)\""
+        return SpecError(what, where, "a body for the heat", f"add one: {body}")
+    return SpecError(what, where, remedy=f"declare it in [inputs]: {given} = {{ unit = \"V\" }}")
+
+
+def check_laws(spec: Tables) -> None:
+    """Parse every law, initial value and condition, and check the names in them."""
+    for name, element in spec.elements.items():
+        for law in law_fields(name, element):
+            _check_words(law.tree, law.where, law.letters, spec.parameters)
+    _check_initial(spec)
+    words = [*spec.parameters, *spec.inputs, *states(spec), *temperatures(spec)]
+    for condition in conditions(spec):
+        _check_words(condition.tree, condition.where, (), words)
+
+
+def _check_initial(spec: Tables) -> None:
+    known = states(spec)
+    for symbol, start in spec.initial.items():
+        where = f"initial.{symbol}"
+        if symbol not in known:
+            what = f"{quote(symbol)} is no state of this spec"
+            raise SpecError(what, where, remedy=nearest(symbol, known))
+        count = banks(spec).get(known[symbol])
+        if isinstance(start, tuple) and len(start) != count:
+            expected = f"{count} values, one a lane" if count else "one value: no bank has this state"
+            raise SpecError(f"{len(start)} values are given", where, expected)
+        for part in start if isinstance(start, tuple) else (start,):
+            if isinstance(part, str):
+                tree = parse_law(part, where)
+                _check_words(tree, where, (), [*spec.parameters, *spec.inputs])
+
+
+def _check_words(
+    tree: Node, where: str, letters: tuple[str, ...], words: Collection[str]
+) -> None:
+    for word in names(tree):
+        if word in letters or word in words:
+            continue
+        if word in {"i", "v", "f", "T", *(kind.letter for kind in KINDS.values())}:
+            expected = f"the letters {listing(letters)}" if letters else "parameters"
+            raise SpecError(f"{quote(word)} has no meaning here", where, expected)
+        remedy = nearest(word, [*letters, *words])
+        raise SpecError(f"unknown name {quote(word)}", where, remedy=remedy)

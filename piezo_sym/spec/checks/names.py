@@ -1,0 +1,77 @@
+"""Names of a spec: well formed, not taken, and not twice."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+
+from piezo_sym.errors import SpecError, quote
+from piezo_sym.spec.names import check_name, check_symbol
+from piezo_sym.spec.tables import Tables, banks, bodies, states
+from piezo_sym.spec.units import parse_unit
+
+#: Variables that every result has; see `run`.
+RESULTS = frozenset({"time", "energy", "entropy", "energy_residual"})
+PREFIXES = ("y_", "supplied_", "heat_", "produced_")
+
+
+def check_names(spec: Tables) -> None:
+    """Check the model's name, every symbol, every element's name and every unit."""
+    check_name(spec.model.name, "model.name")
+    for name in spec.elements:
+        check_name(name, f"elements.{name}")
+    _check_case(spec.elements)
+    symbols = list(_symbols(spec))
+    for symbol, where in symbols:
+        check_symbol(symbol, where)
+    _check_unique(symbols)
+    _check_kept(spec, symbols)
+    for table, group in (("parameters", spec.parameters), ("inputs", spec.inputs)):
+        for name, entry in group.items():
+            parse_unit(entry.unit, f"{table}.{name}.unit")
+
+
+def _symbols(spec: Tables) -> Iterator[tuple[str, str]]:
+    yield from ((name, f"parameters.{name}") for name in spec.parameters)
+    yield from ((name, f"inputs.{name}") for name in spec.inputs)
+    for name, element in spec.elements.items():
+        if element.letter:
+            yield getattr(element, "state", None) or f"{element.letter}_{name}", f"elements.{name}"
+
+
+def _check_case(elements: Iterable[str]) -> None:
+    seen: dict[str, str] = {}
+    for name in elements:
+        other = seen.setdefault(name.lower(), name)
+        if other != name:
+            what = f"{quote(name)} and {quote(other)} differ only by case"
+            raise SpecError(what, f"elements.{name}", remedy="rename one: names become files")
+
+
+def _check_unique(symbols: list[tuple[str, str]]) -> None:
+    seen: dict[str, str] = {}
+    for symbol, where in symbols:
+        if symbol in seen:
+            what = f"symbol {quote(symbol)} is already that of {seen[symbol]}"
+            remedy = "give one of them another name"
+            if where.startswith("elements."):
+                remedy = f"set 'state' in {where} to another symbol"
+            raise SpecError(what, where, remedy=remedy)
+        seen[symbol] = where
+
+
+def _check_kept(spec: Tables, symbols: list[tuple[str, str]]) -> None:
+    """Refuse symbols that results, lanes, temperatures or bank sizes are called by."""
+    kept = dict.fromkeys(RESULTS, "a variable of every result")
+    kept |= {f"{name}_count": f"the size of bank '{name}'" for name in spec.elements}
+    kept |= {f"T_{name}": f"the temperature of '{name}'" for name in bodies(spec)}
+    lanes = [s for s, element in states(spec).items() if element in banks(spec)]
+    for symbol, where in symbols:
+        use = kept.get(symbol)
+        for state in lanes:
+            if re.fullmatch(rf"{state}_(?:j|\d+)", symbol):
+                use = f"a lane of bank state '{state}'"
+        if symbol.startswith(PREFIXES) and symbol.split("_", 1)[1] in spec.elements:
+            use = "a variable of every result"
+        if use:
+            raise SpecError(f"symbol {quote(symbol)} is {use}", where, remedy="rename it")

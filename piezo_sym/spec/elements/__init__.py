@@ -1,0 +1,48 @@
+"""The kinds of elements: one file each, one row here.
+
+Adding a kind is a file beside this one, its class in `KINDS`, and a test.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from piezo_sym.spec.elements.ambient import Ambient
+from piezo_sym.spec.elements.base import Element
+from piezo_sym.spec.elements.capacitor import Capacitor
+from piezo_sym.spec.elements.damper import Damper
+from piezo_sym.spec.elements.force_source import ForceSource
+from piezo_sym.spec.elements.hysteron import Hysteron
+from piezo_sym.spec.elements.mass import Mass
+from piezo_sym.spec.elements.spring import Spring
+from piezo_sym.spec.elements.thermal_mass import ThermalMass
+from piezo_sym.spec.elements.transducer import Transducer
+from piezo_sym.spec.elements.voltage_source import VoltageSource
+
+KINDS: Mapping[str, type[Element]] = {
+    "spring": Spring,
+    "mass": Mass,
+    "capacitor": Capacitor,
+    "hysteron": Hysteron,
+    "damper": Damper,
+    "transducer": Transducer,
+    "thermal_mass": ThermalMass,
+    "ambient": Ambient,
+    "force_source": ForceSource,
+    "voltage_source": VoltageSource,
+}
+
+__all__ = [
+    "KINDS",
+    "Ambient",
+    "Capacitor",
+    "Damper",
+    "Element",
+    "ForceSource",
+    "Hysteron",
+    "Mass",
+    "Spring",
+    "ThermalMass",
+    "Transducer",
+    "VoltageSource",
+]

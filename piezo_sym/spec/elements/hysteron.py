@@ -1,0 +1,81 @@
+"""Hysteron: an inductor and a nonlinear resistor in series, alone or as a bank in parallel."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal, final
+
+from pydantic import Field, StrictBool, StrictInt
+
+from piezo_sym.spec.elements.base import (
+    BodyName,
+    Element,
+    Letters,
+    Pair,
+    Law,
+    StateName,
+    positive,
+    state_symbol,
+)
+from piezo_sym.spec.elements.ports import Domain, Port, Resistor, Storage, Variable
+from piezo_sym.spec.expressions import Cmp, Div, Sym
+
+MAX_COUNT = 1_000_000
+
+
+@final
+class Hysteron(Element):
+    """A hysteron between two nodes, eq. (12), the second term of (6), Assumption 2.
+
+    State phi [Wb], the flux linkage of its inductor; co-state the current i = phi/inductance [A];
+    energy phi**2/(2*inductance).  Its resistor drops V = voltage(i, T) [V] along the current, and
+    V*i heats a body.  With `count` it is a bank of lanes j = 1..count in parallel.
+    """
+
+    letter: ClassVar[str] = "phi"
+
+    kind: Literal["hysteron"] = "hysteron"
+    between: Pair
+    count: Annotated[StrictInt, Field(ge=1, le=MAX_COUNT)] | None = None
+    inductance: Annotated[Law, Letters(("phi",))]
+    voltage: Annotated[Law, Letters(("i", "T"))]
+    heats: BodyName
+    discontinuous: StrictBool = False
+    state: StateName = None
+
+    @property
+    def is_bank(self) -> bool:
+        """Whether `count` is given, be it 1."""
+        return self.count is not None
+
+    def ports(self, name: str) -> tuple[Port, ...]:
+        """Return the inductor and the resistor, in series at a node of the element's own."""
+        first, second = self.between
+        inner = f"{name}:inner"
+        return (
+            Storage(
+                state=state_symbol(self, name),
+                letter="phi",
+                law=Div(Sym("phi"), self.law("inductance")),
+                costate=f"i_{name}",
+                branch=(first, inner),
+                domain=Domain.ELECTRICAL,
+                imposes=Variable.THROUGH,
+                units=("Wb", "A"),
+                doc=f"flux linkage of hysteron '{name}'",
+            ),
+            Resistor(
+                letter="i",
+                law=self.law("voltage"),
+                field="voltage",
+                output=f"V_{name}",
+                effort=f"i_{name}",
+                branch=(inner, second),
+                domain=Domain.ELECTRICAL,
+                imposes=Variable.ACROSS,
+                heats=self.heats,
+            ),
+        )
+
+    def requires(self) -> tuple[Cmp, ...]:
+        """Inductance is positive."""
+        return (positive(self.law("inductance")),)

@@ -1,0 +1,151 @@
+"""What elements are made of: the ports between an element and its network.
+
+Input: nothing; these are the types.  Output: frozen records that `network` connects and `iphs`
+reads.  An element states here, once, its law; it knows nothing of matrices.  Across/through: voltage
+and velocity are across, current and force are through; a branch (a, b) has across e_a - e_b, and its
+through variable flows from a to b.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import final
+
+from piezo_sym.spec.expressions import Expr
+
+Branch = tuple[str, str]
+
+
+@final
+class Domain(Enum):
+    """A physical domain; its reference node, and the names of its two variables."""
+
+    ELECTRICAL = "electrical"
+    MECHANICAL = "mechanical"
+
+    @property
+    def reference(self) -> str:
+        """The node at which the across variable is zero."""
+        return "gnd" if self is Domain.ELECTRICAL else "wall"
+
+
+@final
+class Variable(Enum):
+    """The two variables of a branch."""
+
+    ACROSS = "across"
+    THROUGH = "through"
+
+    @property
+    def other(self) -> Variable:
+        """The conjugate variable."""
+        return Variable.THROUGH if self is Variable.ACROSS else Variable.ACROSS
+
+
+@final
+@dataclass(frozen=True)
+class Storage:
+    """An energy store: its state x, and its co-state dU/dx imposed on a branch.
+
+    Attributes
+    ----------
+    state : symbol of the state.
+    letter : the letter of the state in `law`.
+    law : the co-state dU/dx as a function of the letter and parameters.
+    costate : name of the co-state, such as ``v_mass``.
+    imposes : which variable the co-state is; the state's rate is the other one.
+    units : of the state and of the co-state.
+    doc : one line on the state.
+    """
+
+    state: str
+    letter: str
+    law: Expr
+    costate: str
+    branch: Branch
+    domain: Domain
+    imposes: Variable
+    units: tuple[str, str]
+    doc: str
+
+
+@final
+@dataclass(frozen=True)
+class Resistor:
+    """An irreversible process: output W = law(z, T), power W*z turned into heat of a body.
+
+    Attributes
+    ----------
+    letter : the letter of the conjugate variable z in `law`; ``T`` is the heated body's temperature.
+    field : the name of the law in the spec, for messages.
+    output : name of W, such as ``V_hysteron``.
+    effort : name of z, where it is not simply a co-state.
+    imposes : which variable W is; z is the other one.
+    heats : the element whose body takes the heat.
+    """
+
+    letter: str
+    law: Expr
+    field: str
+    output: str
+    effort: str
+    branch: Branch
+    domain: Domain
+    imposes: Variable
+    heats: str
+
+
+@final
+@dataclass(frozen=True)
+class Gyrator:
+    """A power-preserving coupling: through_1 = ratio*across_2, through_2 = -ratio*across_1."""
+
+    first: Branch
+    first_domain: Domain
+    second: Branch
+    second_domain: Domain
+    ratio: Expr
+    name: str
+    body: str | None
+
+
+@final
+@dataclass(frozen=True)
+class Source:
+    """A port: an input imposed on a branch; y is conjugate, y*u is the power put in.
+
+    A through source pushes its input into its first node; an across source sets e_a - e_b.
+    """
+
+    input: str
+    branch: Branch
+    domain: Domain
+    imposes: Variable
+    units: tuple[str, str]
+    doc: str
+
+
+@final
+@dataclass(frozen=True)
+class Body:
+    """A thermal mass: entropy S as its state, and its temperature dU/dS = law(S)."""
+
+    state: str
+    letter: str
+    law: Expr
+    temperature: str
+    doc: str
+
+
+@final
+@dataclass(frozen=True)
+class Exchange:
+    """Heat exchange with an environment: input conductance*(T_e/T - 1), y = T."""
+
+    body: str
+    conductance: Expr
+    input: str
+
+
+Port = Storage | Resistor | Gyrator | Source | Body | Exchange

@@ -1,0 +1,37 @@
+"""Transducer: the power-preserving coupling of an electrical and a mechanical pair of nodes."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, final
+
+from piezo_sym.spec.elements.base import BodyName, Element, Letters, Pair, Law
+from piezo_sym.spec.elements.ports import Domain, Gyrator, Port
+
+
+@final
+class Transducer(Element):
+    """A piezoelectric transducer, the relations of Assumption 2: F = ratio*V, i = ratio*v.
+
+    It draws ratio*v from its first electrical node and pushes its first mechanical node with
+    ratio*V.  The ratio [C/m = N/V] may depend on the temperature T of the body it names.
+    """
+
+    kind: Literal["transducer"] = "transducer"
+    electrical: Pair
+    mechanical: Pair
+    ratio: Annotated[Law, Letters(("T",))]
+    temperature: BodyName | None = None
+
+    def ports(self, name: str) -> tuple[Port, ...]:
+        """Return the coupling."""
+        return (
+            Gyrator(
+                first=self.electrical,
+                first_domain=Domain.ELECTRICAL,
+                second=self.mechanical,
+                second_domain=Domain.MECHANICAL,
+                ratio=self.law("ratio"),
+                name=f"alpha_{name}",
+                body=self.temperature,
+            ),
+        )

@@ -1,0 +1,276 @@
+"""The small tree in which laws are kept, from the spec to the printers.
+
+Input: nothing; these are the types.  Output: frozen nodes, and the walks that every stage shares:
+which names occur, renaming, replacement, the numeric value.  A tree is data: it cannot execute.
+`LaneSum` never comes from a spec; lowering makes it for the sums over a bank's lanes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import final
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Num:
+    """An exact rational number."""
+
+    value: Fraction
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Sym:
+    """A name: a parameter, an input, a state, a law's letter, or a quantity of a program."""
+
+    name: str
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Neg:
+    """Minus its argument."""
+
+    arg: Expr
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Add:
+    """A sum, its terms in the order in which they were written; a difference is a `Neg` term."""
+
+    terms: tuple[Expr, ...]
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Mul:
+    """A product of two factors."""
+
+    left: Expr
+    right: Expr
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Div:
+    """A quotient."""
+
+    left: Expr
+    right: Expr
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Pow:
+    """A power with a small rational exponent."""
+
+    base: Expr
+    exponent: Fraction
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Call:
+    """One of the functions of `FUNCTIONS` applied to its arguments."""
+
+    function: str
+    args: tuple[Expr, ...]
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Cmp:
+    """One comparison: ``left op right`` with op one of < <= > >=."""
+
+    op: str
+    left: Expr
+    right: Expr
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class If:
+    """``then if condition else other``."""
+
+    then: Expr
+    condition: Cmp
+    other: Expr
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class LaneSum:
+    """The sum of `arg` over the lanes j = 1..r of `bank`."""
+
+    arg: Expr
+    bank: str
+
+
+Expr = Num | Sym | Neg | Add | Mul | Div | Pow | Call | If | LaneSum
+Node = Expr | Cmp
+
+ZERO, ONE, TWO = Num(Fraction(0)), Num(Fraction(1)), Num(Fraction(2))
+
+
+def children(node: Node) -> tuple[Node, ...]:
+    """Return the direct parts of `node`, from left to right."""
+    match node:
+        case Num() | Sym():
+            return ()
+        case Neg(arg) | LaneSum(arg, _):
+            return (arg,)
+        case Add(terms):
+            return terms
+        case Mul(left, right) | Div(left, right) | Cmp(_, left, right):
+            return (left, right)
+        case Pow(base, _):
+            return (base,)
+        case Call(_, args):
+            return args
+        case If(then, condition, other):
+            return (then, condition, other)
+
+
+def walk(node: Node) -> Iterator[Node]:
+    """Yield `node` and all that is in it, outermost first, from left to right."""
+    stack: list[Node] = [node]
+    while stack:
+        top = stack.pop()
+        yield top
+        stack.extend(reversed(children(top)))
+
+
+def names(node: Node) -> tuple[str, ...]:
+    """Return the names that occur in `node`, each once, in order of first appearance."""
+    return tuple(dict.fromkeys(n.name for n in walk(node) if isinstance(n, Sym)))
+
+
+def rebuild(node: Expr, change: Callable[[Expr], Expr]) -> Expr:
+    """Return `node` with `change` applied to each of its direct parts."""
+    match node:
+        case Num() | Sym():
+            return node
+        case Neg(arg):
+            return Neg(change(arg))
+        case LaneSum(arg, bank):
+            return LaneSum(change(arg), bank)
+        case Add(terms):
+            return Add(tuple(change(term) for term in terms))
+        case Mul(left, right):
+            return Mul(change(left), change(right))
+        case Div(left, right):
+            return Div(change(left), change(right))
+        case Pow(base, exponent):
+            return Pow(change(base), exponent)
+        case Call(function, args):
+            return Call(function, tuple(change(arg) for arg in args))
+        case If(then, Cmp(op, left, right), other):
+            return If(change(then), Cmp(op, change(left), change(right)), change(other))
+
+
+def replace(node: Expr, mapping: Mapping[str, Expr]) -> Expr:
+    """Return `node` with each name in `mapping` replaced by its tree, all at once."""
+    if isinstance(node, Sym):
+        return mapping.get(node.name, node)
+    return rebuild(node, lambda part: replace(part, mapping))
+
+
+def rename(node: Expr, mapping: Mapping[str, str]) -> Expr:
+    """Return `node` with names replaced by other names, all at once."""
+    return replace(node, {old: Sym(new) for old, new in mapping.items()})
+
+
+def _deadzone(z: float, w: float) -> float:
+    return max(z - w, 0.0) + min(z + w, 0.0)
+
+
+def _saturate(z: float, w: float) -> float:
+    return min(max(z, -w), w)
+
+
+def _sign(z: float) -> float:
+    return float((z > 0) - (z < 0))
+
+
+#: The functions of the law language: name -> (number of arguments, value).
+FUNCTIONS: Mapping[str, tuple[int, Callable[..., float]]] = {
+    "exp": (1, math.exp),
+    "log": (1, math.log),
+    "sqrt": (1, math.sqrt),
+    "sin": (1, math.sin),
+    "cos": (1, math.cos),
+    "tanh": (1, math.tanh),
+    "abs": (1, abs),
+    "sign": (1, _sign),
+    "min": (2, min),
+    "max": (2, max),
+    "deadzone": (2, _deadzone),
+    "saturate": (2, _saturate),
+}
+
+COMPARISONS: Mapping[str, Callable[[float, float], bool]] = {
+    "<": lambda a, b: a < b,
+    "<=": lambda a, b: a <= b,
+    ">": lambda a, b: a > b,
+    ">=": lambda a, b: a >= b,
+}
+
+
+def holds(condition: Cmp, values: Mapping[str, float]) -> bool:
+    """Return whether a comparison holds for the given values of its names."""
+    left, right = evaluate(condition.left, values), evaluate(condition.right, values)
+    return COMPARISONS[condition.op](left, right)
+
+
+def evaluate(node: Expr, values: Mapping[str, float]) -> float:
+    """Return the floating-point value of `node` for the given values of its names.
+
+    Raises
+    ------
+    ArithmeticError, ValueError
+        Where the law has no finite real value (1/0, log(0), an overflow).
+    """
+    value = _evaluate(node, values)
+    if not math.isfinite(value):
+        msg = "no finite value"
+        raise ArithmeticError(msg)
+    return value
+
+
+def _evaluate(node: Expr, values: Mapping[str, float]) -> float:
+    match node:
+        case Num(value):
+            return float(value)
+        case Sym(name):
+            return values[name]
+        case Neg(arg):
+            return -_evaluate(arg, values)
+        case Add(terms):
+            return math.fsum(_evaluate(term, values) for term in terms)
+        case Mul(left, right):
+            return _evaluate(left, values) * _evaluate(right, values)
+        case Div(left, right):
+            return _evaluate(left, values) / _evaluate(right, values)
+        case Pow(base, exponent):
+            return _power(_evaluate(base, values), exponent)
+        case Call(function, args):
+            return float(FUNCTIONS[function][1](*(_evaluate(arg, values) for arg in args)))
+        case If(then, condition, other):
+            return _evaluate(then if holds(condition, values) else other, values)
+        case LaneSum():
+            msg = "a sum over lanes has no value outside a program"
+            raise TypeError(msg)
+
+
+def _power(base: float, exponent: Fraction) -> float:
+    if exponent.denominator == 1:
+        return float(base**exponent.numerator)
+    if base < 0:
+        msg = "fractional power of a negative number"
+        raise ArithmeticError(msg)
+    return float(base ** float(exponent))

@@ -1,0 +1,72 @@
+"""The spec as one frozen value: what a user declares.
+
+Input: TOML data, or Python arguments of the same shape.  Output: a `Model`, immutable, hashable, and
+equal to another exactly if both say the same in the same order.
+"""
+
+from __future__ import annotations
+
+from typing import Any, final
+
+from pydantic import ValidationError, model_validator
+
+from piezo_sym.spec.checks import check
+from piezo_sym.spec.fields import AnyElement, Domain, Frozen, Header, Input, Parameter, Start
+from piezo_sym.spec.problems import first_problem
+from piezo_sym.spec.table import Table
+from piezo_sym.spec.write import spec_hash, to_toml
+
+
+@final
+class Model(Frozen):
+    """A declarative list of physical elements, and the parameters and inputs of their laws.
+
+    Attributes
+    ----------
+    model : `Header`: name, title, source.
+    parameters, inputs : tables of `Parameter` and `Input`, by symbol.
+    domain : `Domain`: conditions that values, inputs and states keep.
+    initial : initial states by symbol, 0 where nothing is said.
+    elements : table of elements by name; states and processes follow its order.
+
+    Raises
+    ------
+    SpecError
+        With one line that says what is wrong, where, what was expected, and what to do.
+    """
+
+    model: Header
+    parameters: Table[Parameter] = Table()
+    inputs: Table[Input] = Table()
+    domain: Domain = Domain()
+    initial: Table[Start] = Table()
+    elements: Table[AnyElement]
+
+    def __init__(self, **data: Any) -> None:
+        """Check the data; a fault becomes one `SpecError`."""
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            raise first_problem(error) from None
+
+    @model_validator(mode="after")
+    def _checked(self) -> Model:
+        check(self)
+        return self
+
+    @property
+    def name(self) -> str:
+        """The model's name."""
+        return self.model.name
+
+    @property
+    def sha256(self) -> str:
+        """SHA-256 of the canonical spec; generated modules carry it."""
+        return spec_hash(self.model_dump())
+
+    def to_toml(self) -> str:
+        """Return the spec as TOML text; loading it gives an equal model."""
+        data = self.model_dump(exclude_defaults=True)
+        for name, element in self.elements.items():
+            data["elements"][name] = {"kind": element.kind} | data["elements"][name]
+        return to_toml(data)

@@ -1,0 +1,80 @@
+"""Field faults in one line: pydantic's list of errors to one `SpecError`.
+
+Input: a `ValidationError` and the data it is about.  Output: the first fault, with its place as a
+dotted path, what was expected there and, for unknown words, the nearest known one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
+
+from piezo_sym.errors import SpecError, listing, nearest, quote
+from piezo_sym.spec.elements import KINDS
+from piezo_sym.spec.fields import Domain, Header, Input, Parameter
+
+TABLES: Mapping[str, type[BaseModel]] = {
+    "model": Header,
+    "parameters": Parameter,
+    "inputs": Input,
+    "domain": Domain,
+}
+TOP = ("model", "parameters", "inputs", "domain", "initial", "elements")
+NAMED = ("parameters", "inputs", "elements", "initial")
+
+
+def first_problem(error: ValidationError) -> SpecError:
+    """Return the first of pydantic's findings as a `SpecError`."""
+    found = error.errors(include_url=False)
+    found.sort(key=lambda detail: detail["type"] != "extra_forbidden")  # a typo explains a gap
+    problem = _problem(found[0])
+    if len(found) > 1:
+        problem.remedy = "; ".join(filter(None, (problem.remedy, f"{len(found) - 1} more to mend")))
+    return problem
+
+
+def _problem(detail: ErrorDetails) -> SpecError:
+    place = [str(part) for part in detail["loc"]]
+    known = _known(place)
+    if len(place) > 2 and place[0] == "elements":
+        del place[2]  # pydantic names the kind here
+    where = ".".join(place) or "spec"
+    value = detail.get("input")
+    match detail["type"]:
+        case "extra_forbidden":
+            return SpecError(f"unknown key {quote(place[-1])}", where, remedy=nearest(place[-1], known))
+        case "missing":
+            return SpecError("is missing", where, remedy=f"keys here: {listing(known)}")
+        case "union_tag_invalid":
+            kind = value.get("kind") if isinstance(value, Mapping) else value
+            remedy = nearest(str(kind), KINDS)
+            return SpecError(f"unknown kind {quote(kind)}", f"{where}.kind", remedy=remedy)
+        case "union_tag_not_found":
+            return SpecError("is missing", f"{where}.kind", f"one of {listing(KINDS, 20)}")
+        case "string_pattern_mismatch":
+            expected = "up to 40 letters, digits or . _ + -"
+            return SpecError(f"{quote(value)} is not a label", where, expected)
+    return SpecError(f"{quote(value)} does not fit", where, _expected(detail))
+
+
+def _expected(detail: ErrorDetails) -> str:
+    if detail["type"] == "value_error":
+        return str(detail.get("ctx", {}).get("error", detail["msg"]))
+    message = detail["msg"].removeprefix("Input should be ")
+    return message[:1].lower() + message[1:]
+
+
+def _known(place: list[str]) -> Iterable[str]:
+    """Return the keys that are known where `place` points."""
+    if len(place) <= 1:
+        return TOP
+    if place[0] == "elements" and len(place) > 2:
+        return _fields(KINDS.get(place[2]))
+    return _fields(TABLES.get(place[0]))
+
+
+def _fields(kind: Any) -> Iterable[str]:
+    return tuple(kind.model_fields) if kind is not None else ()

@@ -1,0 +1,69 @@
+"""A frozen, ordered mapping: the tables of a spec, whose order means something.
+
+Input: pairs.  Output: a mapping that cannot change, is hashable, and equals another only if their
+order is the same too (states follow the order of elements).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, Generic, TypeVar, final, get_args
+
+from pydantic import GetCoreSchemaHandler
+from pydantic_core import CoreSchema, core_schema
+
+Value = TypeVar("Value")
+
+
+@final
+class Table(Mapping[str, Value], Generic[Value]):
+    """An immutable mapping from names to values that remembers and compares its order."""
+
+    __slots__ = ("_items",)
+
+    def __init__(self, items: Mapping[str, Value] | None = None) -> None:
+        self._items = dict(items or {})
+
+    def __getitem__(self, name: str) -> Value:
+        """Return the value of `name`."""
+        return self._items[name]
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the names in order."""
+        return iter(self._items)
+
+    def __len__(self) -> int:
+        """Return the number of names."""
+        return len(self._items)
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether `other` has equal items in the same order."""
+        if not isinstance(other, Mapping):
+            return NotImplemented
+        return list(self.items()) == list(other.items())
+
+    def __hash__(self) -> int:
+        """Return a hash of the items in order."""
+        return hash(tuple(self._items.items()))
+
+    def __repr__(self) -> str:
+        """Return the table as a call that makes it."""
+        return f"Table({self._items!r})"
+
+    @classmethod
+    def __get_pydantic_core_schema__(
+        cls, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """Validate as a dict of the value type, freeze it; serialise as a plain dict."""
+        (value,) = get_args(source)
+        inner = handler.generate_schema(dict[str, value])  # type: ignore[valid-type]
+        plain = core_schema.no_info_before_validator_function(_plain, inner)
+        return core_schema.no_info_after_validator_function(
+            cls,
+            plain,
+            serialization=core_schema.plain_serializer_function_ser_schema(dict),
+        )
+
+
+def _plain(value: Any) -> Any:
+    return dict(value) if isinstance(value, Table) else value

@@ -1,0 +1,171 @@
+"""What a spec says about itself: the questions that several stages ask of its tables.
+
+Input: the tables of a spec (`Tables`, which `Model` satisfies).  Output: its states, banks, bodies,
+laws and conditions, in declaration order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Protocol, final
+
+from piezo_sym.spec.elements import Element, ThermalMass
+from piezo_sym.spec.elements.base import Letters, Refers, state_symbol
+from piezo_sym.spec.expressions import Cmp, Expr, names, rename
+from piezo_sym.spec.fields import Domain, Header, Input, Parameter
+from piezo_sym.spec.parse import parse_condition, parse_law
+from piezo_sym.spec.text import spell
+
+
+class Tables(Protocol):
+    """The tables of a spec, each right in itself."""
+
+    @property
+    def model(self) -> Header:
+        """The [model] table."""
+
+    @property
+    def parameters(self) -> Mapping[str, Parameter]:
+        """The [parameters] table."""
+
+    @property
+    def inputs(self) -> Mapping[str, Input]:
+        """The [inputs] table."""
+
+    @property
+    def domain(self) -> Domain:
+        """The [domain] table."""
+
+    @property
+    def initial(self) -> Mapping[str, str | float | tuple[str | float, ...]]:
+        """The [initial] table."""
+
+    @property
+    def elements(self) -> Mapping[str, Element]:
+        """The [elements.*] tables."""
+
+
+@final
+@dataclass(frozen=True)
+class LawField:
+    """A law of an element: its place in the spec, its text and the letters it may use."""
+
+    where: str
+    text: str
+    letters: tuple[str, ...]
+
+    @property
+    def tree(self) -> Expr:
+        """The parsed law."""
+        return parse_law(self.text, self.where)
+
+
+@final
+@dataclass(frozen=True)
+class Condition:
+    """A condition of the domain, with its place in the spec."""
+
+    where: str
+    tree: Cmp
+
+
+def law_fields(name: str, element: Element) -> Iterator[LawField]:
+    """Yield the laws of one element."""
+    for field, info in type(element).model_fields.items():
+        letters = [mark for mark in info.metadata if isinstance(mark, Letters)]
+        text = getattr(element, field)
+        if letters and text is not None:
+            yield LawField(f"elements.{name}.{field}", text, letters[-1].names)
+
+
+def references(element: Element) -> Iterator[tuple[str, str, str]]:
+    """Yield (field, what it refers to, the name given) of one element."""
+    for field, info in type(element).model_fields.items():
+        for mark in info.metadata:
+            if isinstance(mark, Refers) and getattr(element, field) is not None:
+                yield field, mark.to, getattr(element, field)
+
+
+def states(spec: Tables) -> dict[str, str]:
+    """Return the element of each state symbol, in declaration order."""
+    return {state_symbol(e, name): name for name, e in spec.elements.items() if e.letter}
+
+
+def bodies(spec: Tables) -> tuple[str, ...]:
+    """Return the names of the thermal masses."""
+    return tuple(name for name, e in spec.elements.items() if isinstance(e, ThermalMass))
+
+
+def banks(spec: Tables) -> dict[str, int]:
+    """Return the size of each bank."""
+    found = {name: getattr(e, "count", None) for name, e in spec.elements.items() if e.is_bank}
+    return {name: int(count) for name, count in found.items() if count is not None}
+
+
+def temperatures(spec: Tables) -> dict[str, str]:
+    """Return the body of each temperature symbol: ``T`` of the only one, else ``T_<element>``."""
+    found = bodies(spec)
+    return {"T": found[0]} if len(found) == 1 else {f"T_{name}": name for name in found}
+
+
+def conditions(spec: Tables) -> tuple[Condition, ...]:
+    """Return the domain: what the spec assumes, then what its kinds need, each once."""
+    assumed = [
+        Condition(f"domain.assume[{n}]", parse_condition(text, f"domain.assume[{n}]"))
+        for n, text in enumerate(spec.domain.assume)
+    ]
+    needed = [
+        Condition(f"elements.{name}", _with_state(condition, element, name))
+        for name, element in spec.elements.items()
+        for condition in element.requires()
+    ]
+    return tuple({condition.tree: condition for condition in reversed(assumed + needed)}.values())[
+        ::-1
+    ]
+
+
+def _with_state(condition: Cmp, element: Element, name: str) -> Cmp:
+    letters = {element.letter: state_symbol(element, name)} if element.letter else {}
+    left, right = rename(condition.left, letters), rename(condition.right, letters)
+    return Cmp(condition.op, left, right)
+
+
+def condition_text(condition: Cmp) -> str:
+    """Return a condition as a reader would write it."""
+    return f"{spell(condition.left)} {condition.op} {spell(condition.right)}"
+
+
+def lane_parameters(spec: Tables) -> dict[str, str]:
+    """Return the bank of each parameter that may take a value a lane: those no other element uses."""
+    users: dict[str, set[str]] = {}
+    for name, element in spec.elements.items():
+        for law in law_fields(name, element):
+            for word in names(law.tree):
+                users.setdefault(word, set()).add(name)
+    for symbol, start in spec.initial.items():
+        for word in _start_names(start):
+            users.setdefault(word, set()).add(states(spec).get(symbol, symbol))
+    single = {
+        word: next(iter(found))
+        for word, found in users.items()
+        if word in spec.parameters and len(found) == 1
+    }
+    own = {word: single[word] for word in spec.parameters if single.get(word) in banks(spec)}
+    mixed = {word for group in _condition_names(spec) for word in group if _mixes(group, own)}
+    return {word: bank for word, bank in own.items() if word not in mixed}
+
+
+def _start_names(start: str | float | tuple[str | float, ...]) -> Iterator[str]:
+    for part in start if isinstance(start, tuple) else (start,):
+        if isinstance(part, str):
+            yield from names(parse_law(part, "initial"))
+
+
+def _condition_names(spec: Tables) -> Iterator[tuple[str, ...]]:
+    for condition in conditions(spec):
+        yield names(condition.tree)
+
+
+def _mixes(group: tuple[str, ...], own: Mapping[str, str]) -> bool:
+    return len({own[word] for word in group if word in own}) > 1

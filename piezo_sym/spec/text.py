@@ -1,0 +1,149 @@
+"""Trees to text: one walk for the spec's own spelling and for every printed language.
+
+Input: a tree.  Output: text with no more parentheses than it needs.  A language is a `Style`: how
+it writes numbers, powers, calls, choices, comparisons and names.  `SPEC` writes the law language
+itself, so that parsing what it writes gives the tree back.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import final
+
+from piezo_sym.spec.expressions import (
+    Add,
+    Call,
+    Cmp,
+    Div,
+    Expr,
+    If,
+    LaneSum,
+    Mul,
+    Neg,
+    Num,
+    Pow,
+    Sym,
+)
+
+# Binding strength of what a piece of text is, weakest first.
+CHOICE, SUM, PRODUCT, UNARY, POWER, ATOM = range(6)
+
+Piece = tuple[str, int]  # text, and how strongly its outermost operator binds
+
+
+@final
+@dataclass(frozen=True)
+class Style:
+    """How one language writes the parts of a tree.
+
+    Each function gets its operands' `Piece` values, and gives a `Piece` back.
+    """
+
+    number: Callable[[Fraction], Piece]
+    name: Callable[[str], Piece]
+    power: Callable[[Piece, Fraction], Piece]
+    call: Callable[[str, tuple[Piece, ...]], Piece]
+    choose: Callable[[Piece, str, Piece], Piece]
+    lane_sum: Callable[[Piece, str], Piece]
+
+
+def enclose(piece: Piece, strength: int) -> str:
+    """Return the piece's text, in parentheses if it binds more weakly than `strength`."""
+    text, own = piece
+    return text if own >= strength else f"({text})"
+
+
+def write(node: Expr, style: Style) -> str:
+    """Return `node` as text in the language of `style`."""
+    return piece(node, style)[0]
+
+
+def write_comparison(condition: Cmp, style: Style) -> str:
+    """Return a comparison as text in the language of `style`."""
+    left, right = piece(condition.left, style), piece(condition.right, style)
+    return f"{enclose(left, SUM)} {condition.op} {enclose(right, SUM)}"
+
+
+def piece(node: Expr, style: Style) -> Piece:
+    """Return `node` as text, with the strength of its outermost operator."""
+    match node:
+        case Num(value):
+            return style.number(value)
+        case Sym(name):
+            return style.name(name)
+        case Neg(arg):
+            return f"-{enclose(piece(arg, style), PRODUCT)}", SUM
+        case Add(terms):
+            return _sum(terms, style), SUM
+        case Mul(left, right):
+            pieces = piece(left, style), piece(right, style)
+            return f"{enclose(pieces[0], PRODUCT)}*{enclose(pieces[1], UNARY)}", PRODUCT
+        case Div(left, right):
+            pieces = piece(left, style), piece(right, style)
+            return f"{enclose(pieces[0], PRODUCT)}/{enclose(pieces[1], UNARY)}", PRODUCT
+        case Pow(base, exponent):
+            return style.power(piece(base, style), exponent)
+        case Call(function, args):
+            return style.call(function, tuple(piece(arg, style) for arg in args))
+        case If(then, condition, other):
+            test = write_comparison(condition, style)
+            return style.choose(piece(then, style), test, piece(other, style))
+        case LaneSum(arg, bank):
+            return style.lane_sum(piece(arg, style), bank)
+
+
+def _sum(terms: tuple[Expr, ...], style: Style) -> str:
+    first, *rest = terms
+    text = enclose(piece(first, style), SUM)
+    for term in rest:
+        sign, size = ("-", term.arg) if isinstance(term, Neg) else ("+", term)
+        text += f" {sign} {enclose(piece(size, style), PRODUCT)}"
+    return text
+
+
+def decimal(value: Fraction) -> str | None:
+    """Return an exact decimal spelling of a non-negative rational, or None if there is none."""
+    rest, twos, fives = value.denominator, 0, 0
+    while rest % 2 == 0:
+        rest, twos = rest // 2, twos + 1
+    while rest % 5 == 0:
+        rest, fives = rest // 5, fives + 1
+    places = max(twos, fives)
+    if rest != 1 or places > 20:
+        return None
+    digits = str(value.numerator * 10**places // value.denominator).rjust(places + 1, "0")
+    return f"{digits[:-places]}.{digits[-places:]}" if places else digits
+
+
+def _spec_number(value: Fraction) -> Piece:
+    if value < 0:
+        return f"-{_spec_number(-value)[0]}", SUM
+    text = decimal(value)
+    return (text, ATOM) if text else (f"{value.numerator}/{value.denominator}", PRODUCT)
+
+
+def _spec_power(base: Piece, exponent: Fraction) -> Piece:
+    text, strength = _spec_number(exponent)
+    power = text if strength == ATOM else f"({text})"
+    return f"{enclose(base, ATOM)}**{power}", POWER
+
+
+def _spec_choice(then: Piece, test: str, other: Piece) -> Piece:
+    return f"{enclose(then, SUM)} if {test} else {enclose(other, SUM)}", CHOICE
+
+
+SPEC = Style(
+    number=_spec_number,
+    name=lambda name: (name, ATOM),
+    power=_spec_power,
+    call=lambda function, args: (f"{function}({', '.join(text for text, _ in args)})", ATOM),
+    choose=_spec_choice,
+    lane_sum=lambda arg, bank: (f"sum({arg[0]} over {bank})", ATOM),
+)
+
+
+def spell(node: Expr) -> str:
+    """Return `node` in the law language of the spec."""
+    return write(node, SPEC)

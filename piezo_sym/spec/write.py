@@ -1,0 +1,72 @@
+"""Spec data out: TOML text in the layout of the shipped specs, and the canonical hash.
+
+Input: plain data of a spec, as TOML gives it.  Output: text, or a SHA-256.  Nothing here needs the
+spec's types, so that a run can compare a module with its spec without loading them.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from typing import Any
+
+ORDERED = ("parameters", "inputs", "elements")
+NOTHING = (None, False, "", "0", [])
+
+
+def to_toml(data: Mapping[str, Any]) -> str:
+    """Return spec data as TOML: parameters and inputs a line each, elements a table each."""
+    blocks = [_table("model", data["model"])]
+    blocks += [_lines(name, data[name]) for name in ("parameters", "inputs") if data.get(name)]
+    blocks += [_table(name, data[name]) for name in ("domain", "initial") if data.get(name)]
+    blocks += [_table(f"elements.{name}", fields) for name, fields in data["elements"].items()]
+    return "\n".join(blocks)
+
+
+def _table(name: str, fields: Mapping[str, Any]) -> str:
+    import tomli_w
+
+    return f"[{name}]\n{tomli_w.dumps({key: _plain(value) for key, value in fields.items()})}"
+
+
+def _lines(name: str, rows: Mapping[str, Mapping[str, Any]]) -> str:
+    lines = [f"{key} = {{ {', '.join(_pairs(row))} }}" for key, row in rows.items()]
+    return "\n".join([f"[{name}]", *lines, ""])
+
+
+def _pairs(row: Mapping[str, Any]) -> list[str]:
+    import tomli_w
+
+    return [tomli_w.dumps({key: _plain(value)}).strip() for key, value in row.items()]
+
+
+def _plain(value: Any) -> Any:
+    return [_plain(item) for item in value] if isinstance(value, (list, tuple)) else value
+
+
+def spec_hash(data: Mapping[str, Any]) -> str:
+    """Return the SHA-256 of spec data.
+
+    Order counts where it means something: among parameters, inputs and elements.  Entries that say
+    nothing (0, "0", "", false, an empty list) are left out, since leaving them out means the same.
+    """
+    tables = {name: _rows(table, name in ORDERED) for name, table in data.items()}
+    canonical = json.dumps(sorted(tables.items()), ensure_ascii=True, separators=(",", ":"))
+    return hashlib.sha256(canonical.encode()).hexdigest()
+
+
+def _rows(table: Mapping[str, Any], ordered: bool) -> list[Any]:
+    rows = [[key, _canonical(value)] for key, value in table.items()]
+    return rows if ordered else sorted(row for row in rows if row[1] not in NOTHING)
+
+
+def _canonical(value: Any) -> Any:
+    match value:
+        case bool() | str() | None:
+            return value
+        case int() | float():
+            return float(value)
+        case Mapping():
+            return _rows(value, ordered=False)
+    return [_canonical(item) for item in value]
