@@ -25,24 +25,32 @@ def to_toml(data: Mapping[str, Any]) -> str:
 
 
 def _table(name: str, fields: Mapping[str, Any]) -> str:
-    import tomli_w
-
-    return f"[{name}]\n{tomli_w.dumps({key: _plain(value) for key, value in fields.items()})}"
+    return "\n".join([f"[{name}]", *_pairs(fields), ""])
 
 
 def _lines(name: str, rows: Mapping[str, Mapping[str, Any]]) -> str:
-    lines = [f"{key} = {{ {', '.join(_pairs(row))} }}" for key, row in rows.items()]
+    lines = [f"{_key(key)} = {{ {', '.join(_pairs(row))} }}" for key, row in rows.items()]
     return "\n".join([f"[{name}]", *lines, ""])
 
 
 def _pairs(row: Mapping[str, Any]) -> list[str]:
+    return [f"{_key(key)} = {_value(value)}" for key, value in row.items()]
+
+
+def _key(key: str) -> str:
+    return _dumped({key: 0}).partition(" =")[0]
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, (list, tuple)):
+        return f"[{', '.join(_value(item) for item in value)}]"
+    return _dumped({"value": value}).partition("= ")[2]
+
+
+def _dumped(pair: Mapping[str, Any]) -> str:
     import tomli_w
 
-    return [tomli_w.dumps({key: _plain(value)}).strip() for key, value in row.items()]
-
-
-def _plain(value: Any) -> Any:
-    return [_plain(item) for item in value] if isinstance(value, (list, tuple)) else value
+    return tomli_w.dumps(pair).strip()
 
 
 def spec_hash(data: Mapping[str, Any]) -> str:

@@ -1,0 +1,43 @@
+"""Model to irreversible port-Hamiltonian system: the table of contents of the derivation.
+
+    stage        from -> to                    what happens                         module
+    circuit      Model -> Circuit              elements state their ports           spec.circuit
+    symbols      Circuit -> SymbolTable        names become SymPy symbols           symbols
+    junction     Circuit -> Junction           Kirchhoff's and Newton's laws solved network
+    system       Junction -> IPHS              Definition 1, and what follows       iphs, system
+
+Banks stay symbolic in their size r all the way (`lanes`); `IPHS.expand` writes them out.
+"""
+
+from __future__ import annotations
+
+from piezo_sym.iphs import IPHS, iphs_of
+from piezo_sym.network import junction_of
+from piezo_sym.spec.circuit import circuit_of
+from piezo_sym.spec.model import Model
+from piezo_sym.symbols import symbol_table
+
+
+def derive(model: Model) -> IPHS:
+    """Return the irreversible port-Hamiltonian system of a model.
+
+    Parameters
+    ----------
+    model : from `load`, or made in Python.
+
+    Returns
+    -------
+    IPHS
+        With ``.x .u .U .S .E .J0 .processes .J_ir .g .y .y_s .rhs .sigma``; see there for shapes.
+
+    Raises
+    ------
+    NetworkError
+        If the network's laws have no, or more than one, solution; names the elements at fault.
+    SpecError
+        If a storage law has no energy in closed form.
+    """
+    circuit = circuit_of(model)
+    symbols = symbol_table(circuit)
+    junction = junction_of(circuit, symbols)
+    return iphs_of(circuit, symbols, junction)

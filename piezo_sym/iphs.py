@@ -1,0 +1,298 @@
+"""The irreversible port-Hamiltonian system of a model, as mathematics to read, prove and print.
+
+Input: a `Circuit` and its junction.  Output: an `IPHS`: Definition 1 in named co-states (`system`),
+what each name stands for (`definitions`), the energy U, and everything again as functions of the
+state, the inputs and the parameters, which is what most users want to look at.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import final
+
+import sympy as sp
+
+from piezo_sym.errors import SpecError
+from piezo_sym.lanes import LaneMatrix, vector
+from piezo_sym.latex import Reading, equations_latex
+from piezo_sym.network import Junction, junction_of, port_order
+from piezo_sym.spec.calculus import antiderivative
+from piezo_sym.spec.circuit import Circuit, Placed, circuit_of
+from piezo_sym.spec.elements.ports import Body, Exchange, Gyrator, Resistor, Source, Storage
+from piezo_sym.spec.expressions import Expr, rename
+from piezo_sym.spec.model import Model
+from piezo_sym.spec.tables import banks
+from piezo_sym.spec.text import spell
+from piezo_sym.spec.unroll import unroll
+from piezo_sym.symbols import SymbolTable, symbol_table
+from piezo_sym.system import System
+
+Matrix = sp.ImmutableMatrix | LaneMatrix
+
+
+@final
+@dataclass(frozen=True)
+class Process:
+    """One irreversible process: a dissipative element and the body that it heats.
+
+    Attributes
+    ----------
+    name, bank : the element, and its bank if it stands for one a lane.
+    body : the thermal mass it heats.
+    J : its skew structure matrix (of lane j, for a bank).
+    bracket : its driving force {S, U}_J.
+    R : its modulating function W/T, eq. (4).
+    gamma : R over the driving force z: W/(T z); 0/0 at z = 0, where only R is used.
+    """
+
+    name: str
+    bank: str | None
+    body: str
+    J: Matrix
+    bracket: sp.Expr
+    R: sp.Expr
+    gamma: sp.Expr
+
+
+@final
+@dataclass(frozen=True)
+class IPHS:
+    """An irreversible port-Hamiltonian system, eqs. (1)-(5) of the paper.
+
+    Attributes
+    ----------
+    model, circuit, symbols : where it comes from, and its names.
+    system : Definition 1 in named co-states.
+    energies : the stored energy of each state, as a law of it; U is their sum.
+    laws, ratios, costates : what the names in `system` stand for, as (symbol, expression).
+
+    Vectors and matrices are SymPy matrices, or `LaneMatrix` where a bank keeps its size a symbol;
+    `expand` gives explicit ones.
+    """
+
+    model: Model
+    circuit: Circuit
+    symbols: SymbolTable
+    system: System
+    energies: tuple[Expr, ...]
+    laws: tuple[tuple[sp.Symbol, sp.Expr], ...]
+    ratios: tuple[tuple[sp.Symbol, sp.Expr], ...]
+    costates: tuple[tuple[sp.Symbol, sp.Expr], ...]
+
+    @cached_property
+    def x(self) -> Matrix:
+        """State vector, n by 1."""
+        names = {n: self.symbols[slot.label] for n, slot in enumerate(self.system.states)}
+        return self._shown(vector(self.system.states, self.system.E.lanes, names))
+
+    @cached_property
+    def u(self) -> Matrix:
+        """Inputs of Definition 1, one a port; a heat exchange enters as lam*(T_e/T - 1)."""
+        return self._shown(self.system.u)
+
+    @cached_property
+    def U(self) -> sp.Expr:  # noqa: N802
+        """Hamiltonian: the stored energy [J], eq. (6)."""
+        lanes, total = self.system.E.lanes, sp.S.Zero
+        for slot, energy in zip(self.system.states, self.energies, strict=True):
+            term = self.symbols.law(energy, {})
+            total += lanes.sum(term, slot.bank) if slot.bank else term
+        return total
+
+    @cached_property
+    def S(self) -> sp.Expr:  # noqa: N802
+        """Total entropy [J/K]: the sum of the bodies' entropies."""
+        rows = zip(self.system.states, self.system.dS, strict=True)
+        return sp.Add(*(self.symbols[slot.label] for slot, one in rows if one != 0))
+
+    @cached_property
+    def E(self) -> Matrix:  # noqa: N802
+        """Co-states dU/dx, n by 1."""
+        return self._shown(self.system.E)
+
+    @cached_property
+    def J0(self) -> Matrix:  # noqa: N802
+        """Structure matrix of the energy-preserving elements, n by n, eq. (15)."""
+        return self._shown(self.system.J0)
+
+    @cached_property
+    def J_ir(self) -> Matrix:  # noqa: N802
+        """Structure matrix J0 + sum_k R_k J_k, n by n, eq. (3)."""
+        return self._shown(self.system.J_ir)
+
+    @cached_property
+    def g(self) -> Matrix:
+        """Input map, n by ports."""
+        return self._shown(self.system.g)
+
+    @cached_property
+    def rhs(self) -> Matrix:
+        """Rates dx/dt, n by 1, eq. (1)."""
+        return self._shown(self.system.rhs)
+
+    @cached_property
+    def y(self) -> Matrix:
+        """Outputs conjugate to u, ports by 1, eq. (2)."""
+        return self._shown(self.system.y)
+
+    @cached_property
+    def y_s(self) -> Matrix:
+        """Entropy-conjugate outputs g^T dS/dx, ports by 1, eq. (5)."""
+        return self._shown(self.system.y_s)
+
+    @cached_property
+    def sigma(self) -> sp.Expr:
+        """Internal entropy production [W/K], eq. (7)."""
+        return self.in_states(self.system.sigma)
+
+    @cached_property
+    def processes(self) -> tuple[Process, ...]:
+        """The irreversible processes, in declaration order."""
+        return tuple(self._process(k) for k in range(len(self.system.processes)))
+
+    def _process(self, k: int) -> Process:
+        system, slot = self.system, self.system.processes[k]
+        body = next(
+            placed.element
+            for placed, port in self.circuit.of(Body)
+            if port.state == system.states[system.heats[k]].label
+        )
+        R, z = system.R[k, 0], system.z[k, 0]  # noqa: N806
+        bracket = self.in_states(system.bracket[k, 0])
+        parts = (self._shown(system.J(k)), bracket, self.in_states(R), self.in_states(R / z))
+        return Process(slot.label, slot.bank, body, *parts)
+
+    def in_states(self, expr: sp.Expr) -> sp.Expr:
+        """Return an expression of `system` as a function of states, inputs and parameters."""
+        for definitions in (self.laws, self.ratios, self.costates):
+            expr = expr.xreplace(dict(definitions))
+        return expr
+
+    def _shown(self, matrix: LaneMatrix) -> Matrix:
+        matrix = matrix.map(self.in_states)
+        return matrix if banks(self.model) else matrix.explicit({})
+
+    def expand(self, counts: Mapping[str, int] | None = None) -> IPHS:
+        """Return the system with its banks written out lane by lane, derived anew from the parts.
+
+        Parameters
+        ----------
+        counts : size of each bank; the spec's own where nothing is said.
+
+        Returns
+        -------
+        IPHS
+            Of the model in which each lane is an element ``<bank>_<j>`` with its own state; its
+            vectors and matrices are SymPy matrices.
+        """
+        circuit = circuit_of(unroll(self.model, {**banks(self.model), **(counts or {})}))
+        symbols = symbol_table(circuit)
+        return iphs_of(circuit, symbols, junction_of(circuit, symbols))
+
+    def _repr_latex_(self) -> str:
+        return f"$\\displaystyle {equations_latex(self.reading)}$"
+
+    @cached_property
+    def reading(self) -> Reading:
+        """The system in the form in which it is read: co-states written out, laws by their names."""
+        hidden = {self.symbols[port.temperature] for _, port in self.circuit.of(Body)}
+        shown = tuple((s, e) for s, e in self.costates if s not in hidden)
+        heat = tuple((s, e) for s, e in self.costates if s in hidden)
+        return Reading(self.system, self.U, shown, (*self.laws, *self.ratios, *heat))
+
+
+def iphs_of(circuit: Circuit, symbols: SymbolTable, junction: Junction) -> IPHS:
+    """Return the IPHS of a solved network: its junction, and the laws of its elements.
+
+    Raises
+    ------
+    SpecError
+        If a storage law has no energy in closed form.
+    """
+    system = _system(circuit, symbols, junction)
+    stores = tuple(circuit.of(Storage, Body))
+    return IPHS(
+        model=circuit.model,
+        circuit=circuit,
+        symbols=symbols,
+        system=system,
+        energies=tuple(_energy(placed.element, port) for placed, port in stores),
+        laws=tuple(_laws(circuit, symbols, system)),
+        ratios=tuple(_ratios(circuit, symbols)),
+        costates=tuple(_costates(stores, symbols)),
+    )
+
+
+def costate_name(port: Storage | Body) -> str:
+    """Return the name of a store's co-state: a body's is its temperature."""
+    return port.temperature if isinstance(port, Body) else port.costate
+
+
+def _system(circuit: Circuit, symbols: SymbolTable, junction: Junction) -> System:
+    lanes = junction.J0.lanes
+    stores = tuple(circuit.of(Storage, Body))
+    rows = {placed.element: n for n, (placed, port) in enumerate(stores) if isinstance(port, Body)}
+    resistors = [port for _, port in circuit.of(Resistor)]
+    costates = {n: symbols[costate_name(port)] for n, (_, port) in enumerate(stores)}
+    inputs = {n: _input(placed.port, circuit, symbols) for n, placed in enumerate(port_order(circuit))}
+    outputs = {n: symbols[port.output] for n, port in enumerate(resistors)}
+    return System(
+        states=junction.states,
+        processes=junction.processes,
+        ports=junction.ports,
+        E=vector(junction.states, lanes, costates),
+        dS=vector(junction.states, lanes, dict.fromkeys(rows.values(), sp.S.One)),
+        u=vector(junction.ports, lanes, inputs),
+        W=vector(junction.processes, lanes, outputs),
+        heats=tuple(rows[port.heats] for port in resistors),
+        J0=junction.J0,
+        B=junction.B,
+        D=junction.D,
+        G=junction.g,
+        N=junction.N,
+    )
+
+
+def _input(port: object, circuit: Circuit, symbols: SymbolTable) -> sp.Expr:
+    """Return the input of Definition 1 behind a port: itself, or lam*(T_e/T - 1)."""
+    match port:
+        case Source():
+            return symbols[port.input]
+        case Exchange():
+            temperature = symbols[circuit.body(port.body).temperature]
+            ratio = symbols[port.input] / temperature
+            return symbols.law(port.conductance, {}) * (ratio - 1)
+    msg = f"{type(port).__name__} is no port of an input"
+    raise TypeError(msg)
+
+
+def _energy(element: str, port: Storage | Body) -> Expr:
+    energy = antiderivative(port.law, port.letter)
+    if energy is None:
+        what = f"the law {spell(port.law)} has no energy in closed form"
+        expected = f"sums of powers of {port.letter}, or an exponential"
+        raise SpecError(what, f"elements.{element}", expected)
+    return rename(energy, {port.letter: port.state})
+
+
+Definitions = Iterator[tuple[sp.Symbol, sp.Expr]]
+
+
+def _laws(circuit: Circuit, symbols: SymbolTable, system: System) -> Definitions:
+    for (_, port), z in zip(circuit.of(Resistor), system.z, strict=True):
+        heat = symbols[circuit.body(port.heats).temperature]
+        yield symbols[port.output], symbols.law(port.law, {port.letter: z, "T": heat})
+
+
+def _ratios(circuit: Circuit, symbols: SymbolTable) -> Definitions:
+    for _, port in circuit.of(Gyrator):
+        letters = {"T": symbols[circuit.body(port.body).temperature]} if port.body else {}
+        yield symbols[port.name], symbols.law(port.ratio, letters)
+
+
+def _costates(stores: tuple[tuple[Placed, Storage | Body], ...], symbols: SymbolTable) -> Definitions:
+    for _, port in stores:
+        law = symbols.law(port.law, {port.letter: symbols[port.state]})
+        yield symbols[costate_name(port)], law

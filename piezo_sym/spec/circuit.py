@@ -1,0 +1,94 @@
+"""Model to circuit: every port of every element in declaration order, every quantity named once.
+
+Input: a `Model`.  Output: a `Circuit`, the flat list the later stages work on, in which each
+co-state, law output, ratio and temperature has the one name it keeps in mathematics, text and code.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TypeVar, final
+
+from piezo_sym.spec.elements.ports import Body, Exchange, Gyrator, Port, Resistor, Source, Storage
+from piezo_sym.spec.model import Model
+from piezo_sym.spec.names import fresh
+from piezo_sym.spec.tables import banks, temperatures
+
+Kind = TypeVar("Kind", bound=Port)
+
+
+@final
+@dataclass(frozen=True)
+class Placed:
+    """A port where it stands: its element, and that element's bank if it is one lane of many."""
+
+    element: str
+    bank: str | None
+    port: Port
+
+
+@final
+@dataclass(frozen=True)
+class Circuit:
+    """The ports of a model.
+
+    Attributes
+    ----------
+    model : the spec they come from.
+    ports : in declaration order.
+    names : every name in use: parameters, inputs, states, bank sizes and the ports' quantities.
+    """
+
+    model: Model
+    ports: tuple[Placed, ...]
+    names: frozenset[str]
+
+    def of(self, *kinds: type[Kind]) -> Iterator[tuple[Placed, Kind]]:
+        """Yield the ports of some kinds, in declaration order."""
+        for placed in self.ports:
+            if isinstance(placed.port, kinds):
+                yield placed, placed.port
+
+    def body(self, element: str) -> Body:
+        """Return the body of a thermal mass."""
+        return next(port for placed, port in self.of(Body) if placed.element == element)
+
+
+def circuit_of(model: Model) -> Circuit:
+    """Return the circuit of a model, its quantities named apart from every name of the spec."""
+    symbols = {word for word, _ in temperatures(model).items()}
+    taken = symbols | {*model.parameters, *model.inputs, *model.elements}
+    taken |= {f"{bank}_count" for bank in banks(model)}
+    placed = [
+        Placed(name, name if element.is_bank else None, port)
+        for name, element in model.elements.items()
+        for port in element.ports(name)
+    ]
+    taken |= {p.port.state for p in placed if isinstance(p.port, Storage | Body)}
+    named = []
+    for entry in placed:
+        port = _named(entry, taken, {body: word for word, body in temperatures(model).items()})
+        named.append(replace(entry, port=port))
+    return Circuit(model, tuple(named), frozenset(taken))
+
+
+def _named(entry: Placed, taken: set[str], heat: dict[str, str]) -> Port:
+    """Return the port with names that nothing else has."""
+
+    def new(base: str) -> str:
+        name = fresh(base, taken)
+        taken.add(name)
+        return name
+
+    match entry.port:
+        case Storage() as port:
+            return replace(port, costate=new(port.costate))
+        case Resistor() as port:
+            return replace(port, output=new(port.output), effort=new(port.effort))
+        case Gyrator() as port:
+            return replace(port, name=new(port.name))
+        case Body() as port:
+            return replace(port, temperature=heat[entry.element])
+        case Source() | Exchange() as port:
+            return port

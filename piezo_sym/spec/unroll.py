@@ -1,0 +1,109 @@
+"""Banks written out: a model in which every lane is an element of its own.
+
+Input: a `Model` and a size for each bank.  Output: a `Model` without banks, to be derived like any
+other; it shows explicit matrices, and checks the derivation that keeps sizes symbolic.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from piezo_sym.errors import UsageError, nearest, quote
+from piezo_sym.spec.elements.base import Element, state_symbol
+from piezo_sym.spec.expressions import Cmp, names, rename
+from piezo_sym.spec.model import Model
+from piezo_sym.spec.parse import parse_condition
+from piezo_sym.spec.tables import banks, condition_text, lane_parameters, law_fields
+from piezo_sym.spec.text import spell
+
+
+def unroll(model: Model, counts: Mapping[str, int]) -> Model:
+    """Return the model with each bank as elements ``<bank>_1`` ... ``<bank>_<count>``.
+
+    A parameter or initial value given as a list becomes one for each lane; if the list is of another
+    length than asked for, its first value serves every lane.
+
+    Raises
+    ------
+    UsageError
+        If `counts` names no bank, or a size below 1.
+    """
+    _check_counts(model, counts)
+    sizes = {**banks(model), **counts}
+    owners = lane_parameters(model)
+    split = {
+        name: sizes[owners[name]]
+        for name, p in model.parameters.items()
+        if isinstance(p.value, tuple)
+    }
+    data = model.model_dump()
+    data["parameters"] = dict(_parameters(model, split))
+    data["elements"] = dict(_elements(model, sizes, split))
+    data["initial"] = dict(_initial(model, sizes))
+    data["domain"] = {"assume": tuple(_assumptions(model, split))}
+    return Model(**data)
+
+
+def _check_counts(model: Model, counts: Mapping[str, int]) -> None:
+    for name, count in counts.items():
+        if name not in banks(model):
+            known = nearest(name, banks(model))
+            raise UsageError(f"{quote(name)} is no bank of '{model.name}'", "expand", remedy=known)
+        if isinstance(count, bool) or not isinstance(count, int) or count < 1:
+            raise UsageError(f"{quote(count)} is no size", f"expand: {name}", "1, 2, 3 ...")
+
+
+def _parameters(model: Model, split: Mapping[str, int]) -> Any:
+    for name, parameter in model.parameters.items():
+        if name not in split:
+            yield name, parameter
+            continue
+        values = parameter.value if isinstance(parameter.value, tuple) else (parameter.value,)
+        for lane in range(split[name]):
+            value = values[lane] if len(values) == split[name] else values[0]
+            yield f"{name}_{lane + 1}", parameter.model_copy(update={"value": value})
+
+
+def _elements(model: Model, sizes: Mapping[str, int], split: Mapping[str, int]) -> Any:
+    for name, element in model.elements.items():
+        if name not in sizes:
+            yield name, element
+            continue
+        for lane in range(1, sizes[name] + 1):
+            yield f"{name}_{lane}", _lane(name, element, lane, split)
+
+
+def _lane(name: str, element: Element, lane: int, split: Mapping[str, int]) -> Element:
+    words = {parameter: f"{parameter}_{lane}" for parameter in split}
+    laws = {
+        law.where.rpartition(".")[2]: spell(rename(law.tree, words))
+        for law in law_fields(name, element)
+    }
+    state = f"{state_symbol(element, name)}_{lane}"
+    return element.model_copy(update={**laws, "count": None, "state": state})
+
+
+def _initial(model: Model, sizes: Mapping[str, int]) -> Any:
+    symbols = {state_symbol(e, name): name for name, e in model.elements.items() if name in sizes}
+    for symbol, start in model.initial.items():
+        if symbol not in symbols:
+            yield symbol, start
+            continue
+        size = sizes[symbols[symbol]]
+        starts = start if isinstance(start, tuple) else (start,)
+        for lane in range(size):
+            yield f"{symbol}_{lane + 1}", starts[lane] if len(starts) == size else starts[0]
+
+
+def _assumptions(model: Model, split: Mapping[str, int]) -> Any:
+    for text in model.domain.assume:
+        tree = parse_condition(text, "domain.assume")
+        lanes = max((split[word] for word in names(tree) if word in split), default=0)
+        for lane in range(1, lanes + 1):
+            words = {word: f"{word}_{lane}" for word in split}
+            yield condition_text(
+                Cmp(tree.op, rename(tree.left, words), rename(tree.right, words))
+            )
+        if not lanes:
+            yield text

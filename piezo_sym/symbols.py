@@ -1,0 +1,167 @@
+"""Names to SymPy symbols, and law trees to SymPy expressions: the one place where both happen.
+
+Input: a `Circuit`.  Output: a `SymbolTable`.  All symbols are real; a parameter that the domain says
+is positive (or not negative) is so in SymPy too; temperatures are positive.  A symbol of a bank's
+lane is spelled with the paper's index, ``phi_j``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, final
+
+import sympy as sp
+
+from piezo_sym.spec.circuit import Circuit
+from piezo_sym.spec.elements.ports import Body, Gyrator, Resistor, Storage
+from piezo_sym.spec.expressions import (
+    ZERO,
+    Add,
+    Call,
+    Cmp,
+    Div,
+    Expr,
+    If,
+    Mul,
+    Neg,
+    Num,
+    Pow,
+    Sym,
+)
+from piezo_sym.spec.model import Model
+from piezo_sym.spec.tables import banks, conditions, lane_parameters, states
+
+
+@final
+@dataclass(frozen=True)
+class SymbolTable:
+    """The symbols of a circuit.
+
+    Attributes
+    ----------
+    symbols : every name's symbol; a lane's is spelled ``<name>_j``.
+    banks : the bank of each lane symbol.
+    counts : the size symbol of each bank.
+    """
+
+    symbols: Mapping[str, sp.Symbol]
+    banks: Mapping[sp.Symbol, str]
+    counts: Mapping[str, sp.Symbol]
+
+    def __getitem__(self, name: str) -> sp.Symbol:
+        """Return the symbol of a name."""
+        return self.symbols[name]
+
+    def law(self, tree: Expr, letters: Mapping[str, sp.Expr]) -> sp.Expr:
+        """Return a law as a SymPy expression, its letters replaced by what they stand for."""
+        return to_sympy(tree, {**self.symbols, **letters})
+
+
+def symbol_table(circuit: Circuit) -> SymbolTable:
+    """Return the symbols of a circuit's parameters, inputs, states and named quantities."""
+    model = circuit.model
+    signs = _signs(model)
+    per_lane: dict[str, str] = {s: e for s, e in states(model).items() if e in banks(model)}
+    owners = lane_parameters(model)
+    per_lane |= {n: owners[n] for n, p in model.parameters.items() if isinstance(p.value, tuple)}
+    names = [*model.parameters, *model.inputs, *states(model)]
+    for placed, port in circuit.of(Storage, Resistor, Gyrator, Body):
+        for name in _quantities(port):
+            names.append(name)
+            if placed.bank:
+                per_lane[name] = placed.bank
+        if isinstance(port, Body):
+            signs[port.temperature] = {"positive": True}
+    table = {name: _symbol(name, name in per_lane, signs.get(name)) for name in names}
+    counts = {bank: sp.Symbol(f"{bank}_count", integer=True, positive=True) for bank in banks(model)}
+    return SymbolTable(table, {table[name]: bank for name, bank in per_lane.items()}, counts)
+
+
+def _quantities(port: Storage | Resistor | Gyrator | Body) -> tuple[str, ...]:
+    match port:
+        case Storage():
+            return (port.costate,)
+        case Resistor():
+            return (port.output, port.effort)
+        case Gyrator():
+            return (port.name,)
+        case Body():
+            return (port.temperature,)
+
+
+def _symbol(name: str, lane: bool, sign: Mapping[str, bool] | None) -> sp.Symbol:
+    return sp.Symbol(f"{name}_j" if lane else name, **(sign or {"real": True}))
+
+
+def _signs(model: Model) -> dict[str, dict[str, bool]]:
+    """Return what the domain says of single parameters and inputs: > 0 or >= 0."""
+    found: dict[str, dict[str, bool]] = {}
+    for condition in conditions(model):
+        match condition.tree:
+            case Cmp(">" | ">=" as op, Sym(name), right) if right == ZERO:
+                if found.get(name) != {"positive": True}:
+                    found[name] = {"positive": True} if op == ">" else {"nonnegative": True}
+    known = {*model.parameters, *model.inputs}
+    return {name: sign for name, sign in found.items() if name in known}
+
+
+def to_sympy(node: Expr, table: Mapping[str, sp.Expr]) -> sp.Expr:
+    """Return a law's tree as a SymPy expression over the symbols in `table`."""
+    match node:
+        case Num(value):
+            return sp.Rational(value.numerator, value.denominator)
+        case Sym(name):
+            return table[name]
+        case Neg(arg):
+            return -to_sympy(arg, table)
+        case Add(terms):
+            return sp.Add(*(to_sympy(term, table) for term in terms))
+        case Mul(left, right):
+            return to_sympy(left, table) * to_sympy(right, table)
+        case Div(left, right):
+            return to_sympy(left, table) / to_sympy(right, table)
+        case Pow(base, exponent):
+            return to_sympy(base, table) ** sp.Rational(exponent.numerator, exponent.denominator)
+        case Call(function, args):
+            return _call(function, tuple(to_sympy(arg, table) for arg in args))
+        case If(then, condition, other):
+            parts = to_sympy(then, table), to_sympy(other, table)
+            return sp.Piecewise((parts[0], compare(condition, table)), (parts[1], True))
+    msg = f"{type(node).__name__} is no law"
+    raise TypeError(msg)
+
+
+def compare(condition: Cmp, table: Mapping[str, sp.Expr]) -> Any:
+    """Return a comparison as a SymPy relation."""
+    relation = {"<": sp.Lt, "<=": sp.Le, ">": sp.Gt, ">=": sp.Ge}[condition.op]
+    return relation(to_sympy(condition.left, table), to_sympy(condition.right, table))
+
+
+_SMOOTH = {
+    "exp": sp.exp,
+    "log": sp.log,
+    "sqrt": sp.sqrt,
+    "sin": sp.sin,
+    "cos": sp.cos,
+    "tanh": sp.tanh,
+}
+
+
+def _call(function: str, args: tuple[sp.Expr, ...]) -> sp.Expr:
+    """Return a function of the law language; those with kinks as their branches."""
+    if function in _SMOOTH:
+        return _SMOOTH[function](*args)
+    z, w = args[0], args[-1]
+    match function:
+        case "abs":
+            return sp.Piecewise((z, z >= 0), (-z, True))
+        case "sign":
+            return sp.Piecewise((1, z > 0), (-1, z < 0), (0, True))
+        case "min":
+            return sp.Piecewise((z, z <= w), (w, True))
+        case "max":
+            return sp.Piecewise((z, z >= w), (w, True))
+        case "deadzone":
+            return sp.Piecewise((z - w, z > w), (z + w, z < -w), (0, True))
+    return sp.Piecewise((w, z > w), (-w, z < -w), (z, True))  # saturate

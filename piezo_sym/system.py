@@ -1,0 +1,129 @@
+"""Definition 1 of the paper, in named co-states: an irreversible port-Hamiltonian system.
+
+Input: a junction, the symbols of co-states E, law outputs W and inputs u.  Output: a `System`
+
+    xdot = J_ir E + g u        J_ir = J0 + sum_k R_k J_k        R_k = W_k/T_k        (1), (3), (4)
+
+where J_k couples the vector b_k of process k to the entropy of the body that it heats.  Here E, W, T
+and the ratios are symbols; what they are as functions of the state is said once, in `iphs`.  Proofs
+close on this form, and generated code follows it line by line.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import final
+
+import sympy as sp
+
+from piezo_sym.lanes import LaneMatrix, Slot, vector
+
+
+@final
+@dataclass(frozen=True)
+class System:
+    """An irreversible port-Hamiltonian system in named co-states.
+
+    Attributes
+    ----------
+    states, processes, ports : slots.
+    E : co-states dU/dx, a vector over states.
+    dS : gradient of the total entropy, a vector over states: 1 at each body's entropy.
+    u : the inputs of Definition 1, over ports; a heat exchange enters as lam*(T_e/T - 1).
+    W : law outputs, over processes.
+    heats : for each process the row of the entropy that it feeds.
+    J0 : structure matrix of the energy-preserving elements, states by states.
+    B, D : columns b_k, d_k of the processes: z = B^T E + D^T u is conjugate to W.
+    G : input map of the junction laws, states by ports.
+    N : direct coupling of ports, skew: a current source at a voltage source.
+    """
+
+    states: tuple[Slot, ...]
+    processes: tuple[Slot, ...]
+    ports: tuple[Slot, ...]
+    E: LaneMatrix
+    dS: LaneMatrix  # noqa: N815 - dS/dx
+    u: LaneMatrix
+    W: LaneMatrix
+    heats: tuple[int, ...]
+    J0: LaneMatrix
+    B: LaneMatrix
+    D: LaneMatrix
+    G: LaneMatrix
+    N: LaneMatrix
+
+    @cached_property
+    def R(self) -> LaneMatrix:  # noqa: N802 - the paper's letter
+        """The modulating functions R_k = W_k/T_k, eq. (4), over processes."""
+        entries = {k: w / self.E[self.heats[k], 0] for k, w in enumerate(self.W)}
+        return vector(self.processes, self.W.lanes, entries)
+
+    @cached_property
+    def bracket(self) -> LaneMatrix:
+        """The thermodynamic driving forces {S, U}_{J_k} = b_k^T E, over processes."""
+        return self.B.T @ self.E
+
+    @cached_property
+    def z(self) -> LaneMatrix:
+        """The variables conjugate to W: the driving forces, and what inputs add to them."""
+        return self.bracket + self.D.T @ self.u
+
+    @cached_property
+    def J_ir(self) -> LaneMatrix:  # noqa: N802
+        """The skew structure matrix of eq. (3)."""
+        total = self.J0
+        for row in dict.fromkeys(self.heats):
+            entropy, coupling = self._unit(row), self._heating(self.B, row)
+            total = total + entropy @ coupling.T - coupling @ entropy.T
+        return total
+
+    @cached_property
+    def g(self) -> LaneMatrix:
+        """The input map of eq. (1); it depends on u where a source drives a process directly."""
+        total = self.G
+        for row in dict.fromkeys(self.heats):
+            total = total + self._unit(row) @ self._heating(self.D, row).T
+        return total
+
+    @cached_property
+    def rhs(self) -> LaneMatrix:
+        """The rates J_ir E + g u, eq. (1), over states."""
+        return self.J_ir @ self.E + self.g @ self.u
+
+    @cached_property
+    def y(self) -> LaneMatrix:
+        """The conjugate outputs g^T E, eq. (2) (and N u), over ports."""
+        return self.g.T @ self.E + self.N @ self.u
+
+    @cached_property
+    def y_s(self) -> LaneMatrix:
+        """The entropy-conjugate outputs g^T dS/dx (the paper prints dU/dx), over ports."""
+        return self.g.T @ self.dS
+
+    @cached_property
+    def sigma(self) -> sp.Expr:
+        """The internal entropy production, sum_k W_k z_k/T_k, eq. (7)."""
+        return (self.R.T @ self.z)[0, 0]
+
+    def J(self, k: int) -> LaneMatrix:  # noqa: N802
+        """Return J_k; for a bank, its lane j's: entries `own` stand in that lane alone."""
+        entropy = self._unit(self.heats[k])
+        full = _column(self.B.full, k), _column(self.B.own, k)
+        b, own = (LaneMatrix(self.states, (Slot(""),), self.B.lanes, part) for part in full)
+        shared, lane = (entropy @ v.T - v @ entropy.T for v in (b, own))
+        return LaneMatrix(self.states, self.states, self.B.lanes, shared.full, lane.full)
+
+    def _unit(self, row: int) -> LaneMatrix:
+        return vector(self.states, self.E.lanes, {row: sp.S.One})
+
+    def _heating(self, columns: LaneMatrix, row: int) -> LaneMatrix:
+        """Return the sum of R_k times the column of each process that heats the body in `row`."""
+        here = {n: r for n, r in enumerate(self.R) if self.heats[n] == row}
+        return columns @ vector(self.processes, self.R.lanes, here)
+
+
+def _column(
+    entries: dict[tuple[int, int], sp.Expr] | object, k: int
+) -> dict[tuple[int, int], sp.Expr]:
+    return {(r, 0): entry for (r, c), entry in entries.items() if c == k}  # type: ignore[attr-defined]
