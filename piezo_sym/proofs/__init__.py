@@ -1,0 +1,26 @@
+"""Proofs: obligations on an `IPHS`, and verdicts on them."""
+
+from __future__ import annotations
+
+from piezo_sym.iphs import IPHS
+from piezo_sym.proofs.exact import casimir, energy, entropy, skew, temperature
+from piezo_sym.proofs.report import Report, Row, Verdict
+
+__all__ = ["Report", "Row", "Verdict", "verify"]
+
+
+def verify(iphs: IPHS) -> Report:
+    """Return the verdict on every property of an irreversible port-Hamiltonian system.
+
+    Parameters
+    ----------
+    iphs : from `derive`.
+
+    Returns
+    -------
+    Report
+        ``.rows``, one a property, and ``.raise_if_not_proved()``.  A verdict is PROVED only for all
+        states, inputs and parameters in the domain and for every size of every bank.
+    """
+    rows = (skew(iphs), casimir(iphs), energy(iphs), entropy(iphs), *temperature(iphs))
+    return Report(iphs.model.name, rows)

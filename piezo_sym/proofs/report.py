@@ -1,0 +1,98 @@
+"""Verdicts: what was proved, what was refuted and by which numbers, what is open and why.
+
+Input: rows.  Output: a `Report` to look at, to print, or to raise from.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+from typing import final
+
+from piezo_sym.errors import ProofError
+
+
+@final
+class Verdict(Enum):
+    """PROVED for all states, inputs and parameters in the domain and every r; or not."""
+
+    PROVED = "PROVED"
+    REFUTED = "REFUTED"
+    OPEN = "OPEN"
+
+
+@final
+@dataclass(frozen=True)
+class Row:
+    """One property of one model.
+
+    Attributes
+    ----------
+    id : such as ``energy``.
+    element : the element it is about, or empty for the whole model.
+    statement : the property in words.
+    verdict : see `Verdict`.
+    witness : for REFUTED, a value for every symbol at which the property fails.
+    reason : for REFUTED what fails there, for OPEN what is missing.
+    required : whether `generate` insists on it.
+    """
+
+    id: str
+    element: str
+    statement: str
+    verdict: Verdict
+    witness: Mapping[str, str] | None = None
+    reason: str = ""
+    required: bool = True
+
+    def as_dict(self, model: str) -> dict[str, object]:
+        """Return the row as plain data, as ``verify --json`` prints it."""
+        return {
+            "model": model,
+            "id": self.id,
+            "element": self.element or None,
+            "verdict": self.verdict.value,
+            "witness": dict(self.witness) if self.witness else None,
+            "reason": self.reason or None,
+        }
+
+
+@final
+@dataclass(frozen=True)
+class Report:
+    """The verdicts on one model."""
+
+    model: str
+    rows: tuple[Row, ...]
+
+    @property
+    def failures(self) -> tuple[Row, ...]:
+        """The required rows that are not proved."""
+        return tuple(r for r in self.rows if r.required and r.verdict is not Verdict.PROVED)
+
+    @property
+    def proved(self) -> bool:
+        """Whether every required property is proved."""
+        return not self.failures
+
+    def raise_if_not_proved(self) -> None:
+        """Raise on the first required property that is refuted or open.
+
+        Raises
+        ------
+        ProofError
+            Names the property, its witness or the reason why it is open.
+        """
+        if self.failures:
+            row = self.failures[0]
+            at = ", ".join(f"{name} = {value}" for name, value in (row.witness or {}).items())
+            what = f"{row.id} is {row.verdict.value}"
+            reason = f"{row.reason} at {at}" if at else row.reason
+            where = f"{self.model}.{row.element}" if row.element else self.model
+            raise ProofError(f"{what}: {reason}", where, row.statement, "mend the law or the domain")
+
+    def summary(self) -> str:
+        """Return one line: how many rows have which verdict."""
+        counts = {v: sum(row.verdict is v for row in self.rows) for v in Verdict}
+        return ", ".join(f"{count} {v.value}" for v, count in counts.items() if count)

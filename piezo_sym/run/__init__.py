@@ -1,0 +1,23 @@
+"""Run generated modules: signals in, `simulate`, an `xarray.Dataset` out.
+
+Input: a generated module and what a user says about a run.  Output: states, outputs, temperatures,
+and the ledger of energy and entropy over time.  Neither SymPy nor a spec is needed to run.
+"""
+
+from piezo_sym.run.module import GeneratedModule
+from piezo_sym.run.samples import samples, samples_from_csv
+from piezo_sym.run.signals import Signal, chirp, ramp, sine, step, triangle
+from piezo_sym.run.simulate import simulate
+
+__all__ = [
+    "GeneratedModule",
+    "Signal",
+    "chirp",
+    "ramp",
+    "samples",
+    "samples_from_csv",
+    "simulate",
+    "sine",
+    "step",
+    "triangle",
+]

@@ -1,0 +1,106 @@
+"""Numbers a user gave, checked.
+
+Input: anything, and the place it was given.  Output: a float, or a vector of floats, all finite;
+or a `UsageError` that names the place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import isfinite
+from numbers import Integral, Real
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+
+from piezo_sym.errors import UsageError, nearest, quote
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+FloatArray: TypeAlias = "NDArray[np.float64]"
+
+
+def is_number(value: object) -> bool:
+    """Return whether `value` is one real number; a bool is not."""
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        return value.dtype.kind in "iuf"
+    return isinstance(value, Real) and not isinstance(value, bool | np.bool_)
+
+
+def number(value: object, where: str) -> float:
+    """Return `value` as a finite float; raise `UsageError` otherwise."""
+    fault = UsageError(f"{quote(value)} is not a finite number", where, "a finite real number")
+    if not is_number(value):
+        raise fault
+    try:
+        result = float(value)  # type: ignore[arg-type]  # a Real, or an array of none
+    except (OverflowError, TypeError, ValueError) as cause:
+        raise fault from cause
+    if not isfinite(result):
+        raise fault
+    return result
+
+
+def positive(value: object, where: str) -> float:
+    """Return `value` as a finite float above 0; raise `UsageError` otherwise."""
+    result = number(value, where)
+    if result <= 0:
+        what = f"{quote(value)} is not positive"
+        raise UsageError(what, where, "a number above 0")
+    return result
+
+
+def whole(value: object, where: str, least: int) -> int:
+    """Return `value` as an int of at least `least`; raise `UsageError` otherwise."""
+    if isinstance(value, bool) or not isinstance(value, Integral) or int(value) < least:
+        what = f"{quote(value)} is not allowed"
+        raise UsageError(what, where, f"a whole number >= {least}")
+    return int(value)
+
+
+def is_vector(value: object) -> bool:
+    """Return whether `value` looks like a list of values rather than one value."""
+    return isinstance(value, list | tuple) or getattr(value, "ndim", 0) > 0
+
+
+def vector(value: object, where: str) -> FloatArray:
+    """Return `value` as a vector of finite floats, shape (n,); raise `UsageError` otherwise."""
+    if isinstance(value, list | tuple):
+        return np.array([number(item, f"{where}[{i}]") for i, item in enumerate(value)])
+    raw = np.asarray(value)
+    if raw.ndim != 1 or raw.dtype.kind not in "iuf":
+        what = f"{quote(value)} is not a list of numbers"
+        raise UsageError(what, where, "a list of numbers")
+    if not np.all(np.isfinite(raw)):
+        first = int(np.argmin(np.isfinite(raw)))
+        what = f"entry {first} is {raw[first]}"
+        raise UsageError(what, where, "finite numbers")
+    return raw.astype(np.float64)
+
+
+def increasing(times: FloatArray, where: str) -> FloatArray:
+    """Return `times` (n,) when they strictly increase; raise `UsageError` otherwise."""
+    late = np.diff(times) <= 0
+    if np.any(late):
+        i = int(np.argmax(late)) + 1
+        what = f"time {times[i]:g} at entry {i} follows {times[i - 1]:g}"
+        raise UsageError(what, where, "strictly increasing times")
+    return times
+
+
+def known_keys(given: object, known: Iterable[str], where: str) -> dict[str, object]:
+    """Return a user's mapping of names as a dict, or name the first key that nothing answers to."""
+    if given is None:
+        return {}
+    if not isinstance(given, Mapping):
+        what = f"{quote(given)} is not a mapping"
+        raise UsageError(what, where, "a mapping of names to values")
+    names = tuple(known)
+    for name in given:
+        if name not in names:
+            what = f"unknown name {quote(name)}"
+            raise UsageError(what, where, remedy=nearest(str(name), names))
+    return dict(given)

@@ -1,0 +1,119 @@
+"""The Dataset of a run: every quantity by name, with units, ready for netCDF.
+
+Input: a `System`, the sample times (nt,), a `Trajectory`.  Output: an `xarray.Dataset` with
+coordinate `time` [s] and, for each bank, its lanes 1..r under the element's name.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+
+from piezo_sym.errors import UsageError
+from piezo_sym.run.module import lanes
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    import pandas
+    import xarray
+    from numpy.typing import NDArray
+
+    from piezo_sym.run.checks import FloatArray
+    from piezo_sym.run.ledger import Trajectory
+    from piezo_sym.run.module import Record
+    from piezo_sym.run.system import System
+
+Variable: TypeAlias = tuple[tuple[str, ...], "NDArray[Any] | pandas.Index[Any]", dict[str, Any]]
+Named: TypeAlias = tuple[str, Variable]
+
+
+def to_dataset(
+    system: System, times: FloatArray, trajectory: Trajectory, attrs: Mapping[str, Any]
+) -> xarray.Dataset:
+    """Return a run as a Dataset; `attrs` are added to its own attributes.
+
+    Raises
+    ------
+    UsageError : two quantities of the module would have one name.
+    """
+    import xarray
+
+    coords = dict(coordinates(system, times))
+    data: dict[str, Variable] = {}
+    for name, variable in variables(system, trajectory):
+        if name in data or name in coords:
+            what = f"two quantities are named '{name}'"
+            raise UsageError(what, f"model '{system.module.NAME}'", remedy="rename one in the spec")
+        data[name] = variable
+    return xarray.Dataset(data, coords, model_attrs(system) | dict(attrs))
+
+
+def model_attrs(system: System) -> dict[str, Any]:
+    """Return the attributes that say what was run: the model and the parameters used."""
+    used = asdict(system.parameters).items()
+    parameters = {f"parameter_{name}": np.asarray(value)[()] for name, value in used}
+    module = system.module
+    return {"model": module.NAME, "spec_sha256": module.SPEC_SHA256, **parameters}
+
+
+def coordinates(system: System, times: FloatArray) -> Iterator[Named]:
+    """Yield the time and the lanes of each bank.
+
+    As pandas indexes: xarray makes them of arrays only after trying to import pint.
+    """
+    import pandas
+
+    yield "time", (("time",), pandas.Index(times), described("s", "time"))
+    for bank in system.module.BANKS:
+        numbers = pandas.RangeIndex(1, lanes(system.parameters, bank) + 1)
+        yield bank, ((bank,), numbers, described("1", f"lane of bank '{bank}'"))
+
+
+def variables(system: System, trajectory: Trajectory) -> Iterator[Named]:
+    """Yield every variable of the Dataset, in order."""
+    module, p = system.module, system.parameters
+    x, u = trajectory.states, trajectory.inputs
+    ports = len(module.OUTPUTS)
+    supplied, processes = trajectory.integrals[:ports], trajectory.integrals[ports:]
+    heat, produced = np.split(processes, 2)
+    energy = module.energy(x, p)
+    residual = energy - module.energy(trajectory.start, p) - np.sum(supplied, axis=0)
+    yield from spread(system, module.STATES, x)
+    yield from spread(system, module.INPUTS, u)
+    yield from spread(system, module.OUTPUTS, module.outputs(x, u, p), "y_")
+    yield from spread(system, module.BODIES, module.temperatures(x, p), "T_")
+    yield "energy", (("time",), energy, described("J", "energy U"))
+    yield "entropy", (("time",), module.entropy(x, p), described("J/K", "entropy S"))
+    yield from spread(system, module.OUTPUTS, supplied, "supplied_", ("J", "energy put in by"))
+    yield from spread(system, module.PROCESSES, heat, "heat_", ("J", "heat released by"))
+    yield from spread(
+        system, module.PROCESSES, produced, "produced_", ("J/K", "entropy produced by")
+    )
+    yield "energy_residual", (("time",), residual, described("J", "U - U(0) - energy put in"))
+
+
+def spread(
+    system: System,
+    records: Sequence[Record],
+    values: FloatArray,
+    prefix: str = "",
+    integral: tuple[str, str] | None = None,
+) -> Iterator[Named]:
+    """Yield the rows of `values` (rows, nt) by record; `integral`: its unit and text."""
+    for record, part in zip(records, system.rows(records), strict=True):
+        attrs = described(record.unit, record.doc or record.name)
+        if integral:
+            attrs = described(integral[0], f"{integral[1]} '{record.name}' since t = 0")
+        dims = ("time", record.bank) if record.bank else ("time",)
+        yield (
+            f"{prefix}{record.name}",
+            (dims, values[part].T if record.bank else values[part.start], attrs),
+        )
+
+
+def described(unit: str, long_name: str) -> dict[str, Any]:
+    """Return the attributes of a variable."""
+    return {"units": unit, "long_name": long_name}

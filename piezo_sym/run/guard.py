@@ -1,0 +1,158 @@
+"""The domain guard: stops a run at the first accepted state outside the domain of the proofs.
+
+Input: states and inputs along a run.  Output: nothing, or a `RunError` that names the condition,
+the time and the values that break it.  A condition holds when its margin (left minus right side)
+is > 0 if it is strict, >= 0 otherwise; nan holds nowhere.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from piezo_sym.errors import RunError, listing
+from piezo_sym.run.module import row_name
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from piezo_sym.run.checks import FloatArray
+    from piezo_sym.run.system import System
+
+NAME = re.compile(r"[A-Za-z_]\w*")
+MOST_VALUES = 4
+
+Value = tuple[str, str, "float | FloatArray"]  # label, unit, value
+
+
+def check_start(system: System, x: FloatArray) -> None:
+    """Raise `RunError` if the run cannot start from the state x (n,) at t = 0."""
+    segment = system.inputs.segments[0]
+    u = segment.at(segment.start)
+    try:
+        check_point(system, segment.start, x, u)
+    except ArithmeticError as cause:
+        what = f"the state at t = 0 s cannot be evaluated: {cause}"
+        raise RunError(what, place(system), remedy="check the parameters") from cause
+
+
+def check_point(system: System, t: float, x: FloatArray, u: FloatArray) -> None:
+    """Raise `RunError` if the state x (n,) with inputs u (m,) is outside the domain."""
+    if np.any(system.violated(x, u)):
+        raise domain_error(system, t, x, u)
+    if not np.all(system.finite(x, u)):
+        raise rate_error(system, t, x, u)
+
+
+def crossing(
+    system: System,
+    left: float,
+    right: float,
+    path: Callable[[float], tuple[FloatArray, FloatArray]],
+) -> float:
+    """Return the time [s] in (left, right] where `path` (t -> x, u) leaves the domain.
+
+    It holds at `left` and fails at `right`; bisection narrows that down to rounding.
+    """
+    while (middle := left + (right - left) / 2) not in (left, right):
+        if np.any(system.violated(*path(middle))):
+            right = middle
+        else:
+            left = middle
+    return right
+
+
+def domain_error(system: System, t: float, x: FloatArray, u: FloatArray) -> RunError:
+    """Return the error for a state outside the domain: the condition nearest to the cause."""
+    failed = np.flatnonzero(system.violated(x, u)).tolist()
+    row = min(failed, key=lambda k: depth(system, system.module.DOMAIN[k].text))
+    condition, margin = system.module.DOMAIN[row], system.margins(x, u)[row]
+    values = list(values_in(system, condition.text, x, u))
+    shown = ", ".join(shown_value(*value) for value in values)
+    event = "state leaves" if t > 0 else "start is outside"
+    what = (
+        f"{event} the domain at t = {t:.6g} s: "
+        f"condition '{condition.text}' has margin {margin:.3g} ({shown})"
+    )
+    expected = f"{condition.text} throughout the run"
+    remedy = f"change {listing(remedies(system, condition.text))}"
+    return RunError(what, place(system), expected, remedy)
+
+
+def rate_error(system: System, t: float, x: FloatArray, u: FloatArray) -> RunError:
+    """Return the error for a state in the domain whose rate of change is no number."""
+    row = int(np.argmin(system.finite(x, u)))
+    name = row_name(system.module.STATES, system.parameters, row)
+    what = f"the rate of change of '{name}' is not finite at t = {t:.6g} s"
+    values = ", ".join(shown_value(*value) for value in body_values(system, x))
+    remedy = "check the laws there, or add the condition they need to the domain"
+    return RunError(f"{what} ({values})" if values else what, place(system), "a number", remedy)
+
+
+def place(system: System) -> str:
+    """Return where an error of this run is."""
+    return f"model '{system.module.NAME}'"
+
+
+def depth(system: System, text: str) -> int:
+    """Return how far a condition is from what a user sets: 0 parameters, 1 inputs, 2 states."""
+    names = set(NAME.findall(text))
+    inputs = {record.name for record in system.module.INPUTS}
+    parameters = {record.name for record in system.module.PARAMETERS}
+    if names <= parameters:
+        return 0
+    return 1 if names <= parameters | inputs else 2
+
+
+def remedies(system: System, text: str) -> list[str]:
+    """Return what a user can change to meet a condition."""
+    module, level = system.module, depth(system, text)
+    names = set(NAME.findall(text))
+    inputs = [f"input '{r.name}'" for r in module.INPUTS if r.name in names]
+    parameters = [f"parameter '{r.name}'" for r in module.PARAMETERS if r.name in names]
+    return [parameters, inputs, ["the inputs", "the parameters", "the initial state"]][level]
+
+
+def values_in(system: System, text: str, x: FloatArray, u: FloatArray) -> Iterator[Value]:
+    """Yield the value of every symbol in a condition's text, or the temperatures if none."""
+    known = {value[0]: value for value in symbols(system, x, u)}
+    bodies = body_values(system, x)
+    if len(bodies) == 1:
+        known["T"] = bodies[0]
+    found = [known[name] for name in dict.fromkeys(NAME.findall(text)) if name in known]
+    yield from found or bodies
+
+
+def symbols(system: System, x: FloatArray, u: FloatArray) -> Iterator[Value]:
+    """Yield every symbol that a condition can use."""
+    module = system.module
+    for record, part in zip(module.STATES, system.rows(module.STATES), strict=True):
+        yield record.name, record.unit, x[part] if record.bank else float(x[part.start])
+    for record, value in zip(module.INPUTS, u, strict=True):
+        yield record.name, record.unit, float(value)
+    for record in module.PARAMETERS:
+        yield record.name, record.unit, getattr(system.parameters, record.name)
+    yield from body_values(system, x)
+
+
+def body_values(system: System, x: FloatArray) -> list[Value]:
+    """Return the temperature of each body."""
+    with np.errstate(all="ignore"):
+        values = system.module.temperatures(x, system.parameters)
+    return [
+        (f"T_{record.name}", record.unit, float(value))
+        for record, value in zip(system.module.BODIES, values, strict=True)
+    ]
+
+
+def shown_value(label: str, unit: str, value: float | FloatArray) -> str:
+    """Return one value for a message: `T_body = 296.15 K`, or the range of many lanes."""
+    lanes = np.atleast_1d(np.asarray(value, dtype=float))
+    suffix = f" {unit}" if unit not in ("", "1") else ""
+    if np.ndim(value) == 0:
+        return f"{label} = {lanes[0]:.6g}{suffix}"
+    if lanes.size <= MOST_VALUES:
+        return f"{label} = [{', '.join(f'{lane:.6g}' for lane in lanes)}]{suffix}"
+    return f"{label} from {np.min(lanes):.6g} to {np.max(lanes):.6g}{suffix}"

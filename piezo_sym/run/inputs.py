@@ -1,0 +1,171 @@
+"""The inputs of a run: what a user wrote for each, as signals, and the segments between breaks.
+
+Input: a mapping of names to numbers, (t, values), functions or signals.  Output: `Inputs`, whose
+`segments` tile the run so that within each one the inputs u (m,) have no jump: at its start they
+are the limit from the right, at its end the limit from the left.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from math import inf, nextafter
+from typing import TYPE_CHECKING, TypeAlias, final
+
+import numpy as np
+
+from piezo_sym.errors import UsageError, quote
+from piezo_sym.run.checks import FloatArray, is_number, known_keys, number
+from piezo_sym.run.samples import Samples, read_samples
+from piezo_sym.run.signals import Constant, Signal, inside
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from numpy.typing import ArrayLike
+
+    from piezo_sym.run.module import GeneratedModule
+
+    InputValue: TypeAlias = float | Signal | tuple[ArrayLike, ArrayLike] | Callable[[float], float]
+
+FUNCTION_STEPS = 500  # a function of t says nothing about itself: so many steps at least
+CLOSE = 1e-12  # of the duration: breaks nearer than this are one
+
+
+@final
+@dataclass(frozen=True)
+class Function(Signal):
+    """A user's function of one time, called time by time; it need not accept arrays."""
+
+    function: Callable[[float], object]
+    where: str
+
+    def __call__(self, t: FloatArray | float) -> FloatArray:
+        """Return the values at the times t; shape of t."""
+        times = np.asarray(t, dtype=float)
+        values = [self.value(float(time)) for time in times.flat]
+        return np.array(values).reshape(times.shape)[()]
+
+    def value(self, time: float) -> float:
+        """Return the value at one time; raise `UsageError` if it is no finite number."""
+        try:
+            value = self.function(time)
+        except Exception as cause:
+            what = f"the function fails at t = {time:.6g} s: {type(cause).__name__}: {cause}"
+            raise UsageError(what, self.where, "a function of the time in s") from cause
+        return number(value, f"{self.where}({time:.6g})")
+
+    def breaks(self, duration: float) -> tuple[float, ...]:  # noqa: ARG002
+        """Return no time: a function says nothing about its jumps."""
+        return ()
+
+    def max_step(self, duration: float) -> float:
+        """Return a small part of the run."""
+        return duration / FUNCTION_STEPS
+
+
+@final
+@dataclass(frozen=True)
+class Segment:
+    """A stretch of time [start, stop] and the inputs in it, evaluated within [low, high]."""
+
+    start: float
+    stop: float
+    low: float
+    high: float
+    base: FloatArray
+    varying: tuple[tuple[int, Signal], ...]
+
+    def at(self, t: float) -> FloatArray:
+        """Return the inputs u (m,) at one time."""
+        inner = min(max(t, self.low), self.high)
+        u = self.base.copy()
+        for row, signal in self.varying:
+            u[row] = signal(inner)
+        return u
+
+    def over(self, t: FloatArray) -> FloatArray:
+        """Return the inputs u (m, *shape of t) at many times."""
+        inner = np.clip(t, self.low, self.high)
+        u = np.empty((self.base.size, *t.shape))
+        u[:] = self.base.reshape(-1, *(1,) * t.ndim)
+        for row, signal in self.varying:
+            u[row] = signal(inner)
+        return u
+
+
+@final
+@dataclass(frozen=True)
+class Inputs:
+    """A signal for each input of a module, over [0, duration]."""
+
+    signals: tuple[Signal, ...]
+    duration: float
+
+    @cached_property
+    def segments(self) -> tuple[Segment, ...]:
+        """Segments between breaks, in order; breaks that round to one another are one."""
+        groups = [[0.0]]
+        end = self.duration
+        times = {t for signal in self.signals for t in inside(signal.breaks(end), end)}
+        for t in (*sorted(times), end):
+            if t - groups[-1][0] > CLOSE * end:
+                groups.append([])
+            groups[-1].append(t)
+        return tuple(self.segment(a, b) for a, b in pairwise(groups))
+
+    def segment(self, first: Sequence[float], last: Sequence[float]) -> Segment:
+        """Return the segment between two groups of breaks."""
+        stop = self.duration if self.duration in last else last[0]
+        low = nextafter(first[-1], inf) if first[-1] > 0 else 0.0
+        base = np.array([s.value if isinstance(s, Constant) else 0.0 for s in self.signals])
+        varying = tuple(
+            (row, s) for row, s in enumerate(self.signals) if not isinstance(s, Constant)
+        )
+        return Segment(first[0], stop, low, nextafter(last[0], 0.0), base, varying)
+
+    @cached_property
+    def max_step(self) -> float:
+        """Longest step [s] that resolves every input."""
+        return min((signal.max_step(self.duration) for signal in self.signals), default=inf)
+
+
+def read_inputs(
+    module: GeneratedModule, given: Mapping[str, InputValue] | None, duration: float
+) -> Inputs:
+    """Return the inputs of a run; those not given keep the module's defaults.
+
+    Raises
+    ------
+    UsageError : a name is unknown, or a value is not usable or does not cover [0, duration].
+    """
+    names = [record.name for record in module.INPUTS]
+    defaults = dict(zip(names, module.INPUT_DEFAULTS, strict=True))
+    values = defaults | known_keys(given, names, "simulate.inputs")
+    signals = [read_signal(values[name], f"simulate.inputs.{name}", duration) for name in names]
+    return Inputs(tuple(signals), duration)
+
+
+def read_signal(value: object, where: str, duration: float) -> Signal:
+    """Return what a user wrote for one input as a signal."""
+    signal = as_signal(value, where)
+    if isinstance(signal, Samples) and not signal.covers(duration):
+        what = f"samples span {signal.times[0]:g} s to {signal.times[-1]:g} s"
+        raise UsageError(what, where, f"samples that cover 0 s to {duration:g} s")
+    return signal
+
+
+def as_signal(value: object, where: str) -> Signal:
+    """Return a number, (t, values), function or signal as a signal."""
+    if isinstance(value, Signal):
+        return value
+    if is_number(value):
+        return Constant(number(value, where))
+    if isinstance(value, tuple | list) and len(value) == 2:
+        return read_samples(value[0], value[1], where)
+    if callable(value) and not isinstance(value, type):
+        return Function(value, where)
+    expected = "a number, (t, values), a function of t or a signal"
+    what = f"{quote(value)} is no input"
+    raise UsageError(what, where, expected)

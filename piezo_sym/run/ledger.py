@@ -1,0 +1,123 @@
+"""The ledger of a run: power supplied, heat and entropy production, integrated along the steps.
+
+Input: batches of accepted steps.  Output: a `Trajectory`: states, inputs and the integrals
+
+    supplied_port(t) = int_0^t y u dt
+    heat_k(t) = int_0^t W_k z_k dt        produced_k(t) = int_0^t W_k z_k/T dt
+
+at the sample times, by Gauss-Legendre quadrature on the interpolants between any two stops.
+Batches pass through one at a time, so memory grows with the samples, not with the steps.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, final
+
+import numpy as np
+
+from piezo_sym.run.guard import crossing, domain_error, rate_error
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from piezo_sym.run.checks import FloatArray
+    from piezo_sym.run.inputs import Segment
+    from piezo_sym.run.integrate import Batch, Stretch
+    from piezo_sym.run.system import System
+
+NODES = 4  # exact to degree 7: above every interpolant's own order
+
+
+@final
+@dataclass(frozen=True)
+class Trajectory:
+    """A run at its sample times (nt,), and what it took."""
+
+    start: FloatArray  # (n,): the state at t = 0
+    states: FloatArray  # (n, nt)
+    inputs: FloatArray  # (m, nt)
+    integrals: FloatArray  # (ports + 2 processes, nt): supplied, heat, produced
+    steps: int
+    evaluations: int
+
+
+def record(
+    system: System, start: FloatArray, batches: Iterable[Batch], times: FloatArray
+) -> Trajectory:
+    """Return the trajectory at `times` (nt,) of a run from `start` (n,) that comes in batches.
+
+    Raises
+    ------
+    RunError : a stop (sample or end of an accepted step) is outside the domain.
+    """
+    n, m, k = row_counts(system)
+    states, inputs, integrals = (np.full((size, times.size), np.nan) for size in (n, m, k))
+    total, steps, evaluations = np.zeros(k), 0, 0
+    for batch in batches:
+        steps, evaluations = steps + batch.steps, evaluations + batch.evaluations
+        if not batch.stretches:
+            continue
+        x, u = looked_at(system, batch)
+        run = total[:, None] + np.cumsum(increments(system, batch), axis=1)
+        total = run[:, -1]
+        places = np.concatenate([stretch.samples for stretch in batch.stretches])
+        kept, at = places >= 0, places[places >= 0]
+        states[:, at], inputs[:, at], integrals[:, at] = x[:, kept], u[:, kept], run[:, kept]
+    return Trajectory(start, states, inputs, integrals, steps, evaluations)
+
+
+def row_counts(system: System) -> tuple[int, int, int]:
+    """Return the numbers of states, inputs and integrals."""
+    module = system.module
+    states = system.rows(module.STATES)[-1].stop
+    processes = sum(part.stop - part.start for part in system.rows(module.PROCESSES))
+    return states, len(module.INPUTS), len(module.OUTPUTS) + 2 * processes
+
+
+def looked_at(system: System, batch: Batch) -> tuple[FloatArray, FloatArray]:
+    """Return states (n, k) and inputs (m, k) at a batch's stops, all inside the domain."""
+    x = np.concatenate([stretch.path(stretch.stops) for stretch in batch.stretches], axis=1)
+    stops = np.concatenate([stretch.stops for stretch in batch.stretches])
+    u = batch.segment.over(stops)
+    left = np.any(system.violated(x, u), axis=0)
+    lost = ~np.all(system.finite(x, u), axis=0)
+    if np.any(left | lost):
+        first = int(np.argmax(left | lost))
+        if left[first]:
+            raise leaving(system, batch, first)
+        raise rate_error(system, float(stops[first]), x[:, first], u[:, first])
+    return x, u
+
+
+def leaving(system: System, batch: Batch, stop: int) -> Exception:
+    """Return the error of a batch whose stop number `stop` is the first outside the domain."""
+    for stretch in batch.stretches:
+        if stop < stretch.stops.size:
+            break
+        stop -= stretch.stops.size
+    left = float(stretch.stops[stop - 1]) if stop else stretch.start
+    right = float(stretch.stops[stop])
+    t = crossing(system, left, right, lambda t: point(stretch, batch.segment, t))
+    return domain_error(system, t, *point(stretch, batch.segment, t))
+
+
+def point(stretch: Stretch, segment: Segment, t: float) -> tuple[FloatArray, FloatArray]:
+    """Return the state (n,) and the inputs (m,) at one time of a stretch."""
+    return stretch.path(np.array([t]))[:, 0], segment.at(t)
+
+
+def increments(system: System, batch: Batch) -> FloatArray:
+    """Return the integrals between one stop and the next, (ports + 2 processes, k)."""
+    nodes, weights = np.polynomial.legendre.leggauss(NODES)
+    states, times, lengths = [], [], []
+    for stretch in batch.stretches:
+        starts = np.concatenate([[stretch.start], stretch.stops[:-1]])
+        length = stretch.stops - starts
+        t = starts[:, None] + length[:, None] * (nodes + 1) / 2
+        states.append(stretch.path(t.ravel()).reshape(-1, *t.shape))
+        times.append(t)
+        lengths.append(length)
+    x, u = np.concatenate(states, axis=1), batch.segment.over(np.concatenate(times))
+    mean: FloatArray = np.dot(system.rates(x, u), weights / 2)
+    return np.concatenate(lengths) * mean

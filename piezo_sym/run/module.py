@@ -1,0 +1,105 @@
+"""What a generated module offers: the one interface that this stage runs.
+
+Input: a module object from generated/<model>/<model>.py.  Output: the same object, checked to have
+every name of the interface, and the rows that each of its records takes in an array.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+
+from piezo_sym.errors import UsageError, listing, quote
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import ArrayLike
+
+    from piezo_sym.run.checks import FloatArray
+
+
+class Record(Protocol):
+    """What a row of an array is: name, SI unit, one line on it, its bank if it has a row a lane."""
+
+    @property
+    def name(self) -> str: ...  # noqa: D102
+    @property
+    def unit(self) -> str: ...  # noqa: D102
+    @property
+    def doc(self) -> str: ...  # noqa: D102
+    @property
+    def bank(self) -> str | None: ...  # noqa: D102
+
+
+class Condition(Protocol):
+    """A condition of the domain: its text, and whether its margin must be > 0 or only >= 0."""
+
+    @property
+    def text(self) -> str: ...  # noqa: D102
+    @property
+    def strict(self) -> bool: ...  # noqa: D102
+
+
+class GeneratedModule(Protocol):
+    """A generated module; x is (n, *batch), u is (inputs, *batch), p its frozen `Parameters`."""
+
+    NAME: str
+    SPEC_SHA256: str
+    STATES: Sequence[Record]
+    INPUTS: Sequence[Record]
+    INPUT_DEFAULTS: Sequence[float]
+    OUTPUTS: Sequence[Record]
+    PROCESSES: Sequence[Record]
+    BODIES: Sequence[Record]
+    BANKS: Sequence[str]
+    PARAMETERS: Sequence[Record]
+    DOMAIN: Sequence[Condition]
+    Parameters: Callable[..., Any]
+    initial_state: Callable[[FloatArray, Any], FloatArray]
+    rhs: Callable[[ArrayLike, ArrayLike, Any], FloatArray]
+    jacobian: Callable[[ArrayLike, ArrayLike, Any], FloatArray]
+    outputs: Callable[[ArrayLike, ArrayLike, Any], FloatArray]
+    supply: Callable[[ArrayLike, ArrayLike, Any], FloatArray]
+    energy: Callable[[ArrayLike, Any], FloatArray]
+    entropy: Callable[[ArrayLike, Any], FloatArray]
+    temperatures: Callable[[ArrayLike, Any], FloatArray]
+    heat: Callable[[ArrayLike, ArrayLike, Any], FloatArray]
+    entropy_production: Callable[[ArrayLike, ArrayLike, Any], FloatArray]
+    margins: Callable[[ArrayLike, ArrayLike, Any], FloatArray]
+
+
+ModuleT = TypeVar("ModuleT")
+
+
+def checked(module: ModuleT) -> ModuleT:
+    """Return `module` if it has every name of the interface; raise `UsageError` otherwise."""
+    missing = [name for name in GeneratedModule.__annotations__ if not hasattr(module, name)]
+    if missing:
+        what = f"{quote(module)} is no generated module: it lacks {listing(missing, 4)}"
+        remedy = "load a file that 'piezo-sym generate' wrote, or generate it again"
+        raise UsageError(what, "simulate.module", "a generated module", remedy)
+    return module
+
+
+def lanes(parameters: Any, bank: str) -> int:
+    """Return how many lanes `bank` has."""
+    return int(getattr(parameters, f"{bank}_count"))
+
+
+def rows(records: Sequence[Record], parameters: Any) -> tuple[slice, ...]:
+    """Return the rows of each record in an array that spreads banks: one, or one a lane."""
+    found: list[slice] = []
+    start = 0
+    for record in records:
+        size = lanes(parameters, record.bank) if record.bank else 1
+        found.append(slice(start, start + size))
+        start += size
+    return tuple(found)
+
+
+def row_name(records: Sequence[Record], parameters: Any, row: int) -> str:
+    """Return the name of one row, for a message: `q`, or `phi[2]` for the second lane."""
+    for record, part in zip(records, rows(records, parameters), strict=True):
+        if part.start <= row < part.stop:
+            return f"{record.name}[{row - part.start + 1}]" if record.bank else record.name
+    return str(row)

@@ -1,0 +1,125 @@
+"""The parameters, initial state and sample times of a run, from what a user wrote.
+
+Input: mappings of names to numbers, or for a bank to lists of one number a lane; times.  Output:
+the module's frozen `Parameters`, the state x (n,) at t = 0, and the times (nt,) of the samples.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, replace
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+
+from piezo_sym.errors import RunError, UsageError, quote
+from piezo_sym.run.checks import (
+    FloatArray,
+    increasing,
+    is_number,
+    is_vector,
+    known_keys,
+    number,
+    vector,
+    whole,
+)
+from piezo_sym.run.module import lanes, rows
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from piezo_sym.run.module import GeneratedModule
+
+    LaneValue: TypeAlias = float | Sequence[float] | FloatArray
+
+SAMPLES = 1001
+
+
+def read_parameters(module: GeneratedModule, given: Mapping[str, LaneValue] | None) -> Any:
+    """Return the module's parameters with those a user gave in place of the defaults.
+
+    Raises
+    ------
+    UsageError : a name is unknown, a value is not finite, or a list does not fit its bank.
+    """
+    default = module.Parameters()
+    counts = {f"{bank}_count": bank for bank in module.BANKS}
+    banks = {record.name: record.bank for record in module.PARAMETERS}
+    values = known_keys(given, (*banks, *counts), "simulate.parameters")
+    sizes = {
+        bank: whole(values.get(name, lanes(default, bank)), f"simulate.parameters.{name}", 1)
+        for name, bank in counts.items()
+    }
+    merged = {name: values.get(name, value) for name, value in asdict(default).items()}
+    changed: dict[str, Any] = {
+        name: lane_value(merged[name], sizes.get(bank or ""), f"simulate.parameters.{name}")
+        for name, bank in banks.items()
+    }
+    return replace(default, **changed, **{n: sizes[bank] for n, bank in counts.items()})
+
+
+def lane_value(value: object, size: int | None, where: str) -> float | tuple[float, ...]:
+    """Return a number, or where there is a bank of `size` lanes also a tuple of one a lane."""
+    if not is_vector(value):
+        return number(value, where)
+    if size is None:
+        what = f"{quote(value)} is a list"
+        raise UsageError(what, where, "one number: this belongs to no bank")
+    values = tuple(vector(value, where).tolist())
+    if len(values) != size:
+        remedy = "give one number for all lanes, or one a lane"
+        what = f"{len(values)} values for {size} lanes"
+        raise UsageError(what, where, f"{size}", remedy)
+    return values
+
+
+def read_initial(
+    module: GeneratedModule, parameters: Any, u: FloatArray, given: Mapping[str, LaneValue] | None
+) -> FloatArray:
+    """Return the state (n,) at t = 0: the module's own, with the entries a user gave.
+
+    Parameters
+    ----------
+    u : the inputs at t = 0, shape (m,).
+
+    Raises
+    ------
+    UsageError : a name is unknown, a value is not finite, or a list does not fit its bank.
+    RunError : the module cannot compute its own initial state.
+    """
+    values = known_keys(given, [record.name for record in module.STATES], "simulate.initial")
+    x = own_initial(module, parameters, u)
+    for record, part in zip(module.STATES, rows(module.STATES, parameters), strict=True):
+        if record.name in values:
+            size = lanes(parameters, record.bank) if record.bank else None
+            where = f"simulate.initial.{record.name}"
+            x[part] = lane_value(values[record.name], size, where)
+    return x
+
+
+def own_initial(module: GeneratedModule, parameters: Any, u: FloatArray) -> FloatArray:
+    """Return the module's initial state; outside the domain it may hold nan."""
+    try:
+        with np.errstate(all="ignore"):
+            return np.array(module.initial_state(u, parameters), dtype=float)
+    except ArithmeticError as cause:
+        what = f"the initial state cannot be computed: {cause}"
+        raise RunError(what, f"model '{module.NAME}'", remedy="check the parameters") from cause
+
+
+def read_times(given: object, duration: float) -> FloatArray:
+    """Return the times (nt,) of the samples [s]: even ones, or those a user gave.
+
+    Raises
+    ------
+    UsageError : neither None, a number of samples >= 2, nor increasing times in [0, duration].
+    """
+    where = "simulate.times"
+    if given is None:
+        return np.linspace(0.0, duration, SAMPLES)
+    if is_number(given) or isinstance(given, bool):
+        return np.linspace(0.0, duration, whole(given, where, 2))
+    times = increasing(vector(given, where), where)
+    if not times.size or times[0] < 0 or times[-1] > duration:
+        span = f"times span {times[0]:g} s to {times[-1]:g} s" if times.size else "no times"
+        raise UsageError(span, where, f"times within 0 s to {duration:g} s")
+    return times

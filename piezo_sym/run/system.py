@@ -1,0 +1,68 @@
+"""One run's fixed parts: the module, its parameters and inputs, and its functions of x and u alone.
+
+Input: a generated module, `Parameters`, `Inputs`.  Output: `System`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, final
+
+import numpy as np
+
+from piezo_sym.run.module import rows
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from piezo_sym.run.checks import FloatArray
+    from piezo_sym.run.inputs import Inputs, Segment
+    from piezo_sym.run.module import GeneratedModule, Record
+
+
+@final
+@dataclass(frozen=True)
+class System:
+    """A module with parameters and inputs; x is (n, *batch), u is (m, *batch)."""
+
+    module: GeneratedModule
+    parameters: Any
+    inputs: Inputs
+
+    def rows(self, records: Sequence[Record]) -> tuple[slice, ...]:
+        """Return the rows of each record in an array that spreads banks."""
+        return rows(records, self.parameters)
+
+    def field(self, segment: Segment) -> Callable[[float, FloatArray], FloatArray]:
+        """Return dx/dt (n,) as a function of t and x in one segment."""
+        rhs, parameters = self.module.rhs, self.parameters
+        return lambda t, x: rhs(x, segment.at(t), parameters)
+
+    def slope(self, segment: Segment) -> Callable[[float, FloatArray], FloatArray]:
+        """Return the Jacobian (n, n) as a function of t and x in one segment."""
+        jacobian, parameters = self.module.jacobian, self.parameters
+        return lambda t, x: jacobian(x, segment.at(t), parameters)
+
+    def margins(self, x: FloatArray, u: FloatArray) -> FloatArray:
+        """Return each condition's margin, (conditions, *batch)."""
+        with np.errstate(all="ignore"):
+            return self.module.margins(x, u, self.parameters)
+
+    def violated(self, x: FloatArray, u: FloatArray) -> np.ndarray[Any, np.dtype[np.bool_]]:
+        """Return whether each condition fails, (conditions, *batch); a margin of nan fails."""
+        margins = self.margins(x, u)
+        strict = np.array([c.strict for c in self.module.DOMAIN], dtype=bool)
+        strict = strict.reshape(-1, *(1,) * (margins.ndim - 1))
+        return ~np.where(strict, margins > 0, margins >= 0)
+
+    def finite(self, x: FloatArray, u: FloatArray) -> np.ndarray[Any, np.dtype[np.bool_]]:
+        """Return whether each row of dx/dt is a finite number, (n, *batch)."""
+        with np.errstate(all="ignore"):
+            return np.isfinite(self.module.rhs(x, u, self.parameters))
+
+    def rates(self, x: FloatArray, u: FloatArray) -> FloatArray:
+        """Return supply, heat and entropy production, (ports + 2 processes, *batch)."""
+        m, p = self.module, self.parameters
+        with np.errstate(all="ignore"):
+            parts = (m.supply(x, u, p), m.heat(x, u, p), m.entropy_production(x, u, p))
+            return np.concatenate(parts)

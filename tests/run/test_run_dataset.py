@@ -1,0 +1,107 @@
+"""The Dataset: its variables, units and attributes; netCDF; what a run imports."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray
+
+from piezo_sym.run import simulate, sine
+
+NAMES = {
+    **dict.fromkeys(["q"], "m"),
+    **dict.fromkeys(["p"], "kg*m/s"),
+    **dict.fromkeys(["Q_C"], "C"),
+    **dict.fromkeys(["phi"], "Wb"),
+    **dict.fromkeys(["S", "entropy", "produced_hysteron", "produced_damper"], "J/K"),
+    **dict.fromkeys(["F_ext"], "N"),
+    **dict.fromkeys(["V_in"], "V"),
+    **dict.fromkeys(["T_e", "y_ambient", "T_body"], "K"),
+    **dict.fromkeys(["y_load"], "m/s"),
+    **dict.fromkeys(["y_supply"], "A"),
+    **dict.fromkeys(["energy", "energy_residual", "heat_hysteron", "heat_damper"], "J"),
+    **dict.fromkeys(["supplied_load", "supplied_supply", "supplied_ambient"], "J"),
+}
+BANKED = {"phi", "heat_hysteron", "produced_hysteron"}
+
+
+@pytest.fixture(scope="module")
+def ds(piezo):
+    parameters = {"L": [1e-3, 2e-3, 3e-3], "hysteron_count": 3}
+    drive = {"V_in": sine(100, 100), "F_ext": lambda t: 3.0 * t}
+    return simulate(piezo, inputs=drive, duration=0.01, parameters=parameters, times=21, rtol=1e-6)
+
+
+def test_variables(ds):
+    assert set(ds.data_vars) == set(NAMES)
+    for name, unit in NAMES.items():
+        assert ds[name].attrs["units"] == unit, name
+        assert ds[name].attrs["long_name"], name
+        assert ds[name].dims == (("time", "hysteron") if name in BANKED else ("time",)), name
+        assert np.all(np.isfinite(ds[name])), name
+    assert ds.time.attrs == {"units": "s", "long_name": "time"}
+    assert np.array_equal(ds.time, np.linspace(0, 0.01, 21))
+    assert np.array_equal(ds.hysteron, [1, 2, 3])
+
+
+def test_values_are_the_modules_at_the_samples(ds, piezo):
+    p = piezo.Parameters(L=(1e-3, 2e-3, 3e-3), hysteron_count=3)
+    x = np.vstack([ds.q, ds.p, ds.Q_C, ds.phi.T, ds.S])
+    u = np.vstack([ds.F_ext, ds.V_in, ds.T_e])
+    assert np.array_equal(np.vstack([ds.y_load, ds.y_supply, ds.y_ambient]), piezo.outputs(x, u, p))
+    assert np.array_equal(ds.T_body, piezo.temperatures(x, p)[0])
+    assert np.array_equal(ds.energy, piezo.energy(x, p))
+    assert ds.V_in.values == pytest.approx(100 * np.sin(200 * np.pi * ds.time.values), abs=1e-9)
+    supplied = ds.supplied_load + ds.supplied_supply + ds.supplied_ambient
+    residual = ds.energy - ds.energy[0] - supplied
+    assert ds.energy_residual.values == pytest.approx(residual.values, abs=1e-12)
+    assert float(ds.energy_residual[0]) == 0
+
+
+def test_attributes(ds):
+    assert ds.attrs["model"] == "piezo_stack"
+    assert ds.attrs["spec_sha256"] == "0" * 64
+    assert (ds.attrs["method"], ds.attrs["rtol"]) == ("LSODA", 1e-6)
+    assert ds.attrs["parameter_M"] == 3.5e-3
+    assert np.array_equal(ds.attrs["parameter_L"], [1e-3, 2e-3, 3e-3])
+    assert ds.attrs["rhs_evaluations"] >= ds.attrs["accepted_steps"] > 20
+    assert ds.attrs["scale_evaluations"] > 0
+
+
+def test_defaults(piezo):
+    ds = simulate(piezo, duration=1e-3)
+    assert ds.sizes == {"time": 1001, "hysteron": 2}
+    assert (ds.attrs["rtol"], ds.attrs["method"]) == (1e-5, "LSODA")
+    assert np.all(ds.T_e == 298.15)
+    assert np.all(ds.V_in == 0)
+
+
+def test_netcdf_round_trip(ds, tmp_path):
+    path = tmp_path / "run.nc"
+    ds.to_netcdf(path, engine="scipy")
+    with xarray.open_dataset(path, engine="scipy") as back:
+        xarray.testing.assert_equal(ds, back)
+        assert back.time.attrs == ds.time.attrs
+        assert list(back.attrs) == list(ds.attrs)
+        assert all(np.array_equal(back.attrs[name], value) for name, value in ds.attrs.items())
+
+
+SCRIPT = """
+import sys
+sys.path[:0] = sys.argv[1:]
+import hand_written
+from piezo_sym.run import simulate, sine
+light = {"scipy.integrate", "xarray"} & set(sys.modules)
+simulate(hand_written, inputs={"V_in": sine(100, 100)}, duration=1e-3)
+heavy = {"sympy", "pydantic", "pint", "z3", "matplotlib"} & set(sys.modules)
+print(sorted(light), sorted(heavy), "xarray" in sys.modules)
+"""
+
+
+def test_a_run_leaves_the_symbolic_libraries_alone():
+    here = Path(__file__).parent
+    command = [sys.executable, "-W", "error", "-c", SCRIPT, str(here), str(here.parents[1])]
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert run.stdout.strip() == "[] [] True", run.stderr

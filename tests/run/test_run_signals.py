@@ -1,0 +1,168 @@
+"""Signals: values, corners, one-sided limits, and the refusals of their makers."""
+
+from math import inf, isinf, nan, pi
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from piezo_sym.errors import UsageError
+from piezo_sym.run import chirp, ramp, samples, sine, step, triangle
+from piezo_sym.run.inputs import Inputs, as_signal
+
+numbers = st.floats(-1e6, 1e6)
+frequencies = st.floats(1e-3, 1e4)
+times = st.floats(0, 10)
+
+
+@st.composite
+def signals(draw):
+    a, b, f, g, t = (draw(s) for s in (numbers, numbers, frequencies, frequencies, times))
+    width = draw(st.floats(1e-3, 10))
+    return draw(
+        st.sampled_from(
+            [
+                sine(a, f, b, t),
+                step(t, a, b),
+                ramp(t, t + width, a, b),
+                triangle(a, f, b),
+                chirp(a, f, g, width, b),
+                samples([0, width, 2 * width], [a, b, a]),
+                as_signal(a, "u"),
+            ]
+        )
+    )
+
+
+@given(signals(), st.lists(times, min_size=1, max_size=8))
+def test_arrays_give_what_scalars_give(signal, ts):
+    grid = np.array([ts, ts])
+    values = signal(grid)
+    assert values.shape == grid.shape
+    assert np.array_equal(values[0], [signal(t) for t in ts])
+
+
+@given(signals(), st.floats(1e-3, 20))
+def test_breaks_lie_inside_in_order(signal, duration):
+    breaks = signal.breaks(duration)
+    assert list(breaks) == sorted(set(breaks))
+    assert all(0 < t < duration for t in breaks)
+    assert len(breaks) <= 1000
+    assert signal.max_step(duration) > 0
+
+
+@given(st.lists(signals(), min_size=1, max_size=3), st.floats(1e-3, 20))
+def test_segments_tile_the_run_without_jumps(sigs, duration):
+    segments = Inputs(tuple(sigs), duration).segments
+    assert segments[0].start == 0
+    assert segments[-1].stop == duration
+    assert [s.stop for s in segments[:-1]] == [s.start for s in segments[1:]]
+    inner = np.array([[s.start, (s.start + s.stop) / 2, s.stop] for s in segments])
+    for segment, ts in zip(segments, inner, strict=True):
+        u = segment.over(ts)
+        assert np.array_equal(u, np.stack([segment.at(t) for t in ts], axis=1))
+        expected = [signal(ts[1]) for signal in sigs]
+        assert np.array_equal(u[:, 1], expected)
+
+
+def test_sine_is_the_formula():
+    t = np.linspace(0, 0.1, 77)
+    assert np.array_equal(sine(100, 100)(t), 100 * np.sin(2 * pi * 100 * t))
+    assert sine(2, 3, 5, pi / 2)(0.0) == 7
+    assert sine(1, 50).max_step(1.0) <= 1 / 50 / 4
+
+
+def test_step_holds_after_at_its_time():
+    signal = step(0.5, 1, 2)
+    assert [signal(t) for t in (0.0, np.nextafter(0.5, 0), 0.5, 1.0)] == [1, 1, 2, 2]
+    assert signal.breaks(1.0) == (0.5,)
+    assert signal.breaks(0.5) == ()
+    first, second = Inputs((signal,), 1.0).segments
+    assert (first.at(0.5)[0], second.at(0.5)[0]) == (1, 2)
+
+
+def test_ramp_is_straight_between_its_corners():
+    signal = ramp(1, 3, 10, 20)
+    assert np.array_equal(signal(np.array([0, 1, 1.5, 3, 4])), [10, 10, 12.5, 20, 20])
+    assert signal.breaks(5.0) == (1, 3)
+
+
+def test_triangle_turns_at_its_breaks():
+    signal = triangle(2, 5, 1)
+    assert signal(0.0) == 1
+    assert signal.breaks(0.3) == pytest.approx((0.05, 0.15, 0.25))
+    assert signal(np.array([0.05, 0.15, 0.25])) == pytest.approx([3, -1, 3])
+    assert signal(0.025) == pytest.approx(2)
+    assert signal.breaks(1e9) == ()
+
+
+@given(numbers, st.floats(0.1, 100), st.integers(0, 50))
+def test_triangle_has_its_period(amplitude, frequency, n):
+    signal = triangle(amplitude, frequency)
+    t = np.linspace(0, 1, 11) / frequency
+    bound = 1e-9 * (1 + abs(amplitude))
+    assert np.abs(signal(t + n / frequency) - signal(t)).max() < bound
+    assert np.abs(signal(t)).max() <= abs(amplitude)
+
+
+def test_chirp_sweeps_then_stays():
+    signal = chirp(1, 10, 30, 2.0, 5)
+    t = 0.7
+    assert signal(t) == pytest.approx(5 + np.sin(2 * pi * (10 * t + 5 * t * t)))
+    late = np.array([2.0, 2.4])
+    turns = 40 + 30 * (late - 2)
+    assert signal(late) == pytest.approx(5 + np.sin(2 * pi * turns), abs=1e-9)
+    assert signal.breaks(3.0) == (2.0,)
+    assert signal.max_step(3.0) <= 1 / 30 / 4
+
+
+def test_samples_pass_through_their_knots_and_limit_steps_when_many():
+    few = samples([0, 1, 3], [2, 4, 0])
+    assert np.array_equal(few(np.array([0, 0.5, 1, 2, 3])), [2, 3, 4, 2, 0])
+    assert few.breaks(2.0) == (1.0,)
+    assert isinf(few.max_step(3.0))
+    t = np.linspace(0, 1, 5001)
+    many = samples(t, t)
+    assert many.breaks(1.0) == ()
+    assert many.max_step(1.0) == pytest.approx(2e-4)
+    assert len(many.breaks(0.1)) == 500 - 1
+
+
+def test_breaks_that_round_to_one_another_are_one():
+    close = (step(0.3, 0, 1), step(0.1 + 0.2, 0, 1))
+    assert 0.3 != 0.1 + 0.2
+    first, second = Inputs(close, 1.0).segments
+    assert np.array_equal(first.at(0.3), [0, 0])
+    assert np.array_equal(second.at(0.3), [1, 1])
+
+
+@pytest.mark.parametrize(
+    ("make", "where"),
+    [
+        (lambda: sine(1, 0), "sine.frequency: '0' is not positive"),
+        (lambda: sine(1, -2), "sine.frequency: '-2' is not positive"),
+        (lambda: sine(nan, 2), "sine.amplitude: 'nan' is not a finite number"),
+        (lambda: sine(True, 2), "sine.amplitude: 'True' is not a finite number"),
+        (lambda: sine("1", 2), "sine.amplitude: '1' is not a finite number"),
+        (lambda: sine(1, 2, phase=inf), "sine.phase: 'inf'"),
+        (lambda: sine(10**400, 2), "sine.amplitude: "),
+        (lambda: step(nan, 0, 1), "step.time: 'nan'"),
+        (lambda: step(0, None, 1), "step.before: 'None'"),
+        (lambda: ramp(1, 1, 0, 1), "ramp.stop: the ramp stops at 1; expected over 1; use step()"),
+        (lambda: triangle(1, inf), "triangle.frequency: 'inf'"),
+        (lambda: chirp(1, 1, 2, 0), "chirp.duration: '0' is not positive"),
+        (lambda: chirp(1, 0, 2, 1), "chirp.f_start: '0' is not positive"),
+        (lambda: samples([0, 1], [1]), "samples: 2 times and 1 values; expected as many"),
+        (lambda: samples([0], [1]), "samples: 1 times and 1 values"),
+        (lambda: samples([0, 1, 1], [1, 2, 3]), "time 1 at entry 2 follows 1; expected strictly"),
+        (lambda: samples([0, nan], [1, 2]), "samples.times[1]: 'nan'"),
+        (lambda: samples(np.array([0, inf]), [1, 2]), "samples.times: entry 1 is inf"),
+        (lambda: samples([0, 1], [True, 2]), "samples.values[0]: 'True'"),
+        (lambda: samples(np.eye(2), [1, 2]), "samples.times: "),
+    ],
+)
+def test_makers_refuse(make, where):
+    with pytest.raises(UsageError) as error:
+        make()
+    assert where in str(error.value)
