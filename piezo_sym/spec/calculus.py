@@ -70,7 +70,9 @@ def mul(left: Expr, right: Expr) -> Expr:
         case (_, If(then, condition, other)) if _indicator(right):
             return If(mul(left, then), condition, mul(left, other))
         case (_, Div(top, bottom)):
-            return Div(mul(left, top), bottom)
+            return div(mul(left, top), bottom)
+        case (Div(Num(), bottom), _):
+            return div(mul(left.left, right), bottom)
         case (Mul(Num(value), inner), _):
             return _scaled(value, mul(inner, right))
         case (_, Mul(Num(value), inner)):
@@ -171,7 +173,7 @@ def _slopes(function: str, args: tuple[Expr, ...]) -> tuple[Expr, ...]:
     """Return the derivative of a function by each of its arguments."""
     z = args[0]
     match function:
-        case "exp":
+        case "exp" | "expm1":  # lowering makes expm1; no spec can write it
             return (Call("exp", args),)
         case "log":
             return (div(ONE, z),)

@@ -98,9 +98,19 @@ def _sum(terms: tuple[Expr, ...], style: Style) -> str:
     first, *rest = terms
     text = enclose(piece(first, style), SUM)
     for term in rest:
-        sign, size = ("-", term.arg) if isinstance(term, Neg) else ("+", term)
+        sign, size = signed(term)
         text += f" {sign} {enclose(piece(size, style), PRODUCT)}"
     return text
+
+
+def signed(term: Expr) -> tuple[str, Expr]:
+    """Return the sign and the size of a term of a sum."""
+    match term:
+        case Neg(arg):
+            return "-", arg
+        case Num(value) if value < 0:
+            return "-", Num(-value)
+    return "+", term
 
 
 def decimal(value: Fraction) -> str | None:

@@ -1,0 +1,138 @@
+"""The head of a NumPy module: what it is, its records, its parameters.
+
+Input: a `Program`.  Output: text.  It has no date, no path and no host, so that it only changes when
+the spec or the generator does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from piezo_sym.codegen.program import Field, Program
+from piezo_sym.errors import one_line
+
+RECORDS = '''class Record(NamedTuple):
+    """A row of an array: its name, SI unit, a line on it, and its bank if it stands for one a lane."""
+
+    name: str
+    unit: str
+    doc: str
+    bank: str | None = None
+
+
+class Condition(NamedTuple):
+    """A condition of the domain; its margin is > 0 inside if it is strict, else >= 0."""
+
+    text: str
+    strict: bool'''
+
+LANES = '''def _lanes(value, count, ndim):
+    """Return a bank's parameter, one value or one a lane, with shape (count, 1, ...)."""
+    value = np.asarray(value, dtype=float)
+    if value.ndim == 0:
+        value = np.full(count, value)
+    if value.shape != (count,):
+        raise ValueError(f"a parameter of a bank of {count} lanes has {value.size} values")
+    return value.reshape(count, *(1,) * (ndim - 1))'''
+
+
+def head(program: Program) -> str:
+    """Return everything before a module's first function."""
+    parts = [
+        _docstring(program),
+        "from dataclasses import dataclass\nfrom typing import NamedTuple\n\nimport numpy as np",
+        f'NAME = "{program.name}"\nSPEC_SHA256 = "{program.sha256}"',
+        RECORDS,
+        "\n".join(_tables(program)),
+        _parameters(program),
+    ]
+    if program.counts:
+        parts.append(LANES)
+    return _joined(parts)
+
+
+def _joined(parts: Iterable[str]) -> str:
+    """Return blocks with one empty line between them, two around classes and functions."""
+    text = ""
+    for part in parts:
+        wide = part.startswith(("class", "@", "def")) or text.rstrip().endswith(("bool", ": int"))
+        text += ("\n\n\n" if wide else "\n\n") + part if text else part
+    return text
+
+
+def _docstring(program: Program) -> str:
+    x = ", ".join(_spread(field) for field in program.states)
+    u = ", ".join(field.name for field in program.inputs)
+    lines = [
+        f'"""{_plain(program.title or program.name)}: irreversible port-Hamiltonian system.',
+        "",
+        *([f"Source:  {_plain(program.source)}"] if program.source else []),
+        f"Spec:    sha256 {program.sha256}",
+        f"Proofs:  {program.verdict}",
+        "",
+        "Made by piezo_sym's generator; do not edit: change the spec, then run",
+        f"`piezo-sym generate` on it.  Arrays have shape (n, *batch); values are in SI units.",
+        "",
+        f"x = ({x})",
+        f"u = ({u})",
+        *(f"{bank}: lanes j = 1 ... Parameters.{bank}_count" for bank in program.counts),
+        '"""',
+    ]
+    return "\n".join(lines)
+
+
+def _spread(field: Field) -> str:
+    return f"{field.name}_1 ... {field.name}_{field.bank}_count" if field.bank else field.name
+
+
+def _plain(text: str) -> str:
+    """Return text from a spec for use inside a docstring: nothing in it can end or escape it."""
+    return one_line(text).replace("\\", "/").replace('"', "'")
+
+
+def literal(text: str) -> str:
+    """Return text from a spec as a string literal."""
+    escaped = text.encode("unicode_escape").decode("ascii").replace('"', '\\"')
+    return f'"{escaped}"'
+
+
+def _tables(program: Program) -> Iterable[str]:
+    yield from _records("STATES", program.states)
+    yield from _records("INPUTS", program.inputs)
+    defaults = [repr(program.defaults[field.name]) for field in program.inputs]
+    yield f"INPUT_DEFAULTS = {_tuple(defaults)}"
+    yield from _records("OUTPUTS", program.outputs)
+    yield from _records("PROCESSES", program.processes)
+    yield from _records("BODIES", program.bodies)
+    yield from _records("PARAMETERS", program.parameters)
+    yield f"BANKS = {_tuple([literal(bank) for bank in program.counts])}"
+    yield "DOMAIN = ("
+    for limit in program.limits:
+        yield f"    Condition({literal(limit.text)}, {limit.strict}),"
+    yield ")"
+
+
+def _tuple(items: list[str]) -> str:
+    return f"({items[0]},)" if len(items) == 1 else f"({', '.join(items)})"
+
+
+def _records(name: str, fields: tuple[Field, ...]) -> Iterable[str]:
+    if not fields:
+        yield f"{name} = ()"
+        return
+    yield f"{name} = ("
+    for field in fields:
+        parts = [literal(field.name), literal(field.unit), literal(field.doc)]
+        parts += [literal(field.bank)] if field.bank else []
+        yield f"    Record({', '.join(parts)}),"
+    yield ")"
+
+
+def _parameters(program: Program) -> str:
+    lines = ["@dataclass(frozen=True)", "class Parameters:"]
+    lines += [f'    """Parameters of {program.name} in SI units; the values are the spec\'s."""', ""]
+    for field in program.parameters:
+        kind = "float | tuple[float, ...]" if field.bank else "float"
+        lines.append(f"    {field.name}: {kind} = {program.defaults[field.name]!r}")
+    lines += [f"    {bank}_count: int = {count}" for bank, count in program.counts.items()]
+    return "\n".join(lines)

@@ -1,0 +1,231 @@
+"""Program to a NumPy module: plain text that imports NumPy alone.
+
+Input: a `Program`.  Output: the text of ``<model>.py``, with the interface of the contracts: arrays of
+shape (n, *batch), banks spread.  Words of a spec reach the text only as checked identifiers or inside
+string literals.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import final
+
+from piezo_sym.codegen.numpy_head import head
+from piezo_sym.codegen.numpy_style import NUMPY, numpy_text
+from piezo_sym.codegen.program import (
+    Entry,
+    Function,
+    Program,
+    Quantity,
+    Row,
+    bank_of,
+    jacobian_roots,
+    needed,
+)
+from piezo_sym.lanes import Slot
+from piezo_sym.spec.expressions import ZERO, Add, Expr, Node
+from piezo_sym.spec.names import fresh
+from piezo_sym.spec.text import PRODUCT, SUM, UNARY, enclose, piece, signed
+
+WIDTH = 96
+
+
+def numpy_module(program: Program) -> str:
+    """Return the text of a program's NumPy module."""
+    printer = _Printer(program)
+    parts = [head(program), *(printer.function(f) for f in program.functions)]
+    parts += [printer.jacobian(), printer.margins()]
+    return "\n\n\n".join(part.strip("\n") for part in parts) + "\n"
+
+
+@final
+class _Printer:
+    """Prints the functions of one program."""
+
+    def __init__(self, program: Program) -> None:
+        self.program = program
+        self.lanes = program.lane_names()
+        words = {word: fresh(word, program.taken) for word in ("x", "u", "p", "out", "lanes")}
+        self.x, self.u, self.p, self.out, self.index = words.values()
+        self.words = words
+        self.states = [Slot(field.name, field.bank) for field in program.states]
+
+    # Functions
+
+    def function(self, function: Function) -> str:
+        """Return one function with a row a slot."""
+        roots = [tree for row in function.rows for tree in (row.listed or (row.value,))]
+        lines = self._opening(function.name, function.arguments, function.doc, function, roots)
+        if function.scalar:
+            value = function.rows[0].value
+            zero = f"np.zeros({self.x}.shape[1:])"
+            lines += [f"return {zero if value == ZERO else numpy_text(value)}"]
+            return _body(lines)
+        slots = [row.slot for row in function.rows]
+        lines.append(f"{self.out} = {self._array(function, slots)}")
+        for n, row in enumerate(function.rows):
+            if function.name == "initial_state" and row.value == ZERO and not row.listed:
+                continue
+            lines += self._assign(f"{self.out}[{_place(slots, n)}]", _row_text(row), row.value)
+        return _body([*lines, f"return {self.out}"])
+
+    def jacobian(self) -> str:
+        """Return the function that fills the Jacobian."""
+        jacobian = self.program.jacobian
+        doc = f"{jacobian.doc}; shape (n, n, *batch)"
+        roots = tuple(jacobian_roots(jacobian))
+        lines = self._opening("jacobian", ("x", "u", "p"), doc, None, roots)
+        lines.append(f"{self.out} = np.zeros(({self.x}.shape[0], *{self.x}.shape))")
+        for entry in jacobian.entries:
+            lines += self._entry(entry)
+        return _body([*lines, f"return {self.out}"])
+
+    def margins(self) -> str:
+        """Return the function that tells how far inside its domain a state is."""
+        limits = self.program.limits
+        doc = "Margin of each condition of DOMAIN, least over lanes; shape (len(DOMAIN), *batch)"
+        roots = [limit.margin for limit in limits]
+        lines = self._opening("margins", ("x", "u", "p"), doc, None, roots)
+        lines.append(f"{self.out} = np.empty(({len(limits)}, *{self.x}.shape[1:]))")
+        for n, limit in enumerate(limits):
+            text = numpy_text(limit.margin)
+            if bank_of(limit.margin, self.lanes):
+                text = f"np.min({text}, axis=0)"
+            lines += self._assign(f"{self.out}[{n}]", text, limit.margin)
+        return _body([*lines, f"return {self.out}"])
+
+    # Parts of a function
+
+    def _opening(
+        self,
+        name: str,
+        arguments: Sequence[str],
+        doc: str,
+        function: Function | None,
+        roots: Iterable[Node],
+    ) -> list[str]:
+        """Return a function's first lines: its name, what it unpacks, the quantities it needs."""
+        quantities, used = needed(self.program.quantities, roots)
+        words = [self.words[argument] for argument in arguments]
+        shape = "" if function is None else f"; shape {_shape(function)}"
+        lines = [f"def {name}({', '.join(words)}, /):", f'"""{doc}{shape}."""']
+        driven = any(field.name in used for field in self.program.inputs)
+        given = [word for word in words if word == self.x or (word == self.u and driven)]
+        lines += [f"{word} = np.asarray({word}, dtype=float)" for word in given]
+        lines += [f"{bank}_count = {self.p}.{bank}_count" for bank in self.program.counts]
+        lines += self._unpacked(used, f"{self.x}.ndim" if "x" in arguments else "1")
+        note = ""
+        for quantity in quantities:
+            if quantity.note != note:
+                note = quantity.note
+                lines.append(f"# {note}")
+            lines += self._define(quantity)
+        return [*lines, "# rows"] if quantities and not (function and function.scalar) else lines
+
+    def _unpacked(self, used: frozenset[str], dimensions: str) -> Iterator[str]:
+        program = self.program
+        for field in program.parameters:
+            if field.name in used and field.bank:
+                arguments = f"{self.p}.{field.name}, {field.bank}_count, {dimensions}"
+                yield f"{field.name} = _lanes({arguments})"
+            elif field.name in used:
+                yield f"{field.name} = {self.p}.{field.name}"
+        for n, slot in enumerate(self.states):
+            if slot.label in used:
+                yield f"{slot.label} = {self.x}[{_place(self.states, n)}]"
+        for n, field in enumerate(program.inputs):
+            if field.name in used:
+                yield f"{field.name} = {self.u}[{n}]"
+
+    def _define(self, quantity: Quantity) -> list[str]:
+        return self._assign(quantity.name, numpy_text(quantity.value), quantity.value)
+
+    def _assign(self, target: str, text: str, value: Expr) -> list[str]:
+        """Return an assignment; a sum too long for a line gets a line a term."""
+        if len(target) + len(text) + 7 <= WIDTH or not isinstance(value, Add):
+            return [f"{target} = {text}"]
+        return [f"{target} = (", *(f"    {term}" for term in _terms(value)), ")"]
+
+    def _array(self, function: Function, slots: list[Slot]) -> str:
+        if function.name == "initial_state":
+            return f"np.zeros({_total(slots)})"
+        if function.name == "rhs":
+            return f"np.empty({self.x}.shape)"
+        return f"np.empty(({_total(slots)}, *{self.x}.shape[1:]))"
+
+    def _entry(self, entry: Entry) -> Iterator[str]:
+        rows, cols = self.states[entry.row], self.states[entry.col]
+        place = f"{_place(self.states, entry.row)}, {_place(self.states, entry.col)}"
+        same = rows.bank is not None and rows.bank == cols.bank
+        joint = "="
+        for outer in entry.outer:
+            left, right = self._spread(outer.left, ":, None"), self._spread(outer.right, "None")
+            yield f"{self.out}[{place}] {joint} {left}*{right}"
+            joint = "+="
+        if entry.value == ZERO:
+            return
+        if same:
+            first, last = _bounds(self.states, entry.row)
+            yield f"{self.index} = np.arange({first}, {last})"
+            second = _bounds(self.states, entry.col)[0]
+            shift = "" if entry.row == entry.col else f" + ({second} - ({first}))"
+            place = f"{self.index}, {self.index}{shift}"
+        yield from self._assign_entry(f"{self.out}[{place}]", joint, entry.value)
+
+    def _assign_entry(self, target: str, joint: str, value: Expr) -> list[str]:
+        lines = self._assign(target, numpy_text(value), value)
+        return [lines[0].replace(" = ", f" {joint} ", 1), *lines[1:]]
+
+    def _spread(self, value: Expr, index: str) -> str:
+        text = piece(value, NUMPY)
+        if bank_of(value, self.lanes) is None:
+            return enclose(text, UNARY)
+        return f"({text[0]})[{index}]"
+
+
+def _row_text(row: Row) -> str:
+    if row.listed:
+        return f"({', '.join(numpy_text(value) for value in row.listed)})"
+    return numpy_text(row.value)
+
+
+def _terms(value: Add) -> Iterator[str]:
+    first, *rest = value.terms
+    yield enclose(piece(first, NUMPY), SUM)
+    for term in rest:
+        sign, size = signed(term)
+        yield f"{sign} {enclose(piece(size, NUMPY), PRODUCT)}"
+
+
+def _body(lines: list[str]) -> str:
+    return "\n".join([lines[0], *(f"    {line}" for line in lines[1:])])
+
+
+def _shape(function: Function) -> str:
+    """Return the shape of a result, for its docstring."""
+    if function.scalar:
+        return "(*batch)"
+    batch = "" if function.name == "initial_state" else " *batch"
+    rows = "n" if function.name in {"rhs", "initial_state"} else _total([r.slot for r in function.rows])
+    return f"({rows},{batch})"
+
+
+def _position(slots: Sequence[Slot], n: int) -> str:
+    """Return the place of slot n's first row."""
+    fixed = sum(slot.bank is None for slot in slots[:n])
+    counts = [f"{slot.bank}_count" for slot in slots[:n] if slot.bank]
+    return " + ".join([*([str(fixed)] if fixed or not counts else []), *counts])
+
+
+def _bounds(slots: Sequence[Slot], n: int) -> tuple[str, str]:
+    return _position(slots, n), _position([*slots, Slot("")], n + 1)
+
+
+def _place(slots: Sequence[Slot], n: int) -> str:
+    """Return the index of slot n: a number, or a slice for a bank."""
+    first, last = _bounds(slots, n)
+    return f"{first} : {last}" if slots[n].bank else first
+
+
+def _total(slots: Sequence[Slot]) -> str:
+    return _position([*slots, Slot("")], len(slots))

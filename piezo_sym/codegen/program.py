@@ -1,0 +1,185 @@
+"""The program: what a generated module computes, before any language.
+
+Input: nothing; these are the types.  Output: frozen records that lowering fills and printers read.
+A program is a list of named quantities in an order in which each can be computed from earlier ones,
+and functions whose rows are expressions in them.  A quantity has one value, or one a lane of a bank;
+a sum over lanes is always a quantity of its own.  There is no algebra beyond this point.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import final
+
+from piezo_sym.lanes import Slot
+from piezo_sym.spec.expressions import Expr, LaneSum, Node, names
+
+
+@final
+@dataclass(frozen=True)
+class Quantity:
+    """A named value: `value` in terms of parameters, states, inputs and earlier quantities."""
+
+    name: str
+    value: Expr
+    bank: str | None
+    note: str
+
+
+@final
+@dataclass(frozen=True)
+class Field:
+    """A parameter, state, input, output, process or body, as generated modules describe it."""
+
+    name: str
+    unit: str
+    doc: str
+    bank: str | None = None
+
+
+@final
+@dataclass(frozen=True)
+class Row:
+    """One row of a result.
+
+    Attributes
+    ----------
+    slot : which row; a bank's stands for one a lane.
+    value : may differ from lane to lane if the slot is a bank's.
+    listed : instead, a value for each lane, where the spec lists them.
+    """
+
+    slot: Slot
+    value: Expr
+    listed: tuple[Expr, ...] = ()
+
+
+@final
+@dataclass(frozen=True)
+class Outer:
+    """A product over pairs of lanes: `left` in the row's lane times `right` in the column's."""
+
+    left: Expr
+    right: Expr
+
+
+@final
+@dataclass(frozen=True)
+class Entry:
+    """One entry of a Jacobian.
+
+    Attributes
+    ----------
+    row, col : places among the states.
+    value : of that pair; with two banks, of equal lanes of one bank (the diagonal).
+    outer : further products over all pairs of lanes of the two banks.
+    """
+
+    row: int
+    col: int
+    value: Expr
+    outer: tuple[Outer, ...] = ()
+
+
+@final
+@dataclass(frozen=True)
+class Function:
+    """A function of a module: a vector with one row a slot (`scalar`: its one row alone)."""
+
+    name: str
+    doc: str
+    arguments: tuple[str, ...]
+    rows: tuple[Row, ...]
+    scalar: bool = False
+
+
+@final
+@dataclass(frozen=True)
+class Jacobian:
+    """The derivative of `rhs` by the state: entries that are not zero everywhere."""
+
+    doc: str
+    entries: tuple[Entry, ...]
+
+
+@final
+@dataclass(frozen=True)
+class Limit:
+    """A condition of the domain: its text and its margin, positive (or zero) inside."""
+
+    text: str
+    strict: bool
+    margin: Expr
+
+
+@final
+@dataclass(frozen=True)
+class Program:
+    """All that a generated module holds.
+
+    Attributes
+    ----------
+    name, title, source, sha256, verdict : for the head.
+    parameters, inputs, states, outputs, processes, bodies : fields in their order.
+    defaults : values of parameters (a tuple: one a lane), inputs and bank sizes.
+    banks : names, in order.
+    quantities : in an order in which they can be computed.
+    functions, jacobian, limits : what the module offers.
+    taken : every name in use, so that printers can add their own.
+    """
+
+    name: str
+    title: str
+    source: str
+    sha256: str
+    verdict: str
+    parameters: tuple[Field, ...]
+    inputs: tuple[Field, ...]
+    states: tuple[Field, ...]
+    outputs: tuple[Field, ...]
+    processes: tuple[Field, ...]
+    bodies: tuple[Field, ...]
+    defaults: Mapping[str, float | tuple[float, ...]]
+    counts: Mapping[str, int]
+    quantities: tuple[Quantity, ...]
+    functions: tuple[Function, ...]
+    jacobian: Jacobian
+    limits: tuple[Limit, ...]
+    taken: frozenset[str]
+
+    def lane_names(self) -> dict[str, str]:
+        """Return the bank of every name that has a value a lane."""
+        fields = (*self.parameters, *self.states)
+        found = {field.name: field.bank for field in fields if field.bank}
+        found |= {quantity.name: quantity.bank for quantity in self.quantities if quantity.bank}
+        return found
+
+
+def needed(
+    quantities: Iterable[Quantity], roots: Iterable[Node]
+) -> tuple[tuple[Quantity, ...], frozenset[str]]:
+    """Return the quantities that some expressions need, in order, and every name they use."""
+    used = {name for root in roots for name in names(root)}
+    kept: list[Quantity] = []
+    for quantity in reversed(tuple(quantities)):
+        if quantity.name in used:
+            kept.append(quantity)
+            used.update(names(quantity.value))
+    return tuple(reversed(kept)), frozenset(used)
+
+
+def bank_of(node: Node, lanes: Mapping[str, str]) -> str | None:
+    """Return the bank whose lanes an expression differs over; a sum over lanes differs over none."""
+    if isinstance(node, LaneSum):
+        return None
+    return next((lanes[name] for name in names(node) if name in lanes), None)
+
+
+def jacobian_roots(jacobian: Jacobian) -> Iterator[Expr]:
+    """Yield every expression of a Jacobian."""
+    for entry in jacobian.entries:
+        yield entry.value
+        for outer in entry.outer:
+            yield outer.left
+            yield outer.right

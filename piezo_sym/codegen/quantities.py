@@ -1,0 +1,160 @@
+"""The named quantities of a program: co-states, ratios, driving forces, laws, heats, sums over lanes.
+
+Input: an `IPHS`.  Output: `Quantities`, the definitions in an order in which each can be computed, and
+the terms of Definition 1's products as expressions in them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace as replace_fields
+from typing import final
+
+import sympy as sp
+
+from piezo_sym.codegen.coefficients import coefficient
+from piezo_sym.codegen.excess import with_excess
+from piezo_sym.codegen.program import Quantity
+from piezo_sym.iphs import IPHS, costate_name
+from piezo_sym.lanes import LaneMatrix, Slot
+from piezo_sym.network import port_order
+from piezo_sym.spec.calculus import add, mul
+from piezo_sym.spec.elements.ports import Body, Gyrator, Resistor, Source, Storage
+from piezo_sym.spec.expressions import Expr, LaneSum, Sym, rebuild, rename, replace
+from piezo_sym.spec.names import fresh
+
+
+@final
+class Quantities:
+    """A growing list of definitions; every name is new, every value refers to earlier names.
+
+    Attributes
+    ----------
+    defined : the definitions, in order.
+    efforts, outputs, heats : z, W and W*z of each process.
+    """
+
+    def __init__(self, iphs: IPHS) -> None:
+        self.system = iphs.system
+        self.circuit = iphs.circuit
+        self.stores = tuple(self.circuit.of(Storage, Body))
+        self.ports = port_order(self.circuit)
+        self.bodies: Mapping[str, Body] = {p.element: port for p, port in self.circuit.of(Body)}
+        self.taken = set(self.circuit.names)
+        self.defined: list[Quantity] = []
+        self._sums: dict[LaneSum, Sym] = {}
+        self._costates()
+        self._ratios()
+        self.efforts, self.outputs, self.heats = self._processes()
+
+    def define(self, base: str, value: Expr, bank: str | None, note: str) -> Sym:
+        """Add a definition under a fresh name, and return the name."""
+        name = fresh(base, self.taken)
+        self.taken.add(name)
+        return self._defined(name, value, bank, note)
+
+    def _defined(self, name: str, value: Expr, bank: str | None, note: str) -> Sym:
+        self.defined.append(Quantity(name, value, bank, note))
+        return Sym(name)
+
+    def total(self, arg: Expr, bank: str, base: str) -> Sym:
+        """Return the quantity that is the sum of `arg` over the lanes of `bank`."""
+        key = LaneSum(arg, bank)
+        if key not in self._sums:
+            self._sums[key] = self.define(base, key, None, "sums over lanes")
+        return self._sums[key]
+
+    def costate(self, n: int) -> Sym:
+        """Return the co-state of state n."""
+        return Sym(costate_name(self.stores[n][1]))
+
+    def input(self, n: int) -> Expr:
+        """Return the input of port n that junction laws know: a source's."""
+        port = self.ports[n].port
+        if not isinstance(port, Source):
+            msg = f"port {n} is no source"
+            raise TypeError(msg)
+        return Sym(port.input)
+
+    def sharp(self, law: Expr) -> Expr:
+        """Return a law with differences to a temperature written so that they do not cancel."""
+        return with_excess(law, self._temperature_laws(), self._excess)
+
+    def _temperature_laws(self) -> dict[str, Expr]:
+        return {
+            port.temperature: rename(port.law, {port.letter: port.state})
+            for port in self.bodies.values()
+        }
+
+    def _excess(self, hot: str, cold: Sym, value: Expr) -> Sym:
+        """Return ``hot - cold`` as a quantity, and from now on hot as cold plus this quantity."""
+        base = f"{hot}_minus_{cold.name}"
+        known = next((q for q in self.defined if q.value == value), None)
+        if known:
+            return Sym(known.name)
+        excess = self.define(base, value, None, "co-states dU/dx")
+        place = next(n for n, quantity in enumerate(self.defined) if quantity.name == hot)
+        self.defined.insert(place, self.defined.pop())
+        self.defined[place + 1] = replace_fields(self.defined[place + 1], value=add(cold, excess))
+        return excess
+
+    def known(self, expr: Expr) -> Expr:
+        """Return an expression with each part that is a temperature written by its name."""
+        laws = {law: Sym(name) for name, law in self._temperature_laws().items()}
+        found = laws.get(expr)
+        return found if found else rebuild(expr, self.known)
+
+    def row(self, block: LaneMatrix, row: int, given: Callable[[int], Expr]) -> Iterator[Expr]:
+        """Yield the terms of ``(block @ given)[row]``, column by column."""
+        for (r, c), full, own in block.entries():
+            if r == row:
+                yield from self._term(full, own, block.cols[c], given(c))
+
+    def _term(self, full: sp.Expr, own: sp.Expr, col: Slot, value: Expr) -> Iterator[Expr]:
+        if full != 0 and col.bank:
+            name = value.name if isinstance(value, Sym) else col.label
+            yield mul(coefficient(full), self.total(value, col.bank, f"sum_{name}"))
+        elif full != 0:
+            yield mul(coefficient(full), value)
+        if own != 0:
+            yield mul(coefficient(own), value)
+
+    def _costates(self) -> None:
+        for placed, port in self.stores:
+            law = rename(port.law, {port.letter: port.state})
+            self._defined(costate_name(port), law, placed.bank, "co-states dU/dx")
+
+    def _ratios(self) -> None:
+        for _, port in self.circuit.of(Gyrator):
+            law = self._at(port.ratio, port.body)
+            self._defined(port.name, law, None, "transducer ratios")
+
+    def _at(self, law: Expr, body: str | None) -> Expr:
+        """Return a law in which ``T`` is the temperature of `body`."""
+        return self.sharp(rename(law, {"T": self.bodies[body].temperature})) if body else law
+
+    def _processes(self) -> tuple[list[Sym], list[Sym], list[Expr]]:
+        efforts, outputs, heats = [], [], []
+        for k, (placed, port) in enumerate(self.circuit.of(Resistor)):
+            terms = [*self.row(self.system.B.T, k, self.costate)]
+            terms += self.row(self.system.D.T, k, self.input)
+            effort = add(*terms)
+            if not isinstance(effort, Sym):
+                effort = self._defined(port.effort, effort, placed.bank, "driving forces")
+            law = replace(self._at(port.law, port.heats), {port.letter: effort})
+            output = self._defined(port.output, law, placed.bank, "dissipative laws")
+            efforts.append(effort)
+            outputs.append(output)
+            heats.append(mul(output, effort))
+        return efforts, outputs, heats
+
+    def heat(self, k: int) -> Sym:
+        """Return the quantity that is the heat of process k, summed over the lanes of a bank."""
+        slot = self.system.processes[k]
+        base = f"heat_{slot.label}"
+        if slot.bank:
+            return self.total(self.heats[k], slot.bank, base)
+        known = next((q for q in self.defined if q.value == self.heats[k]), None)
+        return Sym(known.name) if known else self.define(base, self.heats[k], None, "heats")
+
+
