@@ -1,2 +1,87 @@
-"""piezo_sym."""
+"""piezo_sym: physical elements to a proved irreversible port-Hamiltonian system and fast modules.
+
+    from piezo_sym import load, derive, verify, generate, simulate, sine
+
+    model  = load("piezo_stack")                  # the paper's actuator, or a path
+    iphs   = derive(model)                        # .x .u .U .S .E .J0 .processes .g .y .rhs .sigma
+    report = verify(iphs)                         # .rows, .raise_if_not_proved()
+    paths  = generate(model, out="generated")
+    ds     = simulate("piezo_stack", inputs={"V_in": sine(100, 100)}, duration=0.1)
+
+Every name is loaded when it is first used: importing the package imports none of SymPy, pydantic,
+pint, z3, xarray, matplotlib.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from piezo_sym.api import simulate
+    from piezo_sym.build import generate
+    from piezo_sym.derive import derive
+    from piezo_sym.errors import PiezoError
+    from piezo_sym.proofs import verify
+    from piezo_sym.run.signals import (
+        chirp,
+        ramp,
+        samples,
+        samples_from_csv,
+        sine,
+        step,
+        triangle,
+    )
+    from piezo_sym.spec.load import load
+    from piezo_sym.spec.model import Model
+
 __version__ = "0.1.0"
+
+_HOME = {
+    "Model": "spec.model",
+    "PiezoError": "errors",
+    "chirp": "run.signals",
+    "derive": "derive",
+    "generate": "build",
+    "load": "spec.load",
+    "ramp": "run.signals",
+    "samples": "run.signals",
+    "samples_from_csv": "run.signals",
+    "simulate": "api",
+    "sine": "run.signals",
+    "step": "run.signals",
+    "triangle": "run.signals",
+    "verify": "proofs",
+}
+
+__all__ = [
+    "Model",
+    "PiezoError",
+    "__version__",
+    "chirp",
+    "derive",
+    "generate",
+    "load",
+    "ramp",
+    "samples",
+    "samples_from_csv",
+    "simulate",
+    "sine",
+    "step",
+    "triangle",
+    "verify",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Load a public name from its home when it is first used."""
+    if name not in _HOME:
+        message = f"module 'piezo_sym' has no attribute '{name}'"
+        raise AttributeError(message)
+    value = getattr(importlib.import_module(f"piezo_sym.{_HOME[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return __all__

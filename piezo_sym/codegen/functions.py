@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
 
-from piezo_sym.codegen.program import Function, Limit, Row
+from piezo_sym.codegen.program import Function, Limit, Row, bank_of
 from piezo_sym.codegen.quantities import Quantities
 from piezo_sym.iphs import IPHS, costate_name
 from piezo_sym.lanes import Slot
@@ -18,6 +18,7 @@ from piezo_sym.spec.elements.ports import Body, Exchange
 from piezo_sym.spec.expressions import ONE, Expr, Num, Sym
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.parse import parse_law
+from piezo_sym.spec.text import signed
 from piezo_sym.spec.tables import condition_text, conditions
 
 STATE_INPUT = ("x", "u", "p")
@@ -37,20 +38,33 @@ def functions_of(iphs: IPHS, q: Quantities) -> tuple[Function, ...]:
 
 
 def rates_of(iphs: IPHS, q: Quantities) -> tuple[Row, ...]:
-    """Return dx/dt row by row: structure, then processes, then inputs; entropies last of their kind."""
+    """Return dx/dt row by row: structure, then processes, then inputs."""
     system = iphs.system
     rows = []
     for n, slot in enumerate(system.states):
         if isinstance(q.stores[n][1], Body):
             value = _entropy_rate(n, q)
         else:
-            value = add(
-                *q.row(system.J0, n, q.costate),
-                *(neg(term) for term in q.row(system.B, n, lambda k: q.outputs[k])),
-                *q.row(system.G, n, q.input),
-            )
+            terms = [*q.row(system.J0, n, q.costate)]
+            terms += [neg(term) for term in q.row(system.B, n, lambda k: q.outputs[k])]
+            terms += [*q.row(system.G, n, q.input)]
+            value = add(*_arranged(terms, q))
         rows.append(Row(slot, value))
     return tuple(rows)
+
+
+def _arranged(terms: list[Expr], q: Quantities) -> list[Expr]:
+    """Return terms with those all lanes share first, and a positive one in front if there is one.
+
+    In array code the shared part of a bank's row is then computed once, and no array is negated.
+    """
+    lanes = {quantity.name: quantity.bank for quantity in q.defined if quantity.bank}
+    ordered = sorted(terms, key=lambda term: bank_of(term, lanes) is not None)
+    front = next((term for term in ordered if signed(term)[0] == "+"), None)
+    if front is None:
+        return ordered
+    ordered.remove(front)
+    return [front, *ordered]
 
 
 def _entropy_rate(n: int, q: Quantities) -> Expr:

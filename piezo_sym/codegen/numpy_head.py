@@ -11,6 +11,11 @@ from collections.abc import Iterable
 from piezo_sym.codegen.program import Field, Program
 from piezo_sym.errors import one_line
 
+IMPORTS = """from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np"""
+
 RECORDS = '''class Record(NamedTuple):
     """A row of an array: its name, SI unit, a line on it, and its bank if it stands for one a lane."""
 
@@ -26,26 +31,42 @@ class Condition(NamedTuple):
     text: str
     strict: bool'''
 
+LANES_TYPE = "_Lanes = float | tuple[float, ...]  # a bank's parameter: one value, or one a lane"
+
 LANES = '''def _lanes(value, count, ndim):
-    """Return a bank's parameter, one value or one a lane, with shape (count, 1, ...)."""
+    """Return a bank's parameter: a number, or a value a lane with shape (count, 1, ...)."""
+    if isinstance(value, (int, float)):
+        return value
     value = np.asarray(value, dtype=float)
-    if value.ndim == 0:
-        value = np.full(count, value)
     if value.shape != (count,):
         raise ValueError(f"a parameter of a bank of {count} lanes has {value.size} values")
     return value.reshape(count, *(1,) * (ndim - 1))'''
+
+
+BLOCKS = '''_BLOCK = 50_000  # numbers of a batch that are worked on together: they stay in the cache
+
+
+def _in_blocks(x, u, p):
+    """Return rhs for a large batch, part by part, so that temporaries stay in the cache."""
+    out = np.empty(x.shape)
+    step = max(1, _BLOCK // len(x))
+    for first in range(0, x.shape[1], step):
+        part = slice(first, first + step)
+        out[:, part] = rhs(x[:, part], u[:, part] if u.ndim == 2 else u, p)
+    return out'''
 
 
 def head(program: Program) -> str:
     """Return everything before a module's first function."""
     parts = [
         _docstring(program),
-        "from dataclasses import dataclass\nfrom typing import NamedTuple\n\nimport numpy as np",
+        IMPORTS,
         f'NAME = "{program.name}"\nSPEC_SHA256 = "{program.sha256}"',
         RECORDS,
         "\n".join(_tables(program)),
         _parameters(program),
     ]
+    parts.append(BLOCKS)
     if program.counts:
         parts.append(LANES)
     return _joined(parts)
@@ -55,7 +76,7 @@ def _joined(parts: Iterable[str]) -> str:
     """Return blocks with one empty line between them, two around classes and functions."""
     text = ""
     for part in parts:
-        wide = part.startswith(("class", "@", "def")) or text.rstrip().endswith(("bool", ": int"))
+        wide = part.startswith(("class", "@", "def", "_BLOCK", "_Lanes")) or text.rstrip().endswith("bool")
         text += ("\n\n\n" if wide else "\n\n") + part if text else part
     return text
 
@@ -71,7 +92,7 @@ def _docstring(program: Program) -> str:
         f"Proofs:  {program.verdict}",
         "",
         "Made by piezo_sym's generator; do not edit: change the spec, then run",
-        f"`piezo-sym generate` on it.  Arrays have shape (n, *batch); values are in SI units.",
+        "`piezo-sym generate` on it.  Arrays have shape (n, *batch); values are in SI units.",
         "",
         f"x = ({x})",
         f"u = ({u})",
@@ -129,10 +150,11 @@ def _records(name: str, fields: tuple[Field, ...]) -> Iterable[str]:
 
 
 def _parameters(program: Program) -> str:
-    lines = ["@dataclass(frozen=True)", "class Parameters:"]
+    lines = [LANES_TYPE, "", ""] if program.counts else []
+    lines += ["@dataclass(frozen=True)", "class Parameters:"]
     lines += [f'    """Parameters of {program.name} in SI units; the values are the spec\'s."""', ""]
     for field in program.parameters:
-        kind = "float | tuple[float, ...]" if field.bank else "float"
+        kind = "_Lanes" if field.bank else "float"
         lines.append(f"    {field.name}: {kind} = {program.defaults[field.name]!r}")
     lines += [f"    {bank}_count: int = {count}" for bank, count in program.counts.items()]
     return "\n".join(lines)

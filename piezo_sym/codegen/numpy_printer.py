@@ -23,7 +23,7 @@ from piezo_sym.codegen.program import (
     needed,
 )
 from piezo_sym.lanes import Slot
-from piezo_sym.spec.expressions import ZERO, Add, Expr, Node
+from piezo_sym.spec.expressions import ZERO, Add, Expr, LaneSum, Node, names
 from piezo_sym.spec.names import fresh
 from piezo_sym.spec.text import PRODUCT, SUM, UNARY, enclose, piece, signed
 
@@ -45,6 +45,7 @@ class _Printer:
     def __init__(self, program: Program) -> None:
         self.program = program
         self.lanes = program.lane_names()
+        self.arrays = _certain(program)
         words = {word: fresh(word, program.taken) for word in ("x", "u", "p", "out", "lanes")}
         self.x, self.u, self.p, self.out, self.index = words.values()
         self.words = words
@@ -87,10 +88,13 @@ class _Printer:
         roots = [limit.margin for limit in limits]
         lines = self._opening("margins", ("x", "u", "p"), doc, None, roots)
         lines.append(f"{self.out} = np.empty(({len(limits)}, *{self.x}.shape[1:]))")
+        parameters = {field.name for field in self.program.parameters}
         for n, limit in enumerate(limits):
             text = numpy_text(limit.margin)
-            if bank_of(limit.margin, self.lanes):
-                text = f"np.min({text}, axis=0)"
+            if {*names(limit.margin)} <= parameters:
+                text = f"np.min({text})" if bank_of(limit.margin, self.lanes) else text
+            elif bank_of(limit.margin, self.lanes):
+                text = f"np.min({self._laned(limit.margin)}, axis=0)"
             lines += self._assign(f"{self.out}[{n}]", text, limit.margin)
         return _body([*lines, f"return {self.out}"])
 
@@ -110,8 +114,12 @@ class _Printer:
         shape = "" if function is None else f"; shape {_shape(function)}"
         lines = [f"def {name}({', '.join(words)}, /):", f'"""{doc}{shape}."""']
         driven = any(field.name in used for field in self.program.inputs)
+        driven |= name == "rhs"
         given = [word for word in words if word == self.x or (word == self.u and driven)]
         lines += [f"{word} = np.asarray({word}, dtype=float)" for word in given]
+        if name == "rhs":
+            lines.append(f"if {self.x}.ndim == 2 and {self.x}.size > 2*_BLOCK:")
+            lines.append(f"    return _in_blocks({', '.join(words)})")
         lines += [f"{bank}_count = {self.p}.{bank}_count" for bank in self.program.counts]
         lines += self._unpacked(used, f"{self.x}.ndim" if "x" in arguments else "1")
         note = ""
@@ -138,7 +146,19 @@ class _Printer:
                 yield f"{field.name} = {self.u}[{n}]"
 
     def _define(self, quantity: Quantity) -> list[str]:
-        return self._assign(quantity.name, numpy_text(quantity.value), quantity.value)
+        text = numpy_text(quantity.value)
+        if isinstance(quantity.value, LaneSum):
+            text = f"np.sum({self._laned(quantity.value.arg)}, axis=0)"
+        return self._assign(quantity.name, text, quantity.value)
+
+    def _laned(self, value: Expr) -> str:
+        """Return an expression's text, made to have an axis of lanes even if its parameters do not."""
+        text = piece(value, NUMPY)
+        if bank_of(value, self.arrays):
+            return text[0]
+        bank = bank_of(value, self.lanes)
+        ones = f"np.ones(({bank}_count, *(1,) * ({self.x}.ndim - 1)))"
+        return f"{enclose(text, PRODUCT)}*{ones}"
 
     def _assign(self, target: str, text: str, value: Expr) -> list[str]:
         """Return an assignment; a sum too long for a line gets a line a term."""
@@ -177,10 +197,18 @@ class _Printer:
         return [lines[0].replace(" = ", f" {joint} ", 1), *lines[1:]]
 
     def _spread(self, value: Expr, index: str) -> str:
-        text = piece(value, NUMPY)
         if bank_of(value, self.lanes) is None:
-            return enclose(text, UNARY)
-        return f"({text[0]})[{index}]"
+            return enclose(piece(value, NUMPY), UNARY)
+        return f"({self._laned(value)})[{index}]"
+
+
+def _certain(program: Program) -> dict[str, str]:
+    """Return the bank of every name that surely has an axis of lanes: not by parameters alone."""
+    found = {field.name: field.bank for field in program.states if field.bank}
+    for quantity in program.quantities:
+        if quantity.bank and bank_of(quantity.value, found):
+            found[quantity.name] = quantity.bank
+    return found
 
 
 def _row_text(row: Row) -> str:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 
-from piezo_sym.errors import RunError, UsageError, listing, quote
+from piezo_sym.errors import PiezoError, RunError, UsageError, listing, quote
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterator
@@ -29,6 +29,7 @@ METHODS = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
 IMPLICIT = ("Radau", "BDF", "LSODA")
 BATCH_NUMBERS = 100_000  # numbers of state that one batch may hold at its stops
 MOST_STOPS = 512
+MOST_STILL = 20  # steps in a row that do not change the time
 SHORTEST = 1e-12  # of a segment: no step shorter than this is tried again
 
 
@@ -116,7 +117,7 @@ def segment_batches(
                 if held >= most:
                     yield Batch(segment, tuple(pending), steps, spent - counted)
                     pending, held, steps, counted = [], 0, 0, spent
-    except RunError:
+    except PiezoError:
         yield Batch(segment, tuple(pending), steps, spent - counted)
         raise
     yield Batch(segment, tuple(pending), steps, spent - counted)
@@ -162,7 +163,7 @@ def accepted(
     RunError : no step is short enough; the message says when and why.
     """
     span = trial = segment.stop - segment.start
-    solver, rest, spent = None, segment, 0
+    solver, rest, spent, still = None, segment, 0, 0
     while solver is None or solver.status == "running":
         try:
             solver = advanced(solver or new_solver(system, rest, x, tolerance, trial, spent))
@@ -172,6 +173,9 @@ def accepted(
                 raise stopped(system, tolerance, rest.start, str(cause)) from cause
         else:
             x, trial = solver.y.copy(), float(solver.t) - rest.start
+            still = 0 if trial else still + 1
+            if still > MOST_STILL:
+                raise stopped(system, tolerance, rest.start, "its steps are too short for the time")
             rest = replace(segment, start=float(solver.t))
             yield solver
 
@@ -194,7 +198,7 @@ def new_solver(
     trial: float,
     evaluations: int,
 ) -> OdeSolver:
-    """Return SciPy's solver at the start of a segment, its steps no longer than `trial` at first."""
+    """Return SciPy's solver at the start of a segment, its first step no longer than `trial`."""
     import scipy.integrate
 
     make: Any = getattr(scipy.integrate, tolerance.method)

@@ -1,0 +1,468 @@
+"""Piezoelectric stack actuator with hysterons: irreversible port-Hamiltonian system.
+
+Source:  Caballeria, Ramirez, Le Gorrec (2021), eqs. (9)-(13), Table 1
+Spec:    sha256 9c0235a60e02072bc451611ffa723f273272c8e4536a3089081866f47c89389c
+Proofs:  skew, casimir, energy, entropy, temperature PROVED
+
+Made by piezo_sym's generator; do not edit: change the spec, then run
+`piezo-sym generate` on it.  Arrays have shape (n, *batch); values are in SI units.
+
+x = (q, p, Q_C, phi_1 ... phi_hysteron_count, S)
+u = (F_ext, V_in, T_e)
+hysteron: lanes j = 1 ... Parameters.hysteron_count
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+NAME = "piezo_stack"
+SPEC_SHA256 = "9c0235a60e02072bc451611ffa723f273272c8e4536a3089081866f47c89389c"
+
+
+class Record(NamedTuple):
+    """A row of an array: its name, SI unit, a line on it, and its bank if it stands for one a lane."""
+
+    name: str
+    unit: str
+    doc: str
+    bank: str | None = None
+
+
+class Condition(NamedTuple):
+    """A condition of the domain; its margin is > 0 inside if it is strict, else >= 0."""
+
+    text: str
+    strict: bool
+
+
+STATES = (
+    Record("q", "m", "extension of spring 'spring'"),
+    Record("p", "kg*m/s", "momentum of mass 'mass'"),
+    Record("Q_C", "C", "charge of capacitor 'capacitor'"),
+    Record("phi", "Wb", "flux linkage of hysteron 'hysteron'", "hysteron"),
+    Record("S", "J/K", "entropy of thermal_mass 'body'"),
+)
+INPUTS = (
+    Record("F_ext", "N", "external force on the tip"),
+    Record("V_in", "V", "supply voltage"),
+    Record("T_e", "K", "temperature of the environment"),
+)
+INPUT_DEFAULTS = (0.0, 0.0, 298.15)
+OUTPUTS = (
+    Record("load", "m/s", "velocity at force_source 'load'"),
+    Record("supply", "A", "current given by voltage_source 'supply'"),
+    Record("ambient", "K", "temperature of thermal_mass 'body'"),
+)
+PROCESSES = (
+    Record("hysteron", "W/K", "hysteron 'hysteron'", "hysteron"),
+    Record("damper", "W/K", "damper 'damper'"),
+)
+BODIES = (
+    Record("body", "K", "temperature of thermal_mass 'body'"),
+)
+PARAMETERS = (
+    Record("M", "kg", "moving mass"),
+    Record("k", "N/m", "stiffness"),
+    Record("q_l", "m", "rest position of the spring"),
+    Record("d", "N*s/m", "damping"),
+    Record("C", "F", "capacitance"),
+    Record("L", "H", "inductance of one hysteron", "hysteron"),
+    Record("rho", "ohm*K", "resistance law: slope rho/(T - T_0)", "hysteron"),
+    Record("i_0", "A", "half width of the dead zone", "hysteron"),
+    Record("a", "C/m", "transducer ratio at T_0"),
+    Record("T_0", "K", "reference temperature"),
+    Record("c_0", "J/K", "heat capacity"),
+    Record("lam", "W/K", "heat conductance to the environment"),
+)
+BANKS = ("hysteron",)
+DOMAIN = (
+    Condition("T > T_0", True),
+    Condition("T_e > T_0", True),
+    Condition("d >= 0", False),
+    Condition("rho >= 0", False),
+    Condition("i_0 >= 0", False),
+    Condition("lam >= 0", False),
+    Condition("k > 0", True),
+    Condition("M > 0", True),
+    Condition("C > 0", True),
+    Condition("L > 0", True),
+    Condition("T_0 > 0", True),
+    Condition("c_0 > 0", True),
+)
+
+
+_Lanes = float | tuple[float, ...]  # a bank's parameter: one value, or one a lane
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """Parameters of piezo_stack in SI units; the values are the spec's."""
+
+    M: float = 0.0035
+    k: float = 500000.0
+    q_l: float = 0.0
+    d: float = 400.0
+    C: float = 5e-06
+    L: _Lanes = 0.001
+    rho: _Lanes = 10.0
+    i_0: _Lanes = 0.5
+    a: float = 10.0
+    T_0: float = 296.15
+    c_0: float = 5.0
+    lam: float = 2.0
+    hysteron_count: int = 2
+
+
+_BLOCK = 50_000  # numbers of a batch that are worked on together: they stay in the cache
+
+
+def _in_blocks(x, u, p):
+    """Return rhs for a large batch, part by part, so that temporaries stay in the cache."""
+    out = np.empty(x.shape)
+    step = max(1, _BLOCK // len(x))
+    for first in range(0, x.shape[1], step):
+        part = slice(first, first + step)
+        out[:, part] = rhs(x[:, part], u[:, part] if u.ndim == 2 else u, p)
+    return out
+
+
+def _lanes(value, count, ndim):
+    """Return a bank's parameter: a number, or a value a lane with shape (count, 1, ...)."""
+    if isinstance(value, (int, float)):
+        return value
+    value = np.asarray(value, dtype=float)
+    if value.shape != (count,):
+        raise ValueError(f"a parameter of a bank of {count} lanes has {value.size} values")
+    return value.reshape(count, *(1,) * (ndim - 1))
+
+
+def initial_state(u, p_, /):
+    """State at t = 0 [SI], for the inputs u at t = 0; shape (n,)."""
+    u = np.asarray(u, dtype=float)
+    hysteron_count = p_.hysteron_count
+    T_0 = p_.T_0
+    c_0 = p_.c_0
+    T_e = u[2]
+    out = np.zeros(4 + hysteron_count)
+    out[3 + hysteron_count] = c_0*np.log(T_e/T_0)
+    return out
+
+
+def rhs(x, u, p_, /):
+    """Rates dx/dt = J_ir dU/dx + g u; shape (n, *batch)."""
+    x = np.asarray(x, dtype=float)
+    u = np.asarray(u, dtype=float)
+    if x.ndim == 2 and x.size > 2*_BLOCK:
+        return _in_blocks(x, u, p_)
+    hysteron_count = p_.hysteron_count
+    M = p_.M
+    k = p_.k
+    q_l = p_.q_l
+    d = p_.d
+    C = p_.C
+    L = _lanes(p_.L, hysteron_count, x.ndim)
+    rho = _lanes(p_.rho, hysteron_count, x.ndim)
+    i_0 = _lanes(p_.i_0, hysteron_count, x.ndim)
+    a = p_.a
+    T_0 = p_.T_0
+    c_0 = p_.c_0
+    lam = p_.lam
+    q = x[0]
+    p = x[1]
+    Q_C = x[2]
+    phi = x[3 : 3 + hysteron_count]
+    S = x[3 + hysteron_count]
+    F_ext = u[0]
+    V_in = u[1]
+    T_e = u[2]
+    # co-states dU/dx
+    F_spring = k*(q - q_l)
+    v_mass = p/M
+    V_capacitor = Q_C/C
+    i_hysteron = phi/L
+    T_minus_T_0 = T_0*np.expm1(S/c_0)
+    T = T_0 + T_minus_T_0
+    # transducer ratios
+    alpha_transducer = a*T/T_0
+    # dissipative laws
+    V_hysteron = rho/T_minus_T_0*(i_hysteron - np.clip(i_hysteron, -i_0, i_0))
+    F_damper = d*v_mass
+    # sums over lanes
+    sum_i_hysteron = np.sum(i_hysteron, axis=0)
+    heat_hysteron = np.sum(V_hysteron*i_hysteron, axis=0)
+    # heats
+    heat_damper = F_damper*v_mass
+    # rows
+    out = np.empty(x.shape)
+    out[0] = v_mass
+    out[1] = alpha_transducer*V_capacitor - F_spring - F_damper + F_ext
+    out[2] = sum_i_hysteron - alpha_transducer*v_mass
+    out[3 : 3 + hysteron_count] = V_in - V_capacitor - V_hysteron
+    out[3 + hysteron_count] = (heat_hysteron + heat_damper)/T + lam*(T_e/T - 1)
+    return out
+
+
+def outputs(x, u, p_, /):
+    """Outputs y, one a port, conjugate to its input; shape (3, *batch)."""
+    x = np.asarray(x, dtype=float)
+    hysteron_count = p_.hysteron_count
+    M = p_.M
+    L = _lanes(p_.L, hysteron_count, x.ndim)
+    T_0 = p_.T_0
+    c_0 = p_.c_0
+    p = x[1]
+    phi = x[3 : 3 + hysteron_count]
+    S = x[3 + hysteron_count]
+    # co-states dU/dx
+    v_mass = p/M
+    i_hysteron = phi/L
+    T_minus_T_0 = T_0*np.expm1(S/c_0)
+    T = T_0 + T_minus_T_0
+    # sums over lanes
+    sum_i_hysteron = np.sum(i_hysteron, axis=0)
+    # rows
+    out = np.empty((3, *x.shape[1:]))
+    out[0] = v_mass
+    out[1] = sum_i_hysteron
+    out[2] = T
+    return out
+
+
+def supply(x, u, p_, /):
+    """Power put in [W], one a port; the sum is dU/dt; shape (3, *batch)."""
+    x = np.asarray(x, dtype=float)
+    u = np.asarray(u, dtype=float)
+    hysteron_count = p_.hysteron_count
+    M = p_.M
+    L = _lanes(p_.L, hysteron_count, x.ndim)
+    T_0 = p_.T_0
+    c_0 = p_.c_0
+    lam = p_.lam
+    p = x[1]
+    phi = x[3 : 3 + hysteron_count]
+    S = x[3 + hysteron_count]
+    F_ext = u[0]
+    V_in = u[1]
+    T_e = u[2]
+    # co-states dU/dx
+    v_mass = p/M
+    i_hysteron = phi/L
+    T_minus_T_0 = T_0*np.expm1(S/c_0)
+    T = T_0 + T_minus_T_0
+    # sums over lanes
+    sum_i_hysteron = np.sum(i_hysteron, axis=0)
+    # rows
+    out = np.empty((3, *x.shape[1:]))
+    out[0] = v_mass*F_ext
+    out[1] = sum_i_hysteron*V_in
+    out[2] = lam*(T_e - T)
+    return out
+
+
+def energy(x, p_, /):
+    """Hamiltonian U [J]; shape (*batch)."""
+    x = np.asarray(x, dtype=float)
+    hysteron_count = p_.hysteron_count
+    M = p_.M
+    k = p_.k
+    q_l = p_.q_l
+    C = p_.C
+    L = _lanes(p_.L, hysteron_count, x.ndim)
+    T_0 = p_.T_0
+    c_0 = p_.c_0
+    q = x[0]
+    p = x[1]
+    Q_C = x[2]
+    phi = x[3 : 3 + hysteron_count]
+    S = x[3 + hysteron_count]
+    # sums over lanes
+    energy_phi = np.sum(phi**2/(2*L), axis=0)
+    return 0.5*(k*(q - q_l)**2) + p**2/(2*M) + Q_C**2/(2*C) + energy_phi + T_0*c_0*np.exp(S/c_0)
+
+
+def entropy(x, p_, /):
+    """Total entropy S [J/K]; shape (*batch)."""
+    x = np.asarray(x, dtype=float)
+    hysteron_count = p_.hysteron_count
+    S = x[3 + hysteron_count]
+    return S
+
+
+def temperatures(x, p_, /):
+    """Temperature of each body [K]; shape (1, *batch)."""
+    x = np.asarray(x, dtype=float)
+    hysteron_count = p_.hysteron_count
+    T_0 = p_.T_0
+    c_0 = p_.c_0
+    S = x[3 + hysteron_count]
+    # co-states dU/dx
+    T_minus_T_0 = T_0*np.expm1(S/c_0)
+    T = T_0 + T_minus_T_0
+    # rows
+    out = np.empty((1, *x.shape[1:]))
+    out[0] = T
+    return out
+
+
+def heat(x, u, p_, /):
+    """Power that each process turns into heat [W], a bank's a row a lane; shape (1 + hysteron_count, *batch)."""
+    x = np.asarray(x, dtype=float)
+    hysteron_count = p_.hysteron_count
+    M = p_.M
+    d = p_.d
+    L = _lanes(p_.L, hysteron_count, x.ndim)
+    rho = _lanes(p_.rho, hysteron_count, x.ndim)
+    i_0 = _lanes(p_.i_0, hysteron_count, x.ndim)
+    T_0 = p_.T_0
+    c_0 = p_.c_0
+    p = x[1]
+    phi = x[3 : 3 + hysteron_count]
+    S = x[3 + hysteron_count]
+    # co-states dU/dx
+    v_mass = p/M
+    i_hysteron = phi/L
+    T_minus_T_0 = T_0*np.expm1(S/c_0)
+    # dissipative laws
+    V_hysteron = rho/T_minus_T_0*(i_hysteron - np.clip(i_hysteron, -i_0, i_0))
+    F_damper = d*v_mass
+    # rows
+    out = np.empty((1 + hysteron_count, *x.shape[1:]))
+    out[0 : hysteron_count] = V_hysteron*i_hysteron
+    out[hysteron_count] = F_damper*v_mass
+    return out
+
+
+def entropy_production(x, u, p_, /):
+    """Entropy that each process produces [W/K], a bank's a row a lane; shape (1 + hysteron_count, *batch)."""
+    x = np.asarray(x, dtype=float)
+    hysteron_count = p_.hysteron_count
+    M = p_.M
+    d = p_.d
+    L = _lanes(p_.L, hysteron_count, x.ndim)
+    rho = _lanes(p_.rho, hysteron_count, x.ndim)
+    i_0 = _lanes(p_.i_0, hysteron_count, x.ndim)
+    T_0 = p_.T_0
+    c_0 = p_.c_0
+    p = x[1]
+    phi = x[3 : 3 + hysteron_count]
+    S = x[3 + hysteron_count]
+    # co-states dU/dx
+    v_mass = p/M
+    i_hysteron = phi/L
+    T_minus_T_0 = T_0*np.expm1(S/c_0)
+    T = T_0 + T_minus_T_0
+    # dissipative laws
+    V_hysteron = rho/T_minus_T_0*(i_hysteron - np.clip(i_hysteron, -i_0, i_0))
+    F_damper = d*v_mass
+    # rows
+    out = np.empty((1 + hysteron_count, *x.shape[1:]))
+    out[0 : hysteron_count] = V_hysteron*i_hysteron/T
+    out[hysteron_count] = F_damper*v_mass/T
+    return out
+
+
+def jacobian(x, u, p_, /):
+    """Derivative of rhs by the state; shape (n, n, *batch)."""
+    x = np.asarray(x, dtype=float)
+    u = np.asarray(u, dtype=float)
+    hysteron_count = p_.hysteron_count
+    M = p_.M
+    k = p_.k
+    d = p_.d
+    C = p_.C
+    L = _lanes(p_.L, hysteron_count, x.ndim)
+    rho = _lanes(p_.rho, hysteron_count, x.ndim)
+    i_0 = _lanes(p_.i_0, hysteron_count, x.ndim)
+    a = p_.a
+    T_0 = p_.T_0
+    c_0 = p_.c_0
+    lam = p_.lam
+    p = x[1]
+    Q_C = x[2]
+    phi = x[3 : 3 + hysteron_count]
+    S = x[3 + hysteron_count]
+    T_e = u[2]
+    # co-states dU/dx
+    v_mass = p/M
+    V_capacitor = Q_C/C
+    i_hysteron = phi/L
+    T_minus_T_0 = T_0*np.expm1(S/c_0)
+    T = T_0 + T_minus_T_0
+    # transducer ratios
+    alpha_transducer = a*T/T_0
+    # dissipative laws
+    V_hysteron = rho/T_minus_T_0*(i_hysteron - np.clip(i_hysteron, -i_0, i_0))
+    F_damper = d*v_mass
+    # sums over lanes
+    heat_hysteron = np.sum(V_hysteron*i_hysteron, axis=0)
+    # heats
+    heat_damper = F_damper*v_mass
+    # derivatives
+    dF_damper_dp = d/M
+    dheat_damper_dp = v_mass*dF_damper_dp + F_damper/M
+    dV_hysteron_dphi = np.where(np.abs(i_hysteron) > i_0, rho/T_minus_T_0, 0)/L
+    dheat_hysteron_dphi = i_hysteron*dV_hysteron_dphi + V_hysteron/L
+    dT_minus_T_0_dS = T/c_0
+    dalpha_transducer_dS = a/T_0*dT_minus_T_0_dS
+    dV_hysteron_dS = -rho/T_minus_T_0**2*(i_hysteron - np.clip(i_hysteron, -i_0, i_0))*dT_minus_T_0_dS
+    # sums over lanes
+    dheat_hysteron_dS = np.sum(i_hysteron*dV_hysteron_dS, axis=0)
+    # rows
+    out = np.zeros((x.shape[0], *x.shape))
+    out[0, 1] = 1/M
+    out[1, 0] = -k
+    out[1, 1] = -dF_damper_dp
+    out[1, 2] = alpha_transducer/C
+    out[1, 3 + hysteron_count] = V_capacitor*dalpha_transducer_dS
+    out[2, 1] = -alpha_transducer/M
+    out[2, 3 : 3 + hysteron_count] = 1/L
+    out[2, 3 + hysteron_count] = -v_mass*dalpha_transducer_dS
+    out[3 : 3 + hysteron_count, 2] = -1/C
+    lanes = np.arange(3, 3 + hysteron_count)
+    out[lanes, lanes] = -dV_hysteron_dphi
+    out[3 : 3 + hysteron_count, 3 + hysteron_count] = -dV_hysteron_dS
+    out[3 + hysteron_count, 1] = dheat_damper_dp/T
+    out[3 + hysteron_count, 3 : 3 + hysteron_count] = dheat_hysteron_dphi/T
+    out[3 + hysteron_count, 3 + hysteron_count] = (
+        dheat_hysteron_dS/T
+        + (-(heat_hysteron + heat_damper)/T**2 - lam*T_e/T**2)*dT_minus_T_0_dS
+    )
+    return out
+
+
+def margins(x, u, p_, /):
+    """Margin of each condition of DOMAIN, least over lanes; shape (len(DOMAIN), *batch)."""
+    x = np.asarray(x, dtype=float)
+    u = np.asarray(u, dtype=float)
+    hysteron_count = p_.hysteron_count
+    M = p_.M
+    k = p_.k
+    d = p_.d
+    C = p_.C
+    L = _lanes(p_.L, hysteron_count, x.ndim)
+    rho = _lanes(p_.rho, hysteron_count, x.ndim)
+    i_0 = _lanes(p_.i_0, hysteron_count, x.ndim)
+    T_0 = p_.T_0
+    c_0 = p_.c_0
+    lam = p_.lam
+    S = x[3 + hysteron_count]
+    T_e = u[2]
+    # co-states dU/dx
+    T_minus_T_0 = T_0*np.expm1(S/c_0)
+    # rows
+    out = np.empty((12, *x.shape[1:]))
+    out[0] = T_minus_T_0
+    out[1] = T_e - T_0
+    out[2] = d
+    out[3] = np.min(rho)
+    out[4] = np.min(i_0)
+    out[5] = lam
+    out[6] = k
+    out[7] = M
+    out[8] = C
+    out[9] = np.min(L)
+    out[10] = T_0
+    out[11] = c_0
+    return out

@@ -1,0 +1,155 @@
+"""Model to generated files: render, write, and compare.
+
+Input: a `Model`.  Output: the files of its generated module, or a list of what has drifted.
+``generate --check`` and its test share `drift`.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import final
+
+from piezo_sym.codegen import lower, numpy_module
+from piezo_sym.derive import derive
+from piezo_sym.errors import DriftError, quote
+from piezo_sym.files import read_text, write_text
+from piezo_sym.proofs import Report, Verdict, verify
+from piezo_sym.spec.load import load
+from piezo_sym.spec.model import Model
+from piezo_sym.spec.source import shipped
+
+#: What a generated file says of itself; only such files are ever called stale.
+MARK = "Made by piezo_sym's generator"
+
+
+@final
+@dataclass(frozen=True)
+class Drift:
+    """A generated file that is not what its spec gives: missing, changed, or left over."""
+
+    path: Path
+    fault: str
+    diff: str = ""
+
+
+def shipped_models() -> tuple[Model, ...]:
+    """Return the models of all shipped specs."""
+    return tuple(load(name) for name in shipped())
+
+
+def render(model: Model, *, allow_unproved: bool = False) -> dict[str, str]:
+    """Return the text of each generated file of a model, by its path below the output folder.
+
+    Raises
+    ------
+    ProofError
+        If a required property is refuted or open, unless `allow_unproved`.
+    NetworkError, SpecError
+        If the model cannot be derived.
+    """
+    iphs = derive(model)
+    report = verify(iphs)
+    if not allow_unproved:
+        report.raise_if_not_proved()
+    return {f"{model.name}/{model.name}.py": numpy_module(lower(iphs, verdict_line(report)))}
+
+
+def verdict_line(report: Report) -> str:
+    """Return the verdict on a model in one line, for the head of its files."""
+    failed = [f"{row.id} {row.verdict.value}" for row in report.failures]
+    if failed:
+        return f"NOT PROVED ({', '.join(failed)})"
+    proved = dict.fromkeys(row.id for row in report.rows if row.verdict is Verdict.PROVED)
+    return f"{', '.join(proved)} PROVED"
+
+
+def generate(
+    model: Model, out: str | Path = "generated", *, allow_unproved: bool = False
+) -> tuple[Path, ...]:
+    """Write a model's generated files, and return their paths.
+
+    Parameters
+    ----------
+    model : from `load`, or made in Python.
+    out : folder; the files go to ``<out>/<model>/``.
+    allow_unproved : write even if a required property is not proved; the files then say so.
+
+    Raises
+    ------
+    ProofError
+        If a required property is refuted or open; nothing is written then.
+    FileError
+        If a file cannot be written.
+    """
+    files = render(model, allow_unproved=allow_unproved)
+    for name, text in files.items():
+        write_text(Path(out) / name, text)
+    return tuple(Path(out) / name for name in files)
+
+
+def drift(
+    models: Iterable[Model],
+    out: str | Path = "generated",
+    *,
+    complete: bool = False,
+    allow_unproved: bool = False,
+) -> tuple[Drift, ...]:
+    """Return the generated files that are not what the models give.
+
+    Parameters
+    ----------
+    models : the models whose files to compare.
+    out : the folder with the generated files.
+    complete : whether files of any other model in `out` are left over, too.
+    allow_unproved : as for `generate`.
+    """
+    expected: dict[Path, str] = {}
+    for model in models:
+        for name, text in render(model, allow_unproved=allow_unproved).items():
+            expected[Path(out) / name] = text
+    found = [fault for path, text in expected.items() for fault in _compare(path, text)]
+    folders = [Path(out)] if complete else sorted({path.parent for path in expected})
+    return tuple([*found, *_left_over(folders, expected)])
+
+
+def _compare(path: Path, text: str) -> Iterator[Drift]:
+    present = read_text(path)
+    if present is None:
+        yield Drift(path, "is missing")
+    elif present != text:
+        lines = present.splitlines(), text.splitlines()
+        diff = difflib.unified_diff(*lines, f"{path} (present)", f"{path} (from the spec)", n=2)
+        yield Drift(path, "differs from its spec", "\n".join(line.rstrip("\n") for line in diff))
+
+
+def _left_over(folders: Iterable[Path], expected: dict[Path, str]) -> Iterator[Drift]:
+    for folder in folders:
+        for path in sorted(folder.rglob("*")):
+            if path in expected or not path.is_file() or "__pycache__" in path.parts:
+                continue
+            if MARK in _start(path):
+                yield Drift(path, "belongs to no spec given")
+
+
+def _start(path: Path) -> str:
+    with path.open("rb") as file:
+        return file.read(4000).decode("utf-8", errors="replace")
+
+
+def raise_if_drifted(found: Iterable[Drift], command: str) -> None:
+    """Raise on the first drifted file; `command` is what brings the files up to date.
+
+    Raises
+    ------
+    DriftError
+        Naming the file and the remedy.
+    """
+    faults = list(found)
+    if faults:
+        more = f" (and {len(faults) - 1} more files)" if len(faults) > 1 else ""
+        left = faults[0].fault.startswith("belongs")
+        remedy = "delete it" if left else f"run `{command}` and commit the result"
+        raise DriftError(f"{faults[0].fault}{more}", quote(str(faults[0].path)), remedy=remedy)

@@ -1,0 +1,59 @@
+"""Files in and out: replaced atomically, never half-written.
+
+Input: a path and its text.  Output: the file, or one `FileError`.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from contextlib import suppress
+from pathlib import Path
+
+from piezo_sym.errors import FileError, quote
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file in one step: readers see the old one or the new one.
+
+    Raises
+    ------
+    FileError
+        If the folder or the file cannot be written.
+    """
+    data = text.encode("utf-8")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+    except OSError as error:
+        raise _cannot("written", path, error) from error
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+        Path(name).chmod(0o644)
+        Path(name).replace(path)
+    except OSError as error:
+        with suppress(OSError):
+            Path(name).unlink()
+        raise _cannot("written", path, error) from error
+
+
+def read_text(path: Path) -> str | None:
+    """Return a text file's content, or None if there is no such file.
+
+    Raises
+    ------
+    FileError
+        If it is there and cannot be read.
+    """
+    try:
+        return path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        return None
+    except (OSError, UnicodeDecodeError) as error:
+        raise _cannot("read", path, error) from error
+
+
+def _cannot(done: str, path: Path, error: Exception) -> FileError:
+    reason = getattr(error, "strerror", None) or "not text"
+    return FileError(f"cannot be {done} ({reason})", quote(str(path)), remedy="check the path")

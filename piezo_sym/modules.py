@@ -1,0 +1,139 @@
+"""Spec to a loaded module: from ``generated/``, from the installed package, or from the cache.
+
+Input: a shipped name, a path, or a `Model`.  Output: its generated module, loaded.  A module found for
+a name or path must be of that very spec; if not, the command that regenerates it is named.  What is
+not found is generated into the user's cache, keyed by spec and generator.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+from piezo_sym import __version__
+from piezo_sym.errors import DriftError, FileError, quote
+from piezo_sym.files import read_text, write_text
+from piezo_sym.spec.source import data, find, read, shipped
+from piezo_sym.spec.write import spec_hash
+
+if TYPE_CHECKING:
+    from piezo_sym.spec.model import Model
+
+PACKAGE = Path(__file__).parent
+
+
+def module_of(spec: str | Path | Model) -> ModuleType:
+    """Return the generated module of a spec.
+
+    Parameters
+    ----------
+    spec : the name of a shipped spec, the path of a spec file, or a `Model`.
+
+    Raises
+    ------
+    DriftError
+        If ``generated/`` holds a module of another version of a named spec.
+    FileError, SpecError, NetworkError, ProofError
+        If the spec cannot be read, derived or proved.
+    """
+    if not isinstance(spec, str | Path):
+        ready = _ready(spec.name, spec.sha256)
+        return ready if ready else _cached(spec)
+    path = find(spec)
+    content = data(read(path))
+    header = content.get("model")
+    name = header.get("name") if isinstance(header, dict) else None
+    if isinstance(name, str) and name.isidentifier():
+        module = next(_present(name), None)
+        if module is not None and _is_of(module, path, content):
+            return module
+        if module is not None:
+            again = str(spec) if str(spec) in shipped() else str(path)
+            remedy = f"run `piezo-sym generate {again}`"
+            what = "was generated from another version of its spec"
+            raise DriftError(what, quote(str(module.__file__)), remedy=remedy)
+    from piezo_sym.spec.load import load
+
+    return _cached(load(spec))
+
+
+def _is_of(module: ModuleType, path: Path, content: dict[str, object]) -> bool:
+    """Return whether a module is of a spec; the spec's types are loaded only in doubt."""
+    if spec_hash_of(content) == module.SPEC_SHA256:
+        return True
+    from piezo_sym.spec.load import load
+
+    return bool(load(path).sha256 == module.SPEC_SHA256)
+
+
+def spec_hash_of(content: dict[str, object]) -> str:
+    """Return the hash of plain spec data, or nothing if it is not even of a spec's shape."""
+    tables = all(isinstance(table, dict) for table in content.values())
+    return spec_hash(content) if tables else ""  # type: ignore[arg-type]
+
+
+def _places(name: str) -> Iterator[Path]:
+    """Yield where a generated module may be: the working folder, a checkout, the package."""
+    for folder in (Path("generated"), PACKAGE.parent / "generated", PACKAGE / "generated"):
+        yield folder / name / f"{name}.py"
+
+
+def _present(name: str) -> Iterator[ModuleType]:
+    for path in _places(name):
+        if path.is_file():
+            yield load_module(path)
+
+
+def _ready(name: str, sha256: str) -> ModuleType | None:
+    """Return a present module of exactly this spec."""
+    return next((m for m in _present(name) if sha256 == m.SPEC_SHA256), None)
+
+
+def _cached(model: Model) -> ModuleType:
+    """Return the module from the user's cache, generating it if it is not there."""
+    import platformdirs
+
+    folder = Path(platformdirs.user_cache_dir("piezo_sym")) / "modules"
+    path = folder / f"{model.sha256}-{__version__}" / f"{model.name}.py"
+    if read_text(path) is None:
+        from piezo_sym.build import render
+
+        text = next(iter(render(model).values()))
+        try:
+            write_text(path, text)
+        except FileError:  # a read-only cache: the module lives as long as the process
+            path = Path(tempfile.mkdtemp(prefix="piezo_sym-")) / f"{model.name}.py"
+            write_text(path, text)
+    return load_module(path)
+
+
+def load_module(path: Path) -> ModuleType:
+    """Return the module in a file, loaded anew.
+
+    Raises
+    ------
+    FileError
+        If the file is no generated module.
+    """
+    name = f"piezo_sym_generated_{path.stem}"
+    spec = importlib.util.spec_from_file_location(name, path)
+    if spec is None or spec.loader is None:
+        raise FileError("is no Python module", quote(str(path)))
+    module = importlib.util.module_from_spec(spec)
+    before = sys.dont_write_bytecode
+    sys.dont_write_bytecode = True  # a generated folder holds nothing but what is committed
+    try:
+        spec.loader.exec_module(module)
+    except (SyntaxError, ImportError, NameError) as error:
+        remedy = "regenerate it with `piezo-sym generate`"
+        raise FileError("cannot be loaded", quote(str(path)), remedy=remedy) from error
+    finally:
+        sys.dont_write_bytecode = before
+    if not hasattr(module, "SPEC_SHA256"):
+        raise FileError("is no generated module", quote(str(path)), remedy="move it elsewhere")
+    return module

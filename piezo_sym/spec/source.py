@@ -1,0 +1,97 @@
+"""Spec files as text and plain data, before any type: found, read, checked for size and nesting.
+
+Input: a path, or the name of a shipped spec.  Output: text, or the data TOML gives.  Nothing here needs
+the spec's types, so that a run can compare a module with its spec at little cost.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from piezo_sym.errors import FileError, SpecError, nearest, quote
+from piezo_sym.spec.names import NAME
+
+MAX_BYTES = 500_000
+MAX_NESTING = 20
+MAX_DOTS = 80
+MODELS = Path(__file__).parent.parent / "models"
+
+
+def shipped() -> tuple[str, ...]:
+    """Return the names of the shipped specs."""
+    return tuple(sorted(path.stem for path in MODELS.glob("*.toml")))
+
+
+def find(spec: str | Path) -> Path:
+    """Return the file of a spec given by path or shipped name.
+
+    Raises
+    ------
+    FileError
+        If a bare name is neither shipped nor a file.
+    """
+    text = str(spec)
+    if text in shipped():
+        return MODELS / f"{text}.toml"
+    path = Path(spec)
+    if path.suffix != ".toml" and NAME.fullmatch(text) and not path.exists():
+        remedy = f"{nearest(text, shipped())}; or give the path of a .toml file"
+        raise FileError(f"no shipped spec is called {quote(text)}", remedy=remedy)
+    return path
+
+
+def read(path: Path) -> str:
+    """Return the text of a spec file.
+
+    Raises
+    ------
+    FileError
+        If it cannot be read, is too large, or is not UTF-8.
+    """
+    where = quote(str(path))
+    try:
+        with path.open("rb") as file:
+            raw = file.read(MAX_BYTES + 1)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or "not a path"
+        raise FileError(f"cannot be read ({reason})", where, remedy="check the path") from error
+    if len(raw) > MAX_BYTES:
+        remedy = "a bank needs one element, not one a lane"
+        raise FileError("is too large", where, f"at most {MAX_BYTES} bytes", remedy)
+    try:
+        return raw.decode("utf-8")
+    except UnicodeDecodeError as error:
+        what = f"is not UTF-8 (byte {error.start})"
+        raise FileError(what, where, remedy="save it as UTF-8") from error
+
+
+def data(text: str) -> dict[str, Any]:
+    """Return the TOML data of a spec's text.
+
+    Raises
+    ------
+    SpecError
+        If the text is not TOML, or nested beyond what a spec needs.
+    """
+    if len(text) > MAX_BYTES:
+        raise SpecError("is too large", "", f"at most {MAX_BYTES} characters")
+    _check_nesting(text)
+    try:
+        return tomllib.loads(text)
+    except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
+        what = f"is not TOML: {str(error)[:200]}"
+        raise SpecError(what, remedy="mend the syntax there") from None
+
+
+def _check_nesting(text: str) -> None:
+    """Refuse deep nesting before a recursive parser meets it; brackets in strings count too."""
+    depth = 0
+    for line in text.splitlines():
+        if line.split("=")[0].count(".") > MAX_DOTS:
+            raise SpecError("has a key of too many parts", "", f"at most {MAX_DOTS}")
+        for c in line:
+            depth += (c in "[{") - (c in "]}")
+            if depth > MAX_NESTING:
+                raise SpecError("is nested too deeply", "", f"at most {MAX_NESTING} levels")
