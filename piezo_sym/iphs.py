@@ -16,8 +16,9 @@ import sympy as sp
 
 from piezo_sym.errors import SpecError
 from piezo_sym.lanes import LaneMatrix, vector
-from piezo_sym.latex import Reading, equations_latex
 from piezo_sym.network import Junction, junction_of, port_order
+from piezo_sym.notation import text
+from piezo_sym.reading import Reading, document, equations_latex
 from piezo_sym.spec.calculus import antiderivative
 from piezo_sym.spec.circuit import Circuit, Placed, circuit_of
 from piezo_sym.spec.elements.ports import Body, Exchange, Gyrator, Resistor, Source, Storage
@@ -95,11 +96,16 @@ class IPHS:
     @cached_property
     def U(self) -> sp.Expr:  # noqa: N802
         """Hamiltonian: the stored energy [J], eq. (6)."""
-        lanes, total = self.system.E.lanes, sp.S.Zero
+        return sp.Add(*self._stored)
+
+    @cached_property
+    def _stored(self) -> tuple[sp.Expr, ...]:
+        """The energy of each state, a bank's summed over its lanes."""
+        sums, terms = self.system.E.lanes.sum, []
         for slot, energy in zip(self.system.states, self.energies, strict=True):
             term = self.symbols.law(energy, {})
-            total += lanes.sum(term, slot.bank) if slot.bank else term
-        return total
+            terms.append(sums(term, slot.bank) if slot.bank else term)
+        return tuple(terms)
 
     @cached_property
     def S(self) -> sp.Expr:  # noqa: N802
@@ -200,7 +206,19 @@ class IPHS:
         hidden = {self.symbols[port.temperature] for _, port in self.circuit.of(Body)}
         shown = tuple((s, e) for s, e in self.costates if s not in hidden)
         heat = tuple((s, e) for s, e in self.costates if s in hidden)
-        return Reading(self.system, self.U, shown, (*self.laws, *self.ratios, *heat))
+        named = (*self.laws, *self.ratios, *heat)
+        return Reading(self.system, self._stored, shown, named, self._spelled(dict(shown)))
+
+    def _spelled(self, shown: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, str]:
+        """Return each dissipative law as the spec spells it, and what its letter is."""
+        return {
+            self.symbols[port.output]: f"{spell(port.law)}, {port.letter} = {text(z.xreplace(shown))}"
+            for (_, port), z in zip(self.circuit.of(Resistor), self.system.z, strict=True)
+        }
+
+    def latex(self) -> str:
+        """Return LaTeX of x, S, co-states, J0, every J_k, bracket, R_k, gamma_k, J_ir, g, u, y, rates."""
+        return document(self.reading)
 
 
 def iphs_of(circuit: Circuit, symbols: SymbolTable, junction: Junction) -> IPHS:

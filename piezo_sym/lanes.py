@@ -18,7 +18,8 @@ import sympy as sp
 from sympy.core.symbol import Str
 from sympy.printing.precedence import PRECEDENCE
 
-Entries = Mapping[tuple[int, int], sp.Expr]
+from piezo_sym.notation import Entries, matrix_latex, matrix_text
+
 
 
 class LaneSum(sp.Expr):  # type: ignore[misc]
@@ -114,7 +115,7 @@ ONE_SLOT = (Slot(""),)
 
 
 @final
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class LaneMatrix:
     """A matrix whose rows and columns may run over banks of any size.
 
@@ -186,6 +187,15 @@ class LaneMatrix:
         """Yield ((row, column), full, own) of every entry that is not zero, in order."""
         for place in sorted({**self.full, **self.own}):
             yield place, self.full.get(place, sp.S.Zero), self.own.get(place, sp.S.Zero)
+
+    def __str__(self) -> str:
+        """Return the matrix as an aligned grid with its labels."""
+        return matrix_text(self.rows, self.cols, self.full, self.own)
+
+    __repr__ = __str__
+
+    def _repr_latex_(self) -> str:
+        return f"$\\displaystyle {matrix_latex(self.rows, self.cols, self.full, self.own)}$"
 
     @property
     def is_zero(self) -> bool:

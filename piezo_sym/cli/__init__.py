@@ -1,0 +1,67 @@
+"""The command ``piezo-sym``: one file a command, one line an error.
+
+Input: the words of a command line.  Output: text, files, and an exit code: 0 good, 1 a required
+property is not proved or a file drifted, 2 the spec or the command is wrong.
+"""
+
+from __future__ import annotations
+
+import sys
+
+import typer
+
+from piezo_sym.cli.generate import generate
+from piezo_sym.cli.reproduce import reproduce
+from piezo_sym.cli.show import show
+from piezo_sym.cli.simulate import simulate
+from piezo_sym.cli.verify import verify
+from piezo_sym.errors import PiezoError, one_line
+
+#: What typer raises for a wrong command line, in every version of it.
+CommandError = typer.BadParameter.__mro__[2]
+
+app = typer.Typer(
+    name="piezo-sym",
+    help="Physical elements to a proved irreversible port-Hamiltonian system and fast modules.",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+)
+for command in (verify, generate, show, simulate, reproduce):
+    app.command()(command)
+
+
+@app.callback()
+def _options(
+    version: bool = typer.Option(False, "--version", help="Print the version and stop."),
+) -> None:
+    if version:
+        from piezo_sym import __version__
+
+        typer.echo(__version__)
+        raise typer.Exit
+
+
+def main() -> None:
+    """Run the command line, and leave with its exit code."""
+    sys.exit(run(sys.argv[1:]))
+
+
+def run(words: list[str]) -> int:
+    """Run a command line, and return its exit code; an error is one line on stderr."""
+    try:
+        code = app(args=words, prog_name="piezo-sym", standalone_mode=False)
+    except PiezoError as error:
+        return _failed(str(error), error.exit_code)
+    except CommandError as error:
+        message = one_line(error.format_message())  # type: ignore[attr-defined]
+        return _failed(f"{message}; see `piezo-sym --help`", 2)
+    except (KeyboardInterrupt, typer.Abort):
+        return _failed("stopped", 130)
+    return code if isinstance(code, int) else 0
+
+
+def _failed(message: str, code: int) -> int:
+    typer.echo(f"piezo-sym: {message}", err=True)
+    return code

@@ -1,0 +1,112 @@
+"""Expressions and matrices as LaTeX and as plain text, in the paper's notation.
+
+Input: SymPy expressions, slots and entries.  Output: text.  Terms of a sum stand in the order in which
+they are given, not in SymPy's; a bank's row or column stands for j = 1..r.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Protocol
+
+import sympy as sp
+
+#: Letters that are spelled in ASCII because the Greek word is a keyword.
+SPELLINGS = {"lam": r"\lambda"}
+Entries = Mapping[tuple[int, int], sp.Expr]
+
+
+class Label(Protocol):
+    """A row or column: its label, and its bank if it stands for one a lane."""
+
+    @property
+    def label(self) -> str:
+        """The name."""
+
+    @property
+    def bank(self) -> str | None:
+        """The bank."""
+
+
+def latex(expr: sp.Expr) -> str:
+    """Return one expression as LaTeX."""
+    names = {s: symbol_latex(s.name) for s in expr.free_symbols}
+    return str(sp.latex(expr, symbol_names=names))
+
+
+def text(expr: sp.Expr) -> str:
+    """Return one expression as plain text."""
+    return str(sp.sstr(expr, order="none"))
+
+
+def symbol_latex(name: str) -> str:
+    """Return a name as LaTeX: ``phi_j`` with its index, ``V_hysteron_j`` with two."""
+    head, *rest = name.rstrip("_").split("_")
+    letter = SPELLINGS.get(head) or (head if len(head) == 1 else sp.latex(sp.Symbol(head)))
+    if letter == head and len(head) > 1:
+        letter = rf"\mathrm{{{head}}}"
+    if not rest:
+        return letter
+    labels = [part if len(part) == 1 or part.isdigit() else rf"\mathrm{{{part}}}" for part in rest]
+    return f"{letter}_{{{','.join(labels)}}}"
+
+
+def joined(pieces: Iterable[str]) -> str:
+    """Return printed terms joined by their signs, in the order given."""
+    total = ""
+    for piece in pieces:
+        negative = piece.startswith("-")
+        sign = "- " if negative and total else "-" if negative else "+ " if total else ""
+        total += f"{' ' if total else ''}{sign}{piece[1:].strip() if negative else piece}"
+    return total or "0"
+
+
+def slot_text(slot: Label) -> str:
+    """Return a slot's label, ``phi_j`` for a bank's."""
+    return f"{slot.label}_j" if slot.bank else slot.label
+
+
+def matrix_latex(
+    rows: Sequence[Label], cols: Sequence[Label], full: Entries, own: Entries
+) -> str:
+    """Return a matrix as LaTeX; a bank's rows and columns stand for lane j, with dots around."""
+    lines = []
+    for r, row in enumerate(rows):
+        cells = [_latex_cell(full.get((r, c), sp.S.Zero), own.get((r, c))) for c in range(len(cols))]
+        line = " & ".join(_dotted(cols, cells, r"\cdots"))
+        dots = " & ".join(_dotted(cols, [r"\vdots"] * len(cols), ""))
+        lines += [dots, line, dots] if row.bank else [line]
+    return "\\begin{bmatrix} " + " \\\\ ".join(lines) + " \\end{bmatrix}"
+
+
+def _dotted(cols: Sequence[Label], cells: Sequence[str], dots: str) -> list[str]:
+    """Return the cells of a line, those of a bank's column with dots on both sides."""
+    parts = [(dots, cell, dots) if col.bank else (cell,) for col, cell in zip(cols, cells, strict=True)]
+    return [piece for part in parts for piece in part]
+
+
+def _latex_cell(full: sp.Expr, own: sp.Expr | None) -> str:
+    if own is None or own == 0:
+        return latex(full)
+    factor = {1: "", -1: "-"}.get(own, rf"{latex(own)}\,")
+    same = rf"{factor}\delta_{{jk}}"
+    return same if full == 0 else joined((latex(full), same))
+
+
+def matrix_text(rows: Sequence[Label], cols: Sequence[Label], full: Entries, own: Entries) -> str:
+    """Return a matrix as an aligned grid with its labels; ``[j=k]`` marks an entry of equal lanes."""
+    grid = [["", *(slot_text(col) or "." for col in cols)]]
+    for r, row in enumerate(rows):
+        cells = [_text_cell(full.get((r, c), sp.S.Zero), own.get((r, c))) for c in range(len(cols))]
+        grid.append([slot_text(row), *cells])
+    widths = [max(len(line[n]) for line in grid) for n in range(len(grid[0]))]
+    return "\n".join(
+        "  ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=True)).rstrip()
+        for line in grid
+    )
+
+
+def _text_cell(full: sp.Expr, own: sp.Expr | None) -> str:
+    if own is None or own == 0:
+        return text(full)
+    return f"{text(own)}[j=k]" if full == 0 else f"{text(full)} + {text(own)}[j=k]"

@@ -1,0 +1,165 @@
+"""A system as it is read: rows and laws term by term, in LaTeX or plain text.
+
+Input: a `System`, and which of its names are written out (velocities as p/M) and which are explained
+below the equations (laws, ratios, temperatures).  Output: text, one equation a line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import final
+
+import sympy as sp
+
+from piezo_sym.lanes import LaneMatrix
+from piezo_sym.notation import joined, latex, matrix_latex, slot_text, symbol_latex, text
+from piezo_sym.system import System
+
+Pairs = tuple[tuple[sp.Symbol, sp.Expr], ...]
+Print = Callable[[sp.Expr], str]
+
+
+@final
+@dataclass(frozen=True)
+class Reading:
+    """How a system is read.
+
+    Attributes
+    ----------
+    system : in named co-states.
+    energies : the terms of the Hamiltonian, as functions of the state, in state order.
+    written : names replaced by what they stand for, such as p/M for the velocity.
+    named : names kept, and explained after the equations.
+    spelled : what a law's name stands for, in the words of the spec, for plain text.
+    """
+
+    system: System
+    energies: tuple[sp.Expr, ...]
+    written: Pairs
+    named: Pairs
+    spelled: Mapping[sp.Symbol, str]
+
+    def write(self, expr: sp.Expr) -> sp.Expr:
+        """Return `expr` with the written-out names replaced."""
+        return expr.xreplace(dict(self.written))
+
+    def rates(self, row: int) -> list[sp.Expr]:
+        """Return the terms of one rate: structure, then processes, then inputs."""
+        system = self.system
+        terms = [
+            *_terms(system.J0, system.E, row),
+            *_terms(-system.B, system.W, row),
+            *(self._heat(k) for k, entropy in enumerate(system.heats) if entropy == row),
+            *_terms(system.G, system.u, row),
+        ]
+        return [self.write(term) for term in terms]
+
+    def outputs(self, port: int) -> list[sp.Expr]:
+        """Return the terms of one output."""
+        system = self.system
+        terms = [
+            *_terms(system.G.T, system.E, port),
+            *_terms(system.D, system.W, port),
+            *_terms(system.N, system.u, port),
+        ]
+        return [self.write(term) for term in terms]
+
+    def productions(self) -> list[sp.Expr]:
+        """Return the terms of the internal entropy production, one a process."""
+        return [self.write(self._heat(k)) for k in range(len(self.system.processes))]
+
+    def gamma(self, k: int) -> sp.Expr:
+        """Return gamma_k = W_k/(T z_k), the law written out where it has no branches."""
+        law = {s: e for s, e in self.named if not e.has(sp.Piecewise)}
+        gamma = self.system.R[k, 0].xreplace(law) / self.system.z[k, 0]
+        hot = {s: e for s, e in self.written if s not in law}
+        return gamma.xreplace(hot)
+
+    def _heat(self, k: int) -> sp.Expr:
+        production = self.system.R[k, 0] * self.system.z[k, 0]
+        bank = self.system.processes[k].bank
+        return self.system.E.lanes.sum(production, bank) if bank else production
+
+
+def _terms(block: LaneMatrix, given: LaneMatrix, row: int) -> Iterator[sp.Expr]:
+    """Yield the terms of ``(block @ given)[row]``, products kept as they are."""
+    for (r, c), full, own in block.entries():
+        if r == row:
+            value, bank = given[c, 0], block.cols[c].bank
+            if full != 0:
+                yield block.lanes.sum(full * value, bank) if bank else full * value
+            if own != 0:
+                yield own * value
+
+
+def equations(reading: Reading, write: Print, name: Callable[[str], str], dot: str) -> list[tuple[str, str]]:
+    """Return (left side, right side) of every equation: U, rates, outputs, sigma, names."""
+    system = reading.system
+
+    def total(terms: list[sp.Expr]) -> str:
+        return joined(write(term) for term in terms)
+
+    found = [("U", total(list(reading.energies)))]
+    for n, slot in enumerate(system.states):
+        found.append((dot.format(name(slot_text(slot))), total(reading.rates(n))))
+    for n, slot in enumerate(system.ports):
+        found.append((name(f"y_{slot.label}"), total(reading.outputs(n))))
+    found.append((name("sigma"), total(reading.productions())))
+    return found
+
+
+def equations_latex(reading: Reading) -> str:
+    """Return the whole system as one aligned block of LaTeX."""
+    pairs = equations(reading, latex, symbol_latex, r"\dot{{{}}}")
+    pairs += [(latex(symbol), latex(reading.write(expr))) for symbol, expr in reading.named]
+    lines = " \\\\\n".join(f"{left} &= {right}" for left, right in pairs)
+    return f"\\begin{{aligned}}\n{lines}\n\\end{{aligned}}"
+
+
+def equations_text(reading: Reading) -> list[tuple[str, str]]:
+    """Return every equation as plain text, (left side, right side)."""
+    pairs = equations(reading, text, str, "d{}/dt")
+    for symbol, expr in reading.named:
+        pairs.append((text(symbol), reading.spelled.get(symbol) or text(reading.write(expr))))
+    return pairs
+
+
+def document(reading: Reading) -> str:
+    """Return LaTeX of everything Definition 1 speaks of, one display a thing."""
+    system = reading.system
+
+    def vector(matrix: LaneMatrix) -> str:
+        shown = matrix.map(reading.write)
+        return matrix_latex(shown.rows, shown.cols, shown.full, shown.own)
+
+    displays = [
+        f"x = {_slots(system)}",
+        f"S = {joined(symbol_latex(s.label) for s, one in zip(system.states, system.dS, strict=True) if one != 0)}",
+        rf"\frac{{\partial U}}{{\partial x}} = {vector(system.E)}",
+        f"J_0 = {vector(system.J0)}",
+        *(line for k in range(len(system.processes)) for line in _process(reading, k, vector)),
+        rf"J_{{ir}} = J_0 + \sum_k R_k J_k = {vector(system.J_ir)}",
+        f"g = {vector(system.g)}",
+        f"u = {vector(system.u)}",
+        f"y = g^T \\frac{{\\partial U}}{{\\partial x}} = {vector(system.y)}",
+        f"y_s = g^T \\frac{{\\partial S}}{{\\partial x}} = {vector(system.y_s)}",
+        equations_latex(reading),
+    ]
+    return "\n\n".join(f"\\[\n{display}\n\\]" for display in displays)
+
+
+def _slots(system: System) -> str:
+    names = [symbol_latex(slot_text(slot)) for slot in system.states]
+    return rf"\left({', '.join(names)}\right)^T"
+
+
+def _process(reading: Reading, k: int, vector: Callable[[LaneMatrix], str]) -> Iterator[str]:
+    system = reading.system
+    slot = system.processes[k]
+    index = symbol_latex(f"J_{slot_text(slot)}").removeprefix("J")
+    bracket = reading.write(system.bracket[k, 0])
+    yield f"J{index} = {vector(system.J(k))}"
+    yield rf"\{{S, U\}}_{{J{index}}} = {latex(bracket)}"
+    yield rf"R{index} = {latex(reading.write(system.R[k, 0]))}"
+    yield rf"\gamma{index} = {latex(reading.gamma(k))}"
