@@ -20,18 +20,10 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from piezo_sym.api import simulate
     from piezo_sym.build import generate
-    from piezo_sym.derive import derive
+    from piezo_sym.derivation import derive
     from piezo_sym.errors import PiezoError
     from piezo_sym.proofs import verify
-    from piezo_sym.run.signals import (
-        chirp,
-        ramp,
-        samples,
-        samples_from_csv,
-        sine,
-        step,
-        triangle,
-    )
+    from piezo_sym.run import chirp, ramp, samples, samples_from_csv, sine, step, triangle
     from piezo_sym.spec.load import load
     from piezo_sym.spec.model import Model
 
@@ -40,17 +32,17 @@ __version__ = "0.1.0"
 _HOME = {
     "Model": "spec.model",
     "PiezoError": "errors",
-    "chirp": "run.signals",
-    "derive": "derive",
+    "chirp": "run",
+    "derive": "derivation",
     "generate": "build",
     "load": "spec.load",
-    "ramp": "run.signals",
-    "samples": "run.signals",
-    "samples_from_csv": "run.signals",
+    "ramp": "run",
+    "samples": "run",
+    "samples_from_csv": "run",
     "simulate": "api",
-    "sine": "run.signals",
-    "step": "run.signals",
-    "triangle": "run.signals",
+    "sine": "run",
+    "step": "run",
+    "triangle": "run",
     "verify": "proofs",
 }
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import final
 
 from piezo_sym.codegen import lower, numpy_module
-from piezo_sym.derive import derive
+from piezo_sym.derivation import derive
 from piezo_sym.errors import DriftError, quote
 from piezo_sym.files import read_text, write_text
 from piezo_sym.proofs import Report, Verdict, verify
@@ -54,7 +54,8 @@ def render(model: Model, *, allow_unproved: bool = False) -> dict[str, str]:
     report = verify(iphs)
     if not allow_unproved:
         report.raise_if_not_proved()
-    return {f"{model.name}/{model.name}.py": numpy_module(lower(iphs, verdict_line(report)))}
+    program = lower(iphs, verdict_line(report))
+    return {f"{model.name}/{model.name}.py": numpy_module(program)}
 
 
 def verdict_line(report: Report) -> str:

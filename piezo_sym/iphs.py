@@ -7,22 +7,21 @@ state, the inputs and the parameters, which is what most users want to look at.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import final
+from typing import TypeAlias, final
 
 import sympy as sp
 
-from piezo_sym.errors import SpecError
+from piezo_sym.definitions import costates_of, energy_of, laws_of, ratios_of, system_of
 from piezo_sym.lanes import LaneMatrix, vector
-from piezo_sym.network import Junction, junction_of, port_order
+from piezo_sym.network import Junction, junction_of
 from piezo_sym.notation import text
 from piezo_sym.reading import Reading, document, equations_latex
-from piezo_sym.spec.calculus import antiderivative
-from piezo_sym.spec.circuit import Circuit, Placed, circuit_of
-from piezo_sym.spec.elements.ports import Body, Exchange, Gyrator, Resistor, Source, Storage
-from piezo_sym.spec.expressions import Expr, rename
+from piezo_sym.spec.circuit import Circuit, circuit_of
+from piezo_sym.spec.elements.ports import Body, Resistor, Storage
+from piezo_sym.spec.expressions import Expr
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import banks
 from piezo_sym.spec.text import spell
@@ -30,7 +29,7 @@ from piezo_sym.spec.unroll import unroll
 from piezo_sym.symbols import SymbolTable, symbol_table
 from piezo_sym.system import System
 
-Matrix = sp.ImmutableMatrix | LaneMatrix
+Matrix: TypeAlias = "sp.ImmutableMatrix | LaneMatrix"
 
 
 @final
@@ -94,7 +93,7 @@ class IPHS:
         return self._shown(self.system.u)
 
     @cached_property
-    def U(self) -> sp.Expr:  # noqa: N802
+    def U(self) -> sp.Expr:
         """Hamiltonian: the stored energy [J], eq. (6)."""
         return sp.Add(*self._stored)
 
@@ -108,23 +107,23 @@ class IPHS:
         return tuple(terms)
 
     @cached_property
-    def S(self) -> sp.Expr:  # noqa: N802
+    def S(self) -> sp.Expr:
         """Total entropy [J/K]: the sum of the bodies' entropies."""
         rows = zip(self.system.states, self.system.dS, strict=True)
         return sp.Add(*(self.symbols[slot.label] for slot, one in rows if one != 0))
 
     @cached_property
-    def E(self) -> Matrix:  # noqa: N802
+    def E(self) -> Matrix:
         """Co-states dU/dx, n by 1."""
         return self._shown(self.system.E)
 
     @cached_property
-    def J0(self) -> Matrix:  # noqa: N802
+    def J0(self) -> Matrix:
         """Structure matrix of the energy-preserving elements, n by n, eq. (15)."""
         return self._shown(self.system.J0)
 
     @cached_property
-    def J_ir(self) -> Matrix:  # noqa: N802
+    def J_ir(self) -> Matrix:
         """Structure matrix J0 + sum_k R_k J_k, n by n, eq. (3)."""
         return self._shown(self.system.J_ir)
 
@@ -165,7 +164,7 @@ class IPHS:
             for placed, port in self.circuit.of(Body)
             if port.state == system.states[system.heats[k]].label
         )
-        R, z = system.R[k, 0], system.z[k, 0]  # noqa: N806
+        R, z = system.R[k, 0], system.z[k, 0]
         bracket = self.in_states(system.bracket[k, 0])
         parts = (self._shown(system.J(k)), bracket, self.in_states(R), self.in_states(R / z))
         return Process(slot.label, slot.bank, body, *parts)
@@ -202,7 +201,7 @@ class IPHS:
 
     @cached_property
     def reading(self) -> Reading:
-        """The system in the form in which it is read: co-states written out, laws by their names."""
+        """The system as it is read: co-states written out, laws by their names."""
         hidden = {self.symbols[port.temperature] for _, port in self.circuit.of(Body)}
         shown = tuple((s, e) for s, e in self.costates if s not in hidden)
         heat = tuple((s, e) for s, e in self.costates if s in hidden)
@@ -211,13 +210,14 @@ class IPHS:
 
     def _spelled(self, shown: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, str]:
         """Return each dissipative law as the spec spells it, and what its letter is."""
-        return {
-            self.symbols[port.output]: f"{spell(port.law)}, {port.letter} = {text(z.xreplace(shown))}"
-            for (_, port), z in zip(self.circuit.of(Resistor), self.system.z, strict=True)
-        }
+        found = {}
+        for (_, port), z in zip(self.circuit.of(Resistor), self.system.z, strict=True):
+            effort = f"{port.letter} = {text(z.xreplace(shown))}"
+            found[self.symbols[port.output]] = f"{spell(port.law)}, {effort}"
+        return found
 
     def latex(self) -> str:
-        """Return LaTeX of x, S, co-states, J0, every J_k, bracket, R_k, gamma_k, J_ir, g, u, y, rates."""
+        """Return LaTeX of x, S, co-states, J0, each J_k, bracket, R_k, gamma_k, J_ir, g, u, y."""
         return document(self.reading)
 
 
@@ -229,88 +229,15 @@ def iphs_of(circuit: Circuit, symbols: SymbolTable, junction: Junction) -> IPHS:
     SpecError
         If a storage law has no energy in closed form.
     """
-    system = _system(circuit, symbols, junction)
+    system = system_of(circuit, symbols, junction)
     stores = tuple(circuit.of(Storage, Body))
     return IPHS(
         model=circuit.model,
         circuit=circuit,
         symbols=symbols,
         system=system,
-        energies=tuple(_energy(placed.element, port) for placed, port in stores),
-        laws=tuple(_laws(circuit, symbols, system)),
-        ratios=tuple(_ratios(circuit, symbols)),
-        costates=tuple(_costates(stores, symbols)),
+        energies=tuple(energy_of(placed.element, port) for placed, port in stores),
+        laws=tuple(laws_of(circuit, symbols, system)),
+        ratios=tuple(ratios_of(circuit, symbols)),
+        costates=tuple(costates_of(stores, symbols)),
     )
-
-
-def costate_name(port: Storage | Body) -> str:
-    """Return the name of a store's co-state: a body's is its temperature."""
-    return port.temperature if isinstance(port, Body) else port.costate
-
-
-def _system(circuit: Circuit, symbols: SymbolTable, junction: Junction) -> System:
-    lanes = junction.J0.lanes
-    stores = tuple(circuit.of(Storage, Body))
-    rows = {placed.element: n for n, (placed, port) in enumerate(stores) if isinstance(port, Body)}
-    resistors = [port for _, port in circuit.of(Resistor)]
-    costates = {n: symbols[costate_name(port)] for n, (_, port) in enumerate(stores)}
-    inputs = {n: _input(placed.port, circuit, symbols) for n, placed in enumerate(port_order(circuit))}
-    outputs = {n: symbols[port.output] for n, port in enumerate(resistors)}
-    return System(
-        states=junction.states,
-        processes=junction.processes,
-        ports=junction.ports,
-        E=vector(junction.states, lanes, costates),
-        dS=vector(junction.states, lanes, dict.fromkeys(rows.values(), sp.S.One)),
-        u=vector(junction.ports, lanes, inputs),
-        W=vector(junction.processes, lanes, outputs),
-        heats=tuple(rows[port.heats] for port in resistors),
-        J0=junction.J0,
-        B=junction.B,
-        D=junction.D,
-        G=junction.g,
-        N=junction.N,
-    )
-
-
-def _input(port: object, circuit: Circuit, symbols: SymbolTable) -> sp.Expr:
-    """Return the input of Definition 1 behind a port: itself, or lam*(T_e/T - 1)."""
-    match port:
-        case Source():
-            return symbols[port.input]
-        case Exchange():
-            temperature = symbols[circuit.body(port.body).temperature]
-            ratio = symbols[port.input] / temperature
-            return symbols.law(port.conductance, {}) * (ratio - 1)
-    msg = f"{type(port).__name__} is no port of an input"
-    raise TypeError(msg)
-
-
-def _energy(element: str, port: Storage | Body) -> Expr:
-    energy = antiderivative(port.law, port.letter)
-    if energy is None:
-        what = f"the law {spell(port.law)} has no energy in closed form"
-        expected = f"sums of powers of {port.letter}, or an exponential"
-        raise SpecError(what, f"elements.{element}", expected)
-    return rename(energy, {port.letter: port.state})
-
-
-Definitions = Iterator[tuple[sp.Symbol, sp.Expr]]
-
-
-def _laws(circuit: Circuit, symbols: SymbolTable, system: System) -> Definitions:
-    for (_, port), z in zip(circuit.of(Resistor), system.z, strict=True):
-        heat = symbols[circuit.body(port.heats).temperature]
-        yield symbols[port.output], symbols.law(port.law, {port.letter: z, "T": heat})
-
-
-def _ratios(circuit: Circuit, symbols: SymbolTable) -> Definitions:
-    for _, port in circuit.of(Gyrator):
-        letters = {"T": symbols[circuit.body(port.body).temperature]} if port.body else {}
-        yield symbols[port.name], symbols.law(port.ratio, letters)
-
-
-def _costates(stores: tuple[tuple[Placed, Storage | Body], ...], symbols: SymbolTable) -> Definitions:
-    for _, port in stores:
-        law = symbols.law(port.law, {port.letter: symbols[port.state]})
-        yield symbols[costate_name(port)], law

@@ -21,7 +21,6 @@ from sympy.printing.precedence import PRECEDENCE
 from piezo_sym.notation import Entries, matrix_latex, matrix_text
 
 
-
 class LaneSum(sp.Expr):  # type: ignore[misc]
     """The sum of its first argument over the lanes j = 1..r of the bank named by its second."""
 
@@ -30,7 +29,8 @@ class LaneSum(sp.Expr):  # type: ignore[misc]
 
     def __new__(cls, arg: sp.Expr, bank: str | Str) -> LaneSum:
         """Return the sum of `arg` over the lanes of `bank`, as it stands."""
-        return sp.Expr.__new__(cls, arg, bank if isinstance(bank, Str) else Str(bank))
+        made: LaneSum = sp.Expr.__new__(cls, arg, bank if isinstance(bank, Str) else Str(bank))
+        return made
 
     def _latex(self, printer: Any, exp: Any = None) -> str:
         term = printer.parenthesize(self.args[0], PRECEDENCE["Mul"])
@@ -134,7 +134,7 @@ class LaneMatrix:
     own: Entries = field(default_factory=dict)
 
     @property
-    def T(self) -> LaneMatrix:  # noqa: N802 - the transpose, as everywhere
+    def T(self) -> LaneMatrix:
         """The transpose."""
         full = {(c, r): entry for (r, c), entry in self.full.items()}
         own = {(c, r): entry for (r, c), entry in self.own.items()}
@@ -209,9 +209,7 @@ class LaneMatrix:
             len(rows), len(cols), lambda r, c: self._at(rows[r], cols[c], counts)
         )
 
-    def _at(
-        self, row: tuple[int, int], col: tuple[int, int], counts: Mapping[str, int]
-    ) -> sp.Expr:
+    def _at(self, row: tuple[int, int], col: tuple[int, int], counts: Mapping[str, int]) -> sp.Expr:
         (r, j), (c, k) = row, col
         entry = self.full.get((r, c), sp.S.Zero)
         if j == k and self.rows[r].bank == self.cols[c].bank:

@@ -1,8 +1,8 @@
 """Spec to a loaded module: from ``generated/``, from the installed package, or from the cache.
 
-Input: a shipped name, a path, or a `Model`.  Output: its generated module, loaded.  A module found for
-a name or path must be of that very spec; if not, the command that regenerates it is named.  What is
-not found is generated into the user's cache, keyed by spec and generator.
+Input: a shipped name, a path, or a `Model`.  Output: its generated module, loaded.  A module found
+for a name or path must be of that very spec; if not, the command that regenerates it is named.
+What is not found is generated into the user's cache, keyed by spec and generator.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def _is_of(module: ModuleType, path: Path, content: dict[str, object]) -> bool:
 def spec_hash_of(content: dict[str, object]) -> str:
     """Return the hash of plain spec data, or nothing if it is not even of a spec's shape."""
     tables = all(isinstance(table, dict) for table in content.values())
-    return spec_hash(content) if tables else ""  # type: ignore[arg-type]
+    return spec_hash(content) if tables else ""
 
 
 def _places(name: str) -> Iterator[Path]:

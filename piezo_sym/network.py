@@ -1,40 +1,32 @@
-"""Circuit to junction: Kirchhoff's and Newton's laws, solved exactly, for banks of any size.
+"""Circuit to junction: the linear power-preserving structure of a network.
 
-Input: a `Circuit`.  Output: a `Junction`, the linear power-preserving structure
+Input: a `Circuit`.  Output: a `Junction`,
 
     xdot = J0 E - B W + g u        z = B^T E + D^T u        y = g^T E + D W + N u
 
-with the storage co-states E, the law outputs W and the inputs u as given (the transducer ratios are
-opaque symbols).  No element's matrices are known here: each branch imposes its across or its through
-variable, and the junction laws say the rest.  A bank is one representative lane: its own unknowns are
-eliminated first, so that nothing depends on the number r of lanes.
+with the storage co-states E, the law outputs W and the inputs u as given (the transducer ratios
+are opaque symbols).  The junction laws are solved by `kirchhoff`; here their answers become
+matrices, and it is checked that the structure preserves power.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, final
+from typing import final
 
 import sympy as sp
-from sympy.polys.domains import QQ
 
 from piezo_sym.errors import NetworkError
+from piezo_sym.kirchhoff import Answer, Laws, port_order
 from piezo_sym.lanes import LaneMatrix, Lanes, Slot
-from piezo_sym.linear import Equation, Form, SingularError, accumulate, combine, solve
-from piezo_sym.nodes import check_nodes, is_reference
-from piezo_sym.spec.circuit import Circuit, Placed
-from piezo_sym.spec.elements.ports import (
-    Body,
-    Branch,
-    Exchange,
-    Gyrator,
-    Resistor,
-    Source,
-    Storage,
-    Variable,
-)
+from piezo_sym.linear import Form
+from piezo_sym.nodes import check_nodes
+from piezo_sym.spec.circuit import Circuit
+from piezo_sym.spec.elements.ports import Exchange, Source, Variable
 from piezo_sym.symbols import SymbolTable
+
+__all__ = ["Junction", "junction_of", "port_order"]
 
 
 @final
@@ -58,42 +50,6 @@ class Junction:
     N: LaneMatrix
 
 
-@final
-@dataclass(frozen=True)
-class _Edge:
-    """A branch as the junction laws see it: its through variable as a combination.
-
-    `key` is the given it imposes (``("E", 2)``), and the name of the unknown it answers with.
-    """
-
-    placed: Placed
-    branch: Branch
-    imposes: Variable
-    key: tuple[str, int]
-    sign: int
-
-    @property
-    def unknown(self) -> tuple[str, Any]:
-        """The label of the through variable, where it is unknown."""
-        return ("t", self.key)
-
-
-@final
-@dataclass(frozen=True)
-class _Rows:
-    """Answers of the junction laws: for each row, combinations of givens; see `LaneMatrix`."""
-
-    full: dict[int, Form]
-    own: dict[int, Form]
-
-
-def port_order(circuit: Circuit) -> tuple[Placed, ...]:
-    """Return the ports that an input drives: by the input's place in the spec, then declaration."""
-    inputs = list(circuit.model.inputs)
-    driven = [placed for placed, _ in circuit.of(Source, Exchange)]
-    return tuple(sorted(driven, key=lambda placed: inputs.index(placed.port.input)))  # type: ignore[union-attr]
-
-
 def junction_of(circuit: Circuit, symbols: SymbolTable) -> Junction:
     """Return the solved junction structure of a circuit.
 
@@ -103,224 +59,94 @@ def junction_of(circuit: Circuit, symbols: SymbolTable) -> Junction:
         If the junction laws have no, or more than one, solution; names the elements at fault.
     """
     check_nodes(circuit)
-    solver = _Solver(circuit, symbols)
-    return solver.junction()
+    laws = Laws(circuit, symbols)
+    blocks = _Blocks(laws, Lanes(symbols.banks, symbols.counts))
+    return blocks.junction()
 
 
 @final
-class _Solver:
-    """The junction laws of one circuit on their way to a solution."""
+class _Blocks:
+    """The answers of the junction laws, sorted into matrices.
 
-    def __init__(self, circuit: Circuit, symbols: SymbolTable) -> None:
-        self.circuit = circuit
-        self.lanes = Lanes(symbols.banks, symbols.counts)
-        ratios = [symbols[port.name] for _, port in circuit.of(Gyrator)]
-        self.field = QQ.frac_field(*ratios) if ratios else QQ
-        self.ratio = {port: self.field.from_sympy(symbols[port.name]) for _, port in circuit.of(Gyrator)}
-        self.states = tuple(circuit.of(Storage, Body))
-        self.processes = tuple(circuit.of(Resistor))
-        self.ports = port_order(circuit)
-        self.edges = tuple(self._edges())
+    A row is a branch's answer, a column what it is given: kinds "E" (states), "W" (processes) and
+    "u" (ports).
+    """
 
-    def _edges(self) -> Iterator[_Edge]:
-        for n, (placed, port) in enumerate(self.states):
-            if isinstance(port, Storage):
-                yield _Edge(placed, port.branch, port.imposes, ("E", n), 1)
-        for n, (placed, port) in enumerate(self.processes):
-            yield _Edge(placed, port.branch, port.imposes, ("W", n), 1)
-        for n, placed in enumerate(self.ports):
-            if isinstance(placed.port, Source):
-                sign = 1 if placed.port.imposes is Variable.ACROSS else -1  # it pushes into a
-                yield _Edge(placed, placed.port.branch, placed.port.imposes, ("u", n), sign)
+    def __init__(self, laws: Laws, lanes: Lanes) -> None:
+        self.laws, self.lanes = laws, lanes
+        self.answers: Mapping[tuple[str, int], Answer] = laws.answers()
+        self.slots = {
+            "E": tuple(Slot(port.state, placed.bank) for placed, port in laws.states),
+            "W": tuple(Slot(placed.element, placed.bank) for placed, _ in laws.processes),
+            "u": tuple(Slot(placed.element) for placed in laws.ports),
+        }
 
     def junction(self) -> Junction:
-        """Solve, and sort the answers into matrices."""
-        lanes = {bank: self._solve_lane(bank) for bank in self.lanes.counts}
-        shared = self._solve_shared(lanes)
-        rows = {edge.key: self._answer(edge, lanes, shared) for edge in self.edges}
-        return self._sorted(rows)
+        """Return the junction, having checked that it preserves power."""
+        B, g, D = self._block("E", "W", _minus), self._block("E", "u"), self._output("W")
+        self._check_loops(self._block("W", "W"))
+        twins = (
+            B - self._block("W", "E").T,
+            g - self._output("E").T,
+            D - self._block("W", "u").T,
+        )
+        if not all(difference.is_zero for difference in twins):
+            what = "the junction laws do not preserve power"
+            raise NetworkError(what, "network", remedy="report this spec: it shows a fault here")
+        return Junction(
+            states=self.slots["E"],
+            processes=self.slots["W"],
+            ports=self.slots["u"],
+            J0=self._block("E", "E"),
+            B=B,
+            D=D,
+            g=self._with_heat(g),
+            N=self._output("u"),
+        )
 
-    # The equations
+    def _block(self, row: str, col: str, sign: Callable[[int], int] = lambda _: 1) -> LaneMatrix:
+        """Return the matrix of one kind of answers over one kind of givens."""
+        parts: tuple[dict[tuple[int, int], sp.Expr], ...] = ({}, {})
+        for (kind, r), answer in self.answers.items():
+            if kind == row:
+                for part, form in zip(parts, answer, strict=True):
+                    part.update(self._entries(r, col, form, sign(r)))
+        return LaneMatrix(self.slots[row], self.slots[col], self.lanes, *parts)
 
-    def _through(self, edge: _Edge) -> Equation:
-        """Return a branch's through variable as (unknowns, givens)."""
-        if edge.imposes is Variable.ACROSS:
-            return Equation({edge.unknown: self.field.one}, {})
-        return Equation({}, {edge.key: edge.sign * self.field.one})
+    def _output(self, col: str) -> LaneMatrix:
+        """Return the matrix of the outputs y, signed so that y*u is the power put in."""
+        return self._block("u", col, self._supply_sign)
 
-    def _balances(self, bank: str | None) -> dict[str, Equation]:
-        """Return what the branches of one bank, or of no bank, draw from each node."""
-        rows: dict[str, Equation] = {}
-        for edge in self.edges:
-            if edge.placed.bank == bank:
-                _draw(rows, edge.branch, self._through(edge), self.field.one)
-        if bank is None:
-            for port, ratio in self.ratio.items():
-                _draw(rows, port.first, Equation(_across(port.second, ratio), {}), self.field.one)
-                _draw(rows, port.second, Equation(_across(port.first, -ratio), {}), self.field.one)
-        return rows
-
-    def _constraints(self, bank: str | None) -> Iterator[Equation]:
-        for edge in self.edges:
-            if edge.placed.bank == bank and edge.imposes is Variable.ACROSS:
-                given = {edge.key: edge.sign * self.field.one}
-                yield Equation(_across(edge.branch, self.field.one), given)
-
-    def _solve_lane(self, bank: str) -> dict[Any, Form]:
-        """Return one lane's own unknowns in terms of its givens and the shared nodes."""
-        balances = self._balances(bank)
-        inner = {node: row for node, row in balances.items() if _is_inner(node)}
-        equations = [Equation(row.left, _negated(row.right)) for row in inner.values()]
-        equations += list(self._constraints(bank))
-        unknowns = [("e", node) for node in inner]
-        unknowns += [e.unknown for e in self.edges if e.placed.bank == bank and e.imposes is Variable.ACROSS]
-        for equation in equations:  # shared nodes are given, for a lane
-            for label in [label for label in equation.left if label not in unknowns]:
-                accumulate(equation.right, label, -equation.left.pop(label))
-        return self._solved(equations, unknowns)
-
-    def _solve_shared(self, lanes: dict[str, dict[Any, Form]]) -> dict[Any, Form]:
-        """Return the shared unknowns in terms of shared givens and of sums over lanes."""
-        balances = self._balances(None)
-        for bank, solution in lanes.items():
-            for node, row in self._balances(bank).items():
-                if not _is_inner(node):
-                    total = balances.setdefault(node, Equation())
-                    combine(total.right, self._summed(bank, row, solution), self.field.one)
-        equations = [Equation(row.left, _negated(row.right)) for row in balances.values()]
-        equations += list(self._constraints(None))
-        unknowns: list[Any] = [("e", node) for node in balances]
-        unknowns += [e.unknown for e in self.edges if e.placed.bank is None and e.imposes is Variable.ACROSS]
-        return self._solved(equations, unknowns)
-
-    def _summed(self, bank: str, row: Equation, solution: dict[Any, Form]) -> Form:
-        """Return what all lanes together draw from a shared node, as sums of their givens."""
-        drawn = dict(row.right)
-        for label, coefficient in row.left.items():
-            combine(drawn, solution.get(label, {label: self.field.one}), coefficient)
-        if any(label[0] == "e" for label in drawn):
-            what = f"bank '{bank}' fixes a node that it shares"
-            remedy = "put an inductor or a hysteron in each lane, so that its current is a state"
-            raise NetworkError(what, f"elements.{bank}", remedy=remedy)
-        return {("sum", label): coefficient for label, coefficient in drawn.items()}
-
-    def _solved(self, equations: Iterable[Equation], unknowns: Iterable[Any]) -> dict[Any, Form]:
-        try:
-            return solve(equations, unknowns)
-        except SingularError as singular:
-            raise self._refusal(singular) from None
-
-    def _refusal(self, singular: SingularError) -> NetworkError:
-        elements = {edge.key: edge.placed.element for edge in self.edges}
-        for relation in singular.relations:
-            keys = [label[1] if label[0] == "sum" else label for label in relation]
-            tied = ", ".join(f"'{name}'" for name in dict.fromkeys(elements[key] for key in keys))
-            what = f"elements {tied} fix each other's variables"
-            remedy = "merge those in parallel (or in series), or put a resistor or damper between"
-            raise NetworkError(what, "network", "independent storage and sources", remedy)
-        loose = [label[1] for label in singular.undetermined if label[0] == "e"]
-        at = f"node '{loose[0]}'" if loose else "the network"
-        remedy = "connect a capacitor, mass, source or voltage-law resistor there"
-        return NetworkError(f"nothing determines {at}", "network", remedy=remedy)
-
-    # The answers
-
-    def _answer(
-        self, edge: _Edge, lanes: dict[str, dict[Any, Form]], shared: dict[Any, Form]
-    ) -> tuple[Form, Form]:
-        """Return a branch's answer, the variable it does not impose: (every lane, own lane)."""
-        across = edge.imposes is Variable.THROUGH
-        asked = _across(edge.branch, self.field.one) if across else {edge.unknown: self.field.one}
-        own = lanes[edge.placed.bank] if edge.placed.bank else {}
-        mine: Form = {}
-        for label, coefficient in asked.items():
-            combine(mine, own.get(label, {label: self.field.one}), coefficient)
-        full: Form = {}
-        for label in [label for label in mine if label in shared]:
-            combine(full, shared[label], mine.pop(label))
-        return full, mine
-
-    def _sorted(self, rows: dict[tuple[str, int], tuple[Form, Form]]) -> Junction:
-        slots = {
-            "E": tuple(Slot(port.state, placed.bank) for placed, port in self.states),
-            "W": tuple(Slot(placed.element, placed.bank) for placed, _ in self.processes),
-            "u": tuple(Slot(placed.element) for placed in self.ports),
-        }
-
-        def block(row: str, col: str, sign: Callable[[int], int]) -> LaneMatrix:
-            parts: tuple[dict[Any, Any], dict[Any, Any]] = ({}, {})
-            for (kind, r), answer in rows.items():
-                if kind == row:
-                    for part, form in zip(parts, answer, strict=True):
-                        part.update(self._entries(r, col, form, sign(r)))
-            return LaneMatrix(slots[row], slots[col], self.lanes, *parts)
-
-        given = self._signs()
-        J0 = block("E", "E", lambda _: 1)  # noqa: N806 - the field's name
-        B, b = block("E", "W", lambda _: -1), block("W", "E", lambda _: 1)  # noqa: N806
-        D, d = block("u", "W", lambda r: given[r]), block("W", "u", lambda _: 1)  # noqa: N806
-        g, h = block("E", "u", lambda _: 1), block("u", "E", lambda r: given[r])
-        N = block("u", "u", lambda r: given[r])  # noqa: N806
-        self._check(block("W", "W", lambda _: 1), B - b.T, D - d.T, g - h.T)
-        return Junction(slots["E"], slots["W"], slots["u"], J0, B, D, self._with_heat(g), N)
-
-    def _signs(self) -> dict[int, int]:
-        """Return the sign that makes y*u the power put in: an across source draws -y."""
-        return {
-            n: -1 if isinstance(p.port, Source) and p.port.imposes is Variable.ACROSS else 1
-            for n, p in enumerate(self.ports)
-        }
+    def _supply_sign(self, n: int) -> int:
+        """Return -1 for an across source: the current through it flows out at its first node."""
+        port = self.laws.ports[n].port
+        return -1 if isinstance(port, Source) and port.imposes is Variable.ACROSS else 1
 
     def _entries(self, row: int, col: str, form: Form, sign: int) -> dict[tuple[int, int], sp.Expr]:
         found = {}
         for label, coefficient in form.items():
             kind, number = label[1] if label[0] == "sum" else label
             if kind == col:
-                found[row, number] = sign * self.field.to_sympy(coefficient)
+                found[row, number] = sign * self.laws.field.to_sympy(coefficient)
         return found
 
-    def _check(self, loop: LaneMatrix, *differences: LaneMatrix) -> None:
+    def _check_loops(self, loop: LaneMatrix) -> None:
         for (r, c), _, _ in loop.entries():
             names = f"'{loop.rows[r].label}' and '{loop.cols[c].label}'"
             remedy = "put a capacitor, mass or hysteron at the node between them"
             raise NetworkError(f"{names} determine each other's flow", "network", remedy=remedy)
-        if not all(difference.is_zero for difference in differences):
-            what = "the junction laws do not preserve power"
-            raise NetworkError(what, "network", remedy="report this spec: it shows a fault here")
 
     def _with_heat(self, g: LaneMatrix) -> LaneMatrix:
         """Return the input map with the heat exchanges, each into its body's entropy."""
-        bodies = {placed.element: n for n, (placed, _) in enumerate(self.states)}
+        rows = {placed.element: n for n, (placed, _) in enumerate(self.laws.states)}
         heat = {
-            (bodies[placed.port.body], n): sp.S.One
-            for n, placed in enumerate(self.ports)
+            (rows[placed.port.body], n): sp.S.One
+            for n, placed in enumerate(self.laws.ports)
             if isinstance(placed.port, Exchange)
         }
         return LaneMatrix(g.rows, g.cols, g.lanes, {**g.full, **heat}, g.own)
 
 
-def _is_inner(node: str) -> bool:
-    """Return whether a node is an element's own (no spec can write the colon)."""
-    return ":" in node
-
-
-def _across(branch: Branch, factor: Any) -> Form:
-    """Return ``factor*(e_a - e_b)``, the reference nodes being at zero."""
-    form: Form = {}
-    for node, value in zip(branch, (factor, -factor), strict=True):
-        if not is_reference(node):
-            accumulate(form, ("e", node), value)
-    return form
-
-
-def _draw(rows: dict[str, Equation], branch: Branch, through: Equation, one: Any) -> None:
-    """Book a through variable at both ends of its branch: drawn from the first, put in the second."""
-    for node, sign in zip(branch, (one, -one), strict=True):
-        if not is_reference(node):
-            row = rows.setdefault(node, Equation())
-            combine(row.left, through.left, sign)
-            combine(row.right, through.right, sign)
-
-
-def _negated(form: Form) -> Form:
-    return {label: -coefficient for label, coefficient in form.items()}
+def _minus(row: int) -> int:
+    del row
+    return -1

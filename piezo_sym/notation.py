@@ -1,7 +1,7 @@
 """Expressions and matrices as LaTeX and as plain text, in the paper's notation.
 
-Input: SymPy expressions, slots and entries.  Output: text.  Terms of a sum stand in the order in which
-they are given, not in SymPy's; a bank's row or column stands for j = 1..r.
+Input: SymPy expressions, slots and entries.  Output: text.  Terms of a sum stand in the order in
+which they are given, not in SymPy's; a bank's row or column stands for j = 1..r.
 """
 
 from __future__ import annotations
@@ -66,13 +66,13 @@ def slot_text(slot: Label) -> str:
     return f"{slot.label}_j" if slot.bank else slot.label
 
 
-def matrix_latex(
-    rows: Sequence[Label], cols: Sequence[Label], full: Entries, own: Entries
-) -> str:
+def matrix_latex(rows: Sequence[Label], cols: Sequence[Label], full: Entries, own: Entries) -> str:
     """Return a matrix as LaTeX; a bank's rows and columns stand for lane j, with dots around."""
     lines = []
     for r, row in enumerate(rows):
-        cells = [_latex_cell(full.get((r, c), sp.S.Zero), own.get((r, c))) for c in range(len(cols))]
+        cells = [
+            _latex_cell(full.get((r, c), sp.S.Zero), own.get((r, c))) for c in range(len(cols))
+        ]
         line = " & ".join(_dotted(cols, cells, r"\cdots"))
         dots = " & ".join(_dotted(cols, [r"\vdots"] * len(cols), ""))
         lines += [dots, line, dots] if row.bank else [line]
@@ -81,7 +81,9 @@ def matrix_latex(
 
 def _dotted(cols: Sequence[Label], cells: Sequence[str], dots: str) -> list[str]:
     """Return the cells of a line, those of a bank's column with dots on both sides."""
-    parts = [(dots, cell, dots) if col.bank else (cell,) for col, cell in zip(cols, cells, strict=True)]
+    parts = [
+        (dots, cell, dots) if col.bank else (cell,) for col, cell in zip(cols, cells, strict=True)
+    ]
     return [piece for part in parts for piece in part]
 
 
@@ -94,7 +96,7 @@ def _latex_cell(full: sp.Expr, own: sp.Expr | None) -> str:
 
 
 def matrix_text(rows: Sequence[Label], cols: Sequence[Label], full: Entries, own: Entries) -> str:
-    """Return a matrix as an aligned grid with its labels; ``[j=k]`` marks an entry of equal lanes."""
+    """Return a matrix as an aligned grid; ``[j=k]`` marks an entry of equal lanes only."""
     grid = [["", *(slot_text(col) or "." for col in cols)]]
     for r, row in enumerate(rows):
         cells = [_text_cell(full.get((r, c), sp.S.Zero), own.get((r, c))) for c in range(len(cols))]

@@ -1,7 +1,7 @@
 """A system as it is read: rows and laws term by term, in LaTeX or plain text.
 
-Input: a `System`, and which of its names are written out (velocities as p/M) and which are explained
-below the equations (laws, ratios, temperatures).  Output: text, one equation a line.
+Input: a `System`, and which of its names are written out (velocities as p/M) and which are
+explained below the equations (laws, ratios, temperatures).  Output: text, one equation a line.
 """
 
 from __future__ import annotations
@@ -71,10 +71,9 @@ class Reading:
 
     def gamma(self, k: int) -> sp.Expr:
         """Return gamma_k = W_k/(T z_k), the law written out where it has no branches."""
-        law = {s: e for s, e in self.named if not e.has(sp.Piecewise)}
-        gamma = self.system.R[k, 0].xreplace(law) / self.system.z[k, 0]
-        hot = {s: e for s, e in self.written if s not in law}
-        return gamma.xreplace(hot)
+        outputs = set(self.system.W)
+        laws = {s: e for s, e in self.named if s in outputs and not e.has(sp.Piecewise)}
+        return self.write(self.system.R[k, 0].xreplace(laws) / self.system.z[k, 0])
 
     def _heat(self, k: int) -> sp.Expr:
         production = self.system.R[k, 0] * self.system.z[k, 0]
@@ -93,7 +92,9 @@ def _terms(block: LaneMatrix, given: LaneMatrix, row: int) -> Iterator[sp.Expr]:
                 yield own * value
 
 
-def equations(reading: Reading, write: Print, name: Callable[[str], str], dot: str) -> list[tuple[str, str]]:
+def equations(
+    reading: Reading, write: Print, name: Callable[[str], str], dot: str
+) -> list[tuple[str, str]]:
     """Return (left side, right side) of every equation: U, rates, outputs, sigma, names."""
     system = reading.system
 
@@ -135,7 +136,7 @@ def document(reading: Reading) -> str:
 
     displays = [
         f"x = {_slots(system)}",
-        f"S = {joined(symbol_latex(s.label) for s, one in zip(system.states, system.dS, strict=True) if one != 0)}",
+        f"S = {joined(_entropies(system))}",
         rf"\frac{{\partial U}}{{\partial x}} = {vector(system.E)}",
         f"J_0 = {vector(system.J0)}",
         *(line for k in range(len(system.processes)) for line in _process(reading, k, vector)),
@@ -147,6 +148,12 @@ def document(reading: Reading) -> str:
         equations_latex(reading),
     ]
     return "\n\n".join(f"\\[\n{display}\n\\]" for display in displays)
+
+
+def _entropies(system: System) -> Iterator[str]:
+    for slot, one in zip(system.states, system.dS, strict=True):
+        if one != 0:
+            yield symbol_latex(slot.label)
 
 
 def _slots(system: System) -> str:

@@ -1,8 +1,8 @@
 """Names to SymPy symbols, and law trees to SymPy expressions: the one place where both happen.
 
-Input: a `Circuit`.  Output: a `SymbolTable`.  All symbols are real; a parameter that the domain says
-is positive (or not negative) is so in SymPy too; temperatures are positive.  A symbol of a bank's
-lane is spelled with the paper's index, ``phi_j``.
+Input: a `Circuit`.  Output: a `SymbolTable`.  All symbols are real; a parameter that the domain
+says is positive (or not negative) is so in SymPy too; temperatures are positive.  A symbol of a
+bank's lane is spelled with the paper's index, ``phi_j``.
 """
 
 from __future__ import annotations
@@ -74,7 +74,9 @@ def symbol_table(circuit: Circuit) -> SymbolTable:
         if isinstance(port, Body):
             signs[port.temperature] = {"positive": True}
     table = {name: _symbol(name, name in per_lane, signs.get(name)) for name in names}
-    counts = {bank: sp.Symbol(f"{bank}_count", integer=True, positive=True) for bank in banks(model)}
+    counts = {
+        bank: sp.Symbol(f"{bank}_count", integer=True, positive=True) for bank in banks(model)
+    }
     return SymbolTable(table, {table[name]: bank for name, bank in per_lane.items()}, counts)
 
 

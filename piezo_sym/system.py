@@ -4,9 +4,9 @@ Input: a junction, the symbols of co-states E, law outputs W and inputs u.  Outp
 
     xdot = J_ir E + g u        J_ir = J0 + sum_k R_k J_k        R_k = W_k/T_k        (1), (3), (4)
 
-where J_k couples the vector b_k of process k to the entropy of the body that it heats.  Here E, W, T
-and the ratios are symbols; what they are as functions of the state is said once, in `iphs`.  Proofs
-close on this form, and generated code follows it line by line.
+where J_k couples the vector b_k of process k to the entropy of the body that it heats.  Here E, W,
+T and the ratios are symbols; what they are as functions of the state is said once, in `iphs`.
+Proofs close on this form, and generated code follows it line by line.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from typing import final
 import sympy as sp
 
 from piezo_sym.lanes import LaneMatrix, Slot, vector
+from piezo_sym.notation import Entries
 
 
 @final
@@ -43,7 +44,7 @@ class System:
     processes: tuple[Slot, ...]
     ports: tuple[Slot, ...]
     E: LaneMatrix
-    dS: LaneMatrix  # noqa: N815 - dS/dx
+    dS: LaneMatrix
     u: LaneMatrix
     W: LaneMatrix
     heats: tuple[int, ...]
@@ -54,7 +55,7 @@ class System:
     N: LaneMatrix
 
     @cached_property
-    def R(self) -> LaneMatrix:  # noqa: N802 - the paper's letter
+    def R(self) -> LaneMatrix:
         """The modulating functions R_k = W_k/T_k, eq. (4), over processes."""
         entries = {k: w / self.E[self.heats[k], 0] for k, w in enumerate(self.W)}
         return vector(self.processes, self.W.lanes, entries)
@@ -70,7 +71,7 @@ class System:
         return self.bracket + self.D.T @ self.u
 
     @cached_property
-    def J_ir(self) -> LaneMatrix:  # noqa: N802
+    def J_ir(self) -> LaneMatrix:
         """The skew structure matrix of eq. (3)."""
         total = self.J0
         for row in dict.fromkeys(self.heats):
@@ -106,7 +107,7 @@ class System:
         """The internal entropy production, sum_k W_k z_k/T_k, eq. (7)."""
         return (self.R.T @ self.z)[0, 0]
 
-    def J(self, k: int) -> LaneMatrix:  # noqa: N802
+    def J(self, k: int) -> LaneMatrix:
         """Return J_k; for a bank, its lane j's: entries `own` stand in that lane alone."""
         entropy = self._unit(self.heats[k])
         full = _column(self.B.full, k), _column(self.B.own, k)
@@ -123,7 +124,5 @@ class System:
         return columns @ vector(self.processes, self.R.lanes, here)
 
 
-def _column(
-    entries: dict[tuple[int, int], sp.Expr] | object, k: int
-) -> dict[tuple[int, int], sp.Expr]:
-    return {(r, 0): entry for (r, c), entry in entries.items() if c == k}  # type: ignore[attr-defined]
+def _column(entries: Entries, k: int) -> dict[tuple[int, int], sp.Expr]:
+    return {(r, 0): entry for (r, c), entry in entries.items() if c == k}

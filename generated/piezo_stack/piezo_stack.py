@@ -22,7 +22,7 @@ SPEC_SHA256 = "9c0235a60e02072bc451611ffa723f273272c8e4536a3089081866f47c89389c"
 
 
 class Record(NamedTuple):
-    """A row of an array: its name, SI unit, a line on it, and its bank if it stands for one a lane."""
+    """A row of an array: name, SI unit, a line on it, and its bank if it stands for one a lane."""
 
     name: str
     unit: str
@@ -115,7 +115,7 @@ class Parameters:
     hysteron_count: int = 2
 
 
-_BLOCK = 50_000  # numbers of a batch that are worked on together: they stay in the cache
+_BLOCK = 50_000  # numbers of a batch worked on together: they stay in the cache
 
 
 def _in_blocks(x, u, p):

@@ -7,6 +7,7 @@ property is not proved or a file drifted, 2 the spec or the command is wrong.
 from __future__ import annotations
 
 import sys
+from typing import Any
 
 import typer
 
@@ -18,7 +19,7 @@ from piezo_sym.cli.verify import verify
 from piezo_sym.errors import PiezoError, one_line
 
 #: What typer raises for a wrong command line, in every version of it.
-CommandError = typer.BadParameter.__mro__[2]
+CommandError: Any = typer.BadParameter.__mro__[2]
 
 app = typer.Typer(
     name="piezo-sym",
@@ -55,7 +56,7 @@ def run(words: list[str]) -> int:
     except PiezoError as error:
         return _failed(str(error), error.exit_code)
     except CommandError as error:
-        message = one_line(error.format_message())  # type: ignore[attr-defined]
+        message = one_line(error.format_message())
         return _failed(f"{message}; see `piezo-sym --help`", 2)
     except (KeyboardInterrupt, typer.Abort):
         return _failed("stopped", 130)

@@ -17,7 +17,7 @@ def show(
     latex: Annotated[bool, typer.Option("--latex", help="Print LaTeX.")] = False,
 ) -> None:
     """Show the irreversible port-Hamiltonian system of a spec: U, rates, J0, processes, ports."""
-    from piezo_sym.derive import derive
+    from piezo_sym.derivation import derive
     from piezo_sym.spec.load import load
 
     iphs = derive(load(spec))
@@ -37,7 +37,7 @@ def _lines(iphs: IPHS) -> Iterator[str]:
     yield f"{header.name}: {header.title}" if header.title else header.name
     yield from ([f"source: {header.source}"] if header.source else [])
     for bank, count in banks(iphs.model).items():
-        yield f"bank '{bank}': lanes j = 1..r, r = {bank}_count, {count} in the spec; every line holds for every r"
+        yield f"bank '{bank}': lanes j = 1..r for any r = {bank}_count; {count} in the spec"
     yield "\nEquations"
     pairs = equations_text(iphs.reading)
     width = max(len(left) for left, _ in pairs)

@@ -1,2 +1,142 @@
-"""``piezo-sym simulate SPEC``: run a model and keep the result."""
-def simulate(): ...
+"""``piezo-sym simulate SPEC``: run a model, print where it ends, keep the result."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from piezo_sym.cli.output import console, table
+from piezo_sym.errors import FileError, UsageError, listing, nearest, quote
+
+if TYPE_CHECKING:
+    import xarray
+
+CALL = re.compile(r"(?P<name>[a-z]+)\((?P<numbers>[^()]*)\)")
+SIGNALS = ("sine", "step", "ramp", "triangle", "chirp")
+ENDINGS = (".nc", ".csv")
+
+
+def simulate(
+    spec: Annotated[str, typer.Argument(metavar="SPEC", help="Path or shipped name.")],
+    duration: Annotated[float, typer.Option(help="Length of the run [s].")],
+    inputs: Annotated[
+        list[str] | None,
+        typer.Option("--input", "-i", help="NAME=NUMBER or NAME=sine(100,100); SI; repeat."),
+    ] = None,
+    parameters: Annotated[
+        list[str] | None, typer.Option("--set", "-p", help="PARAMETER=NUMBER; SI; repeat.")
+    ] = None,
+    rtol: Annotated[float | None, typer.Option(help="Relative tolerance.")] = None,
+    method: Annotated[str, typer.Option(help="A SciPy method.")] = "LSODA",
+    times: Annotated[int, typer.Option(help="Number of samples.")] = 1001,
+    out: Annotated[Path | None, typer.Option(help="Result as .nc (NetCDF) or .csv.")] = None,
+) -> None:
+    """Simulate a spec's generated module and print its last values.
+
+    Signals: sine(amplitude, frequency), step(time, before, after), ramp(start, stop, before,
+    after), triangle(amplitude, frequency), chirp(amplitude, f_start, f_stop, duration).
+    """
+    from piezo_sym.api import simulate as run
+
+    if out is not None and out.suffix not in ENDINGS:
+        raise UsageError(f"{quote(str(out))} has no known ending", "--out", listing(ENDINGS))
+    result = run(
+        spec,
+        duration=duration,
+        inputs=dict(_pairs(inputs or (), "--input", _signal)),
+        parameters=dict(_pairs(parameters or (), "--set", _values)),
+        rtol=rtol,
+        method=method,
+        times=times,
+    )
+    _print(result)
+    if out is not None:
+        _write(result, out)
+
+
+def _pairs(
+    texts: Iterable[str], option: str, read: Callable[[str, str], Any]
+) -> Iterable[tuple[str, Any]]:
+    for given in texts:
+        name, equals, value = given.partition("=")
+        if not equals:
+            raise UsageError(f"{quote(given)} has no '='", option, "NAME=VALUE")
+        yield name.strip(), read(value.strip(), f"{option} {name.strip()}")
+
+
+def _signal(text: str, where: str) -> Any:
+    """Return a number, or a signal such as ``sine(100, 100)``; nothing is evaluated."""
+    call = CALL.fullmatch(text)
+    if call is None:
+        return _number(text, where)
+    if call["name"] not in SIGNALS:
+        what = f"{quote(call['name'])} is no signal"
+        raise UsageError(what, where, remedy=nearest(call["name"], SIGNALS))
+    from piezo_sym import run
+
+    numbers = [_number(part, where) for part in call["numbers"].split(",")]
+    try:
+        return getattr(run, call["name"])(*numbers)
+    except TypeError as error:
+        what = f"{call['name']} does not take {len(numbers)} numbers"
+        raise UsageError(what, where, "see `piezo-sym simulate --help`") from error
+
+
+def _values(text: str, where: str) -> float | list[float]:
+    """Return a number, or a list of them for the lanes of a bank."""
+    numbers = [_number(part, where) for part in text.split(",")]
+    return numbers[0] if len(numbers) == 1 else numbers
+
+
+def _number(text: str, where: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        raise UsageError(f"{quote(text)} is no number", where, "such as 0.5 or 1e-3") from None
+    return int(value) if value.is_integer() and text.strip().isdigit() else value
+
+
+def _print(result: xarray.Dataset) -> None:
+    last = result.isel(time=-1)
+    columns = table(
+        f"{result.attrs['model']} at t = {float(last.time):.6g} s", "", "value", "unit", ""
+    )
+    for name, variable in last.data_vars.items():
+        value = ", ".join(f"{v:.6g}" for v in variable.values.reshape(-1)[:4])
+        more = ", ..." if variable.size > 4 else ""
+        unit, about = (str(variable.attrs.get(key, "")) for key in ("units", "long_name"))
+        columns.add_row(str(name), value + more, unit, about)
+    console().print(columns)
+
+
+def _write(result: xarray.Dataset, path: Path) -> None:
+    """Write a result beside its place, then put it there in one step."""
+    part = path.with_name(f".{path.name}.part")
+    try:
+        if path.suffix == ".nc":
+            result.to_netcdf(part, engine="scipy")
+        else:
+            columns(result).to_csv(part, index=False)
+        part.replace(path)
+    except OSError as error:
+        what = f"cannot be written ({error.strerror or 'no reason given'})"
+        raise FileError(what, quote(str(path)), remedy="check the path") from error
+    typer.echo(f"{path}")
+
+
+def columns(result: xarray.Dataset) -> Any:
+    """Return a result as a table with one column a quantity, one a lane for banks."""
+    import pandas as pd
+
+    found: Mapping[str, Any] = {"time": result.time.values}
+    for name, variable in result.data_vars.items():
+        if variable.ndim == 1:
+            found = {**found, str(name): variable.values}
+        else:
+            lanes = {f"{name}_{n + 1}": lane for n, lane in enumerate(variable.values.T)}
+            found = {**found, **lanes}
+    return pd.DataFrame(found)

@@ -20,7 +20,7 @@ def verify(
     Exit code 0 if every required property is proved, 1 if one is refuted or open, 2 if a spec is
     wrong.
     """
-    from piezo_sym.derive import derive
+    from piezo_sym.derivation import derive
     from piezo_sym.proofs import verify as prove
     from piezo_sym.spec.load import load
 
@@ -36,7 +36,9 @@ def verify(
 
 
 def _print(report: Report) -> None:
-    columns = table(f"{report.model}: {report.summary()}", "property", "element", "statement", "verdict")
+    columns = table(
+        f"{report.model}: {report.summary()}", "property", "element", "statement", "verdict"
+    )
     for row in report.rows:
         verdict = f"[{STYLES[row.verdict.value]}]{row.verdict.value}[/]"
         columns.add_row(row.id, row.element, row.statement, verdict)

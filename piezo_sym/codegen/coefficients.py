@@ -1,7 +1,7 @@
 """Structure coefficients as trees: exact rationals, and rational functions of transducer ratios.
 
-Input: a SymPy expression from the junction laws.  Output: a tree whose order of terms is our own, so
-that printed text does not depend on SymPy's.
+Input: a SymPy expression from the junction laws.  Output: a tree whose order of terms is our own,
+so that printed text does not depend on SymPy's.
 """
 
 from __future__ import annotations

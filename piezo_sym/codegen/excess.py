@@ -1,8 +1,8 @@
 """Temperature differences without cancellation: T - T_0 as T_0*expm1(S/c_0).
 
-Input: a law that subtracts a constant from a temperature.  Output: the law with that difference as a
-quantity of its own, where the temperature is this constant times an exponential.  Near T_0 the plain
-difference would lose as many digits as T and T_0 share.
+Input: a law that subtracts a constant from a temperature.  Output: the law with that difference as
+a quantity of its own, where the temperature is this constant times an exponential.  Near T_0 the
+plain difference would lose as many digits as T and T_0 share.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The functions of a module: rates, outputs, supply, energy, entropy, heat, production.
 
-Input: the quantities of a system.  Output: `Function` records, rows in the order of states, ports and
-processes.
+Input: the quantities of a system.  Output: `Function` records, rows in the order of states, ports
+and processes.
 """
 
 from __future__ import annotations
@@ -11,15 +11,16 @@ from fractions import Fraction
 
 from piezo_sym.codegen.program import Function, Limit, Row, bank_of
 from piezo_sym.codegen.quantities import Quantities
-from piezo_sym.iphs import IPHS, costate_name
+from piezo_sym.definitions import costate_name
+from piezo_sym.iphs import IPHS
 from piezo_sym.lanes import Slot
 from piezo_sym.spec.calculus import add, div, mul, neg
 from piezo_sym.spec.elements.ports import Body, Exchange
 from piezo_sym.spec.expressions import ONE, Expr, Num, Sym
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.parse import parse_law
-from piezo_sym.spec.text import signed
 from piezo_sym.spec.tables import condition_text, conditions
+from piezo_sym.spec.text import signed
 
 STATE_INPUT = ("x", "u", "p")
 STATE = ("x", "p")
@@ -157,5 +158,3 @@ def limits_of(model: Model, q: Quantities) -> tuple[Limit, ...]:
         margin = q.sharp(add(sides[0], neg(sides[1])))
         limits.append(Limit(condition_text(tree), "=" not in tree.op, margin))
     return tuple(limits)
-
-

@@ -1,8 +1,8 @@
 """The Jacobian of the rates, by the chain rule through the named quantities.
 
-Input: the rows of `rhs` and the quantities they use.  Output: a `Jacobian`, and the derivatives that
-deserve a name (``dT_dS``) as further quantities.  Its structure is found here, once: an entry that is
-not listed is zero for every state and every r.
+Input: the rows of `rhs` and the quantities they use.  Output: a `Jacobian`, and the derivatives
+that deserve a name (``dT_dS``) as further quantities.  Its structure is found here, once: an entry
+that is not listed is zero for every state and every r.
 
 The derivative of one value by one state is a `_Slope`: `value`, in the lane that either of them has
 (in equal lanes, if both have one), plus products over all pairs of lanes where a sum over lanes
@@ -53,21 +53,23 @@ def jacobian_of(
             slope = chain.of(rate.value, rate.slot.bank)
             if slope != _Slope():
                 found.append(Entry(row, col, slope.value, slope.outer))
-    return Jacobian("Derivative of rhs by the state", tuple(sorted(found, key=lambda e: (e.row, e.col))))
+    return Jacobian(
+        "Derivative of rhs by the state", tuple(sorted(found, key=lambda e: (e.row, e.col)))
+    )
 
 
 @final
 class _Chain:
     """The chain rule for one state, quantity after quantity."""
 
-    def __init__(self, state: Field, lanes: dict[str, str | None], q: Quantities) -> None:
+    def __init__(self, state: Field, lanes: dict[str, str], q: Quantities) -> None:
         self.state, self.lanes, self.q = state, lanes, q
         self.named: dict[Expr, Sym] = {}
         self.label = ""  # what a sum over lanes met on the way is called by
         self.slopes: dict[str, _Slope] = {state.name: _Slope(Num(ZERO.value + 1))}
 
     def differentiate(self, quantity: Quantity) -> None:
-        """Find the derivative of a quantity by the state, and name it if it is more than a factor."""
+        """Find the derivative of a quantity by the state; name it if it is more than a factor."""
         self.label = f"d{quantity.name}_d{self.state.name}"
         slope = self.of(quantity.value, quantity.bank)
         if slope == _Slope():
@@ -77,7 +79,8 @@ class _Chain:
             bank = quantity.bank or self.state.bank
             named = self.named.get(value) or self.q.define(self.label, value, bank, "derivatives")
             self.named[value] = named
-            self.lanes[named.name] = bank
+            if bank:
+                self.lanes[named.name] = bank
             slope = _Slope(named, slope.outer)
         self.slopes[quantity.name] = slope
 

@@ -1,12 +1,12 @@
 """IPHS to program: Definition 1 row by row, each co-state and law by its name.
 
-Input: an `IPHS` and the verdict on it.  Output: a `Program`.  Terms stand in the order of the states,
-then the processes, then the inputs; laws keep the spelling of the spec.
+Input: an `IPHS` and the verdict on it.  Output: a `Program`.  Terms stand in the order of the
+states, then the processes, then the inputs; laws keep the spelling of the spec.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from piezo_sym.codegen.functions import functions_of, limits_of
 from piezo_sym.codegen.jacobian import jacobian_of
@@ -15,6 +15,7 @@ from piezo_sym.codegen.quantities import Quantities
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.circuit import Placed
 from piezo_sym.spec.elements.ports import Body, Exchange, Source, Storage
+from piezo_sym.spec.fields import Input, Parameter
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import banks, lane_parameters
 
@@ -34,7 +35,6 @@ def lower(iphs: IPHS, verdict: str) -> Program:
     lanes = {**lane_parameters(model), **{s.name: s.bank for s in states if s.bank}}
     rates = next(function for function in functions if function.name == "rhs").rows
     jacobian = jacobian_of(rates, states, lanes, q)
-    fields = {**model.parameters, **model.inputs}
     return Program(
         name=model.name,
         title=model.model.title,
@@ -47,7 +47,7 @@ def lower(iphs: IPHS, verdict: str) -> Program:
         outputs=tuple(_output(placed) for placed in q.ports),
         processes=tuple(_processes(iphs)),
         bodies=tuple(Field(n, "K", f"temperature of thermal_mass '{n}'") for n in q.bodies),
-        defaults={name: entry.si for name, entry in fields.items()},
+        defaults={**_values(model.parameters), **_values(model.inputs)},
         counts=banks(model),
         quantities=tuple(q.defined),
         functions=functions,
@@ -55,6 +55,12 @@ def lower(iphs: IPHS, verdict: str) -> Program:
         limits=limits,
         taken=frozenset(q.taken),
     )
+
+
+def _values(
+    table: Mapping[str, Parameter] | Mapping[str, Input],
+) -> dict[str, float | tuple[float, ...]]:
+    return {name: entry.si for name, entry in table.items()}
 
 
 def _state(placed: Placed, port: Storage | Body) -> Field:

@@ -1,7 +1,7 @@
 """The head of a NumPy module: what it is, its records, its parameters.
 
-Input: a `Program`.  Output: text.  It has no date, no path and no host, so that it only changes when
-the spec or the generator does.
+Input: a `Program`.  Output: text.  It has no date, no path and no host, so that it only changes
+when the spec or the generator does.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np"""
 
 RECORDS = '''class Record(NamedTuple):
-    """A row of an array: its name, SI unit, a line on it, and its bank if it stands for one a lane."""
+    """A row of an array: name, SI unit, a line on it, and its bank if it stands for one a lane."""
 
     name: str
     unit: str
@@ -43,7 +43,7 @@ LANES = '''def _lanes(value, count, ndim):
     return value.reshape(count, *(1,) * (ndim - 1))'''
 
 
-BLOCKS = '''_BLOCK = 50_000  # numbers of a batch that are worked on together: they stay in the cache
+BLOCKS = '''_BLOCK = 50_000  # numbers of a batch worked on together: they stay in the cache
 
 
 def _in_blocks(x, u, p):
@@ -76,7 +76,9 @@ def _joined(parts: Iterable[str]) -> str:
     """Return blocks with one empty line between them, two around classes and functions."""
     text = ""
     for part in parts:
-        wide = part.startswith(("class", "@", "def", "_BLOCK", "_Lanes")) or text.rstrip().endswith("bool")
+        wide = part.startswith(("class", "@", "def", "_BLOCK", "_Lanes")) or text.rstrip().endswith(
+            "bool"
+        )
         text += ("\n\n\n" if wide else "\n\n") + part if text else part
     return text
 
@@ -152,7 +154,10 @@ def _records(name: str, fields: tuple[Field, ...]) -> Iterable[str]:
 def _parameters(program: Program) -> str:
     lines = [LANES_TYPE, "", ""] if program.counts else []
     lines += ["@dataclass(frozen=True)", "class Parameters:"]
-    lines += [f'    """Parameters of {program.name} in SI units; the values are the spec\'s."""', ""]
+    lines += [
+        f'    """Parameters of {program.name} in SI units; the values are the spec\'s."""',
+        "",
+    ]
     for field in program.parameters:
         kind = "_Lanes" if field.bank else "float"
         lines.append(f"    {field.name}: {kind} = {program.defaults[field.name]!r}")

@@ -1,8 +1,8 @@
 """Program to a NumPy module: plain text that imports NumPy alone.
 
-Input: a `Program`.  Output: the text of ``<model>.py``, with the interface of the contracts: arrays of
-shape (n, *batch), banks spread.  Words of a spec reach the text only as checked identifiers or inside
-string literals.
+Input: a `Program`.  Output: the text of ``<model>.py``, with the interface of the contracts:
+arrays of shape (n, *batch), banks spread.  Words of a spec reach the text only as checked
+identifiers or inside string literals.
 """
 
 from __future__ import annotations
@@ -152,7 +152,7 @@ class _Printer:
         return self._assign(quantity.name, text, quantity.value)
 
     def _laned(self, value: Expr) -> str:
-        """Return an expression's text, made to have an axis of lanes even if its parameters do not."""
+        """Return an expression's text, with an axis of lanes even if its parameters have none."""
         text = piece(value, NUMPY)
         if bank_of(value, self.arrays):
             return text[0]
@@ -234,7 +234,11 @@ def _shape(function: Function) -> str:
     if function.scalar:
         return "(*batch)"
     batch = "" if function.name == "initial_state" else " *batch"
-    rows = "n" if function.name in {"rhs", "initial_state"} else _total([r.slot for r in function.rows])
+    rows = (
+        "n"
+        if function.name in {"rhs", "initial_state"}
+        else _total([r.slot for r in function.rows])
+    )
     return f"({rows},{batch})"
 
 

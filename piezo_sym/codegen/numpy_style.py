@@ -1,7 +1,7 @@
 """How NumPy spells the parts of an expression.
 
-Input: a tree.  Output: one line of NumPy.  A dead zone prints as ``z - clip(z, -w, w)``, one pass over
-an array instead of five.
+Input: a tree.  Output: one line of NumPy.  A dead zone prints as ``z - clip(z, -w, w)``, one pass
+over an array instead of five.
 """
 
 from __future__ import annotations

@@ -2,8 +2,8 @@
 
 Input: nothing; these are the types.  Output: frozen records that lowering fills and printers read.
 A program is a list of named quantities in an order in which each can be computed from earlier ones,
-and functions whose rows are expressions in them.  A quantity has one value, or one a lane of a bank;
-a sum over lanes is always a quantity of its own.  There is no algebra beyond this point.
+and functions whose rows are expressions in them.  A quantity has one value, or one a lane of a
+bank; a sum over lanes is always a quantity of its own.  There is no algebra beyond this point.
 """
 
 from __future__ import annotations
@@ -170,7 +170,7 @@ def needed(
 
 
 def bank_of(node: Node, lanes: Mapping[str, str]) -> str | None:
-    """Return the bank whose lanes an expression differs over; a sum over lanes differs over none."""
+    """Return the bank over whose lanes an expression differs; a sum over lanes has none."""
     if isinstance(node, LaneSum):
         return None
     return next((lanes[name] for name in names(node) if name in lanes), None)

@@ -1,7 +1,7 @@
-"""The named quantities of a program: co-states, ratios, driving forces, laws, heats, sums over lanes.
+"""The named quantities of a program: co-states, ratios, driving forces, laws, heats, sums.
 
-Input: an `IPHS`.  Output: `Quantities`, the definitions in an order in which each can be computed, and
-the terms of Definition 1's products as expressions in them.
+Input: an `IPHS`.  Output: `Quantities`, the definitions in an order in which each can be computed,
+and the terms of Definition 1's products as expressions in them.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ import sympy as sp
 from piezo_sym.codegen.coefficients import coefficient
 from piezo_sym.codegen.excess import with_excess
 from piezo_sym.codegen.program import Quantity
-from piezo_sym.iphs import IPHS, costate_name
+from piezo_sym.definitions import costate_name
+from piezo_sym.iphs import IPHS
 from piezo_sym.lanes import LaneMatrix, Slot
 from piezo_sym.network import port_order
 from piezo_sym.spec.calculus import add, mul
@@ -156,5 +157,3 @@ class Quantities:
             return self.total(self.heats[k], slot.bank, base)
         known = next((q for q in self.defined if q.value == self.heats[k]), None)
         return Sym(known.name) if known else self.define(base, self.heats[k], None, "heats")
-
-

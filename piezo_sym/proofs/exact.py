@@ -1,9 +1,9 @@
 """The properties that algebra decides: skew, casimir, energy, entropy, temperature.
 
-Input: an `IPHS`.  Output: a row each.  The system stands in named co-states, so that each property is
-the vanishing of a normal form, a polynomial in independent symbols and in sums over lanes: zero proves
-it for every state, input, parameter and every r; a value other than zero at exact numbers refutes it.
-A `None` of SymPy's is open, never proved.
+Input: an `IPHS`.  Output: a row each.  The system stands in named co-states, so that each property
+is the vanishing of a normal form, a polynomial in independent symbols and in sums over lanes: zero
+proves it for every state, input, parameter and every r; a value other than zero at exact numbers
+refutes it. A `None` of SymPy's is open, never proved.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def skew(iphs: IPHS) -> Row:
 
 
 def casimir(iphs: IPHS) -> Row:
-    """The entropy is a Casimir function of J0."""
+    """Entropy is a Casimir function of J0."""
     system = iphs.system
     return _row(iphs, "casimir", "J0 dS/dx = 0", _entries("J0 dS/dx", system.J0 @ system.dS))
 

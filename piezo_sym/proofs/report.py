@@ -90,7 +90,9 @@ class Report:
             what = f"{row.id} is {row.verdict.value}"
             reason = f"{row.reason} at {at}" if at else row.reason
             where = f"{self.model}.{row.element}" if row.element else self.model
-            raise ProofError(f"{what}: {reason}", where, row.statement, "mend the law or the domain")
+            raise ProofError(
+                f"{what}: {reason}", where, row.statement, "mend the law or the domain"
+            )
 
     def summary(self) -> str:
         """Return one line: how many rows have which verdict."""

@@ -17,7 +17,7 @@ from piezo_sym.run.module import lanes
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    import pandas  # type: ignore[import-untyped]
+    import pandas
     import xarray
     from numpy.typing import NDArray
 

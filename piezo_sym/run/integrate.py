@@ -111,7 +111,7 @@ def segment_batches(
     try:
         for solver in accepted(system, segment, x, tolerance):
             x, spent, steps = solver.y.copy(), solver.nfev, steps + 1
-            for stretch in step_stretch(segment, solver, times, system.inputs.duration).cut(most):
+            for stretch in step_stretch(segment, solver, times).cut(most):
                 pending.append(stretch)
                 held += stretch.stops.size
                 if held >= most:
@@ -132,12 +132,10 @@ def start_stretch(segment: Segment, x: FloatArray, times: FloatArray) -> Stretch
     return Stretch(segment.start, stops, samples, lambda t: np.tile(x[:, None], t.size))
 
 
-def step_stretch(
-    segment: Segment, solver: OdeSolver, times: FloatArray, duration: float
-) -> Stretch:
+def step_stretch(segment: Segment, solver: OdeSolver, times: FloatArray) -> Stretch:
     """Return the solver's last step: samples in it, then its end.
 
-    A sample at the end of a segment belongs to the next one's start, if there is one.
+    A sample at the end of a segment is taken again at the next one's start, with its inputs.
     """
     end = segment.stop if solver.status == "finished" else float(solver.t)
     first, last = np.searchsorted(times, [solver.t_old, end], side="right")
@@ -145,8 +143,6 @@ def step_stretch(
     samples = np.arange(first, last)
     if not inner.size or inner[-1] < end:
         inner, samples = np.append(inner, end), np.append(samples, -1)
-    elif end == segment.stop < duration:
-        samples[-1] = -1
     return Stretch(float(solver.t_old), inner, samples, solver.dense_output())
 
 

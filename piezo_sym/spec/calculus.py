@@ -272,5 +272,3 @@ def _slope(node: Expr, name: str) -> Expr | None:
 
 def _smooth(node: Expr) -> bool:
     return not any(isinstance(part, If | Call) for part in walk(node))
-
-

@@ -8,14 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import TypeVar, final
+from typing import Any, TypeVar, final, overload
 
 from piezo_sym.spec.elements.ports import Body, Exchange, Gyrator, Port, Resistor, Source, Storage
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.names import fresh
 from piezo_sym.spec.tables import banks, temperatures
 
-Kind = TypeVar("Kind", bound=Port)
+A = TypeVar("A", bound=Port)
+B = TypeVar("B", bound=Port)
+C = TypeVar("C", bound=Port)
+D = TypeVar("D", bound=Port)
 
 
 @final
@@ -44,7 +47,18 @@ class Circuit:
     ports: tuple[Placed, ...]
     names: frozenset[str]
 
-    def of(self, *kinds: type[Kind]) -> Iterator[tuple[Placed, Kind]]:
+    @overload
+    def of(self, kind: type[A], /) -> Iterator[tuple[Placed, A]]: ...
+
+    @overload
+    def of(self, kind: type[A], other: type[B], /) -> Iterator[tuple[Placed, A | B]]: ...
+
+    @overload
+    def of(
+        self, kind: type[A], other: type[B], third: type[C], fourth: type[D], /
+    ) -> Iterator[tuple[Placed, A | B | C | D]]: ...
+
+    def of(self, *kinds: Any) -> Iterator[tuple[Placed, Any]]:
         """Yield the ports of some kinds, in declaration order."""
         for placed in self.ports:
             if isinstance(placed.port, kinds):

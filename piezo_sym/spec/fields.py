@@ -7,7 +7,7 @@ of an element, each right in itself; what must hold between them is `check`'s.
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, TypeAlias, Union, final
+from typing import Annotated, Any, Union, final
 
 from pydantic import (
     AfterValidator,
@@ -131,7 +131,5 @@ class Domain(Frozen):
     assume: tuple[StrictStr, ...] = ()
 
 
-AnyElement: TypeAlias = Annotated[  # one of the registered kinds, told apart by `kind`
-    Union[tuple(KINDS.values())],  # type: ignore[valid-type]  # noqa: UP007
-    Field(discriminator="kind"),
-]
+#: One of the registered kinds, told apart by `kind`.
+AnyElement: Any = Annotated[Union[tuple(KINDS.values())], Field(discriminator="kind")]  # noqa: UP007

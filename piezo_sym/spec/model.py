@@ -1,7 +1,7 @@
 """The spec as one frozen value: what a user declares.
 
-Input: TOML data, or Python arguments of the same shape.  Output: a `Model`, immutable, hashable, and
-equal to another exactly if both say the same in the same order.
+Input: TOML data, or Python arguments of the same shape.  Output: a `Model`, immutable, hashable,
+and equal to another exactly if both say the same in the same order.
 """
 
 from __future__ import annotations

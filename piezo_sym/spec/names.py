@@ -1,9 +1,9 @@
 """Which words may be names, and fresh names for what the generator adds.
 
-Input: a word from a spec.  Output: the word, or a `SpecError` that offers a better one.  Names end up
-as identifiers in Python and C and as file names, so they are plain ASCII, at most 40 characters, no
-keyword of a language a user exports to, and no name the law language already uses.  A trailing
-underscore is kept for the generator, so that `fresh` never meets a user's name.
+Input: a word from a spec.  Output: the word, or a `SpecError` that offers a better one.  Names end
+up as identifiers in Python and C and as file names, so they are plain ASCII, at most 40
+characters, no keyword of a language a user exports to, and no name the law language already uses.
+A trailing underscore is kept for the generator, so that `fresh` never meets a user's name.
 """
 
 from __future__ import annotations
@@ -20,20 +20,24 @@ NAME = re.compile(r"[A-Za-z](?:[A-Za-z0-9_]*[A-Za-z0-9])?")
 #: Letters that laws use for their own variables, and the generated module's one import.
 LETTERS = frozenset({"i", "v", "f", "T", "np"})
 
-_C = """auto break case char const continue default do double else enum extern float for goto if inline
-int long register restrict return short signed sizeof static struct switch typedef union unsigned
+_C = """auto break case char const continue default do double else enum extern float for goto if
+inline int long register restrict return short signed sizeof static struct switch typedef union
+unsigned
 void volatile while main NULL bool true false"""
 _MATLAB = """break case catch classdef continue else elseif end for function global if otherwise
 parfor persistent return spmd switch try while"""
 _MODELICA = """algorithm and annotation assert block break class connect connector constant
-constrainedby der discrete each else elseif elsewhen encapsulated end enumeration equation expandable
-extends external false final flow for function if import impure in initial inner input loop model not
-operator or outer output package parameter partial protected public pure record redeclare replaceable
+constrainedby der discrete each else elseif elsewhen encapsulated end enumeration equation
+expandable extends external false final flow for function if import impure in initial inner input
+loop model not operator or outer output package parameter partial protected public pure record
+redeclare replaceable
 return stream then true type when while within time"""
 _DEVICES = "con prn aux nul " + " ".join(f"com{n} lpt{n}" for n in range(1, 10))
 
-KEYWORDS = frozenset(keyword.kwlist) | frozenset(keyword.softkwlist) - {"_"} | frozenset(
-    f"{_C} {_MATLAB} {_MODELICA}".split()
+KEYWORDS = (
+    frozenset(keyword.kwlist)
+    | frozenset(keyword.softkwlist) - {"_"}
+    | frozenset(f"{_C} {_MATLAB} {_MODELICA}".split())
 )
 DEVICES = frozenset(_DEVICES.split())
 OFFERS = {"lambda": "lam", "in": "inlet", "end": "tip", "time": "t", "der": "d"}

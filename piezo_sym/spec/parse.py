@@ -9,7 +9,6 @@ from the source text as exact rationals.  Nothing is ever evaluated by Python.
 from __future__ import annotations
 
 import ast
-import re
 from collections.abc import Callable
 from fractions import Fraction
 from functools import lru_cache
@@ -33,34 +32,22 @@ from piezo_sym.spec.expressions import (
     evaluate,
     names,
 )
+from piezo_sym.spec.lexis import (
+    LANGUAGE,
+    MAX_DEPTH,
+    TOKEN,
+    RefusedError,
+    check_letters,
+    check_tokens,
+)
 from piezo_sym.spec.text import spell
 
-MAX_LENGTH = 1000
-MAX_DEPTH = 40
-MAX_PREFIXES = 8
-MAX_DIGITS = 40
-MAX_MAGNITUDE = 300
 MAX_POWER = 16
 MAX_DEGREE = 32
 
-TOKEN = re.compile(
-    r"(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)"
-    r"|(?P<name>[A-Za-z_][A-Za-z0-9_]*)"
-    r"|(?P<operator>\*\*|<=|>=|[-+*/(),<>])"
-    r"|(?P<space> +)"
-)
 COMPARE: dict[type[ast.cmpop], str] = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
-LANGUAGE = "numbers, names, + - * / **, (), 'a if x < y else b', or a function as in exp(x)"
 
 Tree = TypeVar("Tree", Expr, Cmp)
-
-
-class _RefusedError(Exception):
-    """Why a text is no law, on its way to where the place in the spec is known."""
-
-    def __init__(self, what: str, expected: str = "", remedy: str = "") -> None:
-        super().__init__(what)
-        self.what, self.expected, self.remedy = what, expected, remedy
 
 
 def parse_law(text: str, where: str) -> Expr:
@@ -93,7 +80,7 @@ def parse_condition(text: str, where: str) -> Cmp:
 def _located(read: Callable[[str], Tree], text: str, where: str) -> Tree:
     try:
         return read(text)
-    except _RefusedError as refused:
+    except RefusedError as refused:
         what = f"{quote(text)} {refused.what}"
         raise SpecError(what, where, refused.expected, refused.remedy) from None
 
@@ -102,7 +89,7 @@ def _located(read: Callable[[str], Tree], text: str, where: str) -> Tree:
 def _law(text: str) -> Expr:
     body = _parsed(text)
     if isinstance(body, ast.Compare):
-        raise _RefusedError("is a comparison", "a law", "write 'a if x < y else b'")
+        raise RefusedError("is a comparison", "a law", "write 'a if x < y else b'")
     tree = _expression(body, text)
     _check_values(tree)
     return tree
@@ -112,7 +99,7 @@ def _law(text: str) -> Expr:
 def _condition(text: str) -> Cmp:
     body = _parsed(text)
     if not isinstance(body, ast.Compare):
-        raise _RefusedError("is not a comparison", "one of < <= > >=, as in 'T > T_0'")
+        raise RefusedError("is not a comparison", "one of < <= > >=, as in 'T > T_0'")
     tree = _comparison(body, text)
     _check_values(tree.left)
     _check_values(tree.right)
@@ -121,64 +108,18 @@ def _condition(text: str) -> Cmp:
 
 def _parsed(text: str) -> ast.expr:
     """Return Python's own parse of a text that has passed the checks on its letters."""
-    _check_letters(text)
-    _check_tokens(text)
+    check_letters(text)
+    check_tokens(text)
     try:
         return ast.parse(text.strip(), mode="eval").body
     except (SyntaxError, ValueError, MemoryError, RecursionError):
-        raise _RefusedError("is not a complete law", LANGUAGE) from None
-
-
-def _check_letters(text: str) -> None:
-    if len(text) > MAX_LENGTH:
-        what = f"is {len(text)} characters long"
-        raise _RefusedError(what, f"at most {MAX_LENGTH}", "split the law into parameters")
-    if not text.strip():
-        raise _RefusedError("is empty", "a law, such as 'd*v'")
-    odd = next((c for c in text if not " " <= c <= "~"), None)
-    if odd is not None:
-        what = f"has the character U+{ord(odd):04X}"
-        raise _RefusedError(what, "plain ASCII on one line", "type the name in Latin letters")
-
-
-def _check_tokens(text: str) -> None:
-    position = depth = prefixes = 0
-    while position < len(text):
-        match = TOKEN.match(text, position)
-        if match is None:
-            what = f"has {quote(text[position])} at column {position + 1}"
-            raise _RefusedError(what, LANGUAGE)
-        token = match.group()
-        depth += (token == "(") - (token == ")")
-        prefixes = _prefixes(prefixes, match)
-        if depth > MAX_DEPTH or prefixes > MAX_PREFIXES:
-            raise _RefusedError("is nested too deeply", f"at most {MAX_DEPTH} levels")
-        if match.lastgroup == "number":
-            _check_number(token, text[match.end() : match.end() + 1])
-        position = match.end()
-
-
-def _prefixes(count: int, match: re.Match[str]) -> int:
-    """Return how many operators stand in a row, spaces aside."""
-    if match.lastgroup == "space":
-        return count
-    return count + 1 if match.group() in {"+", "-", "*", "/", "**"} else 0
-
-
-def _check_number(token: str, following: str) -> None:
-    if following.isalnum() or following == "_":
-        what = f"has a number that runs into {quote(following)}"
-        raise _RefusedError(what, "a plain decimal number, such as 0.5 or 1e-3")
-    mantissa, _, exponent = token.lower().partition("e")
-    if len(mantissa) > MAX_DIGITS or abs(int(exponent[:9] or "0")) > MAX_MAGNITUDE:
-        what = f"has the number {quote(token)}"
-        raise _RefusedError(what, f"at most {MAX_DIGITS} digits and 1e+-{MAX_MAGNITUDE}")
+        raise RefusedError("is not a complete law", LANGUAGE) from None
 
 
 def _expression(node: ast.expr, text: str, depth: int = 0) -> Expr:
     """Return the tree of an allowed node; anything else is refused by what it is."""
     if depth > MAX_DEPTH:
-        raise _RefusedError("is nested too deeply", f"at most {MAX_DEPTH} levels")
+        raise RefusedError("is nested too deeply", f"at most {MAX_DEPTH} levels")
     match node:
         case ast.Constant():
             return Num(_number(ast.get_source_segment(text.strip(), node) or ""))
@@ -194,18 +135,18 @@ def _expression(node: ast.expr, text: str, depth: int = 0) -> Expr:
             parts = _expression(then, text, depth + 1), _expression(other, text, depth + 1)
             return If(parts[0], _comparison(test, text, depth + 1), parts[1])
         case ast.IfExp():
-            raise _RefusedError("chooses by no comparison", "'a if x < y else b'")
+            raise RefusedError("chooses by no comparison", "'a if x < y else b'")
         case ast.Call(ast.Name(function), args, []):
             return _call(function, args, text, depth + 1)
         case ast.Compare():
-            raise _RefusedError("uses a comparison as a number", "'a if x < y else b'")
-    raise _RefusedError("is not of the law language", LANGUAGE)
+            raise RefusedError("uses a comparison as a number", "'a if x < y else b'")
+    raise RefusedError("is not of the law language", LANGUAGE)
 
 
 def _number(source: str) -> Fraction:
     match = TOKEN.fullmatch(source)
     if match is None or match.lastgroup != "number":
-        raise _RefusedError(f"has {quote(source)} where a number should be", "0.5 or 1e-3")
+        raise RefusedError(f"has {quote(source)} where a number should be", "0.5 or 1e-3")
     return Fraction(source)
 
 
@@ -219,7 +160,7 @@ def _binary(left: ast.expr, op: ast.operator, right: ast.expr, text: str, depth:
             return Div(_expression(left, text, depth), _expression(right, text, depth))
         case ast.Pow():
             return _power(_expression(left, text, depth), _expression(right, text, depth))
-    raise _RefusedError("uses an operator that laws do not have", LANGUAGE)
+    raise RefusedError("uses an operator that laws do not have", LANGUAGE)
 
 
 def _sum(left: ast.expr, op: ast.operator, right: ast.expr, text: str, depth: int) -> Expr:
@@ -230,17 +171,17 @@ def _sum(left: ast.expr, op: ast.operator, right: ast.expr, text: str, depth: in
         backwards.append(Neg(term) if isinstance(op, ast.Sub) else term)
         if not (isinstance(left, ast.BinOp) and isinstance(left.op, (ast.Add, ast.Sub))):
             break
-        left, op, right = left.left, left.op, left.right
+        op, right, left = left.op, left.right, left.left
     backwards.append(_expression(left, text, depth))
     return Add(tuple(reversed(backwards)))
 
 
 def _power(base: Expr, exponent: Expr) -> Expr:
     if names(exponent):
-        raise _RefusedError("has a power that is not a number", "a small number, as in v**2")
+        raise RefusedError("has a power that is not a number", "a small number, as in v**2")
     value = _rational(exponent)
     if value is None or max(abs(value.numerator), value.denominator) > MAX_POWER:
-        raise _RefusedError("has too large a power", f"whole numbers or p/q up to {MAX_POWER}")
+        raise RefusedError("has too large a power", f"whole numbers or p/q up to {MAX_POWER}")
     return Pow(base, value)
 
 
@@ -260,10 +201,10 @@ def _rational(node: Expr) -> Fraction | None:
 
 def _comparison(node: ast.Compare, text: str, depth: int = 0) -> Cmp:
     if len(node.ops) != 1:
-        raise _RefusedError("chains comparisons", "one comparison at a time")
+        raise RefusedError("chains comparisons", "one comparison at a time")
     op = COMPARE.get(type(node.ops[0]))
     if op is None:
-        raise _RefusedError("compares in a way that laws do not have", "one of < <= > >=")
+        raise RefusedError("compares in a way that laws do not have", "one of < <= > >=")
     left = _expression(node.left, text, depth + 1)
     return Cmp(op, left, _expression(node.comparators[0], text, depth + 1))
 
@@ -271,18 +212,18 @@ def _comparison(node: ast.Compare, text: str, depth: int = 0) -> Cmp:
 def _call(function: str, args: list[ast.expr], text: str, depth: int) -> Expr:
     if function not in FUNCTIONS:
         known = nearest(function, FUNCTIONS)
-        raise _RefusedError(f"calls {quote(function)}, which laws do not have", remedy=known)
+        raise RefusedError(f"calls {quote(function)}, which laws do not have", remedy=known)
     count = FUNCTIONS[function][0]
     if len(args) != count:
         what = f"gives {function} {len(args)} arguments"
-        raise _RefusedError(what, f"{count}")
+        raise RefusedError(what, f"{count}")
     return Call(function, tuple(_expression(arg, text, depth) for arg in args))
 
 
 def _check_values(tree: Expr) -> None:
     """Refuse constant parts without a value, and powers of powers that could explode."""
     if _degree(tree) > MAX_DEGREE:
-        raise _RefusedError("has too high a degree", f"at most {MAX_DEGREE} in all")
+        raise RefusedError("has too high a degree", f"at most {MAX_DEGREE} in all")
     _check_constants(tree)
 
 
@@ -308,5 +249,5 @@ def _check_constants(node: Expr | Cmp) -> bool:
         evaluate(node, {})
     except (ArithmeticError, ValueError):
         what = f"has the constant part {quote(spell(node))} without a finite real value"
-        raise _RefusedError(what, remedy="give the number itself") from None
+        raise RefusedError(what, remedy="give the number itself") from None
     return True

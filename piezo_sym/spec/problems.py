@@ -45,7 +45,9 @@ def _problem(detail: ErrorDetails) -> SpecError:
     value = detail.get("input")
     match detail["type"]:
         case "extra_forbidden":
-            return SpecError(f"unknown key {quote(place[-1])}", where, remedy=nearest(place[-1], known))
+            return SpecError(
+                f"unknown key {quote(place[-1])}", where, remedy=nearest(place[-1], known)
+            )
         case "missing":
             return SpecError("is missing", where, remedy=f"keys here: {listing(known)}")
         case "union_tag_invalid":

@@ -1,7 +1,7 @@
 """Spec files as text and plain data, before any type: found, read, checked for size and nesting.
 
-Input: a path, or the name of a shipped spec.  Output: text, or the data TOML gives.  Nothing here needs
-the spec's types, so that a run can compare a module with its spec at little cost.
+Input: a path, or the name of a shipped spec.  Output: text, or the data TOML gives.  Nothing here
+needs the spec's types, so that a run can compare a module with its spec at little cost.
 """
 
 from __future__ import annotations

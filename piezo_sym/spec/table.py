@@ -51,9 +51,7 @@ class Table(Mapping[str, Value], Generic[Value]):
         return f"Table({self._items!r})"
 
     @classmethod
-    def __get_pydantic_core_schema__(
-        cls, source: Any, handler: GetCoreSchemaHandler
-    ) -> CoreSchema:
+    def __get_pydantic_core_schema__(cls, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         """Validate as a dict of the value type, freeze it; serialise as a plain dict."""
         (value,) = get_args(source)
         inner = handler.generate_schema(dict[str, value])  # type: ignore[valid-type]

@@ -23,7 +23,15 @@ BASES = ("kg", "m", "s", "A", "K", "mol", "cd")
 DIMENSIONS = dict(
     zip(
         BASES,
-        ("[mass]", "[length]", "[time]", "[current]", "[temperature]", "[substance]", "[luminosity]"),
+        (
+            "[mass]",
+            "[length]",
+            "[time]",
+            "[current]",
+            "[temperature]",
+            "[substance]",
+            "[luminosity]",
+        ),
         strict=True,
     )
 )
@@ -125,7 +133,9 @@ def _named(name: str, where: str) -> Unit:
         factor, base = _registry().get_base_units(name)
         origin = _registry().Quantity(Fraction(0), name).to_base_units().magnitude
     except pint.UndefinedUnitError:
-        raise SpecError(f"unknown unit {quote(name)}", where, remedy=nearest(name, COMMON)) from None
+        raise SpecError(
+            f"unknown unit {quote(name)}", where, remedy=nearest(name, COMMON)
+        ) from None
     except TypeError:  # a logarithm of an exact number: dB, Np
         raise SpecError(f"unit {quote(name)} is logarithmic", where, "a plain unit") from None
     if origin != 0:

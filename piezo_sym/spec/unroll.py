@@ -21,8 +21,8 @@ from piezo_sym.spec.text import spell
 def unroll(model: Model, counts: Mapping[str, int]) -> Model:
     """Return the model with each bank as elements ``<bank>_1`` ... ``<bank>_<count>``.
 
-    A parameter or initial value given as a list becomes one for each lane; if the list is of another
-    length than asked for, its first value serves every lane.
+    A parameter or initial value given as a list becomes one for each lane; if the list is of
+    another length than asked for, its first value serves every lane.
 
     Raises
     ------
@@ -102,8 +102,6 @@ def _assumptions(model: Model, split: Mapping[str, int]) -> Any:
         lanes = max((split[word] for word in names(tree) if word in split), default=0)
         for lane in range(1, lanes + 1):
             words = {word: f"{word}_{lane}" for word in split}
-            yield condition_text(
-                Cmp(tree.op, rename(tree.left, words), rename(tree.right, words))
-            )
+            yield condition_text(Cmp(tree.op, rename(tree.left, words), rename(tree.right, words)))
         if not lanes:
             yield text

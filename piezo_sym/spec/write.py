@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from typing import Any
 
 ORDERED = ("parameters", "inputs", "elements")
-NOTHING = (None, False, "", "0", [])
+NOTHING: tuple[Any, ...] = (None, False, "", "0", [])
 
 
 def to_toml(data: Mapping[str, Any]) -> str:

@@ -14,22 +14,22 @@ def load(name):
     return module
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def piezo():
     return load("hand_written")
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def exchanger():
     return load("exchanger")
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def store():
     return load("store")
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def variant():
     """A module with some of its names changed."""
     return lambda module, **changes: SimpleNamespace(**(vars(module) | changes))

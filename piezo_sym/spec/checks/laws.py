@@ -34,9 +34,9 @@ def _unknown_reference(where: str, to: str, given: str, known: tuple[str, ...]) 
     if known:
         return SpecError(what, where, remedy=nearest(given, known))
     if to == "thermal_mass":
-        body = "[elements.body] kind = \"thermal_mass\", temperature = \"T_0*exp(S/c_0)\""
+        body = '[elements.body] kind = "thermal_mass", temperature = "T_0*exp(S/c_0)"'
         return SpecError(what, where, "a body for the heat", f"add one: {body}")
-    return SpecError(what, where, remedy=f"declare it in [inputs]: {given} = {{ unit = \"V\" }}")
+    return SpecError(what, where, remedy=f'declare it in [inputs]: {given} = {{ unit = "V" }}')
 
 
 def check_laws(spec: Tables) -> None:
@@ -59,7 +59,9 @@ def _check_initial(spec: Tables) -> None:
             raise SpecError(what, where, remedy=nearest(symbol, known))
         count = banks(spec).get(known[symbol])
         if isinstance(start, tuple) and len(start) != count:
-            expected = f"{count} values, one a lane" if count else "one value: no bank has this state"
+            expected = (
+                f"{count} values, one a lane" if count else "one value: no bank has this state"
+            )
             raise SpecError(f"{len(start)} values are given", where, expected)
         for part in start if isinstance(start, tuple) else (start,):
             if isinstance(part, str):
@@ -67,9 +69,7 @@ def _check_initial(spec: Tables) -> None:
                 _check_words(tree, where, (), [*spec.parameters, *spec.inputs])
 
 
-def _check_words(
-    tree: Node, where: str, letters: tuple[str, ...], words: Collection[str]
-) -> None:
+def _check_words(tree: Node, where: str, letters: tuple[str, ...], words: Collection[str]) -> None:
     for word in names(tree):
         if word in letters or word in words:
             continue

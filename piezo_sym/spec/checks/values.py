@@ -60,7 +60,12 @@ def _starts(
             tree = parse_law(part, f"initial.{symbol}")
             lanes = max((len(lists[word]) for word in names(tree) if word in lists), default=1)
             for lane in range(lanes):
-                here = {**fixed, **{word: column[lane] for word, column in lists.items() if len(column) == lanes}}
+                here = {
+                    **fixed,
+                    **{
+                        word: column[lane] for word, column in lists.items() if len(column) == lanes
+                    },
+                }
                 values.append(_value(tree, here, f"initial.{symbol}"))
         else:
             values.append(part)

@@ -6,9 +6,9 @@ from typing import Annotated, ClassVar, Literal, final
 
 from piezo_sym.spec.elements.base import (
     Element,
+    Law,
     Letters,
     Pair,
-    Law,
     StateName,
     positive,
     state_symbol,

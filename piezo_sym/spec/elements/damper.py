@@ -6,7 +6,7 @@ from typing import Annotated, Literal, final
 
 from pydantic import StrictBool
 
-from piezo_sym.spec.elements.base import BodyName, Element, Letters, Pair, Law
+from piezo_sym.spec.elements.base import BodyName, Element, Law, Letters, Pair
 from piezo_sym.spec.elements.ports import Domain, Port, Resistor, Variable
 
 
@@ -14,8 +14,8 @@ from piezo_sym.spec.elements.ports import Domain, Port, Resistor, Variable
 class Damper(Element):
     """A damper between two nodes, the damping term of eq. (10).
 
-    Its force F = force(v, T) [N] opposes v = v_a - v_b [m/s], the velocity of its first node relative
-    to its second, and F*v heats a body.
+    Its force F = force(v, T) [N] opposes v = v_a - v_b [m/s], the velocity of its first node
+    relative to its second, and F*v heats a body.
     """
 
     kind: Literal["damper"] = "damper"

@@ -9,9 +9,9 @@ from pydantic import Field, StrictBool, StrictInt
 from piezo_sym.spec.elements.base import (
     BodyName,
     Element,
+    Law,
     Letters,
     Pair,
-    Law,
     StateName,
     positive,
     state_symbol,

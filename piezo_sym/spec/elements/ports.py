@@ -1,9 +1,9 @@
 """What elements are made of: the ports between an element and its network.
 
 Input: nothing; these are the types.  Output: frozen records that `network` connects and `iphs`
-reads.  An element states here, once, its law; it knows nothing of matrices.  Across/through: voltage
-and velocity are across, current and force are through; a branch (a, b) has across e_a - e_b, and its
-through variable flows from a to b.
+reads.  An element states here, once, its law; it knows nothing of matrices.  Across/through:
+voltage and velocity are across, current and force are through; a branch (a, b) has across e_a -
+e_b, and its through variable flows from a to b.
 """
 
 from __future__ import annotations
@@ -77,12 +77,10 @@ class Resistor:
 
     Attributes
     ----------
-    letter : the letter of the conjugate variable z in `law`; ``T`` is the heated body's temperature.
-    field : the name of the law in the spec, for messages.
-    output : name of W, such as ``V_hysteron``.
-    effort : name of z, where it is not simply a co-state.
-    imposes : which variable W is; z is the other one.
-    heats : the element whose body takes the heat.
+    letter : the letter of the conjugate variable z in `law`; ``T`` is the heated body's
+    temperature. field : the name of the law in the spec, for messages. output : name of W, such as
+    ``V_hysteron``. effort : name of z, where it is not simply a co-state. imposes : which variable
+    W is; z is the other one. heats : the element whose body takes the heat.
     """
 
     letter: str

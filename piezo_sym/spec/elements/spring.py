@@ -7,9 +7,9 @@ from typing import Annotated, ClassVar, Literal, final
 from piezo_sym.spec.calculus import add, neg
 from piezo_sym.spec.elements.base import (
     Element,
+    Law,
     Letters,
     Pair,
-    Law,
     StateName,
     positive,
     state_symbol,

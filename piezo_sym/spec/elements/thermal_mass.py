@@ -6,8 +6,8 @@ from typing import Annotated, ClassVar, Literal, final
 
 from piezo_sym.spec.elements.base import (
     Element,
-    Letters,
     Law,
+    Letters,
     StateName,
     positive,
     state_symbol,

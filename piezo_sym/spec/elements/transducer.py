@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, final
 
-from piezo_sym.spec.elements.base import BodyName, Element, Letters, Pair, Law
+from piezo_sym.spec.elements.base import BodyName, Element, Law, Letters, Pair
 from piezo_sym.spec.elements.ports import Domain, Gyrator, Port
 
 

@@ -10,7 +10,7 @@ from piezo_sym.spec.elements.ports import Domain, Port, Source, Variable
 
 @final
 class VoltageSource(Element):
-    """A voltage between two nodes, V_in of eq. (12); the conjugate output is the current it gives."""
+    """A voltage between two nodes, V_in of eq. (12); the conjugate output is its current."""
 
     kind: Literal["voltage_source"] = "voltage_source"
     between: Pair

@@ -1,0 +1,1 @@
+"""Analysis of results: the figures of the paper."""

@@ -1,0 +1,110 @@
+"""What the names of a system stand for: co-states, law outputs, ratios, energies.
+
+Input: a `Circuit`, its symbols and its junction.  Output: the `System` in named co-states, and for
+each name the expression behind it, stated once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import sympy as sp
+
+from piezo_sym.errors import SpecError
+from piezo_sym.lanes import vector
+from piezo_sym.network import Junction, port_order
+from piezo_sym.spec.calculus import antiderivative
+from piezo_sym.spec.circuit import Circuit, Placed
+from piezo_sym.spec.elements.ports import Body, Exchange, Gyrator, Resistor, Source, Storage
+from piezo_sym.spec.expressions import Expr, rename
+from piezo_sym.spec.text import spell
+from piezo_sym.symbols import SymbolTable
+from piezo_sym.system import System
+
+
+def costate_name(port: Storage | Body) -> str:
+    """Return the name of a store's co-state: a body's is its temperature."""
+    return port.temperature if isinstance(port, Body) else port.costate
+
+
+def system_of(circuit: Circuit, symbols: SymbolTable, junction: Junction) -> System:
+    """Return Definition 1 over a junction: E, W and u by their symbols."""
+    lanes = junction.J0.lanes
+    stores = tuple(circuit.of(Storage, Body))
+    rows = {placed.element: n for n, (placed, port) in enumerate(stores) if isinstance(port, Body)}
+    resistors = [port for _, port in circuit.of(Resistor)]
+    costates = {n: symbols[costate_name(port)] for n, (_, port) in enumerate(stores)}
+    inputs = {
+        n: _input(placed.port, circuit, symbols) for n, placed in enumerate(port_order(circuit))
+    }
+    outputs = {n: symbols[port.output] for n, port in enumerate(resistors)}
+    return System(
+        states=junction.states,
+        processes=junction.processes,
+        ports=junction.ports,
+        E=vector(junction.states, lanes, costates),
+        dS=vector(junction.states, lanes, dict.fromkeys(rows.values(), sp.S.One)),
+        u=vector(junction.ports, lanes, inputs),
+        W=vector(junction.processes, lanes, outputs),
+        heats=tuple(rows[port.heats] for port in resistors),
+        J0=junction.J0,
+        B=junction.B,
+        D=junction.D,
+        G=junction.g,
+        N=junction.N,
+    )
+
+
+def _input(port: object, circuit: Circuit, symbols: SymbolTable) -> sp.Expr:
+    """Return the input of Definition 1 behind a port: itself, or lam*(T_e/T - 1)."""
+    match port:
+        case Source():
+            return symbols[port.input]
+        case Exchange():
+            temperature = symbols[circuit.body(port.body).temperature]
+            ratio = symbols[port.input] / temperature
+            return symbols.law(port.conductance, {}) * (ratio - 1)
+    msg = f"{type(port).__name__} is no port of an input"
+    raise TypeError(msg)
+
+
+def energy_of(element: str, port: Storage | Body) -> Expr:
+    """Return the energy of a store: the integral of its co-state law.
+
+    Raises
+    ------
+    SpecError
+        If it has no closed form.
+    """
+    energy = antiderivative(port.law, port.letter)
+    if energy is None:
+        what = f"the law {spell(port.law)} has no energy in closed form"
+        expected = f"sums of powers of {port.letter}, or an exponential"
+        raise SpecError(what, f"elements.{element}", expected)
+    return rename(energy, {port.letter: port.state})
+
+
+Definitions = Iterator[tuple[sp.Symbol, sp.Expr]]
+
+
+def laws_of(circuit: Circuit, symbols: SymbolTable, system: System) -> Definitions:
+    """Yield each law output W and its law in z and T."""
+    for (_, port), z in zip(circuit.of(Resistor), system.z, strict=True):
+        heat = symbols[circuit.body(port.heats).temperature]
+        yield symbols[port.output], symbols.law(port.law, {port.letter: z, "T": heat})
+
+
+def ratios_of(circuit: Circuit, symbols: SymbolTable) -> Definitions:
+    """Yield each transducer ratio and its law in T."""
+    for _, port in circuit.of(Gyrator):
+        letters = {"T": symbols[circuit.body(port.body).temperature]} if port.body else {}
+        yield symbols[port.name], symbols.law(port.ratio, letters)
+
+
+def costates_of(
+    stores: tuple[tuple[Placed, Storage | Body], ...], symbols: SymbolTable
+) -> Definitions:
+    """Yield each co-state and its law in the state."""
+    for _, port in stores:
+        law = symbols.law(port.law, {port.letter: symbols[port.state]})
+        yield symbols[costate_name(port)], law

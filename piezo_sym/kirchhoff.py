@@ -1,0 +1,233 @@
+"""Kirchhoff's and Newton's laws as exact equations, solved for banks of any size.
+
+Input: a `Circuit`.  Output: for each branch, the variable that it does not impose, as a combination
+of the co-states E, the law outputs W and the inputs u.  No element's matrices are known here: each
+branch imposes its across or its through variable, and the laws say the rest.  A bank is one
+representative lane, whose own unknowns are eliminated first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any, final
+
+from sympy.polys.domains import QQ
+
+from piezo_sym.errors import NetworkError
+from piezo_sym.linear import Equation, Form, SingularError, accumulate, combine, solve
+from piezo_sym.nodes import is_reference
+from piezo_sym.spec.circuit import Circuit, Placed
+from piezo_sym.spec.elements.ports import (
+    Body,
+    Branch,
+    Exchange,
+    Gyrator,
+    Resistor,
+    Source,
+    Storage,
+    Variable,
+)
+from piezo_sym.symbols import SymbolTable
+
+#: An answer: the part that is the same for every lane, and that of the branch's own lane.
+Answer = tuple[Form, Form]
+
+
+@final
+@dataclass(frozen=True)
+class Edge:
+    """A branch as the junction laws see it: its through variable as a combination.
+
+    `key` is the given it imposes (``("E", 2)``), and the name of the unknown it answers with.
+    """
+
+    placed: Placed
+    branch: Branch
+    imposes: Variable
+    key: tuple[str, int]
+    sign: int
+
+    @property
+    def unknown(self) -> tuple[str, Any]:
+        """The label of the through variable, where it is unknown."""
+        return ("t", self.key)
+
+
+def port_order(circuit: Circuit) -> tuple[Placed, ...]:
+    """Return the ports that an input drives: by the input's place in the spec, then declaration."""
+    inputs = list(circuit.model.inputs)
+    driven = [placed for placed, _ in circuit.of(Source, Exchange)]
+    return tuple(sorted(driven, key=lambda placed: inputs.index(placed.port.input)))  # type: ignore[union-attr]
+
+
+@final
+class Laws:
+    """The junction laws of one circuit on their way to a solution."""
+
+    def __init__(self, circuit: Circuit, symbols: SymbolTable) -> None:
+        self.circuit = circuit
+        self.banks = tuple(symbols.counts)
+        ratios = [symbols[port.name] for _, port in circuit.of(Gyrator)]
+        self.field = QQ.frac_field(*ratios) if ratios else QQ
+        self.ratio = {
+            port: self.field.from_sympy(symbols[port.name]) for _, port in circuit.of(Gyrator)
+        }
+        self.states = tuple(circuit.of(Storage, Body))
+        self.processes = tuple(circuit.of(Resistor))
+        self.ports = port_order(circuit)
+        self.edges = tuple(self._edges())
+
+    def _edges(self) -> Iterator[Edge]:
+        for n, (placed, port) in enumerate(self.states):
+            if isinstance(port, Storage):
+                yield Edge(placed, port.branch, port.imposes, ("E", n), 1)
+        for n, (placed, resistor) in enumerate(self.processes):
+            yield Edge(placed, resistor.branch, resistor.imposes, ("W", n), 1)
+        for n, placed in enumerate(self.ports):
+            if isinstance(placed.port, Source):
+                sign = 1 if placed.port.imposes is Variable.ACROSS else -1  # it pushes into a
+                yield Edge(placed, placed.port.branch, placed.port.imposes, ("u", n), sign)
+
+    def answers(self) -> dict[tuple[str, int], Answer]:
+        """Return each branch's answer, by the given that it imposes.
+
+        Raises
+        ------
+        NetworkError
+            If the laws have no, or more than one, solution; names the elements at fault.
+        """
+        lanes = {bank: self._solve_lane(bank) for bank in self.banks}
+        shared = self._solve_shared(lanes)
+        return {edge.key: self._answer(edge, lanes, shared) for edge in self.edges}
+
+    # The equations
+
+    def _through(self, edge: Edge) -> Equation:
+        """Return a branch's through variable as (unknowns, givens)."""
+        if edge.imposes is Variable.ACROSS:
+            return Equation({edge.unknown: self.field.one}, {})
+        return Equation({}, {edge.key: edge.sign * self.field.one})
+
+    def _balances(self, bank: str | None) -> dict[str, Equation]:
+        """Return what the branches of one bank, or of no bank, draw from each node."""
+        rows: dict[str, Equation] = {}
+        for edge in self.edges:
+            if edge.placed.bank == bank:
+                _draw(rows, edge.branch, self._through(edge), self.field.one)
+        if bank is None:
+            for port, ratio in self.ratio.items():
+                _draw(rows, port.first, Equation(_across(port.second, ratio), {}), self.field.one)
+                _draw(rows, port.second, Equation(_across(port.first, -ratio), {}), self.field.one)
+        return rows
+
+    def _constraints(self, bank: str | None) -> Iterator[Equation]:
+        for edge in self.edges:
+            if edge.placed.bank == bank and edge.imposes is Variable.ACROSS:
+                given = {edge.key: edge.sign * self.field.one}
+                yield Equation(_across(edge.branch, self.field.one), given)
+
+    def _solve_lane(self, bank: str) -> dict[Any, Form]:
+        """Return one lane's own unknowns in terms of its givens and the shared nodes."""
+        balances = self._balances(bank)
+        inner = {node: row for node, row in balances.items() if _is_inner(node)}
+        equations = [Equation(row.left, _negated(row.right)) for row in inner.values()]
+        equations += list(self._constraints(bank))
+        unknowns = [("e", node) for node in inner]
+        unknowns += [
+            e.unknown for e in self.edges if e.placed.bank == bank and e.imposes is Variable.ACROSS
+        ]
+        for equation in equations:  # shared nodes are given, for a lane
+            for label in [label for label in equation.left if label not in unknowns]:
+                accumulate(equation.right, label, -equation.left.pop(label))
+        return self._solved(equations, unknowns)
+
+    def _solve_shared(self, lanes: dict[str, dict[Any, Form]]) -> dict[Any, Form]:
+        """Return the shared unknowns in terms of shared givens and of sums over lanes."""
+        balances = self._balances(None)
+        for bank, solution in lanes.items():
+            for node, row in self._balances(bank).items():
+                if not _is_inner(node):
+                    total = balances.setdefault(node, Equation())
+                    combine(total.right, self._summed(bank, row, solution), self.field.one)
+        equations = [Equation(row.left, _negated(row.right)) for row in balances.values()]
+        equations += list(self._constraints(None))
+        unknowns: list[Any] = [("e", node) for node in balances]
+        unknowns += [
+            e.unknown for e in self.edges if e.placed.bank is None and e.imposes is Variable.ACROSS
+        ]
+        return self._solved(equations, unknowns)
+
+    def _summed(self, bank: str, row: Equation, solution: dict[Any, Form]) -> Form:
+        """Return what all lanes together draw from a shared node, as sums of their givens."""
+        drawn = dict(row.right)
+        for label, coefficient in row.left.items():
+            combine(drawn, solution.get(label, {label: self.field.one}), coefficient)
+        if any(label[0] == "e" for label in drawn):
+            what = f"bank '{bank}' fixes a node that it shares"
+            remedy = "put an inductor or a hysteron in each lane, so that its current is a state"
+            raise NetworkError(what, f"elements.{bank}", remedy=remedy)
+        return {("sum", label): coefficient for label, coefficient in drawn.items()}
+
+    def _solved(self, equations: Iterable[Equation], unknowns: Iterable[Any]) -> dict[Any, Form]:
+        try:
+            return solve(equations, unknowns)
+        except SingularError as singular:
+            raise self._refusal(singular) from None
+
+    def _refusal(self, singular: SingularError) -> NetworkError:
+        elements = {edge.key: edge.placed.element for edge in self.edges}
+        for relation in singular.relations:
+            keys = [label[1] if label[0] == "sum" else label for label in relation]
+            tied = ", ".join(f"'{name}'" for name in dict.fromkeys(elements[key] for key in keys))
+            what = f"elements {tied} fix each other's variables"
+            remedy = "merge those in parallel (or in series), or put a resistor or damper between"
+            raise NetworkError(what, "network", "independent storage and sources", remedy)
+        loose = [label[1] for label in singular.undetermined if label[0] == "e"]
+        at = f"node '{loose[0]}'" if loose else "the network"
+        remedy = "connect a capacitor, mass, source or voltage-law resistor there"
+        return NetworkError(f"nothing determines {at}", "network", remedy=remedy)
+
+    # The answers
+
+    def _answer(
+        self, edge: Edge, lanes: dict[str, dict[Any, Form]], shared: dict[Any, Form]
+    ) -> tuple[Form, Form]:
+        """Return a branch's answer, the variable it does not impose: (every lane, own lane)."""
+        across = edge.imposes is Variable.THROUGH
+        asked = _across(edge.branch, self.field.one) if across else {edge.unknown: self.field.one}
+        own = lanes[edge.placed.bank] if edge.placed.bank else {}
+        mine: Form = {}
+        for label, coefficient in asked.items():
+            combine(mine, own.get(label, {label: self.field.one}), coefficient)
+        full: Form = {}
+        for label in [label for label in mine if label in shared]:
+            combine(full, shared[label], mine.pop(label))
+        return full, mine
+
+
+def _is_inner(node: str) -> bool:
+    """Return whether a node is an element's own (no spec can write the colon)."""
+    return ":" in node
+
+
+def _across(branch: Branch, factor: Any) -> Form:
+    """Return ``factor*(e_a - e_b)``, the reference nodes being at zero."""
+    form: Form = {}
+    for node, value in zip(branch, (factor, -factor), strict=True):
+        if not is_reference(node):
+            accumulate(form, ("e", node), value)
+    return form
+
+
+def _draw(rows: dict[str, Equation], branch: Branch, through: Equation, one: Any) -> None:
+    """Book a through variable at both ends of its branch: out of the first, into the second."""
+    for node, sign in zip(branch, (one, -one), strict=True):
+        if not is_reference(node):
+            row = rows.setdefault(node, Equation())
+            combine(row.left, through.left, sign)
+            combine(row.right, through.right, sign)
+
+
+def _negated(form: Form) -> Form:
+    return {label: -coefficient for label, coefficient in form.items()}

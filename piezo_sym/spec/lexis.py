@@ -1,0 +1,79 @@
+"""The letters and tokens of laws, checked before anything parses them.
+
+Input: a stranger's text.  Output: nothing, or a `RefusedError` that says what is wrong with it.
+"""
+
+from __future__ import annotations
+
+import re
+
+from piezo_sym.errors import quote
+
+LANGUAGE = "numbers, names, + - * / **, (), 'a if x < y else b', or a function as in exp(x)"
+MAX_DEPTH = 40
+MAX_DIGITS = 40
+MAX_LENGTH = 1000
+MAX_MAGNITUDE = 300
+MAX_PREFIXES = 8
+TOKEN = re.compile(
+    r"(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)"
+    r"|(?P<name>[A-Za-z_][A-Za-z0-9_]*)"
+    r"|(?P<operator>\*\*|<=|>=|[-+*/(),<>])"
+    r"|(?P<space> +)"
+)
+
+
+class RefusedError(Exception):
+    """Why a text is no law, on its way to where the place in the spec is known."""
+
+    def __init__(self, what: str, expected: str = "", remedy: str = "") -> None:
+        super().__init__(what)
+        self.what, self.expected, self.remedy = what, expected, remedy
+
+
+def check_letters(text: str) -> None:
+    """Refuse a text that is too long, empty, or not plain ASCII on one line."""
+    if len(text) > MAX_LENGTH:
+        what = f"is {len(text)} characters long"
+        raise RefusedError(what, f"at most {MAX_LENGTH}", "split the law into parameters")
+    if not text.strip():
+        raise RefusedError("is empty", "a law, such as 'd*v'")
+    odd = next((c for c in text if not " " <= c <= "~"), None)
+    if odd is not None:
+        what = f"has the character U+{ord(odd):04X}"
+        raise RefusedError(what, "plain ASCII on one line", "type the name in Latin letters")
+
+
+def check_tokens(text: str) -> None:
+    """Refuse what is no token of the law language, and nesting beyond what a person writes."""
+    position = depth = prefixes = 0
+    while position < len(text):
+        match = TOKEN.match(text, position)
+        if match is None:
+            what = f"has {quote(text[position])} at column {position + 1}"
+            raise RefusedError(what, LANGUAGE)
+        token = match.group()
+        depth += (token == "(") - (token == ")")
+        prefixes = _prefixes(prefixes, match)
+        if depth > MAX_DEPTH or prefixes > MAX_PREFIXES:
+            raise RefusedError("is nested too deeply", f"at most {MAX_DEPTH} levels")
+        if match.lastgroup == "number":
+            _check_number(token, text[match.end() : match.end() + 1])
+        position = match.end()
+
+
+def _prefixes(count: int, match: re.Match[str]) -> int:
+    """Return how many operators stand in a row, spaces aside."""
+    if match.lastgroup == "space":
+        return count
+    return count + 1 if match.group() in {"+", "-", "*", "/", "**"} else 0
+
+
+def _check_number(token: str, following: str) -> None:
+    if following.isalnum() or following == "_":
+        what = f"has a number that runs into {quote(following)}"
+        raise RefusedError(what, "a plain decimal number, such as 0.5 or 1e-3")
+    mantissa, _, exponent = token.lower().partition("e")
+    if len(mantissa) > MAX_DIGITS or abs(int(exponent[:9] or "0")) > MAX_MAGNITUDE:
+        what = f"has the number {quote(token)}"
+        raise RefusedError(what, f"at most {MAX_DIGITS} digits and 1e+-{MAX_MAGNITUDE}")
