@@ -41,7 +41,7 @@ class Process:
     ----------
     name, bank : the element, and its bank if it stands for one a lane.
     body : the thermal mass it heats.
-    J : its skew structure matrix (of lane j, for a bank).
+    J : its skew structure matrix; for a bank that of lane j, ``J.explicit(counts, lane=j)``.
     bracket : its driving force {S, U}_J.
     R : its modulating function W/T, eq. (4).
     gamma : R over the driving force z: W/(T z); 0/0 at z = 0, where only R is used.

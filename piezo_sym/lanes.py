@@ -11,7 +11,7 @@ one bank.  An entry may use lane symbols of its own row's or column's lane.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, final
 
 import sympy as sp
@@ -125,6 +125,8 @@ class LaneMatrix:
     full : entry for every pair of lanes.
     own : further entry where both are the same lane of one bank.
     lanes : the banks' lane symbols and sizes.
+    at : for a matrix that belongs to one lane of a bank (such as J_j), that bank: its `own`
+        entries then stand in that lane alone, also in rows and columns that no bank has.
     """
 
     rows: tuple[Slot, ...]
@@ -132,13 +134,14 @@ class LaneMatrix:
     lanes: Lanes
     full: Entries = field(default_factory=dict)
     own: Entries = field(default_factory=dict)
+    at: str | None = None
 
     @property
     def T(self) -> LaneMatrix:
         """The transpose."""
         full = {(c, r): entry for (r, c), entry in self.full.items()}
         own = {(c, r): entry for (r, c), entry in self.own.items()}
-        return LaneMatrix(self.cols, self.rows, self.lanes, full, own)
+        return LaneMatrix(self.cols, self.rows, self.lanes, full, own, self.at)
 
     def map(self, change: Callable[[sp.Expr], sp.Expr]) -> LaneMatrix:
         """Return the matrix with `change` applied to every entry; zeros drop out."""
@@ -146,7 +149,7 @@ class LaneMatrix:
             {place: new for place, old in entries.items() if (new := change(old)) != 0}
             for entries in (self.full, self.own)
         )
-        return LaneMatrix(self.rows, self.cols, self.lanes, full, own)
+        return replace(self, full=full, own=own)
 
     def __neg__(self) -> LaneMatrix:
         """Return minus the matrix."""
@@ -155,7 +158,7 @@ class LaneMatrix:
     def __add__(self, other: LaneMatrix) -> LaneMatrix:
         """Return the sum of two matrices over the same slots."""
         full, own = _added(self.full, other.full), _added(self.own, other.own)
-        return LaneMatrix(self.rows, self.cols, self.lanes, full, own)
+        return replace(self, full=full, own=own)
 
     def __sub__(self, other: LaneMatrix) -> LaneMatrix:
         """Return the difference of two matrices over the same slots."""
@@ -202,22 +205,37 @@ class LaneMatrix:
         """Whether every entry is zero as it stands."""
         return not self.full and not self.own
 
-    def explicit(self, counts: Mapping[str, int]) -> sp.ImmutableMatrix:
-        """Return the SymPy matrix for banks of the given sizes."""
+    def explicit(self, counts: Mapping[str, int], lane: int = 1) -> sp.ImmutableMatrix:
+        """Return the SymPy matrix for banks of the given sizes.
+
+        Parameters
+        ----------
+        counts : size of each bank.
+        lane : for a matrix that belongs to one lane (`at`), which one, from 1.
+        """
         rows, cols = _places(self.rows, counts), _places(self.cols, counts)
         return sp.ImmutableMatrix(
-            len(rows), len(cols), lambda r, c: self._at(rows[r], cols[c], counts)
+            len(rows), len(cols), lambda r, c: self._entry(rows[r], cols[c], counts, lane)
         )
 
-    def _at(self, row: tuple[int, int], col: tuple[int, int], counts: Mapping[str, int]) -> sp.Expr:
+    def _entry(
+        self, row: tuple[int, int], col: tuple[int, int], counts: Mapping[str, int], lane: int
+    ) -> sp.Expr:
         (r, j), (c, k) = row, col
         entry = self.full.get((r, c), sp.S.Zero)
-        if j == k and self.rows[r].bank == self.cols[c].bank:
+        if self._is_own(row, col, lane):
             entry += self.own.get((r, c), sp.S.Zero)
         entry = self.lanes.expand(entry, counts)
-        for slot, lane in ((self.rows[r], j), (self.cols[c], k)):
-            entry = self.lanes.at(entry, slot.bank, lane) if slot.bank else entry
+        for slot, place in ((self.rows[r], j), (self.cols[c], k)):
+            entry = self.lanes.at(entry, slot.bank, place) if slot.bank else entry
         return entry
+
+    def _is_own(self, row: tuple[int, int], col: tuple[int, int], lane: int) -> bool:
+        """Return whether `own` counts for a pair of places (slot, lane of its bank)."""
+        if self.at is None:
+            return row[1] == col[1] and self.rows[row[0]].bank == self.cols[col[0]].bank
+        places = ((self.rows[row[0]], row[1]), (self.cols[col[0]], col[1]))
+        return all(place == lane for slot, place in places if slot.bank == self.at)
 
 
 def vector(rows: tuple[Slot, ...], lanes: Lanes, entries: Mapping[int, sp.Expr]) -> LaneMatrix:

@@ -113,7 +113,8 @@ class System:
         full = _column(self.B.full, k), _column(self.B.own, k)
         b, own = (LaneMatrix(self.states, (Slot(""),), self.B.lanes, part) for part in full)
         shared, lane = (entropy @ v.T - v @ entropy.T for v in (b, own))
-        return LaneMatrix(self.states, self.states, self.B.lanes, shared.full, lane.full)
+        bank = self.processes[k].bank
+        return LaneMatrix(self.states, self.states, self.B.lanes, shared.full, lane.full, bank)
 
     def _unit(self, row: int) -> LaneMatrix:
         return vector(self.states, self.E.lanes, {row: sp.S.One})
