@@ -150,7 +150,7 @@ def raise_if_drifted(found: Iterable[Drift], command: str) -> None:
     """
     faults = list(found)
     if faults:
-        more = f" (and {len(faults) - 1} more files)" if len(faults) > 1 else ""
+        more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
         left = faults[0].fault.startswith("belongs")
         remedy = "delete it" if left else f"run `{command}` and commit the result"
         raise DriftError(f"{faults[0].fault}{more}", quote(str(faults[0].path)), remedy=remedy)

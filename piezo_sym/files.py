@@ -14,14 +14,24 @@ from piezo_sym.errors import FileError, quote
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text file in one step: readers see the old one or the new one.
+    """Write a text file as UTF-8 in one step: readers see the old one or the new one.
 
     Raises
     ------
     FileError
         If the folder or the file cannot be written.
     """
-    data = text.encode("utf-8")
+    write_bytes(path, text.encode("utf-8"))
+
+
+def write_bytes(path: Path, data: bytes) -> None:
+    """Write a file in one step: readers see the old one or the new one.
+
+    Raises
+    ------
+    FileError
+        If the folder or the file cannot be written.
+    """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
@@ -39,7 +49,7 @@ def write_text(path: Path, text: str) -> None:
 
 
 def read_text(path: Path) -> str | None:
-    """Return a text file's content, or None if there is no such file.
+    """Return a text file's content, or None if there is no such file or folder.
 
     Raises
     ------
@@ -48,7 +58,7 @@ def read_text(path: Path) -> str | None:
     """
     try:
         return path.read_text(encoding="utf-8")
-    except FileNotFoundError:
+    except (FileNotFoundError, NotADirectoryError):
         return None
     except (OSError, UnicodeDecodeError) as error:
         raise _cannot("read", path, error) from error

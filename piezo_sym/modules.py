@@ -11,6 +11,7 @@ import importlib.util
 import sys
 import tempfile
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
@@ -100,16 +101,20 @@ def _cached(model: Model) -> ModuleType:
 
     folder = Path(platformdirs.user_cache_dir("piezo_sym")) / "modules"
     path = folder / f"{model.sha256}-{__version__}" / f"{model.name}.py"
-    if read_text(path) is None:
-        from piezo_sym.build import render
+    with suppress(FileError):  # what cannot be read or loaded is made again
+        if read_text(path) is not None:
+            return load_module(path)
+    from piezo_sym.build import render
 
-        text = next(iter(render(model).values()))
-        try:
+    text = next(iter(render(model).values()))
+    try:
+        write_text(path, text)
+        return load_module(path)
+    except FileError:  # a read-only cache: the module lives as long as the process
+        with tempfile.TemporaryDirectory(prefix="piezo_sym-") as temporary:
+            path = Path(temporary) / f"{model.name}.py"
             write_text(path, text)
-        except FileError:  # a read-only cache: the module lives as long as the process
-            path = Path(tempfile.mkdtemp(prefix="piezo_sym-")) / f"{model.name}.py"
-            write_text(path, text)
-    return load_module(path)
+            return load_module(path)
 
 
 def load_module(path: Path) -> ModuleType:

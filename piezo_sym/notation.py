@@ -36,7 +36,7 @@ def latex(expr: sp.Expr) -> str:
 
 def text(expr: sp.Expr) -> str:
     """Return one expression as plain text."""
-    return str(sp.sstr(expr, order="none"))
+    return str(sp.sstr(expr))
 
 
 def symbol_latex(name: str) -> str:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from piezo_sym.errors import FileError, quote
+from piezo_sym.files import write_bytes
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -96,7 +96,7 @@ def save(figure: Any, data: xarray.Dataset, folder: Path, name: str) -> tuple[Pa
     """
     paths = tuple(folder / f"{name}{ending}" for ending in (".png", ".svg", ".csv"))
     for path in paths:
-        _replace(path, _content(figure, data, path.suffix))
+        write_bytes(path, _content(figure, data, path.suffix))
     return paths
 
 
@@ -108,17 +108,6 @@ def _content(figure: Any, data: xarray.Dataset, ending: str) -> bytes:
     metadata: Mapping[str, None] = {"Date": None} if ending == ".svg" else {"Software": None}
     figure.savefig(stream, format=ending[1:], metadata=metadata)
     return stream.getvalue()
-
-
-def _replace(path: Path, content: bytes) -> None:
-    part = path.with_name(f".{path.name}.part")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        part.write_bytes(content)
-        part.replace(path)
-    except OSError as error:
-        what = f"cannot be written ({error.strerror or 'no reason given'})"
-        raise FileError(what, quote(str(path)), remedy="check the folder") from error
 
 
 def slopes(data: xarray.Dataset) -> np.ndarray[Any, np.dtype[np.float64]]:

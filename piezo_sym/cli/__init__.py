@@ -7,7 +7,7 @@ property is not proved or a file drifted, 2 the spec or the command is wrong.
 from __future__ import annotations
 
 import sys
-from typing import Any
+from typing import Annotated, Any
 
 import typer
 
@@ -24,7 +24,6 @@ CommandError: Any = typer.BadParameter.__mro__[2]
 app = typer.Typer(
     name="piezo-sym",
     help="Physical elements to a proved irreversible port-Hamiltonian system and fast modules.",
-    no_args_is_help=True,
     add_completion=False,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
@@ -33,15 +32,24 @@ for command in (verify, generate, show, simulate, reproduce):
     app.command()(command)
 
 
-@app.callback()
-def _options(
-    version: bool = typer.Option(False, "--version", help="Print the version and stop."),
-) -> None:
-    if version:
+def _print_version(wanted: bool) -> None:
+    if wanted:
         from piezo_sym import __version__
 
         typer.echo(__version__)
         raise typer.Exit
+
+
+@app.callback()
+def _options(
+    _version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_print_version, is_eager=True, help="Print the version and stop."
+        ),
+    ] = False,
+) -> None:
+    """Do nothing: its option answers before a command is looked for."""
 
 
 def main() -> None:
@@ -56,8 +64,10 @@ def run(words: list[str]) -> int:
     except PiezoError as error:
         return _failed(str(error), error.exit_code)
     except CommandError as error:
-        message = one_line(error.format_message())
+        message = one_line(error.format_message()).rstrip(".")
         return _failed(f"{message}; see `piezo-sym --help`", 2)
+    except MemoryError:
+        return _failed("out of memory; use smaller banks or fewer --times", 2)
     except (KeyboardInterrupt, typer.Abort):
         return _failed("stopped", 130)
     return code if isinstance(code, int) else 0

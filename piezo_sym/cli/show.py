@@ -45,7 +45,8 @@ def _lines(iphs: IPHS) -> Iterator[str]:
     yield from _matrix("J0, structure matrix", system.J0)
     for k, process in enumerate(system.processes):
         yield from _process(iphs, k, slot_text(process))
-    yield from _matrix("g, input map", system.g)
+    if system.ports:
+        yield from _matrix("g, input map", system.g)
 
 
 def _matrix(title: str, matrix: LaneMatrix) -> Iterator[str]:

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from piezo_sym.cli.output import console, table
-from piezo_sym.errors import FileError, UsageError, listing, nearest, quote
+from piezo_sym.errors import UsageError, listing, nearest, quote
+from piezo_sym.files import write_bytes
 
 if TYPE_CHECKING:
     import xarray
@@ -83,7 +84,10 @@ def _signal(text: str, where: str) -> Any:
         return getattr(run, call["name"])(*numbers)
     except TypeError as error:
         what = f"{call['name']} does not take {len(numbers)} numbers"
-        raise UsageError(what, where, "see `piezo-sym simulate --help`") from error
+        raise UsageError(what, where, remedy="see `piezo-sym simulate --help`") from error
+    except UsageError as error:
+        error.where = f"{where}: {error.where}"
+        raise
 
 
 def _values(text: str, where: str) -> float | list[float]:
@@ -114,17 +118,11 @@ def _print(result: xarray.Dataset) -> None:
 
 
 def _write(result: xarray.Dataset, path: Path) -> None:
-    """Write a result beside its place, then put it there in one step."""
-    part = path.with_name(f".{path.name}.part")
-    try:
-        if path.suffix == ".nc":
-            result.to_netcdf(part, engine="scipy")
-        else:
-            columns(result).to_csv(part, index=False)
-        part.replace(path)
-    except OSError as error:
-        what = f"cannot be written ({error.strerror or 'no reason given'})"
-        raise FileError(what, quote(str(path)), remedy="check the path") from error
+    """Write a result in one step; its folder is made if need be."""
+    if path.suffix == ".nc":
+        write_bytes(path, bytes(result.to_netcdf(engine="scipy")))
+    else:
+        write_bytes(path, columns(result).to_csv(index=False).encode())
     typer.echo(f"{path}")
 
 
