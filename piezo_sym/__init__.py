@@ -17,6 +17,8 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
+from piezo_sym.version import VERSION as __version__
+
 if TYPE_CHECKING:
     from piezo_sym.api import simulate
     from piezo_sym.build import generate
@@ -26,8 +28,6 @@ if TYPE_CHECKING:
     from piezo_sym.run import chirp, ramp, samples, samples_from_csv, sine, step, triangle
     from piezo_sym.spec.load import load
     from piezo_sym.spec.model import Model
-
-__version__ = "0.1.0"
 
 _HOME = {
     "Model": "spec.model",

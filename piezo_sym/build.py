@@ -22,7 +22,7 @@ from piezo_sym.spec.model import Model
 from piezo_sym.spec.source import shipped
 
 #: What a generated file says of itself; only such files are ever called stale.
-MARK = "Made by piezo_sym's generator"
+MARK = "Made by piezo_sym "
 
 
 @final

@@ -10,7 +10,7 @@ import tempfile
 from contextlib import suppress
 from pathlib import Path
 
-from piezo_sym.errors import FileError, quote
+from piezo_sym.errors import FileError, one_line
 
 
 def write_text(path: Path, text: str) -> None:
@@ -64,6 +64,11 @@ def read_text(path: Path) -> str | None:
         raise _cannot("read", path, error) from error
 
 
+def path_text(path: str | Path) -> str:
+    """Return a path as a message quotes it: printable and not cut, since its end says most."""
+    return one_line(f"'{path}'")
+
+
 def _cannot(done: str, path: Path, error: Exception) -> FileError:
     reason = getattr(error, "strerror", None) or "not text"
-    return FileError(f"cannot be {done} ({reason})", quote(str(path)), remedy="check the path")
+    return FileError(f"cannot be {done} ({reason})", path_text(path), remedy="check the path")

@@ -11,16 +11,17 @@ import importlib.util
 import sys
 import tempfile
 from collections.abc import Iterator
+from functools import lru_cache
 from contextlib import suppress
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
 
-from piezo_sym import __version__
 from piezo_sym.errors import DriftError, FileError, quote
 from piezo_sym.files import read_text, write_text
 from piezo_sym.spec.source import data, find, read, shipped
 from piezo_sym.spec.write import spec_hash
+from piezo_sym.version import VERSION
 
 if TYPE_CHECKING:
     from piezo_sym.spec.model import Model
@@ -50,14 +51,15 @@ def module_of(spec: str | Path | Model) -> ModuleType:
     header = content.get("model")
     name = header.get("name") if isinstance(header, dict) else None
     if isinstance(name, str) and name.isidentifier():
-        module = next(_present(name), None)
-        if module is not None and _is_of(module, path, content):
-            return module
-        if module is not None:
+        present = tuple(_present(name))
+        for module in present:
+            if _is_of(module, path, content):
+                return module
+        if present:
             again = str(spec) if str(spec) in shipped() else str(path)
-            remedy = f"run `piezo-sym generate {again}`"
             what = "was generated from another version of its spec"
-            raise DriftError(what, quote(str(module.__file__)), remedy=remedy)
+            remedy = f"run `piezo-sym generate {again}`"
+            raise DriftError(what, quote(str(present[0].__file__)), remedy=remedy)
     from piezo_sym.spec.load import load
 
     return _cached(load(spec))
@@ -100,7 +102,7 @@ def _cached(model: Model) -> ModuleType:
     import platformdirs
 
     folder = Path(platformdirs.user_cache_dir("piezo_sym")) / "modules"
-    path = folder / f"{model.sha256}-{__version__}" / f"{model.name}.py"
+    path = folder / f"{model.sha256}-{VERSION}" / f"{model.name}.py"
     with suppress(FileError):  # what cannot be read or loaded is made again
         if read_text(path) is not None:
             return load_module(path)
@@ -118,13 +120,20 @@ def _cached(model: Model) -> ModuleType:
 
 
 def load_module(path: Path) -> ModuleType:
-    """Return the module in a file, loaded anew.
+    """Return the module in a file, loaded again when the file has changed.
 
     Raises
     ------
     FileError
         If the file is no generated module.
     """
+    found = path.stat()
+    return _loaded(path.resolve(), found.st_mtime_ns, found.st_size)
+
+
+@lru_cache(maxsize=64)
+def _loaded(path: Path, changed: int, size: int) -> ModuleType:
+    del changed, size  # they tell one content of the file from another
     name = f"piezo_sym_generated_{path.stem}"
     spec = importlib.util.spec_from_file_location(name, path)
     if spec is None or spec.loader is None:

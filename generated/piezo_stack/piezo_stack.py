@@ -1,11 +1,11 @@
 """Piezoelectric stack actuator with hysterons: irreversible port-Hamiltonian system.
 
 Source:  Caballeria, Ramirez, Le Gorrec (2021), eqs. (9)-(13), Table 1
-Spec:    sha256 9c0235a60e02072bc451611ffa723f273272c8e4536a3089081866f47c89389c
+Model:   piezo_stack, spec sha256 9c0235a60e02072bc451611ffa723f273272c8e4536a3089081866f47c89389c
 Proofs:  skew, casimir, energy, entropy, temperature PROVED
 
-Made by piezo_sym's generator; do not edit: change the spec, then run
-`piezo-sym generate` on it.  Arrays have shape (n, *batch); values are in SI units.
+Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
+Arrays have shape (n, *batch); values are in SI units.
 
 x = (q, p, Q_C, phi_1 ... phi_hysteron_count, S)
 u = (F_ext, V_in, T_e)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from piezo_sym.cli.output import STYLES, console, table
-from piezo_sym.proofs.report import Report
+
+if TYPE_CHECKING:
+    from piezo_sym.proofs.report import Report
 
 
 def verify(

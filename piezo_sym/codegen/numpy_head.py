@@ -10,6 +10,7 @@ from collections.abc import Iterable
 
 from piezo_sym.codegen.program import Field, Program
 from piezo_sym.errors import one_line
+from piezo_sym.version import VERSION
 
 IMPORTS = """from dataclasses import dataclass
 from typing import NamedTuple
@@ -90,11 +91,11 @@ def _docstring(program: Program) -> str:
         f'"""{_plain(program.title or program.name)}: irreversible port-Hamiltonian system.',
         "",
         *([f"Source:  {_plain(program.source)}"] if program.source else []),
-        f"Spec:    sha256 {program.sha256}",
+        f"Model:   {program.name}, spec sha256 {program.sha256}",
         f"Proofs:  {program.verdict}",
         "",
-        "Made by piezo_sym's generator; do not edit: change the spec, then run",
-        "`piezo-sym generate` on it.  Arrays have shape (n, *batch); values are in SI units.",
+        f"Made by piezo_sym {VERSION}; do not edit: change the spec, then run `piezo-sym generate`.",
+        "Arrays have shape (n, *batch); values are in SI units.",
         "",
         f"x = ({x})",
         f"u = ({u})",
