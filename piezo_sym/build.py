@@ -7,22 +7,23 @@ Input: a `Model`.  Output: the files of its generated module, or a list of what 
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import final
 
-from piezo_sym.codegen import lower, numpy_module
+from piezo_sym.codegen import MARK, lower, numpy_module
 from piezo_sym.derivation import derive
-from piezo_sym.errors import DriftError, quote
-from piezo_sym.files import read_text, write_text
+from piezo_sym.errors import DriftError
+from piezo_sym.files import path_text, read_text, write_text
 from piezo_sym.proofs import Report, Verdict, verify
 from piezo_sym.spec.load import load
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.source import shipped
 
-#: What a generated file says of itself; only such files are ever called stale.
-MARK = "Made by piezo_sym "
+#: What a generated file says of itself; only such files are ever called left over.
+MADE = re.compile(rf"^{MARK} \S+; do not edit: ", re.MULTILINE)
 
 
 @final
@@ -131,13 +132,16 @@ def _left_over(folders: Iterable[Path], expected: dict[Path, str]) -> Iterator[D
         for path in sorted(folder.rglob("*")):
             if path in expected or not path.is_file() or "__pycache__" in path.parts:
                 continue
-            if MARK in _start(path):
+            if MADE.search(_start(path)):
                 yield Drift(path, "belongs to no spec given")
 
 
 def _start(path: Path) -> str:
-    with path.open("rb") as file:
-        return file.read(4000).decode("utf-8", errors="replace")
+    try:
+        with path.open("rb") as file:
+            return file.read(4000).decode("utf-8", errors="replace")
+    except OSError:  # a file that cannot be read is none that was made here
+        return ""
 
 
 def raise_if_drifted(found: Iterable[Drift], command: str) -> None:
@@ -152,5 +156,6 @@ def raise_if_drifted(found: Iterable[Drift], command: str) -> None:
     if faults:
         more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
         left = faults[0].fault.startswith("belongs")
-        remedy = "delete it" if left else f"run `{command}` and commit the result"
-        raise DriftError(f"{faults[0].fault}{more}", quote(str(faults[0].path)), remedy=remedy)
+        delete = "delete it, or name its spec on the command line"
+        remedy = delete if left else f"run `{command}` and commit the result"
+        raise DriftError(f"{faults[0].fault}{more}", path_text(faults[0].path), remedy=remedy)

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 MAX_QUOTE = 60
+MAX_PLACE = 200
 
 
 @dataclass(eq=False)
@@ -37,7 +38,8 @@ class PiezoError(Exception):
 
     def __str__(self) -> str:
         """Return the error as one line of printable text."""
-        parts = [f"{self.where}: {self.what}" if self.where else self.what]
+        where = self.where if len(self.where) <= MAX_PLACE else f"{self.where[: MAX_PLACE - 3]}..."
+        parts = [f"{where}: {self.what}" if where else self.what]
         if self.expected:
             parts.append(f"expected {self.expected}")
         if self.remedy:

@@ -7,18 +7,19 @@ What is not found is generated into the user's cache, keyed by spec and generato
 
 from __future__ import annotations
 
+import hashlib
 import importlib.util
 import sys
 import tempfile
 from collections.abc import Iterator
-from functools import lru_cache
 from contextlib import suppress
+from functools import cache, lru_cache
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
 
-from piezo_sym.errors import DriftError, FileError, quote
-from piezo_sym.files import read_text, write_text
+from piezo_sym.errors import DriftError, FileError
+from piezo_sym.files import path_text, read_text, write_text
 from piezo_sym.spec.source import data, find, read, shipped
 from piezo_sym.spec.write import spec_hash
 from piezo_sym.version import VERSION
@@ -58,8 +59,8 @@ def module_of(spec: str | Path | Model) -> ModuleType:
         if present:
             again = str(spec) if str(spec) in shipped() else str(path)
             what = "was generated from another version of its spec"
-            remedy = f"run `piezo-sym generate {again}`"
-            raise DriftError(what, quote(str(present[0].__file__)), remedy=remedy)
+            remedy = f"run `piezo-sym generate {again}`, or give the model another name"
+            raise DriftError(what, path_text(str(present[0].__file__)), remedy=remedy)
     from piezo_sym.spec.load import load
 
     return _cached(load(spec))
@@ -102,7 +103,7 @@ def _cached(model: Model) -> ModuleType:
     import platformdirs
 
     folder = Path(platformdirs.user_cache_dir("piezo_sym")) / "modules"
-    path = folder / f"{model.sha256}-{VERSION}" / f"{model.name}.py"
+    path = folder / f"{model.sha256}-{_generator()}" / f"{model.name}.py"
     with suppress(FileError):  # what cannot be read or loaded is made again
         if read_text(path) is not None:
             return load_module(path)
@@ -119,6 +120,16 @@ def _cached(model: Model) -> ModuleType:
             return load_module(path)
 
 
+@cache
+def _generator() -> str:
+    """Return the hash of the package's own sources: another generator, another cached module."""
+    found = hashlib.sha256(VERSION.encode())
+    for path in sorted(PACKAGE.rglob("*.py")):
+        if PACKAGE / "generated" not in path.parents:
+            found.update(path.read_bytes())
+    return found.hexdigest()[:16]
+
+
 def load_module(path: Path) -> ModuleType:
     """Return the module in a file, loaded again when the file has changed.
 
@@ -127,17 +138,16 @@ def load_module(path: Path) -> ModuleType:
     FileError
         If the file is no generated module.
     """
-    found = path.stat()
-    return _loaded(path.resolve(), found.st_mtime_ns, found.st_size)
+    return _loaded(path.resolve(), read_text(path))
 
 
 @lru_cache(maxsize=64)
-def _loaded(path: Path, changed: int, size: int) -> ModuleType:
-    del changed, size  # they tell one content of the file from another
+def _loaded(path: Path, text: str | None) -> ModuleType:
+    del text  # it tells one content of the file from another
     name = f"piezo_sym_generated_{path.stem}"
     spec = importlib.util.spec_from_file_location(name, path)
     if spec is None or spec.loader is None:
-        raise FileError("is no Python module", quote(str(path)))
+        raise FileError("is no Python module", path_text(path))
     module = importlib.util.module_from_spec(spec)
     before = sys.dont_write_bytecode
     sys.dont_write_bytecode = True  # a generated folder holds nothing but what is committed
@@ -145,9 +155,9 @@ def _loaded(path: Path, changed: int, size: int) -> ModuleType:
         spec.loader.exec_module(module)
     except (SyntaxError, ImportError, NameError) as error:
         remedy = "regenerate it with `piezo-sym generate`"
-        raise FileError("cannot be loaded", quote(str(path)), remedy=remedy) from error
+        raise FileError("cannot be loaded", path_text(path), remedy=remedy) from error
     finally:
         sys.dont_write_bytecode = before
     if not hasattr(module, "SPEC_SHA256"):
-        raise FileError("is no generated module", quote(str(path)), remedy="move it elsewhere")
+        raise FileError("is no generated module", path_text(path), remedy="move it elsewhere")
     return module

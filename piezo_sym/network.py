@@ -106,12 +106,12 @@ class _Blocks:
 
     def _block(self, row: str, col: str, sign: Callable[[int], int] = lambda _: 1) -> LaneMatrix:
         """Return the matrix of one kind of answers over one kind of givens."""
-        parts: tuple[dict[tuple[int, int], sp.Expr], ...] = ({}, {})
+        parts: tuple[dict[tuple[int, int], sp.Expr], dict[tuple[int, int], sp.Expr]] = ({}, {})
         for (kind, r), answer in self.answers.items():
             if kind == row:
                 for part, form in zip(parts, answer, strict=True):
                     part.update(self._entries(r, col, form, sign(r)))
-        return LaneMatrix(self.slots[row], self.slots[col], self.lanes, *parts)
+        return LaneMatrix(self.slots[row], self.slots[col], self.lanes, parts[0], parts[1])
 
     def _output(self, col: str) -> LaneMatrix:
         """Return the matrix of the outputs y, signed so that y*u is the power put in."""

@@ -115,19 +115,6 @@ class Parameters:
     hysteron_count: int = 2
 
 
-_BLOCK = 50_000  # numbers of a batch worked on together: they stay in the cache
-
-
-def _in_blocks(x, u, p):
-    """Return rhs for a large batch, part by part, so that temporaries stay in the cache."""
-    out = np.empty(x.shape)
-    step = max(1, _BLOCK // len(x))
-    for first in range(0, x.shape[1], step):
-        part = slice(first, first + step)
-        out[:, part] = rhs(x[:, part], u[:, part] if u.ndim == 2 else u, p)
-    return out
-
-
 def _lanes(value, count, ndim):
     """Return a bank's parameter: a number, or a value a lane with shape (count, 1, ...)."""
     if isinstance(value, (int, float)):
@@ -150,12 +137,26 @@ def initial_state(u, p_, /):
     return out
 
 
-def rhs(x, u, p_, /):
+_BLOCK = 150_000  # numbers of a batch worked on together: they stay in the cache
+
+
+def rhs(x, u, p, /):
     """Rates dx/dt = J_ir dU/dx + g u; shape (n, *batch)."""
     x = np.asarray(x, dtype=float)
     u = np.asarray(u, dtype=float)
-    if x.ndim == 2 and x.size > 2*_BLOCK:
-        return _in_blocks(x, u, p_)
+    out = np.empty(x.shape)
+    if x.ndim != 2 or x.size <= _BLOCK:
+        _rates(x, u, p, out)
+        return out
+    step = max(1, _BLOCK // len(x))
+    for first in range(0, x.shape[1], step):
+        part = slice(first, first + step)
+        _rates(x[:, part], u[:, part] if u.ndim == 2 else u, p, out[:, part])
+    return out
+
+
+def _rates(x, u, p_, out, /):
+    """Write the rates of the states x into `out`."""
     hysteron_count = p_.hysteron_count
     M = p_.M
     k = p_.k
@@ -195,13 +196,11 @@ def rhs(x, u, p_, /):
     # heats
     heat_damper = F_damper*v_mass
     # rows
-    out = np.empty(x.shape)
     out[0] = v_mass
     out[1] = alpha_transducer*V_capacitor - F_spring - F_damper + F_ext
     out[2] = sum_i_hysteron - alpha_transducer*v_mass
     out[3 : 3 + hysteron_count] = V_in - V_capacitor - V_hysteron
     out[3 + hysteron_count] = (heat_hysteron + heat_damper)/T + lam*(T_e/T - 1)
-    return out
 
 
 def outputs(x, u, p_, /):

@@ -11,7 +11,7 @@ import typer
 
 from piezo_sym.cli.output import console, table
 from piezo_sym.errors import UsageError, listing, nearest, quote
-from piezo_sym.files import write_bytes
+from piezo_sym.files import path_text, write_bytes
 
 if TYPE_CHECKING:
     import xarray
@@ -44,7 +44,7 @@ def simulate(
     from piezo_sym.api import simulate as run
 
     if out is not None and out.suffix not in ENDINGS:
-        raise UsageError(f"{quote(str(out))} has no known ending", "--out", listing(ENDINGS))
+        raise UsageError(f"{path_text(out)} has no known ending", "--out", listing(ENDINGS))
     result = run(
         spec,
         duration=duration,
@@ -62,11 +62,16 @@ def simulate(
 def _pairs(
     texts: Iterable[str], option: str, read: Callable[[str, str], Any]
 ) -> Iterable[tuple[str, Any]]:
+    seen: set[str] = set()
     for given in texts:
         name, equals, value = given.partition("=")
         if not equals:
             raise UsageError(f"{quote(given)} has no '='", option, "NAME=VALUE")
-        yield name.strip(), read(value.strip(), f"{option} {name.strip()}")
+        name = name.strip()
+        if name in seen:
+            raise UsageError(f"{quote(name)} is given twice", option, remedy="give it once")
+        seen.add(name)
+        yield name, read(value.strip(), f"{option} {name}")
 
 
 def _signal(text: str, where: str) -> Any:
@@ -98,7 +103,7 @@ def _values(text: str, where: str) -> float | list[float]:
 
 def _number(text: str, where: str) -> float:
     try:
-        value = float(text)
+        value = float(text.replace("_", "x"))
     except ValueError:
         raise UsageError(f"{quote(text)} is no number", where, "such as 0.5 or 1e-3") from None
     return int(value) if value.is_integer() and text.strip().isdigit() else value

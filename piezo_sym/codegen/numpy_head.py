@@ -9,13 +9,15 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from piezo_sym.codegen.program import Field, Program
-from piezo_sym.errors import one_line
 from piezo_sym.version import VERSION
 
 IMPORTS = """from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np"""
+
+#: What every generated file says of itself.
+MARK = "Made by piezo_sym"
 
 RECORDS = '''class Record(NamedTuple):
     """A row of an array: name, SI unit, a line on it, and its bank if it stands for one a lane."""
@@ -44,16 +46,22 @@ LANES = '''def _lanes(value, count, ndim):
     return value.reshape(count, *(1,) * (ndim - 1))'''
 
 
-BLOCKS = '''_BLOCK = 50_000  # numbers of a batch worked on together: they stay in the cache
+#: The public right-hand side: allocates, and goes through a large batch part by part.
+RATES = '''_BLOCK = 150_000  # numbers of a batch worked on together: they stay in the cache
 
 
-def _in_blocks(x, u, p):
-    """Return rhs for a large batch, part by part, so that temporaries stay in the cache."""
+def rhs(x, u, p, /):
+    """Rates dx/dt = J_ir dU/dx + g u; shape (n, *batch)."""
+    x = np.asarray(x, dtype=float)
+    u = np.asarray(u, dtype=float)
     out = np.empty(x.shape)
+    if x.ndim != 2 or x.size <= _BLOCK:
+        _rates(x, u, p, out)
+        return out
     step = max(1, _BLOCK // len(x))
     for first in range(0, x.shape[1], step):
         part = slice(first, first + step)
-        out[:, part] = rhs(x[:, part], u[:, part] if u.ndim == 2 else u, p)
+        _rates(x[:, part], u[:, part] if u.ndim == 2 else u, p, out[:, part])
     return out'''
 
 
@@ -67,7 +75,6 @@ def head(program: Program) -> str:
         "\n".join(_tables(program)),
         _parameters(program),
     ]
-    parts.append(BLOCKS)
     if program.counts:
         parts.append(LANES)
     return _joined(parts)
@@ -94,7 +101,7 @@ def _docstring(program: Program) -> str:
         f"Model:   {program.name}, spec sha256 {program.sha256}",
         f"Proofs:  {program.verdict}",
         "",
-        f"Made by piezo_sym {VERSION}; do not edit: change the spec, then run `piezo-sym generate`.",
+        f"{MARK} {VERSION}; do not edit: change the spec, then run `piezo-sym generate`.",
         "Arrays have shape (n, *batch); values are in SI units.",
         "",
         f"x = ({x})",
@@ -110,8 +117,8 @@ def _spread(field: Field) -> str:
 
 
 def _plain(text: str) -> str:
-    """Return text from a spec for use inside a docstring: nothing in it can end or escape it."""
-    return one_line(text).replace("\\", "/").replace('"', "'")
+    """Return text from a spec (printable, one line) so that it cannot end or escape a docstring."""
+    return text.replace("\\", "/").replace('"', "'")
 
 
 def literal(text: str) -> str:

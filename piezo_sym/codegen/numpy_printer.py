@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import final
 
-from piezo_sym.codegen.numpy_head import head
+from piezo_sym.codegen.numpy_head import RATES, head
 from piezo_sym.codegen.numpy_style import NUMPY, numpy_text
 from piezo_sym.codegen.program import (
     Entry,
@@ -55,6 +55,8 @@ class _Printer:
 
     def function(self, function: Function) -> str:
         """Return one function with a row a slot."""
+        if function.name == "rhs":
+            return f"{RATES}\n\n\n{self._rates(function)}"
         roots = [tree for row in function.rows for tree in (row.listed or (row.value,))]
         lines = self._opening(function.name, function.arguments, function.doc, function, roots)
         if function.scalar:
@@ -69,6 +71,17 @@ class _Printer:
                 continue
             lines += self._assign(f"{self.out}[{_place(slots, n)}]", _row_text(row), row.value)
         return _body([*lines, f"return {self.out}"])
+
+    def _rates(self, function: Function) -> str:
+        """Return the function that writes the rates of a state, or of a part of a batch."""
+        doc = "Write the rates of the states x into `out`"
+        roots = [row.value for row in function.rows]
+        lines = self._opening("_rates", ("x", "u", "p", "out"), doc, None, roots)
+        slots = [row.slot for row in function.rows]
+        for n, row in enumerate(function.rows):
+            target = f"{self.out}[{_place(slots, n)}]"
+            lines += self._assign(target, numpy_text(row.value), row.value)
+        return _body(lines)
 
     def jacobian(self) -> str:
         """Return the function that fills the Jacobian."""
@@ -114,12 +127,9 @@ class _Printer:
         shape = "" if function is None else f"; shape {_shape(function)}"
         lines = [f"def {name}({', '.join(words)}, /):", f'"""{doc}{shape}."""']
         driven = any(field.name in used for field in self.program.inputs)
-        driven |= name == "rhs"
         given = [word for word in words if word == self.x or (word == self.u and driven)]
+        given = [] if name == "_rates" else given
         lines += [f"{word} = np.asarray({word}, dtype=float)" for word in given]
-        if name == "rhs":
-            lines.append(f"if {self.x}.ndim == 2 and {self.x}.size > 2*_BLOCK:")
-            lines.append(f"    return _in_blocks({', '.join(words)})")
         lines += [f"{bank}_count = {self.p}.{bank}_count" for bank in self.program.counts]
         lines += self._unpacked(used, f"{self.x}.ndim" if "x" in arguments else "1")
         note = ""
@@ -169,8 +179,6 @@ class _Printer:
     def _array(self, function: Function, slots: list[Slot]) -> str:
         if function.name == "initial_state":
             return f"np.zeros({_total(slots)})"
-        if function.name == "rhs":
-            return f"np.empty({self.x}.shape)"
         return f"np.empty(({_total(slots)}, *{self.x}.shape[1:]))"
 
     def _entry(self, entry: Entry) -> Iterator[str]:

@@ -74,6 +74,7 @@ def _check_number(token: str, following: str) -> None:
         what = f"has a number that runs into {quote(following)}"
         raise RefusedError(what, "a plain decimal number, such as 0.5 or 1e-3")
     mantissa, _, exponent = token.lower().partition("e")
-    if len(mantissa) > MAX_DIGITS or abs(int(exponent[:9] or "0")) > MAX_MAGNITUDE:
+    digits = sum(c.isdigit() for c in mantissa)
+    if digits > MAX_DIGITS or abs(int(exponent[:9] or "0")) > MAX_MAGNITUDE:
         what = f"has the number {quote(token)}"
         raise RefusedError(what, f"at most {MAX_DIGITS} digits and 1e+-{MAX_MAGNITUDE}")

@@ -42,7 +42,7 @@ class Model(Frozen):
     initial: Table[Start] = Table()
     elements: Table[AnyElement]
 
-    def __init__(self, **data: Any) -> None:
+    def __init__(self, /, **data: Any) -> None:
         """Check the data; a fault becomes one `SpecError`."""
         try:
             super().__init__(**data)

@@ -35,6 +35,7 @@ from piezo_sym.spec.expressions import (
 from piezo_sym.spec.lexis import (
     LANGUAGE,
     MAX_DEPTH,
+    MAX_MAGNITUDE,
     TOKEN,
     RefusedError,
     check_letters,
@@ -44,6 +45,8 @@ from piezo_sym.spec.text import spell
 
 MAX_POWER = 16
 MAX_DEGREE = 32
+LARGEST = Fraction(10) ** MAX_MAGNITUDE
+SMALLEST = 1 / LARGEST
 
 COMPARE: dict[type[ast.cmpop], str] = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
 
@@ -147,7 +150,10 @@ def _number(source: str) -> Fraction:
     match = TOKEN.fullmatch(source)
     if match is None or match.lastgroup != "number":
         raise RefusedError(f"has {quote(source)} where a number should be", "0.5 or 1e-3")
-    return Fraction(source)
+    value = Fraction(source)
+    if value and not SMALLEST <= value <= LARGEST:
+        raise RefusedError(f"has the number {quote(source)}", f"1e+-{MAX_MAGNITUDE} at most")
+    return value
 
 
 def _binary(left: ast.expr, op: ast.operator, right: ast.expr, text: str, depth: int) -> Expr:
@@ -243,6 +249,8 @@ def _degree(node: Expr | Cmp) -> Fraction:
 def _check_constants(node: Expr | Cmp) -> bool:
     """Return whether `node` is constant; refuse the smallest constant part without a value."""
     constant = all([_check_constants(part) for part in children(node)])
+    if isinstance(node, Div):
+        _check_divisor(node)
     if isinstance(node, Cmp) or not constant or isinstance(node, Sym):
         return constant and not isinstance(node, Sym)
     try:
@@ -251,3 +259,10 @@ def _check_constants(node: Expr | Cmp) -> bool:
         what = f"has the constant part {quote(spell(node))} without a finite real value"
         raise RefusedError(what, remedy="give the number itself") from None
     return True
+
+
+def _check_divisor(node: Div) -> None:
+    """Refuse a division by a constant that is zero; constants have been found to have values."""
+    if not names(node.right) and evaluate(node.right, {}) == 0:
+        what = f"divides by {quote(spell(node.right))}, which is zero"
+        raise RefusedError(what, remedy="divide by something else")

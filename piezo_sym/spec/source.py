@@ -6,6 +6,7 @@ needs the spec's types, so that a run can compare a module with its spec at litt
 
 from __future__ import annotations
 
+import re
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,16 @@ from piezo_sym.spec.names import NAME
 
 MAX_BYTES = 500_000
 MAX_NESTING = 20
-MAX_DOTS = 80
+MAX_DOTS = 8
+QUOTED = re.compile(
+    r"'{3}.*?'{3}"
+    r'|"{3}(?:\\.|[^\\])*?"{3}'
+    r'|"(?:\\.|[^"\\\n])*"'
+    r"|'[^'\n]*'"
+    r"|#[^\n]*",
+    re.DOTALL,
+)
+BETWEEN_KEYS = re.compile(r"[=,{}\[\]\n]")
 MODELS = Path(__file__).parent.parent / "models"
 
 
@@ -86,12 +96,12 @@ def data(text: str) -> dict[str, Any]:
 
 
 def _check_nesting(text: str) -> None:
-    """Refuse deep nesting before a recursive parser meets it; brackets in strings count too."""
+    """Refuse deep nesting before a recursive parser meets it; strings and comments aside."""
+    bare = QUOTED.sub("", text)
+    if any(part.count(".") > MAX_DOTS for part in BETWEEN_KEYS.split(bare)):
+        raise SpecError("has a key of too many parts", "", f"at most {MAX_DOTS + 1}")
     depth = 0
-    for line in text.splitlines():
-        if line.split("=")[0].count(".") > MAX_DOTS:
-            raise SpecError("has a key of too many parts", "", f"at most {MAX_DOTS}")
-        for c in line:
-            depth += (c in "[{") - (c in "]}")
-            if depth > MAX_NESTING:
-                raise SpecError("is nested too deeply", "", f"at most {MAX_NESTING} levels")
+    for c in bare:
+        depth += (c in "[{") - (c in "]}")
+        if depth > MAX_NESTING:
+            raise SpecError("is nested too deeply", "", f"at most {MAX_NESTING} levels")

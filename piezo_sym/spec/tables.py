@@ -143,16 +143,19 @@ def lane_parameters(spec: Tables) -> dict[str, str]:
         for law in law_fields(name, element):
             for word in names(law.tree):
                 users.setdefault(word, set()).add(name)
+    elements = states(spec)
     for symbol, start in spec.initial.items():
         for word in _start_names(start):
-            users.setdefault(word, set()).add(states(spec).get(symbol, symbol))
+            users.setdefault(word, set()).add(elements.get(symbol, symbol))
     single = {
         word: next(iter(found))
         for word, found in users.items()
         if word in spec.parameters and len(found) == 1
     }
-    own = {word: single[word] for word in spec.parameters if single.get(word) in banks(spec)}
-    mixed = {word for group in _condition_names(spec) for word in group if _mixes(group, own)}
+    sizes = banks(spec)
+    own = {word: single[word] for word in spec.parameters if single.get(word) in sizes}
+    lanes = own | {symbol: name for symbol, name in elements.items() if name in sizes}
+    mixed = {word for group in _condition_names(spec) for word in group if _mixes(group, lanes)}
     return {word: bank for word, bank in own.items() if word not in mixed}
 
 

@@ -30,6 +30,9 @@ from piezo_sym.spec.expressions import (
 # Binding strength of what a piece of text is, weakest first.
 CHOICE, SUM, PRODUCT, UNARY, POWER, ATOM = range(6)
 
+MAX_PLAIN = 24  # longer numbers are written with an exponent
+MAX_PLACES = 340
+
 Piece = tuple[str, int]  # text, and how strongly its outermost operator binds
 
 
@@ -127,10 +130,25 @@ def decimal(value: Fraction) -> str | None:
     return f"{digits[:-places]}.{digits[-places:]}" if places else digits
 
 
+def scientific(value: Fraction) -> str | None:
+    """Return an exact spelling such as ``1.5e-30`` of a positive rational, or None if none."""
+    scale = 0
+    while (value * 10**scale).denominator != 1 and scale <= MAX_PLACES:
+        scale += 1
+    scaled = value * 10**scale
+    if scaled.denominator != 1:
+        return None
+    digits = str(scaled.numerator)
+    first, rest = digits[0], digits[1:].rstrip("0")
+    return f"{first}{'.' if rest else ''}{rest}e{len(digits) - 1 - scale}"
+
+
 def _spec_number(value: Fraction) -> Piece:
     if value < 0:
         return f"-{_spec_number(-value)[0]}", SUM
     text = decimal(value)
+    if text is None or len(text) > MAX_PLAIN:
+        text = scientific(value)
     return (text, ATOM) if text else (f"{value.numerator}/{value.denominator}", PRODUCT)
 
 

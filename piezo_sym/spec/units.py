@@ -69,8 +69,8 @@ def _raised(name: str, power: Fraction | int) -> str:
 
 
 @lru_cache(maxsize=1024)
-def parse_unit(text: str, where: str = "unit") -> Unit:
-    """Return the unit that `text` names.
+def parse_unit(text: str, where: str = "unit", value: float | None = None) -> Unit:
+    """Return the unit that `text` names; `value` is what is given in it, for the message.
 
     Raises
     ------
@@ -78,7 +78,7 @@ def parse_unit(text: str, where: str = "unit") -> Unit:
         If the text is not of the grammar, names no unit, or a unit with an offset (degC).
     """
     factor, dimension = Fraction(1), [Fraction(0)] * len(BASES)
-    terms = [(_named(name, where), power) for name, power in _terms(text, where)]
+    terms = [(_named(name, where, value), power) for name, power in _terms(text, where)]
     for unit, power in terms:
         factor *= unit.factor**power
         dimension = [d + p * power for d, p in zip(dimension, unit.dimension, strict=True)]
@@ -123,23 +123,21 @@ def _registry() -> Any:
 
 
 @lru_cache(maxsize=256)
-def _named(name: str, where: str) -> Unit:
+def _named(name: str, where: str, value: float | None) -> Unit:
     """Return one named unit; its coherent spelling drops the prefix (``uF`` gives ``F``)."""
     if name == "1":
         return Unit(name, name, Fraction(1), (Fraction(0),) * len(BASES))
-    import pint
-
+    if not _registry().parse_unit_name(name):
+        raise SpecError(f"unknown unit {quote(name)}", where, remedy=nearest(name, COMMON))
     try:
         factor, base = _registry().get_base_units(name)
         origin = _registry().Quantity(Fraction(0), name).to_base_units().magnitude
-    except pint.UndefinedUnitError:
-        raise SpecError(
-            f"unknown unit {quote(name)}", where, remedy=nearest(name, COMMON)
-        ) from None
     except TypeError:  # a logarithm of an exact number: dB, Np
         raise SpecError(f"unit {quote(name)} is logarithmic", where, "a plain unit") from None
     if origin != 0:
         remedy = "give the value in K (t degC is t + 273.15 K)"
+        if value is not None:
+            remedy = f"give it in K: {float(Fraction(repr(value)) * factor + origin)}"
         raise SpecError(f"unit {quote(name)} has an offset", where, "a plain unit", remedy)
     powers = dict(base.dimensionality)
     dimension = tuple(Fraction(powers.pop(DIMENSIONS[unit], 0)) for unit in BASES)

@@ -38,8 +38,8 @@ def unroll(model: Model, counts: Mapping[str, int]) -> Model:
         if isinstance(p.value, tuple)
     }
     data = model.model_dump()
-    data["parameters"] = dict(_parameters(model, split))
-    data["elements"] = dict(_elements(model, sizes, split))
+    data["parameters"] = _apart(_parameters(model, split))
+    data["elements"] = _apart(_elements(model, sizes, split))
     data["initial"] = dict(_initial(model, sizes))
     data["domain"] = {"assume": tuple(_assumptions(model, split))}
     return Model(**data)
@@ -52,6 +52,17 @@ def _check_counts(model: Model, counts: Mapping[str, int]) -> None:
             raise UsageError(f"{quote(name)} is no bank of '{model.name}'", "expand", remedy=known)
         if isinstance(count, bool) or not isinstance(count, int) or count < 1:
             raise UsageError(f"{quote(count)} is no size", f"expand: {name}", "1, 2, 3 ...")
+
+
+def _apart(rows: Any) -> dict[str, Any]:
+    """Return the rows as a table; refuse a lane under a name that something else has."""
+    table: dict[str, Any] = {}
+    for name, row in rows:
+        if name in table:
+            what = f"a lane would be called {quote(name)}, and that name is taken"
+            raise UsageError(what, "expand", remedy=f"rename '{name}' in the spec")
+        table[name] = row
+    return table
 
 
 def _parameters(model: Model, split: Mapping[str, int]) -> Any:
@@ -79,6 +90,7 @@ def _lane(name: str, element: Element, lane: int, split: Mapping[str, int]) -> E
     laws = {
         law.where.rpartition(".")[2]: spell(rename(law.tree, words))
         for law in law_fields(name, element)
+        if words.keys() & set(names(law.tree))
     }
     state = f"{state_symbol(element, name)}_{lane}"
     return element.model_copy(update={**laws, "count": None, "state": state})

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from typing import Any
 
 ORDERED = ("parameters", "inputs", "elements")
+MAX_SIZE = 1e300
 NOTHING: tuple[Any, ...] = (None, False, "", "0", [])
 
 
@@ -59,7 +60,8 @@ def spec_hash(data: Mapping[str, Any]) -> str:
     Order counts where it means something: among parameters, inputs and elements.  Entries that say
     nothing (0, "0", "", false, an empty list) are left out, since leaving them out means the same.
     """
-    tables = {name: _rows(table, name in ORDERED) for name, table in data.items()}
+    rows = {name: _rows(table, name in ORDERED) for name, table in data.items()}
+    tables = {name: table for name, table in rows.items() if table}
     canonical = json.dumps(sorted(tables.items()), ensure_ascii=True, separators=(",", ":"))
     return hashlib.sha256(canonical.encode()).hexdigest()
 
@@ -73,8 +75,10 @@ def _canonical(value: Any) -> Any:
     match value:
         case bool() | str() | None:
             return value
-        case int() | float():
+        case int() | float() if abs(value) <= MAX_SIZE:
             return float(value)
         case Mapping():
             return _rows(value, ordered=False)
-    return [_canonical(item) for item in value]
+        case list() | tuple():
+            return [_canonical(item) for item in value]
+    return str(value)  # nan, a date: no spec has them, and none shall have their hash

@@ -9,6 +9,7 @@ from piezo_sym.spec.elements import KINDS
 from piezo_sym.spec.expressions import Node, names
 from piezo_sym.spec.parse import parse_law
 from piezo_sym.spec.tables import (
+    Condition,
     Tables,
     banks,
     bodies,
@@ -48,16 +49,26 @@ def check_laws(spec: Tables) -> None:
     words = [*spec.parameters, *spec.inputs, *states(spec), *temperatures(spec)]
     for condition in conditions(spec):
         _check_words(condition.tree, condition.where, (), words)
+        _check_banks(spec, condition)
+
+
+def _check_banks(spec: Tables, condition: Condition) -> None:
+    """Refuse a condition on the states of two banks, whose lanes have nothing in common."""
+    elements, sizes = states(spec), banks(spec)
+    mixed = {elements[word] for word in names(condition.tree) if elements.get(word) in sizes}
+    if len(mixed) > 1:
+        what = f"mixes states of the banks {listing(sorted(mixed))}"
+        raise SpecError(what, condition.where, "states of one bank", "write a condition for each")
 
 
 def _check_initial(spec: Tables) -> None:
-    known = states(spec)
+    known, sizes = states(spec), banks(spec)
     for symbol, start in spec.initial.items():
         where = f"initial.{symbol}"
         if symbol not in known:
             what = f"{quote(symbol)} is no state of this spec"
             raise SpecError(what, where, remedy=nearest(symbol, known))
-        count = banks(spec).get(known[symbol])
+        count = sizes.get(known[symbol])
         if isinstance(start, tuple) and len(start) != count:
             expected = (
                 f"{count} values, one a lane" if count else "one value: no bank has this state"

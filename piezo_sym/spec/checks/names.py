@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
+from fractions import Fraction
 
 from piezo_sym.errors import SpecError, quote
 from piezo_sym.spec.names import check_name, check_symbol
@@ -12,6 +13,8 @@ from piezo_sym.spec.units import parse_unit
 
 #: Variables that every result has; see `run`.
 RESULTS = frozenset({"time", "energy", "entropy", "energy_residual"})
+LARGEST = Fraction(10) ** 300
+SMALLEST = 1 / LARGEST
 PREFIXES = ("y_", "supplied_", "heat_", "produced_")
 
 
@@ -26,9 +29,21 @@ def check_names(spec: Tables) -> None:
         check_symbol(symbol, where)
     _check_unique(symbols)
     _check_kept(spec, symbols)
-    for table, group in (("parameters", spec.parameters), ("inputs", spec.inputs)):
-        for name, entry in group.items():
-            parse_unit(entry.unit, f"{table}.{name}.unit")
+    for name, parameter in spec.parameters.items():
+        given = parameter.value if isinstance(parameter.value, tuple) else (parameter.value,)
+        _check_unit(parameter.unit, given, f"parameters.{name}")
+    for name, entry in spec.inputs.items():
+        _check_unit(entry.unit, (entry.default,), f"inputs.{name}")
+
+
+def _check_unit(text: str, values: tuple[float, ...], where: str) -> None:
+    """Check a unit, and that the values given in it exist in SI."""
+    unit = parse_unit(text, f"{where}.unit", values[0])
+    for value in values:
+        size = abs(Fraction(repr(value)) * unit.factor)
+        if size and not SMALLEST <= size <= LARGEST:
+            what = f"{value} {quote(text)} is beyond all numbers in SI"
+            raise SpecError(what, where, "1e-300 to 1e300 in SI", "check the unit")
 
 
 def _symbols(spec: Tables) -> Iterator[tuple[str, str]]:
@@ -65,12 +80,15 @@ def _check_kept(spec: Tables, symbols: list[tuple[str, str]]) -> None:
     kept = dict.fromkeys(RESULTS, "a variable of every result")
     kept |= {f"{name}_count": f"the size of bank '{name}'" for name in spec.elements}
     kept |= {f"T_{name}": f"the temperature of '{name}'" for name in bodies(spec)}
-    lanes = [s for s, element in states(spec).items() if element in banks(spec)]
+    sizes = banks(spec)
+    lanes = {s: f"bank state '{s}'" for s, element in states(spec).items() if element in sizes}
+    lanes |= {p: f"'{p}'" for p, entry in spec.parameters.items() if isinstance(entry.value, tuple)}
+    lanes |= {f"{letter}_{name}": f"bank '{name}'" for name in sizes for letter in "iV"}
     for symbol, where in symbols:
         use = kept.get(symbol)
-        for state in lanes:
-            if re.fullmatch(rf"{state}_(?:j|\d+)", symbol):
-                use = f"a lane of bank state '{state}'"
+        base, _, lane = symbol.rpartition("_")
+        if base in lanes and re.fullmatch(r"j|\d+", lane):
+            use = f"a lane of {lanes[base]}"
         if symbol.startswith(PREFIXES) and symbol.split("_", 1)[1] in spec.elements:
             use = "a variable of every result"
         if use:

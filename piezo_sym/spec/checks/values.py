@@ -53,23 +53,26 @@ def _starts(
 ) -> tuple[float, ...]:
     """Return the initial values of a state, one, or one a lane where lanes differ."""
     start = spec.initial.get(symbol, 0.0)
-    parts = start if isinstance(start, tuple) else (start,)
-    values: list[float] = []
-    for part in parts:
-        if isinstance(part, str):
-            tree = parse_law(part, f"initial.{symbol}")
-            lanes = max((len(lists[word]) for word in names(tree) if word in lists), default=1)
-            for lane in range(lanes):
-                here = {
-                    **fixed,
-                    **{
-                        word: column[lane] for word, column in lists.items() if len(column) == lanes
-                    },
-                }
-                values.append(_value(tree, here, f"initial.{symbol}"))
-        else:
-            values.append(part)
-    return tuple(values)
+    if isinstance(start, tuple):
+        return tuple(_start(part, n, symbol, fixed, lists) for n, part in enumerate(start))
+    words = names(parse_law(start, f"initial.{symbol}")) if isinstance(start, str) else ()
+    lanes = max((len(lists[word]) for word in words if word in lists), default=1)
+    return tuple(_start(start, n, symbol, fixed, lists) for n in range(lanes))
+
+
+def _start(
+    start: str | float,
+    lane: int,
+    symbol: str,
+    fixed: Mapping[str, float],
+    lists: Mapping[str, tuple[float, ...]],
+) -> float:
+    """Return the initial value of a state in one lane."""
+    if not isinstance(start, str):
+        return start
+    tree = parse_law(start, f"initial.{symbol}")
+    here = {word: lists[word][lane] for word in names(tree) if word in lists}
+    return _value(tree, {**fixed, **here}, f"initial.{symbol}")
 
 
 def _value(tree: object, values: Mapping[str, float], where: str) -> float:

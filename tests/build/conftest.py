@@ -1,0 +1,46 @@
+"""The shipped spec as plain data, to change and to make models of; modules from text."""
+
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from piezo_sym import Model
+from piezo_sym.build import render
+from piezo_sym.modules import load_module
+
+SHIPPED = Path(__file__).parents[2] / "piezo_sym" / "models" / "piezo_stack.toml"
+
+
+@pytest.fixture
+def spec():
+    """Plain data of piezo_stack."""
+    return tomllib.loads(SHIPPED.read_text(encoding="utf-8"))
+
+
+@pytest.fixture
+def model(spec):
+    """The model of piezo_stack."""
+    return Model(**spec)
+
+
+@pytest.fixture
+def unproved(spec):
+    """A model whose temperature is not shown to be positive."""
+    spec["model"]["name"] = "linear_body"
+    spec["elements"]["body"]["temperature"] = "T_0*(1 + S/c_0)"
+    return Model(**spec)
+
+
+@pytest.fixture
+def module_from(tmp_path):
+    """Return the module that the text generated from a model is."""
+
+    def made(model):
+        path = tmp_path / "made" / f"{model.name}.py"
+        path.parent.mkdir(exist_ok=True)
+        (text,) = render(model).values()
+        path.write_text(text, encoding="utf-8")
+        return load_module(path)
+
+    return made

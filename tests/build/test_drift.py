@@ -1,0 +1,110 @@
+"""``generate --check``: what is committed is what the specs give, and every other file is named."""
+
+from pathlib import Path
+
+import pytest
+
+from piezo_sym import Model, generate
+from piezo_sym.build import MARK, drift, raise_if_drifted, shipped_models
+from piezo_sym.errors import DriftError
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture
+def out(model, tmp_path):
+    """A folder with the files of piezo_stack."""
+    generate(model, tmp_path / "out")
+    return tmp_path / "out"
+
+
+@pytest.fixture
+def file(out):
+    return out / "piezo_stack" / "piezo_stack.py"
+
+
+def test_committed_files_are_what_the_specs_give():
+    assert drift(shipped_models(), ROOT / "generated", complete=True) == ()
+
+
+def test_files_just_generated_have_not_drifted(model, out):
+    assert drift([model], out, complete=True) == ()
+
+
+def test_a_missing_file_is_found(model, file, out):
+    file.unlink()
+    assert [(d.path, d.fault, d.diff) for d in drift([model], out)] == [(file, "is missing", "")]
+
+
+def test_a_folder_that_is_not_there_lacks_its_files(model, tmp_path):
+    assert [d.fault for d in drift([model], tmp_path / "none", complete=True)] == ["is missing"]
+
+
+def test_a_changed_file_is_found_with_the_difference(model, file, out):
+    file.write_text(file.read_text().replace("d*v_mass\n", "2*d*v_mass\n", 1))
+    (found,) = drift([model], out)
+    lines = found.diff.splitlines()
+    assert found.fault == "differs from its spec"
+    assert lines[:2] == [f"--- {file} (present)", f"+++ {file} (from the spec)"]
+    assert [line for line in lines[2:] if line[0] in "+-"] == [
+        "-    F_damper = 2*d*v_mass",
+        "+    F_damper = d*v_mass",
+    ]
+
+
+def test_a_changed_spec_is_found(spec, out):
+    spec["parameters"]["M"]["value"] = 4e-3
+    (found,) = drift([Model(**spec)], out)
+    assert "+    M: float = 0.004" in found.diff
+
+
+@pytest.mark.parametrize("name", ["piezo_stack/old_name.py", "removed/removed.py"])
+def test_a_left_over_file_is_found(model, file, out, name):
+    old = out / name
+    old.parent.mkdir(exist_ok=True)
+    old.write_text(file.read_text())
+    assert [(d.path, d.fault) for d in drift([model], out, complete=True)] == [
+        (old, "belongs to no spec given")
+    ]
+
+
+def test_files_of_models_not_given_are_no_drift(model, file, out):
+    other = out / "mine" / "mine.py"
+    other.parent.mkdir()
+    other.write_text(file.read_text())
+    assert drift([model], out) == ()
+
+
+def test_foreign_files_are_left_alone(model, out):
+    (out / "notes.txt").write_text("mine")
+    (out / "piezo_stack" / "photo.png").write_bytes(bytes(range(256)))
+    cache = out / "piezo_stack" / "__pycache__"
+    cache.mkdir()
+    (cache / "piezo_stack.cpython-311.pyc").write_text(MARK)
+    assert drift([model], out, complete=True) == ()
+
+
+def test_a_check_writes_nothing(model, tmp_path):
+    drift([model], tmp_path / "none")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_no_drift_raises_nothing():
+    assert raise_if_drifted((), "piezo-sym generate") is None
+
+
+def test_drift_names_the_file_the_number_and_the_command(model, file, out):
+    old = out / "piezo_stack" / "old_name.py"
+    old.write_text(file.read_text())
+    file.unlink()
+    with pytest.raises(DriftError) as caught:
+        raise_if_drifted(drift([model], out), "piezo-sym generate")
+    message = f"'{file}': is missing (and 1 more); run `piezo-sym generate` and commit the result"
+    assert str(caught.value) == message
+    assert caught.value.exit_code == 1
+
+
+def test_a_left_over_file_is_to_be_deleted(model, file, out):
+    (out / "piezo_stack" / "old_name.py").write_text(file.read_text())
+    with pytest.raises(DriftError, match="belongs to no spec given; delete it"):
+        raise_if_drifted(drift([model], out), "piezo-sym generate")

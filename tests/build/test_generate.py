@@ -1,0 +1,108 @@
+"""Generated files: written in one step, the same on every machine, and for every bank size."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from piezo_sym import Model, PiezoError, generate
+from piezo_sym.build import render
+from piezo_sym.errors import FileError, ProofError
+
+ROOT = Path(__file__).parents[2]
+COMMITTED = ROOT / "generated" / "piezo_stack" / "piezo_stack.py"
+
+
+def text_of(model):
+    (text,) = render(model).values()
+    return text
+
+
+def with_count(spec, count):
+    spec["elements"]["hysteron"]["count"] = count
+    return text_of(Model(**spec)).splitlines()
+
+
+def test_generate_writes_what_render_gives(model, tmp_path):
+    (path,) = generate(model, tmp_path)
+    assert path == tmp_path / "piezo_stack" / "piezo_stack.py"
+    assert path.read_text(encoding="utf-8") == text_of(model)
+
+
+def test_generate_leaves_nothing_else(model, tmp_path):
+    generate(model, tmp_path)
+    generate(model, str(tmp_path))
+    assert [p.name for p in tmp_path.rglob("*") if p.is_file()] == ["piezo_stack.py"]
+
+
+def test_a_write_that_fails_leaves_the_old_file(model, tmp_path, monkeypatch):
+    (path,) = generate(model, tmp_path)
+    path.write_text("old")
+
+    def fails(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "replace", fails)
+    with pytest.raises(FileError, match=r"cannot be written \(No space left on device\)"):
+        generate(model, tmp_path)
+    assert path.read_text() == "old"
+    assert [p.name for p in path.parent.iterdir()] == ["piezo_stack.py"]
+
+
+def test_a_folder_that_cannot_be_made_is_named(model, tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(FileError, match=r"file/piezo_stack/piezo_stack.py': cannot be written"):
+        generate(model, tmp_path / "file")
+
+
+def test_what_is_not_proved_is_not_written(unproved, tmp_path):
+    with pytest.raises(ProofError, match="temperature is OPEN") as caught:
+        generate(unproved, tmp_path)
+    assert caught.value.exit_code == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_is_written_all_the_same_says_so(unproved, tmp_path):
+    (path,) = generate(unproved, tmp_path, allow_unproved=True)
+    assert "Proofs:  NOT PROVED (temperature OPEN)" in path.read_text().splitlines()
+
+
+@pytest.mark.parametrize("seed", ["0", "1"])
+def test_the_text_is_the_same_for_every_hash_seed(seed):
+    code = "from piezo_sym.build import *; print(*render(load('piezo_stack')).values(), end='')"
+    environment = {**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT)}
+    words = [sys.executable, "-c", code]
+    done = subprocess.run(words, env=environment, capture_output=True, text=True, check=True)
+    assert done.stdout == COMMITTED.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("count", [3, 20_000])
+def test_the_size_of_a_bank_is_its_default_and_the_hash(spec, count):
+    pairs = zip(with_count(spec, 2), with_count(spec, count), strict=True)
+    first, second, default = [pair for pair in pairs if pair[0] != pair[1]]
+    sha256 = Model(**spec).sha256
+    assert first[1].endswith(f" sha256 {sha256}")
+    assert second[1] == f'SPEC_SHA256 = "{sha256}"'
+    assert default == ("    hysteron_count: int = 2", f"    hysteron_count: int = {count}")
+
+
+def test_the_head_has_no_date_path_or_host(model):
+    import datetime
+    import platform
+
+    text = text_of(model)
+    year = str(datetime.datetime.now(tz=datetime.UTC).year)
+    for word in (year, str(ROOT), str(Path.home()), platform.node()):
+        assert word not in text
+
+
+NAMES = ["../up", "a/b", "..", "", ".", "a b", 'a"b', "a\nb", "a\\b", "é", "con", "_x", "x" * 99]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_name_that_leads_elsewhere_is_refused(spec, name):
+    spec["model"]["name"] = name
+    with pytest.raises(PiezoError, match=r"model\.name"):
+        Model(**spec)

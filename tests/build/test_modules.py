@@ -1,0 +1,167 @@
+"""From a spec to its module: the checkout's, the working folder's, or the user's cache."""
+
+import tempfile
+from pathlib import Path
+
+import platformdirs
+import pytest
+
+from piezo_sym import Model, generate, load, simulate
+from piezo_sym.cli import run
+from piezo_sym.errors import DriftError, FileError, SpecError
+from piezo_sym.modules import module_of
+
+ROOT = Path(__file__).parents[2]
+COMMITTED = ROOT / "generated" / "piezo_stack" / "piezo_stack.py"
+
+
+@pytest.fixture(autouse=True)
+def cache(tmp_path, monkeypatch):
+    """A cache of our own, and a working folder without modules."""
+    (tmp_path / "work").mkdir()
+    monkeypatch.chdir(tmp_path / "work")
+    monkeypatch.setattr(platformdirs, "user_cache_dir", lambda name: str(tmp_path / "cache" / name))
+    return tmp_path / "cache"
+
+
+@pytest.fixture
+def mine(spec):
+    """A spec file of the user's, with a heavier mass."""
+    spec["model"]["name"] = "mine"
+    spec["parameters"]["M"]["value"] = 4e-3
+    path = Path("mine.toml")
+    path.write_text(Model(**spec).to_toml(), encoding="utf-8")
+    return path
+
+
+def files(folder):
+    return [path for path in folder.rglob("*") if path.is_file()]
+
+
+@pytest.mark.parametrize("kind", ["name", "path", "model"])
+def test_the_shipped_spec_has_the_module_of_the_checkout(kind, model, cache):
+    path = ROOT / "piezo_sym" / "models" / "piezo_stack.toml"
+    module = module_of({"name": "piezo_stack", "path": path, "model": model}[kind])
+    assert Path(module.__file__) == COMMITTED
+    assert files(cache) == []
+
+
+def test_the_working_folder_comes_first(model):
+    paths = generate(model)
+    assert Path(module_of("piezo_stack").__file__) == paths[0].absolute()
+
+
+def test_loading_a_module_leaves_no_trace(model):
+    generate(model)
+    module_of("piezo_stack")
+    assert len(files(Path("generated"))) == 1
+
+
+def test_a_module_of_another_spec_names_the_command(mine):
+    (path,) = generate(load(mine))
+    mine.write_text(mine.read_text().replace("0.004", "0.005"))
+    with pytest.raises(DriftError) as caught:
+        module_of(mine)
+    assert str(caught.value) == (
+        f"'{path.absolute()}': was generated from another version of its spec; "
+        "run `piezo-sym generate mine.toml`"
+    )
+    assert caught.value.exit_code == 1
+
+
+def test_an_edited_copy_of_the_shipped_spec_names_its_own_path(mine):
+    mine.write_text(mine.read_text().replace('"mine"', '"piezo_stack"'))
+    with pytest.raises(DriftError, match=r"run `piezo-sym generate mine\.toml`"):
+        module_of(mine)
+
+
+def test_a_module_of_another_spec_in_the_working_folder_is_passed_by(model):
+    (path,) = generate(model)
+    path.write_text(path.read_text().replace(model.sha256, "0" * 64))
+    assert Path(module_of("piezo_stack").__file__) == COMMITTED
+
+
+def test_the_command_that_is_named_mends_it(mine):
+    generate(load(mine))
+    mine.write_text(mine.read_text().replace("0.004", "0.005"))
+    with pytest.raises(DriftError):
+        module_of(mine)
+    assert run(["generate", "mine.toml"]) == 0
+    assert module_of(mine).Parameters().M == 0.005
+
+
+def test_a_spec_written_otherwise_is_the_same_spec(model):
+    """Comments, order of keys and entries that say nothing do not count."""
+    path = Path("copy.toml")
+    path.write_text(f"# a copy\n{model.to_toml()}", encoding="utf-8")
+    assert Path(module_of(path).__file__) == COMMITTED
+
+
+def test_a_spec_not_generated_yet_goes_to_the_cache(mine, cache):
+    module = module_of(mine)
+    assert module.Parameters().M == 4e-3
+    assert files(cache) == [Path(module.__file__)]
+    assert not Path("generated").exists()
+
+
+def test_the_cache_is_used_again(mine, monkeypatch):
+    first = module_of(mine)
+    monkeypatch.setattr("piezo_sym.build.render", None)
+    assert module_of(mine).SPEC_SHA256 == first.SPEC_SHA256
+
+
+def test_a_changed_spec_is_not_answered_from_the_cache(mine):
+    module_of(mine)
+    mine.write_text(mine.read_text().replace("0.004", "0.005"))
+    assert module_of(mine).Parameters().M == 0.005
+
+
+def test_a_damaged_file_in_the_cache_is_made_again(mine, cache):
+    module_of(mine)
+    (path,) = files(cache)
+    path.write_text("def (")
+    assert module_of(mine).Parameters().M == 4e-3
+
+
+def test_a_cache_that_cannot_be_written_does_not_matter(mine, tmp_path, monkeypatch):
+    (tmp_path / "cache").write_text("a file where the folder should be")
+    (tmp_path / "temporary").mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
+    assert module_of(mine).Parameters().M == 4e-3
+    assert files(tmp_path / "temporary") == []
+
+
+def test_a_model_edited_in_python_runs_as_edited(spec, cache):
+    spec["parameters"]["M"]["value"] = 7e-3
+    module = module_of(Model(**spec))
+    assert module.Parameters().M == 7e-3
+    assert Path(module.__file__).is_relative_to(cache)
+
+
+def test_a_model_edited_in_python_is_simulated_as_edited(spec):
+    spec["inputs"]["V_in"]["default"] = 50.0
+    spec["elements"]["hysteron"]["count"] = 3
+    result = simulate(Model(**spec), duration=1e-4)
+    assert result.V_in.values[-1] == 50.0
+    assert result.sizes["hysteron"] == 3
+
+
+@pytest.mark.parametrize("text", ["def (", "import no_such_library", "x = y"])
+def test_a_broken_module_is_named(model, text):
+    (path,) = generate(model)
+    path.write_text(text)
+    with pytest.raises(FileError, match=r"piezo_stack\.py': cannot be loaded; regenerate it"):
+        module_of("piezo_stack")
+
+
+def test_a_file_that_is_no_generated_module_is_named(model):
+    (path,) = generate(model)
+    path.write_text("x = 1")
+    with pytest.raises(FileError, match="is no generated module; move it elsewhere"):
+        module_of("piezo_stack")
+
+
+def test_a_spec_whose_name_is_no_name_is_refused_as_a_spec(mine):
+    mine.write_text(mine.read_text().replace('"mine"', '"../mine"'))
+    with pytest.raises(SpecError, match="is not a name"):
+        module_of(mine)

@@ -1,0 +1,84 @@
+"""``piezo-sym generate``: files, and the check that they are up to date."""
+
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+NAME = "piezo_stack/piezo_stack.py"
+
+
+@pytest.fixture
+def out(call, tmp_path):
+    """A folder with the modules of all shipped specs."""
+    assert call("generate", "--out", tmp_path / "out").code == 0
+    return tmp_path / "out"
+
+
+def test_without_a_spec_all_shipped_ones_are_written(call, tmp_path):
+    answer = call("generate", "--out", tmp_path)
+    assert (answer.code, answer.err) == (0, "")
+    assert str(tmp_path / NAME) in answer.out.splitlines()
+    assert (tmp_path / NAME).read_bytes() == (ROOT / "generated" / NAME).read_bytes()
+
+
+def test_the_folder_is_generated_if_nothing_is_said(call, spec_file, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    spec_file()
+    assert call("generate", "mine.toml") == (0, f"{Path('generated/mine/mine.py')}\n", "")
+
+
+def test_the_checkout_is_up_to_date(call):
+    answer = call("generate", "--check", "--out", ROOT / "generated")
+    assert (answer.code, answer.err) == (0, "")
+    assert " up to date in " in answer.out
+
+
+def test_a_drifted_file_is_exit_code_1_with_the_difference(call, out):
+    path = out / NAME
+    path.write_text(path.read_text().replace("M: float = 0.0035", "M: float = 1.0"))
+    answer = call("generate", "--check", "--out", out)
+    assert answer.code == 1
+    assert "-    M: float = 1.0\n+    M: float = 0.0035\n" in answer.out
+    assert answer.err == (
+        f"piezo-sym: '{path}': differs from its spec; "
+        f"run `piezo-sym generate --out {out}` and commit the result\n"
+    )
+
+
+def test_a_missing_file_names_the_command_for_the_specs_given(refused, spec_file, tmp_path):
+    path = spec_file()
+    message = refused("generate", path, "--check", "--out", tmp_path / "none", code=1)
+    assert f"run `piezo-sym generate {path} --out {tmp_path / 'none'}`" in message
+
+
+def test_a_left_over_file_is_exit_code_1(refused, out):
+    old = out / "removed" / "removed.py"
+    old.parent.mkdir()
+    old.write_text((out / NAME).read_text())
+    message = refused("generate", "--check", "--out", out, code=1)
+    assert message == f"'{old}': belongs to no spec given; delete it"
+
+
+def test_a_check_of_some_specs_leaves_other_modules_alone(call, spec_file, out):
+    assert call("generate", spec_file(), "--out", out).code == 0
+    assert call("generate", "piezo_stack", "--check", "--out", out).code == 0
+
+
+def test_what_is_not_proved_is_exit_code_1(refused, unproved, tmp_path):
+    message = refused("generate", unproved, "--out", tmp_path / "out", code=1)
+    assert message.startswith("mine.body: temperature is OPEN")
+    assert not (tmp_path / "out").exists()
+
+
+def test_what_is_not_proved_is_written_if_allowed(call, unproved, tmp_path):
+    words = ("generate", unproved, "--out", tmp_path / "out", "--allow-unproved")
+    assert call(*words).code == 0
+    assert "NOT PROVED" in (tmp_path / "out" / "mine" / "mine.py").read_text()
+    assert call(*words, "--check").code == 0
+
+
+def test_a_folder_that_cannot_be_written_is_one_line(refused, tmp_path):
+    (tmp_path / "file").write_text("")
+    message = refused("generate", "--out", tmp_path / "file")
+    assert message.startswith(f"'{tmp_path / 'file' / NAME}': cannot be written")

@@ -1,0 +1,26 @@
+"""``piezo-sym show``: the derived system as text and as LaTeX."""
+
+
+def test_the_text_has_the_equations_and_the_matrices(call):
+    answer = call("show", "piezo_stack")
+    assert (answer.code, answer.err) == (0, "")
+    lines = [" ".join(line.split()) for line in answer.out.splitlines()]
+    assert lines[0] == "piezo_stack: Piezoelectric stack actuator with hysterons"
+    assert "dq/dt = p/M" in lines
+    assert "y_ambient = T" in lines
+    for title in ("J0, structure matrix", "Process hysteron_j", "Process damper", "g, input map"):
+        assert title in lines
+
+
+def test_the_latex_is_balanced_mathematics(call):
+    answer = call("show", "piezo_stack", "--latex")
+    assert (answer.code, answer.err) == (0, "")
+    assert r"\alpha_{\mathrm{transducer}}" in answer.out
+    assert answer.out.count(r"\[") == answer.out.count(r"\]") > 0
+    assert answer.out.count(r"\begin{") == answer.out.count(r"\end{") > 0
+    assert answer.out.count("{") == answer.out.count("}")
+
+
+def test_the_size_of_a_bank_does_not_change_the_mathematics(call, spec_file):
+    two, many = (call("show", spec_file("count = 2", f"count = {n}")).out for n in (2, 20_000))
+    assert many.replace("20000 in the spec", "2 in the spec") == two

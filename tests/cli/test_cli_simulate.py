@@ -1,0 +1,135 @@
+"""``piezo-sym simulate``: inputs and parameters from words, results to files, refusals."""
+
+import csv
+
+import pytest
+import xarray
+
+import piezo_sym
+from piezo_sym import sine
+
+SHORT = ("simulate", "piezo_stack", "--duration", "1e-3", "--times", "11")
+DRIVEN = (*SHORT, "--input", "V_in=sine(100, 100)", "--set", "L=5e-4")
+
+
+@pytest.fixture
+def expected():
+    """What the same run gives in Python."""
+    return piezo_sym.simulate(
+        "piezo_stack",
+        duration=1e-3,
+        times=11,
+        inputs={"V_in": sine(100, 100)},
+        parameters={"L": 5e-4},
+    )
+
+
+def test_the_last_values_are_printed(call, expected):
+    answer = call(*DRIVEN)
+    assert (answer.code, answer.err) == (0, "")
+    assert "piezo_stack at t = 0.001 s" in answer.out
+    rows = [line.split() for line in answer.out.splitlines()]
+    assert ["q", f"{expected.q.values[-1]:.6g}", "m"] in [row[:3] for row in rows]
+
+
+def test_a_csv_file_has_a_column_a_quantity_and_a_lane(call, expected, tmp_path):
+    path = tmp_path / "new folder" / "run.csv"
+    assert call(*DRIVEN, "--out", path).code == 0
+    with path.open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 11
+    assert float(rows[-1]["q"]) == expected.q.values[-1]
+    assert [float(row["phi_2"]) for row in rows] == expected.phi.values[:, 1].tolist()
+
+
+def test_a_netcdf_file_holds_the_result(call, expected, tmp_path):
+    path = tmp_path / "run.nc"
+    answer = call(*DRIVEN, "--out", path)
+    assert answer.out.splitlines()[-1] == str(path)
+    with xarray.open_dataset(path, engine="scipy") as result:
+        xarray.testing.assert_allclose(result.load(), expected, rtol=0, atol=0)
+        assert result.q.attrs["units"] == "m"
+        assert result.attrs["parameter_L"] == 5e-4
+
+
+def test_a_result_leaves_no_other_file(call, tmp_path):
+    (tmp_path / "run.csv").mkdir()
+    assert call(*SHORT, "--out", tmp_path / "run.csv").code == 2
+    assert [path.name for path in tmp_path.iterdir()] == ["run.csv"]
+
+
+@pytest.mark.parametrize(
+    ("words", "name", "value"),
+    [
+        (("-i", "V_in=5"), "V_in", 5.0),
+        (("-i", "V_in=-5e0"), "V_in", -5.0),
+        (("-i", "V_in=step(5e-4, 1, 2)"), "V_in", 2.0),
+        (("-i", "V_in=ramp(0,1e-3,0,8)"), "V_in", 8.0),
+        (("-i", "F_ext=triangle(3,250)"), "F_ext", 3.0),
+        (("-i", "F_ext=chirp(3,250,250,1)"), "F_ext", 3.0),
+        (("-i", "V_in=1", "-i", "T_e=300"), "T_e", 300.0),
+    ],
+)
+def test_inputs_are_numbers_and_signals(call, tmp_path, words, name, value):
+    call(*SHORT, *words, "--out", tmp_path / "run.nc")
+    with xarray.open_dataset(tmp_path / "run.nc", engine="scipy") as result:
+        assert float(result[name][-1]) == pytest.approx(value, rel=1e-9)
+
+
+def test_a_parameter_of_a_bank_takes_a_number_a_lane(call, tmp_path):
+    words = ("-p", "L=1e-3,2e-3", "-i", "V_in=1")
+    call(*SHORT, *words, "--out", tmp_path / "run.nc")
+    with xarray.open_dataset(tmp_path / "run.nc", engine="scipy") as result:
+        assert result.parameter_L.tolist() == [1e-3, 2e-3]
+
+
+def test_a_bank_takes_another_size(call, tmp_path):
+    call(*SHORT, "-p", "hysteron_count=5", "--out", tmp_path / "run.nc")
+    with xarray.open_dataset(tmp_path / "run.nc", engine="scipy") as result:
+        assert result.sizes["hysteron"] == 5
+
+
+REFUSED = [
+    (("-i", "V_in"), "--input: 'V_in' has no '='; expected NAME=VALUE"),
+    (("-i", "V_in=high"), "--input V_in: 'high' is no number; expected such as 0.5 or 1e-3"),
+    (("-i", "V_in="), "--input V_in: '' is no number"),
+    (("-i", "V_in=sin(1,2)"), "--input V_in: 'sin' is no signal; did you mean 'sine'?"),
+    (("-i", "V_in=exit(1)"), "--input V_in: 'exit' is no signal; known: sine, step"),
+    (("-i", "V_in=__import__('os')"), "--input V_in: '__import__('os')' is no number"),
+    (("-i", "V_in=sine(100)"), "--input V_in: sine does not take 1 numbers; see `piezo-sym"),
+    (("-i", "V_in=sine(1,2,3,4,5)"), "--input V_in: sine does not take 5 numbers"),
+    (("-i", "V_in=sine(1,x)"), "--input V_in: 'x' is no number"),
+    (("-i", "V_in=sine(1,-2)"), "--input V_in: sine.frequency: '-2.0' is not positive"),
+    (("-i", "V_in=sine(1,2"), "--input V_in: 'sine(1,2' is no number"),
+    (("-i", "V_in=nan"), "simulate.inputs.V_in: 'nan' is not a finite number"),
+    (("-i", "Vin=1"), "simulate.inputs: unknown name 'Vin'; did you mean 'V_in'?"),
+    (("-i", "T_e=290"), "model 'piezo_stack': start is outside the domain at t = 0 s"),
+    (("-p", "mass=1"), "simulate.parameters: unknown name 'mass'; known: M, k"),
+    (("-p", "M"), "--set: 'M' has no '='"),
+    (("-p", "M=heavy"), "--set M: 'heavy' is no number"),
+    (("-p", "d=1,2"), "simulate.parameters.d: '[1, 2]' is a list"),
+    (("-p", "d=-1"), "model 'piezo_stack': start is outside the domain"),
+    (("-p", "L=1,2,3"), "simulate.parameters.L: 3 values for 2 lanes"),
+    (("-p", "hysteron_count=0"), "simulate.parameters.hysteron_count: '0' is not allowed"),
+    (("-p", "hysteron_count=2.5"), "simulate.parameters.hysteron_count: '2.5' is not allowed"),
+    (("--rtol", "1"), "simulate.rtol: 1 is out of range"),
+    (("--method", "Euler"), "simulate.method: unknown method 'Euler'"),
+    (("--times", "1"), "simulate.times: '1' is not allowed"),
+    (("--duration", "0"), "simulate.duration: '0.0' is not positive"),
+    (("--duration", "nan"), "simulate.duration: 'nan' is not a finite number"),
+    (("--out", "run.txt"), "--out: 'run.txt' has no known ending; expected .nc, .csv"),
+    (("--out", "run"), "--out: 'run' has no known ending"),
+]
+
+
+@pytest.mark.parametrize(("words", "message"), REFUSED)
+def test_a_wrong_run_is_one_line_and_exit_code_2(refused, words, message):
+    assert refused(*SHORT, *words).startswith(message)
+
+
+def test_a_module_of_another_spec_is_exit_code_1(refused, spec_file, tmp_path, monkeypatch, call):
+    monkeypatch.chdir(tmp_path)
+    assert call("generate", spec_file()).code == 0
+    path = spec_file("3.5e-3", "4e-3")
+    message = refused("simulate", path, "--duration", "1e-3", code=1)
+    assert message.endswith(f"run `piezo-sym generate {path}`")

@@ -1,0 +1,50 @@
+"""``piezo-sym verify``: a table to read, rows to parse, and an exit code."""
+
+import json
+
+KEYS = ["model", "id", "element", "verdict", "witness", "reason"]
+
+
+def rows_of(answer):
+    return json.loads(answer.out)
+
+
+def test_a_proved_model_is_exit_code_0(call):
+    answer = call("verify", "piezo_stack")
+    assert (answer.code, answer.err) == (0, "")
+    assert "piezo_stack: " in answer.out
+    for word in ("skew", "casimir", "energy", "entropy", "temperature", "PROVED"):
+        assert word in answer.out
+
+
+def test_json_rows_have_the_keys_of_the_contract(call):
+    rows = rows_of(call("verify", "piezo_stack", "--json"))
+    assert all(list(row) == KEYS for row in rows)
+    assert {row["model"] for row in rows} == {"piezo_stack"}
+    assert [row["element"] for row in rows if row["id"] == "temperature"] == ["body"]
+    assert [row["element"] for row in rows if row["id"] == "energy"] == [None]
+
+
+def test_several_specs_are_one_list(call, spec_file):
+    rows = rows_of(call("verify", "piezo_stack", spec_file(), "--json"))
+    assert list(dict.fromkeys(row["model"] for row in rows)) == ["piezo_stack", "mine"]
+
+
+def test_what_is_not_proved_is_exit_code_1(call, unproved):
+    answer = call("verify", unproved, "--json")
+    failed = [row for row in rows_of(answer) if row["verdict"] != "PROVED"]
+    assert answer.code == 1
+    assert [(row["id"], row["element"], row["verdict"]) for row in failed] == [
+        ("temperature", "body", "OPEN")
+    ]
+    assert "T > 0" in failed[0]["reason"]
+
+
+def test_the_table_says_why_something_is_not_proved(call, unproved):
+    answer = call("verify", unproved)
+    assert answer.code == 1
+    assert "temperature: the sign of T > 0" in answer.out
+
+
+def test_one_model_that_is_not_proved_is_enough(call, unproved):
+    assert call("verify", unproved, "piezo_stack").code == 1
