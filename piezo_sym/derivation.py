@@ -1,21 +1,21 @@
 """Model to irreversible port-Hamiltonian system: the table of contents of the derivation.
 
-    stage        from -> to                    what happens                         module
-    circuit      Model -> Circuit              elements state their ports           spec.circuit
-    symbols      Circuit -> SymbolTable        names become SymPy symbols           symbols
-    junction     Circuit -> Junction           Kirchhoff's and Newton's laws solved network
-    system       Junction -> IPHS              Definition 1, and what follows       iphs, system
+    stage        from -> to                    what happens                           in
+    circuit      Model -> Circuit              elements state their ports             spec
+    symbols      Circuit -> SymbolTable        names become SymPy symbols             algebra
+    junction     Circuit -> Junction           Kirchhoff's and Newton's laws solved   network
+    system       Junction -> IPHS              Definition 1, and what follows         iphs
 
-Banks stay symbolic in their size r all the way (`lanes`); `IPHS.expand` writes them out.
+Banks stay symbolic in their size r all the way (`algebra.lanes`); `IPHS.expand` writes them out.
 """
 
 from __future__ import annotations
 
+from piezo_sym.algebra.symbols import symbol_table
 from piezo_sym.iphs import IPHS, iphs_of
 from piezo_sym.network import junction_of
 from piezo_sym.spec.circuit import circuit_of
 from piezo_sym.spec.model import Model
-from piezo_sym.symbols import symbol_table
 
 
 def derive(model: Model) -> IPHS:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
+    from piezo_sym.algebra.lanes import LaneMatrix
     from piezo_sym.iphs import IPHS
-    from piezo_sym.lanes import LaneMatrix
 
 
 def show(
@@ -29,8 +29,8 @@ def show(
 
 
 def _lines(iphs: IPHS) -> Iterator[str]:
-    from piezo_sym.notation import slot_text
-    from piezo_sym.reading import equations_text
+    from piezo_sym.algebra.notation import slot_text
+    from piezo_sym.iphs.reading import equations_text
     from piezo_sym.spec.tables import banks
 
     system, header = iphs.system, iphs.model.model
@@ -55,7 +55,7 @@ def _matrix(title: str, matrix: LaneMatrix) -> Iterator[str]:
 
 
 def _process(iphs: IPHS, k: int, name: str) -> Iterator[str]:
-    from piezo_sym.notation import slot_text, text
+    from piezo_sym.algebra.notation import slot_text, text
 
     system, write = iphs.system, iphs.reading.write
     pairs = " + ".join(

@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
 
+from piezo_sym.algebra.lanes import Slot
 from piezo_sym.codegen.program import Function, Limit, Row, bank_of
 from piezo_sym.codegen.quantities import Quantities
-from piezo_sym.definitions import costate_name
 from piezo_sym.iphs import IPHS
-from piezo_sym.lanes import Slot
+from piezo_sym.iphs.definitions import costate_name
 from piezo_sym.spec.calculus import add, div, mul, neg
 from piezo_sym.spec.elements.ports import Body, Exchange
 from piezo_sym.spec.expressions import ONE, Expr, Num, Sym

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import final
 
+from piezo_sym.algebra.lanes import Slot
 from piezo_sym.codegen.numpy_head import RATES, head
 from piezo_sym.codegen.numpy_style import NUMPY, numpy_text
 from piezo_sym.codegen.program import (
@@ -22,7 +23,6 @@ from piezo_sym.codegen.program import (
     jacobian_roots,
     needed,
 )
-from piezo_sym.lanes import Slot
 from piezo_sym.spec.expressions import ZERO, Add, Expr, LaneSum, Node, names
 from piezo_sym.spec.names import fresh
 from piezo_sym.spec.text import PRODUCT, SUM, UNARY, enclose, piece, signed

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import final
 
-from piezo_sym.lanes import Slot
+from piezo_sym.algebra.lanes import Slot
 from piezo_sym.spec.expressions import Expr, LaneSum, Node, names
 
 

@@ -12,12 +12,12 @@ from typing import final
 
 import sympy as sp
 
+from piezo_sym.algebra.lanes import LaneMatrix, Slot
 from piezo_sym.codegen.coefficients import coefficient
 from piezo_sym.codegen.excess import with_excess
 from piezo_sym.codegen.program import Quantity
-from piezo_sym.definitions import costate_name
 from piezo_sym.iphs import IPHS
-from piezo_sym.lanes import LaneMatrix, Slot
+from piezo_sym.iphs.definitions import costate_name
 from piezo_sym.network import port_order
 from piezo_sym.spec.calculus import add, mul
 from piezo_sym.spec.elements.ports import Body, Gyrator, Resistor, Source, Storage

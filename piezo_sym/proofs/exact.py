@@ -14,8 +14,8 @@ from typing import final
 
 import sympy as sp
 
+from piezo_sym.algebra.lanes import LaneMatrix
 from piezo_sym.iphs import IPHS
-from piezo_sym.lanes import LaneMatrix
 from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.spec.elements.ports import Body, Storage
 

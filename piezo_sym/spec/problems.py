@@ -48,6 +48,10 @@ def _problem(detail: ErrorDetails) -> SpecError:
             return SpecError(
                 f"unknown key {quote(place[-1])}", where, remedy=nearest(place[-1], known)
             )
+        case "missing" if isinstance(detail["loc"][-1], int):
+            count = detail["loc"][-1]
+            entries = "1 entry is given" if count == 1 else f"{count} entries are given"
+            return SpecError(entries, ".".join(place[:-1]), f"at least {count + 1}")
         case "missing":
             return SpecError("is missing", where, remedy=f"keys here: {listing(known)}")
         case "union_tag_invalid":

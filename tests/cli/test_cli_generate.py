@@ -57,7 +57,10 @@ def test_a_left_over_file_is_exit_code_1(refused, out):
     old.parent.mkdir()
     old.write_text((out / NAME).read_text())
     message = refused("generate", "--check", "--out", out, code=1)
-    assert message == f"'{old}': belongs to no spec given; delete it"
+    assert (
+        message
+        == f"'{old}': belongs to no spec given; delete it, or name its spec on the command line"
+    )
 
 
 def test_a_check_of_some_specs_leaves_other_modules_alone(call, spec_file, out):

@@ -61,13 +61,13 @@ unit = st.floats(-1, 1)
 
 
 @st.composite
-def points(draw, excess=st.floats(1e-3, 80)):
+def points(draw):
     """Draw (x, u, parameters) with T - T_0 from 1 mK up, currents inside and outside the kinks."""
     r = draw(st.sampled_from(SIZES))
     p = MODULE.Parameters(hysteron_count=r)
     currents = [draw(st.floats(-6, 6) | st.floats(-0.6, 0.6)) for _ in range(r)]
     head = [draw(unit) * SCALES[name] for name in ("q", "p", "Q_C")]
-    entropy = p.c_0 * np.log1p(draw(excess) / p.T_0)
+    entropy = p.c_0 * np.log1p(draw(st.floats(1e-3, 80)) / p.T_0)
     u = np.array([draw(unit) * 50, draw(unit) * 150, draw(st.floats(296.2, 400))])
     return np.array([*head, *(i * p.L for i in currents), entropy]), u, p
 
@@ -126,7 +126,9 @@ def test_batches_give_what_single_states_give(point, width):
 def test_a_large_batch_goes_in_blocks_and_gives_the_same():
     rng = np.random.default_rng(3)
     p = MODULE.Parameters()
-    x = rng.uniform(0.5, 1.5, (6, 40_000)) * np.array([[1e-3], [5e-3], [1e-4], [2e-3], [1e-4], [0.05]])
+    x = rng.uniform(0.5, 1.5, (6, 40_000)) * np.array(
+        [[1e-3], [5e-3], [1e-4], [2e-3], [1e-4], [0.05]]
+    )
     u = rng.uniform(1, 2, (3, 40_000)) * np.array([[1.0], [50.0], [200.0]])
     whole = MODULE.rhs(x, u, p)
     parts = [MODULE.rhs(x[:, n : n + 1000], u[:, n : n + 1000], p) for n in range(0, 40_000, 1000)]
@@ -149,6 +151,12 @@ def test_power_put_in_is_the_rate_of_the_energy():
     for _ in range(20):
         x = rng.normal(size=7) * [1e-3, 5e-3, 1e-4, 3e-3, 3e-3, 3e-3, 0] + [0, 0, 0, 0, 0, 0, 0.05]
         u = np.array([rng.normal(), 100 * rng.normal(), 310.0])
-        slope = (p.k * (x[0] - p.q_l), x[1] / p.M, x[2] / p.C, *(x[3:6] / p.L), MODULE.temperatures(x, p)[0])
+        slope = (
+            p.k * (x[0] - p.q_l),
+            x[1] / p.M,
+            x[2] / p.C,
+            *(x[3:6] / p.L),
+            MODULE.temperatures(x, p)[0],
+        )
         terms = np.array(slope) * MODULE.rhs(x, u, p)
         assert abs(terms.sum() - MODULE.supply(x, u, p).sum()) <= 1e-12 * np.abs(terms).sum()

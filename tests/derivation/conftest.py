@@ -1,6 +1,7 @@
 """The paper's actuator, derived once."""
 
 import pytest
+
 from piezo_sym import derive, load
 
 

@@ -51,7 +51,9 @@ class Paper:
         """The operator w_T of section 4.1."""
         slope = self.rho / (self.T - self.T_0)
         return sp.Piecewise(
-            (slope * (z - self.i_0), z > self.i_0), (slope * (z + self.i_0), z < -self.i_0), (0, True)
+            (slope * (z - self.i_0), z > self.i_0),
+            (slope * (z + self.i_0), z < -self.i_0),
+            (0, True),
         )
 
     @property
@@ -116,11 +118,15 @@ class Paper:
         """Eqs. (9)-(13)."""
         v = self.p / self.M
         i = [phi / self.L for phi in self.phi]
+        spring, coupling = self.k * (self.q - self.q_l), self.alpha * self.Q_C / self.C
         sigma = (sum(z * self.w(z) for z in i) + self.d * v**2) / self.T
         return sp.Matrix(
             [
                 v,
-                -self.k * (self.q - self.q_l) - self.d * v + self.alpha * self.Q_C / self.C + self.F_ext,
+                -self.k * (self.q - self.q_l)
+                - self.d * v
+                + self.alpha * self.Q_C / self.C
+                + self.F_ext,
                 sum(i) - self.alpha * v,
                 *(self.V_in - self.Q_C / self.C - self.w(z) for z in i),
                 sigma + self.lam * (self.T_e / self.T - 1),

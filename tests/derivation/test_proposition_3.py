@@ -52,10 +52,10 @@ def test_processes(explicit, paper):
     *hysterons, damper = explicit.processes
     assert len(hysterons) == paper.r
     for j, process in enumerate(hysterons):
-        assert process.J == paper.J_j(j)
+        assert paper.J_j(j) == process.J
         assert equal([process.R], [paper.R_j(j)])
         assert process.bracket == paper.phi[j] / paper.L
-    assert damper.J == paper.J_d
+    assert paper.J_d == damper.J
     assert equal([damper.R], [paper.R_d])
     assert damper.bracket == paper.p / paper.M
     assert sp.expand(damper.gamma - paper.d / paper.T) == 0

@@ -35,7 +35,13 @@ def changed(matrix, row, col, factor):
 
 def test_the_paper_is_proved(iphs):
     report = verify(iphs)
-    assert {row.id for row in report.rows} == {"skew", "casimir", "energy", "entropy", "temperature"}
+    assert {row.id for row in report.rows} == {
+        "skew",
+        "casimir",
+        "energy",
+        "entropy",
+        "temperature",
+    }
     assert all(row.verdict is Verdict.PROVED for row in report.rows)
     report.raise_if_not_proved()
 

@@ -10,16 +10,16 @@ from collections.abc import Iterator
 
 import sympy as sp
 
+from piezo_sym.algebra.lanes import vector
+from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import SpecError
-from piezo_sym.lanes import vector
+from piezo_sym.iphs.system import System
 from piezo_sym.network import Junction, port_order
 from piezo_sym.spec.calculus import antiderivative
 from piezo_sym.spec.circuit import Circuit, Placed
 from piezo_sym.spec.elements.ports import Body, Exchange, Gyrator, Resistor, Source, Storage
 from piezo_sym.spec.expressions import Expr, rename
 from piezo_sym.spec.text import spell
-from piezo_sym.symbols import SymbolTable
-from piezo_sym.system import System
 
 
 def costate_name(port: Storage | Body) -> str:

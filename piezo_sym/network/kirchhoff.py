@@ -14,9 +14,10 @@ from typing import Any, final
 
 from sympy.polys.domains import QQ
 
+from piezo_sym.algebra.linear import Equation, Form, SingularError, accumulate, combine, solve
+from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import NetworkError
-from piezo_sym.linear import Equation, Form, SingularError, accumulate, combine, solve
-from piezo_sym.nodes import is_reference
+from piezo_sym.network.nodes import is_reference
 from piezo_sym.spec.circuit import Circuit, Placed
 from piezo_sym.spec.elements.ports import (
     Body,
@@ -28,7 +29,6 @@ from piezo_sym.spec.elements.ports import (
     Storage,
     Variable,
 )
-from piezo_sym.symbols import SymbolTable
 
 #: An answer: the part that is the same for every lane, and that of the branch's own lane.
 Answer = tuple[Form, Form]

@@ -18,7 +18,7 @@ import sympy as sp
 from sympy.core.symbol import Str
 from sympy.printing.precedence import PRECEDENCE
 
-from piezo_sym.notation import Entries, matrix_latex, matrix_text
+from piezo_sym.algebra.notation import Entries, matrix_latex, matrix_text
 
 
 class LaneSum(sp.Expr):  # type: ignore[misc]

@@ -17,16 +17,14 @@ from typing import final
 
 import sympy as sp
 
+from piezo_sym.algebra.lanes import LaneMatrix, Lanes, Slot
+from piezo_sym.algebra.linear import Form
+from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import NetworkError
-from piezo_sym.kirchhoff import Answer, Laws, port_order
-from piezo_sym.lanes import LaneMatrix, Lanes, Slot
-from piezo_sym.linear import Form
-from piezo_sym.nodes import check_nodes
+from piezo_sym.network.kirchhoff import Answer, Laws
+from piezo_sym.network.nodes import check_nodes
 from piezo_sym.spec.circuit import Circuit
 from piezo_sym.spec.elements.ports import Exchange, Source, Variable
-from piezo_sym.symbols import SymbolTable
-
-__all__ = ["Junction", "junction_of", "port_order"]
 
 
 @final

@@ -14,11 +14,13 @@ from typing import TypeAlias, final
 
 import sympy as sp
 
-from piezo_sym.definitions import costates_of, energy_of, laws_of, ratios_of, system_of
-from piezo_sym.lanes import LaneMatrix, vector
+from piezo_sym.algebra.lanes import LaneMatrix, vector
+from piezo_sym.algebra.notation import text
+from piezo_sym.algebra.symbols import SymbolTable, symbol_table
+from piezo_sym.iphs.definitions import costates_of, energy_of, laws_of, ratios_of, system_of
+from piezo_sym.iphs.reading import Reading, document, equations_latex
+from piezo_sym.iphs.system import System
 from piezo_sym.network import Junction, junction_of
-from piezo_sym.notation import text
-from piezo_sym.reading import Reading, document, equations_latex
 from piezo_sym.spec.circuit import Circuit, circuit_of
 from piezo_sym.spec.elements.ports import Body, Resistor, Storage
 from piezo_sym.spec.expressions import Expr
@@ -26,8 +28,6 @@ from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import banks
 from piezo_sym.spec.text import spell
 from piezo_sym.spec.unroll import unroll
-from piezo_sym.symbols import SymbolTable, symbol_table
-from piezo_sym.system import System
 
 Matrix: TypeAlias = "sp.ImmutableMatrix | LaneMatrix"
 

@@ -17,8 +17,8 @@ from typing import final
 
 import sympy as sp
 
-from piezo_sym.lanes import LaneMatrix, Slot, vector
-from piezo_sym.notation import Entries
+from piezo_sym.algebra.lanes import LaneMatrix, Slot, vector
+from piezo_sym.algebra.notation import Entries
 
 
 @final

@@ -12,9 +12,9 @@ from typing import final
 
 import sympy as sp
 
-from piezo_sym.lanes import LaneMatrix
-from piezo_sym.notation import joined, latex, matrix_latex, slot_text, symbol_latex, text
-from piezo_sym.system import System
+from piezo_sym.algebra.lanes import LaneMatrix
+from piezo_sym.algebra.notation import joined, latex, matrix_latex, slot_text, symbol_latex, text
+from piezo_sym.iphs.system import System
 
 Pairs = tuple[tuple[sp.Symbol, sp.Expr], ...]
 Print = Callable[[sp.Expr], str]

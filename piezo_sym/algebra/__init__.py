@@ -1,0 +1,1 @@
+"""SymPy for this package: symbols, sums and matrices over lanes, elimination, notation."""

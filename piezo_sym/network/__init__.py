@@ -1,0 +1,6 @@
+"""Networks: who is connected to whom, solved exactly; a circuit to its junction structure."""
+
+from piezo_sym.network.junction import Junction, junction_of
+from piezo_sym.network.kirchhoff import port_order
+
+__all__ = ["Junction", "junction_of", "port_order"]

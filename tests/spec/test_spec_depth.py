@@ -1,0 +1,57 @@
+"""The deepest and longest laws that are read have names, a value, a slope and a text."""
+
+import pytest
+import sympy as sp
+from piezo_sym.symbols import to_sympy
+from spec_tools import refused_law
+
+from piezo_sym.spec.calculus import derivative
+from piezo_sym.spec.expressions import evaluate, names
+from piezo_sym.spec.parse import parse_law
+from piezo_sym.spec.text import spell
+
+DEEP = {
+    "functions": "tanh(" * 39 + "x" + ")" * 39,
+    "functions of two": "min(" * 38 + "x" + ", y)" * 38,
+    "dead zones": "deadzone(" * 38 + "x" + ", y)" * 38,
+    "signs": "-(" * 38 + "x" + ")" * 38,
+    "quotients": "1/(" * 38 + "x" + ")" * 38,
+    "powers": "(" * 38 + "x" + ")**1" * 38,
+    "choices": "x if x < 1 else " * 38 + "y",
+    "a sum of sums": "y + (" * 38 + "x" + ")" * 38,
+    "a long sum": "x" + "+x" * 499,
+    "a long sum of functions": "+".join(["tanh(x)"] * 125),
+    "a long product": "*".join(["x"] * 32),
+    "a product of sums": "*".join(f"(x+{n})" for n in range(32)),
+}
+
+
+@pytest.mark.parametrize("text", DEEP.values(), ids=DEEP)
+def test_the_deepest_laws_have_names_text_and_value(text):
+    tree = parse_law(text, "law")
+    assert set(names(tree)) <= {"x", "y"}
+    assert len(spell(tree)) >= len(text.replace("+", "")) / 3
+    assert isinstance(evaluate(tree, {"x": 0.7, "y": 0.9}), float)
+
+
+@pytest.mark.parametrize("text", DEEP.values(), ids=DEEP)
+def test_the_deepest_laws_have_a_slope(text):
+    slope = derivative(parse_law(text, "law"), "x")
+    assert isinstance(evaluate(slope, {"x": 0.7, "y": 0.9}), float)
+    assert spell(slope)
+
+
+@pytest.mark.parametrize("name", sorted(set(DEEP) - {"dead zones"}))
+def test_the_deepest_laws_go_to_sympy(name):
+    symbols = dict(zip("xy", sp.symbols("x y", positive=True), strict=True))
+    free = to_sympy(parse_law(DEEP[name], "law"), symbols).free_symbols
+    assert free <= set(symbols.values())
+    assert free
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["exp(" * 40 + "x" + ")" * 40, "x if x < 1 else " * 41 + "y", "1/(" * 40 + "x" + ")" * 40],
+)
+def test_one_step_deeper_is_refused(text):
+    assert "nested too deeply" in refused_law(f"1 + ({text})")

@@ -1,0 +1,145 @@
+"""Keys, kinds and references of a spec that are refused, each at its place."""
+
+import pytest
+from spec_tools import SHIPPED, edited_text, refusal, refused_edit
+
+from piezo_sym import Model
+from piezo_sym.spec.load import parse
+from piezo_sym.spec.source import data
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "place", "answer"),
+    [
+        ('unit = "kg",', 'units = "kg",', "parameters.M.units", "did you mean 'unit'?"),
+        ("default = 298.15", "defualt = 298.15", "inputs.T_e.defualt", "did you mean 'default'?"),
+        ("assume =", "asume =", "domain.asume", "did you mean 'assume'?"),
+        ("title  =", "titel  =", "model.titel", "did you mean 'title'?"),
+        ("[domain]", "[domian]", "domian", "did you mean 'domain'?"),
+        (
+            'stiffness = "k"',
+            'stifness = "k"',
+            "elements.spring.stifness",
+            "did you mean 'stiffness'?",
+        ),
+        ('voltage = "rho', 'volts = "rho', "elements.hysteron.volts", "did you mean 'voltage'?"),
+        ('S = "c_0*log', 's = "c_0*log', "initial.s", "'s' is no state of this spec; known: q, p"),
+    ],
+)
+def test_unknown_keys_are_answered_with_the_nearest(old, new, place, answer):
+    message = refused_edit((old, new))
+    assert message.startswith(f"spec: {place}: ")
+    assert answer in message
+
+
+@pytest.mark.parametrize(
+    ("kind", "answer"),
+    [
+        ('"sprin"', "did you mean 'spring'?"),
+        ('"Spring"', "did you mean 'spring'?"),
+        ('"zzz"', "known: spring, mass"),
+        ("5", "unknown kind '5'"),
+        ("[]", "unknown kind '[]'"),
+        ("{}", "unknown kind '{}'"),
+        ("true", "unknown kind 'True'"),
+        ('""', "unknown kind ''"),
+    ],
+)
+def test_unknown_kinds(kind, answer):
+    message = refused_edit(('kind = "spring"', f"kind = {kind}"))
+    assert message.startswith("spec: elements.spring.kind: ")
+    assert answer in message
+
+
+def test_an_element_without_a_kind():
+    message = refused_edit(('kind = "spring"', ""))
+    assert message.startswith("spec: elements.spring.kind: is missing; expected one of spring, ma")
+
+
+@pytest.mark.parametrize(
+    ("old", "place"),
+    [
+        ('unit = "kg", ', "parameters.M.unit"),
+        ("value = 3.5e-3, ", "parameters.M.value"),
+        ('stiffness = "k"', "elements.spring.stiffness"),
+        ('force = "d*v"', "elements.damper.force"),
+        ('name   = "piezo_stack"', "model.name"),
+    ],
+)
+def test_missing_keys(old, place):
+    assert refused_edit((old, "")).startswith(f"spec: {place}: is missing; keys here: ")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "place"),
+    [
+        ('mass = "M"', "mass = 3", "elements.mass.mass"),
+        ('between = ["in", "cap"]', 'between = ["in"]', "elements.hysteron.between"),
+        ('between = ["in", "cap"]', 'between = ["in", "cap", "x"]', "elements.hysteron.between"),
+        ('between = ["in", "cap"]', 'between = "in"', "elements.hysteron.between"),
+        ('at = "tip"\nmass', 'at = ["tip"]\nmass', "elements.mass.at"),
+        ('force = "d*v"', 'force = "d*v"\ndiscontinuous = "yes"', "elements.damper.discontinuous"),
+        ('state = "q"', "state = 1", "elements.spring.state"),
+        ('unit = "kg"', "unit = 1", "parameters.M.unit"),
+        ('doc = "moving mass"', "doc = 1", "parameters.M.doc"),
+        ('doc = "moving mass"', 'doc = "two\\nlines"', "parameters.M.doc"),
+        ('doc = "moving mass"', f'doc = "{"x" * 401}"', "parameters.M.doc"),
+        ('name   = "piezo_stack"', "name = 1", "model.name"),
+        ('"T > T_0", ', "5, ", "domain.assume"),
+    ],
+)
+def test_values_of_the_wrong_kind(old, new, place):
+    message = refused_edit((old, new))
+    assert message.startswith(f"spec: {place}")
+    assert "expected" in message
+
+
+@pytest.mark.parametrize(
+    "table", ["model", "parameters", "inputs", "domain", "initial", "elements"]
+)
+@pytest.mark.parametrize("value", [5, [], [[1]], "x", None, True, {"x": 5}, {"": {}}, {"a\nb": {}}])
+def test_tables_of_the_wrong_kind(table, value):
+    assert table in str(refusal(lambda: Model(**(data(SHIPPED) | {table: value}))))
+
+
+def test_heat_for_a_body_that_is_not_there():
+    message = refused_edit(('force = "d*v"\nheats = "body"', 'force = "d*v"\nheats = "bodi"'))
+    assert message == (
+        "spec: elements.damper.heats: 'bodi' is no thermal_mass of this spec; did you mean 'body'?"
+    )
+
+
+def test_heat_without_any_body_is_answered_with_one():
+    text = edited_text(("[inputs]", "[inputs]"))
+    start, end = text.index("[elements.transducer]"), text.index("[elements.load]")
+    message = str(refusal(parse, text[:start] + text[end:]))
+    assert (
+        "'body' is no thermal_mass of this spec; expected a body for the heat; add one" in message
+    )
+
+
+def test_an_input_that_is_not_declared():
+    message = refused_edit(('input = "V_in"', 'input = "Vin"'))
+    assert message == (
+        "spec: elements.supply.input: 'Vin' is no input of this spec; did you mean 'V_in'?"
+    )
+
+
+def test_a_condition_on_an_unknown_name():
+    message = refused_edit(('"T > T_0"', '"T_x > T_0"'))
+    assert message.startswith("spec: domain.assume[0]: unknown name 'T_x'; did you mean 'T_")
+
+
+def test_a_condition_on_a_letter():
+    message = refused_edit(('"T > T_0"', '"v > 0"'))
+    assert message.startswith("spec: domain.assume[0]: 'v' has no meaning here")
+
+
+def test_the_temperature_needs_a_body_in_a_transducer():
+    message = refused_edit(('ratio = "a*T/T_0"', 'ratio = "a*i/T_0"'))
+    assert message.startswith("spec: elements.transducer.ratio: 'i' has no meaning here")
+
+
+def test_several_faults_are_counted():
+    message = refused_edit(("value = 3.5e-3", "value = nan"), ("value = 5e5", "value = inf"))
+    assert message.endswith("; 1 more to mend")

@@ -1,0 +1,267 @@
+"""Units: exact factors, coherent spellings, and what is no unit."""
+
+import math
+from fractions import Fraction
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from spec_laws import steady
+from spec_tools import edited, refusal, refused_edit
+
+from piezo_sym.errors import SpecError
+from piezo_sym.spec.units import base_units, parse_unit, to_si
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "si"),
+    [
+        (5, "uF", 5e-06),
+        (1, "mH", 1e-3),
+        (3.3, "kohm", 3300.0),
+        (3.5, "g", 3.5e-3),
+        (25.4, "mm", 0.0254),
+        (0.1, "N/mm", 100.0),
+        (7, "N*s/m", 7.0),
+        (1, "h", 3600.0),
+        (2, "bar", 2e5),
+        (1, "mm**3", 1e-9),
+        (1, "1/ms", 1e3),
+        (1, "kg*m/s^2", 1.0),
+        (4, "uC/um", 4.0),
+        (30, "percent", 0.3),
+        (-1.5, "kV", -1500.0),
+        (0.0, "kV", 0.0),
+        (96.15, "kN/m", 96150.0),
+        (0.07, "mA", 7e-05),
+    ],
+)
+def test_values_in_si(value, unit, si):
+    assert to_si(value, parse_unit(unit)) == si
+
+
+def test_turns_a_minute():
+    assert to_si(60.0, parse_unit("rpm")) == pytest.approx(2 * math.pi, rel=1e-16)
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor"),
+    [
+        ("uF", Fraction(1, 10**6)),
+        ("mH", Fraction(1, 1000)),
+        ("kohm", Fraction(1000)),
+        ("g", Fraction(1, 1000)),
+        ("in", Fraction(254, 10**4)),
+        ("N/mm", Fraction(1000)),
+        ("pF**-1", Fraction(10**12)),
+        ("1", Fraction(1)),
+        ("eV", Fraction("1.602176634e-19")),
+    ],
+)
+def test_factors_are_exact(unit, factor):
+    assert parse_unit(unit).factor == factor
+
+
+@pytest.mark.parametrize(
+    ("unit", "si"),
+    [
+        ("uF", "F"),
+        ("mH", "H"),
+        ("kohm", "ohm"),
+        ("g", "kg"),
+        ("N*s/m", "N*s/m"),
+        ("N/mm", "N/m"),
+        ("mm**2", "m**2"),
+        ("1", "1"),
+        ("mWb", "Wb"),
+        ("kg*m/s", "kg*m/s"),
+        ("1/ms", "1/s"),
+        ("h", "s"),
+        ("ohm*K", "ohm*K"),
+        ("MPa", "Pa"),
+    ],
+)
+def test_coherent_spellings(unit, si):
+    assert parse_unit(unit).si == si
+
+
+@pytest.mark.parametrize(
+    "unit", ["uF", "kohm*K", "N/mm", "g*mm/ms", "rpm", "mH**2/uC", "bar", "eV"]
+)
+def test_the_coherent_spelling_is_coherent_and_of_the_same_dimension(unit):
+    given_unit = parse_unit(unit)
+    coherent = parse_unit(given_unit.si)
+    assert coherent.factor == 1
+    assert coherent.dimension == given_unit.dimension
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        ("N*s/m", "kg/s"),
+        ("V*s", "Wb"),
+        ("C/m", "N/V"),
+        ("W/K", "J/s/K"),
+        ("ohm", "V/A"),
+        ("F", "C/V"),
+        ("Wb/A", "H"),
+        ("J/N", "m"),
+        ("A*s", "C"),
+        ("m/m", "1"),
+        ("rad", "1"),
+    ],
+)
+def test_equal_dimensions(one, other):
+    assert parse_unit(one).dimension == parse_unit(other).dimension
+
+
+@pytest.mark.parametrize(("one", "other"), [("J/K", "K/J"), ("W/K", "W/m**2/K"), ("C", "F")])
+def test_different_dimensions(one, other):
+    assert parse_unit(one).dimension != parse_unit(other).dimension
+
+
+def test_base_units():
+    assert base_units(parse_unit("V").dimension) == "kg*m**2/s**3/A"
+    assert base_units(parse_unit("1/s").dimension) == "1/s"
+    assert base_units(parse_unit("1").dimension) == "1"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "m**9**9**9",
+        "",
+        " ",
+        "m" * 61,
+        "N m",
+        " m",
+        "m ",
+        "N * m",
+        "m**10",
+        "m**0",
+        "m**1.5",
+        "m***2",
+        "*m",
+        "m/",
+        "2*m",
+        "(m)",
+        "m2",
+        "%",
+        "\u00b5F",
+        "\u03a9",
+        "m\u00b2",
+        "m\n",
+        "m\x00",
+        "__import__",
+        "m.s",
+        "N\u00b7m",
+        "m**-",
+        "1/1/",
+        "m//s",
+        "m**(2)",
+    ],
+)
+def test_texts_that_are_no_units(text):
+    error = refusal(parse_unit, text, "parameters.M.unit")
+    assert str(error).startswith("parameters.M.unit: ")
+    assert "is not a unit; expected names joined by * and /" in str(error)
+
+
+@pytest.mark.parametrize(
+    ("text", "answer"),
+    [
+        ("Ohm", "did you mean 'ohm'?"),
+        ("Henry", "known: m, kg"),
+        ("foo", "known: "),
+        ("nan", "unknown unit 'nan'"),
+        ("inf", "unknown unit 'inf'"),
+        ("dimensionless", "unknown unit 'dimensionless'"),
+        ("None", "unknown unit 'None'"),
+        ("per", "unknown unit 'per'"),
+        ("squared", "unknown unit 'squared'"),
+        ("dB", "is logarithmic"),
+        ("Np", "is logarithmic"),
+    ],
+)
+def test_words_that_are_no_units(text, answer):
+    assert answer in str(refusal(parse_unit, text, "parameters.M.unit"))
+
+
+@pytest.mark.parametrize("unit", ["degC", "celsius", "degF", "kg/degC", "degC**2"])
+def test_units_with_an_offset_are_refused_with_the_way_to_kelvin(unit):
+    message = str(refusal(parse_unit, unit, "parameters.T_0.unit"))
+    assert "has an offset" in message
+    assert "give the value in K" in message
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "kelvin"),
+    [("23", "degC", "296.15"), ("-40", "degF", "233.15"), ("0.0", "celsius", "273.15")],
+)
+def test_a_temperature_with_an_offset_is_refused_with_its_kelvin_value(value, unit, kelvin):
+    message = refused_edit(('value = 296.15, unit = "K"', f'value = {value}, unit = "{unit}"'))
+    assert message.startswith("spec: parameters.T_0.unit: ")
+    assert message.endswith(f"give it in K: {kelvin}")
+
+
+def test_an_inputs_temperature_with_an_offset_is_refused_with_its_kelvin_value():
+    message = refused_edit(('unit = "K", default = 298.15', 'unit = "degC", default = 25.0'))
+    assert message.startswith("spec: inputs.T_e.unit: ")
+    assert message.endswith("give it in K: 298.15")
+
+
+@pytest.mark.parametrize("unit", ["Ym**9*Ym**9", "ym**9*ym**9"])
+def test_values_beyond_all_numbers_are_refused(unit):
+    message = refused_edit(('value = 3.5e-3, unit = "kg"', f'value = 3.5e-3, unit = "{unit}"'))
+    assert message.startswith("spec: parameters.M: ")
+    assert "beyond all numbers in SI" in message
+
+
+def test_an_input_beyond_all_numbers_is_refused():
+    message = refused_edit(
+        ('F_ext = { unit = "N", default = 0.0', 'F_ext = { unit = "Ym**9", default = 1e200')
+    )
+    assert message.startswith("spec: inputs.F_ext: ")
+
+
+def test_an_unknown_unit_is_refused_at_its_place():
+    message = refused_edit(('unit = "ohm*K"', 'unit = "Ohm*K"'))
+    assert message == "spec: parameters.rho.unit: unknown unit 'Ohm'; did you mean 'ohm'?"
+
+
+def test_other_units_give_the_same_values():
+    model = edited(
+        ('value = 5e-6,   unit = "F"', 'value = 5, unit = "uF"'),
+        ('value = 1e-3,   unit = "H"', 'value = 1, unit = "mH"'),
+        ('value = 3.5e-3, unit = "kg"', 'value = 3.5, unit = "g"'),
+    )
+    assert [model.parameters[name].si for name in ("C", "L", "M")] == [5e-06, 1e-3, 3.5e-3]
+
+
+@steady
+@given(st.text("mskgNKVA1*/^-29 .(", max_size=12) | st.text(max_size=8))
+def test_any_text_is_a_unit_or_refused(text):
+    try:
+        unit = parse_unit(text, "parameters.M.unit")
+    except SpecError:
+        refusal(parse_unit, text, "parameters.M.unit")
+    else:
+        assert unit.factor > 0
+
+
+@steady
+@given(st.text("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ", min_size=1, max_size=4))
+def test_any_word_is_a_unit_or_refused(word):
+    try:
+        unit = parse_unit(word, "parameters.M.unit")
+    except SpecError:
+        refusal(parse_unit, word, "parameters.M.unit")
+    else:
+        assert unit.text == word
+
+
+@steady
+@given(st.floats(-1e6, 1e6), st.sampled_from(["uF", "kohm", "mm", "in", "h", "N/mm"]))
+def test_conversion_rounds_once(value, unit):
+    exact = Fraction(repr(value)) * parse_unit(unit).factor
+    assert to_si(value, parse_unit(unit)) == float(exact)
