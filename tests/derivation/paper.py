@@ -123,10 +123,7 @@ class Paper:
         return sp.Matrix(
             [
                 v,
-                -self.k * (self.q - self.q_l)
-                - self.d * v
-                + self.alpha * self.Q_C / self.C
-                + self.F_ext,
+                -spring - self.d * v + coupling + self.F_ext,
                 sum(i) - self.alpha * v,
                 *(self.V_in - self.Q_C / self.C - self.w(z) for z in i),
                 sigma + self.lam * (self.T_e / self.T - 1),

@@ -2,9 +2,9 @@
 
 import pytest
 import sympy as sp
-from piezo_sym.symbols import to_sympy
 from spec_tools import refused_law
 
+from piezo_sym.algebra.symbols import to_sympy
 from piezo_sym.spec.calculus import derivative
 from piezo_sym.spec.expressions import evaluate, names
 from piezo_sym.spec.parse import parse_law
