@@ -34,10 +34,24 @@ def add(*terms: Expr) -> Expr:
     flat: list[Expr] = []
     for term in terms:
         flat.extend(term.terms if isinstance(term, Add) else (term,))
-    kept = [term for term in flat if term != ZERO]
+    kept = _folded([term for term in flat if term != ZERO])
     if not kept:
         return ZERO
     return kept[0] if len(kept) == 1 else Add(tuple(kept))
+
+
+def _folded(terms: list[Expr]) -> list[Expr]:
+    """Return terms with numbers added up and pairs of a term and its negative left out."""
+    kept: list[Expr] = []
+    for term in terms:
+        number = next((other for other in kept if isinstance(other, Num)), None)
+        if isinstance(term, Num) and number is not None:
+            kept[kept.index(number)] = Num(number.value + term.value)
+        elif neg(term) in kept:
+            kept.remove(neg(term))
+        else:
+            kept.append(term)
+    return [term for term in kept if term != ZERO]
 
 
 def neg(arg: Expr) -> Expr:

@@ -9,6 +9,7 @@ from the source text as exact rationals.  Nothing is ever evaluated by Python.
 from __future__ import annotations
 
 import ast
+import math
 from collections.abc import Callable
 from fractions import Fraction
 from functools import lru_cache
@@ -44,6 +45,9 @@ from piezo_sym.spec.lexis import (
 from piezo_sym.spec.text import spell
 
 MAX_POWER = 16
+MAX_BRANCHES = 18
+#: Functions with kinks, and how many branches each has.
+KINKS = {"abs": 2, "min": 2, "max": 2, "sign": 3, "deadzone": 3, "saturate": 3}
 MAX_DEGREE = 32
 LARGEST = Fraction(10) ** MAX_MAGNITUDE
 SMALLEST = 1 / LARGEST
@@ -230,7 +234,18 @@ def _check_values(tree: Expr) -> None:
     """Refuse constant parts without a value, and powers of powers that could explode."""
     if _degree(tree) > MAX_DEGREE:
         raise RefusedError("has too high a degree", f"at most {MAX_DEGREE} in all")
+    if _branches(tree) > MAX_BRANCHES:
+        what = "nests functions with kinks too deeply"
+        raise RefusedError(what, f"at most {MAX_BRANCHES} branches", "split the law into elements")
     _check_constants(tree)
+
+
+def _branches(node: Expr | Cmp) -> int:
+    """Return how many branches the deepest nest of functions with kinks has together."""
+    inner = [_branches(part) for part in children(node)]
+    if isinstance(node, Call) and node.function in KINKS:
+        return KINKS[node.function] * math.prod(inner)
+    return max(inner, default=1)
 
 
 def _degree(node: Expr | Cmp) -> Fraction:

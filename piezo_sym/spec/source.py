@@ -71,7 +71,7 @@ def read(path: Path) -> str:
         remedy = "a bank needs one element, not one a lane"
         raise FileError("is too large", where, f"at most {MAX_BYTES} bytes", remedy)
     try:
-        return raw.decode("utf-8")
+        return raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         what = f"is not UTF-8 (byte {error.start})"
         raise FileError(what, where, remedy="save it as UTF-8") from error

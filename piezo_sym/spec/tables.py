@@ -12,7 +12,7 @@ from typing import Protocol, final
 
 from piezo_sym.spec.elements import Element, ThermalMass
 from piezo_sym.spec.elements.base import Letters, Refers, state_symbol
-from piezo_sym.spec.expressions import Cmp, Expr, names, rename
+from piezo_sym.spec.expressions import ZERO, Call, Cmp, Expr, Num, names, rename, walk
 from piezo_sym.spec.fields import Domain, Header, Input, Parameter
 from piezo_sym.spec.parse import parse_condition, parse_law
 from piezo_sym.spec.text import spell
@@ -120,9 +120,34 @@ def conditions(spec: Tables) -> tuple[Condition, ...]:
         for name, element in spec.elements.items()
         for condition in element.requires()
     ]
-    return tuple({condition.tree: condition for condition in reversed(assumed + needed)}.values())[
-        ::-1
+    needed += [
+        Condition(law.where, _in_domain_words(Cmp(">=", width, ZERO), spec, name))
+        for name, element in spec.elements.items()
+        for law in law_fields(name, element)
+        for width in _widths(law.tree)
     ]
+    found: dict[Cmp, Condition] = {}
+    for condition in assumed + needed:
+        found.setdefault(condition.tree, condition)
+    return tuple(found.values())
+
+
+def _widths(law: Expr) -> Iterator[Expr]:
+    """Yield what stands as a half width in a law, but for plain numbers that are not negative."""
+    for node in walk(law):
+        if isinstance(node, Call) and node.function in {"deadzone", "saturate"}:
+            width = node.args[1]
+            if not (isinstance(width, Num) and width.value >= 0):
+                yield width
+
+
+def _in_domain_words(condition: Cmp, spec: Tables, name: str) -> Cmp:
+    """Return a condition of a law in the words of [domain]: its state's symbol, its body's T."""
+    element = spec.elements[name]
+    body = next((given for _, to, given in references(element) if to == "thermal_mass"), None)
+    hot = next((word for word, own in temperatures(spec).items() if own == body), "T")
+    words = {"T": hot} | ({element.letter: state_symbol(element, name)} if element.letter else {})
+    return Cmp(condition.op, rename(condition.left, words), condition.right)
 
 
 def _with_state(condition: Cmp, element: Element, name: str) -> Cmp:

@@ -20,6 +20,13 @@ ATOM = r"[A-Za-z]+"
 TERM = re.compile(rf"(?P<name>{ATOM}|1)(?:(?:\*\*|\^)(?P<power>-?[1-9]))?")
 COMMON = ("m", "kg", "s", "A", "K", "N", "J", "W", "V", "C", "F", "H", "Wb", "ohm", "Hz", "Pa")
 BASES = ("kg", "m", "s", "A", "K", "mol", "cd")
+#: The units known, by pint's long names; SI prefixes go with each.
+UNITS = frozenset(
+    """meter gram second ampere kelvin mole candela hertz newton pascal joule watt coulomb volt
+    farad ohm siemens weber tesla henry radian degree turn revolutions_per_minute minute hour day
+    liter bar tonne inch foot pound electron_volt degree_Celsius degree_Fahrenheit decibel neper
+    count percent""".split()
+)
 DIMENSIONS = dict(
     zip(
         BASES,
@@ -127,7 +134,7 @@ def _named(name: str, where: str, value: float | None) -> Unit:
     """Return one named unit; its coherent spelling drops the prefix (``uF`` gives ``F``)."""
     if name == "1":
         return Unit(name, name, Fraction(1), (Fraction(0),) * len(BASES))
-    if not _registry().parse_unit_name(name):
+    if not any(root in UNITS for _, root, _ in _registry().parse_unit_name(name)):
         raise SpecError(f"unknown unit {quote(name)}", where, remedy=nearest(name, COMMON))
     try:
         factor, base = _registry().get_base_units(name)

@@ -2,7 +2,7 @@
 
 import pytest
 import sympy as sp
-from spec_tools import refused_law
+from spec_tools import refused_edit, refused_law
 
 from piezo_sym.algebra.symbols import to_sympy
 from piezo_sym.spec.calculus import derivative
@@ -12,8 +12,8 @@ from piezo_sym.spec.text import spell
 
 DEEP = {
     "functions": "tanh(" * 39 + "x" + ")" * 39,
-    "functions of two": "min(" * 38 + "x" + ", y)" * 38,
-    "dead zones": "deadzone(" * 38 + "x" + ", y)" * 38,
+    "functions of two": "min(" * 4 + "x" + ", y)" * 4,
+    "dead zones": "deadzone(" * 2 + "x" + ", y)" * 2,
     "signs": "-(" * 38 + "x" + ")" * 38,
     "quotients": "1/(" * 38 + "x" + ")" * 38,
     "powers": "(" * 38 + "x" + ")**1" * 38,
@@ -41,10 +41,10 @@ def test_the_deepest_laws_have_a_slope(text):
     assert spell(slope)
 
 
-@pytest.mark.parametrize("name", sorted(set(DEEP) - {"dead zones"}))
-def test_the_deepest_laws_go_to_sympy(name):
+@pytest.mark.parametrize("text", DEEP.values(), ids=DEEP)
+def test_the_deepest_laws_go_to_sympy(text):
     symbols = dict(zip("xy", sp.symbols("x y", positive=True), strict=True))
-    free = to_sympy(parse_law(DEEP[name], "law"), symbols).free_symbols
+    free = to_sympy(parse_law(text, "law"), symbols).free_symbols
     assert free <= set(symbols.values())
     assert free
 
@@ -55,3 +55,16 @@ def test_the_deepest_laws_go_to_sympy(name):
 )
 def test_one_step_deeper_is_refused(text):
     assert "nested too deeply" in refused_law(f"1 + ({text})")
+
+
+@pytest.mark.parametrize(
+    "text", ["min(" * 5 + "x" + ", y)" * 5, "deadzone(" * 3 + "x" + ", y)" * 3]
+)
+def test_kinks_within_kinks_are_refused_before_they_explode(text):
+    assert "nests functions with kinks too deeply" in refused_law(text)
+
+
+def test_a_width_that_may_be_negative_is_kept_out_of_the_domain():
+    law = '"rho/(T - T_0)*deadzone(i, i_0)"'
+    assert "'d/2 - 1000 >= 0'" in refused_edit((law, '"rho*deadzone(i, d/2 - 1000)/T"'))
+    assert "'T/T_0 - 2 >= 0'" in refused_edit((law, '"rho*deadzone(i, T/T_0 - 2)/T"'))

@@ -79,6 +79,7 @@ def _check_kept(spec: Tables, symbols: list[tuple[str, str]]) -> None:
     """Refuse symbols that results, lanes, temperatures or bank sizes are called by."""
     kept = dict.fromkeys(RESULTS, "a variable of every result")
     kept |= {f"{name}_count": f"the size of bank '{name}'" for name in spec.elements}
+    kept |= dict.fromkeys(banks(spec), "the dimension of a bank")
     kept |= {f"T_{name}": f"the temperature of '{name}'" for name in bodies(spec)}
     sizes = banks(spec)
     lanes = {s: f"bank state '{s}'" for s, element in states(spec).items() if element in sizes}
