@@ -21,12 +21,11 @@ TERM = re.compile(rf"(?P<name>{ATOM}|1)(?:(?:\*\*|\^)(?P<power>-?[1-9]))?")
 COMMON = ("m", "kg", "s", "A", "K", "N", "J", "W", "V", "C", "F", "H", "Wb", "ohm", "Hz", "Pa")
 BASES = ("kg", "m", "s", "A", "K", "mol", "cd")
 #: The units known, by pint's long names; SI prefixes go with each.
-UNITS = frozenset(
-    """meter gram second ampere kelvin mole candela hertz newton pascal joule watt coulomb volt
+_UNITS = """meter gram second ampere kelvin mole candela hertz newton pascal joule watt coulomb volt
     farad ohm siemens weber tesla henry radian degree turn revolutions_per_minute minute hour day
     liter bar tonne inch foot pound electron_volt degree_Celsius degree_Fahrenheit decibel neper
-    count percent""".split()
-)
+    count percent"""
+UNITS = frozenset(_UNITS.split())
 DIMENSIONS = dict(
     zip(
         BASES,
