@@ -40,4 +40,4 @@ def derive(model: Model) -> IPHS:
     circuit = circuit_of(model)
     symbols = symbol_table(circuit)
     junction = junction_of(circuit, symbols)
-    return iphs_of(circuit, symbols, junction)
+    return iphs_of(symbols, junction)

@@ -194,7 +194,7 @@ class IPHS:
         """
         circuit = circuit_of(unroll(self.model, {**banks(self.model), **(counts or {})}))
         symbols = symbol_table(circuit)
-        return iphs_of(circuit, symbols, junction_of(circuit, symbols))
+        return iphs_of(symbols, junction_of(circuit, symbols))
 
     def _repr_latex_(self) -> str:
         return f"$\\displaystyle {equations_latex(self.reading)}$"
@@ -221,7 +221,7 @@ class IPHS:
         return document(self.reading)
 
 
-def iphs_of(circuit: Circuit, symbols: SymbolTable, junction: Junction) -> IPHS:
+def iphs_of(symbols: SymbolTable, junction: Junction) -> IPHS:
     """Return the IPHS of a solved network: its junction, and the laws of its elements.
 
     Raises
@@ -229,6 +229,7 @@ def iphs_of(circuit: Circuit, symbols: SymbolTable, junction: Junction) -> IPHS:
     SpecError
         If a storage law has no energy in closed form.
     """
+    circuit = junction.circuit
     system = system_of(circuit, symbols, junction)
     stores = tuple(circuit.of(Storage, Body))
     return IPHS(

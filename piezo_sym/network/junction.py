@@ -21,6 +21,7 @@ from piezo_sym.algebra.lanes import LaneMatrix, Lanes, Slot
 from piezo_sym.algebra.linear import Form
 from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import NetworkError
+from piezo_sym.network.causality import causal
 from piezo_sym.network.kirchhoff import Answer, Laws
 from piezo_sym.network.nodes import check_nodes
 from piezo_sym.spec.circuit import Circuit
@@ -34,10 +35,12 @@ class Junction:
 
     Attributes
     ----------
+    circuit : the circuit, in the causality that the junction laws allow.
     states, processes, ports : slots; ports are ordered by their input, then by declaration.
     J0, B, D, g, N : matrices over them, their entries rational in the transducer ratios.
     """
 
+    circuit: Circuit
     states: tuple[Slot, ...]
     processes: tuple[Slot, ...]
     ports: tuple[Slot, ...]
@@ -57,7 +60,7 @@ def junction_of(circuit: Circuit, symbols: SymbolTable) -> Junction:
         If the junction laws have no, or more than one, solution; names the elements at fault.
     """
     check_nodes(circuit)
-    laws = Laws(circuit, symbols)
+    laws = causal(circuit, symbols)
     blocks = _Blocks(laws, Lanes(symbols.banks, symbols.counts))
     return blocks.junction()
 
@@ -92,6 +95,7 @@ class _Blocks:
             what = "the junction laws do not preserve power"
             raise NetworkError(what, "network", remedy="report this spec: it shows a fault here")
         return Junction(
+            circuit=self.laws.circuit,
             states=self.slots["E"],
             processes=self.slots["W"],
             ports=self.slots["u"],

@@ -8,7 +8,7 @@ representative lane, whose own unknowns are eliminated first.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, final
 
@@ -94,8 +94,10 @@ class Laws:
 
         Raises
         ------
+        SingularError
+            If the laws have no, or more than one, solution; `refusal` names the elements.
         NetworkError
-            If the laws have no, or more than one, solution; names the elements at fault.
+            If a bank fixes a node that it shares.
         """
         lanes = {bank: self._solve_lane(bank) for bank in self.banks}
         shared = self._solve_shared(lanes)
@@ -140,7 +142,7 @@ class Laws:
         for equation in equations:  # shared nodes are given, for a lane
             for label in [label for label in equation.left if label not in unknowns]:
                 accumulate(equation.right, label, -equation.left.pop(label))
-        return self._solved(equations, unknowns)
+        return solve(equations, unknowns)
 
     def _solve_shared(self, lanes: dict[str, dict[Any, Form]]) -> dict[Any, Form]:
         """Return the shared unknowns in terms of shared givens and of sums over lanes."""
@@ -156,7 +158,7 @@ class Laws:
         unknowns += [
             e.unknown for e in self.edges if e.placed.bank is None and e.imposes is Variable.ACROSS
         ]
-        return self._solved(equations, unknowns)
+        return solve(equations, unknowns)
 
     def _summed(self, bank: str, row: Equation, solution: dict[Any, Form]) -> Form:
         """Return what all lanes together draw from a shared node, as sums of their givens."""
@@ -169,20 +171,17 @@ class Laws:
             raise NetworkError(what, f"elements.{bank}", remedy=remedy)
         return {("sum", label): coefficient for label, coefficient in drawn.items()}
 
-    def _solved(self, equations: Iterable[Equation], unknowns: Iterable[Any]) -> dict[Any, Form]:
-        try:
-            return solve(equations, unknowns)
-        except SingularError as singular:
-            raise self._refusal(singular) from None
-
-    def _refusal(self, singular: SingularError) -> NetworkError:
+    def refusal(self, singular: SingularError) -> NetworkError:
+        """Return what laws without a solution mean, in the names of elements and nodes."""
         elements = {edge.key: edge.placed.element for edge in self.edges}
         for relation in singular.relations:
             keys = [label[1] if label[0] == "sum" else label for label in relation]
-            tied = ", ".join(f"'{name}'" for name in dict.fromkeys(elements[key] for key in keys))
+            found = {elements[key] for key in keys if key in elements}
+            declared = (name for name in self.circuit.model.elements if name in found)
+            tied = ", ".join(f"'{name}'" for name in declared)
             what = f"elements {tied} fix each other's variables"
             remedy = "merge those in parallel (or in series), or put a resistor or damper between"
-            raise NetworkError(what, "network", "independent storage and sources", remedy)
+            return NetworkError(what, "network", "independent storage and sources", remedy)
         loose = [label[1] for label in singular.undetermined if label[0] == "e"]
         at = f"node '{loose[0]}'" if loose else "the network"
         remedy = "connect a capacitor, mass, source or voltage-law resistor there"

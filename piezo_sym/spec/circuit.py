@@ -64,6 +64,11 @@ class Circuit:
             if isinstance(placed.port, kinds):
                 yield placed, placed.port
 
+    def replaced(self, placed: Placed, port: Port) -> Circuit:
+        """Return the circuit with one port replaced."""
+        changed = tuple(replace(p, port=port) if p is placed else p for p in self.ports)
+        return replace(self, ports=changed)
+
     def body(self, element: str) -> Body:
         """Return the body of a thermal mass."""
         return next(port for placed, port in self.of(Body) if placed.element == element)

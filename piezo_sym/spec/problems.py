@@ -63,6 +63,8 @@ def _problem(detail: ErrorDetails) -> SpecError:
         case "string_pattern_mismatch":
             expected = "up to 40 letters, digits or . _ + -"
             return SpecError(f"{quote(value)} is not a label", where, expected)
+        case "value_error" if isinstance(value, Mapping):
+            return SpecError("its fields do not go together", where, _expected(detail))
     return SpecError(f"{quote(value)} does not fit", where, _expected(detail))
 
 

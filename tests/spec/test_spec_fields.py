@@ -62,12 +62,20 @@ def test_an_element_without_a_kind():
         ('unit = "kg", ', "parameters.M.unit"),
         ("value = 3.5e-3, ", "parameters.M.value"),
         ('stiffness = "k"', "elements.spring.stiffness"),
-        ('force = "d*v"', "elements.damper.force"),
         ('name   = "piezo_stack"', "model.name"),
     ],
 )
 def test_missing_keys(old, place):
     assert refused_edit((old, "")).startswith(f"spec: {place}: is missing; keys here: ")
+
+
+@pytest.mark.parametrize(
+    ("new", "said"), [("", "neither given"), ('force = "d*v"\nvelocity = "f/d"', "both force and")]
+)
+def test_a_damper_has_one_law(new, said):
+    message = refused_edit(('force = "d*v"', new))
+    assert message.startswith("spec: elements.damper: its fields do not go together; expected exa")
+    assert said in message
 
 
 @pytest.mark.parametrize(

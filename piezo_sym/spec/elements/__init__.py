@@ -10,19 +10,25 @@ from collections.abc import Mapping
 from piezo_sym.spec.elements.ambient import Ambient
 from piezo_sym.spec.elements.base import Element
 from piezo_sym.spec.elements.capacitor import Capacitor
+from piezo_sym.spec.elements.current_source import CurrentSource
 from piezo_sym.spec.elements.damper import Damper
 from piezo_sym.spec.elements.force_source import ForceSource
 from piezo_sym.spec.elements.hysteron import Hysteron
+from piezo_sym.spec.elements.inductor import Inductor
 from piezo_sym.spec.elements.mass import Mass
+from piezo_sym.spec.elements.resistor import Resistor
 from piezo_sym.spec.elements.spring import Spring
 from piezo_sym.spec.elements.thermal_mass import ThermalMass
 from piezo_sym.spec.elements.transducer import Transducer
+from piezo_sym.spec.elements.velocity_source import VelocitySource
 from piezo_sym.spec.elements.voltage_source import VoltageSource
 
 KINDS: Mapping[str, type[Element]] = {
     "spring": Spring,
     "mass": Mass,
     "capacitor": Capacitor,
+    "inductor": Inductor,
+    "resistor": Resistor,
     "hysteron": Hysteron,
     "damper": Damper,
     "transducer": Transducer,
@@ -30,19 +36,25 @@ KINDS: Mapping[str, type[Element]] = {
     "ambient": Ambient,
     "force_source": ForceSource,
     "voltage_source": VoltageSource,
+    "current_source": CurrentSource,
+    "velocity_source": VelocitySource,
 }
 
 __all__ = [
     "KINDS",
     "Ambient",
     "Capacitor",
+    "CurrentSource",
     "Damper",
     "Element",
     "ForceSource",
     "Hysteron",
+    "Inductor",
     "Mass",
+    "Resistor",
     "Spring",
     "ThermalMass",
     "Transducer",
+    "VelocitySource",
     "VoltageSource",
 ]

@@ -77,3 +77,12 @@ def positive(law: Expr) -> Cmp:
 def state_symbol(element: Element, name: str) -> str:
     """Return the symbol of an element's state: as given, else its kind's letter and its name."""
     return getattr(element, "state", None) or f"{element.letter}_{name}"
+
+
+def exactly_one(element: Element, *fields: str) -> None:
+    """Raise unless exactly one of an element's fields is given."""
+    given = [field for field in fields if getattr(element, field) is not None]
+    if len(given) != 1:
+        said = f"both {' and '.join(given)}" if given else "neither"
+        message = f"exactly one of {' and '.join(fields)}; {said} given"
+        raise ValueError(message)

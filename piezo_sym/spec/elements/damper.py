@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, final
 
-from pydantic import StrictBool
+from pydantic import StrictBool, model_validator
 
-from piezo_sym.spec.elements.base import BodyName, Element, Law, Letters, Pair
+from piezo_sym.spec.elements.base import BodyName, Element, Law, Letters, Pair, exactly_one
 from piezo_sym.spec.elements.ports import Domain, Port, Resistor, Variable
 
 
@@ -14,28 +14,36 @@ from piezo_sym.spec.elements.ports import Domain, Port, Resistor, Variable
 class Damper(Element):
     """A damper between two nodes, the damping term of eq. (10).
 
-    Its force F = force(v, T) [N] opposes v = v_a - v_b [m/s], the velocity of its first node
-    relative to its second, and F*v heats a body.
+    Either its force = force(v, T) [N] opposes v = v_a - v_b [m/s], the velocity of its first node
+    relative to its second, or its velocity = velocity(f, T) [m/s] follows the force f [N] through
+    it; force times velocity heats a body.
     """
 
     kind: Literal["damper"] = "damper"
     between: Pair
-    force: Annotated[Law, Letters(("v", "T"))]
+    force: Annotated[Law | None, Letters(("v", "T"))] = None
+    velocity: Annotated[Law | None, Letters(("f", "T"))] = None
     heats: BodyName
     discontinuous: StrictBool = False
 
+    @model_validator(mode="after")
+    def _one_law(self) -> Damper:
+        exactly_one(self, "force", "velocity")
+        return self
+
     def ports(self, name: str) -> tuple[Port, ...]:
-        """Return the process: force through it, given the velocity across it."""
+        """Return the process: the force through it given the velocity, or the reverse."""
+        given = self.force is not None
         return (
             Resistor(
-                letter="v",
-                law=self.law("force"),
-                field="force",
-                output=f"F_{name}",
-                effort=f"v_{name}",
+                letter="v" if given else "f",
+                law=self.law("force" if given else "velocity"),
+                field="force" if given else "velocity",
+                output=f"{'F' if given else 'v'}_{name}",
+                effort=f"{'v' if given else 'F'}_{name}",
                 branch=self.between,
                 domain=Domain.MECHANICAL,
-                imposes=Variable.THROUGH,
+                imposes=Variable.THROUGH if given else Variable.ACROSS,
                 heats=self.heats,
             ),
         )
