@@ -20,7 +20,7 @@ from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name
 from piezo_sym.network import port_order
 from piezo_sym.spec.calculus import add, mul
-from piezo_sym.spec.elements.ports import Body, Gyrator, Resistor, Source, Storage
+from piezo_sym.spec.elements.ports import Body, Coupling, Resistor, Source, Storage
 from piezo_sym.spec.expressions import Expr, LaneSum, Sym, rebuild, rename, replace
 from piezo_sym.spec.names import fresh
 
@@ -126,7 +126,7 @@ class Quantities:
             self._defined(costate_name(port), law, placed.bank, "co-states dU/dx")
 
     def _ratios(self) -> None:
-        for _, port in self.circuit.of(Gyrator):
+        for _, port in self.circuit.of(Coupling):
             law = self._at(port.ratio, port.body)
             self._defined(port.name, law, None, "transducer ratios")
 

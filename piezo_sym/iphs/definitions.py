@@ -17,7 +17,7 @@ from piezo_sym.iphs.system import System
 from piezo_sym.network import Junction, port_order
 from piezo_sym.spec.calculus import antiderivative
 from piezo_sym.spec.circuit import Circuit, Placed
-from piezo_sym.spec.elements.ports import Body, Exchange, Gyrator, Resistor, Source, Storage
+from piezo_sym.spec.elements.ports import Body, Coupling, Exchange, Resistor, Source, Storage
 from piezo_sym.spec.expressions import Expr, rename
 from piezo_sym.spec.text import spell
 
@@ -96,7 +96,7 @@ def laws_of(circuit: Circuit, symbols: SymbolTable, system: System) -> Definitio
 
 def ratios_of(circuit: Circuit, symbols: SymbolTable) -> Definitions:
     """Yield each transducer ratio and its law in T."""
-    for _, port in circuit.of(Gyrator):
+    for _, port in circuit.of(Coupling):
         letters = {"T": symbols[circuit.body(port.body).temperature]} if port.body else {}
         yield symbols[port.name], symbols.law(port.ratio, letters)
 

@@ -22,8 +22,8 @@ from piezo_sym.spec.circuit import Circuit, Placed
 from piezo_sym.spec.elements.ports import (
     Body,
     Branch,
+    Coupling,
     Exchange,
-    Gyrator,
     Resistor,
     Source,
     Storage,
@@ -68,10 +68,10 @@ class Laws:
     def __init__(self, circuit: Circuit, symbols: SymbolTable) -> None:
         self.circuit = circuit
         self.banks = tuple(symbols.counts)
-        ratios = [symbols[port.name] for _, port in circuit.of(Gyrator)]
+        ratios = [symbols[port.name] for _, port in circuit.of(Coupling)]
         self.field = QQ.frac_field(*ratios) if ratios else QQ
         self.ratio = {
-            port: self.field.from_sympy(symbols[port.name]) for _, port in circuit.of(Gyrator)
+            port: self.field.from_sympy(symbols[port.name]) for _, port in circuit.of(Coupling)
         }
         self.states = tuple(circuit.of(Storage, Body))
         self.processes = tuple(circuit.of(Resistor))
@@ -119,15 +119,27 @@ class Laws:
                 _draw(rows, edge.branch, self._through(edge), self.field.one)
         if bank is None:
             for port, ratio in self.ratio.items():
-                _draw(rows, port.first, Equation(_across(port.second, ratio), {}), self.field.one)
-                _draw(rows, port.second, Equation(_across(port.first, -ratio), {}), self.field.one)
+                first, second = self._coupled(port, ratio)
+                _draw(rows, port.first, Equation(first, {}), self.field.one)
+                _draw(rows, port.second, Equation(second, {}), self.field.one)
         return rows
+
+    def _coupled(self, port: Coupling, ratio: Any) -> tuple[Form, Form]:
+        """Return the through variables of a coupling's two branches."""
+        if port.gyrates:
+            return _across(port.second, ratio), _across(port.first, -ratio)
+        return {("t", port.name): self.field.one}, {("t", port.name): -ratio}
 
     def _constraints(self, bank: str | None) -> Iterator[Equation]:
         for edge in self.edges:
             if edge.placed.bank == bank and edge.imposes is Variable.ACROSS:
                 given = {edge.key: edge.sign * self.field.one}
                 yield Equation(_across(edge.branch, self.field.one), given)
+        for port, ratio in self.ratio.items():
+            if bank is None and not port.gyrates:
+                across = _across(port.first, self.field.one)
+                combine(across, _across(port.second, ratio), -self.field.one)
+                yield Equation(across, {})
 
     def _solve_lane(self, bank: str) -> dict[Any, Form]:
         """Return one lane's own unknowns in terms of its givens and the shared nodes."""
@@ -158,6 +170,7 @@ class Laws:
         unknowns += [
             e.unknown for e in self.edges if e.placed.bank is None and e.imposes is Variable.ACROSS
         ]
+        unknowns += [("t", port.name) for port in self.ratio if not port.gyrates]
         return solve(equations, unknowns)
 
     def _summed(self, bank: str, row: Equation, solution: dict[Any, Form]) -> Form:

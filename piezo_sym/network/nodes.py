@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 from piezo_sym.errors import NetworkError, nearest
 from piezo_sym.spec.circuit import Circuit
-from piezo_sym.spec.elements.ports import Branch, Domain, Gyrator, Resistor, Source, Storage
+from piezo_sym.spec.elements.ports import Branch, Coupling, Domain, Resistor, Source, Storage
 
 REFERENCES = {domain.reference: domain for domain in Domain}
 
@@ -21,8 +21,8 @@ def is_reference(node: str) -> bool:
 
 def branches(circuit: Circuit) -> Iterator[tuple[str, Branch, Domain]]:
     """Yield (element, branch, domain) of every branch of a circuit."""
-    for placed, port in circuit.of(Storage, Resistor, Source, Gyrator):
-        if isinstance(port, Gyrator):
+    for placed, port in circuit.of(Storage, Resistor, Source, Coupling):
+        if isinstance(port, Coupling):
             yield placed.element, port.first, port.first_domain
             yield placed.element, port.second, port.second_domain
         else:

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar, final, overload
 
-from piezo_sym.spec.elements.ports import Body, Exchange, Gyrator, Port, Resistor, Source, Storage
+from piezo_sym.spec.elements.ports import Body, Coupling, Exchange, Port, Resistor, Source, Storage
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.names import fresh
 from piezo_sym.spec.tables import banks, temperatures
@@ -105,7 +105,7 @@ def _named(entry: Placed, taken: set[str], heat: dict[str, str]) -> Port:
             return replace(port, costate=new(port.costate))
         case Resistor() as port:
             return replace(port, output=new(port.output), effort=new(port.effort))
-        case Gyrator() as port:
+        case Coupling() as port:
             return replace(port, name=new(port.name))
         case Body() as port:
             return replace(port, temperature=heat[entry.element])

@@ -15,11 +15,13 @@ from piezo_sym.spec.elements.damper import Damper
 from piezo_sym.spec.elements.force_source import ForceSource
 from piezo_sym.spec.elements.hysteron import Hysteron
 from piezo_sym.spec.elements.inductor import Inductor
+from piezo_sym.spec.elements.lever import Lever
 from piezo_sym.spec.elements.mass import Mass
 from piezo_sym.spec.elements.resistor import Resistor
 from piezo_sym.spec.elements.spring import Spring
 from piezo_sym.spec.elements.thermal_mass import ThermalMass
 from piezo_sym.spec.elements.transducer import Transducer
+from piezo_sym.spec.elements.transformer import Transformer
 from piezo_sym.spec.elements.velocity_source import VelocitySource
 from piezo_sym.spec.elements.voltage_source import VoltageSource
 
@@ -32,6 +34,8 @@ KINDS: Mapping[str, type[Element]] = {
     "hysteron": Hysteron,
     "damper": Damper,
     "transducer": Transducer,
+    "transformer": Transformer,
+    "lever": Lever,
     "thermal_mass": ThermalMass,
     "ambient": Ambient,
     "force_source": ForceSource,
@@ -50,11 +54,13 @@ __all__ = [
     "ForceSource",
     "Hysteron",
     "Inductor",
+    "Lever",
     "Mass",
     "Resistor",
     "Spring",
     "ThermalMass",
     "Transducer",
+    "Transformer",
     "VelocitySource",
     "VoltageSource",
 ]

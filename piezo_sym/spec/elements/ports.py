@@ -96,8 +96,13 @@ class Resistor:
 
 @final
 @dataclass(frozen=True)
-class Gyrator:
-    """A power-preserving coupling: through_1 = ratio*across_2, through_2 = -ratio*across_1."""
+class Coupling:
+    """A power-preserving coupling of two branches.
+
+    If it `gyrates`, through_1 = ratio*across_2 and through_2 = -ratio*across_1; else it is a
+    transformer, across_1 = ratio*across_2 and through_2 = -ratio*through_1.  The ratio may depend
+    on the temperature T of a body.
+    """
 
     first: Branch
     first_domain: Domain
@@ -106,6 +111,7 @@ class Gyrator:
     ratio: Expr
     name: str
     body: str | None
+    gyrates: bool
 
 
 @final
@@ -146,4 +152,4 @@ class Exchange:
     input: str
 
 
-Port = Storage | Resistor | Gyrator | Source | Body | Exchange
+Port = Storage | Resistor | Coupling | Source | Body | Exchange

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Literal, final
 
 from piezo_sym.spec.elements.base import BodyName, Element, Law, Letters, Pair
-from piezo_sym.spec.elements.ports import Domain, Gyrator, Port
+from piezo_sym.spec.elements.ports import Coupling, Domain, Port
 
 
 @final
@@ -25,7 +25,7 @@ class Transducer(Element):
     def ports(self, name: str) -> tuple[Port, ...]:
         """Return the coupling."""
         return (
-            Gyrator(
+            Coupling(
                 first=self.electrical,
                 first_domain=Domain.ELECTRICAL,
                 second=self.mechanical,
@@ -33,5 +33,6 @@ class Transducer(Element):
                 ratio=self.law("ratio"),
                 name=f"alpha_{name}",
                 body=self.temperature,
+                gyrates=True,
             ),
         )
