@@ -12,6 +12,7 @@ Banks stay symbolic in their size r all the way (`algebra.lanes`); `IPHS.expand`
 from __future__ import annotations
 
 from piezo_sym.algebra.symbols import symbol_table
+from piezo_sym.errors import UsageError, quote
 from piezo_sym.iphs import IPHS, iphs_of
 from piezo_sym.network import junction_of
 from piezo_sym.spec.circuit import circuit_of
@@ -32,11 +33,16 @@ def derive(model: Model) -> IPHS:
 
     Raises
     ------
+    UsageError
+        If `model` is no `Model`.
     NetworkError
         If the network's laws have no, or more than one, solution; names the elements at fault.
     SpecError
         If a storage law has no energy in closed form.
     """
+    if not isinstance(model, Model):
+        remedy = "load it first: derive(load('piezo_stack'))"
+        raise UsageError(f"{quote(model)} is no Model", "derive", remedy=remedy)
     circuit = circuit_of(model)
     symbols = symbol_table(circuit)
     junction = junction_of(circuit, symbols)

@@ -1,7 +1,7 @@
-"""Vectors and matrices over banks whose size stays a symbol, and sums over their lanes.
+"""Vectors and matrices over banks whose size stays a symbol.
 
-Input: entries per pair of slots.  Output: `LaneMatrix` with the products and sums that Definition 1
-needs, and `LaneSum`, a sum over lanes kept as a sum.
+Input: entries per pair of slots.  Output: `LaneMatrix` with the products that Definition 1 needs;
+sums over lanes are kept as `LaneSum`.
 
 A slot is one row or column, or, for a bank, one a lane.  The entry of rows (s, j) and (t, k) is
 ``full[s, t]``, the same for every pair of lanes, plus ``own[s, t]`` where j = k and s and t are of
@@ -12,94 +12,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, final
+from typing import final
 
 import sympy as sp
-from sympy.core.symbol import Str
-from sympy.printing.precedence import PRECEDENCE
 
 from piezo_sym.algebra.notation import Entries, matrix_latex, matrix_text
-
-
-class LaneSum(sp.Expr):  # type: ignore[misc]
-    """The sum of its first argument over the lanes j = 1..r of the bank named by its second."""
-
-    is_commutative = True
-    is_real = True
-
-    def __new__(cls, arg: sp.Expr, bank: str | Str) -> LaneSum:
-        """Return the sum of `arg` over the lanes of `bank`, as it stands."""
-        made: LaneSum = sp.Expr.__new__(cls, arg, bank if isinstance(bank, Str) else Str(bank))
-        return made
-
-    def _latex(self, printer: Any, exp: Any = None) -> str:
-        term = printer.parenthesize(self.args[0], PRECEDENCE["Mul"])
-        text = rf"\sum_{{j=1}}^{{r}} {term}"
-        return text if exp is None else rf"\left({text}\right)^{{{exp}}}"
-
-    def _sympystr(self, printer: Any) -> str:
-        return f"Sum_j({printer.doprint(self.args[0])})"
-
-
-def outside_sums(expr: sp.Basic) -> frozenset[sp.Symbol]:
-    """Return the symbols of `expr` that do not stand inside a sum over lanes."""
-    if isinstance(expr, LaneSum):
-        return frozenset()
-    if isinstance(expr, sp.Symbol):
-        return frozenset({expr})
-    return frozenset().union(*(outside_sums(arg) for arg in expr.args))
-
-
-@final
-@dataclass(frozen=True)
-class Lanes:
-    """What sums over lanes need to know: the bank of each lane symbol, the size of each bank."""
-
-    banks: Mapping[sp.Symbol, str]
-    counts: Mapping[str, sp.Symbol]
-
-    def sum(self, expr: sp.Expr, bank: str) -> sp.Expr:
-        """Return the sum of `expr` over the lanes of `bank`, in normal form.
-
-        Lane-free factors stand outside, lane-free terms give the bank's size, and every distinct
-        sum of a product of lane symbols is an atom of its own.
-        """
-        total = sp.S.Zero
-        for term in sp.Add.make_args(sp.expand(expr)):
-            free, lane = self._split(term, bank)
-            total += free * (self.counts[bank] if lane == 1 else LaneSum(lane, bank))
-        return total
-
-    def _split(self, term: sp.Expr, bank: str) -> tuple[sp.Expr, sp.Expr]:
-        """Return a product as (factors free of the bank's lane, the others)."""
-        parts: tuple[list[sp.Expr], list[sp.Expr]] = ([], [])
-        for factor in sp.Mul.make_args(term):
-            lane = any(self.banks.get(symbol) == bank for symbol in outside_sums(factor))
-            parts[lane].append(factor)
-        return sp.Mul(*parts[0]), sp.Mul(*parts[1])
-
-    def symbols(self, bank: str) -> tuple[sp.Symbol, ...]:
-        """Return the lane symbols of `bank`."""
-        return tuple(symbol for symbol, own in self.banks.items() if own == bank)
-
-    def at(self, expr: sp.Expr, bank: str, lane: int) -> sp.Expr:
-        """Return `expr` in lane number `lane` of `bank`: ``phi_j`` becomes ``phi_<lane>``."""
-        names = {s: _numbered(s, lane) for s in self.symbols(bank)}
-        return expr.xreplace(names)
-
-    def expand(self, expr: sp.Expr, counts: Mapping[str, int]) -> sp.Expr:
-        """Return `expr` with every sum over lanes written out, for banks of the given sizes."""
-
-        def written(arg: sp.Expr, bank: Str) -> sp.Expr:
-            lanes = range(1, counts[bank.name] + 1)
-            return sp.Add(*(self.at(arg, bank.name, lane) for lane in lanes))
-
-        sizes = {symbol: sp.Integer(counts[bank]) for bank, symbol in self.counts.items()}
-        return expr.replace(LaneSum, written).xreplace(sizes)
-
-
-def _numbered(symbol: sp.Symbol, lane: int) -> sp.Symbol:
-    return sp.Symbol(f"{symbol.name.removesuffix('_j')}_{lane}", **symbol.assumptions0)
+from piezo_sym.algebra.sums import Lanes
+from piezo_sym.errors import UsageError, nearest, quote
 
 
 @final
@@ -182,9 +101,25 @@ class LaneMatrix:
         """Iterate over a vector's entries, one a slot."""
         return (self.full.get((r, 0), sp.S.Zero) for r in range(len(self.rows)))
 
-    def __getitem__(self, place: tuple[int, int]) -> sp.Expr:
-        """Return the entry for every pair of lanes; see `own` for the same lane."""
-        return self.full.get(place, sp.S.Zero)
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Number of row and column slots; a bank counts as one."""
+        return len(self.rows), len(self.cols)
+
+    def __getitem__(self, place: tuple[int | str, int | str] | int | str) -> sp.Expr:
+        """Return an entry by labels (``J0["p", "Q_C"]``) or places; a vector's by one of them.
+
+        Where both are of one bank, an entry for equal lanes only has the factor delta_jk.
+
+        Raises
+        ------
+        UsageError
+            If there is no such row or column.
+        """
+        row, col = place if isinstance(place, tuple) else (place, 0)
+        at = _place_of(row, self.rows, "row"), _place_of(col, self.cols, "column")
+        same = sp.KroneckerDelta(sp.Symbol("j"), sp.Symbol("k"))
+        return self.full.get(at, sp.S.Zero) + self.own.get(at, sp.S.Zero) * same
 
     def entries(self) -> Iterator[tuple[tuple[int, int], sp.Expr, sp.Expr]]:
         """Yield ((row, column), full, own) of every entry that is not zero, in order."""
@@ -241,6 +176,16 @@ class LaneMatrix:
 def vector(rows: tuple[Slot, ...], lanes: Lanes, entries: Mapping[int, sp.Expr]) -> LaneMatrix:
     """Return a column vector with one entry a slot; zeros drop out."""
     return LaneMatrix(rows, ONE_SLOT, lanes, {(r, 0): e for r, e in entries.items() if e != 0})
+
+
+def _place_of(asked: int | str, slots: tuple[Slot, ...], what: str) -> int:
+    labels = [slot.label for slot in slots]
+    if isinstance(asked, str) and asked in labels:
+        return labels.index(asked)
+    if isinstance(asked, int) and -len(slots) <= asked < len(slots):
+        return asked % len(slots)
+    remedy = nearest(str(asked), labels)
+    raise UsageError(f"{quote(asked)} is no {what}", "matrix", remedy=remedy)
 
 
 def _places(slots: tuple[Slot, ...], counts: Mapping[str, int]) -> list[tuple[int, int]]:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from piezo_sym.cli.output import about
+
 if TYPE_CHECKING:
     from piezo_sym.spec.model import Model
 
@@ -20,30 +22,39 @@ def generate(
     allow_unproved: Annotated[
         bool, typer.Option("--allow-unproved", help="Write what is not proved; the files say so.")
     ] = False,
+    every: Annotated[
+        bool,
+        typer.Option("--all", help="With --check: these specs are all; fail on other modules."),
+    ] = False,
 ) -> None:
     """Generate the modules of specs into OUT/<model>/.
 
-    With --check nothing is written: exit code 1 if a file is missing, differs from its spec, or
-    belongs to no spec, with the difference and the command that mends it.
+    With --check nothing is written: exit code 1 if a file is missing or differs from its spec, with
+    the difference and the command that mends it; with --all (or without SPEC) also if a generated
+    file in OUT belongs to no spec.
     """
     from piezo_sym.build import shipped_models
     from piezo_sym.spec.load import load
 
-    models = [load(spec) for spec in specs] if specs else list(shipped_models())
+    names = specs or []
+    models = [load(spec) for spec in names] or list(shipped_models())
     if check:
-        _check(models, specs or [], out, allow_unproved)
+        _check(models, names, out, allow_unproved, every or not names)
         return
     from piezo_sym.build import generate as write
 
-    for model in models:
-        for path in write(model, out, allow_unproved=allow_unproved):
-            typer.echo(f"{path}")
+    for spec, model in zip(names or [model.name for model in models], models, strict=True):
+        with about(spec):
+            for path in write(model, out, allow_unproved=allow_unproved):
+                typer.echo(f"{path}")
 
 
-def _check(models: list[Model], specs: list[str], out: Path, allow_unproved: bool) -> None:
+def _check(
+    models: list[Model], specs: list[str], out: Path, allow_unproved: bool, complete: bool
+) -> None:
     from piezo_sym.build import drift, raise_if_drifted
 
-    found = drift(models, out, complete=not specs, allow_unproved=allow_unproved)
+    found = drift(models, out, complete=complete, allow_unproved=allow_unproved)
     for fault in found:
         typer.echo(f"{fault.path} {fault.fault}")
         if fault.diff:

@@ -2,12 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
 from rich import box
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from piezo_sym.errors import PiezoError, one_line
+
 STYLES = {"PROVED": "green", "REFUTED": "bold red", "OPEN": "yellow"}
+
+
+@contextmanager
+def about(spec: str) -> Iterator[None]:
+    """Name the spec's file in every error from within that does not name it yet."""
+    try:
+        yield
+    except PiezoError as error:
+        name = one_line(Path(spec).name)
+        if name not in str(error):
+            error.where = f"{name}: {error.where}" if error.where else name
+        raise
 
 
 def console() -> Console:

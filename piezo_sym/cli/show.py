@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from piezo_sym.cli.output import about
+
 if TYPE_CHECKING:
     from piezo_sym.algebra.lanes import LaneMatrix
     from piezo_sym.iphs import IPHS
@@ -20,7 +22,8 @@ def show(
     from piezo_sym.derivation import derive
     from piezo_sym.spec.load import load
 
-    iphs = derive(load(spec))
+    with about(spec):
+        iphs = derive(load(spec))
     if latex:
         typer.echo(iphs.latex())
         return

@@ -15,7 +15,7 @@ from typing import TypeAlias, final
 import sympy as sp
 
 from piezo_sym.algebra.lanes import LaneMatrix, vector
-from piezo_sym.algebra.notation import text
+from piezo_sym.algebra.notation import slot_text, text
 from piezo_sym.algebra.symbols import SymbolTable, symbol_table
 from piezo_sym.iphs.definitions import costates_of, energy_of, laws_of, ratios_of, system_of
 from piezo_sym.iphs.reading import Reading, document, equations_latex
@@ -57,7 +57,7 @@ class Process:
 
 
 @final
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class IPHS:
     """An irreversible port-Hamiltonian system, eqs. (1)-(5) of the paper.
 
@@ -195,6 +195,12 @@ class IPHS:
         circuit = circuit_of(unroll(self.model, {**banks(self.model), **(counts or {})}))
         symbols = symbol_table(circuit)
         return iphs_of(symbols, junction_of(circuit, symbols))
+
+    def __repr__(self) -> str:
+        """Return one line: the model, its states and its processes."""
+        states = ", ".join(slot_text(slot) for slot in self.system.states)
+        processes = ", ".join(slot_text(slot) for slot in self.system.processes)
+        return f"<IPHS {self.model.name}: x = ({states}); processes {processes or 'none'}>"
 
     def _repr_latex_(self) -> str:
         return f"$\\displaystyle {equations_latex(self.reading)}$"

@@ -134,17 +134,22 @@ def document(reading: Reading) -> str:
         shown = matrix.map(reading.write)
         return matrix_latex(shown.rows, shown.cols, shown.full, shown.own)
 
-    displays = [
-        f"x = {_slots(system)}",
-        f"S = {joined(_entropies(system))}",
-        rf"\frac{{\partial U}}{{\partial x}} = {vector(system.E)}",
-        f"J_0 = {vector(system.J0)}",
-        *(line for k in range(len(system.processes)) for line in _process(reading, k, vector)),
-        rf"J_{{ir}} = J_0 + \sum_k R_k J_k = {vector(system.J_ir)}",
+    entropies = list(_entropies(system))
+    total = [rf"S_{{\mathrm{{total}}}} = {joined(entropies)}"] if len(entropies) > 1 else []
+    driven = [
         f"g = {vector(system.g)}",
         f"u = {vector(system.u)}",
         f"y = g^T \\frac{{\\partial U}}{{\\partial x}} = {vector(system.y)}",
         f"y_s = g^T \\frac{{\\partial S}}{{\\partial x}} = {vector(system.y_s)}",
+    ]
+    displays = [
+        f"x = {_slots(system)}",
+        *total,
+        rf"\frac{{\partial U}}{{\partial x}} = {vector(system.E)}",
+        f"J_0 = {vector(system.J0)}",
+        *(line for k in range(len(system.processes)) for line in _process(reading, k, vector)),
+        rf"J_{{ir}} = J_0 + \sum_k R_k J_k = {vector(system.J_ir)}",
+        *(driven if system.ports else ()),
         equations_latex(reading),
     ]
     return "\n\n".join(f"\\[\n{display}\n\\]" for display in displays)

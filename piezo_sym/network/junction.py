@@ -17,8 +17,9 @@ from typing import final
 
 import sympy as sp
 
-from piezo_sym.algebra.lanes import LaneMatrix, Lanes, Slot
+from piezo_sym.algebra.lanes import LaneMatrix, Slot
 from piezo_sym.algebra.linear import Form
+from piezo_sym.algebra.sums import Lanes
 from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import NetworkError
 from piezo_sym.network.causality import causal

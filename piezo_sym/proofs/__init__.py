@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from piezo_sym.errors import UsageError, quote
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.exact import casimir, energy, entropy, skew, temperature
-from piezo_sym.proofs.report import Report, Row, Verdict
+from piezo_sym.proofs.report import UNCHECKED, Report, Row, Verdict
 
-__all__ = ["Report", "Row", "Verdict", "verify"]
+__all__ = ["UNCHECKED", "Report", "Row", "Verdict", "verify"]
 
 
 def verify(iphs: IPHS) -> Report:
@@ -22,5 +23,8 @@ def verify(iphs: IPHS) -> Report:
         ``.rows``, one a property, and ``.raise_if_not_proved()``.  A verdict is PROVED only for all
         states, inputs and parameters in the domain and for every size of every bank.
     """
+    if not isinstance(iphs, IPHS):
+        remedy = "derive it first: verify(derive(load('piezo_stack')))"
+        raise UsageError(f"{quote(iphs)} is no IPHS", "verify", remedy=remedy)
     rows = (skew(iphs), casimir(iphs), energy(iphs), entropy(iphs), *temperature(iphs))
     return Report(iphs.model.name, rows)

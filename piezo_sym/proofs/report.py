@@ -58,10 +58,14 @@ class Row:
         }
 
 
+#: What this version does not look at yet; said wherever a verdict is printed.
+UNCHECKED = "the sign of each dissipative law (W z >= 0) and the units of laws"
+
+
 @final
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Report:
-    """The verdicts on one model."""
+    """The verdicts on one model; what they do not cover is `UNCHECKED`."""
 
     model: str
     rows: tuple[Row, ...]
@@ -98,3 +102,13 @@ class Report:
         """Return one line: how many rows have which verdict."""
         counts = {v: sum(row.verdict is v for row in self.rows) for v in Verdict}
         return ", ".join(f"{count} {v.value}" for v, count in counts.items() if count)
+
+    def __str__(self) -> str:
+        """Return the verdicts as lines of text."""
+        lines = [f"{self.model}: {self.summary()}"]
+        lines += [
+            f"  {r.verdict.value:8} {r.id:12} {r.element:12} {r.statement}" for r in self.rows
+        ]
+        return "\n".join([*lines, f"  not checked yet: {UNCHECKED}"])
+
+    __repr__ = __str__

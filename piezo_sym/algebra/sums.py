@@ -1,0 +1,96 @@
+"""Sums over the lanes of a bank whose size stays a symbol.
+
+Input: expressions in lane symbols such as ``phi_j``.  Output: `LaneSum`, a sum kept as a sum, in a
+normal form in which equal sums are equal expressions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, final
+
+import sympy as sp
+from sympy.core.symbol import Str
+from sympy.printing.precedence import PRECEDENCE
+
+
+class LaneSum(sp.Expr):  # type: ignore[misc]
+    """The sum of its first argument over the lanes j = 1..r of the bank named by its second."""
+
+    is_commutative = True
+    is_real = True
+
+    def __new__(cls, arg: sp.Expr, bank: str | Str) -> LaneSum:
+        """Return the sum of `arg` over the lanes of `bank`, as it stands."""
+        made: LaneSum = sp.Expr.__new__(cls, arg, bank if isinstance(bank, Str) else Str(bank))
+        return made
+
+    def _latex(self, printer: Any, exp: Any = None) -> str:
+        term = printer.parenthesize(self.args[0], PRECEDENCE["Mul"])
+        text = rf"\sum_{{j=1}}^{{r}} {term}"
+        return text if exp is None else rf"\left({text}\right)^{{{exp}}}"
+
+    def _sympystr(self, printer: Any) -> str:
+        return f"Sum_j({printer.doprint(self.args[0])})"
+
+
+def outside_sums(expr: sp.Basic) -> frozenset[sp.Symbol]:
+    """Return the symbols of `expr` that do not stand inside a sum over lanes."""
+    if isinstance(expr, LaneSum):
+        return frozenset()
+    if isinstance(expr, sp.Symbol):
+        return frozenset({expr})
+    return frozenset().union(*(outside_sums(arg) for arg in expr.args))
+
+
+@final
+@dataclass(frozen=True)
+class Lanes:
+    """What sums over lanes need to know: the bank of each lane symbol, the size of each bank."""
+
+    banks: Mapping[sp.Symbol, str]
+    counts: Mapping[str, sp.Symbol]
+
+    def sum(self, expr: sp.Expr, bank: str) -> sp.Expr:
+        """Return the sum of `expr` over the lanes of `bank`, in normal form.
+
+        Lane-free factors stand outside, lane-free terms give the bank's size, and every distinct
+        sum of a product of lane symbols is an atom of its own.
+        """
+        total = sp.S.Zero
+        for term in sp.Add.make_args(sp.expand(expr)):
+            free, lane = self._split(term, bank)
+            total += free * (self.counts[bank] if lane == 1 else LaneSum(lane, bank))
+        return total
+
+    def _split(self, term: sp.Expr, bank: str) -> tuple[sp.Expr, sp.Expr]:
+        """Return a product as (factors free of the bank's lane, the others)."""
+        parts: tuple[list[sp.Expr], list[sp.Expr]] = ([], [])
+        for factor in sp.Mul.make_args(term):
+            lane = any(self.banks.get(symbol) == bank for symbol in outside_sums(factor))
+            parts[lane].append(factor)
+        return sp.Mul(*parts[0]), sp.Mul(*parts[1])
+
+    def symbols(self, bank: str) -> tuple[sp.Symbol, ...]:
+        """Return the lane symbols of `bank`."""
+        return tuple(symbol for symbol, own in self.banks.items() if own == bank)
+
+    def at(self, expr: sp.Expr, bank: str, lane: int) -> sp.Expr:
+        """Return `expr` in lane number `lane` of `bank`: ``phi_j`` becomes ``phi_<lane>``."""
+        names = {s: _numbered(s, lane) for s in self.symbols(bank)}
+        return expr.xreplace(names)
+
+    def expand(self, expr: sp.Expr, counts: Mapping[str, int]) -> sp.Expr:
+        """Return `expr` with every sum over lanes written out, for banks of the given sizes."""
+
+        def written(arg: sp.Expr, bank: Str) -> sp.Expr:
+            lanes = range(1, counts[bank.name] + 1)
+            return sp.Add(*(self.at(arg, bank.name, lane) for lane in lanes))
+
+        sizes = {symbol: sp.Integer(counts[bank]) for bank, symbol in self.counts.items()}
+        return expr.replace(LaneSum, written).xreplace(sizes)
+
+
+def _numbered(symbol: sp.Symbol, lane: int) -> sp.Symbol:
+    return sp.Symbol(f"{symbol.name.removesuffix('_j')}_{lane}", **symbol.assumptions0)
