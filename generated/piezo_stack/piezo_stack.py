@@ -115,6 +115,23 @@ class Parameters:
     hysteron_count: int = 2
 
 
+def _states(x, p):
+    """Return states x, shape (n, *batch), as floats."""
+    x = np.asarray(x, dtype=float)
+    n = 4 + p.hysteron_count
+    if x.shape[:1] != (n,):
+        raise ValueError(f"x has shape {x.shape}, but there are {n} states")
+    return x
+
+
+def _inputs(u):
+    """Return inputs u, shape (3, *batch), as floats."""
+    u = np.asarray(u, dtype=float)
+    if u.shape[:1] != (3,):
+        raise ValueError(f"u has shape {u.shape}, but there are 3 inputs")
+    return u
+
+
 def _lanes(value, count, ndim):
     """Return a bank's parameter: a number, or a value a lane with shape (count, 1, ...)."""
     if isinstance(value, (int, float)):
@@ -127,7 +144,7 @@ def _lanes(value, count, ndim):
 
 def initial_state(u, p_, /):
     """State at t = 0 [SI], for the inputs u at t = 0; shape (n,)."""
-    u = np.asarray(u, dtype=float)
+    u = _inputs(u)
     hysteron_count = p_.hysteron_count
     T_0 = p_.T_0
     c_0 = p_.c_0
@@ -142,8 +159,7 @@ _BLOCK = 150_000  # numbers of a batch worked on together: they stay in the cach
 
 def rhs(x, u, p, /):
     """Rates dx/dt = J_ir dU/dx + g u; shape (n, *batch)."""
-    x = np.asarray(x, dtype=float)
-    u = np.asarray(u, dtype=float)
+    x, u = _states(x, p), _inputs(u)
     out = np.empty(x.shape)
     if x.ndim != 2 or x.size <= _BLOCK:
         _rates(x, u, p, out)
@@ -205,7 +221,7 @@ def _rates(x, u, p_, out, /):
 
 def outputs(x, u, p_, /):
     """Outputs y, one a port, conjugate to its input; shape (3, *batch)."""
-    x = np.asarray(x, dtype=float)
+    x = _states(x, p_)
     hysteron_count = p_.hysteron_count
     M = p_.M
     L = _lanes(p_.L, hysteron_count, x.ndim)
@@ -231,8 +247,8 @@ def outputs(x, u, p_, /):
 
 def supply(x, u, p_, /):
     """Power put in [W], one a port; the sum is dU/dt; shape (3, *batch)."""
-    x = np.asarray(x, dtype=float)
-    u = np.asarray(u, dtype=float)
+    x = _states(x, p_)
+    u = _inputs(u)
     hysteron_count = p_.hysteron_count
     M = p_.M
     L = _lanes(p_.L, hysteron_count, x.ndim)
@@ -262,7 +278,7 @@ def supply(x, u, p_, /):
 
 def energy(x, p_, /):
     """Hamiltonian U [J]; shape (*batch)."""
-    x = np.asarray(x, dtype=float)
+    x = _states(x, p_)
     hysteron_count = p_.hysteron_count
     M = p_.M
     k = p_.k
@@ -278,12 +294,12 @@ def energy(x, p_, /):
     S = x[3 + hysteron_count]
     # sums over lanes
     energy_phi = np.sum(phi**2/(2*L), axis=0)
-    return 0.5*(k*(q - q_l)**2) + p**2/(2*M) + Q_C**2/(2*C) + energy_phi + T_0*c_0*np.exp(S/c_0)
+    return k*(q - q_l)**2/2 + p**2/(2*M) + Q_C**2/(2*C) + energy_phi + T_0*c_0*np.exp(S/c_0)
 
 
 def entropy(x, p_, /):
     """Total entropy S [J/K]; shape (*batch)."""
-    x = np.asarray(x, dtype=float)
+    x = _states(x, p_)
     hysteron_count = p_.hysteron_count
     S = x[3 + hysteron_count]
     return S
@@ -291,7 +307,7 @@ def entropy(x, p_, /):
 
 def temperatures(x, p_, /):
     """Temperature of each body [K]; shape (1, *batch)."""
-    x = np.asarray(x, dtype=float)
+    x = _states(x, p_)
     hysteron_count = p_.hysteron_count
     T_0 = p_.T_0
     c_0 = p_.c_0
@@ -307,7 +323,7 @@ def temperatures(x, p_, /):
 
 def heat(x, u, p_, /):
     """Power that each process turns into heat [W], a bank's a row a lane; shape (1 + hysteron_count, *batch)."""
-    x = np.asarray(x, dtype=float)
+    x = _states(x, p_)
     hysteron_count = p_.hysteron_count
     M = p_.M
     d = p_.d
@@ -335,7 +351,7 @@ def heat(x, u, p_, /):
 
 def entropy_production(x, u, p_, /):
     """Entropy that each process produces [W/K], a bank's a row a lane; shape (1 + hysteron_count, *batch)."""
-    x = np.asarray(x, dtype=float)
+    x = _states(x, p_)
     hysteron_count = p_.hysteron_count
     M = p_.M
     d = p_.d
@@ -364,8 +380,8 @@ def entropy_production(x, u, p_, /):
 
 def jacobian(x, u, p_, /):
     """Derivative of rhs by the state; shape (n, n, *batch)."""
-    x = np.asarray(x, dtype=float)
-    u = np.asarray(u, dtype=float)
+    x = _states(x, p_)
+    u = _inputs(u)
     hysteron_count = p_.hysteron_count
     M = p_.M
     k = p_.k
@@ -433,8 +449,8 @@ def jacobian(x, u, p_, /):
 
 def margins(x, u, p_, /):
     """Margin of each condition of DOMAIN, least over lanes; shape (len(DOMAIN), *batch)."""
-    x = np.asarray(x, dtype=float)
-    u = np.asarray(u, dtype=float)
+    x = _states(x, p_)
+    u = _inputs(u)
     hysteron_count = p_.hysteron_count
     M = p_.M
     k = p_.k

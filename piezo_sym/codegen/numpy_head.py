@@ -34,6 +34,22 @@ class Condition(NamedTuple):
     text: str
     strict: bool'''
 
+SHAPES = '''def _states(x, p):
+    """Return states x, shape (n, *batch), as floats."""
+    x = np.asarray(x, dtype=float)
+    n = {size}
+    if x.shape[:1] != (n,):
+        raise ValueError(f"x has shape {{x.shape}}, but there are {{n}} states")
+    return x
+
+
+def _inputs(u):
+    """Return inputs u, shape ({inputs}, *batch), as floats."""
+    u = np.asarray(u, dtype=float)
+    if u.shape[:1] != ({inputs},):
+        raise ValueError(f"u has shape {{u.shape}}, but there are {inputs} inputs")
+    return u'''
+
 LANES_TYPE = "_Lanes = float | tuple[float, ...]  # a bank's parameter: one value, or one a lane"
 
 LANES = '''def _lanes(value, count, ndim):
@@ -52,8 +68,7 @@ RATES = '''_BLOCK = 150_000  # numbers of a batch worked on together: they stay 
 
 def rhs(x, u, p, /):
     """Rates dx/dt = J_ir dU/dx + g u; shape (n, *batch)."""
-    x = np.asarray(x, dtype=float)
-    u = np.asarray(u, dtype=float)
+    x, u = _states(x, p), _inputs(u)
     out = np.empty(x.shape)
     if x.ndim != 2 or x.size <= _BLOCK:
         _rates(x, u, p, out)
@@ -75,9 +90,16 @@ def head(program: Program) -> str:
         "\n".join(_tables(program)),
         _parameters(program),
     ]
+    fixed = sum(field.bank is None for field in program.states)
+    size = " + ".join([str(fixed), *(f"p.{bank}_count" for bank in _lanes_of(program))])
+    parts.append(SHAPES.format(size=size, inputs=len(program.inputs)))
     if program.counts:
         parts.append(LANES)
     return _joined(parts)
+
+
+def _lanes_of(program: Program) -> list[str]:
+    return [field.bank for field in program.states if field.bank]
 
 
 def _joined(parts: Iterable[str]) -> str:

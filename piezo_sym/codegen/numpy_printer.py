@@ -129,7 +129,8 @@ class _Printer:
         driven = any(field.name in used for field in self.program.inputs)
         given = [word for word in words if word == self.x or (word == self.u and driven)]
         given = [] if name == "_rates" else given
-        lines += [f"{word} = np.asarray({word}, dtype=float)" for word in given]
+        check = {self.x: f"_states({self.x}, {self.p})", self.u: f"_inputs({self.u})"}
+        lines += [f"{word} = {check[word]}" for word in given]
         lines += [f"{bank}_count = {self.p}.{bank}_count" for bank in self.program.counts]
         lines += self._unpacked(used, f"{self.x}.ndim" if "x" in arguments else "1")
         note = ""

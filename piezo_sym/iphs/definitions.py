@@ -15,10 +15,10 @@ from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import SpecError
 from piezo_sym.iphs.system import System
 from piezo_sym.network import Junction, port_order
-from piezo_sym.spec.calculus import antiderivative
 from piezo_sym.spec.circuit import Circuit, Placed
 from piezo_sym.spec.elements.ports import Body, Coupling, Exchange, Resistor, Source, Storage
 from piezo_sym.spec.expressions import Expr, rename
+from piezo_sym.spec.integrals import antiderivative
 from piezo_sym.spec.text import spell
 
 
@@ -79,7 +79,7 @@ def energy_of(element: str, port: Storage | Body) -> Expr:
     energy = antiderivative(port.law, port.letter)
     if energy is None:
         what = f"the law {spell(port.law)} has no energy in closed form"
-        expected = f"sums of powers of {port.letter}, or an exponential"
+        expected = f"a polynomial in {port.letter}, or an exponential"
         raise SpecError(what, f"elements.{element}", expected)
     return rename(energy, {port.letter: port.state})
 

@@ -1,8 +1,8 @@
-"""Derivatives and antiderivatives of laws, as trees that stay as short as a person would write.
+"""Sums, products and derivatives of laws, as trees that stay as short as a person would write.
 
-Input: a tree and a name.  Output: a tree.  Used for the energies of storage elements (the integral
-of a co-state law) and for the generated Jacobians.  Constant factors are folded as exact rationals,
-so that the text does not depend on the version of any algebra system.
+Input: trees, and a name to differentiate by.  Output: a tree.  Used for the generated Jacobians.
+Constant factors are folded as exact rationals, so that the text does not depend on the version of
+any algebra system.
 """
 
 from __future__ import annotations
@@ -25,7 +25,6 @@ from piezo_sym.spec.expressions import (
     Pow,
     Sym,
     names,
-    walk,
 )
 
 
@@ -84,7 +83,8 @@ def mul(left: Expr, right: Expr) -> Expr:
         case (_, If(then, condition, other)) if _indicator(right):
             return If(mul(left, then), condition, mul(left, other))
         case (_, Div(top, bottom)):
-            return div(mul(left, top), bottom)
+            product = mul(left, top)
+            return Div(product, bottom) if isinstance(bottom, Num) else div(product, bottom)
         case (Div(Num(), bottom), _):
             return div(mul(left.left, right), bottom)
         case (Mul(Num(value), inner), _):
@@ -217,72 +217,3 @@ def _slopes_of_two(function: str, z: Expr, w: Expr) -> tuple[Expr, Expr]:
         case "deadzone":
             return If(ONE, beyond, ZERO), If(neg(side), beyond, ZERO)
     return If(ZERO, beyond, ONE), If(side, beyond, ZERO)  # saturate
-
-
-def antiderivative(node: Expr, name: str) -> Expr | None:
-    """Return an antiderivative of `node` by `name`, or None where there is none of a simple form.
-
-    Known forms: sums and multiples of c*(a*x + b)**n and c*exp(a*x + b), c, a, b free of x.
-    """
-    if name not in names(node):
-        return mul(node, Sym(name))
-    match node:
-        case Neg(arg):
-            inner = antiderivative(arg, name)
-            return None if inner is None else neg(inner)
-        case Add(terms) if _slope(node, name) is None:
-            parts = [antiderivative(term, name) for term in terms]
-            known = [part for part in parts if part is not None]
-            return add(*known) if len(known) == len(parts) else None
-        case Mul(left, right) if name not in names(left):
-            inner = antiderivative(right, name)
-            return None if inner is None else mul(left, inner)
-        case Mul(left, right) if name not in names(right):
-            inner = antiderivative(left, name)
-            return None if inner is None else mul(right, inner)
-        case Div(left, right) if name not in names(right):
-            inner = antiderivative(left, name)
-            return None if inner is None else _over(inner, right)
-        case Call("exp", (arg,)):
-            slope = _slope(arg, name)
-            return None if slope is None else _divided(node, slope)
-    return _power_rule(node, name)
-
-
-def _power_rule(node: Expr, name: str) -> Expr | None:
-    base, exponent = (node.base, node.exponent) if isinstance(node, Pow) else (node, Fraction(1))
-    slope = _slope(base, name)
-    if slope is None or exponent == -1:
-        return None
-    raised = power(base, exponent + 1)
-    match slope:
-        case Div(Num(value), bottom):
-            return Div(mul(bottom, raised), Num((exponent + 1) * value))
-    return Div(raised, mul(Num(exponent + 1), slope))
-
-
-def _over(top: Expr, bottom: Expr) -> Expr:
-    """Return ``top/bottom``, with ``a/2/b`` written ``a/(2*b)``."""
-    if isinstance(top, Div) and isinstance(top.right, Num):
-        return Div(top.left, mul(top.right, bottom))
-    return div(top, bottom)
-
-
-def _divided(top: Expr, slope: Expr) -> Expr:
-    """Return ``top/slope``, with ``1/(1/c)`` written ``c``."""
-    match slope:
-        case Div(Num(value), bottom):
-            return mul(_scaled(1 / value, bottom), top)
-    return div(top, slope)
-
-
-def _slope(node: Expr, name: str) -> Expr | None:
-    """Return a where node = a*x + b with a, b free of x, else None."""
-    if not _smooth(node):
-        return None
-    slope = derivative(node, name)
-    return slope if slope != ZERO and name not in names(slope) else None
-
-
-def _smooth(node: Expr) -> bool:
-    return not any(isinstance(part, If | Call) for part in walk(node))

@@ -8,8 +8,9 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from spec_laws import laws, precise, steady
 
-from piezo_sym.spec.calculus import antiderivative, derivative
+from piezo_sym.spec.calculus import derivative
 from piezo_sym.spec.expressions import ZERO, evaluate, names
+from piezo_sym.spec.integrals import antiderivative
 from piezo_sym.spec.parse import parse_law
 from piezo_sym.spec.text import spell
 
@@ -165,7 +166,7 @@ def test_an_integral_of_any_law_has_the_law_as_slope(tree, x, y, w):
         "sqrt(x)",
         "x/(x + 1)",
         "a*x + log(x)",
-        "(x**2 + 1)**2",
+        "1/(x**2 + 1)",
         "deadzone(x, a)",
     ],
 )

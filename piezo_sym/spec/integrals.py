@@ -1,0 +1,156 @@
+"""Antiderivatives of laws: the energies of storage elements from their co-state laws.
+
+Input: a tree and a name.  Output: a tree, or None where there is none of a simple form.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from piezo_sym.spec.calculus import add, derivative, div, mul, neg, power
+from piezo_sym.spec.expressions import (
+    ONE,
+    ZERO,
+    Add,
+    Call,
+    Div,
+    Expr,
+    If,
+    Mul,
+    Neg,
+    Num,
+    Pow,
+    Sym,
+    names,
+    walk,
+)
+
+
+def antiderivative(node: Expr, name: str) -> Expr | None:
+    """Return an antiderivative of `node` by `name`, or None where there is none of a simple form.
+
+    Known forms: polynomials, and sums of c*(a*x + b)**n and c*exp(a*x + b), c, a, b free of x.
+    """
+    if name not in names(node):
+        return mul(node, Sym(name))
+    match node:
+        case Neg(arg):
+            inner = antiderivative(arg, name)
+            return None if inner is None else neg(inner)
+        case Add(terms) if _slope(node, name) is None:
+            parts = [antiderivative(term, name) for term in terms]
+            known = [part for part in parts if part is not None]
+            return add(*known) if len(known) == len(parts) else None
+        case Mul(left, right) if name not in names(left):
+            inner = antiderivative(right, name)
+            return None if inner is None else mul(left, inner)
+        case Mul(left, right) if name not in names(right):
+            inner = antiderivative(left, name)
+            return None if inner is None else mul(right, inner)
+        case Div(left, right) if name not in names(right):
+            inner = antiderivative(left, name)
+            return None if inner is None else _over(inner, right)
+        case Call("exp", (arg,)):
+            slope = _slope(arg, name)
+            return None if slope is None else _divided(node, slope)
+    found = _power_rule(node, name)
+    return _polynomial_rule(node, name) if found is None else found
+
+
+def _polynomial_rule(node: Expr, name: str) -> Expr | None:
+    """Return the integral of a polynomial that is not written as a sum of powers."""
+    terms = _polynomial(node, name)
+    if terms is None:
+        return None
+    raised = {n: mul(terms[n], power(Sym(name), Fraction(n + 1))) for n in sorted(terms)}
+    return add(*(_shared(term, n + 1) for n, term in raised.items()))
+
+
+def _shared(term: Expr, number: int) -> Expr:
+    """Return ``term/number`` written as a quotient, the sign in front."""
+    match term:
+        case Neg(arg):
+            return neg(_shared(arg, number))
+    return term if number == 1 else Div(term, Num(Fraction(number)))
+
+
+def _polynomial(node: Expr, name: str) -> dict[int, Expr] | None:
+    """Return the coefficients of a polynomial in `name`, by power, or None if it is none."""
+    if name not in names(node):
+        return {0: node}
+    match node:
+        case Sym():
+            return {1: ONE}
+        case Neg(arg):
+            inner = _polynomial(arg, name)
+            return None if inner is None else {n: neg(c) for n, c in inner.items()}
+        case Add(terms):
+            return _sum_of([_polynomial(term, name) for term in terms])
+        case Mul(left, right):
+            return _product_of(_polynomial(left, name), _polynomial(right, name))
+        case Div(left, right) if name not in names(right):
+            inner = _polynomial(left, name)
+            return None if inner is None else {n: div(c, right) for n, c in inner.items()}
+        case Pow(base, exponent) if exponent.denominator == 1 and exponent > 0:
+            inner, total = _polynomial(base, name), _polynomial(base, name)
+            for _ in range(exponent.numerator - 1):
+                total = _product_of(total, inner)
+            return total
+    return None
+
+
+def _sum_of(parts: list[dict[int, Expr] | None]) -> dict[int, Expr] | None:
+    total: dict[int, Expr] = {}
+    for part in parts:
+        if part is None:
+            return None
+        for n, coefficient in part.items():
+            total[n] = add(total.get(n, ZERO), coefficient)
+    return total
+
+
+def _product_of(
+    left: dict[int, Expr] | None, right: dict[int, Expr] | None
+) -> dict[int, Expr] | None:
+    if left is None or right is None:
+        return None
+    return _sum_of([{n + m: mul(a, b)} for n, a in left.items() for m, b in right.items()])
+
+
+def _power_rule(node: Expr, name: str) -> Expr | None:
+    base, exponent = (node.base, node.exponent) if isinstance(node, Pow) else (node, Fraction(1))
+    slope = _slope(base, name)
+    if slope is None or exponent == -1:
+        return None
+    raised = power(base, exponent + 1)
+    match slope:
+        case Div(Num(value), bottom):
+            return Div(mul(bottom, raised), Num((exponent + 1) * value))
+    return Div(raised, mul(Num(exponent + 1), slope))
+
+
+def _over(top: Expr, bottom: Expr) -> Expr:
+    """Return ``top/bottom``, with ``a/2/b`` written ``a/(2*b)``."""
+    if isinstance(top, Div) and isinstance(top.right, Num):
+        return Div(top.left, mul(top.right, bottom))
+    return div(top, bottom)
+
+
+def _divided(top: Expr, slope: Expr) -> Expr:
+    """Return ``top/slope``, with ``1/(1/c)`` written ``c``."""
+    match slope:
+        case Div(Num(value), bottom):
+            return mul(mul(Num(1 / value), bottom), top)
+    return div(top, slope)
+
+
+def _slope(node: Expr, name: str) -> Expr | None:
+    """Return a where node = a*x + b with a, b free of x, else None."""
+    if not _smooth(node):
+        return None
+    slope = derivative(node, name)
+    return slope if slope != ZERO and name not in names(slope) else None
+
+
+def _smooth(node: Expr) -> bool:
+    return not any(isinstance(part, If | Call) for part in walk(node))
