@@ -1,0 +1,63 @@
+"""What the README says can be done: its spec, its commands and its Python, run as they stand."""
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+MOST_LINES = 100  # two screens
+
+
+def blocks(language):
+    return re.findall(rf"```{language}\n(.*?)```", README, re.DOTALL)
+
+
+def commands():
+    lines = [line for block in blocks("sh") for line in block.splitlines()]
+    return [line.partition("#")[0].strip() for line in lines if line.startswith("piezo-sym")]
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    (tmp_path / "specs").mkdir()
+    for path in (tmp_path / "oscillator.toml", tmp_path / "specs" / "oscillator.toml"):
+        path.write_text(blocks("toml")[0], encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_every_command_works_in_the_order_given(folder):
+    from piezo_sym.cli import run
+
+    found = commands()
+    assert len(found) == 6
+    for command in found:
+        _, *words = shlex.split(command.replace("specs/*.toml", "specs/oscillator.toml"))
+        assert run(words) == 0, command
+    assert (folder / "oscillator.csv").exists()
+
+
+def test_the_python_works(folder, monkeypatch):
+    monkeypatch.setenv("MPLBACKEND", "agg")
+    (text,) = blocks("python")
+    names = {}
+    exec(compile(text, "README.md", "exec"), names)
+    assert names["run"].sizes["time"] == 1001
+    assert folder.exists()
+
+
+def test_set_up_is_one_line_each():
+    lines = [line for block in blocks("sh") for line in block.splitlines() if ".venv &&" in line]
+    assert [line.split()[-1] for line in lines] == ["reproduce", "pytest"]
+
+
+def test_the_whole_is_under_two_screens():
+    assert len(README.splitlines()) <= MOST_LINES
+
+
+def test_pictures_are_there():
+    for path in re.findall(r"!\[.*?\]\((.*?)\)", README):
+        assert (ROOT / path).is_file()
