@@ -14,7 +14,7 @@ from typing import Any, final
 import sympy as sp
 
 from piezo_sym.spec.circuit import Circuit
-from piezo_sym.spec.elements.ports import Body, Coupling, Resistor, Storage
+from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, Resistor, Storage
 from piezo_sym.spec.expressions import (
     ZERO,
     Add,
@@ -66,7 +66,7 @@ def symbol_table(circuit: Circuit) -> SymbolTable:
     owners = lane_parameters(model)
     per_lane |= {n: owners[n] for n, p in model.parameters.items() if isinstance(p.value, tuple)}
     names = [*model.parameters, *model.inputs, *states(model)]
-    for placed, port in circuit.of(Storage, Resistor, Coupling, Body):
+    for placed, port in circuit.of(Storage, Resistor, Coupling, Body, Conductor):
         for name in _quantities(port):
             names.append(name)
             if placed.bank:
@@ -80,8 +80,10 @@ def symbol_table(circuit: Circuit) -> SymbolTable:
     return SymbolTable(table, {table[name]: bank for name, bank in per_lane.items()}, counts)
 
 
-def _quantities(port: Storage | Resistor | Coupling | Body) -> tuple[str, ...]:
+def _quantities(port: Storage | Resistor | Coupling | Body | Conductor) -> tuple[str, ...]:
     match port:
+        case Conductor():
+            return (port.output,)
         case Storage():
             return (port.costate,)
         case Resistor():

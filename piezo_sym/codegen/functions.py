@@ -74,6 +74,7 @@ def _entropy_rate(n: int, q: Quantities) -> Expr:
     temperature = Sym(costate_name(port))
     heats = [q.heat(k) for k, row in enumerate(q.system.heats) if row == n]
     terms = [div(add(*heats), temperature)] if heats else []
+    terms += [neg(term) for term in q.row(q.system.B, n, lambda k: q.outputs[k])]
     for entry in q.ports:
         if isinstance(entry.port, Exchange) and entry.port.body == placed.element:
             drive = add(div(Sym(entry.port.input), temperature), neg(ONE))
@@ -127,7 +128,8 @@ def _of_processes(iphs: IPHS, q: Quantities) -> Iterator[Function]:
     slots = iphs.system.processes
     doc = "Power that each process turns into heat [W], a bank's a row a lane"
     yield Function("heat", doc, STATE_INPUT, _rows(slots, q.heats))
-    produced = [div(heat, q.costate(n)) for heat, n in zip(q.heats, q.system.heats, strict=True)]
+    parts = zip(q.outputs, q.forces, q.system.heats, strict=True)
+    produced = [div(mul(output, force), q.costate(n)) for output, force, n in parts]
     doc = "Entropy that each process produces [W/K], a bank's a row a lane"
     yield Function("entropy_production", doc, STATE_INPUT, _rows(slots, produced))
 

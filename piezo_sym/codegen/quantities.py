@@ -19,8 +19,8 @@ from piezo_sym.codegen.program import Quantity
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name
 from piezo_sym.network import port_order
-from piezo_sym.spec.calculus import add, mul
-from piezo_sym.spec.elements.ports import Body, Coupling, Resistor, Source, Storage
+from piezo_sym.spec.calculus import add, div, mul, neg
+from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, Resistor, Source, Storage
 from piezo_sym.spec.expressions import Expr, LaneSum, Sym, rebuild, rename, replace
 from piezo_sym.spec.names import fresh
 
@@ -32,7 +32,7 @@ class Quantities:
     Attributes
     ----------
     defined : the definitions, in order.
-    efforts, outputs, heats : z, W and W*z of each process.
+    forces, outputs, heats : driving force, output W and heat of each process.
     """
 
     def __init__(self, iphs: IPHS) -> None:
@@ -46,7 +46,7 @@ class Quantities:
         self._sums: dict[LaneSum, Sym] = {}
         self._costates()
         self._ratios()
-        self.efforts, self.outputs, self.heats = self._processes()
+        self.forces, self.outputs, self.heats = self._processes()
 
     def define(self, base: str, value: Expr, bank: str | None, note: str) -> Sym:
         """Add a definition under a fresh name, and return the name."""
@@ -134,20 +134,25 @@ class Quantities:
         """Return a law in which ``T`` is the temperature of `body`."""
         return self.sharp(rename(law, {"T": self.bodies[body].temperature})) if body else law
 
-    def _processes(self) -> tuple[list[Sym], list[Sym], list[Expr]]:
-        efforts, outputs, heats = [], [], []
-        for k, (placed, port) in enumerate(self.circuit.of(Resistor)):
+    def _processes(self) -> tuple[list[Expr], list[Sym], list[Expr]]:
+        forces, outputs, heats = [], [], []
+        for k, (placed, port) in enumerate(self.circuit.of(Resistor, Conductor)):
             terms = [*self.row(self.system.B.T, k, self.costate)]
             terms += self.row(self.system.D.T, k, self.input)
             effort = add(*terms)
-            if not isinstance(effort, Sym):
+            if not isinstance(effort, Sym) and isinstance(port, Resistor):
                 effort = self._defined(port.effort, effort, placed.bank, "driving forces")
-            law = replace(self._at(port.law, port.heats), {port.letter: effort})
+            if isinstance(port, Resistor):
+                force: Expr = effort
+                law = replace(self._at(port.law, port.heats), {port.letter: effort})
+            else:
+                force = add(effort, neg(Sym(self.bodies[port.second].temperature)))
+                law = div(mul(port.conductance, force), effort)
             output = self._defined(port.output, law, placed.bank, "dissipative laws")
-            efforts.append(effort)
+            forces.append(force)
             outputs.append(output)
             heats.append(mul(output, effort))
-        return efforts, outputs, heats
+        return forces, outputs, heats
 
     def heat(self, k: int) -> Sym:
         """Return the quantity that is the heat of process k, summed over the lanes of a bank."""

@@ -16,7 +16,15 @@ from piezo_sym.errors import SpecError
 from piezo_sym.iphs.system import System
 from piezo_sym.network import Junction, port_order
 from piezo_sym.spec.circuit import Circuit, Placed
-from piezo_sym.spec.elements.ports import Body, Coupling, Exchange, Resistor, Source, Storage
+from piezo_sym.spec.elements.ports import (
+    Body,
+    Conductor,
+    Coupling,
+    Exchange,
+    Resistor,
+    Source,
+    Storage,
+)
 from piezo_sym.spec.expressions import Expr, rename
 from piezo_sym.spec.integrals import antiderivative
 from piezo_sym.spec.text import spell
@@ -27,17 +35,22 @@ def costate_name(port: Storage | Body) -> str:
     return port.temperature if isinstance(port, Body) else port.costate
 
 
+def heated(port: Resistor | Conductor) -> str:
+    """Return the element of the body that a process heats; for conduction, the second."""
+    return port.heats if isinstance(port, Resistor) else port.second
+
+
 def system_of(circuit: Circuit, symbols: SymbolTable, junction: Junction) -> System:
     """Return Definition 1 over a junction: E, W and u by their symbols."""
     lanes = junction.J0.lanes
     stores = tuple(circuit.of(Storage, Body))
     rows = {placed.element: n for n, (placed, port) in enumerate(stores) if isinstance(port, Body)}
-    resistors = [port for _, port in circuit.of(Resistor)]
+    processes = [port for _, port in circuit.of(Resistor, Conductor)]
     costates = {n: symbols[costate_name(port)] for n, (_, port) in enumerate(stores)}
     inputs = {
         n: _input(placed.port, circuit, symbols) for n, placed in enumerate(port_order(circuit))
     }
-    outputs = {n: symbols[port.output] for n, port in enumerate(resistors)}
+    outputs = {n: symbols[port.output] for n, port in enumerate(processes)}
     return System(
         states=junction.states,
         processes=junction.processes,
@@ -46,7 +59,7 @@ def system_of(circuit: Circuit, symbols: SymbolTable, junction: Junction) -> Sys
         dS=vector(junction.states, lanes, dict.fromkeys(rows.values(), sp.S.One)),
         u=vector(junction.ports, lanes, inputs),
         W=vector(junction.processes, lanes, outputs),
-        heats=tuple(rows[port.heats] for port in resistors),
+        heats=tuple(rows[heated(port)] for port in processes),
         J0=junction.J0,
         B=junction.B,
         D=junction.D,
@@ -89,9 +102,13 @@ Definitions = Iterator[tuple[sp.Symbol, sp.Expr]]
 
 def laws_of(circuit: Circuit, symbols: SymbolTable, system: System) -> Definitions:
     """Yield each law output W and its law in z and T."""
-    for (_, port), z in zip(circuit.of(Resistor), system.z, strict=True):
-        heat = symbols[circuit.body(port.heats).temperature]
-        yield symbols[port.output], symbols.law(port.law, {port.letter: z, "T": heat})
+    for (_, port), z in zip(circuit.of(Resistor, Conductor), system.z, strict=True):
+        heat = symbols[circuit.body(heated(port)).temperature]
+        if isinstance(port, Resistor):
+            yield symbols[port.output], symbols.law(port.law, {port.letter: z, "T": heat})
+        else:
+            first = symbols[circuit.body(port.first).temperature]
+            yield symbols[port.output], symbols.law(port.conductance, {}) * z / first
 
 
 def ratios_of(circuit: Circuit, symbols: SymbolTable) -> Definitions:

@@ -22,7 +22,7 @@ from piezo_sym.iphs.reading import Reading, document, equations_latex
 from piezo_sym.iphs.system import System
 from piezo_sym.network import Junction, junction_of
 from piezo_sym.spec.circuit import Circuit, circuit_of
-from piezo_sym.spec.elements.ports import Body, Resistor, Storage
+from piezo_sym.spec.elements.ports import Body, Conductor, Resistor, Storage
 from piezo_sym.spec.expressions import Expr
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import banks
@@ -217,7 +217,10 @@ class IPHS:
     def _spelled(self, shown: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, str]:
         """Return each dissipative law as the spec spells it, and what its letter is."""
         found = {}
-        for (_, port), z in zip(self.circuit.of(Resistor), self.system.z, strict=True):
+        processes = self.circuit.of(Resistor, Conductor)
+        for (_, port), z in zip(processes, self.system.z, strict=True):
+            if isinstance(port, Conductor):
+                continue
             effort = f"{port.letter} = {text(z.xreplace(shown))}"
             found[self.symbols[port.output]] = f"{spell(port.law)}, {effort}"
         return found

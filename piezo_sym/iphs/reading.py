@@ -50,7 +50,7 @@ class Reading:
         terms = [
             *_terms(system.J0, system.E, row),
             *_terms(-system.B, system.W, row),
-            *(self._heat(k) for k, entropy in enumerate(system.heats) if entropy == row),
+            *(self._heating(k) for k, entropy in enumerate(system.heats) if entropy == row),
             *_terms(system.G, system.u, row),
         ]
         return [self.write(term) for term in terms]
@@ -67,7 +67,8 @@ class Reading:
 
     def productions(self) -> list[sp.Expr]:
         """Return the terms of the internal entropy production, one a process."""
-        return [self.write(self._heat(k)) for k in range(len(self.system.processes))]
+        R, z = self.system.R, self.system.z
+        return [self.write(self._total(k, r * z[k, 0])) for k, r in enumerate(R)]
 
     def gamma(self, k: int) -> sp.Expr:
         """Return gamma_k = W_k/(T z_k), the law written out where it has no branches."""
@@ -75,10 +76,13 @@ class Reading:
         laws = {s: e for s, e in self.named if s in outputs and not e.has(sp.Piecewise)}
         return self.write(self.system.R[k, 0].xreplace(laws) / self.system.z[k, 0])
 
-    def _heat(self, k: int) -> sp.Expr:
-        production = self.system.R[k, 0] * self.system.z[k, 0]
+    def _heating(self, k: int) -> sp.Expr:
+        """Return what a process brings to the entropy of the body that it heats."""
+        return self._total(k, self.system.R[k, 0] * self.system.drive[k, 0])
+
+    def _total(self, k: int, term: sp.Expr) -> sp.Expr:
         bank = self.system.processes[k].bank
-        return self.system.E.lanes.sum(production, bank) if bank else production
+        return self.system.E.lanes.sum(term, bank) if bank else term
 
 
 def _terms(block: LaneMatrix, given: LaneMatrix, row: int) -> Iterator[sp.Expr]:

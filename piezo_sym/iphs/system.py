@@ -61,13 +61,23 @@ class System:
         return vector(self.processes, self.W.lanes, entries)
 
     @cached_property
+    def drive(self) -> LaneMatrix:
+        """The variables B^T E + D^T u conjugate to W: W times it is the heat, over processes."""
+        return self.B.T @ self.E + self.D.T @ self.u
+
+    @cached_property
     def bracket(self) -> LaneMatrix:
-        """The thermodynamic driving forces {S, U}_{J_k} = b_k^T E, over processes."""
-        return self.B.T @ self.E
+        """The thermodynamic driving forces {S, U}_{J_k} = dS^T J_k E, over processes.
+
+        That is b_k^T E, less the temperature of the heated body where b_k takes from an entropy.
+        """
+        given = self.B.T @ self.dS
+        taken = {k: share * self.E[self.heats[k], 0] for k, share in enumerate(given)}
+        return self.B.T @ self.E - vector(self.processes, self.E.lanes, taken)
 
     @cached_property
     def z(self) -> LaneMatrix:
-        """The variables conjugate to W: the driving forces, and what inputs add to them."""
+        """The driving forces, and what inputs add to them, over processes."""
         return self.bracket + self.D.T @ self.u
 
     @cached_property

@@ -65,7 +65,7 @@ def _to_turn(
             kind, number = label[1] if label[0] == "sum" else label
             if kind == "W":
                 placed, port = laws.processes[number]
-                other = turn(port)
+                other = turn(port) if isinstance(port, Resistor) else None
                 if placed.element not in turned and other is not None:
                     return placed, other
     return None

@@ -12,7 +12,7 @@ matrices, and it is checked that the structure preserves power.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import final
 
 import sympy as sp
@@ -26,7 +26,7 @@ from piezo_sym.network.causality import causal
 from piezo_sym.network.kirchhoff import Answer, Laws
 from piezo_sym.network.nodes import check_nodes
 from piezo_sym.spec.circuit import Circuit
-from piezo_sym.spec.elements.ports import Exchange, Source, Variable
+from piezo_sym.spec.elements.ports import Conductor, Exchange, Source, Variable
 
 
 @final
@@ -101,7 +101,7 @@ class _Blocks:
             processes=self.slots["W"],
             ports=self.slots["u"],
             J0=self._block("E", "E"),
-            B=B,
+            B=self._with_conduction(B),
             D=D,
             g=self._with_heat(g),
             N=self._output("u"),
@@ -139,6 +139,16 @@ class _Blocks:
             remedy = "put a capacitor, mass or hysteron at the node between them"
             raise NetworkError(f"{names} determine each other's flow", "network", remedy=remedy)
 
+    def _with_conduction(self, B: LaneMatrix) -> LaneMatrix:
+        """Return B with the conductions: each takes entropy from its first body."""
+        rows = {placed.element: n for n, (placed, _) in enumerate(self.laws.states)}
+        taken = {
+            (rows[port.first], n): sp.S.One
+            for n, (_, port) in enumerate(self.laws.processes)
+            if isinstance(port, Conductor)
+        }
+        return replace(B, full={**B.full, **taken})
+
     def _with_heat(self, g: LaneMatrix) -> LaneMatrix:
         """Return the input map with the heat exchanges, each into its body's entropy."""
         rows = {placed.element: n for n, (placed, _) in enumerate(self.laws.states)}
@@ -147,7 +157,7 @@ class _Blocks:
             for n, placed in enumerate(self.laws.ports)
             if isinstance(placed.port, Exchange)
         }
-        return LaneMatrix(g.rows, g.cols, g.lanes, {**g.full, **heat}, g.own)
+        return replace(g, full={**g.full, **heat})
 
 
 def _minus(row: int) -> int:

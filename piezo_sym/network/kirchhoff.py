@@ -22,6 +22,7 @@ from piezo_sym.spec.circuit import Circuit, Placed
 from piezo_sym.spec.elements.ports import (
     Body,
     Branch,
+    Conductor,
     Coupling,
     Exchange,
     Resistor,
@@ -74,7 +75,7 @@ class Laws:
             port: self.field.from_sympy(symbols[port.name]) for _, port in circuit.of(Coupling)
         }
         self.states = tuple(circuit.of(Storage, Body))
-        self.processes = tuple(circuit.of(Resistor))
+        self.processes = tuple(circuit.of(Resistor, Conductor))
         self.ports = port_order(circuit)
         self.edges = tuple(self._edges())
 
@@ -82,8 +83,9 @@ class Laws:
         for n, (placed, port) in enumerate(self.states):
             if isinstance(port, Storage):
                 yield Edge(placed, port.branch, port.imposes, ("E", n), 1)
-        for n, (placed, resistor) in enumerate(self.processes):
-            yield Edge(placed, resistor.branch, resistor.imposes, ("W", n), 1)
+        for n, (placed, process) in enumerate(self.processes):
+            if isinstance(process, Resistor):
+                yield Edge(placed, process.branch, process.imposes, ("W", n), 1)
         for n, placed in enumerate(self.ports):
             if isinstance(placed.port, Source):
                 sign = 1 if placed.port.imposes is Variable.ACROSS else -1  # it pushes into a

@@ -10,7 +10,16 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar, final, overload
 
-from piezo_sym.spec.elements.ports import Body, Coupling, Exchange, Port, Resistor, Source, Storage
+from piezo_sym.spec.elements.ports import (
+    Body,
+    Conductor,
+    Coupling,
+    Exchange,
+    Port,
+    Resistor,
+    Source,
+    Storage,
+)
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.names import fresh
 from piezo_sym.spec.tables import banks, temperatures
@@ -19,6 +28,7 @@ A = TypeVar("A", bound=Port)
 B = TypeVar("B", bound=Port)
 C = TypeVar("C", bound=Port)
 D = TypeVar("D", bound=Port)
+F = TypeVar("F", bound=Port)
 
 
 @final
@@ -57,6 +67,11 @@ class Circuit:
     def of(
         self, kind: type[A], other: type[B], third: type[C], fourth: type[D], /
     ) -> Iterator[tuple[Placed, A | B | C | D]]: ...
+
+    @overload
+    def of(
+        self, kind: type[A], other: type[B], third: type[C], fourth: type[D], fifth: type[F], /
+    ) -> Iterator[tuple[Placed, A | B | C | D | F]]: ...
 
     def of(self, *kinds: Any) -> Iterator[tuple[Placed, Any]]:
         """Yield the ports of some kinds, in declaration order."""
@@ -105,6 +120,8 @@ def _named(entry: Placed, taken: set[str], heat: dict[str, str]) -> Port:
             return replace(port, costate=new(port.costate))
         case Resistor() as port:
             return replace(port, output=new(port.output), effort=new(port.effort))
+        case Conductor() as port:
+            return replace(port, output=new(port.output))
         case Coupling() as port:
             return replace(port, name=new(port.name))
         case Body() as port:

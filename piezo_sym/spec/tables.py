@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Protocol, final
 
-from piezo_sym.spec.elements import Element, ThermalMass
+from piezo_sym.spec.elements import Conduction, Element, ThermalMass
 from piezo_sym.spec.elements.base import Letters, Refers, state_symbol
 from piezo_sym.spec.expressions import ZERO, Call, Cmp, Expr, Num, names, rename, walk
 from piezo_sym.spec.fields import Domain, Header, Input, Parameter
@@ -85,6 +85,9 @@ def references(element: Element) -> Iterator[tuple[str, str, str]]:
         for mark in info.metadata:
             if isinstance(mark, Refers) and getattr(element, field) is not None:
                 yield field, mark.to, getattr(element, field)
+    between = getattr(element, "between", ())
+    if isinstance(element, Conduction):
+        yield from (("between", "thermal_mass", body) for body in between)
 
 
 def states(spec: Tables) -> dict[str, str]:

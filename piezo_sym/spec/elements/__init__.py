@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from piezo_sym.spec.elements.ambient import Ambient
 from piezo_sym.spec.elements.base import Element
 from piezo_sym.spec.elements.capacitor import Capacitor
+from piezo_sym.spec.elements.conduction import Conduction
 from piezo_sym.spec.elements.current_source import CurrentSource
 from piezo_sym.spec.elements.damper import Damper
 from piezo_sym.spec.elements.force_source import ForceSource
@@ -37,6 +38,7 @@ KINDS: Mapping[str, type[Element]] = {
     "transformer": Transformer,
     "lever": Lever,
     "thermal_mass": ThermalMass,
+    "conduction": Conduction,
     "ambient": Ambient,
     "force_source": ForceSource,
     "voltage_source": VoltageSource,
@@ -48,6 +50,7 @@ __all__ = [
     "KINDS",
     "Ambient",
     "Capacitor",
+    "Conduction",
     "CurrentSource",
     "Damper",
     "Element",

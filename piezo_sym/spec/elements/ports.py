@@ -152,4 +152,21 @@ class Exchange:
     input: str
 
 
-Port = Storage | Resistor | Coupling | Source | Body | Exchange
+@final
+@dataclass(frozen=True)
+class Conductor:
+    """Heat conduction between two bodies: entropy conductance*(T_1 - T_2)/T_1 leaves the first.
+
+    Attributes
+    ----------
+    first, second : elements of the two bodies.
+    output : name of the entropy flow out of the first body.
+    """
+
+    first: str
+    second: str
+    conductance: Expr
+    output: str
+
+
+Port = Storage | Resistor | Coupling | Source | Body | Exchange | Conductor

@@ -1,0 +1,32 @@
+"""Conduction: heat flow between two bodies in contact."""
+
+from __future__ import annotations
+
+from typing import Literal, final
+
+from piezo_sym.spec.elements.base import BodyName, Element, Law
+from piezo_sym.spec.elements.ports import Conductor, Port
+
+
+@final
+class Conduction(Element):
+    """Heat conduction between two bodies, the irreversible process of a heat exchanger.
+
+    The heat flow q = conductance*(T_1 - T_2) [W] runs from the first body to the second; J couples
+    their entropies, the driving force is T_1 - T_2 and gamma = conductance/(T_1 T_2).
+    """
+
+    kind: Literal["conduction"] = "conduction"
+    between: tuple[BodyName, BodyName]
+    conductance: Law
+
+    def ports(self, name: str) -> tuple[Port, ...]:
+        """Return the process."""
+        return (
+            Conductor(
+                first=self.between[0],
+                second=self.between[1],
+                conductance=self.law("conductance"),
+                output=f"s_{name}",
+            ),
+        )
