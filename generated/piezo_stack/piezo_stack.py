@@ -134,7 +134,7 @@ def _inputs(u):
 
 def _lanes(value, count, ndim):
     """Return a bank's parameter: a number, or a value a lane with shape (count, 1, ...)."""
-    if isinstance(value, (int, float)):
+    if np.ndim(value) == 0:
         return value
     value = np.asarray(value, dtype=float)
     if value.shape != (count,):
@@ -302,7 +302,7 @@ def entropy(x, p_, /):
     x = _states(x, p_)
     hysteron_count = p_.hysteron_count
     S = x[3 + hysteron_count]
-    return S
+    return S.copy()
 
 
 def temperatures(x, p_, /):

@@ -17,7 +17,7 @@ from typing import final
 import sympy as sp
 
 from piezo_sym.algebra.notation import Entries, matrix_latex, matrix_text
-from piezo_sym.algebra.sums import Lanes
+from piezo_sym.algebra.sums import Lanes, outside_sums
 from piezo_sym.errors import UsageError, nearest, quote
 
 
@@ -93,9 +93,17 @@ class LaneMatrix:
         for (r, m), left, left_own in self.entries():
             for c, right, right_own in right_rows.get(m, ()):
                 entry, same = _product(left, left_own, right, right_own, self.cols[m], self.lanes)
+                self._check_lanes(entry, self.rows[r].bank, other.cols[c].bank)
                 _accumulate(full, (r, c), entry)
                 _accumulate(own, (r, c), same)
         return LaneMatrix(self.rows, other.cols, self.lanes, full, own)
+
+    def _check_lanes(self, entry: sp.Expr, row: str | None, col: str | None) -> None:
+        """Refuse an entry of two lanes of one bank that would depend on which lane is whose."""
+        if row and row == col and outside_sums(entry) & set(self.lanes.symbols(row)):
+            what = f"an entry for two lanes of bank '{row}' depends on both"
+            remedy = "write the banks out first: iphs.expand()"
+            raise UsageError(what, "matrix product", remedy=remedy)
 
     def __iter__(self) -> Iterator[sp.Expr]:
         """Iterate over a vector's entries, one a slot."""

@@ -54,8 +54,13 @@ def combine(form: Form, other: Mapping[Any, Any], factor: Any) -> None:
         accumulate(form, label, factor * coefficient)
 
 
-def solve(equations: Iterable[Equation], unknowns: Iterable[Label]) -> dict[Any, Form]:
+def solve(
+    equations: Iterable[Equation], unknowns: Iterable[Label], divisors: list[Any]
+) -> dict[Any, Form]:
     """Return each unknown as a combination of givens.
+
+    A pivot is a number as long as there is one; a symbol that had to be divided by is added to
+    `divisors`, for somebody has to prove that it is not zero.
 
     Raises
     ------
@@ -66,12 +71,14 @@ def solve(equations: Iterable[Equation], unknowns: Iterable[Label]) -> dict[Any,
     done: list[tuple[Any, Equation]] = []
     relations: list[Form] = []
     while open_rows:
-        row = min(open_rows, key=lambda candidate: len(candidate.left))
+        row = min(open_rows, key=_difficulty)
         open_rows = [other for other in open_rows if other is not row]
         if not row.left:
             relations += [row.right] if row.right else []
             continue
-        pivot = next(iter(row.left))
+        pivot = next((k for k, v in row.left.items() if is_number(v)), next(iter(row.left)))
+        if not is_number(row.left[pivot]):
+            divisors.append(row.left[pivot])
         _normalise(row, pivot)
         for other in [*open_rows, *(equation for _, equation in done)]:
             _eliminate(other, row, pivot)
@@ -81,6 +88,17 @@ def solve(equations: Iterable[Equation], unknowns: Iterable[Label]) -> dict[Any,
     if relations or undetermined:
         raise SingularError(relations, undetermined)
     return {pivot: row.right for pivot, row in solved.items()}
+
+
+def is_number(coefficient: Any) -> bool:
+    """Return whether a coefficient is a rational number, free of symbols."""
+    top: Any = getattr(coefficient, "numer", None)
+    return not hasattr(top, "is_ground") or bool(top.is_ground and coefficient.denom.is_ground)
+
+
+def _difficulty(row: Equation) -> tuple[bool, int]:
+    """Order rows: those with a number to divide by first, then short ones."""
+    return bool(row.left) and not any(map(is_number, row.left.values())), len(row.left)
 
 
 def _normalise(row: Equation, pivot: Label) -> None:

@@ -89,7 +89,7 @@ def _dotted(cols: Sequence[Label], cells: Sequence[str], dots: str) -> list[str]
 
 def _latex_cell(full: sp.Expr, own: sp.Expr | None) -> str:
     if own is None or own == 0:
-        return latex(full)
+        return "0" if full == 0 else latex(full)
     factor = {1: "", -1: "-"}.get(own, rf"{latex(own)}\,")
     same = rf"{factor}\delta_{{jk}}"
     return same if full == 0 else joined((latex(full), same))

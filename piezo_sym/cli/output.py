@@ -34,6 +34,11 @@ def console() -> Console:
     return found if found.is_terminal else Console(width=120)
 
 
+def row(table: Table, *cells: str | Text) -> None:
+    """Add a row whose cells are text and nothing else, whatever a spec has put into them."""
+    table.add_row(*(cell if isinstance(cell, Text) else Text(cell) for cell in cells))
+
+
 def table(title: str, *columns: str) -> Table:
     """Return an empty table with a title and named columns."""
     made = Table(title=Text(title, style="bold"), title_justify="left", box=box.SIMPLE_HEAD)

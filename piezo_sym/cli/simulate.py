@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from piezo_sym.cli.output import console, table
+from piezo_sym.cli.output import console, row, table
 from piezo_sym.errors import UsageError, listing, nearest, quote
 from piezo_sym.files import path_text, write_bytes
 
@@ -118,7 +118,7 @@ def _print(result: xarray.Dataset) -> None:
         value = ", ".join(f"{v:.6g}" for v in variable.values.reshape(-1)[:4])
         more = ", ..." if variable.size > 4 else ""
         unit, about = (str(variable.attrs.get(key, "")) for key in ("units", "long_name"))
-        columns.add_row(str(name), value + more, unit, about)
+        row(columns, str(name), value + more, unit, about)
     console().print(columns)
 
 

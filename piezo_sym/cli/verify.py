@@ -6,8 +6,10 @@ import json
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from rich.text import Text
 
 from piezo_sym.cli.output import STYLES, about, console, table
+from piezo_sym.cli.output import row as add_row
 from piezo_sym.errors import PiezoError
 
 if TYPE_CHECKING:
@@ -59,8 +61,8 @@ def _print(report: Report) -> None:
         f"{report.model}: {report.summary()}", "property", "element", "statement", "verdict"
     )
     for row in report.rows:
-        verdict = f"[{STYLES[row.verdict.value]}]{row.verdict.value}[/]"
-        columns.add_row(row.id, row.element, row.statement, verdict)
+        verdict = Text(row.verdict.value, style=STYLES[row.verdict.value])
+        add_row(columns, row.id, row.element, row.statement, verdict)
     console().print(columns)
     for row in report.rows:
         at = ", ".join(f"{name} = {value}" for name, value in (row.witness or {}).items())

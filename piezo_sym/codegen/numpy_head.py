@@ -54,7 +54,7 @@ LANES_TYPE = "_Lanes = float | tuple[float, ...]  # a bank's parameter: one valu
 
 LANES = '''def _lanes(value, count, ndim):
     """Return a bank's parameter: a number, or a value a lane with shape (count, 1, ...)."""
-    if isinstance(value, (int, float)):
+    if np.ndim(value) == 0:
         return value
     value = np.asarray(value, dtype=float)
     if value.shape != (count,):

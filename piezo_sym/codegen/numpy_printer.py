@@ -23,7 +23,7 @@ from piezo_sym.codegen.program import (
     jacobian_roots,
     needed,
 )
-from piezo_sym.spec.expressions import ZERO, Add, Expr, LaneSum, Node, names
+from piezo_sym.spec.expressions import ZERO, Add, Expr, LaneSum, Node, Sym, names
 from piezo_sym.spec.names import fresh
 from piezo_sym.spec.text import PRODUCT, SUM, UNARY, enclose, piece, signed
 
@@ -62,7 +62,8 @@ class _Printer:
         if function.scalar:
             value = function.rows[0].value
             zero = f"np.zeros({self.x}.shape[1:])"
-            lines += [f"return {zero if value == ZERO else numpy_text(value)}"]
+            text = f"{value.name}.copy()" if isinstance(value, Sym) else numpy_text(value)
+            lines += [f"return {zero if value == ZERO else text}"]
             return _body(lines)
         slots = [row.slot for row in function.rows]
         lines.append(f"{self.out} = {self._array(function, slots)}")

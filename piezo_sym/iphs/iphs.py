@@ -65,6 +65,7 @@ class IPHS:
     ----------
     model, circuit, symbols : where it comes from, and its names.
     system : Definition 1 in named co-states.
+    divisors : what the junction laws divided by; none may be zero.
     energies : the stored energy of each state, as a law of it; U is their sum.
     laws, ratios, costates : what the names in `system` stand for, as (symbol, expression).
 
@@ -77,6 +78,7 @@ class IPHS:
     symbols: SymbolTable
     system: System
     energies: tuple[Expr, ...]
+    divisors: tuple[sp.Expr, ...]
     laws: tuple[tuple[sp.Symbol, sp.Expr], ...]
     ratios: tuple[tuple[sp.Symbol, sp.Expr], ...]
     costates: tuple[tuple[sp.Symbol, sp.Expr], ...]
@@ -246,6 +248,7 @@ def iphs_of(symbols: SymbolTable, junction: Junction) -> IPHS:
         circuit=circuit,
         symbols=symbols,
         system=system,
+        divisors=junction.divisors,
         energies=tuple(energy_of(placed.element, port) for placed, port in stores),
         laws=tuple(laws_of(circuit, symbols, system)),
         ratios=tuple(ratios_of(circuit, symbols)),

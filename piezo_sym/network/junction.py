@@ -39,6 +39,7 @@ class Junction:
     circuit : the circuit, in the causality that the junction laws allow.
     states, processes, ports : slots; ports are ordered by their input, then by declaration.
     J0, B, D, g, N : matrices over them, their entries rational in the transducer ratios.
+    divisors : what the solution divides by; the structure exists where none is zero.
     """
 
     circuit: Circuit
@@ -50,6 +51,7 @@ class Junction:
     D: LaneMatrix
     g: LaneMatrix
     N: LaneMatrix
+    divisors: tuple[sp.Expr, ...]
 
 
 def junction_of(circuit: Circuit, symbols: SymbolTable) -> Junction:
@@ -105,6 +107,7 @@ class _Blocks:
             D=D,
             g=self._with_heat(g),
             N=self._output("u"),
+            divisors=tuple(dict.fromkeys(map(self.laws.field.to_sympy, self.laws.divisors))),
         )
 
     def _block(self, row: str, col: str, sign: Callable[[int], int] = lambda _: 1) -> LaneMatrix:

@@ -78,6 +78,7 @@ class Laws:
         self.processes = tuple(circuit.of(Resistor, Conductor))
         self.ports = port_order(circuit)
         self.edges = tuple(self._edges())
+        self.divisors: list[Any] = []
 
     def _edges(self) -> Iterator[Edge]:
         for n, (placed, port) in enumerate(self.states):
@@ -156,7 +157,7 @@ class Laws:
         for equation in equations:  # shared nodes are given, for a lane
             for label in [label for label in equation.left if label not in unknowns]:
                 accumulate(equation.right, label, -equation.left.pop(label))
-        return solve(equations, unknowns)
+        return solve(equations, unknowns, self.divisors)
 
     def _solve_shared(self, lanes: dict[str, dict[Any, Form]]) -> dict[Any, Form]:
         """Return the shared unknowns in terms of shared givens and of sums over lanes."""
@@ -173,7 +174,7 @@ class Laws:
             e.unknown for e in self.edges if e.placed.bank is None and e.imposes is Variable.ACROSS
         ]
         unknowns += [("t", port.name) for port in self.ratio if not port.gyrates]
-        return solve(equations, unknowns)
+        return solve(equations, unknowns, self.divisors)
 
     def _summed(self, bank: str, row: Equation, solution: dict[Any, Form]) -> Form:
         """Return what all lanes together draw from a shared node, as sums of their givens."""

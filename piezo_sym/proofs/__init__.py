@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.iphs import IPHS
-from piezo_sym.proofs.exact import casimir, energy, entropy, skew, temperature
+from piezo_sym.proofs.exact import casimir, energy, entropy, skew, temperature, welldef
 from piezo_sym.proofs.report import UNCHECKED, Report, Row, Verdict
 
 __all__ = ["UNCHECKED", "Report", "Row", "Verdict", "verify"]
@@ -26,5 +26,6 @@ def verify(iphs: IPHS) -> Report:
     if not isinstance(iphs, IPHS):
         remedy = "derive it first: verify(derive(load('piezo_stack')))"
         raise UsageError(f"{quote(iphs)} is no IPHS", "verify", remedy=remedy)
-    rows = (skew(iphs), casimir(iphs), energy(iphs), entropy(iphs), *temperature(iphs))
+    balances = (skew(iphs), casimir(iphs), energy(iphs), entropy(iphs))
+    rows = (*balances, *temperature(iphs), *welldef(iphs))
     return Report(iphs.model.name, rows)

@@ -66,7 +66,24 @@ def entropy(iphs: IPHS) -> Row:
     produced = system.R.T @ system.bracket + system.y_s.T @ system.u
     balance = (system.dS.T @ system.rhs - produced)[0, 0]
     statement = "dS/dt = sum_k gamma_k {S,U}_k^2 + y_s^T u"
+    if not system.D.is_zero:  # a source drives a process: R_k is not gamma_k {S,U}_k there
+        statement = "dS/dt = sum_k R_k {S,U}_k + y_s^T u"
     return _row(iphs, "entropy", statement, [Residual("dS/dt - sigma - y_s^T u", balance)])
+
+
+def welldef(iphs: IPHS) -> Iterator[Row]:
+    """Yield a row for each ratio that the junction laws divide by: it is not zero."""
+    for divisor in iphs.divisors:
+        value = iphs.in_states(divisor)
+        statement = f"{divisor} != 0: the junction laws divide by it"
+        sign = sp.cancel(value).is_zero
+        if sign is False:
+            yield Row("welldef", "", statement, Verdict.PROVED)
+            continue
+        verdict = Verdict.REFUTED if sign else Verdict.OPEN
+        reason = f"{divisor} = {value} is {'zero' if sign else 'not shown to be other than zero'}"
+        reason += "; add a mass or capacitor there, or the sign of its parameters to the domain"
+        yield Row("welldef", "", statement, verdict, {} if sign else None, reason)
 
 
 def temperature(iphs: IPHS) -> Iterator[Row]:
@@ -77,6 +94,12 @@ def temperature(iphs: IPHS) -> Iterator[Row]:
         slope = sp.diff(law, state)
         signs = {"T > 0": law.is_positive, "dT/dS > 0": slope.is_positive}
         open_ones = [text for text, sign in signs.items() if sign is not True]
+        wrong = [text for text, sign in signs.items() if sign is False]
+        if wrong:
+            reason = f"{' and '.join(wrong)} is false for every S"
+            statement = "T > 0 and dT/dS > 0"
+            yield Row("temperature", placed.element, statement, Verdict.REFUTED, {}, reason)
+            continue
         verdict = Verdict.OPEN if open_ones else Verdict.PROVED
         reason = f"the sign of {' and '.join(open_ones)} is not decided" if open_ones else ""
         yield Row("temperature", placed.element, "T > 0 and dT/dS > 0", verdict, reason=reason)

@@ -93,3 +93,19 @@ def test_impossible_networks_are_refused_by_name(old, new, culprit):
 
 def test_every_shipped_spec_is_derived():
     assert derive(load("piezo_stack")).x is not None
+
+
+def test_a_product_that_two_lanes_would_have_to_share_is_refused(iphs):
+    with pytest.raises(Exception, match=r"depends on both; .* iphs.expand"):
+        iphs.J_ir @ iphs.J_ir
+
+
+def test_entries_by_label_and_by_place(iphs):
+    J0 = iphs.J0
+    assert J0["phi", "Q_C"] == J0[3, 2] == -1
+    assert J0.shape == (5, 5)
+    assert iphs.rhs["q"] == iphs.rhs[0]
+    with pytest.raises(Exception, match="'Q_c' is no column; .* did you mean 'Q_C'"):
+        J0["phi", "Q_c"]
+    with pytest.raises(Exception, match="'9' is no row"):
+        J0[9, 0]

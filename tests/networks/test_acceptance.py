@@ -1,4 +1,4 @@
-"""Cases with answers in closed form: two bodies, an oscillator and a circuit that heat themselves."""
+"""Cases with answers in closed form: bodies, an oscillator and a circuit that heat themselves."""
 
 import numpy as np
 import pytest

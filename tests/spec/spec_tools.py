@@ -10,7 +10,7 @@ from piezo_sym.spec.parse import parse_law
 from piezo_sym.spec.source import MODELS
 
 SHIPPED = (MODELS / "piezo_stack.toml").read_text(encoding="utf-8")
-SLOW = 0.5
+SLOW = 1.0  # of processor time
 
 
 def edited_text(*pairs):
@@ -28,10 +28,10 @@ def edited(*pairs):
 
 def refusal(call, *args):
     """Return the error with which a call is refused, after checking that it is a good one."""
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(PiezoError) as caught:
         call(*args)
-    assert time.perf_counter() - start < SLOW
+    assert time.process_time() - start < SLOW
     check_message(caught.value)
     return caught.value
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
+from keyword import iskeyword
 
 from piezo_sym.errors import SpecError, quote
 from piezo_sym.spec.names import check_name, check_symbol
@@ -15,12 +16,17 @@ from piezo_sym.spec.units import parse_unit
 RESULTS = frozenset({"time", "energy", "entropy", "energy_residual"})
 LARGEST = Fraction(10) ** 300
 SMALLEST = 1 / LARGEST
+#: What generated modules import.
+IMPORTS = frozenset({"numpy", "typing", "dataclasses"})
 PREFIXES = ("y_", "supplied_", "heat_", "produced_")
 
 
 def check_names(spec: Tables) -> None:
     """Check the model's name, every symbol, every element's name and every unit."""
     check_name(spec.model.name, "model.name")
+    if iskeyword(spec.model.name) or spec.model.name in IMPORTS:
+        what = f"{quote(spec.model.name)} is a word of Python's that the module would hide"
+        raise SpecError(what, "model.name", remedy=f"call it '{spec.model.name}_model'")
     for name in spec.elements:
         check_name(name, f"elements.{name}")
     _check_case(spec.elements)

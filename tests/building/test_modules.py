@@ -64,7 +64,7 @@ def test_a_module_of_another_spec_names_the_command(mine):
         module_of(mine)
     assert str(caught.value) == (
         f"'{path.absolute()}': was generated from another version of its spec; "
-        "run `piezo-sym generate mine.toml`"
+        "run `piezo-sym generate mine.toml`, or give the model another name"
     )
     assert caught.value.exit_code == 1
 
