@@ -105,7 +105,7 @@ def test_entries_by_label_and_by_place(iphs):
     assert J0["phi", "Q_C"] == J0[3, 2] == -1
     assert J0.shape == (5, 5)
     assert iphs.rhs["q"] == iphs.rhs[0]
-    with pytest.raises(Exception, match="'Q_c' is no column; .* did you mean 'Q_C'"):
+    with pytest.raises(Exception, match="'Q_c' is no column; did you mean 'Q_C'"):
         J0["phi", "Q_c"]
     with pytest.raises(Exception, match="'9' is no row"):
         J0[9, 0]
