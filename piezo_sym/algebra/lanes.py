@@ -85,8 +85,8 @@ class LaneMatrix:
 
     def __matmul__(self, other: LaneMatrix) -> LaneMatrix:
         """Return the product; sums over a bank's lanes become `LaneSum`."""
-        full: dict[tuple[int, int], sp.Expr] = {}
-        own: dict[tuple[int, int], sp.Expr] = {}
+        full: dict[tuple[int, int], list[sp.Expr]] = {}
+        own: dict[tuple[int, int], list[sp.Expr]] = {}
         right_rows: dict[int, list[tuple[int, sp.Expr, sp.Expr]]] = {}
         for (m, c), entry, same in other.entries():
             right_rows.setdefault(m, []).append((c, entry, same))
@@ -94,9 +94,9 @@ class LaneMatrix:
             for c, right, right_own in right_rows.get(m, ()):
                 entry, same = _product(left, left_own, right, right_own, self.cols[m], self.lanes)
                 self._check_lanes(entry, self.rows[r].bank, other.cols[c].bank)
-                _accumulate(full, (r, c), entry)
-                _accumulate(own, (r, c), same)
-        return LaneMatrix(self.rows, other.cols, self.lanes, full, own)
+                full.setdefault((r, c), []).append(entry)
+                own.setdefault((r, c), []).append(same)
+        return LaneMatrix(self.rows, other.cols, self.lanes, _totals(full), _totals(own))
 
     def _check_lanes(self, entry: sp.Expr, row: str | None, col: str | None) -> None:
         """Refuse an entry of two lanes of one bank that would depend on which lane is whose."""
@@ -205,20 +205,16 @@ def _places(slots: tuple[Slot, ...], counts: Mapping[str, int]) -> list[tuple[in
 
 
 def _added(left: Entries, right: Entries) -> dict[tuple[int, int], sp.Expr]:
-    total = dict(left)
+    terms = {place: [entry] for place, entry in left.items()}
     for place, entry in right.items():
-        _accumulate(total, place, entry)
-    return total
+        terms.setdefault(place, []).append(entry)
+    return _totals(terms)
 
 
-def _accumulate(
-    entries: dict[tuple[int, int], sp.Expr], place: tuple[int, int], entry: sp.Expr
-) -> None:
-    total = sp.expand(entries.get(place, sp.S.Zero) + entry)
-    if total == 0:
-        entries.pop(place, None)
-    else:
-        entries[place] = total
+def _totals(terms: Mapping[tuple[int, int], list[sp.Expr]]) -> dict[tuple[int, int], sp.Expr]:
+    """Return the sum at each place, expanded once; zeros drop out."""
+    totals = {place: sp.expand(sp.Add(*parts)) for place, parts in terms.items()}
+    return {place: total for place, total in totals.items() if total != 0}
 
 
 def _product(

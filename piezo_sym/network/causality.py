@@ -43,17 +43,15 @@ def causal(circuit: Circuit, symbols: SymbolTable) -> Laws:
     turned: set[str] = set()
     while True:
         laws = Laws(circuit, symbols)
-        try:
-            laws.answers()
-        except SingularError as singular:
-            found = _to_turn(laws, singular, turned)
-            if found is None:
-                raise laws.refusal(singular) from None
-            placed, port = found
-            turned.add(placed.element)
-            circuit = circuit.replaced(placed, port)
-        else:
+        contradiction = laws.contradiction()
+        if contradiction is None:
             return laws
+        found = _to_turn(laws, contradiction, turned)
+        if found is None:
+            raise laws.refusal(contradiction)
+        placed, port = found
+        turned.add(placed.element)
+        circuit = circuit.replaced(placed, port)
 
 
 def _to_turn(

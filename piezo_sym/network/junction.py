@@ -78,7 +78,7 @@ class _Blocks:
 
     def __init__(self, laws: Laws, lanes: Lanes) -> None:
         self.laws, self.lanes = laws, lanes
-        self.answers: Mapping[tuple[str, int], Answer] = laws.answers()
+        self.answers: Mapping[tuple[str, int], Answer] = laws.answers
         self.slots = {
             "E": tuple(Slot(port.state, placed.bank) for placed, port in laws.states),
             "W": tuple(Slot(placed.element, placed.bank) for placed, _ in laws.processes),
@@ -107,7 +107,7 @@ class _Blocks:
             D=D,
             g=self._with_heat(g),
             N=self._output("u"),
-            divisors=tuple(dict.fromkeys(map(self.laws.field.to_sympy, self.laws.divisors))),
+            divisors=tuple(dict.fromkeys(map(self.laws.expression, self.laws.divisors))),
         )
 
     def _block(self, row: str, col: str, sign: Callable[[int], int] = lambda _: 1) -> LaneMatrix:
@@ -133,7 +133,7 @@ class _Blocks:
         for label, coefficient in form.items():
             kind, number = label[1] if label[0] == "sum" else label
             if kind == col:
-                found[row, number] = sign * self.laws.field.to_sympy(coefficient)
+                found[row, number] = sign * self.laws.expression(coefficient)
         return found
 
     def _check_loops(self, loop: LaneMatrix) -> None:

@@ -10,8 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache, cached_property
 from typing import Any, final
 
+import sympy as sp
 from sympy.polys.domains import QQ
 
 from piezo_sym.algebra.linear import Equation, Form, SingularError, accumulate, combine, solve
@@ -69,10 +71,15 @@ class Laws:
     def __init__(self, circuit: Circuit, symbols: SymbolTable) -> None:
         self.circuit = circuit
         self.banks = tuple(symbols.counts)
-        ratios = [symbols[port.name] for _, port in circuit.of(Coupling)]
-        self.field = QQ.frac_field(*ratios) if ratios else QQ
+        couplings = [port for _, port in circuit.of(Coupling)]
+        letters = [_letter(n) for n in range(len(couplings))]
+        self.field = QQ.frac_field(*letters) if letters else QQ
         self.ratio = {
-            port: self.field.from_sympy(symbols[port.name]) for _, port in circuit.of(Coupling)
+            port: self.field.from_sympy(letter)
+            for port, letter in zip(couplings, letters, strict=True)
+        }
+        self._names = {
+            letter: symbols[port.name] for port, letter in zip(couplings, letters, strict=True)
         }
         self.states = tuple(circuit.of(Storage, Body))
         self.processes = tuple(circuit.of(Resistor, Conductor))
@@ -92,6 +99,7 @@ class Laws:
                 sign = 1 if placed.port.imposes is Variable.ACROSS else -1  # it pushes into a
                 yield Edge(placed, placed.port.branch, placed.port.imposes, ("u", n), sign)
 
+    @cached_property
     def answers(self) -> dict[tuple[str, int], Answer]:
         """Return each branch's answer, by the given that it imposes.
 
@@ -105,6 +113,18 @@ class Laws:
         lanes = {bank: self._solve_lane(bank) for bank in self.banks}
         shared = self._solve_shared(lanes)
         return {edge.key: self._answer(edge, lanes, shared) for edge in self.edges}
+
+    def expression(self, coefficient: Any) -> sp.Expr:
+        """Return a coefficient as an expression in the ratios' own symbols."""
+        return self.field.to_sympy(coefficient).xreplace(self._names)
+
+    def contradiction(self) -> SingularError | None:
+        """Return why the laws have no single solution, or None if they have one."""
+        try:
+            self.answers  # noqa: B018 - solved here, kept for later
+        except SingularError as singular:
+            return singular
+        return None
 
     # The equations
 
@@ -219,6 +239,12 @@ class Laws:
         for label in [label for label in mine if label in shared]:
             combine(full, shared[label], mine.pop(label))
         return full, mine
+
+
+@cache
+def _letter(n: int) -> sp.Symbol:
+    """Return the stand-in of ratio n, the same object for ever: fields then compare at once."""
+    return sp.Symbol(f"ratio_{n}")
 
 
 def _is_inner(node: str) -> bool:
