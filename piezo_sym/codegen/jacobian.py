@@ -44,15 +44,18 @@ def jacobian_of(
     """
     before, _ = needed(q.defined, (rate.value for rate in rates))
     known = {**lanes, **{item.name: item.bank for item in before if item.bank}}
+    words = [(quantity, names(quantity.value)) for quantity in before]
+    rows = [(row, rate, names(rate.value)) for row, rate in enumerate(rates)]
     found: list[Entry] = []
     for col, state in enumerate(states):
         chain = _Chain(state, dict(known), q)
-        for quantity in before:
-            chain.differentiate(quantity)
-        for row, rate in enumerate(rates):
-            slope = chain.of(rate.value, rate.slot.bank)
-            if slope != _Slope():
-                found.append(Entry(row, col, slope.value, slope.outer))
+        for quantity, used in words:
+            if not chain.slopes.keys().isdisjoint(used):
+                chain.differentiate(quantity)
+        for row, rate, used in rows:
+            if not chain.slopes.keys().isdisjoint(used):
+                slope = chain.of(rate.value, rate.slot.bank)
+                found += [Entry(row, col, slope.value, slope.outer)] if slope != _Slope() else []
     return Jacobian(
         "Derivative of rhs by the state", tuple(sorted(found, key=lambda e: (e.row, e.col)))
     )
