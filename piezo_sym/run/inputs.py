@@ -51,7 +51,7 @@ class Function(Signal):
         """Return the value at one time; raise `UsageError` if it is no finite number."""
         try:
             value = self.function(time)
-        except Exception as cause:
+        except Exception as cause:  # the user's own code: it may raise anything
             what = f"the function fails at t = {time:.6g} s: {type(cause).__name__}: {cause}"
             raise UsageError(what, self.where, "a function of the time in s") from cause
         return number(value, f"{self.where}({time:.6g})")

@@ -114,7 +114,7 @@ class LaneSum:
 Expr = Num | Sym | Neg | Add | Mul | Div | Pow | Call | If | LaneSum
 Node = Expr | Cmp
 
-ZERO, ONE, TWO = Num(Fraction(0)), Num(Fraction(1)), Num(Fraction(2))
+ZERO, ONE = Num(Fraction(0)), Num(Fraction(1))
 
 
 def children(node: Node) -> tuple[Node, ...]:

@@ -23,7 +23,6 @@ TABLES: Mapping[str, type[BaseModel]] = {
     "domain": Domain,
 }
 TOP = ("model", "parameters", "inputs", "domain", "initial", "elements")
-NAMED = ("parameters", "inputs", "elements", "initial")
 
 
 def first_problem(error: ValidationError) -> SpecError:

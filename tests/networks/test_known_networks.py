@@ -217,6 +217,15 @@ REFUSED = {
         """,
         "'R1', 'R2' fix each other",
     ),
+    "two linear resistors in series across a capacitor, which are not solved together yet": (
+        """
+        R0 = { kind = "resistor", between = ["in", "c"], current = "v/R", heats = "body" }
+        R1 = { kind = "resistor", between = ["c", "n"], current = "v/R", heats = "body" }
+        R2 = { kind = "resistor", between = ["n", "gnd"], voltage = "R*i", heats = "body" }
+        C1 = { kind = "capacitor", between = ["c", "gnd"], capacitance = "C" }
+        """,
+        "'R1' and 'R2' determine each other's flow",
+    ),
     "two masses on one node": (
         """
         R0 = { kind = "resistor", between = ["in", "gnd"], current = "v/R", heats = "body" }
