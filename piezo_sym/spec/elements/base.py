@@ -8,9 +8,19 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Annotated, ClassVar, final
+from typing import Annotated, Any, ClassVar, Self, final
 
-from pydantic import BaseModel, ConfigDict, StrictStr, StringConstraints
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    GetJsonSchemaHandler,
+    StrictBool,
+    StrictStr,
+    StringConstraints,
+    model_validator,
+)
+from pydantic_core import CoreSchema
 
 from piezo_sym.spec.elements.ports import Port
 from piezo_sym.spec.expressions import ZERO, Cmp, Expr
@@ -24,6 +34,13 @@ class Letters:
 
     names: tuple[str, ...] = ()
 
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """Return the field's JSON Schema with these letters in its description."""
+        letters = f" and the letters {', '.join(self.names)}" if self.names else ""
+        return {**handler(schema), "description": f"A law, as text, of parameters{letters}."}
+
 
 @final
 @dataclass(frozen=True)
@@ -33,12 +50,24 @@ class Refers:
     to: str
 
 
-Node = Annotated[StrictStr, StringConstraints(pattern=r"^[A-Za-z0-9_.+-]{1,40}$")]
-Pair = tuple[Node, Node]
+Node = Annotated[
+    StrictStr,
+    StringConstraints(pattern=r"^[A-Za-z0-9_.+-]{1,40}$"),
+    Field(description="A node, any label; 'wall' (mechanical) and 'gnd' (electrical) are at rest."),
+]
+Pair = Annotated[tuple[Node, Node], Field(description="Two nodes, [first, second].")]
 Law = Annotated[StrictStr, Letters()]
-InputName = Annotated[StrictStr, Refers("input")]
-BodyName = Annotated[StrictStr, Refers("thermal_mass")]
-StateName = StrictStr | None
+InputName = Annotated[
+    StrictStr, Refers("input"), Field(description="Name of an input, a key of [inputs].")
+]
+BodyName = Annotated[
+    StrictStr, Refers("thermal_mass"), Field(description="Name of an element of kind thermal_mass.")
+]
+StateName = Annotated[
+    StrictStr | None,
+    Field(description="Symbol of the state; if not given, the kind's letter, '_' and the name."),
+]
+Jumps = Annotated[StrictBool, Field(description="Whether the law jumps on purpose.")]
 
 
 class Element(BaseModel, ABC):
@@ -48,8 +77,19 @@ class Element(BaseModel, ABC):
 
     #: The letter of the kind's state; empty for kinds without one.
     letter: ClassVar[str] = ""
+    #: Fields of which exactly one is to be given: a law and its inverse.
+    one_of: ClassVar[tuple[str, ...]] = ()
 
     kind: str
+
+    @model_validator(mode="after")
+    def _one_law(self) -> Self:
+        given = [field for field in self.one_of if getattr(self, field) is not None]
+        if self.one_of and len(given) != 1:
+            said = f"both {' and '.join(given)}" if given else "neither"
+            message = f"exactly one of {' and '.join(self.one_of)}; {said} given"
+            raise ValueError(message)
+        return self
 
     @abstractmethod
     def ports(self, name: str) -> tuple[Port, ...]:
@@ -77,12 +117,3 @@ def positive(law: Expr) -> Cmp:
 def state_symbol(element: Element, name: str) -> str:
     """Return the symbol of an element's state: as given, else its kind's letter and its name."""
     return getattr(element, "state", None) or f"{element.letter}_{name}"
-
-
-def exactly_one(element: Element, *fields: str) -> None:
-    """Raise unless exactly one of an element's fields is given."""
-    given = [field for field in fields if getattr(element, field) is not None]
-    if len(given) != 1:
-        said = f"both {' and '.join(given)}" if given else "neither"
-        message = f"exactly one of {' and '.join(fields)}; {said} given"
-        raise ValueError(message)
