@@ -47,7 +47,7 @@ def loaded(text):
 
 
 TEXTS = [text for text in literals() if "[elements" in text and loaded(text)]
-FILES = [*MODELS.glob("*.toml"), STARTER]
+FILES = [*MODELS.glob("*.toml"), STARTER, *sorted((ROOT / "tests").rglob("*.toml"))]
 
 
 def sample(kind):
@@ -70,7 +70,7 @@ def test_the_schema_is_one():
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
-def test_files_of_this_package_pass(path):
+def test_spec_files_of_this_repository_pass(path):
     assert faults(data(path.read_text(encoding="utf-8"))) == []
 
 
