@@ -71,7 +71,9 @@ def base_units(dimension: tuple[Fraction, ...]) -> str:
 
 
 def _raised(name: str, power: Fraction | int) -> str:
-    return name if power == 1 else f"{name}**{power}"
+    if power == 1:
+        return name
+    return f"{name}**{power}" if Fraction(power).denominator == 1 else f"{name}**({power})"
 
 
 @lru_cache(maxsize=1024)

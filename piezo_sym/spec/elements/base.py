@@ -7,6 +7,7 @@ class in a file of its own, with one row in the registry (`elements/__init__.py`
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, ClassVar, final
 
@@ -20,9 +21,21 @@ from piezo_sym.spec.parse import parse_law
 @final
 @dataclass(frozen=True)
 class Letters:
-    """Marks a field as a law, and says which letters it may use besides parameters."""
+    """Marks a field as a law: the letters it may use besides parameters, and the units of all.
 
-    names: tuple[str, ...] = ()
+    Attributes
+    ----------
+    units : the unit of each letter, such as ``{"i": "A", "T": "K"}``.
+    unit : the unit of the law itself.
+    """
+
+    units: Mapping[str, str]
+    unit: str
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The letters."""
+        return tuple(self.units)
 
 
 @final
@@ -35,7 +48,7 @@ class Refers:
 
 Node = Annotated[StrictStr, StringConstraints(pattern=r"^[A-Za-z0-9_.+-]{1,40}$")]
 Pair = tuple[Node, Node]
-Law = Annotated[StrictStr, Letters()]
+Law = StrictStr  # each field adds its `Letters`
 InputName = Annotated[StrictStr, Refers("input")]
 BodyName = Annotated[StrictStr, Refers("thermal_mass")]
 StateName = StrictStr | None

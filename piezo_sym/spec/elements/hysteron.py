@@ -36,8 +36,8 @@ class Hysteron(Element):
     kind: Literal["hysteron"] = "hysteron"
     between: Pair
     count: Annotated[StrictInt, Field(ge=1, le=MAX_COUNT)] | None = None
-    inductance: Annotated[Law, Letters(("phi",))]
-    voltage: Annotated[Law, Letters(("i", "T"))]
+    inductance: Annotated[Law, Letters({"phi": "Wb"}, unit="H")]
+    voltage: Annotated[Law, Letters({"i": "A", "T": "K"}, unit="V")]
     heats: BodyName
     discontinuous: StrictBool = False
     state: StateName = None
