@@ -14,11 +14,13 @@ c_1 = { value = 2.0, unit = "J/K" }
 c_2 = { value = 3.0, unit = "J/K" }
 lam = { value = 0.5, unit = "W/K" }
 T_0 = { value = 300.0, unit = "K" }
+T_1 = { value = 350.0, unit = "K" }
+T_2 = { value = 290.0, unit = "K" }
 [domain]
 assume = ["lam >= 0"]
 [initial]
-S_hot  = "c_1*log(350/T_0)"
-S_cold = "c_2*log(290/T_0)"
+S_hot  = "c_1*log(T_1/T_0)"
+S_cold = "c_2*log(T_2/T_0)"
 [elements]
 hot     = { kind = "thermal_mass", temperature = "T_0*exp(S/c_1)" }
 cold    = { kind = "thermal_mass", temperature = "T_0*exp(S/c_2)" }
