@@ -15,7 +15,9 @@ from piezo_sym.spec.dimensions import NONE, Dimension
 from piezo_sym.spec.units import BASES, base_units, parse_unit, raised
 
 #: What is spelled like this although a text of fewer units exists.
-USUAL = ("m/s", "N*s/m", "N/m", "kg*m/s", "m/s**2", "C/m")
+USUAL = ("N*s/m", "N/m", "kg*m/s", "C/m")
+#: What has no other base unit is spelled in these: ``m**2/s**2``, not ``J/kg``.
+PLAIN = frozenset({"m", "s", "K"})
 #: The units texts are made of, best first.
 PARTS = ("V", "A", "N", "W", "J", "C", "ohm", "F", "H", "Wb", "Pa", "m", "s", "kg", "K")
 MOST_PARTS = 3
@@ -49,8 +51,8 @@ QUANTITIES: Mapping[str, str] = {
 @cache
 def unit_text(dimension: Dimension) -> str:
     """Return a short text for a dimension, such as ``ohm*K``; ``1`` if there is none."""
-    if dimension == NONE:
-        return "1"
+    if {name for name, power in zip(BASES, dimension, strict=True) if power} <= PLAIN:
+        return base_units(dimension)
     return _spellings().get(dimension) or base_units(dimension)
 
 
