@@ -90,16 +90,14 @@ def _unit(term: Expr, place: Place, model: Model) -> str:
 
 def _remedy(fault: Check, checks: tuple[Check, ...]) -> str:
     """Return what to change: the unit of a parameter, a number, an input, or the law."""
-    found = [
-        (name, fit) for name in fault.place.given if (fit := _fitting(name, checks)) is not None
-    ] or [
-        (name, fit)
-        for name in fault.place.given
-        if (fit := _fitting(name, [c for c in checks if c == fault or _power(name, c)])) is not None
-    ]
-    if found:
-        offers = [f"{name}: {unit_text(fit)} would fit" for name, fit in found[:MOST_CANDIDATES]]
-        return f"check the unit of {', or of '.join(offers)}"
+    suspects = [name for name in fault.place.given if _power(name, fault)]
+    fits = {name: _fitting(name, checks) for name in suspects}
+    if not any(fits.values()):  # two things are wrong: leave alone what the name has no part in
+        own = {name: [c for c in checks if _power(name, c)] for name in suspects}
+        fits = {name: _fitting(name, own[name]) for name in suspects}
+    offers = [f"{name}: {unit_text(fit)} would fit" for name, fit in fits.items() if fit]
+    if offers:
+        return f"check the unit of {', or of '.join(offers[:MOST_CANDIDATES])}"
     return _other_remedy(fault, checks)
 
 

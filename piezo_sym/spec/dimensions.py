@@ -182,15 +182,15 @@ def _equal(node: Node, parts: tuple[Expr, ...]) -> Iterator[Match]:
 
 
 def faults(rules: Iterable[Match], words: Mapping[str, Dimension]) -> tuple[Match, ...]:
-    """Return the rules that fail, each once, but for those around a term that fails already."""
-    found: list[Match] = []
-    for rule in dict.fromkeys(rules):
+    """Return the rules that fail, one a term, but for those around a term that fails already."""
+    found: dict[Node, Match] = {}
+    for rule in rules:
         if rule.gap(words) != NONE and not any(_around(rule, inner) for inner in found):
-            found.append(rule)
-    return tuple(found)
+            found.setdefault(rule.node, rule)
+    return tuple(found.values())
 
 
-def _around(rule: Match, inner: Match) -> bool:
-    """Return whether one rule's parts have the other's term inside; their dimension is a guess."""
+def _around(rule: Match, inner: Node) -> bool:
+    """Return whether a rule's parts have a faulty term inside; their dimension is a guess."""
     parts = (rule.node,) if rule.whole else children(rule.node)
-    return any(part == inner.node for top in parts for part in walk(top))
+    return any(part == inner for top in parts for part in walk(top))
