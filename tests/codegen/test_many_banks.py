@@ -16,7 +16,7 @@ name = "banks"
 [parameters]
 L   = { value = 0.5,   unit = "H" }
 C   = { value = 0.2,   unit = "F" }
-rho = { value = 2.0,   unit = "ohm" }
+rho = { value = 2.0,   unit = "V/A**3" }
 T_0 = { value = 300.0, unit = "K" }
 c   = { value = 3.0,   unit = "J/K" }
 [inputs]

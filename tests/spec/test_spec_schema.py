@@ -129,9 +129,10 @@ def test_a_law_names_its_letters_and_a_reference_what_it_names():
     for kind in KINDS.values():
         fields = SCHEMA["$defs"][kind.__name__]["properties"]
         for field, info in kind.model_fields.items():
-            letters = [mark.names for mark in info.metadata if isinstance(mark, Letters)]
+            laws = [mark for mark in info.metadata if isinstance(mark, Letters)]
             words = [mark.to for mark in info.metadata if isinstance(mark, Refers)]
-            words += [f"the letters {', '.join(names)}." for names in letters[-1:] if names]
+            words += [f"in {law.unit}," for law in laws]
+            words += [f"{name} [{unit}]" for law in laws for name, unit in law.units.items()]
             assert [w for w in words if w not in fields[field]["description"]] == []
 
 

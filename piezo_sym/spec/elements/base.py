@@ -7,6 +7,7 @@ class in a file of its own, with one row in the registry (`elements/__init__.py`
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Self, final
 
@@ -30,16 +31,30 @@ from piezo_sym.spec.parse import parse_law
 @final
 @dataclass(frozen=True)
 class Letters:
-    """Marks a field as a law, and says which letters it may use besides parameters."""
+    """Marks a field as a law: the letters it may use besides parameters, and the units of all.
 
-    names: tuple[str, ...] = ()
+    Attributes
+    ----------
+    units : the unit of each letter, such as ``{"i": "A", "T": "K"}``.
+    unit : the unit of the law itself.
+    """
+
+    units: Mapping[str, str]
+    unit: str
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The letters."""
+        return tuple(self.units)
 
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
         """Return the field's JSON Schema with these letters in its description."""
-        letters = f" and the letters {', '.join(self.names)}" if self.names else ""
-        return {**handler(schema), "description": f"A law, as text, of parameters{letters}."}
+        letters = ", ".join(f"{name} [{unit}]" for name, unit in self.units.items())
+        also = f" and the letters {letters}" if letters else ""
+        text = f"A law in {self.unit}, as text, of parameters{also}."
+        return {**handler(schema), "description": text}
 
 
 @final
@@ -56,7 +71,7 @@ Node = Annotated[
     Field(description="A node, any label; 'wall' (mechanical) and 'gnd' (electrical) are at rest."),
 ]
 Pair = Annotated[tuple[Node, Node], Field(description="Two nodes, [first, second].")]
-Law = Annotated[StrictStr, Letters()]
+Law = StrictStr  # each field adds its `Letters`
 InputName = Annotated[
     StrictStr, Refers("input"), Field(description="Name of an input, a key of [inputs].")
 ]

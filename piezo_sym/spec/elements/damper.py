@@ -21,8 +21,8 @@ class Damper(Element):
 
     kind: Literal["damper"] = "damper"
     between: Pair
-    force: Annotated[Law | None, Letters(("v", "T"))] = None
-    velocity: Annotated[Law | None, Letters(("f", "T"))] = None
+    force: Annotated[Law | None, Letters({"v": "m/s", "T": "K"}, unit="N")] = None
+    velocity: Annotated[Law | None, Letters({"f": "N", "T": "K"}, unit="m/s")] = None
     heats: BodyName
     discontinuous: Jumps = False
 

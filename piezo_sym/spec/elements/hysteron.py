@@ -41,8 +41,8 @@ class Hysteron(Element):
     kind: Literal["hysteron"] = "hysteron"
     between: Pair
     count: Count | None = None
-    inductance: Annotated[Law, Letters(("phi",))]
-    voltage: Annotated[Law, Letters(("i", "T"))]
+    inductance: Annotated[Law, Letters({"phi": "Wb"}, unit="H")]
+    voltage: Annotated[Law, Letters({"i": "A", "T": "K"}, unit="V")]
     heats: BodyName
     discontinuous: Jumps = False
     state: StateName = None

@@ -22,8 +22,8 @@ class Resistor(Element):
 
     kind: Literal["resistor"] = "resistor"
     between: Pair
-    voltage: Annotated[Law | None, Letters(("i", "T"))] = None
-    current: Annotated[Law | None, Letters(("v", "T"))] = None
+    voltage: Annotated[Law | None, Letters({"i": "A", "T": "K"}, unit="V")] = None
+    current: Annotated[Law | None, Letters({"v": "V", "T": "K"}, unit="A")] = None
     heats: BodyName
     discontinuous: Jumps = False
 
