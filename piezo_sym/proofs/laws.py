@@ -68,6 +68,11 @@ class Ground:
     order: tuple[str, ...]
     texts: tuple[str, ...]
 
+    def about(self, *laws: Law) -> Ground:
+        """Return the ground for questions about laws, whose letters are names too."""
+        letters = dict.fromkeys(law.letter for law in laws if law.letter)
+        return replace(self, order=(*self.order, *letters))
+
 
 def ground_of(iphs: IPHS) -> Ground:
     """Return the domain of a model, and that temperatures are positive (row ``temperature``)."""
@@ -112,6 +117,7 @@ def welldef(laws: tuple[Law, ...], ground: Ground) -> Obligation | None:
     element, latex = laws[0].element, r"W_k \in \mathbb{R}"
     made = Obligation("welldef", element, statement, latex, ground.texts)
     found: list[Question] = []
+    ground = ground.about(*laws)
     try:
         for branch in (branch for law in laws for branch in branches(law.tree)):
             where: tuple[Cmp, ...] = ground.where
@@ -154,7 +160,7 @@ def partial(node: Node) -> Iterator[Cmp]:
 
 def continuous(law: Law, ground: Ground) -> Obligation | None:
     """State that a law agrees with itself on both sides of each edge; None without an edge."""
-    tree = with_choices(law.tree)
+    tree, ground = with_choices(law.tree), ground.about(law)
     if law.jumps or not choices(tree):
         return None
     statement = f"{law.name} has no jump where its branches meet"
@@ -211,7 +217,7 @@ def _meeting(left: Expr, right: Expr, beside: Expr, at: Expr, ground: Ground) ->
 def passive(law: Law, ground: Ground) -> Obligation:
     """State that a dissipative law takes power in: its output times its letter is not negative."""
     power = f"{law.name}*{law.letter}"
-    order = (*ground.order, law.letter)
+    ground = ground.about(law)
     made = Obligation(
         "passive",
         law.element,
@@ -225,7 +231,7 @@ def passive(law: Law, ground: Ground) -> Obligation:
         questions = tuple(
             Question(
                 f"{power} >= 0{_under(branch.conditions)}",
-                order,
+                ground.order,
                 (*ground.where, *branch.conditions),
                 Cmp(">=", mul(branch.value, Sym(law.letter)), ZERO),
                 original,
@@ -250,7 +256,7 @@ def conducts(law: Law, ground: Ground) -> Obligation:
 
 def odd(law: Law, ground: Ground) -> Obligation:
     """State that a law is odd, which allows the mean law of the discrete gradient."""
-    order = (*ground.order, law.letter)
+    ground = ground.about(law)
     total = add(law.tree, reflected(law.tree, law.letter))
     made = Obligation(
         "odd",
@@ -267,7 +273,7 @@ def odd(law: Law, ground: Ground) -> Obligation:
         questions = tuple(
             Question(
                 f"{made.statement}{_under(branch.conditions)}",
-                order,
+                ground.order,
                 (*ground.where, *branch.conditions),
                 Cmp("=", branch.value, ZERO),
                 claim,

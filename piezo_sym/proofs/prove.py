@@ -127,8 +127,11 @@ def _refuted(question: Question, answer: Answer) -> Found:
     if not broken:
         reason = f"{question.label}: bounds on the functions in it do not decide it"
         return Verdict.OPEN, None, reason
-    left = question.original.left
+    left, right = question.original.left, question.original.right
     reason = f"{spell(left)} = {_shown(value_of(left, values))}"
+    if question.original.op == "=":
+        reason = f"{question.label} is false: {_shown(value_of(left, values))} and "
+        reason += _shown(value_of(right, values))
     return Verdict.REFUTED, {name: str(value) for name, value in values.items()}, reason
 
 
