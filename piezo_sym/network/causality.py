@@ -71,8 +71,8 @@ def _to_turn(
 
 def turn(port: Resistor) -> Resistor | None:
     """Return a resistor in its other causality if its law is linear in its letter, else None."""
-    slope = derivative(port.law, port.letter)
-    if port.letter in names(slope) or not _is(port.law, mul(slope, Sym(port.letter))):
+    slope = slope_of(port)
+    if slope is None:
         return None
     letter = CONJUGATE[port.domain, port.letter]
     return replace(
@@ -83,6 +83,14 @@ def turn(port: Resistor) -> Resistor | None:
         effort=port.output,
         imposes=port.imposes.other,
     )
+
+
+def slope_of(port: Resistor) -> Expr | None:
+    """Return the slope of a law that is linear in its letter, else None."""
+    slope = derivative(port.law, port.letter)
+    if port.letter in names(slope) or not _is(port.law, mul(slope, Sym(port.letter))):
+        return None
+    return slope
 
 
 def _over(top: Expr, slope: Expr) -> Expr:
