@@ -4,8 +4,15 @@ Input: a `strategy.Draft`, which names parameters, inputs, nodes and bodies.  Ou
 one element's table.
 """
 
-LINEAR = ("{r}*{z}", "{z}/{r}", "2*{z}*{r}", "({r} + {s})*{z}", "{r}*{z}*(1 + {s}*(T/{low} - 1))")
-EXPONENTIAL = "{r}*exp({s}*({low}/T - 1))*{z}"
+LINEAR = (
+    "{r}*{z}",
+    "{z}/{r}",
+    "2*{z}*{r}",
+    "{r}*{z} + {s}*{z}/3",
+    "({r} + {s}*T)*({z} + {z})/2",
+    "{r}*{z}*(1 + {s}*(T/{low} - 1))",
+    "{r}*exp({s}*({low}/T - 1))*{z}",
+)
 KINKED = (
     "{r}*deadzone({z}, {w})",
     "{r}/(T - {low})*deadzone({z}, {w})",
@@ -27,7 +34,7 @@ SMOOTH = (
 
 def law(draft, letter, body, *, linear=True, lanes=None):
     """Return the text of a dissipative law in a letter, with parameters of its own."""
-    forms = (*LINEAR, EXPONENTIAL) if linear and draft.one_in(2) else (*KINKED, *SMOOTH)
+    forms = LINEAR if linear and draft.one_in(2) else (*KINKED, *SMOOTH)
     form = draft.pick(forms)
     words = {"z": letter, "low": draft.bodies[body]}
     for word, unit, low, high in (("r", "1", 0.5, 4), ("s", "1", 0.2, 2), ("w", "1", 0.1, 1)):
@@ -55,7 +62,7 @@ def spring(draft):
     k = draft.parameter("k", "N/m")
     forms = (k, k, k, f"{k}*(1 + q**2)", f"{k}*(1 + q**2/3)**2", f"{k}*exp(q)")
     rest = {"rest": draft.parameter("q_l", "m", -1, 1)} if draft.one_in(3) else {}
-    form = draft.pick(forms[:5]) if not draft.one_in(20) else forms[5]
+    form = draft.pick(forms[:5]) if not draft.one_in(30) else forms[5]
     return {"between": draft.pair("m"), "stiffness": form, **rest, **draft.state()}
 
 
@@ -66,7 +73,7 @@ def mass(draft):
 
 def capacitor(draft):
     capacity = draft.parameter("C", "F")
-    form = f"{capacity}/(1 + Q**2)" if draft.one_in(30) else capacity
+    form = f"{capacity}/(1 + Q**2)" if draft.one_in(50) else capacity
     return {"between": draft.pair("e"), "capacitance": form, **draft.state()}
 
 
@@ -129,6 +136,7 @@ def lever(draft):
 
 def thermal_mass(draft):
     low, c = draft.parameter("T_0", "K", 1, 3), draft.parameter("c", "J/K", 1, 3)
+    draft.bodies[draft.name] = low
     exponential, polynomial = f"{low}*exp(S/{c})", f"{low} + S/{c}"
     form = draft.pick((exponential, exponential, polynomial, f"{polynomial} + S**2/{c}**2"))
     return {"temperature": form, **draft.state()}

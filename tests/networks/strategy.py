@@ -15,12 +15,13 @@ CHANCE = st.integers(0, 99)
 REFERENCE = {"e": "gnd", "m": "wall"}
 TREE = {
     "e": ("capacitor", "capacitor", "voltage_source", "resistor", "transformer"),
-    "m": ("mass", "mass", "mass", "velocity_source", "damper", "lever"),
+    "m": ("mass", "mass", "mass", "velocity_source", "damper", "lever", "lever"),
 }
 CHORD = {
     "e": ("inductor", "hysteron", "hysteron", "resistor", "current_source", "transducer"),
     "m": ("spring", "damper", "force_source", "transducer", "spring"),
 }
+COUNTS = ((1, 1), (2, 0), (0, 2), (2, 1), (1, 2), (3, 0), (0, 3), (1, 3), (3, 2))
 HEAT = ("ambient", "conduction")
 WORDS = ("x", "u", "p", "h", "F", "J", "out", "n", "z", "W")
 
@@ -38,7 +39,7 @@ class Draft:
     inputs: dict = field(default_factory=dict)
     assume: list = field(default_factory=list)
     elements: dict = field(default_factory=dict)
-    bodies: dict = field(default_factory=dict)
+    bodies: dict = field(default_factory=dict)  # the lowest temperature of each
     words: list = field(default_factory=lambda: list(WORDS))
     role: str = "chord"
     ends: tuple = ()
@@ -46,20 +47,27 @@ class Draft:
 
     def one_in(self, number):
         """Return whether a rare thing happens."""
-        return self.draw(CHANCE) < 100 // number
+        return self.draw(CHANCE) >= 100 - 100 // number
 
     def pick(self, items):
         """Return one of some things."""
         return self.draw(st.sampled_from(list(items)))
 
     def parameter(self, letter, unit, low=0.5, high=4.0, lanes=None):
-        """Return the name of a new parameter of the element; a list of values for `lanes`."""
+        """Return a parameter: new, a list of values for `lanes`, or one of another element."""
         name = f"{letter}_{self.name}"
-        numbers = st.integers(0, 1000).map(lambda n: round(low + (high - low) * n / 1000, 6))
+        shared = [n for n in self.parameters if n.startswith(f"{letter}_") and self._is_plain(n)]
+        if shared and self.one_in(8):
+            return self.pick(shared)
+        step, odd = (high - low) / 1000, 3.71e-4  # no ratio is 1: generic networks are meant
+        numbers = st.integers(0, 1000).map(lambda n: round(low + step * n + odd, 7))
         listed = lanes is not None and self.one_in(3)
         drawn = [self.draw(numbers) for _ in range(lanes)] if listed else self.draw(numbers)
         self.parameters[name] = {"value": drawn, "unit": unit}
         return name
+
+    def _is_plain(self, parameter):
+        return not isinstance(self.parameters[parameter]["value"], list)
 
     def input(self, unit, default=0.0):
         """Return an input of a unit: one that is there, or a new one."""
@@ -102,8 +110,7 @@ class Draft:
 
 def _bodies(draft):
     for _ in range(draft.draw(st.integers(1, 3))):
-        name = draft.add("thermal_mass", "chord")
-        draft.bodies[name] = f"T_0_{name}"
+        draft.add("thermal_mass", "chord")
 
 
 def _tree(draft, domain, count):
@@ -163,12 +170,24 @@ def _anywhere(draft):
     draft.add(draft.pick(fit), draft.pick(("tree", "chord")))
 
 
+def _adrift(elements):
+    """Return the elements with nothing left at the electrical reference."""
+
+    def loose(field):
+        return ["loose" if node == "gnd" else node for node in field]
+
+    return {
+        name: {k: loose(v) if isinstance(v, list) else v for k, v in element.items()}
+        for name, element in elements.items()
+    }
+
+
 @st.composite
 def networks(draw):
     """Draw a spec as plain data: the argument of `Model`, and what TOML text holds."""
     draft = Draft(draw)
     _bodies(draft)
-    counts = draw(st.sampled_from([(1, 1), (2, 0), (0, 2), (2, 1), (1, 2), (3, 0), (3, 2)]))
+    counts = draw(st.sampled_from(COUNTS))
     for domain, count in zip("em", counts, strict=True):
         _tree(draft, domain, count)
     _chords(draft)
@@ -176,13 +195,19 @@ def networks(draw):
     if draft.one_in(5):
         _anywhere(draft)
     order = draw(st.permutations(list(draft.elements)))
-    hot = [f"T_{name}" for name in draft.bodies] if len(draft.bodies) > 1 else ["T"]
-    above = [f"{word} > {low}" for word, low in zip(hot, draft.bodies.values(), strict=True)]
+    if draft.one_in(15):  # what holds a node may be missing, or a body
+        order = order[1:]
+    if draft.one_in(25):
+        draft.elements = _adrift(draft.elements)
+    bodies = [name for name in draft.bodies if name in order]
+    above = [f"T_{n} > {draft.bodies[n]}" for n in bodies]
+    if len(bodies) == 1:
+        above = [f"T > {draft.bodies[bodies[0]]}"]
     return {
         "model": {"name": "network"},
         "parameters": draft.parameters,
         "inputs": draft.inputs,
         "domain": {"assume": [*above, *draft.assume]},
-        "initial": {draft.elements[name].get("state", f"S_{name}"): 0.1 for name in draft.bodies},
+        "initial": {draft.elements[name].get("state", f"S_{name}"): 0.1 for name in bodies},
         "elements": {name: draft.elements[name] for name in order},
     }

@@ -6,12 +6,10 @@ potential and every branch's through variable is an unknown, and one dense syste
 Laws that are not linear are found by Newton's iteration.
 """
 
-import ast
-import math
-import operator
 from dataclasses import dataclass, field
 
 import numpy as np
+from law_values import value
 
 REFERENCES = {"gnd", "wall"}
 STORES = {  # letter of the state, field of the law, what the co-state is, whether it is an across
@@ -33,59 +31,10 @@ LAWS = {  # letter of the given variable, whether the law gives the across varia
     "force": ("v", False),
     "velocity": ("f", True),
 }
-OPERATORS = {
-    ast.Add: operator.add,
-    ast.Sub: operator.sub,
-    ast.Mult: operator.mul,
-    ast.Div: operator.truediv,
-    ast.Pow: operator.pow,
-    ast.Lt: operator.lt,
-    ast.LtE: operator.le,
-    ast.Gt: operator.gt,
-    ast.GtE: operator.ge,
-    ast.USub: operator.neg,
-}
-FUNCTIONS = {
-    "exp": math.exp,
-    "log": math.log,
-    "sqrt": math.sqrt,
-    "sin": math.sin,
-    "cos": math.cos,
-    "tanh": math.tanh,
-    "abs": abs,
-    "sign": np.sign,
-    "min": min,
-    "max": max,
-    "deadzone": lambda z, w: max(z - w, 0) + min(z + w, 0),
-    "saturate": lambda z, w: min(max(z, -w), w),
-}
 SLOPE_STEP = 1e-6
 CLOSE = 1e-12
 MOST_STEPS = 60
-
-
-def value(text, words):
-    """Return the value of a law."""
-    return _value(ast.parse(text, mode="eval").body, words)
-
-
-def _value(node, words):
-    match node:
-        case ast.Constant(number):
-            return number
-        case ast.Name(name):
-            return words[name]
-        case ast.UnaryOp(op, arg):
-            return OPERATORS[type(op)](_value(arg, words))
-        case ast.BinOp(left, op, right):
-            return OPERATORS[type(op)](_value(left, words), _value(right, words))
-        case ast.Call(ast.Name(name), args):
-            return FUNCTIONS[name](*(_value(arg, words) for arg in args))
-        case ast.Compare(left, [op], [right]):
-            return OPERATORS[type(op)](_value(left, words), _value(right, words))
-        case ast.IfExp(test, then, other):
-            return _value(then if _value(test, words) else other, words)
-    raise TypeError(ast.dump(node))
+SINGULAR = 1e-9
 
 
 @dataclass(frozen=True)
@@ -123,11 +72,13 @@ class Tableau:
                 self.temperatures[name] = value(element["temperature"], words)
         for name, element in elements:
             self._add(name, element)
+        names = dict.fromkeys(n for pair in self._all_nodes() for n in pair)
+        self.nodes = {n: k for k, n in enumerate(n for n in names if n not in REFERENCES)}
 
     def words(self, lane=0):
         """Return the values of the parameters, those of one lane where they are listed."""
         given = {n: p["value"] for n, p in self.spec["parameters"].items()}
-        return {n: v[lane] if isinstance(v, list) else v for n, v in given.items()}
+        return {n: v[lane % len(v)] if isinstance(v, list) else v for n, v in given.items()}
 
     def _add(self, name, element):
         kind = element["kind"]
@@ -165,8 +116,6 @@ class Tableau:
 
     def matrix(self, slopes):
         """Return the system's matrix, for laws that rise by `slopes` (0: a given output)."""
-        names = dict.fromkeys(n for branch in self._all_nodes() for n in branch)
-        self.nodes = {n: k for k, n in enumerate(n for n in names if n not in REFERENCES)}
         count, size = len(self.nodes), len(self.branches) + 2 * len(self.couplings)
         matrix = np.zeros((count + size, count + size))
         for k, branch in enumerate(self.branches):
@@ -200,7 +149,9 @@ class Tableau:
         self._balance(matrix, second, row + 1)
         words = self.words()
         if element["kind"] == "transducer":
-            hot = {"T": self.temperatures[element["temperature"]]} if "temperature" in element else {}
+            hot = (
+                {"T": self.temperatures[element["temperature"]]} if "temperature" in element else {}
+            )
             ratio = value(element["ratio"], {**words, **hot})
             matrix[row, row], matrix[row + 1, row + 1] = 1, 1
             self._across(matrix, row, second, -ratio)
@@ -213,10 +164,28 @@ class Tableau:
 
     def is_regular(self):
         """Return whether the laws have one solution when nonlinear laws give what they give."""
-        slopes = [_linear_slope(branch) or 0.0 for branch in self.branches]
-        matrix = self.matrix(slopes)
-        matrix /= np.maximum(abs(matrix).max(axis=1, keepdims=True), 1e-300)
-        return bool(np.linalg.svd(matrix, compute_uv=False)[-1] > 1e-9)
+        return bool(np.linalg.svd(self._given(), compute_uv=False)[-1] > SINGULAR)
+
+    def has_nonlinear_loop(self):
+        """Return whether what a nonlinear law gives changes what one is given, its own or not."""
+        answers, count = np.linalg.inv(self._given()), len(self.nodes)
+        laws = [k for k, b in enumerate(self.branches) if b.law and _linear_slope(b) is None]
+        taken = [self._given_row(self.branches[k], count + k) for k in laws]
+        gains = [row @ answers[:, count + k] for row in taken for k in laws]
+        return bool(max(map(abs, gains), default=0.0) > SINGULAR)
+
+    def _given(self):
+        """Return the matrix in which each nonlinear law gives a number."""
+        return self.matrix([_linear_slope(branch) or 0.0 for branch in self.branches])
+
+    def _given_row(self, branch, column):
+        """Return the row that reads the variable that a law is given."""
+        row = np.zeros((1, len(self.nodes) + len(self.branches) + 2 * len(self.couplings)))
+        if branch.across:
+            row[0, column] = 1.0
+        else:
+            self._across(row, 0, branch.nodes, 1.0)
+        return row[0]
 
     # The solution
 
@@ -232,11 +201,13 @@ class Tableau:
                 right[len(self.nodes) + k] = value_there
             solution = np.linalg.solve(matrix, right)
             across, through = self._variables(solution)
+            size = max(1.0, abs(solution).max())
             found = np.where([branch.across for branch in self.branches], through, across)
+            found[abs(found) <= CLOSE * size] = 0.0  # rounding must not choose a law's branch
             change = abs(found - given).max(initial=0.0)
             given = found
-            if change <= CLOSE * max(1.0, abs(solution).max()):
-                return across, through, max(1.0, abs(solution).max())
+            if change <= CLOSE * size:
+                return across, through, size
         raise AssertionError("the laws were not solved")
 
     def _variables(self, solution):
@@ -312,7 +283,7 @@ def pairs_of(element):
 
 
 def law_of(element):
-    """Return the text of a dissipative law, its letter, and whether it gives the across variable."""
+    """Return a dissipative law, its letter, and whether it gives the across variable."""
     name = next(name for name in LAWS if name in element)
     return element[name], *LAWS[name]
 
