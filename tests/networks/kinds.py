@@ -32,9 +32,9 @@ SMOOTH = (
 )
 
 
-def law(draft, letter, body, *, linear=True, lanes=None):
+def law(draft, letter, body, *, linear, lanes=None):
     """Return the text of a dissipative law in a letter, with parameters of its own."""
-    forms = LINEAR if linear and draft.one_in(2) else (*KINKED, *SMOOTH)
+    forms = LINEAR if linear else (*KINKED, *SMOOTH)
     form = draft.pick(forms)
     words = {"z": letter, "low": draft.bodies[body]}
     for word, unit, low, high in (("r", "1", 0.5, 4), ("s", "1", 0.2, 2), ("w", "1", 0.1, 1)):
@@ -53,7 +53,7 @@ def dissipative(draft, domain, through, across):
     field, letter = across if draft.role == "tree" else through
     if draft.one_in(4):
         field, letter = draft.pick((through, across))
-    text = law(draft, letter, body)
+    text = law(draft, letter, body, linear=draft.linear or draft.one_in(2))
     jumps = {"discontinuous": True} if "sign" in text else {}
     return {"between": draft.pair(domain), field: text, "heats": body, **jumps}
 
@@ -101,7 +101,7 @@ def hysteron(draft):
         "between": draft.pair("e"),
         **bank,
         "inductance": draft.parameter("L", "H", lanes=count),
-        "voltage": law(draft, "i", body, lanes=count),
+        "voltage": law(draft, "i", body, linear=draft.one_in(2), lanes=count),
         "heats": body,
         **draft.state(),
     }

@@ -30,7 +30,8 @@ WORDS = ("x", "u", "p", "h", "F", "J", "out", "n", "z", "W")
 class Draft:
     """A spec in the making: what is drawn so far, and what an element may ask for.
 
-    `role` is "tree" or "chord": whether the next element gives the across or the through variable.
+    `linear` says that all resistors and dampers are, so that they may be in loops; `role` is "tree"
+    or "chord": whether the next element gives the across or the through variable.
     """
 
     draw: object
@@ -41,6 +42,7 @@ class Draft:
     elements: dict = field(default_factory=dict)
     bodies: dict = field(default_factory=dict)  # the lowest temperature of each
     words: list = field(default_factory=lambda: list(WORDS))
+    linear: bool = False
     role: str = "chord"
     ends: tuple = ()
     name: str = ""
@@ -61,7 +63,7 @@ class Draft:
             return self.pick(shared)
         step, odd = (high - low) / 1000, 3.71e-4  # no ratio is 1: generic networks are meant
         numbers = st.integers(0, 1000).map(lambda n: round(low + step * n + odd, 7))
-        listed = lanes is not None and self.one_in(3)
+        listed = lanes is not None and self.one_in(2)
         drawn = [self.draw(numbers) for _ in range(lanes)] if listed else self.draw(numbers)
         self.parameters[name] = {"value": drawn, "unit": unit}
         return name
@@ -145,6 +147,8 @@ def _chord(draft, domain, ends):
     if kind == "force_source" and "wall" not in ends:
         kind = "damper"
     draft.add(kind, "chord", (domain, ends))
+    if kind == "hysteron" and draft.one_in(2):
+        draft.add(kind, "chord", (domain, ends[::-1]))
 
 
 def _uses(draft, node):
@@ -186,6 +190,7 @@ def _adrift(elements):
 def networks(draw):
     """Draw a spec as plain data: the argument of `Model`, and what TOML text holds."""
     draft = Draft(draw)
+    draft.linear = draft.one_in(3)
     _bodies(draft)
     counts = draw(st.sampled_from(COUNTS))
     for domain, count in zip("em", counts, strict=True):

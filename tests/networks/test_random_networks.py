@@ -9,12 +9,14 @@ from hypothesis import strategies as st
 from kinds import KINDS
 from strategy import networks
 
+from piezo_sym import derive
 from piezo_sym.spec import elements
+from piezo_sym.spec.model import Model
 
 
 def explore(number):
-    """Check a number of networks; return how many came out how, and the kinds in those derived."""
-    outcomes, kinds = Counter(), Counter()
+    """Check a number of networks; count how they came out, and what those derived have."""
+    outcomes, found = Counter(), Counter()
 
     @settings(max_examples=number, suppress_health_check=list(HealthCheck), database=None)
     @given(networks(), st.integers(0, 10**6))
@@ -22,14 +24,30 @@ def explore(number):
         outcome = check(spec, seed)
         outcomes[outcome] += 1
         if outcome == DERIVED:
-            kinds.update({element["kind"] for element in spec["elements"].values()})
+            found.update(features(spec))
 
     each()
-    return outcomes, kinds
+    return outcomes, found
 
 
-def check_seen(outcomes, kinds):
-    assert set(kinds) == set(elements.KINDS)
+def features(spec):
+    """Return the kinds in a network that is derived, and what else it has."""
+    elements = spec["elements"].values()
+    values = [entry["value"] for entry in spec["parameters"].values()]
+    has = {
+        "a list of values": any(isinstance(value, list) for value in values),
+        "a loop of resistors": bool(derive(Model(**spec)).junction.slopes),
+        "two banks": sum("count" in element for element in elements) > 1,
+    }
+    return {element["kind"] for element in elements} | {
+        name for name, there in has.items() if there
+    }
+
+
+def check_seen(outcomes, found):
+    """Check that both outcomes are frequent, and that what derives is not only what is simple."""
+    wanted = {*elements.KINDS, "a list of values", "a loop of resistors", "two banks"}
+    assert set(found) == wanted
     assert outcomes[REFUSED] >= sum(outcomes.values()) / 20
     assert outcomes[DERIVED] >= sum(outcomes.values()) / 2
 
