@@ -19,6 +19,8 @@ R   = { value = 2.0,   unit = "ohm" }
 C   = { value = 0.1,   unit = "F" }
 L   = { value = 0.3,   unit = "H" }
 rho = { value = 0.5,   unit = "ohm" }
+b   = { value = 0.5,   unit = "ohm/A**2" }
+g   = { value = 0.5,   unit = "A/V**3" }
 i_0 = { value = 0.1,   unit = "A" }
 m   = { value = 1.5,   unit = "kg" }
 k   = { value = 2.0,   unit = "N/m" }
@@ -36,7 +38,7 @@ body = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }
 source = { kind = "voltage_source", between = ["in", "gnd"], input = "V" }
 """
 V, W, DRAIN = 1.3, -0.4, 0.25
-P = {"R": 2.0, "C": 0.1, "L": 0.3, "rho": 0.5, "i_0": 0.1, "m": 1.5, "k": 2.0, "d": 0.7}
+P = {"R": 2.0, "C": 0.1, "L": 0.3, "rho": 0.5, "b": 0.5, "i_0": 0.1, "m": 1.5, "k": 2.0, "d": 0.7}
 
 
 def hot(S):
@@ -138,12 +140,12 @@ CASES = {
     "two resistors in series with an inductor": (
         """
         R1 = { kind = "resistor", between = ["in", "n"], current = "v/R", heats = "body" }
-        R2 = { kind = "resistor", between = ["n", "o"], voltage = "rho*i**3", heats = "body" }
+        R2 = { kind = "resistor", between = ["n", "o"], voltage = "b*i**3", heats = "body" }
         L1 = { kind = "inductor", between = ["o", "gnd"], inductance = "L", state = "phi" }
         """,
         lambda x: [
-            (P["R"] * (x[1] / P["L"]) ** 2 + P["rho"] * (x[1] / P["L"]) ** 4) / hot(x[0]),
-            V - P["R"] * x[1] / P["L"] - P["rho"] * (x[1] / P["L"]) ** 3,
+            (P["R"] * (x[1] / P["L"]) ** 2 + P["b"] * (x[1] / P["L"]) ** 4) / hot(x[0]),
+            V - P["R"] * x[1] / P["L"] - P["b"] * (x[1] / P["L"]) ** 3,
         ],
     ),
     "a current source at a voltage source": (
@@ -277,8 +279,8 @@ REFUSED = {
     "two nonlinear resistors in series across a capacitor": (
         """
         R0 = { kind = "resistor", between = ["in", "c"], current = "v/R", heats = "body" }
-        R1 = { kind = "resistor", between = ["c", "n"], current = "v**3/R", heats = "body" }
-        R2 = { kind = "resistor", between = ["n", "gnd"], current = "v**3/R", heats = "body" }
+        R1 = { kind = "resistor", between = ["c", "n"], current = "g*v**3", heats = "body" }
+        R2 = { kind = "resistor", between = ["n", "gnd"], current = "g*v**3", heats = "body" }
         C1 = { kind = "capacitor", between = ["c", "gnd"], capacitance = "C" }
         """,
         "'R1', 'R2' fix each other",
