@@ -18,7 +18,7 @@ from piezo_sym.network.kirchhoff import Laws
 from piezo_sym.spec.calculus import derivative, div, mul
 from piezo_sym.spec.circuit import Circuit, Placed
 from piezo_sym.spec.elements.ports import Domain, Resistor
-from piezo_sym.spec.expressions import ONE, Div, Expr, Sym, names
+from piezo_sym.spec.expressions import ONE, ZERO, Div, Expr, Sym, names
 
 #: The letter that a law has in the other causality.
 CONJUGATE = {
@@ -70,9 +70,9 @@ def _to_turn(
 
 
 def turn(port: Resistor) -> Resistor | None:
-    """Return a resistor in its other causality if its law is linear in its letter, else None."""
+    """Return a resistor in its other causality if its law has a slope that is not 0, else None."""
     slope = slope_of(port)
-    if slope is None:
+    if slope is None or _is(slope, ZERO):  # what is zero whatever it is given has no other form
         return None
     letter = CONJUGATE[port.domain, port.letter]
     return replace(
