@@ -113,7 +113,7 @@ def _law(iphs: IPHS, placed: Placed, heat: dict[str, str]) -> Law | None:
 def welldef(laws: tuple[Law, ...], ground: Ground) -> Obligation | None:
     """State that the laws of one element have values everywhere; None if they cannot lack one."""
     named = " and ".join(dict.fromkeys(law.name for law in laws))
-    statement = f"{named}: no division by zero, no root or logarithm out of its range"
+    statement = f"{named}: a real value everywhere"
     element, latex = laws[0].element, r"W_k \in \mathbb{R}"
     made = Obligation("welldef", element, statement, latex, ground.texts)
     found: list[Question] = []

@@ -11,6 +11,7 @@ from enum import Enum
 from typing import final
 
 from piezo_sym.errors import ProofError
+from piezo_sym.proofs.obligations import Obligation
 
 
 @final
@@ -61,10 +62,18 @@ class Row:
 @final
 @dataclass(frozen=True, repr=False)
 class Report:
-    """The verdicts on one model."""
+    """The verdicts on one model.
+
+    Attributes
+    ----------
+    model : its name.
+    rows : the verdicts.
+    obligations : what they are about, in the same order; units have none.
+    """
 
     model: str
     rows: tuple[Row, ...]
+    obligations: tuple[Obligation, ...] = ()
 
     @property
     def failures(self) -> tuple[Row, ...]:
