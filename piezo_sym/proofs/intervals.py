@@ -250,6 +250,8 @@ def _down(ball: Any) -> float:
     """Return a double that is not above the ball; `<=` of balls is True only if certain."""
     low = ball.lower()
     near = float(low)
+    if math.isnan(near):
+        raise ArithmeticError("a function was taken where it is not defined")
     return near if _ball(near) <= low else math.nextafter(near, -INF)
 
 

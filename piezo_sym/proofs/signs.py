@@ -2,9 +2,9 @@
 
 Input: a tree in one name and a domain.  Output: a `Decision`.  The domain is cut at zero and at its
 ends; from each of these points c, rays x = c + t and x = c - t, t > 0, are cut into windows until
-an enclosure shows f >= 0 on each.  A window to infinity is one of them.  Near a zero of f the jets
-at its left end are exact, which makes this Taylor's theorem.  The work is counted in windows, not in
-seconds: the same law gives the same decision everywhere.
+an enclosure shows f >= 0 on each, a window to infinity among them.  Near a zero of f at c the jets
+there are exact: that is Taylor's theorem.  Work is counted in windows, not in seconds: the same law
+gives the same decision everywhere.
 """
 
 from __future__ import annotations
@@ -58,6 +58,11 @@ class Domain:
     hi: Fraction | None = None
     lo_included: bool = True
     hi_included: bool = True
+
+    def __post_init__(self) -> None:
+        """Refuse ends in the wrong order."""
+        if self.lo is not None and self.hi is not None and self.lo > self.hi:
+            raise ValueError(f"no number lies from {self.lo} to {self.hi}")
 
     def __contains__(self, x: Fraction) -> bool:
         """Return whether a number is in the domain."""
@@ -135,9 +140,9 @@ def _on_rays(f: Expr, name: str, domain: Domain, budget: int) -> Decision:
     """Cut the domain into rays and prove f >= 0 on each, and at the points where they start."""
     reasons: list[str] = []
     left = budget
-    for point in _starts(domain):
-        found = value(f, point) if point in domain else None
-        if found is not None and found.lo < 0:
+    for point in (point for point in _starts(domain) if point in domain):
+        found = value(f, point)
+        if found is None or found.lo < 0:
             reasons.append(f"is not told from zero at {name} = {point}")
     for ray in _rays(f, domain):
         decision, left = _search(f, name, ray, left)
@@ -150,7 +155,7 @@ def _on_rays(f: Expr, name: str, domain: Domain, budget: int) -> Decision:
 def _starts(domain: Domain) -> list[Fraction]:
     """Return the points where rays start: the finite ends, and zero if it is inside."""
     points = {end for end in (domain.lo, domain.hi) if end is not None}
-    return sorted(points | ({Fraction(0)} if Fraction(0) in domain or not points else set()))
+    return sorted(points | ({Fraction(0)} if Fraction(0) in domain else set()))
 
 
 def _rays(f: Expr, domain: Domain) -> Iterator[Ray]:
