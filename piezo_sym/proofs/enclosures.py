@@ -95,7 +95,7 @@ def _enclose(node: Expr, x: Enclosure, order: int) -> Enclosure:
             return _call(function, [of(arg) for arg in args])
         case If(then, Cmp(op, left, right), other):
             difference = _sum([of(left), _minus(of(right))])
-            return _choice(of(then), _truth(op, difference.inner), of(other))
+            return _choice(of(then), op, difference.inner, of(other))
     raise TypeError(f"{type(node).__name__} is no law")
 
 
@@ -257,11 +257,21 @@ def _smaller(a: Enclosure, b: Enclosure) -> Enclosure:
     return _minus(_larger(_minus(a), _minus(b)))
 
 
-def _truth(op: str, difference: Jet) -> bool | None:
-    """Return whether ``difference op 0`` holds on all of the window (True) or nowhere (False)."""
+def _choice(then: Enclosure, op: str, difference: Jet, other: Enclosure) -> Enclosure:
+    """Return the branch that is taken; if that is not known, only that it is one of the two."""
     if not difference:
-        return None
-    above = _positive(difference[0] if op in (">", "<=") else iv.minus(difference[0]))
+        return Enclosure(())
+    holds = _holds(op, difference[0])
+    if holds is not None:
+        return then if holds else other
+    if not then.inner or not other.inner:
+        return Enclosure(())
+    return Enclosure((iv.hull(then.inner[0], other.inner[0]),))
+
+
+def _holds(op: str, difference: Interval) -> bool | None:
+    """Return whether ``difference op 0`` holds on all of the window (True) or nowhere (False)."""
+    above = _positive(difference if op in (">", "<=") else iv.minus(difference))
     if above is None or op in (">", "<"):
         return above
     return not above  # a <= 0 is not a > 0, and a >= 0 is not -a > 0
@@ -271,12 +281,3 @@ def _positive(a: Interval) -> bool | None:
     if a.lo >= 0 and a.nonzero:
         return True
     return False if a.hi <= 0 else None
-
-
-def _choice(then: Enclosure, truth: bool | None, other: Enclosure) -> Enclosure:
-    """Return the branch that is taken; if that is not known, only that it is one of the two."""
-    if truth is not None:
-        return then if truth else other
-    if not then.inner or not other.inner:
-        return Enclosure(())
-    return Enclosure((iv.hull(then.inner[0], other.inner[0]),))

@@ -100,7 +100,9 @@ def test_a_difference_that_is_affine_is_seen_exactly():
     assert found[0].lo == 0
 
 
-@pytest.mark.parametrize("text", ["1/x", "log(x)", "x**(-1/2)", "1/(x - 1)", "sqrt(-1 - x)"])
+@pytest.mark.parametrize(
+    "text", ["1/x", "log(x)", "x**(-1/2)", "1/(x - 1)", "sqrt(-1 - x)", "1 if x < log(x) else 2"]
+)
 def test_what_is_not_defined_has_no_enclosure(text):
     window = Window(0.0, 2.0, 2)
     shifted = recentred(law(text), Fraction(-1), 1)
