@@ -56,7 +56,8 @@ def precise(tree, x, digits=40):
     """Return the value of a tree of one name, or None where it has none."""
     with mpmath.workdps(digits):
         try:
-            value = _value(tree, mpmath.mpf(x.numerator) / x.denominator)
+            exact = isinstance(x, Fraction)
+            value = _value(tree, mpmath.mpf(x.numerator) / x.denominator if exact else x)
         except (ArithmeticError, ValueError):
             return None
         return value if mpmath.isfinite(value) else None

@@ -134,3 +134,44 @@ def test_sums_and_products_of_doubles_are_rounded_outward(a, b):
         (Fraction(b) * Fraction(a), iv.times(x, y)),
     ):
         assert found.lo <= exact <= found.hi
+
+
+SMOOTH = [
+    "exp(x)",
+    "log(x)",
+    "sin(x)",
+    "cos(x)",
+    "tanh(x)",
+    "sqrt(x)",
+    "x**5",
+    "x**(-2)",
+    "3/(1 + x)",
+]
+
+
+@pytest.mark.parametrize("text", SMOOTH)
+@pytest.mark.parametrize("at", [0.5, 2.0])
+def test_jets_are_the_taylor_series(text, at):
+    jet = enclose(law(text), Window(at, at + 1, 5)).left
+    with mpmath.workdps(50):
+        series = mpmath.taylor(lambda x: precise(law(text), x, mpmath.mp.dps), mpmath.mpf(at), 5)
+    assert len(jet) == len(series) == 6
+    for part, coefficient in zip(jet, series, strict=True):
+        assert part.hi - part.lo < 1e-12
+        assert part.lo - 1e-15 <= coefficient <= part.hi + 1e-15
+
+
+def test_branches_that_are_not_told_apart_are_all_held():
+    window = Window(0.0, 2.0, 1)
+    corner, jump, choice = (
+        enclose(law(text), window).inner
+        for text in ("abs(x - 1)", "sign(x - 1)", "3 if x < 1 else 5")
+    )
+    assert (corner[1].lo, corner[1].hi) == (-1, 1)
+    assert [(part.lo, part.hi) for part in jump] == [(-1, 1)]
+    assert [(part.lo, part.hi) for part in choice] == [(3, 5)]
+
+
+@pytest.mark.parametrize("text", ["1/(1 - x)", "1/(1 if x < 0.5 else 0)", "log(1 - x)"])
+def test_what_is_zero_at_the_far_end_is_not_divided_by(text):
+    assert enclose(law(text), Window(0.0, 1.0, 2)).inner == ()

@@ -57,6 +57,7 @@ def test_a_law_is_brought_down_to_one_variable(text):
         "tanh(i/a)",  # the sign of a is not known
         "deadzone(i, a)",
         "sign(a*i)",
+        "sqrt(a*abs(i))",
         "tanh(i) + R*i",
         "R*i - a",
     ],

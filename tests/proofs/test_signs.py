@@ -149,6 +149,34 @@ def test_a_jump_below_zero_at_one_point_is_seen():
     assert decide_sign(law(text.replace("0.25", "0")), "x").witness == 0
 
 
+#: Zero, but no interval of doubles says so.
+NOUGHT = "(sin(1)**2 + cos(1)**2 - 1)"
+ONLY_AT = "(1 if 3*x <= {n} else 0)*(1 if 3*x >= {n} else 0)"
+
+
+@pytest.mark.parametrize("n", [0, 7])
+def test_a_single_point_that_is_not_told_keeps_the_decision_open(n):
+    text = f"(3*x - {n})**2 + {ONLY_AT.format(n=n)}*{NOUGHT}"
+    assert decide_sign(law(text), "x").verdict is Verdict.OPEN
+
+
+@pytest.mark.parametrize("side", ["+", "-"])
+def test_a_dip_next_to_a_zero_is_not_overlooked(side):
+    text = f"(x - 7/3)*(x - 7/3 {side} 1e-9)"
+    assert decide_sign(law(text), "x").verdict is not Verdict.PROVED
+
+
+@pytest.mark.parametrize("text", ["abs(x - 777.7) - 0.1", "abs(x + 777.7) - 0.1"])
+def test_far_out_is_looked_at_on_both_sides(text):
+    assert decide_sign(law(text), "x").verdict is Verdict.REFUTED
+
+
+@pytest.mark.parametrize("at", ["0.7", "9.3"])
+def test_both_halves_of_a_finite_domain_are_looked_at(at):
+    dip = law(f"abs(x - {at}) - 0.01")
+    assert decide_sign(dip, "x", Domain(Fraction(0), Fraction(10))).verdict is Verdict.REFUTED
+
+
 def test_other_names_and_sums_over_lanes_are_open():
     assert decide_sign(law("r*x**2"), "x").reason == "depends on r too"
     assert decide_sign(LaneSum(X, "bank"), "x").reason == "sums over lanes"
