@@ -16,7 +16,7 @@ from typing import final
 from piezo_sym.codegen import MARK, lower, numpy_module
 from piezo_sym.derivation import derive
 from piezo_sym.errors import DriftError
-from piezo_sym.files import path_text, read_text, write_text
+from piezo_sym.files import path_text, read_text, write_together
 from piezo_sym.proofs import Report, Verdict, proofs_json, smt2, verify
 from piezo_sym.spec.load import load
 from piezo_sym.spec.model import Model
@@ -93,8 +93,7 @@ def generate(
         If a file cannot be written.
     """
     files = render(model, allow_unproved=allow_unproved)
-    for name, text in files.items():
-        write_text(Path(out) / name, text)
+    write_together({Path(out) / name: text.encode() for name, text in files.items()})
     return tuple(Path(out) / name for name in files)
 
 

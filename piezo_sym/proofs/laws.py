@@ -235,6 +235,7 @@ def passive(law: Law, ground: Ground) -> Obligation:
                 (*ground.where, *branch.conditions),
                 Cmp(">=", mul(branch.value, Sym(law.letter)), ZERO),
                 original,
+                branch.conditions,
             )
             for branch in branches(law.tree)
             if branch.value != ZERO

@@ -24,14 +24,19 @@ def smt2(report: Report, made: str) -> str:
     report : from `verify`.
     made : the line that says what made the file.
     """
+    whole = [row for row in report.rows if row.method == "intervals"]
+    elsewhere = {(row.id, row.element) for row in whole}
     lines = [
         f"; {made}",
         f"; Claims on the laws of {report.model}.  Each query asserts the opposite of its claim:",
         "; `unsat` proves it, for all real numbers in the domain.  Functions such as exp stand",
         "; as symbols, of which some bounds are given.",
+        *(f"; {row.id} of {row.element} is {row.verdict.value} by intervals" for row in whole),
         "(set-logic QF_NRA)",
     ]
     for obligation in report.obligations:
+        if (obligation.id, obligation.element) in elsewhere:
+            continue
         for query in queries(obligation):
             where = f" of {obligation.element}" if obligation.element else ""
             lines += ["", f"; {obligation.id}{where}: {query.label}", "(push 1)", query.text()]
@@ -69,6 +74,7 @@ def _entry(row: Row, obligation: Obligation | None) -> dict[str, object]:
         "verdict": row.verdict.value,
         "witness": dict(row.witness) if row.witness else None,
         "reason": row.reason or None,
+        "method": row.method,
     }
     if obligation:
         entry["latex"] = obligation.latex

@@ -36,7 +36,8 @@ class Row:
     verdict : see `Verdict`.
     witness : for REFUTED, a value for every symbol at which the property fails.
     reason : for REFUTED what fails there, for OPEN what is missing.
-    required : whether `generate` insists on it.
+    required : whether `generate` insists on it; else it is information.
+    method : what decided it: algebra, branches (queries), or intervals (the law as a whole).
     """
 
     id: str
@@ -46,6 +47,7 @@ class Row:
     witness: Mapping[str, str] | None = None
     reason: str = ""
     required: bool = True
+    method: str = "algebra"
 
     def as_dict(self, model: str) -> dict[str, object]:
         """Return the row as plain data, as ``verify --json`` prints it."""
