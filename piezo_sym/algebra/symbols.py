@@ -7,12 +7,14 @@ bank's lane is spelled with the paper's index, ``phi_j``.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, final
+from functools import partial
+from typing import final
 
 import sympy as sp
 
+from piezo_sym.algebra.sums import LaneSum
 from piezo_sym.spec.circuit import Circuit
 from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, Resistor, Storage
 from piezo_sym.spec.expressions import (
@@ -128,20 +130,43 @@ def to_sympy(node: Expr, table: Mapping[str, sp.Expr]) -> sp.Expr:
         case Pow(base, exponent):
             return to_sympy(base, table) ** sp.Rational(exponent.numerator, exponent.denominator)
         case Call(function, args):
-            return _call(function, tuple(to_sympy(arg, table) for arg in args))
-        case If(then, condition, other):
-            parts = to_sympy(then, table), to_sympy(other, table)
-            return sp.Piecewise((parts[0], compare(condition, table)), (parts[1], True))
+            parts = tuple(to_sympy(arg, table) for arg in args)
+            if function in _SMOOTH:
+                return _SMOOTH[function](*parts)
+            return _by_branches(partial(_kinked, function), parts)
+        case If(then, Cmp(op, left, right), other):
+            choose = partial(_choice, op, to_sympy(then, table), to_sympy(other, table))
+            return _by_branches(choose, (to_sympy(left, table), to_sympy(right, table)))
     msg = f"{type(node).__name__} is no law"
     raise TypeError(msg)
 
 
-def compare(condition: Cmp, table: Mapping[str, sp.Expr]) -> Any:
-    """Return a comparison as a SymPy relation."""
-    relation = {"<": sp.Lt, "<=": sp.Le, ">": sp.Gt, ">=": sp.Ge}[condition.op]
-    return relation(to_sympy(condition.left, table), to_sympy(condition.right, table))
+def _choice(op: str, then: sp.Expr, other: sp.Expr, left: sp.Expr, right: sp.Expr) -> sp.Expr:
+    return sp.Piecewise((then, RELATIONS[op](left, right)), (other, True))
 
 
+def _by_branches(build: Callable[..., sp.Expr], args: tuple[sp.Expr, ...]) -> sp.Expr:
+    """Return ``build(*args)``, chosen by the branches of what chooses in `args`.
+
+    A condition is then free of choices; SymPy solves inequalities to get one that is not.
+    """
+    choice = next((found for arg in args for found in _choices(arg)), None)
+    if choice is None:
+        return build(*args)
+    cases = ((tuple(a.xreplace({choice: e}) for a in args), c) for e, c in choice.args)
+    return sp.Piecewise(*((_by_branches(build, here), c) for here, c in cases))
+
+
+def _choices(expr: sp.Basic) -> Iterator[sp.Piecewise]:
+    """Yield the choices in an expression, outermost first, but for those inside sums over lanes."""
+    if isinstance(expr, sp.Piecewise):
+        yield expr
+    elif not isinstance(expr, LaneSum):
+        for arg in expr.args:
+            yield from _choices(arg)
+
+
+RELATIONS = {"<": sp.Lt, "<=": sp.Le, ">": sp.Gt, ">=": sp.Ge}
 _SMOOTH = {
     "exp": sp.exp,
     "log": sp.log,
@@ -152,10 +177,8 @@ _SMOOTH = {
 }
 
 
-def _call(function: str, args: tuple[sp.Expr, ...]) -> sp.Expr:
-    """Return a function of the law language; those with kinks as their branches."""
-    if function in _SMOOTH:
-        return _SMOOTH[function](*args)
+def _kinked(function: str, *args: sp.Expr) -> sp.Expr:
+    """Return a function with kinks as its branches."""
     z, w = args[0], args[-1]
     match function:
         case "abs":

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from math import prod
 from typing import final
 
 import sympy as sp
@@ -22,6 +23,8 @@ from piezo_sym.spec.elements.ports import Body, Storage
 #: Lanes a refutation is written out for; one lane hides what couples two.
 LANES = 2
 TRIES = (1, 2, 3)
+#: Terms of a common denominator up to which a quotient is brought to lowest terms.
+MAX_DENOMINATOR = 64
 
 
 @final
@@ -76,7 +79,7 @@ def welldef(iphs: IPHS) -> Iterator[Row]:
     for divisor in iphs.divisors:
         value = iphs.in_states(divisor)
         statement = f"{divisor} != 0: the junction laws divide by it"
-        sign = sp.cancel(value).is_zero
+        sign = _cancelled(value).is_zero
         if sign is False:
             yield Row("welldef", "", statement, Verdict.PROVED)
             continue
@@ -84,6 +87,13 @@ def welldef(iphs: IPHS) -> Iterator[Row]:
         reason = f"{divisor} = {value} is {'zero' if sign else 'not shown to be other than zero'}"
         reason += "; add a mass or capacitor there, or the sign of its parameters to the domain"
         yield Row("welldef", "", statement, verdict, {} if sign else None, reason)
+
+
+def _cancelled(value: sp.Expr) -> sp.Expr:
+    """Return a quotient in lowest terms, or as it is where its common denominator explodes."""
+    bottoms = {sp.fraction(term)[1] for term in sp.Add.make_args(value)}
+    size = prod(len(sp.Add.make_args(factor)) for b in bottoms for factor in sp.Mul.make_args(b))
+    return sp.cancel(value) if size <= MAX_DENOMINATOR else value
 
 
 def temperature(iphs: IPHS) -> Iterator[Row]:
