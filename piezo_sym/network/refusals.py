@@ -61,12 +61,12 @@ def _contradiction(laws: Laws, relation: Form, edges: list[Edge]) -> NetworkErro
     couplings = _couplings(laws, relation)
     place = f" through {_listed(couplings)}" if couplings else _place(laws, names)
     if len(names) == 1:
-        what = f"the network forces the {word} of {_listed(names)} to be zero{place}"
+        what = f"the {word} of {_listed(names)} is forced to be zero{place}"
         return NetworkError(what, "network", f"a free {word}", "connect it to other nodes")
     what = f"elements {_listed(names)} fix each other's {word}{place}"
-    fixed = [edge.placed for edge in edges if _is_fixed(edge)]
+    fixed = _fixed(edges)
     if fixed:
-        expected, remedy = _inverse(fixed[0].element, fixed[0].port)
+        expected, remedy = _inverse(*fixed[0])
         remedy = f"{remedy}; or {REMEDIES[word]}" if len(fixed) > 1 else remedy
         return NetworkError(what, "network", expected, remedy)
     remedy = REMEDIES[MIXED if couplings else word]
@@ -78,25 +78,25 @@ def _listed(names: list[str]) -> str:
 
 
 def _word(edge: Edge) -> str:
-    port = edge.placed.port
-    assert isinstance(port, (Storage, Resistor, Source))
-    return WORDS[port.domain, port.imposes]
+    match edge.placed.port:
+        case Storage() | Resistor() | Source() as port:
+            return WORDS[port.domain, port.imposes]
+    return MIXED
 
 
-def _is_fixed(edge: Edge) -> bool:
-    """Return whether a branch is a resistor whose law cannot be turned round."""
-    return isinstance(edge.placed.port, Resistor) and turn(edge.placed.port) is None
+def _fixed(edges: list[Edge]) -> list[tuple[str, Resistor]]:
+    """Return the resistors among branches whose laws cannot be turned round."""
+    found = [(edge.placed.element, edge.placed.port) for edge in edges]
+    resistors = [(name, port) for name, port in found if isinstance(port, Resistor)]
+    return [(name, port) for name, port in resistors if turn(port) is None]
 
 
-def _inverse(element: str, port: object) -> tuple[str, str]:
+def _inverse(element: str, port: Resistor) -> tuple[str, str]:
     """Return what is expected of a law that gives what is given already, and the law to write."""
-    assert isinstance(port, Resistor)
     field, letter = inverse_field(port)
     expected = f"the law of '{element}' as a function of {letter}, which is given"
-    return (
-        expected,
-        f"it is not linear in {port.letter}: give its inverse, {field} = '...' of {letter}",
-    )
+    remedy = f"give the inverse law, {field} = '...' of {letter}"
+    return expected, f"{remedy} (only laws c*{port.letter} are turned round)"
 
 
 def _couplings(laws: Laws, relation: Form) -> list[str]:

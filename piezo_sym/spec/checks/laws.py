@@ -24,7 +24,9 @@ from piezo_sym.spec.tables import (
 
 
 def check_references(spec: Tables) -> None:
-    """Check that inputs and bodies that elements name are declared."""
+    """Check that there are elements, and that inputs and bodies they name are declared."""
+    if not spec.elements:
+        raise SpecError("has no elements", "elements", "at least one", f"kinds: {listing(KINDS)}")
     for name, element in spec.elements.items():
         for field, to, given in references(element):
             known = bodies(spec) if to == "thermal_mass" else tuple(spec.inputs)
