@@ -12,7 +12,9 @@ from typing import Annotated, Any
 import typer
 
 from piezo_sym.cli.generate import generate
+from piezo_sym.cli.new import new
 from piezo_sym.cli.reproduce import reproduce
+from piezo_sym.cli.schema import schema
 from piezo_sym.cli.show import show
 from piezo_sym.cli.simulate import simulate
 from piezo_sym.cli.verify import verify
@@ -28,7 +30,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-for command in (verify, generate, show, simulate, reproduce):
+for command in (new, verify, generate, show, simulate, reproduce, schema):
     app.command()(command)
 
 

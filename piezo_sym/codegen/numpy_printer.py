@@ -12,6 +12,7 @@ from typing import final
 
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.codegen.numpy_head import RATES, head
+from piezo_sym.codegen.numpy_places import Places, places, size_in_words
 from piezo_sym.codegen.numpy_style import NUMPY, numpy_text
 from piezo_sym.codegen.program import (
     Entry,
@@ -49,7 +50,8 @@ class _Printer:
         words = {word: fresh(word, program.taken) for word in ("x", "u", "p", "out", "lanes")}
         self.x, self.u, self.p, self.out, self.index = words.values()
         self.words = words
-        self.states = [Slot(field.name, field.bank) for field in program.states]
+        slots = [Slot(field.name, field.bank) for field in program.states]
+        self.states = places(slots, "end", program.taken)
 
     # Functions
 
@@ -65,12 +67,13 @@ class _Printer:
             text = f"{value.name}.copy()" if isinstance(value, Sym) else numpy_text(value)
             lines += [f"return {zero if value == ZERO else text}"]
             return _body(lines)
-        slots = [row.slot for row in function.rows]
-        lines.append(f"{self.out} = {self._array(function, slots)}")
+        rows = self._rows(function)
+        lines += [] if rows is self.states else rows.definitions()
+        lines.append(f"{self.out} = {self._array(function, rows)}")
         for n, row in enumerate(function.rows):
             if function.name == "initial_state" and row.value == ZERO and not row.listed:
                 continue
-            lines += self._assign(f"{self.out}[{_place(slots, n)}]", _row_text(row), row.value)
+            lines += self._assign(f"{self.out}[{rows.index(n)}]", _row_text(row), row.value)
         return _body([*lines, f"return {self.out}"])
 
     def _rates(self, function: Function) -> str:
@@ -78,9 +81,8 @@ class _Printer:
         doc = "Write the rates of the states x into `out`"
         roots = [row.value for row in function.rows]
         lines = self._opening("_rates", ("x", "u", "p", "out"), doc, None, roots)
-        slots = [row.slot for row in function.rows]
         for n, row in enumerate(function.rows):
-            target = f"{self.out}[{_place(slots, n)}]"
+            target = f"{self.out}[{self.states.index(n)}]"
             lines += self._assign(target, numpy_text(row.value), row.value)
         return _body(lines)
 
@@ -133,6 +135,7 @@ class _Printer:
         check = {self.x: f"_states({self.x}, {self.p})", self.u: f"_inputs({self.u})"}
         lines += [f"{word} = {check[word]}" for word in given]
         lines += [f"{bank}_count = {self.p}.{bank}_count" for bank in self.program.counts]
+        lines += self.states.definitions()
         lines += self._unpacked(used, f"{self.x}.ndim" if "x" in arguments else "1")
         note = ""
         for quantity in quantities:
@@ -150,9 +153,9 @@ class _Printer:
                 yield f"{field.name} = _lanes({arguments})"
             elif field.name in used:
                 yield f"{field.name} = {self.p}.{field.name}"
-        for n, slot in enumerate(self.states):
+        for n, slot in enumerate(self.states.slots):
             if slot.label in used:
-                yield f"{slot.label} = {self.x}[{_place(self.states, n)}]"
+                yield f"{slot.label} = {self.x}[{self.states.index(n)}]"
         for n, field in enumerate(program.inputs):
             if field.name in used:
                 yield f"{field.name} = {self.u}[{n}]"
@@ -178,14 +181,20 @@ class _Printer:
             return [f"{target} = {text}"]
         return [f"{target} = (", *(f"    {term}" for term in _terms(value)), ")"]
 
-    def _array(self, function: Function, slots: list[Slot]) -> str:
+    def _rows(self, function: Function) -> Places:
+        """Return the places of a function's rows."""
+        slots = [row.slot for row in function.rows]
+        same = slots == self.states.slots
+        return self.states if same else places(slots, "row", self.program.taken)
+
+    def _array(self, function: Function, rows: Places) -> str:
         if function.name == "initial_state":
-            return f"np.zeros({_total(slots)})"
-        return f"np.empty(({_total(slots)}, *{self.x}.shape[1:]))"
+            return f"np.zeros({rows.size})"
+        return f"np.empty(({rows.size}, *{self.x}.shape[1:]))"
 
     def _entry(self, entry: Entry) -> Iterator[str]:
-        rows, cols = self.states[entry.row], self.states[entry.col]
-        place = f"{_place(self.states, entry.row)}, {_place(self.states, entry.col)}"
+        rows, cols = self.states.slots[entry.row], self.states.slots[entry.col]
+        place = f"{self.states.index(entry.row)}, {self.states.index(entry.col)}"
         same = rows.bank is not None and rows.bank == cols.bank
         joint = "="
         for outer in entry.outer:
@@ -195,9 +204,9 @@ class _Printer:
         if entry.value == ZERO:
             return
         if same:
-            first, last = _bounds(self.states, entry.row)
+            first, last = self.states.bounds(entry.row)
             yield f"{self.index} = np.arange({first}, {last})"
-            second = _bounds(self.states, entry.col)[0]
+            second = self.states.position(entry.col)
             shift = "" if entry.row == entry.col else f" + ({second} - ({first}))"
             place = f"{self.index}, {self.index}{shift}"
         yield from self._assign_entry(f"{self.out}[{place}]", joint, entry.value)
@@ -247,27 +256,6 @@ def _shape(function: Function) -> str:
     rows = (
         "n"
         if function.name in {"rhs", "initial_state"}
-        else _total([r.slot for r in function.rows])
+        else size_in_words([r.slot for r in function.rows])
     )
     return f"({rows},{batch})"
-
-
-def _position(slots: Sequence[Slot], n: int) -> str:
-    """Return the place of slot n's first row."""
-    fixed = sum(slot.bank is None for slot in slots[:n])
-    counts = [f"{slot.bank}_count" for slot in slots[:n] if slot.bank]
-    return " + ".join([*([str(fixed)] if fixed or not counts else []), *counts])
-
-
-def _bounds(slots: Sequence[Slot], n: int) -> tuple[str, str]:
-    return _position(slots, n), _position([*slots, Slot("")], n + 1)
-
-
-def _place(slots: Sequence[Slot], n: int) -> str:
-    """Return the index of slot n: a number, or a slice for a bank."""
-    first, last = _bounds(slots, n)
-    return f"{first} : {last}" if slots[n].bank else first
-
-
-def _total(slots: Sequence[Slot]) -> str:
-    return _position([*slots, Slot("")], len(slots))

@@ -17,7 +17,7 @@ from piezo_sym.codegen.coefficients import coefficient
 from piezo_sym.codegen.excess import with_excess
 from piezo_sym.codegen.program import Quantity
 from piezo_sym.iphs import IPHS
-from piezo_sym.iphs.definitions import costate_name
+from piezo_sym.iphs.definitions import costate_name, heated
 from piezo_sym.network import port_order
 from piezo_sym.spec.calculus import add, div, mul, neg
 from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, Resistor, Source, Storage
@@ -42,10 +42,12 @@ class Quantities:
         self.ports = port_order(self.circuit)
         self.bodies: Mapping[str, Body] = {p.element: port for p, port in self.circuit.of(Body)}
         self.taken = set(self.circuit.names)
+        self.taken |= {str(symbol.name) for symbol, _ in (*iphs.slopes, *iphs.shares)}
         self.defined: list[Quantity] = []
         self._sums: dict[LaneSum, Sym] = {}
         self._costates()
         self._ratios()
+        self._loops(iphs)
         self.forces, self.outputs, self.heats = self._processes()
 
     def define(self, base: str, value: Expr, bank: str | None, note: str) -> Sym:
@@ -129,6 +131,16 @@ class Quantities:
         for _, port in self.circuit.of(Coupling):
             law = self._at(port.ratio, port.body)
             self._defined(port.name, law, None, "transducer ratios")
+
+    def _loops(self, iphs: IPHS) -> None:
+        """Define how resistors in a loop share what drives them."""
+        processes = tuple(self.circuit.of(Resistor, Conductor))
+        for slope in iphs.junction.slopes:
+            law = self._at(slope.law, heated(processes[slope.process][1]))
+            self._defined(str(slope.symbol.name), law, None, "slopes of laws in a loop")
+        for symbol, value in iphs.shares:
+            name = str(symbol.name)
+            self._defined(name, coefficient(value), None, "shares of resistors in a loop")
 
     def _at(self, law: Expr, body: str | None) -> Expr:
         """Return a law in which ``T`` is the temperature of `body`."""

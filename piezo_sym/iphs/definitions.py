@@ -14,7 +14,7 @@ from piezo_sym.algebra.lanes import vector
 from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import SpecError, quote
 from piezo_sym.iphs.system import System
-from piezo_sym.network import Junction, port_order
+from piezo_sym.network import Junction, Slope, port_order
 from piezo_sym.spec.circuit import Circuit, Placed
 from piezo_sym.spec.elements.ports import (
     Body,
@@ -116,6 +116,14 @@ def ratios_of(circuit: Circuit, symbols: SymbolTable) -> Definitions:
     for _, port in circuit.of(Coupling):
         letters = {"T": symbols[circuit.body(port.body).temperature]} if port.body else {}
         yield symbols[port.name], symbols.law(port.ratio, letters)
+
+
+def slopes_of(circuit: Circuit, symbols: SymbolTable, slopes: tuple[Slope, ...]) -> Definitions:
+    """Yield the slope of each law in a resistive loop, a function of T."""
+    processes = tuple(circuit.of(Resistor, Conductor))
+    for slope in slopes:
+        heat = symbols[circuit.body(heated(processes[slope.process][1])).temperature]
+        yield slope.symbol, symbols.law(slope.law, {"T": heat})
 
 
 def costates_of(

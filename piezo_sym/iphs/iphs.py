@@ -17,8 +17,15 @@ import sympy as sp
 from piezo_sym.algebra.lanes import LaneMatrix, vector
 from piezo_sym.algebra.notation import slot_text, text
 from piezo_sym.algebra.symbols import SymbolTable, symbol_table
-from piezo_sym.iphs.definitions import costates_of, energy_of, laws_of, ratios_of, system_of
-from piezo_sym.iphs.reading import Reading, document, equations_latex
+from piezo_sym.iphs.definitions import (
+    costates_of,
+    energy_of,
+    laws_of,
+    ratios_of,
+    slopes_of,
+    system_of,
+)
+from piezo_sym.iphs.reading import Pairs, Reading, document, equations_latex
 from piezo_sym.iphs.system import System
 from piezo_sym.network import Junction, junction_of
 from piezo_sym.spec.circuit import Circuit, circuit_of
@@ -65,9 +72,10 @@ class IPHS:
     ----------
     model, circuit, symbols : where it comes from, and its names.
     system : Definition 1 in named co-states.
-    divisors : what the junction laws divided by; none may be zero.
+    junction : the solved network, where the matrices of `system` come from.
     energies : the stored energy of each state, as a law of it; U is their sum.
-    laws, ratios, costates : what the names in `system` stand for, as (symbol, expression).
+    laws, shares, slopes, ratios, costates : what the names in `system` stand for, as (symbol,
+        expression).
 
     Vectors and matrices are SymPy matrices, or `LaneMatrix` where a bank keeps its size a symbol;
     `expand` gives explicit ones.
@@ -76,12 +84,14 @@ class IPHS:
     model: Model
     circuit: Circuit
     symbols: SymbolTable
+    junction: Junction
     system: System
     energies: tuple[Expr, ...]
-    divisors: tuple[sp.Expr, ...]
-    laws: tuple[tuple[sp.Symbol, sp.Expr], ...]
-    ratios: tuple[tuple[sp.Symbol, sp.Expr], ...]
-    costates: tuple[tuple[sp.Symbol, sp.Expr], ...]
+    laws: Pairs
+    shares: Pairs
+    slopes: Pairs
+    ratios: Pairs
+    costates: Pairs
 
     @cached_property
     def x(self) -> Matrix:
@@ -173,7 +183,8 @@ class IPHS:
 
     def in_states(self, expr: sp.Expr) -> sp.Expr:
         """Return an expression of `system` as a function of states, inputs and parameters."""
-        for definitions in (self.laws, self.ratios, self.costates):
+        named = (self.laws, self.shares, self.slopes, self.ratios, self.costates)
+        for definitions in named:
             expr = expr.xreplace(dict(definitions))
         return expr
 
@@ -213,7 +224,7 @@ class IPHS:
         hidden = {self.symbols[port.temperature] for _, port in self.circuit.of(Body)}
         shown = tuple((s, e) for s, e in self.costates if s not in hidden)
         heat = tuple((s, e) for s, e in self.costates if s in hidden)
-        named = (*self.laws, *self.ratios, *heat)
+        named = (*self.laws, *self.shares, *self.slopes, *self.ratios, *heat)
         return Reading(self.system, self._stored, shown, named, self._spelled(dict(shown)))
 
     def _spelled(self, shown: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, str]:
@@ -247,10 +258,12 @@ def iphs_of(symbols: SymbolTable, junction: Junction) -> IPHS:
         model=circuit.model,
         circuit=circuit,
         symbols=symbols,
+        junction=junction,
         system=system,
-        divisors=junction.divisors,
         energies=tuple(energy_of(placed.element, port) for placed, port in stores),
         laws=tuple(laws_of(circuit, symbols, system)),
+        shares=junction.shares,
+        slopes=tuple(slopes_of(circuit, symbols, junction.slopes)),
         ratios=tuple(ratios_of(circuit, symbols)),
         costates=tuple(costates_of(stores, symbols)),
     )

@@ -2,5 +2,6 @@
 
 from piezo_sym.network.junction import Junction, junction_of
 from piezo_sym.network.kirchhoff import port_order
+from piezo_sym.network.loops import Slope
 
-__all__ = ["Junction", "junction_of", "port_order"]
+__all__ = ["Junction", "Slope", "junction_of", "port_order"]

@@ -34,9 +34,8 @@ FIELDS = {
 
 def turn(port: Resistor) -> Resistor | None:
     """Return the resistor in its other causality if its law is linear in its letter, else None."""
-    slope = derivative(port.law, port.letter)
-    at_zero = substitute(port.law, {port.letter: ZERO})
-    if port.letter in names(slope) or _vanishes(slope) or not _vanishes(at_zero):
+    slope = slope_of(port)
+    if slope is None or _vanishes(slope):
         return None
     letter = CONJUGATE[port.domain, port.letter]
     return replace(
@@ -47,6 +46,13 @@ def turn(port: Resistor) -> Resistor | None:
         effort=port.output,
         imposes=port.imposes.other,
     )
+
+
+def slope_of(port: Resistor) -> Expr | None:
+    """Return the slope of a law that is linear in its letter, else None."""
+    slope = derivative(port.law, port.letter)
+    at_zero = substitute(port.law, {port.letter: ZERO})
+    return slope if port.letter not in names(slope) and _vanishes(at_zero) else None
 
 
 def inverse_field(port: Resistor) -> tuple[str, str]:

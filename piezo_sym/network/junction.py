@@ -6,7 +6,8 @@ Input: a `Circuit`.  Output: a `Junction`,
 
 with the storage co-states E, the law outputs W and the inputs u as given (the transducer ratios
 are opaque symbols).  The junction laws are solved by `kirchhoff`; here their answers become
-matrices, and it is checked that the structure preserves power.
+matrices, and it is checked that the structure preserves power.  Linear resistors that determine
+each other's flow are solved by `loops`.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import NetworkError
 from piezo_sym.network.causality import causal
 from piezo_sym.network.kirchhoff import Answer, Laws
+from piezo_sym.network.loops import Definition, Slope, loops_of
 from piezo_sym.network.nodes import check_nodes
 from piezo_sym.spec.circuit import Circuit
 from piezo_sym.spec.elements.ports import Conductor, Exchange, Source, Variable
@@ -38,7 +40,8 @@ class Junction:
     ----------
     circuit : the circuit, in the causality that the junction laws allow.
     states, processes, ports : slots; ports are ordered by their input, then by declaration.
-    J0, B, D, g, N : matrices over them, their entries rational in the transducer ratios.
+    J0, B, D, g, N : matrices over them, their entries rational in the ratios, slopes and shares.
+    slopes, shares : the symbols that resistive loops bring, see `Loops`.
     divisors : what the solution divides by; the structure exists where none is zero.
     """
 
@@ -51,6 +54,8 @@ class Junction:
     D: LaneMatrix
     g: LaneMatrix
     N: LaneMatrix
+    slopes: tuple[Slope, ...]
+    shares: tuple[Definition, ...]
     divisors: tuple[sp.Expr, ...]
 
 
@@ -87,28 +92,40 @@ class _Blocks:
 
     def junction(self) -> Junction:
         """Return the junction, having checked that it preserves power."""
+        J0, N = self._block("E", "E"), self._output("u")
         B, g, D = self._block("E", "W", _minus), self._block("E", "u"), self._output("W")
-        self._check_loops(self._block("W", "W"))
-        twins = (
+        M = self._block("W", "W")
+        self._check_power(
             B - self._block("W", "E").T,
             g - self._output("E").T,
             D - self._block("W", "u").T,
+            M + M.T,
         )
-        if not all(difference.is_zero for difference in twins):
-            what = "the junction laws do not preserve power"
-            raise NetworkError(what, "network", remedy="report this spec: it shows a fault here")
+        loops = loops_of(self.laws, M)
+        B, D = loops.columns(B), loops.columns(D)
+        used = {
+            symbol for block in (B, D) for e in block.full.values() for symbol in e.free_symbols
+        }
+        divisors = map(self.laws.expression, self.laws.divisors)
         return Junction(
             circuit=self.laws.circuit,
             states=self.slots["E"],
             processes=self.slots["W"],
             ports=self.slots["u"],
-            J0=self._block("E", "E"),
+            J0=J0 - loops.between(B, B),
             B=self._with_conduction(B),
             D=D,
-            g=self._with_heat(g),
-            N=self._output("u"),
-            divisors=tuple(dict.fromkeys(map(self.laws.expression, self.laws.divisors))),
+            g=self._with_heat(g - loops.between(B, D)),
+            N=N + loops.between(D, D),
+            slopes=loops.slopes,
+            shares=tuple(share for share in loops.shares if share[0] in used),
+            divisors=tuple(dict.fromkeys((*divisors, *loops.divisors))),
         )
+
+    def _check_power(self, *zeros: LaneMatrix) -> None:
+        if not all(difference.is_zero for difference in zeros):
+            what = "the junction laws do not preserve power"
+            raise NetworkError(what, "network", remedy="report this spec: it shows a fault here")
 
     def _block(self, row: str, col: str, sign: Callable[[int], int] = lambda _: 1) -> LaneMatrix:
         """Return the matrix of one kind of answers over one kind of givens."""
@@ -135,12 +152,6 @@ class _Blocks:
             if kind == col:
                 found[row, number] = sign * self.laws.expression(coefficient)
         return found
-
-    def _check_loops(self, loop: LaneMatrix) -> None:
-        for (r, c), _, _ in loop.entries():
-            names = f"'{loop.rows[r].label}' and '{loop.cols[c].label}'"
-            remedy = "put a capacitor, mass or hysteron at the node between them"
-            raise NetworkError(f"{names} determine each other's flow", "network", remedy=remedy)
 
     def _with_conduction(self, B: LaneMatrix) -> LaneMatrix:
         """Return B with the conductions: each takes entropy from its first body."""

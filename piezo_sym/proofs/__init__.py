@@ -6,6 +6,7 @@ from piezo_sym.errors import UsageError, quote
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.exact import casimir, energy, entropy, skew, temperature, welldef
 from piezo_sym.proofs.report import UNCHECKED, Report, Row, Verdict
+from piezo_sym.proofs.units import units
 
 __all__ = ["UNCHECKED", "Report", "Row", "Verdict", "verify"]
 
@@ -27,5 +28,5 @@ def verify(iphs: IPHS) -> Report:
         remedy = "derive it first: verify(derive(load('piezo_stack')))"
         raise UsageError(f"{quote(iphs)} is no IPHS", "verify", remedy=remedy)
     balances = (skew(iphs), casimir(iphs), energy(iphs), entropy(iphs))
-    rows = (*balances, *temperature(iphs), *welldef(iphs))
+    rows = (*balances, *temperature(iphs), *welldef(iphs), *units(iphs))
     return Report(iphs.model.name, rows)

@@ -76,7 +76,7 @@ def entropy(iphs: IPHS) -> Row:
 
 def welldef(iphs: IPHS) -> Iterator[Row]:
     """Yield a row for each ratio that the junction laws divide by: it is not zero."""
-    for divisor in iphs.divisors:
+    for divisor in iphs.junction.divisors:
         value = iphs.in_states(divisor)
         statement = f"{divisor} != 0: the junction laws divide by it"
         sign = _cancelled(value).is_zero

@@ -59,7 +59,7 @@ class Row:
 
 
 #: What this version does not look at yet; said wherever a verdict is printed.
-UNCHECKED = "the sign of each dissipative law (W z >= 0) and the units of laws"
+UNCHECKED = "the sign of each dissipative law (W z >= 0)"
 
 
 @final

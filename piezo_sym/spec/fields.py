@@ -17,6 +17,7 @@ from pydantic import (
     Field,
     StrictStr,
     StringConstraints,
+    WithJsonSchema,
 )
 
 from piezo_sym.spec.elements import KINDS
@@ -24,6 +25,7 @@ from piezo_sym.spec.units import Unit, parse_unit, to_si
 
 MAX_TEXT = 400
 MAX_SIZE = 1e300
+Schema = dict[str, Any]
 
 
 def _number(value: Any) -> float:
@@ -53,16 +55,39 @@ def _start(value: Any) -> str | float | tuple[str | float, ...]:
     return _law_or_number(value)
 
 
+def _one_or_list(item: Schema) -> Schema:
+    """Return the schema of a value or a list of such; each keyword is about one type of value."""
+    types = item["type"] if isinstance(item["type"], list) else [item["type"]]
+    return item | {"type": [*types, "array"], "items": item, "minItems": 1}
+
+
 def _plain(text: str) -> str:
     if not text.isprintable():
         raise ValueError("text on one line, without control characters")
     return text
 
 
-Number = Annotated[float, BeforeValidator(_number)]
-Values = Annotated[float | tuple[float, ...], BeforeValidator(_values)]
-Start = Annotated[str | float | tuple[str | float, ...], BeforeValidator(_start)]
+#: What the validators above take, for JSON Schema, which cannot see it.
+NUMBER: Schema = {"type": "number", "minimum": -MAX_SIZE, "maximum": MAX_SIZE}
+LAW_OR_NUMBER: Schema = NUMBER | {"type": ["number", "string"]}
+
+Number = Annotated[float, BeforeValidator(_number), WithJsonSchema(NUMBER)]
+Values = Annotated[
+    float | tuple[float, ...], BeforeValidator(_values), WithJsonSchema(_one_or_list(NUMBER))
+]
+Start = Annotated[
+    str | float | tuple[str | float, ...],
+    BeforeValidator(_start),
+    WithJsonSchema(_one_or_list(LAW_OR_NUMBER)),
+]
 Text = Annotated[StrictStr, StringConstraints(max_length=MAX_TEXT), AfterValidator(_plain)]
+
+
+UnitText = Annotated[
+    StrictStr,
+    Field(description="Names joined by * and /, with whole powers: 'N*s/m', 'm**2', '1'."),
+]
+Doc = Annotated[Text, Field(description="What it is, on one line.")]
 
 
 class Frozen(BaseModel):
@@ -75,18 +100,18 @@ class Frozen(BaseModel):
 class Header(Frozen):
     """The [model] table: the model's name, and what a reader should know of it."""
 
-    name: StrictStr
-    title: Text = ""
-    source: Text = ""
+    name: Annotated[StrictStr, Field(description="The model's name; names the generated files.")]
+    title: Annotated[Text, Field(description="What it models, on one line.")] = ""
+    source: Annotated[Text, Field(description="Where its equations and values are from.")] = ""
 
 
 @final
 class Parameter(Frozen):
     """A constant of the model: value in its unit; a list is a value for each lane of one bank."""
 
-    value: Values
-    unit: StrictStr
-    doc: Text = ""
+    value: Annotated[Values, Field(description="In `unit`; a list: one a lane of one bank.")]
+    unit: UnitText
+    doc: Doc = ""
 
     @property
     def dimension(self) -> Unit:
@@ -109,9 +134,9 @@ class Parameter(Frozen):
 class Input(Frozen):
     """An input of the model, with the value it has where a run gives none."""
 
-    unit: StrictStr
-    default: Number = 0.0
-    doc: Text = ""
+    unit: UnitText
+    default: Annotated[Number, Field(description="In `unit`, where a run gives no value.")] = 0.0
+    doc: Doc = ""
 
     @property
     def dimension(self) -> Unit:
@@ -128,7 +153,10 @@ class Input(Frozen):
 class Domain(Frozen):
     """The conditions under which proofs hold, and which every run keeps."""
 
-    assume: tuple[StrictStr, ...] = ()
+    assume: Annotated[
+        tuple[StrictStr, ...],
+        Field(description="Comparisons of parameters, inputs, states and T, such as 'd >= 0'."),
+    ] = ()
 
 
 #: One of the registered kinds, told apart by `kind`.

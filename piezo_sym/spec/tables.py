@@ -49,11 +49,16 @@ class Tables(Protocol):
 @final
 @dataclass(frozen=True)
 class LawField:
-    """A law of an element: its place in the spec, its text and the letters it may use."""
+    """A law of an element: its place in the spec, its text and what its kind says of it."""
 
     where: str
     text: str
-    letters: tuple[str, ...]
+    mark: Letters
+
+    @property
+    def letters(self) -> tuple[str, ...]:
+        """The letters it may use besides parameters."""
+        return self.mark.names
 
     @property
     def tree(self) -> Expr:
@@ -73,10 +78,10 @@ class Condition:
 def law_fields(name: str, element: Element) -> Iterator[LawField]:
     """Yield the laws of one element."""
     for field, info in type(element).model_fields.items():
-        letters = [mark for mark in info.metadata if isinstance(mark, Letters)]
         text = getattr(element, field)
-        if letters and text is not None:
-            yield LawField(f"elements.{name}.{field}", text, letters[-1].names)
+        for mark in info.metadata:
+            if isinstance(mark, Letters) and text is not None:
+                yield LawField(f"elements.{name}.{field}", text, mark)
 
 
 def references(element: Element) -> Iterator[tuple[str, str, str]]:

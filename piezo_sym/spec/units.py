@@ -65,13 +65,16 @@ class Unit:
 def base_units(dimension: tuple[Fraction, ...]) -> str:
     """Return a dimension in SI base units, such as ``kg*m/s**2``."""
     powers = list(zip(BASES, dimension, strict=True))
-    above = [_raised(name, p) for name, p in powers if p > 0]
-    below = [_raised(name, -p) for name, p in powers if p < 0]
+    above = [raised(name, p) for name, p in powers if p > 0]
+    below = [raised(name, -p) for name, p in powers if p < 0]
     return "/".join(["*".join(above) or "1", *below])
 
 
-def _raised(name: str, power: Fraction | int) -> str:
-    return name if power == 1 else f"{name}**{power}"
+def raised(name: str, power: Fraction | int) -> str:
+    """Return a power of a unit as text."""
+    if power == 1:
+        return name
+    return f"{name}**{power}" if Fraction(power).denominator == 1 else f"{name}**({power})"
 
 
 @lru_cache(maxsize=1024)
@@ -94,9 +97,9 @@ def parse_unit(text: str, where: str = "unit", value: float | None = None) -> Un
 
 def _spelled(terms: list[tuple[str, int]]) -> str:
     first, *rest = terms
-    text = _raised(*first)
+    text = raised(*first)
     for name, power in rest:
-        text += f"*{_raised(name, power)}" if power > 0 else f"/{_raised(name, -power)}"
+        text += f"*{raised(name, power)}" if power > 0 else f"/{raised(name, -power)}"
     return text
 
 

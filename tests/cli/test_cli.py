@@ -11,7 +11,7 @@ import pytest
 import piezo_sym
 
 ROOT = Path(__file__).parents[2]
-COMMANDS = ["verify", "generate", "show", "simulate", "reproduce"]
+COMMANDS = ["new", "verify", "generate", "show", "simulate", "reproduce", "schema"]
 
 
 def test_version(call):

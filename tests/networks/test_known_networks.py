@@ -19,6 +19,8 @@ R   = { value = 2.0,   unit = "ohm" }
 C   = { value = 0.1,   unit = "F" }
 L   = { value = 0.3,   unit = "H" }
 rho = { value = 0.5,   unit = "ohm" }
+b   = { value = 0.5,   unit = "ohm/A**2" }
+g   = { value = 0.5,   unit = "A/V**3" }
 i_0 = { value = 0.1,   unit = "A" }
 m   = { value = 1.5,   unit = "kg" }
 k   = { value = 2.0,   unit = "N/m" }
@@ -30,13 +32,13 @@ V = { unit = "V" }
 w = { unit = "m/s" }
 I = { unit = "A" }
 [domain]
-assume = ["i_0 >= 0"]
+assume = ["i_0 >= 0", "R > 0", "rho >= 0", "d > 0"]
 [elements]
 body = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }
 source = { kind = "voltage_source", between = ["in", "gnd"], input = "V" }
 """
 V, W, DRAIN = 1.3, -0.4, 0.25
-P = {"R": 2.0, "C": 0.1, "L": 0.3, "rho": 0.5, "i_0": 0.1, "m": 1.5, "k": 2.0, "d": 0.7}
+P = {"R": 2.0, "C": 0.1, "L": 0.3, "rho": 0.5, "b": 0.5, "i_0": 0.1, "m": 1.5, "k": 2.0, "d": 0.7}
 
 
 def hot(S):
@@ -77,6 +79,39 @@ def bank_rates(x):
     return [heat / hot(S), *(V - P["R"] * i.sum() - drop - Q / P["C"]), i.sum()]
 
 
+def series_rates(x):
+    S, Q = x
+    v = Q / P["C"]
+    other = P["rho"] * hot(S) / 300.0
+    through, supplied = v / (P["R"] + other), (V - v) / P["R"]
+    heat = P["R"] * supplied**2 + (P["R"] + other) * through**2
+    return [heat / hot(S), supplied - through]
+
+
+def bridge_rates(x):
+    """Solve for the nodes a, b, c with the coil's current as given: conductances times heights."""
+    S, phi = x
+    R, i = P["R"], phi / P["L"]
+    links = [
+        (0, None, R),
+        (0, 1, 2 * R),
+        (0, 2, 3 * R),
+        (1, 3, 4 * R),
+        (2, 3, 5 * R),
+        (1, 2, 6 * R),
+    ]
+    matrix, drawn = np.zeros((3, 3)), np.array([V / R, 0, -i])
+    for a, b, r in links:
+        for one, other in ((a, b), (b, a)):
+            if one in (0, 1, 2):
+                matrix[one, one] += 1 / r
+                if other in (0, 1, 2):
+                    matrix[one, other] -= 1 / r
+    e = np.append(np.linalg.solve(matrix, drawn), 0)
+    heat = sum(((V if b is None else e[b]) - e[a]) ** 2 / r for a, b, r in links)
+    return [heat / hot(S), e[2]]
+
+
 CASES = {
     "an amplifier's output resistance before a capacitor": (
         amplifier('current = "v/R"'),
@@ -105,12 +140,12 @@ CASES = {
     "two resistors in series with an inductor": (
         """
         R1 = { kind = "resistor", between = ["in", "n"], current = "v/R", heats = "body" }
-        R2 = { kind = "resistor", between = ["n", "o"], voltage = "rho*i**3", heats = "body" }
+        R2 = { kind = "resistor", between = ["n", "o"], voltage = "b*i**3", heats = "body" }
         L1 = { kind = "inductor", between = ["o", "gnd"], inductance = "L", state = "phi" }
         """,
         lambda x: [
-            (P["R"] * (x[1] / P["L"]) ** 2 + P["rho"] * (x[1] / P["L"]) ** 4) / hot(x[0]),
-            V - P["R"] * x[1] / P["L"] - P["rho"] * (x[1] / P["L"]) ** 3,
+            (P["R"] * (x[1] / P["L"]) ** 2 + P["b"] * (x[1] / P["L"]) ** 4) / hot(x[0]),
+            V - P["R"] * x[1] / P["L"] - P["b"] * (x[1] / P["L"]) ** 3,
         ],
     ),
     "a current source at a voltage source": (
@@ -119,6 +154,39 @@ CASES = {
         R1 = { kind = "resistor", between = ["in", "gnd"], current = "v/R", heats = "body" }
         """,
         lambda x: [V**2 / P["R"] / hot(x[0])],
+    ),
+    "two linear resistors in series across a capacitor": (
+        """
+        R1 = { kind = "resistor", between = ["in", "c"], current = "v/R", heats = "body" }
+        C1 = { kind = "capacitor", between = ["c", "gnd"], capacitance = "C", state = "Q" }
+        R2 = { kind = "resistor", between = ["c", "n"], current = "v/R", heats = "body" }
+        R3 = { kind = "resistor", between = ["n", "gnd"], voltage = "rho*i*T/T_0", heats = "body" }
+        """,
+        series_rates,
+    ),
+    "a bridge of five resistors, driven through a sixth": (
+        """
+        R0 = { kind = "resistor", between = ["in", "a"], current = "v/R", heats = "body" }
+        R1 = { kind = "resistor", between = ["a", "b"], current = "v/(2*R)", heats = "body" }
+        R2 = { kind = "resistor", between = ["a", "c"], voltage = "3*R*i", heats = "body" }
+        R3 = { kind = "resistor", between = ["b", "gnd"], current = "v/(4*R)", heats = "body" }
+        R4 = { kind = "resistor", between = ["c", "gnd"], voltage = "5*R*i", heats = "body" }
+        R5 = { kind = "resistor", between = ["b", "c"], current = "v/(6*R)", heats = "body" }
+        L1 = { kind = "inductor", between = ["c", "gnd"], inductance = "L", state = "phi" }
+        """,
+        bridge_rates,
+    ),
+    "two dampers in series between a mass and the wall": (
+        """
+        R1 = { kind = "resistor", between = ["in", "gnd"], current = "v/R", heats = "body" }
+        m1 = { kind = "mass", at = "a", mass = "m", state = "p" }
+        d1 = { kind = "damper", between = ["a", "b"], force = "d*v", heats = "body" }
+        d2 = { kind = "damper", between = ["b", "wall"], force = "3*d*v", heats = "body" }
+        """,
+        lambda x: [
+            (V**2 / P["R"] + 0.75 * P["d"] * (x[1] / P["m"]) ** 2) / hot(x[0]),
+            -0.75 * P["d"] * x[1] / P["m"],
+        ],
     ),
     "springs in a loop": (
         """
@@ -211,20 +279,33 @@ REFUSED = {
     "two nonlinear resistors in series across a capacitor": (
         """
         R0 = { kind = "resistor", between = ["in", "c"], current = "v/R", heats = "body" }
-        R1 = { kind = "resistor", between = ["c", "n"], current = "v**3/R", heats = "body" }
-        R2 = { kind = "resistor", between = ["n", "gnd"], current = "v**3/R", heats = "body" }
+        R1 = { kind = "resistor", between = ["c", "n"], current = "g*v**3", heats = "body" }
+        R2 = { kind = "resistor", between = ["n", "gnd"], current = "g*v**3", heats = "body" }
         C1 = { kind = "capacitor", between = ["c", "gnd"], capacitance = "C" }
         """,
         "'R1', 'R2' fix each other",
     ),
-    "two linear resistors in series across a capacitor, which are not solved together yet": (
+    "a linear and a nonlinear resistor in series across a capacitor": (
         """
         R0 = { kind = "resistor", between = ["in", "c"], current = "v/R", heats = "body" }
         R1 = { kind = "resistor", between = ["c", "n"], current = "v/R", heats = "body" }
-        R2 = { kind = "resistor", between = ["n", "gnd"], voltage = "R*i", heats = "body" }
+        R2 = { kind = "resistor", between = ["n", "gnd"], voltage = "rho*i**3", heats = "body" }
         C1 = { kind = "capacitor", between = ["c", "gnd"], capacitance = "C" }
         """,
-        "'R1' and 'R2' determine each other's flow",
+        "elements.R2: 'R1', 'R2' determine each other's flow; .*put a capacitor at the node",
+    ),
+    "nine linear resistors in series across a capacitor": (
+        """
+        R0 = { kind = "resistor", between = ["in", "0"], current = "v/R", heats = "body" }
+        C1 = { kind = "capacitor", between = ["0", "gnd"], capacitance = "C" }
+        """
+        + "".join(
+            f"""
+        R{n + 1} = {{ kind = "resistor", between = ["{n}", "{n + 1 if n < 8 else "gnd"}"],
+         current = "v/R", heats = "body" }}""".replace("\n         current", " current")
+            for n in range(9)
+        ),
+        "expected at most 8 that do",
     ),
     "two masses on one node": (
         """

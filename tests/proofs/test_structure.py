@@ -14,6 +14,7 @@ n = {{ value = 2.0, unit = "1" }}
 k = {{ value = 3.0, unit = "N/m" }}
 m = {{ value = 1.0, unit = "kg" }}
 T_0 = {{ value = 300.0, unit = "K" }}
+c = {{ value = 2.0, unit = "J/K" }}
 [domain]
 assume = [{assume}]
 [elements]
@@ -24,7 +25,7 @@ lever = {{ kind = "lever", first = ["a", "wall"], second = ["b", "wall"], ratio 
 """
 
 
-def rows(assume="", ratio="n", law="T_0*exp(S)"):
+def rows(assume="", ratio="n", law="T_0*exp(S/c)"):
     report = verify(derive(parse(LEVER.format(assume=assume, ratio=ratio, law=law))))
     return {row.id: row for row in report.rows}
 
@@ -43,6 +44,6 @@ def test_a_ratio_that_is_zero_is_refuted():
     assert rows(ratio="n - n")["welldef"].verdict is Verdict.REFUTED
 
 
-@pytest.mark.parametrize("law", ["T_0*exp(-S)", "T_0"])
+@pytest.mark.parametrize("law", ["T_0*exp(-S/c)", "T_0"])
 def test_a_temperature_that_does_not_rise_is_refuted(law):
     assert rows(assume='"n > 0"', law=law)["temperature"].verdict is Verdict.REFUTED

@@ -6,11 +6,11 @@ Input: the tables of a spec, each right in itself.  Output: nothing, or one `Spe
 from __future__ import annotations
 
 from piezo_sym.spec.checks.laws import check_laws, check_references
-from piezo_sym.spec.checks.names import check_names
+from piezo_sym.spec.checks.names import check_model_name, check_names
 from piezo_sym.spec.checks.values import check_values
 from piezo_sym.spec.tables import Tables
 
-__all__ = ["check"]
+__all__ = ["check", "check_model_name"]
 
 
 def check(spec: Tables) -> None:

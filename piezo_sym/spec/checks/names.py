@@ -23,10 +23,7 @@ PREFIXES = ("y_", "supplied_", "heat_", "produced_")
 
 def check_names(spec: Tables) -> None:
     """Check the model's name, every symbol, every element's name and every unit."""
-    check_name(spec.model.name, "model.name")
-    if iskeyword(spec.model.name) or spec.model.name in IMPORTS:
-        what = f"{quote(spec.model.name)} is a word of Python's that the module would hide"
-        raise SpecError(what, "model.name", remedy=f"call it '{spec.model.name}_model'")
+    check_model_name(spec.model.name, "model.name")
     for name in spec.elements:
         check_name(name, f"elements.{name}")
     _check_case(spec.elements)
@@ -40,6 +37,21 @@ def check_names(spec: Tables) -> None:
         _check_unit(parameter.unit, given, f"parameters.{name}")
     for name, entry in spec.inputs.items():
         _check_unit(entry.unit, (entry.default,), f"inputs.{name}")
+
+
+def check_model_name(word: str, where: str) -> str:
+    """Return `word` if it can name a model, and so a generated module.
+
+    Raises
+    ------
+    SpecError
+        If it cannot be a file's name, or a module of that name would hide one of Python's.
+    """
+    check_name(word, where)
+    if iskeyword(word) or word in IMPORTS:
+        what = f"{quote(word)} is a word of Python's that the module would hide"
+        raise SpecError(what, where, remedy=f"call it '{word}_model'")
+    return word
 
 
 def _check_unit(text: str, values: tuple[float, ...], where: str) -> None:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Literal, final
+from typing import Annotated, Literal, final
 
-from piezo_sym.spec.elements.base import BodyName, Element, InputName, Law
+from piezo_sym.spec.elements.base import BodyName, Element, InputName, Law, Letters
 from piezo_sym.spec.elements.ports import Exchange, Port
 
 
@@ -18,7 +18,7 @@ class Ambient(Element):
 
     kind: Literal["ambient"] = "ambient"
     body: BodyName
-    conductance: Law
+    conductance: Annotated[Law, Letters({}, unit="W/K")]
     input: InputName
 
     def ports(self, name: str) -> tuple[Port, ...]:

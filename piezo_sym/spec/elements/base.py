@@ -7,10 +7,21 @@ class in a file of its own, with one row in the registry (`elements/__init__.py`
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, ClassVar, final
+from typing import Annotated, Any, ClassVar, Self, final
 
-from pydantic import BaseModel, ConfigDict, StrictStr, StringConstraints
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    GetJsonSchemaHandler,
+    StrictBool,
+    StrictStr,
+    StringConstraints,
+    model_validator,
+)
+from pydantic_core import CoreSchema
 
 from piezo_sym.spec.elements.ports import Port
 from piezo_sym.spec.expressions import ZERO, Cmp, Expr
@@ -20,9 +31,30 @@ from piezo_sym.spec.parse import parse_law
 @final
 @dataclass(frozen=True)
 class Letters:
-    """Marks a field as a law, and says which letters it may use besides parameters."""
+    """Marks a field as a law: the letters it may use besides parameters, and the units of all.
 
-    names: tuple[str, ...] = ()
+    Attributes
+    ----------
+    units : the unit of each letter, such as ``{"i": "A", "T": "K"}``.
+    unit : the unit of the law itself.
+    """
+
+    units: Mapping[str, str]
+    unit: str
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The letters."""
+        return tuple(self.units)
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """Return the field's JSON Schema with these letters in its description."""
+        letters = ", ".join(f"{name} [{unit}]" for name, unit in self.units.items())
+        also = f" and the letters {letters}" if letters else ""
+        text = f"A law in {self.unit}, as text, of parameters{also}."
+        return {**handler(schema), "description": text}
 
 
 @final
@@ -33,12 +65,24 @@ class Refers:
     to: str
 
 
-Node = Annotated[StrictStr, StringConstraints(pattern=r"^[A-Za-z0-9_.+-]{1,40}$")]
-Pair = tuple[Node, Node]
-Law = Annotated[StrictStr, Letters()]
-InputName = Annotated[StrictStr, Refers("input")]
-BodyName = Annotated[StrictStr, Refers("thermal_mass")]
-StateName = StrictStr | None
+Node = Annotated[
+    StrictStr,
+    StringConstraints(pattern=r"^[A-Za-z0-9_.+-]{1,40}$"),
+    Field(description="A node, any label; 'wall' (mechanical) and 'gnd' (electrical) are at rest."),
+]
+Pair = Annotated[tuple[Node, Node], Field(description="Two nodes, [first, second].")]
+Law = StrictStr  # each field adds its `Letters`
+InputName = Annotated[
+    StrictStr, Refers("input"), Field(description="Name of an input, a key of [inputs].")
+]
+BodyName = Annotated[
+    StrictStr, Refers("thermal_mass"), Field(description="Name of an element of kind thermal_mass.")
+]
+StateName = Annotated[
+    StrictStr | None,
+    Field(description="Symbol of the state; if not given, the kind's letter, '_' and the name."),
+]
+Jumps = Annotated[StrictBool, Field(description="Whether the law jumps on purpose.")]
 
 
 class Element(BaseModel, ABC):
@@ -48,8 +92,19 @@ class Element(BaseModel, ABC):
 
     #: The letter of the kind's state; empty for kinds without one.
     letter: ClassVar[str] = ""
+    #: Fields of which exactly one is to be given: a law and its inverse.
+    one_of: ClassVar[tuple[str, ...]] = ()
 
     kind: str
+
+    @model_validator(mode="after")
+    def _one_law(self) -> Self:
+        given = [field for field in self.one_of if getattr(self, field) is not None]
+        if self.one_of and len(given) != 1:
+            said = f"both {' and '.join(given)}" if given else "neither"
+            message = f"exactly one of {' and '.join(self.one_of)}; {said} given"
+            raise ValueError(message)
+        return self
 
     @abstractmethod
     def ports(self, name: str) -> tuple[Port, ...]:
@@ -77,12 +132,3 @@ def positive(law: Expr) -> Cmp:
 def state_symbol(element: Element, name: str) -> str:
     """Return the symbol of an element's state: as given, else its kind's letter and its name."""
     return getattr(element, "state", None) or f"{element.letter}_{name}"
-
-
-def exactly_one(element: Element, *fields: str) -> None:
-    """Raise unless exactly one of an element's fields is given."""
-    given = [field for field in fields if getattr(element, field) is not None]
-    if len(given) != 1:
-        said = f"both {' and '.join(given)}" if given else "neither"
-        message = f"exactly one of {' and '.join(fields)}; {said} given"
-        raise ValueError(message)

@@ -29,7 +29,7 @@ class Capacitor(Element):
 
     kind: Literal["capacitor"] = "capacitor"
     between: Pair
-    capacitance: Annotated[Law, Letters(("Q",))]
+    capacitance: Annotated[Law, Letters({"Q": "C"}, unit="F")]
     state: StateName = None
 
     def ports(self, name: str) -> tuple[Port, ...]:

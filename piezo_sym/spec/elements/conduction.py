@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Literal, final
+from typing import Annotated, Literal, final
 
-from piezo_sym.spec.elements.base import BodyName, Element, Law
+from piezo_sym.spec.elements.base import BodyName, Element, Law, Letters
 from piezo_sym.spec.elements.ports import Conductor, Port
 
 
@@ -18,7 +18,7 @@ class Conduction(Element):
 
     kind: Literal["conduction"] = "conduction"
     between: tuple[BodyName, BodyName]
-    conductance: Law
+    conductance: Annotated[Law, Letters({}, unit="W/K")]
 
     def ports(self, name: str) -> tuple[Port, ...]:
         """Return the process."""

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, final
+from typing import Annotated, ClassVar, Literal, final
 
-from pydantic import StrictBool, model_validator
-
-from piezo_sym.spec.elements.base import BodyName, Element, Law, Letters, Pair, exactly_one
+from piezo_sym.spec.elements.base import BodyName, Element, Jumps, Law, Letters, Pair
 from piezo_sym.spec.elements.ports import Domain, Port, Resistor, Variable
 
 
@@ -19,17 +17,14 @@ class Damper(Element):
     it; force times velocity heats a body.
     """
 
+    one_of: ClassVar[tuple[str, ...]] = ("force", "velocity")
+
     kind: Literal["damper"] = "damper"
     between: Pair
-    force: Annotated[Law | None, Letters(("v", "T"))] = None
-    velocity: Annotated[Law | None, Letters(("f", "T"))] = None
+    force: Annotated[Law | None, Letters({"v": "m/s", "T": "K"}, unit="N")] = None
+    velocity: Annotated[Law | None, Letters({"f": "N", "T": "K"}, unit="m/s")] = None
     heats: BodyName
-    discontinuous: StrictBool = False
-
-    @model_validator(mode="after")
-    def _one_law(self) -> Damper:
-        exactly_one(self, "force", "velocity")
-        return self
+    discontinuous: Jumps = False
 
     def ports(self, name: str) -> tuple[Port, ...]:
         """Return the process: the force through it given the velocity, or the reverse."""

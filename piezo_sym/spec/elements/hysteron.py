@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar, Literal, final
 
-from pydantic import Field, StrictBool, StrictInt
+from pydantic import Field, StrictInt
 
 from piezo_sym.spec.elements.base import (
     BodyName,
     Element,
+    Jumps,
     Law,
     Letters,
     Pair,
@@ -20,6 +21,10 @@ from piezo_sym.spec.elements.ports import Domain, Port, Resistor, Storage, Varia
 from piezo_sym.spec.expressions import Cmp, Div, Sym
 
 MAX_COUNT = 1_000_000
+Count = Annotated[
+    StrictInt,
+    Field(ge=1, le=MAX_COUNT, description="Size of the bank; without it there is one hysteron."),
+]
 
 
 @final
@@ -35,11 +40,11 @@ class Hysteron(Element):
 
     kind: Literal["hysteron"] = "hysteron"
     between: Pair
-    count: Annotated[StrictInt, Field(ge=1, le=MAX_COUNT)] | None = None
-    inductance: Annotated[Law, Letters(("phi",))]
-    voltage: Annotated[Law, Letters(("i", "T"))]
+    count: Count | None = None
+    inductance: Annotated[Law, Letters({"phi": "Wb"}, unit="H")]
+    voltage: Annotated[Law, Letters({"i": "A", "T": "K"}, unit="V")]
     heats: BodyName
-    discontinuous: StrictBool = False
+    discontinuous: Jumps = False
     state: StateName = None
 
     @property

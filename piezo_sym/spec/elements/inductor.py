@@ -29,7 +29,7 @@ class Inductor(Element):
 
     kind: Literal["inductor"] = "inductor"
     between: Pair
-    inductance: Annotated[Law, Letters(("phi",))]
+    inductance: Annotated[Law, Letters({"phi": "Wb"}, unit="H")]
     state: StateName = None
 
     def ports(self, name: str) -> tuple[Port, ...]:

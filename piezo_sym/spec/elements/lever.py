@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Literal, final
+from typing import Annotated, Literal, final
 
-from piezo_sym.spec.elements.base import Element, Law, Pair
+from piezo_sym.spec.elements.base import Element, Law, Letters, Pair
 from piezo_sym.spec.elements.ports import Coupling, Domain, Port
 
 
@@ -15,7 +15,7 @@ class Lever(Element):
     kind: Literal["lever"] = "lever"
     first: Pair
     second: Pair
-    ratio: Law
+    ratio: Annotated[Law, Letters({}, unit="1")]
 
     def ports(self, name: str) -> tuple[Port, ...]:
         """Return the coupling."""

@@ -29,7 +29,7 @@ class Mass(Element):
 
     kind: Literal["mass"] = "mass"
     at: Node
-    mass: Annotated[Law, Letters(("p",))]
+    mass: Annotated[Law, Letters({"p": "kg*m/s"}, unit="kg")]
     state: StateName = None
 
     def ports(self, name: str) -> tuple[Port, ...]:

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, final
+from typing import Annotated, ClassVar, Literal, final
 
-from pydantic import StrictBool, model_validator
-
-from piezo_sym.spec.elements.base import BodyName, Element, Law, Letters, Pair, exactly_one
+from piezo_sym.spec.elements.base import BodyName, Element, Jumps, Law, Letters, Pair
 from piezo_sym.spec.elements.ports import Domain, Port, Variable
 from piezo_sym.spec.elements.ports import Resistor as ResistorPort
 
@@ -20,17 +18,14 @@ class Resistor(Element):
     relative to its second; voltage times current heats a body.
     """
 
+    one_of: ClassVar[tuple[str, ...]] = ("voltage", "current")
+
     kind: Literal["resistor"] = "resistor"
     between: Pair
-    voltage: Annotated[Law | None, Letters(("i", "T"))] = None
-    current: Annotated[Law | None, Letters(("v", "T"))] = None
+    voltage: Annotated[Law | None, Letters({"i": "A", "T": "K"}, unit="V")] = None
+    current: Annotated[Law | None, Letters({"v": "V", "T": "K"}, unit="A")] = None
     heats: BodyName
-    discontinuous: StrictBool = False
-
-    @model_validator(mode="after")
-    def _one_law(self) -> Resistor:
-        exactly_one(self, "voltage", "current")
-        return self
+    discontinuous: Jumps = False
 
     def ports(self, name: str) -> tuple[Port, ...]:
         """Return the process: the voltage across it given the current, or the reverse."""

@@ -30,8 +30,8 @@ class Spring(Element):
 
     kind: Literal["spring"] = "spring"
     between: Pair
-    stiffness: Annotated[Law, Letters(("q",))]
-    rest: Law = "0"
+    stiffness: Annotated[Law, Letters({"q": "m"}, unit="N/m")]
+    rest: Annotated[Law, Letters({}, unit="m")] = "0"
     state: StateName = None
 
     def ports(self, name: str) -> tuple[Port, ...]:

@@ -27,7 +27,7 @@ class ThermalMass(Element):
     letter: ClassVar[str] = "S"
 
     kind: Literal["thermal_mass"] = "thermal_mass"
-    temperature: Annotated[Law, Letters(("S",))]
+    temperature: Annotated[Law, Letters({"S": "J/K"}, unit="K")]
     state: StateName = None
 
     def ports(self, name: str) -> tuple[Port, ...]:

@@ -19,7 +19,7 @@ class Transducer(Element):
     kind: Literal["transducer"] = "transducer"
     electrical: Pair
     mechanical: Pair
-    ratio: Annotated[Law, Letters(("T",))]
+    ratio: Annotated[Law, Letters({"T": "K"}, unit="C/m")]
     temperature: Annotated[BodyName | None, Refers("thermal_mass")] = None
 
     def ports(self, name: str) -> tuple[Port, ...]:

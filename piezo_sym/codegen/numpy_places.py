@@ -1,0 +1,86 @@
+"""Where rows stand when banks have sizes that are known only at run time.
+
+Input: slots.  Output: index text, such as ``3 : 3 + hysteron_count``.  With more banks than one
+can add up, the end of each bank's rows gets a name, defined once at the head of a function; text
+then grows with the number of banks, not with its square.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import final
+
+from piezo_sym.algebra.lanes import Slot
+from piezo_sym.spec.names import fresh
+
+#: Sizes of so many banks are spelled out where they are used.
+SPELLED = 2
+
+
+@final
+@dataclass(frozen=True)
+class Places:
+    """The places of slots in a vector.
+
+    Attributes
+    ----------
+    slots : one a row, or one a bank of rows.
+    ends : the name of each bank's end, by the bank's slot; empty where sizes are spelled out.
+    """
+
+    slots: Sequence[Slot]
+    ends: dict[int, str] = field(default_factory=dict)
+
+    def position(self, n: int) -> str:
+        """Return the place of slot n's first row; that of n = len(slots) is the size."""
+        banks = [m for m in range(n) if self.slots[m].bank]
+        if not self.ends or not banks:
+            return _spelled(self.slots[:n])
+        return _sum(n - banks[-1] - 1, [self.ends[banks[-1]]])
+
+    def bounds(self, n: int) -> tuple[str, str]:
+        """Return the places of slot n's first row, and of that after its last."""
+        return self.position(n), self.position(n + 1)
+
+    def index(self, n: int) -> str:
+        """Return the index of slot n: a number, or a slice for a bank."""
+        first, last = self.bounds(n)
+        return f"{first} : {last}" if self.slots[n].bank else first
+
+    @property
+    def size(self) -> str:
+        """The number of rows."""
+        return self.position(len(self.slots))
+
+    def definitions(self) -> Iterator[str]:
+        """Yield the lines that define the ends, in order."""
+        before: list[str] = []
+        passed = 0
+        for n, name in self.ends.items():
+            yield f"{name} = {_sum(n - passed, [*before, f'{self.slots[n].bank}_count'])}"
+            before, passed = [name], n + 1
+
+
+def places(slots: Sequence[Slot], word: str, taken: Collection[str]) -> Places:
+    """Return the places of slots; ends are named after `word` and their bank."""
+    banks = {n: slot for n, slot in enumerate(slots) if slot.bank}
+    if len(banks) <= SPELLED:
+        return Places(slots)
+    return Places(slots, {n: fresh(f"{word}_{slot.label}", taken) for n, slot in banks.items()})
+
+
+def size_in_words(slots: Sequence[Slot]) -> str:
+    """Return the number of rows, for a docstring."""
+    banks = sum(slot.bank is not None for slot in slots)
+    text = f"{len(slots) - banks} + the sizes of {banks} banks"
+    return _spelled(slots) if banks <= SPELLED else text
+
+
+def _spelled(slots: Sequence[Slot]) -> str:
+    fixed = sum(slot.bank is None for slot in slots)
+    return _sum(fixed, [f"{slot.bank}_count" for slot in slots if slot.bank])
+
+
+def _sum(fixed: int, sizes: Sequence[str]) -> str:
+    return " + ".join([*([str(fixed)] if fixed or not sizes else []), *sizes])

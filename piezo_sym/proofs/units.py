@@ -1,0 +1,162 @@
+"""Units: every law, input, condition and initial value of a spec has the unit that its row needs.
+
+Input: an `IPHS`, for its spec.  Output: one row PROVED, or one row REFUTED a fault.  The equations
+join what the ports give by sums of like quantities, so they fit exactly if each law fits its kind.
+
+A fault is one linear equation between the dimensions of names that does not hold.  Its remedy is
+solved for: a change of the unit of one parameter that mends every fault at once, and else one that
+mends this fault and breaks nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import final
+
+from piezo_sym.iphs import IPHS
+from piezo_sym.proofs.report import Row, Verdict
+from piezo_sym.spec.dimensions import (
+    NONE,
+    Dimension,
+    Match,
+    Powers,
+    dimension,
+    faults,
+    times,
+)
+from piezo_sym.spec.expressions import Cmp, Expr, Neg, Node, Num, Sym, names, walk
+from piezo_sym.spec.model import Model
+from piezo_sym.spec.places import Place, places
+from piezo_sym.spec.tables import condition_text
+from piezo_sym.spec.text import spell
+from piezo_sym.spec.unit_text import quantity, unit_text
+
+STATEMENT = "every term of every equation has its row's unit"
+MOST_TERM = 60
+MOST_CANDIDATES = 3
+
+
+@final
+@dataclass(frozen=True)
+class Check:
+    """A rule at its place, and by what its left part would have to be multiplied to keep it."""
+
+    place: Place
+    rule: Match
+    excess: Powers
+    gap: Dimension
+
+
+def units(iphs: IPHS) -> Iterator[Row]:
+    """Yield one row if every unit fits, else a row for each fault."""
+    model = iphs.model
+    spots = tuple(places(model))
+    checks = tuple(_check(place, rule) for place in spots for rule in place.rules())
+    wrong = [_check(place, rule) for place in spots for rule in faults(place.rules(), place.words)]
+    if not wrong:
+        yield Row("units", "", STATEMENT, Verdict.PROVED)
+    for fault in wrong:
+        reason = f"{fault.place.where}: {_finding(fault, model)}; {_remedy(fault, checks)}"
+        yield Row("units", fault.place.element, STATEMENT, Verdict.REFUTED, None, reason)
+
+
+def _check(place: Place, rule: Match) -> Check:
+    return Check(place, rule, rule.excess, rule.gap(place.words))
+
+
+def _finding(fault: Check, model: Model) -> str:
+    """Return what is wrong: the smallest term, its unit, and what is needed."""
+    rule = fault.rule
+    left = f"{_short(rule.left)} {_unit(rule.left, fault.place, model)}"
+    if rule.right is not None:
+        right = f"{_short(rule.right)} {_unit(rule.right, fault.place, model)}"
+        return f"{left} and {right} in {_short(rule.node)}, equal units are needed"
+    if not rule.whole:
+        return f"{left} in {_short(rule.node)}, a number without unit is needed"
+    return f"{left}, {quantity(rule.needed)} is needed"
+
+
+def _unit(term: Expr, place: Place, model: Model) -> str:
+    """Return "is A/K", the unit of a parameter or input as the spec spells it."""
+    found = dimension(term, place.words)
+    if found is None or found == NONE:
+        return "has no unit"
+    name = term.name if isinstance(term, Sym) and term.name not in place.fixed else ""
+    entry = model.parameters.get(name) or model.inputs.get(name)
+    return f"is {entry.dimension.si if entry else unit_text(found)}"
+
+
+def _remedy(fault: Check, checks: tuple[Check, ...]) -> str:
+    """Return what to change: the unit of a parameter, a number, an input, or the law."""
+    suspects = [name for name in fault.place.given if _power(name, fault)]
+    fits = {name: _fitting(name, checks) for name in suspects}
+    if not any(fits.values()):  # two things are wrong: leave alone what the name has no part in
+        own = {name: [c for c in checks if _power(name, c)] for name in suspects}
+        fits = {name: _fitting(name, own[name]) for name in suspects}
+    offers = [f"{name}: {unit_text(fit)} would fit" for name, fit in fits.items() if fit]
+    if offers:
+        return f"check the unit of {', or of '.join(offers[:MOST_CANDIDATES])}"
+    return _other_remedy(fault, checks)
+
+
+def _power(name: str, check: Check) -> Fraction:
+    return Fraction(0) if name in check.place.fixed else check.excess.get(name, Fraction(0))
+
+
+def _fitting(name: str, checks: Iterable[Check]) -> Dimension | None:
+    """Return the unit of `name` with which every check holds, or None if there is none."""
+    found = None
+    for check in checks:
+        power = _power(name, check)
+        if not power:
+            if check.gap != NONE:
+                return None
+            continue
+        fit = times(check.place.given[name], check.gap, 1 / power)
+        if found not in (None, fit):
+            return None
+        found = fit
+    return found
+
+
+def _other_remedy(fault: Check, checks: tuple[Check, ...]) -> str:
+    """Return what to change where no one parameter's unit would mend the fault."""
+    rule, words = fault.rule, fault.place.words
+    for part, other in ((rule.right, rule.left), (rule.left, rule.right)):
+        if part is not None and not names(part):
+            whole = rule.needed if other is None else dimension(other, words)
+            return f"make {_short(part)} a parameter in {unit_text(whole or NONE)}"
+    if isinstance(fault.place.tree, Sym) and fault.place.tree.name in fault.place.given:
+        return _own_input(fault, fault.place.tree.name, checks)
+    if rule.whole:
+        return f"multiply {_short(rule.left)} by {quantity(fault.gap)}{_numbers(rule.left)}"
+    part, size = rule.right or rule.left, times(NONE, fault.gap, -1)
+    verb = "divide" if rule.right is None else "multiply"
+    return f"{verb} {_short(part)} by {quantity(size)}{_numbers(part)}"
+
+
+def _own_input(fault: Check, name: str, checks: tuple[Check, ...]) -> str:
+    """Return what to do about an input, or a law that is one parameter, with several uses."""
+    others = [
+        check.place.where
+        for check in checks
+        if check.place.tree == fault.place.tree and check.rule.needed != fault.rule.needed
+    ]
+    wanted = f"one in {unit_text(fault.rule.needed)} of its own here"
+    used = f"{name} is used in {', '.join(others)} with another unit; " if others else ""
+    return f"{used}give {wanted}"
+
+
+def _numbers(term: Expr) -> str:
+    """Return a reminder that numbers in a law have no unit, if it has any."""
+    found = next((node for node in walk(term) if isinstance(node, Num) and node.value), None)
+    return f", or make {_short(found)} a parameter with its unit" if found else ""
+
+
+def _short(node: Node) -> str:
+    """Return a term as the user spelled it, cut if it is long."""
+    bare = node.arg if isinstance(node, Neg) else node
+    text = condition_text(bare) if isinstance(bare, Cmp) else spell(bare)
+    return text if len(text) <= MOST_TERM else f"{text[: MOST_TERM - 3]}..."

@@ -1,0 +1,196 @@
+"""Dimensions of laws: which parts must have equal units, and which do not.
+
+Input: a tree, and the dimension of each name in it.  Output: its dimension, and the `Match`es that
+fail.  A dimension is a vector of powers of the base units of `spec.units.BASES`, so the dimension
+of a product of powers is linear in those of its names: `powers` gives the coefficients, and what a
+rule asks for is one linear equation.  The rules:
+
+    a + b, min, max, deadzone, saturate, a if c else b, a < b     equal units
+    exp log sin cos tanh expm1                                    an argument without unit, no unit
+    sign                                                          any argument, no unit
+    abs, -a                                                       keep
+    a*b, a/b, a**(p/q), sqrt                                      add, subtract, multiply, halve
+
+The literal 0 fits any unit, and so does what is 0 times something; other literals have none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TypeAlias, final
+
+from piezo_sym.spec.expressions import (
+    Add,
+    Call,
+    Cmp,
+    Div,
+    Expr,
+    If,
+    LaneSum,
+    Mul,
+    Neg,
+    Node,
+    Num,
+    Pow,
+    Sym,
+    children,
+    walk,
+)
+from piezo_sym.spec.units import BASES
+
+Dimension: TypeAlias = tuple[Fraction, ...]
+Powers: TypeAlias = Mapping[str, Fraction]
+
+NONE: Dimension = (Fraction(0),) * len(BASES)
+HALF = Fraction(1, 2)
+#: Functions whose argument and value have no unit.
+PURE = frozenset({"exp", "expm1", "log", "sin", "cos", "tanh"})
+#: Functions whose arguments and value have one unit.
+EQUAL = frozenset({"min", "max", "deadzone", "saturate"})
+
+
+def times(left: Dimension, right: Dimension, power: Fraction | int = 1) -> Dimension:
+    """Return the dimension of ``left * right**power``."""
+    return tuple(a + power * b for a, b in zip(left, right, strict=True))
+
+
+@final
+@dataclass(frozen=True)
+class Match:
+    """One rule at one place of a tree: two dimensions that must be equal.
+
+    Attributes
+    ----------
+    node : the smallest term in which they meet.
+    left : the part whose dimension is looked at.
+    right : the part that it must match; None if it must have the dimension `needed`.
+    needed : the dimension of left over right.
+    """
+
+    node: Node
+    left: Expr
+    right: Expr | None = None
+    needed: Dimension = NONE
+
+    @property
+    def whole(self) -> bool:
+        """Whether this is about a law as a whole, not about a part of it."""
+        return self.left == self.node
+
+    @property
+    def excess(self) -> Powers:
+        """The powers of each name in left over right; names that cancel are left out."""
+        right = {} if self.right is None else powers(self.right) or {}
+        return _product(powers(self.left) or {}, right, Fraction(-1))
+
+    def gap(self, words: Mapping[str, Dimension]) -> Dimension:
+        """Return what left over right would have to be multiplied by; `NONE` if they match."""
+        if powers(self.left) is None:
+            return NONE
+        return times(self.needed, of_powers(self.excess, words), -1)
+
+
+def _product(left: Powers, right: Powers, power: Fraction) -> Powers:
+    names = dict.fromkeys([*left, *right])
+    total = {name: left.get(name, Fraction(0)) + power * right.get(name, 0) for name in names}
+    return {name: value for name, value in total.items() if value}
+
+
+def of_powers(factors: Powers, words: Mapping[str, Dimension]) -> Dimension:
+    """Return the dimension of a product of powers of names."""
+    total = NONE
+    for name, power in factors.items():
+        total = times(total, words[name], power)
+    return total
+
+
+def dimension(node: Expr, words: Mapping[str, Dimension]) -> Dimension | None:
+    """Return the dimension of a tree without faults, or None if it is zero and fits any."""
+    factors = powers(node)
+    return None if factors is None else of_powers(factors, words)
+
+
+def powers(node: Expr) -> Powers | None:
+    """Return the dimension of a tree as powers of its names, or None if it is zero and fits any.
+
+    Where parts must match, the first that does not fit any dimension speaks for all.
+    """
+    match node:
+        case Num(value):
+            return None if value == 0 else {}
+        case Sym(name):
+            return {name: Fraction(1)}
+        case Neg(arg) | LaneSum(arg, _):
+            return powers(arg)
+        case Add(terms):
+            return _first(terms)
+        case If(then, _, other):
+            return _first((then, other))
+        case Mul(left, right):
+            return _joined(left, right, Fraction(1))
+        case Div(left, right):
+            return _joined(left, right, Fraction(-1))
+        case Pow(base, exponent):
+            return _raised(base, exponent)
+        case Call(function, args):
+            return _called(function, args)
+
+
+def _first(parts: Iterable[Expr]) -> Powers | None:
+    return next((found for found in map(powers, parts) if found is not None), None)
+
+
+def _joined(left: Expr, right: Expr, power: Fraction) -> Powers | None:
+    first, second = powers(left), powers(right)
+    return None if first is None or second is None else _product(first, second, power)
+
+
+def _raised(base: Expr, exponent: Fraction) -> Powers | None:
+    if exponent == 0:
+        return {}
+    inner = powers(base)
+    return None if inner is None else {name: power * exponent for name, power in inner.items()}
+
+
+def _called(function: str, args: tuple[Expr, ...]) -> Powers | None:
+    if function in PURE or function == "sign":
+        return {}
+    return _raised(args[0], HALF) if function == "sqrt" else _first(args)
+
+
+def matches(node: Node) -> Iterator[Match]:
+    """Yield every rule that the tree's parts must keep, innermost first."""
+    for part in children(node):
+        yield from matches(part)
+    match node:
+        case Call(function, (arg,)) if function in PURE:
+            yield Match(node, arg)
+        case Add(parts):
+            yield from _equal(node, parts)
+        case Call(function, parts) if function in EQUAL:
+            yield from _equal(node, parts)
+        case If(left, _, right) | Cmp(_, left, right):
+            yield from _equal(node, (left, right))
+
+
+def _equal(node: Node, parts: tuple[Expr, ...]) -> Iterator[Match]:
+    known = [part for part in parts if powers(part) is not None]
+    for part in known[1:]:
+        yield Match(node, known[0], part)
+
+
+def faults(rules: Iterable[Match], words: Mapping[str, Dimension]) -> tuple[Match, ...]:
+    """Return the rules that fail, one a term, but for those around a term that fails already."""
+    found: dict[Node, Match] = {}
+    for rule in rules:
+        if rule.gap(words) != NONE and not any(_around(rule, inner) for inner in found):
+            found.setdefault(rule.node, rule)
+    return tuple(found.values())
+
+
+def _around(rule: Match, inner: Node) -> bool:
+    """Return whether a rule's parts have a faulty term inside; their dimension is a guess."""
+    parts = (rule.node,) if rule.whole else children(rule.node)
+    return any(part == inner for top in parts for part in walk(top))

@@ -1,0 +1,111 @@
+"""Where a spec says something that has a unit: laws, inputs, conditions, initial values.
+
+Input: the tables of a spec.  Output: a `Place` each: the tree, the dimension of every name in it,
+and the dimension that it must have.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import final
+
+from piezo_sym.spec.dimensions import Dimension, Match, matches
+from piezo_sym.spec.elements.base import state_symbol
+from piezo_sym.spec.elements.ports import Exchange, Source
+from piezo_sym.spec.expressions import Cmp, Expr, Node, Sym
+from piezo_sym.spec.parse import parse_condition, parse_law
+from piezo_sym.spec.tables import Tables, law_fields, temperatures
+from piezo_sym.spec.units import parse_unit
+
+
+@final
+@dataclass(frozen=True)
+class Place:
+    """One law, input, condition or initial value of a spec.
+
+    Attributes
+    ----------
+    where : its place in the spec, such as ``elements.damper.force``.
+    element : the element it belongs to; empty for conditions and initial values.
+    tree : what stands there.
+    given : the dimensions of the parameters and inputs in its reach; a user may change these.
+    fixed : the dimensions of letters, states and temperatures; they go before those given.
+    needed : the dimension that a law must have; None for a condition.
+    """
+
+    where: str
+    element: str
+    tree: Node
+    given: Mapping[str, Dimension]
+    fixed: Mapping[str, Dimension]
+    needed: Dimension | None
+
+    @property
+    def words(self) -> Mapping[str, Dimension]:
+        """The dimension of every name."""
+        return {**self.given, **self.fixed}
+
+    def rules(self) -> tuple[Match, ...]:
+        """Return what its units must keep, innermost first, the whole last."""
+        inner = tuple(matches(self.tree))
+        if self.needed is None or isinstance(self.tree, Cmp):
+            return inner
+        return (*inner, Match(self.tree, self.tree, None, self.needed))
+
+
+def places(spec: Tables) -> Iterator[Place]:
+    """Yield every place of a spec that has a unit, elements first."""
+    parameters = {name: p.dimension.dimension for name, p in spec.parameters.items()}
+    given = parameters | {name: u.dimension.dimension for name, u in spec.inputs.items()}
+    for name in spec.elements:
+        yield from _laws(spec, name, parameters)
+        yield from _inputs(spec, name, given)
+    yield from _conditions(spec, given)
+    yield from _starts(spec, given)
+
+
+def _laws(spec: Tables, name: str, given: Mapping[str, Dimension]) -> Iterator[Place]:
+    for law in law_fields(name, spec.elements[name]):
+        letters = {letter: _dimension(unit) for letter, unit in law.mark.units.items()}
+        yield Place(law.where, name, law.tree, given, letters, _dimension(law.mark.unit))
+
+
+def _inputs(spec: Tables, name: str, given: Mapping[str, Dimension]) -> Iterator[Place]:
+    for port in spec.elements[name].ports(name):
+        if isinstance(port, Source | Exchange):
+            needed = _dimension(port.units[0] if isinstance(port, Source) else "K")
+            yield Place(f"elements.{name}.input", name, Sym(port.input), given, {}, needed)
+
+
+def _conditions(spec: Tables, given: Mapping[str, Dimension]) -> Iterator[Place]:
+    """Yield what the spec assumes; what kinds add compares a law with 0, which fits any unit."""
+    fixed = state_dimensions(spec) | dict.fromkeys(temperatures(spec), _dimension("K"))
+    for n, text in enumerate(spec.domain.assume):
+        where = f"domain.assume[{n}]"
+        yield Place(where, "", parse_condition(text, where), given, fixed, None)
+
+
+def _starts(spec: Tables, given: Mapping[str, Dimension]) -> Iterator[Place]:
+    """Yield the initial values given as laws; plain numbers are in the state's SI unit."""
+    needed = state_dimensions(spec)
+    for symbol, start in spec.initial.items():
+        where = f"initial.{symbol}"
+        for part in start if isinstance(start, tuple) else (start,):
+            if isinstance(part, str):
+                tree: Expr = parse_law(part, where)
+                yield Place(where, "", tree, given, {}, needed[symbol])
+
+
+def state_dimensions(spec: Tables) -> dict[str, Dimension]:
+    """Return the dimension of each state: that of its kind's letter."""
+    return {
+        state_symbol(element, name): _dimension(law.mark.units[element.letter])
+        for name, element in spec.elements.items()
+        for law in law_fields(name, element)
+        if element.letter and element.letter in law.mark.units
+    }
+
+
+def _dimension(unit: str) -> Dimension:
+    return parse_unit(unit).dimension

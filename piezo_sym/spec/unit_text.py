@@ -1,0 +1,101 @@
+"""Dimensions in words: short unit texts, and what the quantities are called.
+
+Input: a dimension.  Output: text such as ``A/K`` or ``a voltage [V]``.  A unit is spelled as a
+product and quotient of at most three common units, the shortest first, else in base units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from functools import cache
+from itertools import combinations, product
+
+from piezo_sym.spec.dimensions import NONE, Dimension
+from piezo_sym.spec.units import BASES, base_units, parse_unit, raised
+
+#: What is spelled like this although a text of fewer units exists.
+USUAL = ("N*s/m", "N/m", "kg*m/s", "C/m")
+#: What has no other base unit is spelled in these: ``m**2/s**2``, not ``J/kg``.
+PLAIN = frozenset({"m", "s", "K"})
+#: The units texts are made of, best first.
+PARTS = ("V", "A", "N", "W", "J", "C", "ohm", "F", "H", "Wb", "Pa", "m", "s", "kg", "K")
+MOST_PARTS = 3
+SMALL, LARGE = (1, -1, 2, -2), (1, -1, 2, -2, 3, -3, 4, -4)
+
+#: What a quantity in a unit is called.
+QUANTITIES: Mapping[str, str] = {
+    "V": "a voltage",
+    "A": "a current",
+    "N": "a force",
+    "m/s": "a velocity",
+    "K": "a temperature",
+    "J/K": "an entropy",
+    "C": "a charge",
+    "Wb": "a flux linkage",
+    "m": "a length",
+    "s": "a time",
+    "kg": "a mass",
+    "kg*m/s": "a momentum",
+    "N/m": "a stiffness",
+    "F": "a capacitance",
+    "H": "an inductance",
+    "ohm": "a resistance",
+    "C/m": "a transducer ratio",
+    "W/K": "a heat conductance",
+    "W": "a power",
+    "1": "a number without unit",
+}
+
+
+@cache
+def unit_text(dimension: Dimension) -> str:
+    """Return a short text for a dimension, such as ``ohm*K``; ``1`` if there is none."""
+    if {name for name, power in zip(BASES, dimension, strict=True) if power} <= PLAIN:
+        return base_units(dimension)
+    return _spellings().get(dimension) or base_units(dimension)
+
+
+@cache
+def quantity(dimension: Dimension) -> str:
+    """Return what a quantity is called, with its unit, such as ``a voltage [V]``."""
+    for text, words in QUANTITIES.items():
+        if parse_unit(text).dimension == dimension:
+            return words if dimension == NONE else f"{words} [{text}]"
+    return f"a quantity in {unit_text(dimension)}"
+
+
+@cache
+def _spellings() -> Mapping[tuple[Fraction | int, ...], str]:
+    """Return the first, that is the shortest, text of each dimension that has one."""
+    found: dict[tuple[Fraction | int, ...], str] = {}
+    for text in USUAL:
+        found.setdefault(parse_unit(text).dimension, text)
+    units = [(name, [int(p) for p in parse_unit(name).dimension]) for name in PARTS]
+    for powers in _powers():
+        chosen = [(units[n], power) for n, power in powers]
+        total = tuple(sum(d[k] * power for (_, d), power in chosen) for k in range(len(BASES)))
+        found.setdefault(total, _product([(name, power) for (name, _), power in chosen]))
+    return found
+
+
+def _powers() -> list[tuple[tuple[int, int], ...]]:
+    """Return which powers of which parts to try, the simplest first."""
+    found = [
+        tuple(zip(parts, powers, strict=True))
+        for size in range(1, MOST_PARTS + 1)
+        for parts in combinations(range(len(PARTS)), size)
+        for powers in product(SMALL if size == MOST_PARTS else LARGE, repeat=size)
+    ]
+    return sorted(found, key=_length)
+
+
+def _length(powers: tuple[tuple[int, int], ...]) -> tuple[int, int, int]:
+    size = sum(abs(power) for _, power in powers)
+    return len(powers), size, sum(power < 0 for _, power in powers)
+
+
+def _product(powers: list[tuple[str, int]]) -> str:
+    above = [raised(name, power) for name, power in powers if power > 0]
+    below = [raised(name, -power) for name, power in powers if power < 0]
+    return "/".join(["*".join(above) or "1", *below])

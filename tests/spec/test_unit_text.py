@@ -1,0 +1,93 @@
+"""Units in words, and the units that the kinds give their laws."""
+
+import ast
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from spec_laws import steady
+
+import piezo_sym.spec.elements as kinds
+from piezo_sym.spec.dimensions import NONE, times
+from piezo_sym.spec.elements import KINDS
+from piezo_sym.spec.elements.base import Letters
+from piezo_sym.spec.unit_text import PARTS, QUANTITIES, quantity, unit_text
+from piezo_sym.spec.units import parse_unit
+
+
+@steady
+@given(powers=st.lists(st.integers(-4, 4), min_size=7, max_size=7))
+def test_the_text_of_a_unit_is_that_unit(powers):
+    size = tuple(Fraction(p) for p in powers)
+    assert parse_unit(unit_text(size)).dimension == size
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["A/K", "ohm*K", "W/K", "J/K", "W/m**2/K", "N*s/m", "C/m", "K/J", "m/s", "kg*m/s", "1/s", "1"],
+)
+def test_units_people_use_are_spelled_as_people_do(text):
+    assert unit_text(parse_unit(text).dimension) == text
+
+
+@pytest.mark.parametrize("text", PARTS)
+def test_a_named_unit_is_spelled_by_its_name(text):
+    assert unit_text(parse_unit(text).dimension) == text
+
+
+def test_quantities_have_names_with_their_units():
+    assert quantity(parse_unit("kg*m**2/s**3/A").dimension) == "a voltage [V]"
+    assert quantity(NONE) == "a number without unit"
+    assert quantity(parse_unit("A/K").dimension) == "a quantity in A/K"
+    assert len({parse_unit(unit).dimension for unit in QUANTITIES}) == len(QUANTITIES)
+
+
+# What the kinds say of their laws.
+
+SOURCES = sorted(Path(kinds.__file__).parent.glob("*.py"))
+LETTERS = {"i": "A", "f": "N", "T": "K", "S": "J/K", "phi": "Wb", "q": "m", "Q": "C", "p": "kg*m/s"}
+
+
+def marks(kind):
+    fields = KINDS[kind].model_fields.items()
+    return {f: m for f, info in fields for m in info.metadata if isinstance(m, Letters)}
+
+
+def law_fields_of(source):
+    """Yield (field, annotation) of each field in a source that is declared to be a law."""
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.AnnAssign):
+            words = {n.id for n in ast.walk(node.annotation) if isinstance(n, ast.Name)}
+            if "Law" in words:
+                yield node.target.id, words
+
+
+def test_no_law_field_lacks_its_unit():
+    declared = [pair for path in SOURCES for pair in law_fields_of(path.read_text())]
+    assert len(declared) == sum(len(marks(kind)) for kind in KINDS) == 17
+    assert [field for field, words in declared if "Letters" not in words] == []
+    assert [f for f, words in law_fields_of("class A:\n    x: Law = '0'") if "Letters" not in words]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_kind_gives_its_laws_and_letters_known_units(kind):
+    for field, mark in marks(kind).items():
+        assert quantity(parse_unit(mark.unit).dimension) in {
+            f"{words} [{unit}]" if unit != "1" else words for unit, words in QUANTITIES.items()
+        }, field
+        for letter, unit in mark.units.items():
+            assert unit == LETTERS.get(letter) or (letter == "v" and unit in {"V", "m/s"})
+    if KINDS[kind].letter:
+        assert any(KINDS[kind].letter in mark.units for mark in marks(kind).values())
+
+
+def test_the_product_of_a_dissipative_law_and_its_letter_is_a_power():
+    watt = parse_unit("W").dimension
+    for kind in ("damper", "resistor", "hysteron"):
+        for mark in marks(kind).values():
+            (letter,) = set(mark.units) - {"T", "phi"} or {""}
+            if letter:
+                sizes = parse_unit(mark.unit).dimension, parse_unit(mark.units[letter]).dimension
+                assert times(*sizes) == watt
