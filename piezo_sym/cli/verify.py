@@ -69,6 +69,3 @@ def _print(report: Report) -> None:
         if row.reason:
             text = f"{row.id}: {row.reason}" + (f"\n  at {at}" if at else "")
             console().print(text, markup=False, highlight=False)
-    from piezo_sym.proofs.report import UNCHECKED
-
-    console().print(f"  not checked yet: {UNCHECKED}\n", markup=False, highlight=False)

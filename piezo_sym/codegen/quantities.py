@@ -12,8 +12,8 @@ from typing import final
 
 import sympy as sp
 
+from piezo_sym.algebra.coefficients import coefficient
 from piezo_sym.algebra.lanes import LaneMatrix, Slot
-from piezo_sym.codegen.coefficients import coefficient
 from piezo_sym.codegen.excess import with_excess
 from piezo_sym.codegen.program import Quantity
 from piezo_sym.iphs import IPHS

@@ -1,14 +1,29 @@
-"""Proofs: obligations on an `IPHS`, and verdicts on them."""
+"""Proofs: obligations on an `IPHS`, and verdicts on them.
+
+stage          from -> to                      in
+obligations    IPHS -> Obligation              balances (algebra), laws, bodies, divisors
+queries        Question -> Query               obligations, branches, rational, query (SMT-LIB)
+answers        Query -> Answer                 solvers, in processes of their own (worker)
+verdicts       Obligation -> Row               prove, exactly (witnesses), units
+report         rows -> Report                  report
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import groupby
+
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.iphs import IPHS
-from piezo_sym.proofs.exact import casimir, energy, entropy, skew, temperature, welldef
-from piezo_sym.proofs.report import UNCHECKED, Report, Row, Verdict
+from piezo_sym.proofs import balances, bodies, laws
+from piezo_sym.proofs.divisors import divisors
+from piezo_sym.proofs.obligations import Obligation
+from piezo_sym.proofs.prove import prove
+from piezo_sym.proofs.report import Report, Row, Verdict
+from piezo_sym.proofs.solvers import solver
 from piezo_sym.proofs.units import units
 
-__all__ = ["UNCHECKED", "Report", "Row", "Verdict", "verify"]
+__all__ = ["Obligation", "Report", "Row", "Verdict", "obligations", "prove", "verify"]
 
 
 def verify(iphs: IPHS) -> Report:
@@ -22,11 +37,51 @@ def verify(iphs: IPHS) -> Report:
     -------
     Report
         ``.rows``, one a property, and ``.raise_if_not_proved()``.  A verdict is PROVED only for all
-        states, inputs and parameters in the domain and for every size of every bank.
+        states, inputs and parameters in the domain and for every size of every bank; REFUTED
+        comes with a witness; all else is OPEN, and says why.
+    """
+    rows: list[Row] = []
+    for obligation in obligations(iphs):
+        rows.append(prove(obligation, iphs, rows, solver("z3")))
+    return Report(iphs.model.name, (*rows, *units(iphs)))
+
+
+def obligations(iphs: IPHS) -> tuple[Obligation, ...]:
+    """Return what has to be shown of a system, in an order in which each rests on earlier ones.
+
+    Raises
+    ------
+    UsageError
+        If `iphs` is no `IPHS`.
     """
     if not isinstance(iphs, IPHS):
         remedy = "derive it first: verify(derive(load('piezo_stack')))"
         raise UsageError(f"{quote(iphs)} is no IPHS", "verify", remedy=remedy)
-    balances = (skew(iphs), casimir(iphs), energy(iphs), entropy(iphs))
-    rows = (*balances, *temperature(iphs), *welldef(iphs), *units(iphs))
-    return Report(iphs.model.name, rows)
+    return tuple(_obligations(iphs))
+
+
+def _obligations(iphs: IPHS) -> Iterator[Obligation]:
+    ground = laws.ground_of(iphs)
+    yield from (f(iphs) for f in (balances.skew, balances.casimir))
+    yield from (f(iphs) for f in (balances.energy, balances.entropy))
+    yield from bodies.temperature(iphs, ground)
+    yield from divisors(iphs, ground)
+    for element, own in groupby(laws.laws_of(iphs), key=lambda law: law.element):
+        yield from _of_element(iphs, element, tuple(own), ground)
+    yield balances.sigma(iphs)
+    yield from balances.exergy(iphs, ground)
+    yield from balances.environment(iphs, ground)
+    yield from bodies.invariant(iphs, ground)
+
+
+def _of_element(
+    iphs: IPHS, element: str, own: tuple[laws.Law, ...], ground: laws.Ground
+) -> Iterator[Obligation]:
+    """Yield what has to be shown of the laws of one element."""
+    yield from filter(None, [laws.welldef(own, ground)])
+    for law in own:
+        yield from filter(None, [laws.continuous(law, ground)])
+        if law.letter:
+            yield from (laws.passive(law, ground), laws.odd(law, ground))
+        elif iphs.model.elements[element].kind == "conduction":
+            yield laws.conducts(law, ground)

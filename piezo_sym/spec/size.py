@@ -8,7 +8,10 @@ ends with.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from dataclasses import dataclass
 from fractions import Fraction
+from typing import final
 
 from piezo_sym.spec.expressions import (
     Add,
@@ -18,6 +21,7 @@ from piezo_sym.spec.expressions import (
     Expr,
     If,
     Mul,
+    Neg,
     Num,
     Pow,
     Sym,
@@ -47,7 +51,7 @@ def check_size(tree: Expr) -> None:
     """
     if _degree(tree) > MAX_DEGREE:
         raise RefusedError("has too high a degree", f"at most {MAX_DEGREE} in all")
-    if max(_terms(tree)) > MAX_TERMS:
+    if _extent(tree).most > MAX_TERMS:
         what, remedy = "has too many terms when it is multiplied out", "nest fewer sums"
         raise RefusedError(what, f"at most {MAX_TERMS}", f"{remedy} in products and powers")
     if _most_branches(tree) > MAX_BRANCHES:
@@ -145,14 +149,25 @@ def _degree(node: Expr | Cmp) -> Fraction:
     return max(_degree(part) for part in children(node))
 
 
-def _terms(node: Expr | Cmp) -> tuple[int, int]:
-    """Return how many terms a law has when it is multiplied out, and the most of any part."""
-    found = [_terms(part) for part in children(node)]
-    inner = [own for own, _ in found]
+@final
+@dataclass(frozen=True)
+class _Extent:
+    """How many terms a law has when multiplied out, the most of any part, and its divisors."""
+
+    own: int
+    most: int
+    divisors: Mapping[Expr, int]
+
+
+def _extent(node: Expr | Cmp) -> _Extent:
+    """Return the extent of a law; a sum of quotients counts over its common denominator."""
+    parts = [_extent(part) for part in children(node)]
+    divisors = {key: n for part in parts for key, n in part.divisors.items()}
+    inner = [part.own for part in parts]
     own = 1
     match node:
         case Add():
-            own = sum(inner)
+            own = sum(inner) * math.prod(divisors.values())
         case Mul() | Div():
             own = math.prod(inner)
         case Pow(_, exponent):
@@ -160,12 +175,15 @@ def _terms(node: Expr | Cmp) -> tuple[int, int]:
             own = math.comb(inner[0] + times - 1, times)
         case Call("log", (arg,)):
             own = _factors(arg)
-        case Call() | Cmp() | Num() | Sym():
-            own = 1
-        case _:
+        case Neg() | If():
             own = max(inner)
     own = min(own, MAX_TERMS + 1)
-    return own, max([own, *(most for _, most in found)])
+    most = max([own, *(part.most for part in parts)])
+    if isinstance(node, Div):
+        divisors = dict(parts[0].divisors) | {node.right: inner[1]}
+    elif isinstance(node, Call | Cmp | If | Add):
+        divisors = {}
+    return _Extent(own, most, divisors)
 
 
 def _factors(node: Expr | Cmp) -> int:

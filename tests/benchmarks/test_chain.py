@@ -30,6 +30,8 @@ c = { value = 1.0, unit = "J/K" }
 lam = { value = 1.0, unit = "W/K" }
 [inputs]
 V = { unit = "V" }
+[domain]
+assume = ["d >= 0", "rho >= 0", "lam >= 0"]
 [elements]
 supply = { kind = "voltage_source", between = ["in", "gnd"], input = "V" }
 """

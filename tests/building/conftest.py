@@ -26,9 +26,9 @@ def model(spec):
 
 @pytest.fixture
 def unproved(spec):
-    """A model whose temperature is not shown to be positive."""
-    spec["model"]["name"] = "linear_body"
-    spec["elements"]["body"]["temperature"] = "T_0*(1 + S/c_0)"
+    """A model whose damper may have a negative coefficient."""
+    spec["model"]["name"] = "free_damper"
+    spec["domain"]["assume"].remove("d >= 0")
     return Model(**spec)
 
 

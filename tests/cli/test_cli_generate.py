@@ -70,7 +70,7 @@ def test_a_check_of_some_specs_leaves_other_modules_alone(call, spec_file, out):
 
 def test_what_is_not_proved_is_exit_code_1(refused, unproved, tmp_path):
     message = refused("generate", unproved, "--out", tmp_path / "out", code=1)
-    assert message.startswith("mine.toml: mine.body: temperature is OPEN")
+    assert message.startswith("mine.toml: mine.damper: passive is REFUTED")
     assert not (tmp_path / "out").exists()
 
 

@@ -21,6 +21,8 @@ T_0 = { value = 300.0, unit = "K" }
 c   = { value = 3.0,   unit = "J/K" }
 [inputs]
 V = { unit = "V" }
+[domain]
+assume = ["rho >= 0"]
 [elements]
 supply = { kind = "voltage_source", between = ["in", "gnd"], input = "V" }
 h1 = { kind = "hysteron", between = ["in", "n1"], count = 2, LAW }

@@ -32,7 +32,7 @@ V = { unit = "V" }
 w = { unit = "m/s" }
 I = { unit = "A" }
 [domain]
-assume = ["i_0 >= 0", "R > 0", "rho >= 0", "d > 0"]
+assume = ["i_0 >= 0", "R > 0", "rho >= 0", "d > 0", "b >= 0", "g >= 0"]
 [elements]
 body = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }
 source = { kind = "voltage_source", between = ["in", "gnd"], input = "V" }

@@ -31,7 +31,7 @@ w = { unit = "m/s" }
 F = { unit = "N" }
 I = { unit = "A" }
 [domain]
-assume = ["n > 0"]
+assume = ["n > 0", "R > 0", "b >= 0", "g > 0", "lam >= 0"]
 [elements]
 hot  = { kind = "thermal_mass", temperature = "T_0*exp(S/c)" }
 cold = { kind = "thermal_mass", temperature = "T_0*exp(S/c/n)" }

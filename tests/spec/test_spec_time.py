@@ -10,6 +10,7 @@ from test_spec_parse import HOSTILE
 from piezo_sym import derive, verify
 from piezo_sym.build import render
 from piezo_sym.errors import PiezoError
+from piezo_sym.proofs.solvers import solver
 from piezo_sym.spec import parse as parse_module
 from piezo_sym.spec.load import load, parse
 from piezo_sym.spec.units import parse_unit
@@ -97,7 +98,13 @@ def spec_with(law, name):
 
 @pytest.fixture(scope="module", autouse=True)
 def _warm():
-    load("piezo_stack")
+    render(load("piezo_stack"))
+
+
+@pytest.fixture
+def _hurried(monkeypatch):
+    """A solver that is stopped early: how long it may take is its own affair."""
+    monkeypatch.setattr(solver("z3"), "patience", 1.0)
 
 
 @pytest.mark.parametrize("text", [*LAWS.values(), *HOSTILE], ids=lambda text: ascii(text)[:25])
@@ -137,6 +144,7 @@ def stages(text):
     compile(module, "module", "exec")
 
 
+@pytest.mark.usefixtures("_hurried")
 @pytest.mark.parametrize("place", PLACES.values(), ids=PLACES)
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
 def test_what_is_accepted_does_not_hang_later(law, place):

@@ -1,0 +1,156 @@
+"""What algebra decides of a system: skew, casimir, energy, entropy, exergy, environment.
+
+Input: an `IPHS`.  Output: obligations with residuals.  The system stands in named co-states, so
+that each property is the vanishing of a normal form, a polynomial in independent symbols and in
+sums over lanes: zero proves it for every state, input, parameter and every r.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import sympy as sp
+
+from piezo_sym.algebra.lanes import LaneMatrix
+from piezo_sym.iphs import IPHS
+from piezo_sym.proofs.laws import Ground
+from piezo_sym.proofs.obligations import Obligation, Question, Residual
+from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, Resistor, Source, Storage
+from piezo_sym.spec.expressions import ZERO, Cmp, Sym
+from piezo_sym.spec.text import spell
+
+
+def skew(iphs: IPHS) -> Obligation:
+    """J0 and every J_k are skew, for every pair of lanes of every bank."""
+    system = iphs.system
+    matrices = [("J0", system.J0)]
+    matrices += [(f"J_{slot.label}", system.J(k)) for k, slot in enumerate(system.processes)]
+    found = [
+        residual
+        for name, matrix in matrices
+        for residual in _entries(f"({name} + {name}^T)", matrix + matrix.T)
+    ]
+    statement = "J0 + J0^T = 0 and J_k + J_k^T = 0"
+    latex = r"J_0 + J_0^\top = 0,\quad J_k + J_k^\top = 0"
+    return Obligation("skew", "", statement, latex, residuals=tuple(found))
+
+
+def casimir(iphs: IPHS) -> Obligation:
+    """Entropy is a Casimir function of J0."""
+    found = tuple(_entries("J0 dS/dx", iphs.system.J0 @ iphs.system.dS))
+    latex = r"J_0 \, \partial S/\partial x = 0"
+    return Obligation("casimir", "", "J0 dS/dx = 0", latex, residuals=found)
+
+
+def energy(iphs: IPHS) -> Obligation:
+    """First law: dU/dx is the co-states, and dU/dt is the power put in."""
+    system = iphs.system
+    balance = (system.E.T @ system.rhs - system.y.T @ system.u)[0, 0]
+    found = (*_gradient(iphs), Residual("dU/dt - y^T u", balance))
+    return Obligation("energy", "", "dU/dt = y^T u", r"\dot U = y^\top u", residuals=found)
+
+
+def entropy(iphs: IPHS) -> Obligation:
+    """Entropy balance: what the processes produce and what the inputs bring, eq. (5)."""
+    system = iphs.system
+    produced = system.R.T @ system.bracket + system.y_s.T @ system.u
+    balance = (system.dS.T @ system.rhs - produced)[0, 0]
+    statement = "dS/dt = sum_k gamma_k {S,U}_k^2 + y_s^T u"
+    latex = r"\dot S = \sum_k \gamma_k \{S,U\}_{J_k}^2 + y_s^\top u"
+    if not system.D.is_zero:  # a source drives a process: R_k is not gamma_k {S,U}_k there
+        statement = "dS/dt = sum_k R_k {S,U}_k + y_s^T u; g depends on u: a source drives a process"
+        latex = r"\dot S = \sum_k R_k \{S,U\}_{J_k} + y_s^\top u"
+    residual = Residual("dS/dt - sigma - y_s^T u", balance)
+    return Obligation("entropy", "", statement, latex, residuals=(residual,))
+
+
+def sigma(iphs: IPHS) -> Obligation:
+    """Second law: what the processes produce is not negative."""
+    statement = "sigma = sum_k W_k z_k/T_k >= 0, from temperature and passive"
+    latex = r"\sigma = \sum_k W_k z_k / T_k \ge 0"
+    return Obligation("sigma", "", statement, latex, rests_on=premises(iphs))
+
+
+def premises(iphs: IPHS) -> tuple[tuple[str, str], ...]:
+    """Return the obligations that the second law rests on."""
+    bodies = [("temperature", placed.element) for placed, _ in iphs.circuit.of(Body)]
+    laws = [("passive", placed.element) for placed, _ in iphs.circuit.of(Resistor, Conductor)]
+    return (*bodies, *laws)
+
+
+def exergy(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
+    """Yield the balance of U - T_e S, if there is an environment, at one constant T_e."""
+    exchanges = tuple(iphs.circuit.of(Exchange))
+    if not exchanges:
+        return
+    system, common = iphs.system, iphs.symbols[exchanges[0][1].input]
+    fixed = {iphs.symbols[port.input]: common for _, port in exchanges}
+    fixed |= {iphs.symbols[port.input]: sp.S.Zero for _, port in iphs.circuit.of(Source)}
+    rate = (system.y.T @ system.u)[0, 0] - common * (system.dS.T @ system.rhs)[0, 0]
+    lost = sum(lam * (T - common) ** 2 / T for lam, T, _ in _exchanges(iphs))
+    residual = (rate + common * system.sigma).xreplace(fixed) + lost.xreplace(fixed)
+    yield Obligation(
+        "exergy",
+        "",
+        "inputs 0, T_e constant: d(U - T_e S)/dt = -T_e sigma - lam (T - T_e)^2/T <= 0",
+        r"\frac{d}{dt}(U - T_e S) = -T_e\,\sigma - \lambda (T - T_e)^2/T \le 0",
+        ground.texts,
+        residuals=(Residual("d(U - T_e S)/dt + T_e sigma + lam (T - T_e)^2/T", residual),),
+        questions=tuple(_cooling(iphs, ground)),
+        rests_on=(("sigma", ""),),
+    )
+
+
+def environment(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
+    """Yield the production of the system and its environment together, if there is one."""
+    if not any(True for _ in iphs.circuit.of(Exchange)):
+        return
+    system = iphs.system
+    taken = sum(lam * (T_e - T) / T_e for lam, T, T_e in _exchanges(iphs))
+    crossed = sum(lam * (T_e - T) ** 2 / (T * T_e) for lam, T, T_e in _exchanges(iphs))
+    total = (system.dS.T @ system.rhs)[0, 0] - taken - system.sigma - crossed
+    residual = Residual("dS/dt + dS_e/dt - sigma - lam (T_e - T)^2/(T T_e)", total)
+    yield Obligation(
+        "environment",
+        "",
+        "with the environment's entropy: production is sigma + lam (T_e - T)^2/(T T_e) >= 0",
+        r"\sigma + \lambda (T_e - T)^2/(T\,T_e) \ge 0",
+        ground.texts,
+        residuals=(residual,),
+        questions=tuple(_cooling(iphs, ground)),
+        rests_on=(("sigma", ""),),
+    )
+
+
+def _exchanges(iphs: IPHS) -> Iterator[tuple[sp.Expr, sp.Symbol, sp.Symbol]]:
+    """Yield (lam, T, T_e) of each heat exchange."""
+    for _, port in iphs.circuit.of(Exchange):
+        temperature = iphs.circuit.body(port.body).temperature
+        conductance = iphs.symbols.law(port.conductance, {})
+        yield conductance, iphs.symbols[temperature], iphs.symbols[port.input]
+
+
+def _cooling(iphs: IPHS, ground: Ground) -> Iterator[Question]:
+    """Yield what heat exchange needs: a conductance that is not negative, a T_e above zero."""
+    for placed, port in iphs.circuit.of(Exchange):
+        warm, conducts = Cmp(">", Sym(port.input), ZERO), Cmp(">=", port.conductance, ZERO)
+        label = f"{spell(port.conductance)} >= 0 ({placed.element})"
+        yield Question(label, ground.order, ground.where, conducts, conducts)
+        yield Question(f"{port.input} > 0", ground.order, ground.where, warm, warm)
+
+
+def _gradient(iphs: IPHS) -> Iterator[Residual]:
+    """Yield dU/dx minus the co-state, for each store."""
+    stores = iphs.circuit.of(Storage, Body)
+    for energy_law, (_, port), (_, costate) in zip(
+        iphs.energies, stores, iphs.costates, strict=True
+    ):
+        state = iphs.symbols[port.state]
+        difference = sp.diff(iphs.symbols.law(energy_law, {}), state) - costate
+        yield Residual(f"dU/d{port.state}", sp.expand(difference))
+
+
+def _entries(name: str, matrix: LaneMatrix) -> Iterator[Residual]:
+    for (r, c), full, own in matrix.entries():
+        place = f"{name}[{matrix.rows[r].label}, {matrix.cols[c].label or 1}]"
+        yield from (Residual(place, expr) for expr in (full, own) if expr != 0)

@@ -1,0 +1,96 @@
+"""What has to be shown of temperatures: positive, rising with entropy, never below their floor.
+
+Input: an `IPHS`.  Output: obligations.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from piezo_sym.iphs import IPHS
+from piezo_sym.proofs.branches import TooManyBranchesError, branches, choices, with_choices
+from piezo_sym.proofs.laws import Ground
+from piezo_sym.proofs.obligations import Obligation, Question
+from piezo_sym.spec.calculus import add, derivative, div, mul, neg
+from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, Resistor
+from piezo_sym.spec.expressions import ONE, ZERO, Cmp, Expr, Sym, names, rename
+from piezo_sym.spec.names import fresh
+from piezo_sym.spec.tables import conditions
+from piezo_sym.spec.text import spell
+
+
+def temperature(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
+    """Yield for each body that its temperature is positive and rises with its entropy."""
+    domain = tuple(condition.tree for condition in conditions(iphs.model))
+    for placed, port in iphs.circuit.of(Body):
+        law = rename(port.law, {port.letter: port.state})
+        here = Cmp("=", Sym(port.temperature), law)
+        known = port.temperature in _names(domain) and not choices(with_choices(law))
+        where = (*domain, here) if known else domain
+        statement, latex = "T > 0 and dT/dS > 0", r"T > 0,\quad \partial T/\partial S > 0"
+        made = Obligation("temperature", placed.element, statement, latex, ground.texts)
+        slope = derivative(law, port.state)
+        try:
+            questions = (
+                *_positive("T > 0", law, where, ground),
+                *_positive("dT/dS > 0", slope, where, ground),
+            )
+        except TooManyBranchesError:
+            yield replace(made, open_because="the law has too many branches; use fewer kinks")
+            continue
+        yield replace(made, questions=questions)
+
+
+def _names(trees: tuple[Cmp, ...]) -> set[str]:
+    return {name for tree in trees for name in names(tree)}
+
+
+def _positive(label: str, law: Expr, where: tuple[Cmp, ...], ground: Ground) -> Iterator[Question]:
+    original = Cmp(">", law, ZERO)
+    for branch in branches(law):
+        claim = Cmp(">", branch.value, ZERO)
+        yield Question(label, ground.order, (*where, *branch.conditions), claim, original)
+
+
+def invariant(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
+    """Yield that a body's temperature stays above its floor, if it has one and an environment.
+
+    The coldest body only gains from processes and conduction; where T <= m < T_e, heat exchange
+    brings it at least lam*(T_e/m - 1) >= 0.  So T never falls below the least of its start and m.
+    """
+    floors = {
+        condition.tree.left.name: condition.tree.right
+        for condition in conditions(iphs.model)
+        if condition.tree.op == ">" and isinstance(condition.tree.left, Sym)
+    }
+    laws = [placed.element for placed, _ in iphs.circuit.of(Resistor, Conductor)]
+    for placed, port in iphs.circuit.of(Body):
+        exchanges = [p for _, p in iphs.circuit.of(Exchange) if p.body == placed.element]
+        floor = floors.get(port.temperature)
+        if floor is None or not exchanges:
+            continue
+        yield Obligation(
+            "invariant",
+            placed.element,
+            f"sigma >= 0 and {spell(floor)} < T <= m < T_e give dS/dt >= lam*(T_e/m - 1) >= 0",
+            r"T_0 < T \le m < T_e \Rightarrow \dot S \ge \lambda (T_e/m - 1) \ge 0",
+            ground.texts,
+            questions=tuple(_gains(port, exchanges, ground)),
+            rests_on=tuple(("passive", name) for name in laws),
+            required=False,
+        )
+
+
+def _gains(port: Body, exchanges: list[Exchange], ground: Ground) -> Iterator[Question]:
+    """Yield that heat exchange brings at least what it brings at T = m, and that this is >= 0."""
+    T, m = Sym(port.temperature), Sym(fresh("m", ground.order))
+    for exchange in exchanges:
+        hot, lam = Sym(exchange.input), exchange.conductance
+        between = (Cmp("<=", T, m), Cmp("<", m, hot))
+        order = (*ground.order, m.name)
+        brought = [mul(lam, add(div(hot, at), neg(ONE))) for at in (T, m)]
+        least = Cmp(">=", brought[0], brought[1])
+        gain = Cmp(">=", brought[1], ZERO)
+        for label, claim in (("at T at least as at m", least), ("at m not negative", gain)):
+            yield Question(label, order, (*ground.where, *between), claim, claim)

@@ -1,0 +1,201 @@
+"""Exact values of laws: rationals where all is rational, else intervals that hold the value.
+
+Input: a tree and exact numbers.  Output: a `Fraction`, or an interval of mpmath's whose ends are
+rounded outward.  A witness is shown only after its law has been evaluated here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from typing import Any
+
+from mpmath import iv
+
+from piezo_sym.spec.expressions import (
+    Add,
+    Call,
+    Cmp,
+    Div,
+    Expr,
+    If,
+    LaneSum,
+    Mul,
+    Neg,
+    Num,
+    Pow,
+    Sym,
+)
+
+DIGITS = 40
+
+#: Whether a comparison holds, by the sign of left - right; proofs also use = and !=.
+OUTCOMES: Mapping[str, Callable[[int], bool]] = {
+    "<": lambda sign: sign < 0,
+    "<=": lambda sign: sign <= 0,
+    ">": lambda sign: sign > 0,
+    ">=": lambda sign: sign >= 0,
+    "=": lambda sign: sign == 0,
+    "!=": lambda sign: sign != 0,
+}
+
+Value = Any  # Fraction, or an interval of mpmath
+
+
+def value_of(node: Expr, values: Mapping[str, Fraction]) -> Value:
+    """Return the value of a law.
+
+    Raises
+    ------
+    ArithmeticError, ValueError
+        Where the law has no value (1/0, log(0)), or a comparison cannot be decided.
+    """
+    before = iv.dps
+    iv.dps = DIGITS
+    try:
+        return _value(node, values)
+    finally:
+        iv.dps = before
+
+
+def sign_of(value: Value) -> int | None:
+    """Return -1, 0 or 1, or None for an interval around zero."""
+    if isinstance(value, Fraction):
+        return (value > 0) - (value < 0)
+    return -1 if value.b < 0 else 1 if value.a > 0 else None
+
+
+def holds(condition: Cmp, values: Mapping[str, Fraction]) -> bool:
+    """Return whether a comparison holds.
+
+    Raises
+    ------
+    ArithmeticError
+        If it cannot be decided.
+    """
+    sign = sign_of(_minus(value_of(condition.left, values), value_of(condition.right, values)))
+    if sign is None:
+        msg = "a comparison is too close to call"
+        raise ArithmeticError(msg)
+    return OUTCOMES[condition.op](sign)
+
+
+def _minus(left: Value, right: Value) -> Value:
+    a, b = _alike([left, right])
+    return a - b
+
+
+def _interval(value: Value) -> Value:
+    if not isinstance(value, Fraction):
+        return value
+    return iv.mpf(value.numerator) / iv.mpf(value.denominator)
+
+
+def _value(node: Expr, values: Mapping[str, Fraction]) -> Value:
+    match node:
+        case Num(value):
+            return value
+        case Sym(name):
+            return values[name]
+        case Neg(arg):
+            return -_value(arg, values)
+        case Add(terms):
+            first, *rest = _alike([_value(term, values) for term in terms])
+            return sum(rest, start=first)
+        case Mul(left, right):
+            a, b = _alike([_value(left, values), _value(right, values)])
+            return a * b
+        case Div(left, right):
+            a, b = _alike([_value(left, values), _value(right, values)])
+            return _quotient(a, b)
+        case Pow(base, exponent):
+            return _power(_value(base, values), exponent)
+        case Call(function, args):
+            return _call(function, [_value(arg, values) for arg in args])
+        case If(then, condition, other):
+            return _value(then if holds(condition, values) else other, values)
+        case LaneSum():
+            msg = "a sum over lanes has no value outside a program"
+            raise TypeError(msg)
+
+
+def _alike(parts: list[Value]) -> list[Value]:
+    """Return values of one type: rationals if all are."""
+    if all(isinstance(part, Fraction) for part in parts):
+        return parts
+    return [_interval(part) for part in parts]
+
+
+def _quotient(a: Value, b: Value) -> Value:
+    if sign_of(b) in {0, None}:
+        msg = "division by zero"
+        raise ZeroDivisionError(msg)
+    return a / b
+
+
+def _power(base: Value, exponent: Fraction) -> Value:
+    if exponent.denominator == 1:
+        whole = base ** abs(exponent.numerator)
+        one = Fraction(1) if isinstance(base, Fraction) else iv.mpf(1)
+        return whole if exponent > 0 else _quotient(one, whole)
+    sign = sign_of(base)
+    if sign is None or sign < 0 or (sign == 0 and exponent < 0):
+        msg = "root of a negative number"
+        raise ValueError(msg)
+    if sign == 0:
+        return Fraction(0)
+    return iv.exp(iv.log(_interval(base)) * _interval(exponent))
+
+
+def _call(function: str, args: list[Value]) -> Value:
+    z, w = args[0], args[-1]
+    if function in {"exp", "log", "sin", "cos", "tanh"} and isinstance(z, Fraction):
+        at_zero = {"exp": (0, 1), "sin": (0, 0), "cos": (0, 1), "tanh": (0, 0), "log": (1, 0)}
+        special, result = at_zero[function]
+        if z == special:
+            return Fraction(result)
+    match function:
+        case "exp":
+            return iv.exp(_interval(z))
+        case "log":
+            if sign_of(z) != 1:
+                msg = "logarithm of a number that is not positive"
+                raise ValueError(msg)
+            return iv.log(_interval(z))
+        case "sin":
+            return iv.sin(_interval(z))
+        case "cos":
+            return iv.cos(_interval(z))
+        case "tanh":
+            return 1 - 2 / (iv.exp(2 * _interval(z)) + 1)
+        case "sqrt":
+            return _power(z, Fraction(1, 2))
+    return _kinked(function, z, w)
+
+
+def _kinked(function: str, z: Value, w: Value) -> Value:
+    """Return a function with kinks: the branch is chosen by signs that are certain."""
+    match function:
+        case "abs":
+            return z if _above(z, Fraction(0)) else -z
+        case "sign":
+            return Fraction(_certain(z))
+        case "min":
+            return w if _above(z, w) else z
+        case "max":
+            return z if _above(z, w) else w
+        case "deadzone":
+            return _minus(z, _kinked("saturate", z, w))
+    return w if _above(z, w) else -w if _above(-w, z) else z  # saturate
+
+
+def _above(a: Value, b: Value) -> bool:
+    return _certain(_minus(a, b)) > 0
+
+
+def _certain(value: Value) -> int:
+    sign = sign_of(value)
+    if sign is None:
+        msg = "a sign is too close to call"
+        raise ArithmeticError(msg)
+    return sign

@@ -1,0 +1,117 @@
+"""What has to be shown of a model, as data.
+
+Input: nothing; these are the types.  Output: `Obligation` records that `algebra`, `laws` and
+`balances` state and `prove` decides.  An obligation holds if its residuals are zero, its questions
+are answered, and the obligations it rests on hold.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import final
+
+import sympy as sp
+
+from piezo_sym.proofs.branches import smooth_clauses
+from piezo_sym.proofs.query import Query, query
+from piezo_sym.proofs.rational import cleared, parts_of
+from piezo_sym.spec.expressions import Cmp, Expr, names
+
+
+@final
+@dataclass(frozen=True)
+class Residual:
+    """An expression that a property says is zero, and the name of its place."""
+
+    place: str
+    expr: sp.Expr
+
+
+@final
+@dataclass(frozen=True)
+class Question:
+    """A claim on smooth laws, for every real number where some comparisons hold.
+
+    Attributes
+    ----------
+    label : the claim in words.
+    order : names, in the order in which a witness should be simple.
+    where : what is assumed.
+    claim : what should follow, on one branch of a law.
+    original : the same on the law as the spec has it; a witness is checked on this.
+    """
+
+    label: str
+    order: tuple[str, ...]
+    where: tuple[Cmp, ...]
+    claim: Cmp
+    original: Cmp
+
+    def query(self) -> Query:
+        """Return the question in polynomials, for a solver.
+
+        Raises
+        ------
+        TooManyBranchesError
+            If a condition of the domain has too many branches.
+        """
+        assumed = [clause for condition in self.where for clause in smooth_clauses(condition)]
+        conditions = [*(part for clause in assumed for part in clause), self.claim]
+        sides = [side for c in conditions for side in (c.left, c.right)]
+        taken = frozenset(name for side in sides for name in names(side))
+        parts = parts_of(sides, taken)
+
+        def plain(condition: Cmp) -> Cmp:
+            left, right = map(parts.without_functions, (condition.left, condition.right))
+            return cleared(Cmp(condition.op, left, right))
+
+        given = [tuple(map(plain, clause)) for clause in assumed]
+        return query(
+            self.label,
+            self.order,
+            [*given, *parts.facts()],
+            plain(self.claim),
+            about=names(self.original),
+            exact=parts.exact,
+        )
+
+
+@final
+@dataclass(frozen=True)
+class SignOf:
+    """The sign of a law times its letter, for methods that look at the law as a whole."""
+
+    law: Expr
+    letter: str
+
+
+@final
+@dataclass(frozen=True)
+class Obligation:
+    """One property of one model.
+
+    Attributes
+    ----------
+    id : such as ``passive``.
+    element : the element it is about, or empty for the whole model.
+    statement, latex : the property, in words and as mathematics.
+    assumptions : the comparisons of the domain that it is stated under, as text.
+    residuals : must be zero.
+    questions : must be answered with yes.
+    rests_on : other obligations, as (id, element), that must hold.
+    sign : the law behind the questions, where it is one law's sign.
+    required : whether `generate` insists on it; else it is information.
+    open_because : why nothing could be asked, where a law is beyond what is looked at.
+    """
+
+    id: str
+    element: str
+    statement: str
+    latex: str
+    assumptions: tuple[str, ...] = ()
+    residuals: tuple[Residual, ...] = ()
+    questions: tuple[Question, ...] = ()
+    rests_on: tuple[tuple[str, str], ...] = ()
+    sign: SignOf | None = None
+    required: bool = True
+    open_because: str = ""

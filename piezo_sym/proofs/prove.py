@@ -1,0 +1,141 @@
+"""Obligations to verdicts: the one place where something becomes PROVED.
+
+Input: an `Obligation`, and the verdicts on what it rests on.  Output: a `Row`.  PROVED needs every
+residual zero, every question answered with `unsat`, and everything it rests on PROVED.  REFUTED
+needs a witness that was evaluated exactly in the law itself.  All else is OPEN, with the reason.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+from typing import Any
+
+import sympy as sp
+
+from piezo_sym.iphs import IPHS
+from piezo_sym.proofs.exactly import holds, value_of
+from piezo_sym.proofs.obligations import Obligation, Question, Residual
+from piezo_sym.proofs.report import Row, Verdict
+from piezo_sym.proofs.solvers import Answer, Solver
+from piezo_sym.spec.expressions import names
+from piezo_sym.spec.text import spell
+
+#: Lanes a refutation is written out for; one lane hides what couples two.
+LANES = 2
+TRIES = (1, 2, 3)
+
+Found = tuple[Verdict, Mapping[str, str] | None, str]
+
+
+def prove(obligation: Obligation, iphs: IPHS, before: Iterable[Row], solver: Solver) -> Row:
+    """Return the verdict on one obligation.
+
+    Parameters
+    ----------
+    obligation : what to show.
+    iphs : the system it is about.
+    before : the verdicts so far, with those of what it rests on.
+    solver : for its questions.
+    """
+    verdict, witness, reason = _decide(obligation, iphs, tuple(before), solver)
+    return Row(
+        obligation.id,
+        obligation.element,
+        obligation.statement,
+        verdict,
+        witness,
+        reason,
+        obligation.required,
+    )
+
+
+def _decide(obligation: Obligation, iphs: IPHS, before: tuple[Row, ...], solver: Solver) -> Found:
+    """Return the first thing that fails, or that nothing does."""
+    if obligation.open_because:
+        return Verdict.OPEN, None, obligation.open_because
+    for residual in obligation.residuals:
+        found = _vanishes(residual, iphs)
+        if found:
+            return found
+    still_open: Found | None = None
+    for question in obligation.questions:
+        found = _answered(question, solver)
+        if found and found[0] is Verdict.REFUTED:
+            return found
+        still_open = still_open or found
+    return still_open or _grounded(obligation, before) or (Verdict.PROVED, None, "")
+
+
+def _grounded(obligation: Obligation, before: tuple[Row, ...]) -> Found | None:
+    """Return what an obligation rests on that is not proved."""
+    for row in before:
+        if (row.id, row.element) in obligation.rests_on and row.verdict is not Verdict.PROVED:
+            name = f"{row.id} of {row.element}" if row.element else row.id
+            return Verdict.OPEN, None, f"it rests on {name}, which is {row.verdict.value}"
+    return None
+
+
+def _vanishes(residual: Residual, iphs: IPHS) -> Found | None:
+    """Return None if a residual is zero, else how it fails."""
+    value = sp.expand(residual.expr)
+    if value == 0:
+        return None
+    witness = _nonzero(iphs, value)
+    if witness is None:
+        reason = f"{residual.place} = {value} was not shown to be zero"
+        return Verdict.OPEN, None, reason
+    numbers, at = witness
+    return Verdict.REFUTED, numbers, f"{residual.place} = {value}, which is {at}"
+
+
+def _nonzero(iphs: IPHS, expr: sp.Expr) -> tuple[dict[str, str], sp.Expr] | None:
+    """Return exact numbers at which `expr` is not zero, and its value there."""
+    lanes = iphs.system.E.lanes
+    counts = dict.fromkeys(lanes.counts, LANES)
+    written = lanes.expand(expr, counts)
+    symbols = sorted(written.free_symbols, key=lambda symbol: str(symbol.name))
+    sizes = {symbol.name: str(counts[bank]) for bank, symbol in lanes.counts.items()}
+    for start in TRIES:
+        values = {s: sp.Integer(start + n % len(TRIES)) for n, s in enumerate(symbols)}
+        value = written.xreplace(values)
+        if value.is_number and value.is_zero is False:
+            return {**sizes, **{s.name: str(v) for s, v in values.items()}}, value
+    return None
+
+
+def _answered(question: Question, solver: Solver) -> Found | None:
+    """Return None if the claim follows, else how it fails or why it is open."""
+    query = question.query()
+    answer = solver.ask(query)
+    if answer.result == "unsat":
+        return None
+    if answer.result == "sat":
+        return _refuted(question, answer)
+    return Verdict.OPEN, None, f"{question.label}: {answer.reason}"
+
+
+def _refuted(question: Question, answer: Answer) -> Found:
+    """Return REFUTED if the model breaks the claim in the law itself, else OPEN."""
+    values = {name: value for name, value in answer.model.items() if name in question.order}
+    near = [c for c in question.where if {*names(c)} <= values.keys()]
+    try:
+        inside = all(holds(condition, values) for condition in near)
+        broken = inside and not holds(question.original, values)
+    except (ArithmeticError, ValueError, KeyError):
+        broken = False
+    if not broken:
+        reason = f"{question.label}: bounds on the functions in it do not decide it"
+        return Verdict.OPEN, None, reason
+    left, right = question.original.left, question.original.right
+    reason = f"{spell(left)} = {_shown(value_of(left, values))}"
+    if question.original.op == "=":
+        reason = f"{question.label} is false: {_shown(value_of(left, values))} and "
+        reason += _shown(value_of(right, values))
+    return Verdict.REFUTED, {name: str(value) for name, value in values.items()}, reason
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, Fraction):
+        return str(value)
+    return f"{float(value.mid):.6g}"

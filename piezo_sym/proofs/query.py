@@ -1,0 +1,125 @@
+"""Questions to solvers, and their text: what is assumed, and what should follow.
+
+Input: comparisons of polynomials.  Output: a `Query`, and its text in SMT-LIB 2, which z3 and cvc5
+both read.  A query asserts the opposite of its claim: `unsat` proves the claim.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import final
+
+from piezo_sym.proofs.rational import Clause
+from piezo_sym.spec.expressions import Add, Cmp, Expr, Mul, Neg, Num, Pow, Sym, names
+
+#: Words of SMT-LIB that a spec may use as names; they are written between bars.
+WORDS = frozenset(
+    {"and", "or", "not", "xor", "let", "par", "as", "assert", "exists", "forall", "true", "false"}
+    | {"distinct", "ite", "match", "pop", "push", "exit", "echo", "reset", "abs", "sin", "cos"}
+    | {"tan", "exp", "log", "sqrt", "div", "mod", "select", "store", "is_int", "to_int", "to_real"}
+    | {"pi", "real", "tanh"}
+)
+
+
+@final
+@dataclass(frozen=True)
+class Query:
+    """One question: whether the claim follows from what is given, for all real numbers.
+
+    Attributes
+    ----------
+    label : in words, such as ``V_hysteron*i >= 0 where i > i_0``.
+    variables : names, in the order in which a witness should be simple.
+    given : clauses, of each at least one comparison holds.
+    claim : the comparison that should follow.
+    exact : whether `given` says all there is; else a counterexample has to be confirmed.
+    """
+
+    label: str
+    variables: tuple[str, ...]
+    given: tuple[Clause, ...]
+    claim: Cmp
+    exact: bool = True
+
+    def text(self) -> str:
+        """Return the query in SMT-LIB 2, without ``check-sat``."""
+        lines = [f"(declare-const {_name(name)} Real)" for name in self.variables]
+        lines += [f"(assert {_clause(clause)})" for clause in self.given]
+        lines.append(f"(assert (not {_comparison(self.claim)}))")
+        return "\n".join(lines)
+
+
+def query(
+    label: str,
+    order: Iterable[str],
+    given: Iterable[Clause],
+    claim: Cmp,
+    *,
+    about: Iterable[str] = (),
+    exact: bool = True,
+) -> Query:
+    """Return a query of what the claim depends on: clauses about other names are left out.
+
+    Names in `about` are kept in any case, so that a witness has a value for each.
+
+    Leaving out what is given can only make a claim harder to prove.
+    """
+    near = {*names(claim), *about}
+    clauses = tuple(dict.fromkeys(given))
+    words = {clause: {name for part in clause for name in names(part)} for clause in clauses}
+    while True:
+        grown = near.union(*(found for found in words.values() if found & near))
+        if grown == near:
+            break
+        near = grown
+    kept = tuple(clause for clause in clauses if words[clause] & near)
+    known = list(dict.fromkeys([*order, *sorted(near)]))
+    return Query(label, tuple(name for name in known if name in near), kept, claim, exact)
+
+
+def _clause(clause: Clause) -> str:
+    if len(clause) == 1:
+        return _comparison(clause[0])
+    return f"(or {' '.join(_comparison(part) for part in clause)})"
+
+
+def _comparison(part: Cmp) -> str:
+    if part.op == "!=":
+        return f"(not (= {_term(part.left)} {_term(part.right)}))"
+    return f"({part.op} {_term(part.left)} {_term(part.right)})"
+
+
+def _term(node: Expr) -> str:
+    match node:
+        case Num(value):
+            return _number(value)
+        case Sym(name):
+            return _name(name)
+        case Neg(arg):
+            return f"(- {_term(arg)})"
+        case Add(terms):
+            return f"(+ {' '.join(_term(term) for term in terms)})"
+        case Mul():
+            return f"(* {' '.join(_term(factor) for factor in _factors(node))})"
+        case Pow(base, exponent) if exponent.denominator == 1 and exponent > 0:
+            return f"(* {' '.join([_term(base)] * exponent.numerator)})"
+    msg = f"{type(node).__name__} is no polynomial"
+    raise TypeError(msg)
+
+
+def _factors(node: Expr) -> list[Expr]:
+    if isinstance(node, Mul):
+        return [*_factors(node.left), *_factors(node.right)]
+    return [node]
+
+
+def _number(value: Fraction) -> str:
+    size = str(abs(value.numerator))
+    text = size if value.denominator == 1 else f"(/ {size} {value.denominator})"
+    return f"(- {text})" if value < 0 else text
+
+
+def _name(name: str) -> str:
+    return f"|{name}|" if name in WORDS else name

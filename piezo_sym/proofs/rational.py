@@ -1,0 +1,257 @@
+"""Smooth laws as quotients of polynomials: what solvers of real arithmetic understand.
+
+Input: smooth trees.  Output: the same trees with every function and root replaced by a symbol of
+its own (`Part`), what is known of that symbol (`facts`), and quotients without division (`Ratio`).
+
+Facts are bounds that hold for every argument; they say less than the function does.  A claim that
+follows from them is a theorem; a counterexample to them has to be confirmed on the law itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import final
+
+from piezo_sym.spec.calculus import add, mul, neg, power
+from piezo_sym.spec.expressions import (
+    ONE,
+    ZERO,
+    Add,
+    Call,
+    Cmp,
+    Div,
+    Expr,
+    Mul,
+    Neg,
+    Node,
+    Num,
+    Pow,
+    Sym,
+    rebuild,
+    walk,
+)
+from piezo_sym.spec.names import fresh
+
+#: One of these comparisons holds.
+Clause = tuple[Cmp, ...]
+
+
+@final
+@dataclass(frozen=True)
+class Ratio:
+    """A quotient of two polynomials."""
+
+    top: Expr
+    bottom: Expr = ONE
+
+
+@final
+@dataclass(frozen=True)
+class Part:
+    """A function or root in a law, by a name of its own.
+
+    Attributes
+    ----------
+    name, argument : symbols; the argument's value is `value`, free of functions.
+    function : ``exp``, ..., or ``root`` for the power `exponent` of the argument.
+    """
+
+    name: str
+    function: str
+    argument: Expr
+    value: Ratio
+    exponent: Fraction = Fraction(1)
+
+
+@final
+@dataclass(frozen=True)
+class Parts:
+    """The functions of some laws, in an order in which each is known when it is needed."""
+
+    parts: tuple[Part, ...]
+    words: tuple[tuple[Node, Sym], ...]
+
+    def without_functions(self, law: Expr) -> Expr:
+        """Return a law with each function replaced by its symbol."""
+        return _replaced(law, dict(self.words))
+
+    def ratio(self, law: Expr) -> Ratio:
+        """Return a smooth law as a quotient of polynomials."""
+        return ratio(self.without_functions(law))
+
+    @property
+    def exact(self) -> bool:
+        """Whether the facts say all there is to say: roots only."""
+        return all(part.function == "root" for part in self.parts)
+
+    def facts(self) -> Iterator[Clause]:
+        """Yield what is known of the parts."""
+        for part in self.parts:
+            if part.argument != part.value.top or part.value.bottom != ONE:
+                product = mul(part.argument, part.value.bottom)
+                yield (Cmp("=", product, part.value.top),)
+            yield from _facts(part)
+
+
+def parts_of(laws: Iterable[Expr], taken: frozenset[str]) -> Parts:
+    """Return the functions in some smooth laws; their names are not in `taken`."""
+    words: dict[Node, Sym] = {}
+    found: list[Part] = []
+    used = set(taken)
+
+    def name(base: str) -> str:
+        new = fresh(base, used)
+        used.add(new)
+        return new
+
+    for law in laws:
+        for node in reversed(tuple(walk(law))):  # inner ones first
+            known = _function(node)
+            if known is None or node in words:
+                continue
+            function, given, exponent = known
+            value = ratio(_replaced(given, words))
+            simple = isinstance(value.top, Sym | Num) and value.bottom == ONE
+            argument = value.top if simple else Sym(name(f"{function}_argument_{len(found) + 1}"))
+            made = Sym(name(f"{function}_{len(found) + 1}"))
+            found.append(Part(made.name, function, argument, value, exponent))
+            words[node] = made
+    return Parts(tuple(found), tuple(words.items()))
+
+
+def _function(node: Node) -> tuple[str, Expr, Fraction] | None:
+    """Return a function or root as (name, argument, exponent), else None."""
+    match node:
+        case Call("sqrt", (arg,)):
+            return "root", arg, Fraction(1, 2)
+        case Call(function, (arg,)):
+            return function, arg, Fraction(1)
+        case Pow(base, exponent) if exponent.denominator != 1:
+            return "root", base, exponent
+    return None
+
+
+def _replaced(law: Expr, words: Mapping[Node, Sym]) -> Expr:
+    if law in words:
+        return words[law]
+    return rebuild(law, lambda part: _replaced(part, words))
+
+
+def ratio(law: Expr) -> Ratio:
+    """Return a rational law as a quotient of two polynomials, with no division by numbers left."""
+    match law:
+        case Num() | Sym():
+            return Ratio(law)
+        case Neg(arg):
+            inner = ratio(arg)
+            return Ratio(neg(inner.top), inner.bottom)
+        case Add(terms):
+            return _total([ratio(term) for term in terms])
+        case Mul(left, right):
+            a, b = ratio(left), ratio(right)
+            return Ratio(mul(a.top, b.top), mul(a.bottom, b.bottom))
+        case Div(left, Num(value)):
+            a = ratio(left)
+            return Ratio(mul(Num(1 / value), a.top), a.bottom)
+        case Div(left, right):
+            a, b = ratio(left), ratio(right)
+            return Ratio(mul(a.top, b.bottom), mul(a.bottom, b.top))
+        case Pow(base, exponent) if exponent.denominator == 1:
+            a, size = ratio(base), abs(exponent)
+            top, bottom = power(a.top, size), power(a.bottom, size) if a.bottom != ONE else ONE
+            return Ratio(top, bottom) if exponent > 0 else Ratio(bottom, top)
+    msg = f"{type(law).__name__} is not rational"
+    raise TypeError(msg)
+
+
+def _total(parts: list[Ratio]) -> Ratio:
+    """Return a sum; where all have one denominator its length costs no more than its terms."""
+    if len({part.bottom for part in parts}) == 1:
+        return Ratio(add(*(part.top for part in parts)), parts[0].bottom)
+    total = Ratio(ZERO)
+    for part in parts:
+        total = _sum(total, part)
+    return total
+
+
+def _sum(a: Ratio, b: Ratio) -> Ratio:
+    if a.top == ZERO:
+        return b
+    if a.bottom == b.bottom:
+        return Ratio(add(a.top, b.top), a.bottom)
+    return Ratio(
+        add(mul(a.top, b.bottom), mul(b.top, a.bottom)),
+        mul(a.bottom, b.bottom),
+    )
+
+
+def cleared(condition: Cmp) -> Cmp:
+    """Return a comparison of rational sides as one of polynomials.
+
+    Where a denominator is zero the result may hold although the comparison has no meaning.
+    """
+    left, right = ratio(condition.left), ratio(condition.right)
+    if left.bottom == ONE == right.bottom:
+        return Cmp(condition.op, left.top, right.top)
+    difference = ratio(add(condition.left, neg(condition.right)))
+    equation = condition.op in {"=", "!="}
+    return Cmp(condition.op, difference.top if equation else signed(difference), ZERO)
+
+
+def signed(value: Ratio) -> Expr:
+    """Return a polynomial of the sign of a quotient: top times bottom."""
+    return value.top if value.bottom == ONE else mul(value.top, value.bottom)
+
+
+def _number(value: int | Fraction) -> Num:
+    return Num(Fraction(value))
+
+
+def _facts(part: Part) -> Iterator[Clause]:
+    """Yield bounds on y = f(x) that hold for every real x (for a root or log: where it is real)."""
+    x, y = part.argument, Sym(part.name)
+    above, below = Cmp(">", x, ZERO), Cmp("<", x, ZERO)
+    plus, minus = Cmp(">=", y, ZERO), Cmp("<=", y, ZERO)
+    match part.function:
+        case "root":  # y >= 0, y**q = x**p: all there is to say
+            yield (plus,)
+            root = power(y, Fraction(part.exponent.denominator))
+            inside = power(x, abs(Fraction(part.exponent.numerator)))
+            sides = (root, inside) if part.exponent > 0 else (mul(root, inside), ONE)
+            yield (Cmp("=", *sides),)
+        case "exp":  # convex: above its tangents at 0; 1/exp(x) = exp(-x) >= 1 - x
+            yield (Cmp(">", y, ZERO),)
+            yield (Cmp(">=", y, add(ONE, x)),)
+            half = mul(_number(Fraction(1, 2)), power(x, Fraction(2)))
+            yield (below, Cmp(">=", y, add(ONE, x, half)))
+            yield (Cmp(">=", x, ONE), Cmp("<=", mul(y, add(ONE, neg(x))), ONE))
+        case "log":  # below its tangent at 1, and log(x) = -log(1/x)
+            yield (Cmp("<=", y, add(x, neg(ONE))),)
+            yield (Cmp(">=", mul(y, x), add(x, neg(ONE))),)
+        case "tanh":  # x/(1 + |x|) lies between 0 and tanh(x), and that below x
+            yield (Cmp("<", y, ONE),)
+            yield (Cmp(">", y, neg(ONE)),)
+            yield (below, Cmp("<=", y, x))
+            yield (below, Cmp(">=", mul(y, add(ONE, x)), x))
+            yield (above, Cmp(">=", y, x))
+            yield (above, Cmp("<=", mul(y, add(ONE, neg(x))), x))
+        case "sin":  # |sin x| <= |x|, its sign up to 3 < pi, x - x**3/6 <= sin x for x >= 0
+            cubic = add(x, neg(mul(_number(Fraction(1, 6)), power(x, Fraction(3)))))
+            yield from _within_one(y)
+            yield (below, Cmp("<=", y, x))
+            yield (above, Cmp(">=", y, x))
+            yield (below, Cmp(">=", y, cubic))
+            yield (above, Cmp("<=", y, cubic))
+            yield (below, Cmp(">", x, _number(3)), plus)
+            yield (above, Cmp("<", x, _number(-3)), minus)
+        case "cos":  # 1 - x**2/2 <= cos x
+            half = mul(_number(Fraction(1, 2)), power(x, Fraction(2)))
+            yield from _within_one(y)
+            yield (Cmp(">=", y, add(ONE, neg(half))),)
+
+
+def _within_one(y: Expr) -> Iterator[Clause]:
+    yield (Cmp("<=", y, ONE),)
+    yield (Cmp(">=", y, neg(ONE)),)

@@ -1,0 +1,66 @@
+"""Laws mirrored in their variable: W(-z), with signs brought to the front.
+
+Input: a law and its letter.  Output: a tree in which functions of odd and even parity meet the same
+argument as in the law itself, so that W(z) + W(-z) cancels by its form where it can.
+"""
+
+from __future__ import annotations
+
+from piezo_sym.spec.calculus import add, div, mul, neg, power
+from piezo_sym.spec.expressions import (
+    Add,
+    Call,
+    Cmp,
+    Div,
+    Expr,
+    If,
+    Mul,
+    Neg,
+    Pow,
+    Sym,
+)
+
+ODD = frozenset({"sin", "tanh", "sign", "deadzone", "saturate"})
+EVEN = frozenset({"cos", "abs"})
+
+
+def reflected(law: Expr, letter: str) -> Expr:
+    """Return a law with its letter's sign turned."""
+
+    def turned(node: Expr) -> Expr:
+        return reflected(node, letter)
+
+    match law:
+        case Sym(name):
+            return Neg(law) if name == letter else law
+        case Neg(arg):
+            return neg(turned(arg))
+        case Add(terms):
+            return _sum(tuple(map(turned, terms)))
+        case Mul(left, right):
+            return mul(turned(left), turned(right))
+        case Div(left, right):
+            return div(turned(left), turned(right))
+        case Pow(base, exponent):
+            inner = turned(base)
+            if isinstance(inner, Neg) and exponent.denominator == 1:
+                size = power(inner.arg, exponent)
+                return neg(size) if exponent.numerator % 2 else size
+            return power(inner, exponent)
+        case Call(function, (first, *others)):
+            inner, rest = turned(first), tuple(map(turned, others))
+            if isinstance(inner, Neg) and function in ODD:
+                return neg(Call(function, (inner.arg, *rest)))
+            if isinstance(inner, Neg) and function in EVEN:
+                inner = inner.arg
+            return Call(function, (inner, *rest))
+        case If(then, Cmp(op, left, right), other):
+            return If(turned(then), Cmp(op, turned(left), turned(right)), turned(other))
+    return law
+
+
+def _sum(terms: tuple[Expr, ...]) -> Expr:
+    """Return a sum; minus a sum where each term has a minus."""
+    if all(isinstance(term, Neg) for term in terms):
+        return neg(add(*(neg(term) for term in terms)))
+    return add(*terms)

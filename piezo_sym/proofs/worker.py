@@ -1,0 +1,104 @@
+"""A process of its own in which solvers run: ``python -m piezo_sym.proofs.worker z3``.
+
+Input: one request a line on stdin, ``{"text": ..., "order": [...]}``, a query in SMT-LIB.  Output:
+one answer a line on stdout, ``{"result": ..., "model": {...}, "reason": ...}``, the result one of
+``unsat``, ``sat``, ``unknown``.  A solver that hangs or crashes takes this process with it, and
+nothing else.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import Any
+
+#: What a query may cost, in the solver's own units: the same query has the same answer anywhere.
+Z3_LIMIT = 20_000_000
+CVC5_LIMIT = 2_000_000
+#: Values that a person would try first.
+SIMPLE = (
+    *(Fraction(sign * n) for n in (1, 2) for sign in (1, -1)),
+    Fraction(0),
+    *(Fraction(sign * n) for n in (3, Fraction(1, 2), 4, 5, 10, 100) for sign in (1, -1)),
+    *(Fraction(sign, 10) for sign in (1, -1)),
+)
+
+Answer = dict[str, Any]
+
+
+def ask_z3(text: str, order: Sequence[str]) -> Answer:
+    """Return z3's answer; a model's values are made simple one after the other."""
+    import z3
+
+    solver = z3.Solver()
+    solver.set("rlimit", Z3_LIMIT)
+    solver.from_string(text)
+    result = str(solver.check())
+    if result == "unknown":
+        return {"result": result, "reason": f"z3: {solver.reason_unknown()}"}
+    if result == "unsat":
+        return {"result": result}
+    model = solver.model()
+    for name in order:
+        model = _simplify(z3, solver, model, name)
+    return {"result": "sat", "model": {name: _exact(z3, model, name) for name in order}}
+
+
+def _simplify(z3: Any, solver: Any, model: Any, name: str) -> Any:
+    """Fix one variable to the first simple value that still gives a model; return that model."""
+    symbol = z3.Real(name)
+    for value in SIMPLE:
+        solver.push()
+        solver.add(symbol == z3.Q(value.numerator, value.denominator))
+        if str(solver.check()) == "sat":
+            return solver.model()
+        solver.pop()
+    return model
+
+
+def _exact(z3: Any, model: Any, name: str) -> str:
+    value = model.evaluate(z3.Real(name), model_completion=True)
+    if z3.is_algebraic_value(value):
+        value = value.approx(20)
+    return str(value.as_fraction())
+
+
+def ask_cvc5(text: str, order: Sequence[str]) -> Answer:
+    """Return cvc5's answer, without a model."""
+    import cvc5
+
+    del order
+    solver = cvc5.Solver(cvc5.TermManager())
+    solver.setOption("rlimit-per", str(CVC5_LIMIT))
+    parser = cvc5.InputParser(solver)
+    parser.setStringInput(cvc5.InputLanguage.SMT_LIB_2_6, f"(set-logic QF_NRA)\n{text}", "query")
+    symbols = parser.getSymbolManager()
+    while not (command := parser.nextCommand()).isNull():
+        command.invoke(solver, symbols)
+    result = str(solver.checkSat())
+    kind = result if result in {"sat", "unsat"} else "unknown"
+    return {"result": kind, "reason": "" if kind == result else f"cvc5: {result}"}
+
+
+SOLVERS: dict[str, Callable[[str, Sequence[str]], Answer]] = {"z3": ask_z3, "cvc5": ask_cvc5}
+
+
+def main() -> None:
+    """Answer requests until stdin ends."""
+    ask = SOLVERS[sys.argv[1]]
+    for line in sys.stdin:
+        request = json.loads(line)
+        try:
+            answer = ask(request["text"], request["order"])
+        except Exception as error:
+            answer = {
+                "result": "unknown",
+                "reason": f"{sys.argv[1]} failed: {type(error).__name__}",
+            }
+        print(json.dumps(answer), flush=True)  # noqa: T201 - the answer
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,280 @@
+"""What must hold of one network: a good refusal, or proofs and a module that agree with references.
+
+Input: a spec as plain data and a seed for states.  Output: the name of the outcome.  There are two
+references: SymPy's own mathematics of the derived system, with 40 digits, and the numeric solution
+of Kirchhoff's and Newton's laws from the spec alone (`tableau`).
+"""
+
+import itertools
+import tempfile
+from pathlib import Path
+
+import mpmath as mp
+import numpy as np
+from precise import DIGITS, measured
+from tableau import STORES, Tableau, pairs_of, state
+
+from piezo_sym import derive, verify
+from piezo_sym.build import render
+from piezo_sym.errors import NetworkError, PiezoError
+from piezo_sym.modules import load_module
+from piezo_sym.proofs import Verdict
+from piezo_sym.spec.load import parse
+from piezo_sym.spec.model import Model
+from piezo_sym.spec.tables import banks
+
+DERIVED, REFUSED = "derived", "refused"
+PROVED = ("skew", "casimir", "energy", "entropy")
+TOLERANCE = 1e-12
+STEP = mp.mpf(10) ** -15
+POINTS = 2
+
+
+def check(spec, seed=0):
+    """Check one network, and return whether it was derived or refused."""
+    try:
+        model = Model(**spec)
+        iphs = derive(model)
+    except PiezoError as error:
+        check_refusal(error, spec)
+        return REFUSED
+    assert parse(model.to_toml()) == model
+    systems = [iphs.expand()]
+    systems += [iphs] if banks(model) else []
+    for system in (iphs, *systems):
+        verdicts = {row.id: row.verdict for row in verify(system).rows}
+        assert {name: verdicts[name] for name in PROVED} == dict.fromkeys(PROVED, Verdict.PROVED)
+    module = rendered(model)
+    points = [point(spec, iphs, seed + n) for n in range(POINTS)]
+    for x, u in points:
+        for system in systems:
+            check_against_sympy(module, system, x, u)
+        check_against_tableau(module, spec, x, u)
+        check_entropy(module, spec, x, u)
+    check_batch(module, points)
+    return DERIVED
+
+
+def rendered(model):
+    """Return the generated module, made twice to see that its text is the same."""
+    (text,) = render(model, allow_unproved=True).values()
+    assert render(model, allow_unproved=True) == {f"{model.name}/{model.name}.py": text}
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "network.py"
+        path.write_text(text, encoding="utf-8")
+        return load_module(path)
+
+
+def point(spec, iphs, seed):
+    """Return a state, currents and entropies inside the domain, and inputs."""
+    rng = np.random.default_rng(seed)
+    symbols = iphs.expand().x
+    bodies = {state(n, e) for n, e in spec["elements"].items() if e["kind"] == "thermal_mass"}
+    x = [rng.uniform(0.05, 1) if s.name in bodies else rng.uniform(-1.5, 1.5) for s in symbols]
+    heat = [entry["unit"] == "K" for entry in spec["inputs"].values()]
+    return np.array(x), np.array([rng.uniform(2, 5) if h else rng.uniform(-1.5, 1.5) for h in heat])
+
+
+# Refusals
+
+
+def check_refusal(error, spec):
+    """Check that a refusal is one line that names a place in the spec and says what to do."""
+    message = str(error)
+    assert error.exit_code == 2, message
+    assert message.isprintable(), message
+    assert error.remedy or error.expected, message
+    elements = spec["elements"]
+    nodes = {n for e in elements.values() for ends in ends_of(e) for n in ends}
+    names = [*elements, *nodes, *spec["parameters"]]
+    assert any(f"'{name}'" in message or f".{name}" in message for name in names), message
+    if isinstance(error, NetworkError) and ("fix each other" in message or "nothing" in message):
+        assert not generic(spec).is_regular(), message
+    if "determine each other" in message:
+        assert generic(spec).has_nonlinear_loop(), message
+
+
+def ends_of(element):
+    """Return the nodes of an element."""
+    if element["kind"] in {"transducer", "transformer", "lever"}:
+        return pairs_of(element)
+    return (element.get("between", ()), (element["at"],) if "at" in element else ())
+
+
+def generic(spec):
+    """Return the laws of a spec at numbers that stand for almost all others."""
+    names = [
+        f"{state(name, e)}{lane}"
+        for name, e in spec["elements"].items()
+        if e["kind"] in {*STORES, "thermal_mass"}
+        for lane in ([f"_{n + 1}" for n in range(e["count"])] if "count" in e else [""])
+    ]
+    rng = np.random.default_rng(1)
+    states = dict(zip(names, rng.uniform(0.1, 0.9, len(names)), strict=True))
+    parameters = {
+        name: {"value": (np.array(entry["value"]) * rng.uniform(0.8, 1.2)).tolist()}
+        for name, entry in spec["parameters"].items()
+    }
+    return Tableau({**spec, "parameters": parameters}, states, dict.fromkeys(spec["inputs"], 4.0))
+
+
+# References
+
+
+def close(found, wanted, size, what):
+    """Check numbers against references, to 1e-12 of the size that rounding goes with."""
+    found = np.asarray(found, dtype=float)
+    assert found.shape == (len(wanted),), what
+    for n, (a, (b, s)) in enumerate(zip(found, wanted, strict=True)):
+        error = abs(mp.mpf(float(a)) - b)
+        assert error <= TOLERANCE * (s + size), (what, n, float(a), mp.nstr(b, 17))
+
+
+def check_against_sympy(module, system, x, u):
+    """Check every function of the module against the exact mathematics of a derived system."""
+    p = module.Parameters()
+    sizes = banks(system.model)
+    rows = {name: explicit(getattr(system, name), sizes) for name in ("x", "rhs", "y", "u", "E")}
+    names = [symbol.name for symbol in rows["x"]]
+    fixed = {**values_of(module), **dict(zip(system.model.inputs, u, strict=True))}
+    scalars = {
+        name: system.system.E.lanes.expand(getattr(system, name), sizes)
+        for name in ("U", "S", "sigma")
+    }
+
+    def at(where, expressions):
+        values = {**fixed, **dict(zip(names, where, strict=True))}
+        return [measured(e, values) for e in expressions]
+
+    rates = at(x, rows["rhs"])
+    close(module.rhs(x, u, p), rates, 0, "rhs")
+    outputs = at(x, rows["y"])
+    close(module.outputs(x, u, p), outputs, 0, "outputs")
+    powers = [
+        (y * v, sy * abs(v) + abs(y) * sv)
+        for (y, sy), (v, sv) in zip(outputs, at(x, rows["u"]), strict=True)
+    ]
+    close(module.supply(x, u, p), powers, 0, "supply")
+    close([module.energy(x, p)], at(x, [scalars["U"]]), 0, "energy")
+    close([module.entropy(x, p)], at(x, [scalars["S"]]), 0, "entropy")
+    produced = module.entropy_production(x, u, p)
+    close([produced.sum()], at(x, [scalars["sigma"]]), abs(produced).sum(), "production")
+    check_power(module, at, scalars["U"], rows, powers, x, u)
+    check_jacobian(module, at, rows["rhs"], x, u)
+
+
+def check_power(module, at, energy, rows, powers, x, u):
+    """Check the first law, dU/dt = y^T u, by the difference of U along the module's rates."""
+    p = module.Parameters()
+    speed = module.rhs(x, u, p)
+    ahead, behind = moved(x, speed)
+    with mp.workdps(DIGITS):
+        (high, _), (low, _) = at(ahead, [energy])[0], at(behind, [energy])[0]
+        growth = (high - low) / (2 * STEP)
+        size = sum(s for _, s in powers)
+        for (slope, s), (rate, t) in zip(at(x, rows["E"]), at(x, rows["rhs"]), strict=True):
+            size += abs(slope) * t + s * abs(rate)
+        close([module.supply(x, u, p).sum()], [(growth, size)], 0, "dU/dt = y^T u")
+
+
+def moved(x, direction):
+    """Return the states a little ahead of x and behind it, with 40 digits."""
+    with mp.workdps(DIGITS):
+        return [
+            [mp.mpf(float(v)) + step * mp.mpf(float(d)) for v, d in zip(x, direction, strict=True)]
+            for step in (STEP, -STEP)
+        ]
+
+
+def check_jacobian(module, at, rows, x, u):
+    """Check the Jacobian in one direction, by differences with 40 digits."""
+    p = module.Parameters()
+    jacobian = module.jacobian(x, u, p)
+    assert jacobian.shape == (len(x), len(x))
+    direction = np.cos(np.arange(len(x)) + 1.0)
+    ahead, behind = moved(x, direction)
+    with mp.workdps(DIGITS):
+        pairs = zip(at(ahead, rows), at(behind, rows), strict=True)
+        wanted = [((a - b) / (2 * STEP), s + t) for (a, s), (b, t) in pairs]
+        sizes = abs(jacobian) @ abs(direction)
+        for n, (a, (b, s)) in enumerate(zip(jacobian @ direction, wanted, strict=True)):
+            assert abs(a - b) <= 1e-11 * (s + sizes[n]), ("jacobian", n, a, mp.nstr(b, 17))
+
+
+def explicit(matrix, sizes):
+    return list(matrix.explicit(sizes) if hasattr(matrix, "explicit") else matrix)
+
+
+def values_of(module):
+    """Return the module's parameters by name, those listed by lane."""
+    values = vars(module.Parameters())
+    listed = {
+        f"{name}_{n + 1}": v
+        for name, value in values.items()
+        if isinstance(value, tuple)
+        for n, v in enumerate(value)
+    }
+    return listed | {name: v for name, v in values.items() if not isinstance(v, tuple)}
+
+
+def check_against_tableau(module, spec, x, u):
+    """Check rates, outputs and productions against the numeric solution from the spec alone."""
+    p = module.Parameters()
+    states = dict(zip(spread(module.STATES, p), x, strict=True))
+    wanted = Tableau(spec, states, dict(zip(spec["inputs"], u, strict=True))).answer()
+    found = {
+        "rates": (module.rhs(x, u, p), module.STATES),
+        "outputs": (module.outputs(x, u, p), module.OUTPUTS),
+        "productions": (module.entropy_production(x, u, p), module.PROCESSES),
+    }
+    for what, (numbers, records) in found.items():
+        reference = getattr(wanted, what)
+        names = spread(records, p)
+        assert set(names) == set(reference), what
+        given = np.array([reference[name] for name in names])
+        size = 1e-9 * wanted.size ** (1 if what == "outputs" else 2)
+        assert np.allclose(numbers, given, rtol=1e-8, atol=size), (what, names, numbers, given)
+
+
+def spread(records, p):
+    """Return the names of rows, a bank's one a lane."""
+    lanes = {r.bank: getattr(p, f"{r.bank}_count") for r in records if r.bank}
+    return list(
+        itertools.chain.from_iterable(
+            [f"{r.name}_{n + 1}" for n in range(lanes[r.bank])] if r.bank else [r.name]
+            for r in records
+        )
+    )
+
+
+def check_entropy(module, spec, x, u):
+    """Check that entropy grows by what is produced and by what the environment brings."""
+    p = module.Parameters()
+    names, given = spread(module.STATES, p), dict(zip(spec["inputs"], u, strict=True))
+    bodies = {n: state(n, e) for n, e in spec["elements"].items() if e["kind"] == "thermal_mass"}
+    rates = dict(zip(names, module.rhs(x, u, p), strict=True))
+    hot = dict(zip((r.name for r in module.BODIES), module.temperatures(x, p), strict=True))
+    produced = module.entropy_production(x, u, p)
+    brought = [
+        getattr(p, e["conductance"]) * (given[e["input"]] / hot[e["body"]] - 1)
+        for e in spec["elements"].values()
+        if e["kind"] == "ambient"
+    ]
+    terms = [*produced, *brought]
+    growth = sum(rates[s] for s in bodies.values())
+    size = sum(map(abs, terms)) + sum(abs(rates[s]) for s in bodies.values())
+    assert abs(growth - sum(terms)) <= 1e-12 * max(size, 1e-6)
+
+
+def check_batch(module, points):
+    """Check that states side by side give what single states give."""
+    p = module.Parameters()
+    x, u = (np.stack(parts, axis=1) for parts in zip(*points, strict=True))
+    for name in ("rhs", "outputs", "supply", "entropy_production", "jacobian"):
+        function = getattr(module, name)
+        together = function(x, u, p)
+        for n, (one, given) in enumerate(points):
+            single = function(one, given, p)
+            assert together.shape == (*single.shape, len(points)), name
+            size = abs(single).max(initial=1e-30)
+            assert np.allclose(together[..., n], single, rtol=1e-12, atol=1e-13 * size), name

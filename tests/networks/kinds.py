@@ -1,0 +1,190 @@
+"""One function a kind of element: its fields, drawn; the table `KINDS` lists them all.
+
+Input: a `strategy.Draft`, which names parameters, inputs, nodes and bodies.  Output: the fields of
+one element's table.
+"""
+
+LINEAR = (
+    "{r}*{z}",
+    "{z}/{r}",
+    "2*{z}*{r}",
+    "{r}*{z} + {s}*{z}/3",
+    "({r} + {s}*T)*({z} + {z})/2",
+    "{r}*{z}*(1 + {s}*(T/{low} - 1))",
+    "{r}*exp({s}*({low}/T - 1))*{z}",
+)
+KINKED = (
+    "{r}*deadzone({z}, {w})",
+    "{r}/(T - {low})*deadzone({z}, {w})",
+    "{r}*saturate({z}, {w})",
+    "{r}*{z}*abs({z})",
+    "{r}*max({z}, 0) + {s}*min({z}, 0)",
+    "{r}*{z} if {z} >= 0 else {s}*{z}",
+    "{r}*sign({z})*sqrt(abs({z}) + {w})",
+)
+SMOOTH = (
+    "{r}*tanh({z}/{w})",
+    "{r}*{z}**3",
+    "{r}*{z} + {s}*{z}**3*T/{low}",
+    "{r}*{z}*log(1 + {s}*{z}**2)",
+    "{r}*{z}/sqrt(1 + {z}**2/{w}**2)",
+    "{r}*{z} + {s}*sin({z})",
+)
+
+
+def law(draft, letter, body, *, linear, lanes=None):
+    """Return the text of a dissipative law in a letter, with parameters of its own."""
+    forms = LINEAR if linear else (*KINKED, *SMOOTH)
+    form = draft.pick(forms)
+    words = {"z": letter, "low": draft.bodies[body]}
+    for word, unit, low, high in (("r", "1", 0.5, 4), ("s", "1", 0.2, 2), ("w", "1", 0.1, 1)):
+        if f"{{{word}}}" in form:
+            words[word] = draft.parameter(word, unit, low, high, lanes=lanes)
+            draft.assume.append(f"{words[word]} > 0")
+    return form.format(**words)
+
+
+def dissipative(draft, domain, through, across):
+    """Return a resistor's or damper's fields; `through`, `across`: (field, letter) of its law.
+
+    In a tree it gives the across variable, in a chord the other; a linear law may say either.
+    """
+    body = draft.body()
+    field, letter = across if draft.role == "tree" else through
+    if draft.one_in(4):
+        field, letter = draft.pick((through, across))
+    text = law(draft, letter, body, linear=draft.linear or draft.one_in(2))
+    jumps = {"discontinuous": True} if "sign" in text else {}
+    return {"between": draft.pair(domain), field: text, "heats": body, **jumps}
+
+
+def spring(draft):
+    k = draft.parameter("k", "N/m")
+    forms = (k, k, k, f"{k}*(1 + q**2)", f"{k}*(1 + q**2/3)**2", f"{k}*exp(q)")
+    rest = {"rest": draft.parameter("q_l", "m", -1, 1)} if draft.one_in(3) else {}
+    form = draft.pick(forms[:5]) if not draft.one_in(30) else forms[5]
+    return {"between": draft.pair("m"), "stiffness": form, **rest, **draft.state()}
+
+
+def mass(draft):
+    m = draft.parameter("m", "kg")
+    return {"at": draft.at(), "mass": draft.pick((m, m, f"2*{m}")), **draft.state()}
+
+
+def capacitor(draft):
+    capacity = draft.parameter("C", "F")
+    form = f"{capacity}/(1 + Q**2)" if draft.one_in(50) else capacity
+    return {"between": draft.pair("e"), "capacitance": form, **draft.state()}
+
+
+def inductor(draft):
+    return {
+        "between": draft.pair("e"),
+        "inductance": draft.parameter("L", "H"),
+        **draft.state(),
+    }
+
+
+def resistor(draft):
+    return dissipative(draft, "e", ("current", "v"), ("voltage", "i"))
+
+
+def damper(draft):
+    return dissipative(draft, "m", ("force", "v"), ("velocity", "f"))
+
+
+def hysteron(draft):
+    body = draft.body()
+    count = None if draft.one_in(4) else draft.pick((1, 2, 3, 4))
+    bank = {} if count is None else {"count": count}
+    return {
+        "between": draft.pair("e"),
+        **bank,
+        "inductance": draft.parameter("L", "H", lanes=count),
+        "voltage": law(draft, "i", body, linear=draft.one_in(2), lanes=count),
+        "heats": body,
+        **draft.state(),
+    }
+
+
+def transducer(draft):
+    ratio, body = draft.parameter("a", "C/m", 0.3, 2), draft.body()
+    hot = {"ratio": f"{ratio}*T/{draft.bodies[body]}", "temperature": body}
+    fixed = {"ratio": ratio}
+    pairs = {"electrical": draft.pair("e"), "mechanical": draft.pair("m")}
+    return {**pairs, **draft.pick((hot, fixed))}
+
+
+def coupled(draft, domain):
+    """Return two pairs of nodes, one of them the new one and an earlier one, and a ratio."""
+    ratio = draft.parameter("n", "1", 0.5, 2)
+    if not draft.one_in(8):
+        draft.assume.append(f"{ratio} > 0")
+    new = draft.pair(domain)
+    draft.ends = ()
+    first, second = draft.pick(((new, draft.pair(domain)), (draft.pair(domain), new)))
+    return {"first": first, "second": second, "ratio": draft.pick((ratio, f"2*{ratio}"))}
+
+
+def transformer(draft):
+    return coupled(draft, "e")
+
+
+def lever(draft):
+    return coupled(draft, "m")
+
+
+def thermal_mass(draft):
+    low, c = draft.parameter("T_0", "K", 1, 3), draft.parameter("c", "J/K", 1, 3)
+    draft.bodies[draft.name] = low
+    exponential, polynomial = f"{low}*exp(S/{c})", f"{low} + S/{c}"
+    form = draft.pick((exponential, exponential, polynomial, f"{polynomial} + S**2/{c}**2"))
+    return {"temperature": form, **draft.state()}
+
+
+def conduction(draft):
+    hot = draft.body()
+    cold = draft.pick([name for name in draft.bodies if name != hot])
+    return {"between": [hot, cold], "conductance": draft.parameter("lam", "W/K")}
+
+
+def ambient(draft):
+    lam = draft.parameter("lam", "W/K")
+    return {"body": draft.body(), "conductance": lam, "input": draft.input("K", 4.0)}
+
+
+def voltage_source(draft):
+    return {"between": draft.pair("e"), "input": draft.input("V")}
+
+
+def current_source(draft):
+    return {"between": draft.pair("e"), "input": draft.input("A")}
+
+
+def force_source(draft):
+    return {"at": draft.at(), "input": draft.input("N")}
+
+
+def velocity_source(draft):
+    return {"at": draft.at(), "input": draft.input("m/s")}
+
+
+KINDS = {
+    "spring": spring,
+    "mass": mass,
+    "capacitor": capacitor,
+    "inductor": inductor,
+    "resistor": resistor,
+    "hysteron": hysteron,
+    "damper": damper,
+    "transducer": transducer,
+    "transformer": transformer,
+    "lever": lever,
+    "thermal_mass": thermal_mass,
+    "conduction": conduction,
+    "ambient": ambient,
+    "force_source": force_source,
+    "voltage_source": voltage_source,
+    "current_source": current_source,
+    "velocity_source": velocity_source,
+}

@@ -1,0 +1,218 @@
+"""Random networks: specs as plain data, over every kind of element.
+
+Output: a Hypothesis strategy `networks`.  A network has a tree of elements that give the across
+variable of each node (capacitor, mass, source, resistor), and chords that give their through
+variable (inductor, spring, hysteron, damper); that is a network with one solution.  Then a few
+elements are put anywhere, and most such networks have none, or need a law the other way round.
+"""
+
+from dataclasses import dataclass, field
+
+from hypothesis import strategies as st
+from kinds import KINDS
+
+CHANCE = st.integers(0, 99)
+REFERENCE = {"e": "gnd", "m": "wall"}
+TREE = {
+    "e": ("capacitor", "capacitor", "voltage_source", "resistor", "transformer"),
+    "m": ("mass", "mass", "mass", "velocity_source", "damper", "lever", "lever"),
+}
+CHORD = {
+    "e": ("inductor", "hysteron", "hysteron", "resistor", "current_source", "transducer"),
+    "m": ("spring", "damper", "force_source", "transducer", "spring"),
+}
+COUNTS = ((1, 1), (2, 0), (0, 2), (2, 1), (1, 2), (3, 0), (0, 3), (1, 3), (3, 2))
+HEAT = ("ambient", "conduction")
+WORDS = ("x", "u", "p", "h", "F", "J", "out", "n", "z", "W")
+
+
+@dataclass
+class Draft:
+    """A spec in the making: what is drawn so far, and what an element may ask for.
+
+    `linear` says that all resistors and dampers are, so that they may be in loops; `role` is "tree"
+    or "chord": whether the next element gives the across or the through variable.
+    """
+
+    draw: object
+    nodes: dict = field(default_factory=lambda: {"e": ["gnd"], "m": ["wall"]})
+    parameters: dict = field(default_factory=dict)
+    inputs: dict = field(default_factory=dict)
+    assume: list = field(default_factory=list)
+    elements: dict = field(default_factory=dict)
+    bodies: dict = field(default_factory=dict)  # the lowest temperature of each
+    words: list = field(default_factory=lambda: list(WORDS))
+    linear: bool = False
+    role: str = "chord"
+    ends: tuple = ()
+    name: str = ""
+
+    def one_in(self, number):
+        """Return whether a rare thing happens."""
+        return self.draw(CHANCE) >= 100 - 100 // number
+
+    def pick(self, items):
+        """Return one of some things."""
+        return self.draw(st.sampled_from(list(items)))
+
+    def parameter(self, letter, unit, low=0.5, high=4.0, lanes=None):
+        """Return a parameter: new, a list of values for `lanes`, or one of another element."""
+        name = f"{letter}_{self.name}"
+        shared = [n for n in self.parameters if n.startswith(f"{letter}_") and self._is_plain(n)]
+        if shared and self.one_in(8):
+            return self.pick(shared)
+        step, odd = (high - low) / 1000, 3.71e-4  # no ratio is 1: generic networks are meant
+        numbers = st.integers(0, 1000).map(lambda n: round(low + step * n + odd, 7))
+        listed = lanes is not None and self.one_in(2)
+        drawn = [self.draw(numbers) for _ in range(lanes)] if listed else self.draw(numbers)
+        self.parameters[name] = {"value": drawn, "unit": unit}
+        return name
+
+    def _is_plain(self, parameter):
+        return not isinstance(self.parameters[parameter]["value"], list)
+
+    def input(self, unit, default=0.0):
+        """Return an input of a unit: one that is there, or a new one."""
+        there = [name for name, entry in self.inputs.items() if entry["unit"] == unit]
+        if there and self.one_in(2):
+            return self.pick(there)
+        name = f"in_{len(self.inputs)}"
+        self.inputs[name] = {"unit": unit, "default": default}
+        return name
+
+    def pair(self, domain):
+        """Return the ends of the next element in a domain: those asked for, or any two nodes."""
+        if self.ends and self.ends[0] == domain:
+            return list(self.ends[1])
+        first = self.pick(self.nodes[domain])
+        return [first, self.pick([n for n in self.nodes[domain] if n != first])]
+
+    def at(self):
+        """Return a mechanical node that is not the wall."""
+        return next(n for n in self.pair("m") if n != "wall")
+
+    def body(self):
+        """Return the name of a body."""
+        return self.pick(self.bodies)
+
+    def state(self):
+        """Return the symbol of a state, if it has one of its own."""
+        if self.words and self.one_in(6):
+            return {"state": self.words.pop(self.draw(st.integers(0, len(self.words) - 1)))}
+        return {}
+
+    def add(self, kind, role, ends=()):
+        """Put an element into the spec."""
+        self.name = f"{kind[:3]}{len(self.elements)}"
+        self.role, self.ends = role, ends
+        name = self.name
+        self.elements[name] = {"kind": kind, **KINDS[kind](self)}
+        return name
+
+
+def _bodies(draft):
+    for _ in range(draft.draw(st.integers(1, 3))):
+        draft.add("thermal_mass", "chord")
+
+
+def _tree(draft, domain, count):
+    """Put an element between each new node and an earlier one."""
+    for n in range(count):
+        node, earlier = f"{domain}{n}", draft.nodes[domain]
+        kind = draft.pick(TREE[domain])
+        if kind in {"transformer", "lever"} and len(earlier) < 2:
+            kind = "resistor" if domain == "e" else "damper"
+        other = REFERENCE[domain] if domain == "m" and kind not in HAVE_TWO else draft.pick(earlier)
+        ends = draft.draw(st.permutations([node, other]))
+        draft.add(kind, "tree", (domain, ends))
+        draft.nodes[domain] = [*earlier, node]
+
+
+HAVE_TWO = {"damper", "lever"}
+
+
+def _chords(draft):
+    """Put a chord at each node that has one attachment, and some more."""
+    for domain in ("e", "m"):
+        for node in draft.nodes[domain][1:]:
+            others = [n for n in draft.nodes[domain] if n != node]
+            if _uses(draft, node) < 2 or draft.one_in(3):
+                _chord(draft, domain, draft.draw(st.permutations([node, draft.pick(others)])))
+
+
+def _chord(draft, domain, ends):
+    kind = draft.pick(CHORD[domain])
+    if kind == "transducer" and any(len(nodes) < 2 for nodes in draft.nodes.values()):
+        kind = "inductor" if domain == "e" else "spring"
+    if kind == "force_source" and "wall" not in ends:
+        kind = "damper"
+    draft.add(kind, "chord", (domain, ends))
+    if kind == "hysteron" and draft.one_in(2):
+        draft.add(kind, "chord", (domain, ends[::-1]))
+
+
+def _uses(draft, node):
+    fields = ("between", "at", "first", "second", "electrical", "mechanical")
+    ends = [element.get(f, ()) for element in draft.elements.values() for f in fields]
+    return sum(node == end or node in end for end in ends if not isinstance(end, str)) + sum(
+        node == end for end in ends if isinstance(end, str)
+    )
+
+
+def _heat(draft):
+    for _ in range(draft.draw(st.integers(0, 2))):
+        kind = draft.pick(HEAT)
+        if kind == "ambient" or len(draft.bodies) > 1:
+            draft.add(kind, "chord")
+
+
+def _anywhere(draft):
+    """Put an element of any kind at any nodes: most such networks have no solution."""
+    there = {domain for domain, nodes in draft.nodes.items() if len(nodes) > 1}
+    fit = [kind for domain in sorted(there) for kind in (*TREE[domain], *CHORD[domain])]
+    fit = [kind for kind in fit if kind != "transducer" or len(there) == 2]
+    draft.add(draft.pick(fit), draft.pick(("tree", "chord")))
+
+
+def _adrift(elements):
+    """Return the elements with nothing left at the electrical reference."""
+
+    def loose(field):
+        return ["loose" if node == "gnd" else node for node in field]
+
+    return {
+        name: {k: loose(v) if isinstance(v, list) else v for k, v in element.items()}
+        for name, element in elements.items()
+    }
+
+
+@st.composite
+def networks(draw):
+    """Draw a spec as plain data: the argument of `Model`, and what TOML text holds."""
+    draft = Draft(draw)
+    draft.linear = draft.one_in(3)
+    _bodies(draft)
+    counts = draw(st.sampled_from(COUNTS))
+    for domain, count in zip("em", counts, strict=True):
+        _tree(draft, domain, count)
+    _chords(draft)
+    _heat(draft)
+    if draft.one_in(5):
+        _anywhere(draft)
+    order = draw(st.permutations(list(draft.elements)))
+    if draft.one_in(15):  # what holds a node may be missing, or a body
+        order = order[1:]
+    if draft.one_in(25):
+        draft.elements = _adrift(draft.elements)
+    bodies = [name for name in draft.bodies if name in order]
+    above = [f"T_{n} > {draft.bodies[n]}" for n in bodies]
+    if len(bodies) == 1:
+        above = [f"T > {draft.bodies[bodies[0]]}"]
+    return {
+        "model": {"name": "network"},
+        "parameters": draft.parameters,
+        "inputs": draft.inputs,
+        "domain": {"assume": [*above, *draft.assume]},
+        "initial": {draft.elements[name].get("state", f"S_{name}"): 0.1 for name in bodies},
+        "elements": {name: draft.elements[name] for name in order},
+    }

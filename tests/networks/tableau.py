@@ -1,0 +1,303 @@
+"""Kirchhoff's and Newton's laws solved numerically, from the spec alone.
+
+Input: a spec as plain data, states and inputs by name.  Output: rates, outputs and productions.
+Nothing of the package is used: every lane of a bank is a pair of branches of its own, every node's
+potential and every branch's through variable is an unknown, and one dense system holds all laws.
+Laws that are not linear are found by Newton's iteration.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from law_values import value
+
+REFERENCES = {"gnd", "wall"}
+STORES = {  # letter of the state, field of the law, what the co-state is, whether it is an across
+    "capacitor": ("Q", lambda w, law: w["Q"] / law("capacitance"), True),
+    "mass": ("p", lambda w, law: w["p"] / law("mass"), True),
+    "inductor": ("phi", lambda w, law: w["phi"] / law("inductance"), False),
+    "hysteron": ("phi", lambda w, law: w["phi"] / law("inductance"), False),
+    "spring": ("q", lambda w, law: law("stiffness") * (w["q"] - law("rest", "0")), False),
+}
+SOURCES = {  # whether the input is an across variable
+    "voltage_source": True,
+    "velocity_source": True,
+    "current_source": False,
+    "force_source": False,
+}
+LAWS = {  # letter of the given variable, whether the law gives the across variable
+    "voltage": ("i", True),
+    "current": ("v", False),
+    "force": ("v", False),
+    "velocity": ("f", True),
+}
+SLOPE_STEP = 1e-6
+CLOSE = 1e-12
+MOST_STEPS = 60
+SINGULAR = 1e-9
+
+
+@dataclass(frozen=True)
+class Branch:
+    """A branch and its law: `given` for the across or the through variable, or `law` for it."""
+
+    element: str
+    nodes: tuple[str, str]
+    across: bool
+    given: float = 0.0
+    law: object = None
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What the laws say: the rates by state, the outputs by port, the productions by process."""
+
+    rates: dict = field(default_factory=dict)
+    outputs: dict = field(default_factory=dict)
+    productions: dict = field(default_factory=dict)
+    size: float = 1.0
+
+
+class Tableau:
+    """All branches of a spec at one state, and what they do."""
+
+    def __init__(self, spec, states, inputs):
+        self.spec, self.states, self.inputs = spec, states, inputs
+        self.branches, self.temperatures = [], {}
+        self.couplings = []
+        elements = spec["elements"].items()
+        for name, element in elements:
+            if element["kind"] == "thermal_mass":
+                words = {**self.words(), "S": states[state(name, element)]}
+                self.temperatures[name] = value(element["temperature"], words)
+        for name, element in elements:
+            self._add(name, element)
+        names = dict.fromkeys(n for pair in self._all_nodes() for n in pair)
+        self.nodes = {n: k for k, n in enumerate(n for n in names if n not in REFERENCES)}
+
+    def words(self, lane=0):
+        """Return the values of the parameters, those of one lane where they are listed."""
+        given = {n: p["value"] for n, p in self.spec["parameters"].items()}
+        return {n: v[lane % len(v)] if isinstance(v, list) else v for n, v in given.items()}
+
+    def _add(self, name, element):
+        kind = element["kind"]
+        if kind == "hysteron":
+            for lane in range(element.get("count", 1)):
+                label = f"{name}_{lane + 1}" if "count" in element else name
+                a, b = element["between"]
+                self._store(label, lane, element, (a, f"{label}:inner"), name)
+                self._resistor(label, lane, element, (f"{label}:inner", b))
+        elif kind in STORES:
+            self._store(name, 0, element, nodes_of(element), name)
+        elif kind in SOURCES:
+            across, given = SOURCES[kind], self.inputs[element["input"]]
+            sign = 1 if across else -1
+            self.branches.append(Branch(name, nodes_of(element), across, sign * given))
+        elif kind in {"resistor", "damper"}:
+            self._resistor(name, 0, element, nodes_of(element))
+        elif kind in {"transformer", "lever", "transducer"}:
+            self.couplings.append((name, element))
+
+    def _store(self, label, lane, element, nodes, name):
+        letter, costate, across = STORES[element["kind"]]
+        symbol = state(name, element) + label.removeprefix(name)
+        words = {**self.words(lane), letter: self.states[symbol]}
+        given = costate(words, lambda f, other=None: value(element.get(f, other), words))
+        self.branches.append(Branch(label, nodes, across, given))
+
+    def _resistor(self, label, lane, element, nodes):
+        text, letter, across = law_of(element)
+        words = {**self.words(lane), "T": self.temperatures[element["heats"]]}
+        law = lambda z: float(value(text, {**words, letter: z}))  # noqa: E731
+        self.branches.append(Branch(label, nodes, across, law=law))
+
+    # The laws
+
+    def matrix(self, slopes):
+        """Return the system's matrix, for laws that rise by `slopes` (0: a given output)."""
+        count, size = len(self.nodes), len(self.branches) + 2 * len(self.couplings)
+        matrix = np.zeros((count + size, count + size))
+        for k, branch in enumerate(self.branches):
+            row = count + k
+            self._balance(matrix, branch.nodes, row)
+            across, through = (1.0, -slopes[k]) if branch.across else (-slopes[k], 1.0)
+            self._across(matrix, row, branch.nodes, across)
+            matrix[row, row] += through
+        for k, (_, element) in enumerate(self.couplings):
+            self._couple(matrix, element, count + len(self.branches) + 2 * k)
+        return matrix
+
+    def _all_nodes(self):
+        yield from (branch.nodes for branch in self.branches)
+        for _, element in self.couplings:
+            yield from pairs_of(element)
+
+    def _balance(self, matrix, nodes, column):
+        for node, sign in zip(nodes, (1, -1), strict=True):
+            if node in self.nodes:
+                matrix[self.nodes[node], column] += sign
+
+    def _across(self, matrix, row, nodes, factor):
+        for node, sign in zip(nodes, (factor, -factor), strict=True):
+            if node in self.nodes:
+                matrix[row, self.nodes[node]] += sign
+
+    def _couple(self, matrix, element, row):
+        first, second = pairs_of(element)
+        self._balance(matrix, first, row)
+        self._balance(matrix, second, row + 1)
+        words = self.words()
+        if element["kind"] == "transducer":
+            hot = (
+                {"T": self.temperatures[element["temperature"]]} if "temperature" in element else {}
+            )
+            ratio = value(element["ratio"], {**words, **hot})
+            matrix[row, row], matrix[row + 1, row + 1] = 1, 1
+            self._across(matrix, row, second, -ratio)
+            self._across(matrix, row + 1, first, ratio)
+        else:
+            ratio = value(element["ratio"], words)
+            self._across(matrix, row, first, 1)
+            self._across(matrix, row, second, -ratio)
+            matrix[row + 1, row + 1], matrix[row + 1, row] = 1, ratio
+
+    def is_regular(self):
+        """Return whether the laws have one solution when nonlinear laws give what they give."""
+        return bool(np.linalg.svd(self._given(), compute_uv=False)[-1] > SINGULAR)
+
+    def has_nonlinear_loop(self):
+        """Return whether what a nonlinear law gives changes what one is given, its own or not."""
+        answers, count = np.linalg.inv(self._given()), len(self.nodes)
+        laws = [k for k, b in enumerate(self.branches) if b.law and _linear_slope(b) is None]
+        taken = [self._given_row(self.branches[k], count + k) for k in laws]
+        gains = [row @ answers[:, count + k] for row in taken for k in laws]
+        return bool(max(map(abs, gains), default=0.0) > SINGULAR)
+
+    def _given(self):
+        """Return the matrix in which each nonlinear law gives a number."""
+        return self.matrix([_linear_slope(branch) or 0.0 for branch in self.branches])
+
+    def _given_row(self, branch, column):
+        """Return the row that reads the variable that a law is given."""
+        row = np.zeros((1, len(self.nodes) + len(self.branches) + 2 * len(self.couplings)))
+        if branch.across:
+            row[0, column] = 1.0
+        else:
+            self._across(row, 0, branch.nodes, 1.0)
+        return row[0]
+
+    # The solution
+
+    def solve(self):
+        """Return (across, through) of every branch, by Newton's iteration."""
+        given = np.zeros(len(self.branches))
+        for _ in range(MOST_STEPS):
+            slopes = [_slope(branch, z) for branch, z in zip(self.branches, given, strict=True)]
+            matrix = self.matrix(slopes)
+            right = np.zeros(len(matrix))
+            for k, (branch, z, slope) in enumerate(zip(self.branches, given, slopes, strict=True)):
+                value_there = branch.law(z) - slope * z if branch.law else branch.given
+                right[len(self.nodes) + k] = value_there
+            solution = np.linalg.solve(matrix, right)
+            across, through = self._variables(solution)
+            size = max(1.0, abs(solution).max())
+            found = np.where([branch.across for branch in self.branches], through, across)
+            found[abs(found) <= CLOSE * size] = 0.0  # rounding must not choose a law's branch
+            change = abs(found - given).max(initial=0.0)
+            given = found
+            if change <= CLOSE * size:
+                return across, through, size
+        raise AssertionError("the laws were not solved")
+
+    def _variables(self, solution):
+        potential = {n: solution[k] for n, k in self.nodes.items()}
+        across = [
+            potential.get(a, 0.0) - potential.get(b, 0.0)
+            for a, b in (branch.nodes for branch in self.branches)
+        ]
+        count = len(self.nodes)
+        return np.array(across), solution[count : count + len(self.branches)]
+
+    def answer(self):
+        """Return rates, outputs and productions at the state."""
+        across, through, size = self.solve()
+        found = Answer(size=size)
+        flows = dict.fromkeys(self.temperatures, 0.0)
+        for branch, e, t in zip(self.branches, across, through, strict=True):
+            self._book(found, flows, branch, e, t)
+        for name, element in self.spec["elements"].items():
+            self._book_heat(found, flows, name, element)
+        for name, flow in flows.items():
+            found.rates[state(name, self.spec["elements"][name])] = flow
+        return found
+
+    def _book(self, found, flows, branch, e, t):
+        name, element = self._element(branch.element)
+        if branch.law:
+            heat = e * t
+            temperature = self.temperatures[element["heats"]]
+            found.productions[branch.element] = heat / temperature
+            flows[element["heats"]] += heat / temperature
+        elif element["kind"] in SOURCES:
+            found.outputs[name] = -t if branch.across else e
+        else:
+            symbol = state(name, element) + branch.element.removeprefix(name)
+            found.rates[symbol] = t if branch.across else e
+
+    def _element(self, label):
+        elements = self.spec["elements"]
+        name = label if label in elements else label.rpartition("_")[0]
+        return name, elements[name]
+
+    def _book_heat(self, found, flows, name, element):
+        if element["kind"] == "conduction":
+            first, second = element["between"]
+            hot, cold = self.temperatures[first], self.temperatures[second]
+            heat = value(element["conductance"], self.words()) * (hot - cold)
+            flows[first] -= heat / hot
+            flows[second] += heat / cold
+            found.productions[name] = heat / cold - heat / hot
+        if element["kind"] == "ambient":
+            own = self.temperatures[element["body"]]
+            conductance = value(element["conductance"], self.words())
+            flows[element["body"]] += conductance * (self.inputs[element["input"]] / own - 1)
+            found.outputs[name] = own
+
+
+def state(name, element):
+    """Return the symbol of an element's state."""
+    letter = "S" if element["kind"] == "thermal_mass" else STORES[element["kind"]][0]
+    return element.get("state", f"{letter}_{name}")
+
+
+def nodes_of(element):
+    """Return the two nodes of an element; one node means the mechanical reference, too."""
+    return tuple(element["between"]) if "between" in element else (element["at"], "wall")
+
+
+def pairs_of(element):
+    """Return the two pairs of nodes of a coupling."""
+    names = ("electrical", "mechanical") if element["kind"] == "transducer" else ("first", "second")
+    return tuple(tuple(element[name]) for name in names)
+
+
+def law_of(element):
+    """Return a dissipative law, its letter, and whether it gives the across variable."""
+    name = next(name for name in LAWS if name in element)
+    return element[name], *LAWS[name]
+
+
+def _linear_slope(branch):
+    """Return the slope of a law that is linear in its letter, else None."""
+    if branch.law is None:
+        return None
+    slopes = [branch.law(z) / z for z in (-3.1, -0.7, -0.03, 0.01, 0.4, 2.3)]
+    return slopes[0] if np.ptp(slopes) <= 1e-12 * abs(slopes[0]) else None
+
+
+def _slope(branch, z):
+    linear = _linear_slope(branch)
+    if branch.law is None or linear is not None:
+        return linear or 0.0
+    return (branch.law(z + SLOPE_STEP) - branch.law(z - SLOPE_STEP)) / (2 * SLOPE_STEP)
