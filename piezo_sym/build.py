@@ -16,14 +16,15 @@ from typing import final
 from piezo_sym.codegen import MARK, lower, numpy_module
 from piezo_sym.derivation import derive
 from piezo_sym.errors import DriftError
-from piezo_sym.files import path_text, read_text, write_text
-from piezo_sym.proofs import Report, Verdict, verify
+from piezo_sym.files import path_text, read_text, write_together
+from piezo_sym.proofs import Report, Verdict, proofs_json, smt2, verify
 from piezo_sym.spec.load import load
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.source import shipped
+from piezo_sym.version import VERSION
 
 #: What a generated file says of itself; only such files are ever called left over.
-MADE = re.compile(rf"^{MARK} \S+; do not edit: ", re.MULTILINE)
+MADE = re.compile(rf"^\W*(?:made\W*)?{MARK} \S+; do not edit: ", re.MULTILINE)
 
 
 @final
@@ -56,7 +57,12 @@ def render(model: Model, *, allow_unproved: bool = False) -> dict[str, str]:
     if not allow_unproved:
         report.raise_if_not_proved()
     program = lower(iphs, verdict_line(report))
-    return {f"{model.name}/{model.name}.py": numpy_module(program)}
+    made = f"{MARK} {VERSION}; do not edit: change the spec, then run `piezo-sym generate`."
+    return {
+        f"{model.name}/{model.name}.py": numpy_module(program),
+        f"{model.name}/proofs.json": proofs_json(report, model, made),
+        f"{model.name}/proofs.smt2": smt2(report, made),
+    }
 
 
 def verdict_line(report: Report) -> str:
@@ -87,8 +93,7 @@ def generate(
         If a file cannot be written.
     """
     files = render(model, allow_unproved=allow_unproved)
-    for name, text in files.items():
-        write_text(Path(out) / name, text)
+    write_together({Path(out) / name: text.encode() for name, text in files.items()})
     return tuple(Path(out) / name for name in files)
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 
@@ -32,6 +33,34 @@ def write_bytes(path: Path, data: bytes) -> None:
     FileError
         If the folder or the file cannot be written.
     """
+    write_together({path: data})
+
+
+def write_together(contents: Mapping[Path, bytes]) -> None:
+    """Write files that belong together: none is replaced before all are on the disk.
+
+    Raises
+    ------
+    FileError
+        If a folder or file cannot be written.
+    """
+    staged: dict[Path, Path] = {}
+    try:
+        for path, data in contents.items():
+            staged[path] = _staged(path, data)
+        for path, temporary in staged.items():
+            try:
+                temporary.replace(path)
+            except OSError as error:
+                raise _cannot("written", path, error) from error
+    finally:
+        for temporary in staged.values():
+            with suppress(OSError):
+                temporary.unlink()
+
+
+def _staged(path: Path, data: bytes) -> Path:
+    """Write data beside `path`, and return where."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
@@ -41,11 +70,11 @@ def write_bytes(path: Path, data: bytes) -> None:
         with os.fdopen(handle, "wb") as file:
             file.write(data)
         Path(name).chmod(0o644)
-        Path(name).replace(path)
     except OSError as error:
         with suppress(OSError):
             Path(name).unlink()
         raise _cannot("written", path, error) from error
+    return Path(name)
 
 
 def read_text(path: Path) -> str | None:

@@ -3,27 +3,36 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.text import Text
 
+from piezo_sym.cli.junit import junit_xml
 from piezo_sym.cli.output import STYLES, about, console, table
 from piezo_sym.cli.output import row as add_row
-from piezo_sym.errors import PiezoError
+from piezo_sym.errors import PiezoError, ProofError
+from piezo_sym.files import write_text
 
 if TYPE_CHECKING:
-    from piezo_sym.proofs.report import Report
+    from piezo_sym.proofs.report import Report, Row
 
 
 def verify(
     specs: Annotated[list[str], typer.Argument(metavar="SPEC...", help="Paths or shipped names.")],
     as_json: Annotated[bool, typer.Option("--json", help="Print the rows as JSON.")] = False,
+    junit: Annotated[Path | None, typer.Option(help="Also write JUnit XML to this file.")] = None,
+    recheck: Annotated[
+        bool, typer.Option("--recheck", help="Ask cvc5 every query too, and compare.")
+    ] = False,
 ) -> None:
-    """Prove the structural properties of specs, or show where one fails.
+    """Prove the physics of specs, or show by numbers where it fails.
 
-    Exit code 0 if every required property is proved, 1 if one is refuted or open, 2 if a spec is
-    wrong; the others are looked at all the same.
+    Each property is PROVED for every state, input and parameter value in the domain and for banks
+    of any size, REFUTED with a witness, or OPEN with the reason.  Exit code 0 if every required
+    property is proved, 1 if one is not (or cvc5 does not agree), 2 if a spec is wrong; the others
+    are looked at all the same.
     """
     reports, errors = _reports(specs)
     if as_json:
@@ -32,6 +41,10 @@ def verify(
     else:
         for report in reports:
             _print(report)
+    if junit is not None:
+        write_text(junit, junit_xml(reports))
+    if recheck:
+        errors += _rechecked(reports)
     for error in errors[:-1]:
         typer.echo(f"piezo-sym: {error}", err=True)
     if errors:
@@ -56,16 +69,39 @@ def _reports(specs: list[str]) -> tuple[list[Report], list[PiezoError]]:
     return reports, errors
 
 
+def _rechecked(reports: list[Report]) -> list[PiezoError]:
+    """Return an error for each model on which cvc5 does not say the same; print the others."""
+    from piezo_sym.proofs import recheck as compare
+
+    errors: list[PiezoError] = []
+    for report in reports:
+        asked, found = compare(report)
+        typer.echo(
+            f"{report.model}: cvc5 agrees on {asked - len(found)} of {asked} queries", err=True
+        )
+        if found:
+            first = found[0]
+            said = f"z3 says {first.answers[0]}, cvc5 says {first.answers[1]}"
+            errors.append(ProofError(f"{said}: {first.label}", report.model))
+    return errors
+
+
 def _print(report: Report) -> None:
     columns = table(
         f"{report.model}: {report.summary()}", "property", "element", "statement", "verdict"
     )
     for row in report.rows:
         verdict = Text(row.verdict.value, style=STYLES[row.verdict.value])
+        if not row.required:
+            verdict = Text(f"{row.verdict.value} (information)", style="dim")
         add_row(columns, row.id, row.element, row.statement, verdict)
     console().print(columns)
     for row in report.rows:
-        at = ", ".join(f"{name} = {value}" for name, value in (row.witness or {}).items())
         if row.reason:
-            text = f"{row.id}: {row.reason}" + (f"\n  at {at}" if at else "")
-            console().print(text, markup=False, highlight=False)
+            console().print(_why(row), markup=False, highlight=False)
+
+
+def _why(row: Row) -> str:
+    at = ", ".join(f"{name} = {value}" for name, value in (row.witness or {}).items())
+    name = f"{row.id} of {row.element}" if row.element else row.id
+    return f"{name}: {row.reason}" + (f"\n  at {at}" if at else "")

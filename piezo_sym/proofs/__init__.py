@@ -19,11 +19,24 @@ from piezo_sym.proofs import balances, bodies, laws
 from piezo_sym.proofs.divisors import divisors
 from piezo_sym.proofs.obligations import Obligation
 from piezo_sym.proofs.prove import prove
+from piezo_sym.proofs.recheck import recheck
+from piezo_sym.proofs.record import proofs_json, smt2
 from piezo_sym.proofs.report import Report, Row, Verdict
 from piezo_sym.proofs.solvers import solver
 from piezo_sym.proofs.units import units
 
-__all__ = ["Obligation", "Report", "Row", "Verdict", "obligations", "prove", "verify"]
+__all__ = [
+    "Obligation",
+    "Report",
+    "Row",
+    "Verdict",
+    "obligations",
+    "proofs_json",
+    "prove",
+    "recheck",
+    "smt2",
+    "verify",
+]
 
 
 def verify(iphs: IPHS) -> Report:
@@ -41,9 +54,10 @@ def verify(iphs: IPHS) -> Report:
         comes with a witness; all else is OPEN, and says why.
     """
     rows: list[Row] = []
-    for obligation in obligations(iphs):
+    found = obligations(iphs)
+    for obligation in found:
         rows.append(prove(obligation, iphs, rows, solver("z3")))
-    return Report(iphs.model.name, (*rows, *units(iphs)))
+    return Report(iphs.model.name, (*rows, *units(iphs)), found)
 
 
 def obligations(iphs: IPHS) -> tuple[Obligation, ...]:

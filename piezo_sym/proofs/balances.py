@@ -58,7 +58,7 @@ def entropy(iphs: IPHS) -> Obligation:
     statement = "dS/dt = sum_k gamma_k {S,U}_k^2 + y_s^T u"
     latex = r"\dot S = \sum_k \gamma_k \{S,U\}_{J_k}^2 + y_s^\top u"
     if not system.D.is_zero:  # a source drives a process: R_k is not gamma_k {S,U}_k there
-        statement = "dS/dt = sum_k R_k {S,U}_k + y_s^T u; g depends on u: a source drives a process"
+        statement = "dS/dt = sum_k R_k z_k + y_s^T u (input map g depends on u)"
         latex = r"\dot S = \sum_k R_k \{S,U\}_{J_k} + y_s^\top u"
     residual = Residual("dS/dt - sigma - y_s^T u", balance)
     return Obligation("entropy", "", statement, latex, residuals=(residual,))
@@ -66,7 +66,7 @@ def entropy(iphs: IPHS) -> Obligation:
 
 def sigma(iphs: IPHS) -> Obligation:
     """Second law: what the processes produce is not negative."""
-    statement = "sigma = sum_k W_k z_k/T_k >= 0, from temperature and passive"
+    statement = "sigma = sum_k W_k z_k/T_k >= 0"
     latex = r"\sigma = \sum_k W_k z_k / T_k \ge 0"
     return Obligation("sigma", "", statement, latex, rests_on=premises(iphs))
 
@@ -92,7 +92,7 @@ def exergy(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
     yield Obligation(
         "exergy",
         "",
-        "inputs 0, T_e constant: d(U - T_e S)/dt = -T_e sigma - lam (T - T_e)^2/T <= 0",
+        "d(U - T_e S)/dt <= 0 where other inputs are 0, T_e constant",
         r"\frac{d}{dt}(U - T_e S) = -T_e\,\sigma - \lambda (T - T_e)^2/T \le 0",
         ground.texts,
         residuals=(Residual("d(U - T_e S)/dt + T_e sigma + lam (T - T_e)^2/T", residual),),
@@ -113,7 +113,7 @@ def environment(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
     yield Obligation(
         "environment",
         "",
-        "with the environment's entropy: production is sigma + lam (T_e - T)^2/(T T_e) >= 0",
+        "sigma + lam (T_e - T)^2/(T T_e) >= 0, environment counted",
         r"\sigma + \lambda (T_e - T)^2/(T\,T_e) \ge 0",
         ground.texts,
         residuals=(residual,),

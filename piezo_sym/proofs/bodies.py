@@ -73,7 +73,7 @@ def invariant(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
         yield Obligation(
             "invariant",
             placed.element,
-            f"sigma >= 0 and {spell(floor)} < T <= m < T_e give dS/dt >= lam*(T_e/m - 1) >= 0",
+            f"{spell(floor)} < T <= m < T_e: dS/dt >= lam*(T_e/m - 1) >= 0",
             r"T_0 < T \le m < T_e \Rightarrow \dot S \ge \lambda (T_e/m - 1) \ge 0",
             ground.texts,
             questions=tuple(_gains(port, exchanges, ground)),

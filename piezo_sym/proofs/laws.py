@@ -113,7 +113,7 @@ def _law(iphs: IPHS, placed: Placed, heat: dict[str, str]) -> Law | None:
 def welldef(laws: tuple[Law, ...], ground: Ground) -> Obligation | None:
     """State that the laws of one element have values everywhere; None if they cannot lack one."""
     named = " and ".join(dict.fromkeys(law.name for law in laws))
-    statement = f"{named}: no division by zero, no root or logarithm out of its range"
+    statement = f"{named}: a real value everywhere"
     element, latex = laws[0].element, r"W_k \in \mathbb{R}"
     made = Obligation("welldef", element, statement, latex, ground.texts)
     found: list[Question] = []
@@ -235,6 +235,7 @@ def passive(law: Law, ground: Ground) -> Obligation:
                 (*ground.where, *branch.conditions),
                 Cmp(">=", mul(branch.value, Sym(law.letter)), ZERO),
                 original,
+                branch.conditions,
             )
             for branch in branches(law.tree)
             if branch.value != ZERO

@@ -39,6 +39,7 @@ class Question:
     where : what is assumed.
     claim : what should follow, on one branch of a law.
     original : the same on the law as the spec has it; a witness is checked on this.
+    branch : the part of `where` that says which branch it is.
     """
 
     label: str
@@ -46,6 +47,7 @@ class Question:
     where: tuple[Cmp, ...]
     claim: Cmp
     original: Cmp
+    branch: tuple[Cmp, ...] = ()
 
     def query(self) -> Query:
         """Return the question in polynomials, for a solver.

@@ -18,6 +18,7 @@ from piezo_sym.proofs.exactly import holds, value_of
 from piezo_sym.proofs.obligations import Obligation, Question, Residual
 from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.proofs.solvers import Answer, Solver
+from piezo_sym.proofs.whole import whole_sign
 from piezo_sym.spec.expressions import names
 from piezo_sym.spec.text import spell
 
@@ -26,6 +27,7 @@ LANES = 2
 TRIES = (1, 2, 3)
 
 Found = tuple[Verdict, Mapping[str, str] | None, str]
+Decided = tuple[Verdict, Mapping[str, str] | None, str, str]
 
 
 def prove(obligation: Obligation, iphs: IPHS, before: Iterable[Row], solver: Solver) -> Row:
@@ -38,7 +40,7 @@ def prove(obligation: Obligation, iphs: IPHS, before: Iterable[Row], solver: Sol
     before : the verdicts so far, with those of what it rests on.
     solver : for its questions.
     """
-    verdict, witness, reason = _decide(obligation, iphs, tuple(before), solver)
+    verdict, witness, reason, method = _decide(obligation, iphs, tuple(before), solver)
     return Row(
         obligation.id,
         obligation.element,
@@ -47,24 +49,48 @@ def prove(obligation: Obligation, iphs: IPHS, before: Iterable[Row], solver: Sol
         witness,
         reason,
         obligation.required,
+        method,
     )
 
 
-def _decide(obligation: Obligation, iphs: IPHS, before: tuple[Row, ...], solver: Solver) -> Found:
-    """Return the first thing that fails, or that nothing does."""
+def _decide(obligation: Obligation, iphs: IPHS, before: tuple[Row, ...], solver: Solver) -> Decided:
+    """Return the first thing that fails, or that nothing does, and the method that says so."""
     if obligation.open_because:
-        return Verdict.OPEN, None, obligation.open_because
+        return Verdict.OPEN, None, obligation.open_because, "branches"
     for residual in obligation.residuals:
-        found = _vanishes(residual, iphs)
-        if found:
-            return found
-    still_open: Found | None = None
-    for question in obligation.questions:
+        failed = _vanishes(residual, iphs)
+        if failed:
+            return *failed, "algebra"
+    method = "branches" if obligation.questions else "algebra"
+    failed = _asked(obligation.questions, solver)
+    if failed and failed[0] is Verdict.OPEN and obligation.sign:
+        method, failed = "intervals", _as_a_whole(obligation, failed, solver)
+    proved: Found = (Verdict.PROVED, None, "")
+    return *(failed or _grounded(obligation, before) or proved), method
+
+
+def _asked(questions: Iterable[Question], solver: Solver) -> Found | None:
+    """Return the first question that is refuted, else the first that is open, else None."""
+    first_open: Found | None = None
+    for question in questions:
         found = _answered(question, solver)
         if found and found[0] is Verdict.REFUTED:
             return found
-        still_open = still_open or found
-    return still_open or _grounded(obligation, before) or (Verdict.PROVED, None, "")
+        first_open = first_open or found
+    return first_open
+
+
+def _as_a_whole(obligation: Obligation, still_open: Found, solver: Solver) -> Found | None:
+    """Return None if the law is shown to be passive as a whole, else how it fails or is open."""
+    found = whole_sign(obligation, solver)
+    if found is None:
+        return still_open
+    verdict, numbers, reason = found
+    if verdict is Verdict.PROVED:
+        return None
+    if verdict is Verdict.REFUTED and numbers is not None:
+        return _broken(obligation.questions[0], numbers)
+    return Verdict.OPEN, None, f"{obligation.statement}: {reason}"
 
 
 def _grounded(obligation: Obligation, before: tuple[Row, ...]) -> Found | None:
@@ -127,6 +153,11 @@ def _refuted(question: Question, answer: Answer) -> Found:
     if not broken:
         reason = f"{question.label}: bounds on the functions in it do not decide it"
         return Verdict.OPEN, None, reason
+    return _broken(question, values)
+
+
+def _broken(question: Question, values: Mapping[str, Fraction]) -> Found:
+    """Return the refutation of a claim by numbers that break it."""
     left, right = question.original.left, question.original.right
     reason = f"{spell(left)} = {_shown(value_of(left, values))}"
     if question.original.op == "=":

@@ -11,6 +11,7 @@ from enum import Enum
 from typing import final
 
 from piezo_sym.errors import ProofError
+from piezo_sym.proofs.obligations import Obligation
 
 
 @final
@@ -35,7 +36,8 @@ class Row:
     verdict : see `Verdict`.
     witness : for REFUTED, a value for every symbol at which the property fails.
     reason : for REFUTED what fails there, for OPEN what is missing.
-    required : whether `generate` insists on it.
+    required : whether `generate` insists on it; else it is information.
+    method : what decided it: algebra, branches (queries), or intervals (the law as a whole).
     """
 
     id: str
@@ -45,6 +47,7 @@ class Row:
     witness: Mapping[str, str] | None = None
     reason: str = ""
     required: bool = True
+    method: str = "algebra"
 
     def as_dict(self, model: str) -> dict[str, object]:
         """Return the row as plain data, as ``verify --json`` prints it."""
@@ -61,10 +64,18 @@ class Row:
 @final
 @dataclass(frozen=True, repr=False)
 class Report:
-    """The verdicts on one model."""
+    """The verdicts on one model.
+
+    Attributes
+    ----------
+    model : its name.
+    rows : the verdicts.
+    obligations : what they are about, in the same order; units have none.
+    """
 
     model: str
     rows: tuple[Row, ...]
+    obligations: tuple[Obligation, ...] = ()
 
     @property
     def failures(self) -> tuple[Row, ...]:

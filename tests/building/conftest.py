@@ -39,7 +39,7 @@ def module_from(tmp_path):
     def made(model):
         path = tmp_path / "made" / f"{model.name}.py"
         path.parent.mkdir(exist_ok=True)
-        (text,) = render(model).values()
+        text, *_ = render(model).values()
         path.write_text(text, encoding="utf-8")
         return load_module(path)
 

@@ -27,7 +27,7 @@ def outline(text):
 
 
 def text_of(spec):
-    (text,) = render(Model(**spec)).values()
+    text, *_ = render(Model(**spec)).values()
     return text
 
 

@@ -43,7 +43,7 @@ def test_what_is_not_proved_is_exit_code_1(call, unproved):
 def test_the_table_says_why_something_is_not_proved(call, unproved):
     answer = call("verify", unproved)
     assert answer.code == 1
-    assert "passive: d*v*v = -1" in answer.out
+    assert "passive of damper: d*v*v = -1" in answer.out
 
 
 def test_one_model_that_is_not_proved_is_enough(call, unproved):

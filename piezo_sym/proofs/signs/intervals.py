@@ -1,0 +1,260 @@
+"""Intervals that are sure to hold the real value: arithmetic and the functions of the laws.
+
+Input: intervals.  Output: an interval, or None where the function is not defined on all of it.
+Endpoints are doubles; each operation gives the nearest double and steps one outward unless it is
+known to be exact (IEEE 754: the error of a rounded result is less than the step to its neighbour).
+Functions are taken at endpoints by FLINT's ball arithmetic, and are monotone in between.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, final
+
+INF = math.inf
+#: Exact values are kept as long as they have no more bits than this.
+EXACT_BITS = 256
+#: exp of more than this is above every double; FLINT gives up far beyond.
+LARGEST_EXPONENT = 1e4
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Interval:
+    """All values of a quantity lie in [lo, hi]; values are real numbers, never infinite.
+
+    Attributes
+    ----------
+    lo, hi : the ends, which may be infinite.
+    nonzero : the quantity is never zero (though the interval may reach zero).
+    exact : the quantity is this one number.
+    """
+
+    lo: float
+    hi: float
+    nonzero: bool = False
+    exact: Fraction | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse an empty interval and NaN: a sound computation never gives either."""
+        if not (self.lo <= self.hi and self.lo < INF and self.hi > -INF):
+            raise ArithmeticError(f"[{self.lo}, {self.hi}] is no interval")
+
+
+def interval(lo: float, hi: float, nonzero: bool = False) -> Interval:
+    """Return [lo, hi]; the ends may say that the quantity is not zero, or that it is one number."""
+    exact = Fraction(lo) if lo == hi else None
+    return Interval(lo, hi, nonzero or lo > 0 or hi < 0, exact)
+
+
+def rational(value: Fraction) -> Interval:
+    """Return the interval of one exact number."""
+    if max(value.numerator.bit_length(), value.denominator.bit_length()) > EXACT_BITS:
+        return Interval(_nearest(value, down=True), _nearest(value, down=False), value != 0)
+    return Interval(_nearest(value, down=True), _nearest(value, down=False), value != 0, value)
+
+
+def _nearest(value: Fraction, *, down: bool) -> float:
+    try:
+        near = float(value)
+    except OverflowError:
+        near = INF if value > 0 else -INF
+    if down:
+        return near if near <= value else math.nextafter(near, -INF)
+    return near if near >= value else math.nextafter(near, INF)
+
+
+EVERYTHING = Interval(-INF, INF)
+NOUGHT, UNIT = rational(Fraction(0)), rational(Fraction(1))
+
+
+def hull(a: Interval, b: Interval) -> Interval:
+    """Return the interval that holds both."""
+    return interval(min(a.lo, b.lo), max(a.hi, b.hi), a.nonzero and b.nonzero)
+
+
+def narrowed(a: Interval, lo: float, hi: float, nonzero: bool = False) -> Interval:
+    """Return the part of `a` between lo and hi, of a quantity known to lie there too."""
+    if a.exact is not None:
+        return a
+    return interval(max(a.lo, lo), min(a.hi, hi), a.nonzero or nonzero)
+
+
+def minus(a: Interval) -> Interval:
+    """Return -a."""
+    return Interval(-a.hi, -a.lo, a.nonzero, None if a.exact is None else -a.exact)
+
+
+def plus(a: Interval, b: Interval) -> Interval:
+    """Return a + b."""
+    if a.exact is not None and b.exact is not None:
+        return rational(a.exact + b.exact)
+    one_side = (a.lo >= 0 and b.lo >= 0) or (a.hi <= 0 and b.hi <= 0)
+    apart = one_side and (a.nonzero or b.nonzero)
+    return interval(_sum(a.lo, b.lo, -INF), _sum(a.hi, b.hi, INF), apart)
+
+
+def _sum(x: float, y: float, outward: float) -> float:
+    """Return x + y, rounded outward; Knuth's TwoSum gives the rounding error exactly."""
+    total = x + y
+    if math.isinf(x) or math.isinf(y):
+        return total
+    part = total - x
+    error = (x - (total - part)) + (y - part)
+    return total if error == 0 else math.nextafter(total, outward)
+
+
+def times(a: Interval, b: Interval) -> Interval:
+    """Return a*b."""
+    if a.exact is not None and b.exact is not None:
+        return rational(a.exact * b.exact)
+    corners = [(x, y) for x in (a.lo, a.hi) for y in (b.lo, b.hi)]
+    low = min(_product(x, y, -INF) for x, y in corners)
+    high = max(_product(x, y, INF) for x, y in corners)
+    return interval(low, high, a.nonzero and b.nonzero)
+
+
+def _product(x: float, y: float, outward: float) -> float:
+    """Return x*y, rounded outward but not past zero; 0 times an end at infinity is 0.
+
+    An infinite end is never a value: the products of 0 with the values below it are all 0.
+    """
+    if x == 0 or y == 0:
+        return 0.0
+    product = x * y
+    if math.isinf(x) or math.isinf(y) or abs(x) == 1 or abs(y) == 1:
+        return product
+    stepped = math.nextafter(product, outward)
+    positive = (x > 0) == (y > 0)
+    return max(stepped, 0.0) if positive else min(stepped, 0.0)
+
+
+def inverse(a: Interval) -> Interval | None:
+    """Return 1/a, where a keeps to one side of zero."""
+    if a.exact:
+        return rational(1 / a.exact)
+    if not a.nonzero or a.lo < 0 < a.hi:
+        return None
+    if a.hi <= 0:
+        below = inverse(minus(a))
+        return None if below is None else minus(below)
+    low = 0.0 if a.hi == INF else max(0.0, math.nextafter(1 / a.hi, -INF))
+    high = INF if a.lo == 0 or math.isinf(1 / a.lo) else math.nextafter(1 / a.lo, INF)
+    return interval(low, high, nonzero=True)
+
+
+def magnitude(a: Interval) -> Interval:
+    """Return abs(a)."""
+    if a.lo >= 0:
+        return a
+    return minus(a) if a.hi <= 0 else interval(0.0, max(-a.lo, a.hi), a.nonzero)
+
+
+def power(a: Interval, exponent: Fraction) -> Interval | None:
+    """Return a**exponent; a fractional power only of what is not negative."""
+    if exponent == 0:
+        return UNIT
+    if exponent < 0:
+        below = power(a, -exponent)
+        return None if below is None else inverse(below)
+    whole = exponent.denominator == 1
+    if whole and a.exact is not None and exponent <= EXACT_BITS:
+        return rational(a.exact**exponent.numerator)
+    if not whole and a.lo < 0:
+        return None
+    if a.exact == 0:
+        return NOUGHT
+    base = magnitude(a) if whole and exponent.numerator % 2 == 0 else a  # now x**e is increasing
+    return _increasing(base, lambda x: x.root(exponent.denominator) ** exponent.numerator)
+
+
+def exp(a: Interval) -> Interval:
+    """Return exp(a)."""
+    if a.exact == 0:
+        return UNIT
+    low = 0.0 if a.lo == -INF else max(0.0, _down(_ball(min(a.lo, LARGEST_EXPONENT)).exp()))
+    high = INF if a.hi > LARGEST_EXPONENT else _up(_ball(a.hi).exp())
+    return interval(low, high, nonzero=True)
+
+
+def log(a: Interval) -> Interval | None:
+    """Return log(a), where a is positive."""
+    if a.lo < 0 or not a.nonzero:
+        return None
+    if a.exact == 1:
+        return NOUGHT
+    low = -INF if a.lo == 0 else _down(_ball(a.lo).log())
+    return interval(low, INF if a.hi == INF else _up(_ball(a.hi).log()))
+
+
+def tanh(a: Interval) -> Interval:
+    """Return tanh(a), which lies between -1 and 1 and is zero where a is."""
+    if a.exact == 0:
+        return NOUGHT
+    low = -1.0 if a.lo == -INF else max(-1.0, _down(_ball(a.lo).tanh()))
+    return interval(low, 1.0 if a.hi == INF else min(1.0, _up(_ball(a.hi).tanh())), a.nonzero)
+
+
+def sin(a: Interval) -> Interval:
+    """Return sin(a)."""
+    if a.exact == 0:
+        return NOUGHT
+    return _wave(a, lambda x: x.sin(), Fraction(1, 4))
+
+
+def cos(a: Interval) -> Interval:
+    """Return cos(a)."""
+    if a.exact == 0:
+        return UNIT
+    return _wave(a, lambda x: x.cos(), Fraction(0))
+
+
+def _wave(a: Interval, function: Callable[[Any], Any], crest: Fraction) -> Interval:
+    """Return a wave of period 2*pi, 1 at the phases `crest` + k and -1 half a period later.
+
+    Between two ends with no crest inside, the wave is at most the larger end; likewise below.
+    """
+    if math.isinf(a.lo) or math.isinf(a.hi):
+        return interval(-1.0, 1.0)
+    ends = function(_ball(a.lo)), function(_ball(a.hi))
+    low = -1.0 if _meets(a, crest + Fraction(1, 2)) else max(-1.0, min(map(_down, ends)))
+    return interval(low, 1.0 if _meets(a, crest) else min(1.0, max(map(_up, ends))))
+
+
+def _meets(a: Interval, offset: Fraction) -> bool:
+    """Return whether some 2*pi*(offset + k), k whole, may lie in a; False is certain."""
+    from flint import arb, fmpq
+
+    turn, start = 2 * arb.pi(), arb(fmpq(offset.numerator, offset.denominator))
+    first, last = _down(_ball(a.lo) / turn - start), _up(_ball(a.hi) / turn - start)
+    return math.ceil(first) <= math.floor(last)
+
+
+def _increasing(a: Interval, function: Callable[[Any], Any]) -> Interval:
+    """Return an increasing power, from its values at the ends; it keeps zero and infinity."""
+    low = a.lo if a.lo in (0, -INF) else _down(function(_ball(a.lo)))
+    high = a.hi if a.hi in (0, INF) else _up(function(_ball(a.hi)))
+    return interval(max(low, 0.0) if a.lo >= 0 else low, high, a.nonzero)
+
+
+def _ball(x: float) -> Any:
+    from flint import arb
+
+    return arb(x)
+
+
+def _down(ball: Any) -> float:
+    """Return a double that is not above the ball; `<=` of balls is True only if certain."""
+    low = ball.lower()
+    near = float(low)
+    if math.isnan(near):
+        raise ArithmeticError("a function was taken where it is not defined")
+    return near if _ball(near) <= low else math.nextafter(near, -INF)
+
+
+def _up(ball: Any) -> float:
+    """Return a double that is not below the ball."""
+    return -_down(-ball)
