@@ -140,8 +140,8 @@ def stages(text):
     model = parse(text)
     iphs = derive(model)
     verify(iphs)
-    (module,) = render(model, allow_unproved=True).values()
-    compile(module, "module", "exec")
+    files = render(model, allow_unproved=True)
+    compile(files[f"{model.name}/{model.name}.py"], "module", "exec")
 
 
 @pytest.mark.usefixtures("_hurried")
