@@ -22,7 +22,7 @@ from piezo_sym.proofs.query import Query
 
 #: The most seconds to wait for one answer; far above what the solvers' own limits come to.
 PATIENCE = 20.0
-#: Answers that are kept: the same query is asked again when a file is checked or a bank written out.
+#: Answers that are kept: a query is asked again when a file is checked or a bank is written out.
 MOST_KNOWN = 10_000
 
 
