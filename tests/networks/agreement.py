@@ -57,8 +57,9 @@ def check(spec, seed=0):
 
 def rendered(model):
     """Return the generated module, made twice to see that its text is the same."""
-    (text,) = render(model, allow_unproved=True).values()
-    assert render(model, allow_unproved=True) == {f"{model.name}/{model.name}.py": text}
+    files = render(model, allow_unproved=True)
+    assert render(model, allow_unproved=True) == files
+    text = files[f"{model.name}/{model.name}.py"]
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "network.py"
         path.write_text(text, encoding="utf-8")
