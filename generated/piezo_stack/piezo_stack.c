@@ -108,7 +108,7 @@ void piezo_stack_rhs(const double *restrict x,
         const double i_hysteron = phi[j]/L[j];
         const double V_hysteron = fabs(i_hysteron) <= i_0[j]
             ? 0.0
-            : rho[j]/T_minus_T_0*(i_hysteron > 0.0 ? i_hysteron - i_0[j] : i_hysteron + i_0[j]);
+            : rho[j]/T_minus_T_0*(i_hysteron - copysign(i_0[j], i_hysteron));
         sum_i_hysteron += i_hysteron;
         heat_hysteron += V_hysteron*i_hysteron;
         out[3 + j] = V_in - V_capacitor - V_hysteron;
@@ -269,7 +269,7 @@ void piezo_stack_heat(const double *restrict x,
         const double i_hysteron = phi[j]/L[j];
         const double V_hysteron = fabs(i_hysteron) <= i_0[j]
             ? 0.0
-            : rho[j]/T_minus_T_0*(i_hysteron > 0.0 ? i_hysteron - i_0[j] : i_hysteron + i_0[j]);
+            : rho[j]/T_minus_T_0*(i_hysteron - copysign(i_0[j], i_hysteron));
         out[j] = V_hysteron*i_hysteron;
     }
     /* rows */
@@ -306,7 +306,7 @@ void piezo_stack_entropy_production(const double *restrict x,
         const double i_hysteron = phi[j]/L[j];
         const double V_hysteron = fabs(i_hysteron) <= i_0[j]
             ? 0.0
-            : rho[j]/T_minus_T_0*(i_hysteron > 0.0 ? i_hysteron - i_0[j] : i_hysteron + i_0[j]);
+            : rho[j]/T_minus_T_0*(i_hysteron - copysign(i_0[j], i_hysteron));
         out[j] = V_hysteron*i_hysteron/T;
     }
     /* rows */
@@ -364,12 +364,12 @@ void piezo_stack_jacobian(const double *restrict x,
         const double i_hysteron = phi[j]/L[j];
         const double V_hysteron = fabs(i_hysteron) <= i_0[j]
             ? 0.0
-            : rho[j]/T_minus_T_0*(i_hysteron > 0.0 ? i_hysteron - i_0[j] : i_hysteron + i_0[j]);
+            : rho[j]/T_minus_T_0*(i_hysteron - copysign(i_0[j], i_hysteron));
         const double dV_hysteron_dphi = (fabs(i_hysteron) > i_0[j] ? rho[j]/T_minus_T_0 : 0.0)/L[j];
         const double dheat_hysteron_dphi = i_hysteron*dV_hysteron_dphi + V_hysteron/L[j];
         const double dV_hysteron_dS = fabs(i_hysteron) <= i_0[j]
             ? 0.0
-            : -rho[j]/power_2(T_minus_T_0)*(i_hysteron > 0.0 ? i_hysteron - i_0[j] : i_hysteron + i_0[j])*dT_minus_T_0_dS;
+            : -rho[j]/power_2(T_minus_T_0)*(i_hysteron - copysign(i_0[j], i_hysteron))*dT_minus_T_0_dS;
         heat_hysteron += V_hysteron*i_hysteron;
         dheat_hysteron_dS += i_hysteron*dV_hysteron_dS;
         out[2*n + 3 + j] = 1.0/L[j];

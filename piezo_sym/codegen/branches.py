@@ -1,7 +1,7 @@
 """Dead zones as branches, with their factors and quotients inside the branch.
 
 Input: an expression.  Output: the same with ``f*deadzone(z, w)`` as
-``0 if abs(z) <= w else f*(z - w if z > 0 else z + w)``.  Inside the zone nothing is divided, and in
+``0 if abs(z) <= w else f*(z - copysign(w, z))``, for w >= 0.  Inside the zone nothing is divided, and in
 a loop over lanes a compiler makes masks of such branches.  Not a number stays not a number.
 """
 
@@ -16,8 +16,8 @@ def with_branches(node: Expr) -> Expr:
     inner = rebuild(node, with_branches)
     match inner:
         case Call("deadzone", (z, w)) if _short(z) and _short(w):
-            outside = If(add(z, neg(w)), Cmp(">", z, ZERO), add(z, w))
-            return If(ZERO, Cmp("<=", Call("abs", (z,)), w), outside)
+            beyond = add(z, neg(Call("copysign", (w, z))))
+            return If(ZERO, Cmp("<=", Call("abs", (z,)), w), beyond)
         case Mul(left, If(then, condition, other)) if then == ZERO and _plain(left):
             return If(ZERO, condition, mul(left, other))
         case Mul(If(then, condition, other), right) if then == ZERO and _plain(right):
