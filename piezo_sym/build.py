@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import final
 
-from piezo_sym.codegen import MARK, lower, numpy_module
+from piezo_sym.codegen import MARK, c_header, c_source, lower, numpy_module
 from piezo_sym.derivation import derive
 from piezo_sym.errors import DriftError
 from piezo_sym.files import path_text, read_text, write_together
@@ -60,6 +60,8 @@ def render(model: Model, *, allow_unproved: bool = False) -> dict[str, str]:
     made = f"{MARK} {VERSION}; do not edit: change the spec, then run `piezo-sym generate`."
     return {
         f"{model.name}/{model.name}.py": numpy_module(program),
+        f"{model.name}/{model.name}.h": c_header(program),
+        f"{model.name}/{model.name}.c": c_source(program),
         f"{model.name}/proofs.json": proofs_json(report, model, made),
         f"{model.name}/proofs.smt2": smt2(report, made),
     }

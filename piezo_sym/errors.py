@@ -73,6 +73,11 @@ class RunError(PiezoError):
 
 
 @final
+class EngineError(PiezoError):
+    """A module that cannot be compiled or loaded; runs then go on in NumPy."""
+
+
+@final
 class ProofError(PiezoError):
     """A required property that is refuted or open."""
 

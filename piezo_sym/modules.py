@@ -19,7 +19,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 from piezo_sym.errors import DriftError, FileError
-from piezo_sym.files import path_text, read_text, write_text
+from piezo_sym.files import path_text, read_text, write_bytes, write_together
 from piezo_sym.spec.source import data, find, read, shipped
 from piezo_sym.spec.write import spec_hash
 from piezo_sym.version import VERSION
@@ -109,14 +109,14 @@ def _cached(model: Model) -> ModuleType:
             return load_module(path)
     from piezo_sym.build import render
 
-    text = next(iter(render(model).values()))
+    files = {Path(name).name: text.encode() for name, text in render(model).items()}
     try:
-        write_text(path, text)
+        write_together({path.parent / name: text for name, text in files.items()})
         return load_module(path)
     except FileError:  # a read-only cache: the module lives as long as the process
         with tempfile.TemporaryDirectory(prefix="piezo_sym-") as temporary:
             path = Path(temporary) / f"{model.name}.py"
-            write_text(path, text)
+            write_bytes(path, files[path.name])
             return load_module(path)
 
 

@@ -1,7 +1,9 @@
 """Code generation: IPHS to program, program to text."""
 
+from piezo_sym.codegen.c_head import c_header
+from piezo_sym.codegen.c_printer import c_source
 from piezo_sym.codegen.lower import lower
 from piezo_sym.codegen.numpy_head import MARK
 from piezo_sym.codegen.numpy_printer import numpy_module
 
-__all__ = ["MARK", "lower", "numpy_module"]
+__all__ = ["MARK", "c_header", "c_source", "lower", "numpy_module"]

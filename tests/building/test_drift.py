@@ -54,8 +54,10 @@ def test_a_changed_file_is_found_with_the_difference(model, file, out):
 
 def test_a_changed_spec_is_found(spec, out):
     spec["parameters"]["M"]["value"] = 4e-3
-    module, proofs = drift([Model(**spec)], out)  # the queries hold for every value
+    module, header, source, proofs = drift([Model(**spec)], out)  # the queries hold for any
     assert "+    M: float = 0.004" in module.diff
+    assert "+    double M; /* moving mass [kg]; 0.004 */" in header.diff
+    assert "sha256" in source.diff
     assert proofs.path.name == "proofs.json"
 
 

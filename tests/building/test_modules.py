@@ -54,7 +54,7 @@ def test_the_working_folder_comes_first(model):
 def test_loading_a_module_leaves_no_trace(model):
     generate(model)
     module_of("piezo_stack")
-    assert len(files(Path("generated"))) == 3
+    assert len(files(Path("generated"))) == 5
 
 
 def test_a_module_of_another_spec_names_the_command(mine):
@@ -100,7 +100,8 @@ def test_a_spec_written_otherwise_is_the_same_spec(model):
 def test_a_spec_not_generated_yet_goes_to_the_cache(mine, cache):
     module = module_of(mine)
     assert module.Parameters().M == 4e-3
-    assert files(cache) == [Path(module.__file__)]
+    names = ("mine.c", "mine.h", "mine.py", "proofs.json", "proofs.smt2")
+    assert sorted(files(cache)) == [Path(module.__file__).with_name(name) for name in names]
     assert not Path("generated").exists()
 
 
@@ -118,7 +119,7 @@ def test_a_changed_spec_is_not_answered_from_the_cache(mine):
 
 def test_a_damaged_file_in_the_cache_is_made_again(mine, cache):
     module_of(mine)
-    (path,) = files(cache)
+    (path,) = (path for path in files(cache) if path.suffix == ".py")
     path.write_text("def (")
     assert module_of(mine).Parameters().M == 4e-3
 

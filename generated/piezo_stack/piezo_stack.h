@@ -1,0 +1,177 @@
+/*
+ * Piezoelectric stack actuator with hysterons: irreversible port-Hamiltonian system.
+ *
+ * Source:  Caballeria, Ramirez, Le Gorrec (2021), eqs. (9)-(13), Table 1
+ * Model:   piezo_stack, spec sha256 9c0235a60e02072bc451611ffa723f273272c8e4536a3089081866f47c89389c
+ * Proofs:  skew, casimir, energy, entropy, temperature, welldef, continuous, passive, odd, sigma, exergy, environment, invariant, units PROVED
+ *
+ * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
+ * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
+ *
+ * x = (q, p, Q_C, phi_1 ... phi_hysteron_count, S)
+ * u = (F_ext, V_in, T_e)
+ * hysteron: lanes j = 1 ... hysteron_count
+ */
+#ifndef PIEZO_SYM_piezo_stack_H
+#define PIEZO_SYM_piezo_stack_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Parameters in SI units, with the values of the spec. */
+typedef struct {
+    double M; /* moving mass [kg]; 0.0035 */
+    double k; /* stiffness [N/m]; 500000.0 */
+    double q_l; /* rest position of the spring [m]; 0.0 */
+    double d; /* damping [N*s/m]; 400.0 */
+    double C; /* capacitance [F]; 5e-06 */
+    const double *L; /* inductance of one hysteron [H], one a lane of hysteron; 0.001 */
+    const double *rho; /* resistance law: slope rho/(T - T_0) [ohm*K], one a lane of hysteron; 10.0 */
+    const double *i_0; /* half width of the dead zone [A], one a lane of hysteron; 0.5 */
+    double a; /* transducer ratio at T_0 [C/m]; 10.0 */
+    double T_0; /* reference temperature [K]; 296.15 */
+    double c_0; /* heat capacity [J/K]; 5.0 */
+    double lam; /* heat conductance to the environment [W/K]; 2.0 */
+    long hysteron_count; /* lanes of hysteron, at least 1; 2 */
+} piezo_stack_parameters;
+
+enum {
+    piezo_stack_input_count = 3,
+    piezo_stack_output_count = 3,
+    piezo_stack_body_count = 1,
+    piezo_stack_limit_count = 12,
+};
+
+/*
+ * Number of states n.
+ */
+long piezo_stack_states(const piezo_stack_parameters *p_);
+
+/*
+ * Number of rows of processes, a bank's one a lane.
+ */
+long piezo_stack_processes(const piezo_stack_parameters *p_);
+
+/*
+ * State at t = 0 [SI], for the inputs u at t = 0.
+ * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[n], written, overlaps nothing else: q [m], p [kg*m/s], Q_C [C], phi_1 ...
+ *     phi_hysteron_count [Wb], S [J/K]
+ */
+void piezo_stack_initial_state(const double *u, const piezo_stack_parameters *p_, double *out);
+
+/*
+ * Rates dx/dt = J_ir dU/dx + g u.
+ * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
+ * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[n], written, overlaps nothing else
+ */
+void piezo_stack_rhs(const double *x,
+                     const double *u,
+                     const piezo_stack_parameters *p_,
+                     double *out);
+
+/*
+ * Derivative of rhs by the state, n x n, row after row.
+ * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
+ * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[n*n], written, overlaps nothing else
+ */
+void piezo_stack_jacobian(const double *x,
+                          const double *u,
+                          const piezo_stack_parameters *p_,
+                          double *out);
+
+/*
+ * Outputs y, one a port, conjugate to its input.
+ * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
+ * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[piezo_stack_output_count], written, overlaps nothing else: load [m/s], supply [A],
+ *     ambient [K]
+ */
+void piezo_stack_outputs(const double *x,
+                         const double *u,
+                         const piezo_stack_parameters *p_,
+                         double *out);
+
+/*
+ * Power put in [W], one a port; the sum is dU/dt.
+ * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
+ * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[piezo_stack_output_count], written, overlaps nothing else
+ */
+void piezo_stack_supply(const double *x,
+                        const double *u,
+                        const piezo_stack_parameters *p_,
+                        double *out);
+
+/*
+ * Hamiltonian U [J].
+ * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
+ */
+double piezo_stack_energy(const double *x, const piezo_stack_parameters *p_);
+
+/*
+ * Total entropy S [J/K].
+ * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
+ */
+double piezo_stack_entropy(const double *x, const piezo_stack_parameters *p_);
+
+/*
+ * Temperature of each body [K].
+ * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
+ * out[piezo_stack_body_count], written, overlaps nothing else: body [K]
+ */
+void piezo_stack_temperatures(const double *x, const piezo_stack_parameters *p_, double *out);
+
+/*
+ * Power that each process turns into heat [W], a bank's a row a lane.
+ * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
+ * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[piezo_stack_processes(p)], written, overlaps nothing else
+ */
+void piezo_stack_heat(const double *x,
+                      const double *u,
+                      const piezo_stack_parameters *p_,
+                      double *out);
+
+/*
+ * Entropy that each process produces [W/K], a bank's a row a lane.
+ * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
+ * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[piezo_stack_processes(p)], written, overlaps nothing else
+ */
+void piezo_stack_entropy_production(const double *x,
+                                    const double *u,
+                                    const piezo_stack_parameters *p_,
+                                    double *out);
+
+/*
+ * Margin of each condition of the domain, least over lanes.
+ * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
+ * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[piezo_stack_limit_count], written, overlaps nothing else
+ * out[0]: T > T_0; inside, > 0
+ * out[1]: T_e > T_0; inside, > 0
+ * out[2]: d >= 0; inside, >= 0
+ * out[3]: rho >= 0; inside, >= 0
+ * out[4]: i_0 >= 0; inside, >= 0
+ * out[5]: lam >= 0; inside, >= 0
+ * out[6]: k > 0; inside, > 0
+ * out[7]: M > 0; inside, > 0
+ * out[8]: C > 0; inside, > 0
+ * out[9]: L > 0; inside, > 0
+ * out[10]: T_0 > 0; inside, > 0
+ * out[11]: c_0 > 0; inside, > 0
+ */
+void piezo_stack_margins(const double *x,
+                         const double *u,
+                         const piezo_stack_parameters *p_,
+                         double *out);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* PIEZO_SYM_piezo_stack_H */

@@ -1,0 +1,190 @@
+"""The header of a C module: what it is, its parameters, and what each function takes and gives.
+
+Input: a `Program`.  Output: the text of ``<model>.h``.  Texts of a spec stand in comments alone,
+changed so that they cannot end one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from textwrap import wrap
+
+from piezo_sym.codegen.c_names import added, c_names
+from piezo_sym.codegen.numpy_head import MARK
+from piezo_sym.codegen.program import Field, Program
+from piezo_sym.errors import one_line
+from piezo_sym.version import VERSION
+
+WIDTH = 96
+#: What functions do that the program does not describe.
+FUNCTIONS = {
+    "states": "Number of states n",
+    "processes": "Number of rows of processes, a bank's one a lane",
+    "jacobian": "Derivative of rhs by the state, n x n, row after row",
+    "margins": "Margin of each condition of the domain, least over lanes",
+}
+_ORDER = (
+    "states processes initial_state rhs jacobian outputs supply energy entropy temperatures heat "
+    "entropy_production margins"
+)
+_ARGUMENTS = {"out": ("out",), "state": ("x", "u", "p", "out")}
+TAKES: Mapping[str, tuple[str, ...]] = {
+    "states": ("p",),
+    "processes": ("p",),
+    "initial_state": ("u", "p", "out"),
+    "energy": ("x", "p"),
+    "entropy": ("x", "p"),
+    "temperatures": ("x", "p", "out"),
+}
+SCALARS = {"states": "long", "processes": "long", "energy": "double", "entropy": "double"}
+
+
+def c_header(program: Program) -> str:
+    """Return the text of a program's C header."""
+    guard = f"PIEZO_SYM_{program.name}_H"
+    parts = [
+        f"{opening(program)}\n#ifndef {guard}\n#define {guard}",
+        '#ifdef __cplusplus\nextern "C" {\n#endif',
+        "\n".join(_parameters(program)),
+        "\n".join(_numbers(program)),
+        *_declarations(program),
+        f"#ifdef __cplusplus\n}}\n#endif\n\n#endif /* {guard} */",
+    ]
+    return "\n\n".join(parts) + "\n"
+
+
+def text_of(text: str) -> str:
+    """Return text from a spec so that it is plain and cannot end, open or continue a comment."""
+    plain = one_line(text).replace("\\", "/")
+    for pair, apart in (("*/", "* /"), ("/*", "/ *"), ("??", "? ?")):
+        while pair in plain:
+            plain = plain.replace(pair, apart)
+    return plain
+
+
+def opening(program: Program) -> str:
+    """Return the comment at the head of both files."""
+    u = ", ".join(field.name for field in program.inputs)
+    lines = [
+        f"{text_of(program.title or program.name)}: irreversible port-Hamiltonian system.",
+        "",
+        *([f"Source:  {text_of(program.source)}"] if program.source else []),
+        f"Model:   {program.name}, spec sha256 {program.sha256}",
+        f"Proofs:  {text_of(program.verdict)}",
+        "",
+        f"{MARK} {VERSION}; do not edit: change the spec, then run `piezo-sym generate`.",
+        "C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.",
+        "",
+        f"x = ({', '.join(_spread(field) for field in program.states)})",
+        f"u = ({u})",
+        *(f"{bank}: lanes j = 1 ... {bank}_count" for bank in program.counts),
+    ]
+    return "\n".join(["/*", *(f" * {line}".rstrip() for line in lines), " */"])
+
+
+def _spread(field: Field) -> str:
+    return f"{field.name}_1 ... {field.name}_{field.bank}_count" if field.bank else field.name
+
+
+def _parameters(program: Program) -> Iterator[str]:
+    names = c_names(program)
+    yield "/* Parameters in SI units, with the values of the spec. */"
+    yield "typedef struct {"
+    for field in program.parameters:
+        value = program.defaults[field.name]
+        spec = "one a lane" if isinstance(value, tuple) else repr(value)
+        name = f"*{names[field.name]}" if field.bank else names[field.name]
+        lane = f", one a lane of {field.bank}" if field.bank else ""
+        renamed = f"{field.name}: " if names[field.name] != field.name else ""
+        doc = f"{field.doc} " if field.doc else ""
+        note = text_of(f"{renamed}{doc}[{field.unit}]{lane}; {spec}")
+        yield f"    {'const ' if field.bank else ''}double {name}; /* {note} */"
+    for bank, count in program.counts.items():
+        yield f"    long {bank}_count; /* lanes of {bank}, at least 1; {count} */"
+    if not program.parameters and not program.counts:
+        yield "    char none; /* a model without parameters: C99 has no empty struct */"
+    yield f"}} {program.name}_parameters;"
+
+
+def _numbers(program: Program) -> Iterator[str]:
+    """Yield the sizes that are the same for every bank size."""
+    sizes = {
+        "input": program.inputs,
+        "output": program.outputs,
+        "body": program.bodies,
+        "limit": program.limits,
+    }
+    yield "enum {"
+    for word, fields in sizes.items():
+        yield f"    {program.name}_{word}_count = {len(fields)},"
+    yield "};"
+
+
+def declaration(
+    program: Program,
+    name: str,
+    arguments: Sequence[str],
+    words: Mapping[str, str],
+    restrict: str = "",
+) -> str:
+    """Return the first lines of a function, without body and semicolon."""
+    types = {
+        "x": f"const double *{restrict}",
+        "u": f"const double *{restrict}",
+        "p": f"const {program.name}_parameters *{restrict}",
+        "out": f"double *{restrict}",
+    }
+    start = f"{SCALARS.get(name, 'void')} {program.name}_{name}("
+    texts = [f"{types[argument]}{words[argument]}" for argument in arguments]
+    line = f"{start}{', '.join(texts)})"
+    if len(line) <= WIDTH:
+        return line
+    return start + f",\n{' ' * len(start)}".join(texts) + ")"
+
+
+def _declarations(program: Program) -> Iterator[str]:
+    docs = {**FUNCTIONS, **{function.name: function.doc for function in program.functions}}
+    words = added(("x", "u", "p", "out", "n", "j", "l", "left"), program, c_names(program))
+    for name in _ORDER.split():
+        arguments = TAKES.get(name, _ARGUMENTS["state"])
+        lines = [*_wrapped(f"{docs[name]}."), *_given(program, name, arguments, words)]
+        head = declaration(program, name, arguments, words)
+        yield "\n".join(["/*", *(f" * {line}".rstrip() for line in lines), " */", f"{head};"])
+
+
+def _wrapped(text: str, first: str = "") -> list[str]:
+    return wrap(text_of(text), WIDTH - 4, initial_indent=first, subsequent_indent="    ")
+
+
+def _given(
+    program: Program, name: str, arguments: Sequence[str], words: Mapping[str, str]
+) -> Iterator[str]:
+    """Yield a line on each argument, with units."""
+    results = {
+        "initial_state": ("n", program.states),
+        "temperatures": (f"{program.name}_body_count", program.bodies),
+        "outputs": (f"{program.name}_output_count", program.outputs),
+        "heat": (f"{program.name}_processes(p)", ()),
+        "entropy_production": (f"{program.name}_processes(p)", ()),
+        "supply": (f"{program.name}_output_count", ()),
+        "rhs": ("n", ()),
+        "jacobian": ("n*n", ()),
+        "margins": (f"{program.name}_limit_count", ()),
+    }
+    layouts: dict[str, tuple[str, Sequence[Field]]] = {
+        "x": ("n", program.states),
+        "u": (f"{program.name}_input_count", program.inputs),
+        "out": results.get(name, ("", ())),
+    }
+    for argument in arguments:
+        if argument == "p":
+            continue
+        size, fields = layouts[argument]
+        listed = ", ".join(f"{_spread(field)} [{field.unit}]" for field in fields)
+        role = "written, overlaps nothing else" if argument == "out" else "read"
+        units = f": {listed}" if listed else ""
+        yield from _wrapped(f"{words[argument]}[{size}], {role}{units}")
+    if name == "margins":
+        for n, limit in enumerate(program.limits):
+            inside = "> 0" if limit.strict else ">= 0"
+            yield from _wrapped(f"{words['out']}[{n}]: {limit.text}; inside, {inside}")

@@ -1,0 +1,162 @@
+"""Statements of C: definitions, loops over lanes, and what a function unpacks.
+
+Input: stages of a function.  Output: lines of C99.  Only what a function uses is defined in it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import final
+
+from piezo_sym.codegen.branches import with_branches
+from piezo_sym.codegen.c_stages import Loop, Stage, Write
+from piezo_sym.codegen.c_style import c_piece, c_style
+from piezo_sym.codegen.program import Quantity
+from piezo_sym.spec.expressions import Add, Expr, If, LaneSum
+from piezo_sym.spec.text import PRODUCT, SUM, Style, enclose, signed, write_comparison
+
+WIDTH = 96
+
+
+@final
+@dataclass(frozen=True)
+class Words:
+    """The identifiers of a text.
+
+    Attributes
+    ----------
+    names : what C calls each name of the program.
+    arrays : the parameters and states of a bank, and which bank's.
+    lane : the lane of a loop.
+    """
+
+    names: Mapping[str, str]
+    arrays: Mapping[str, str]
+    lane: str
+
+    def style(self, lane: str | None = None) -> Style:
+        """Return the spelling of expressions in lane `lane`: in the loop's, if none is given."""
+        return c_style(self.names, self.arrays, lane or self.lane)
+
+    def text(self, value: Expr, lane: str | None = None) -> str:
+        """Return an expression as C."""
+        return c_piece(value, self.style(lane))[0]
+
+
+def indented(lines: Iterable[str], depth: int = 1) -> Iterator[str]:
+    """Yield lines moved to the right; directives stay at the left."""
+    for line in lines:
+        yield line if line.startswith("#") or not line else f"{'    ' * depth}{line}"
+
+
+def statement(target: str, value: Expr, words: Words, lane: str | None = None) -> list[str]:
+    """Return ``target value;``, target with an operator; a long value has a line a term or case."""
+    text = words.text(value, lane)
+    parts = with_branches(value)
+    if len(target) + len(text) + 10 <= WIDTH or not isinstance(parts, Add | If):
+        return [f"{target} {text};"]
+    style = words.style(lane)
+    lines = list(_terms(parts, style) if isinstance(parts, Add) else _cases(parts, style))
+    return [f"{target} {lines[0]}", *(f"    {line}" for line in lines[1:-1]), f"    {lines[-1]};"]
+
+
+def _terms(value: Add, style: Style) -> Iterator[str]:
+    first, *rest = value.terms
+    yield enclose(c_piece(first, style), SUM)
+    for term in rest:
+        sign, size = signed(term)
+        yield f"{sign} {enclose(c_piece(size, style), PRODUCT)}"
+
+
+def _cases(value: If, style: Style) -> Iterator[str]:
+    yield write_comparison(value.condition, style)
+    yield f"? {enclose(c_piece(value.then, style), SUM)}"
+    yield f": {enclose(c_piece(value.other, style), SUM)}"
+
+
+def define(quantity: Quantity, words: Words, lane: str | None = None) -> list[str]:
+    """Return the definition of a quantity: of a shared one, or of one lane's."""
+    return statement(f"const double {words.names[quantity.name]} =", quantity.value, words, lane)
+
+
+def noted(quantities: Iterable[Quantity], words: Words) -> Iterator[str]:
+    """Yield definitions with a comment where the kind of quantity changes."""
+    note = ""
+    for quantity in quantities:
+        if quantity.note != note:
+            note = quantity.note
+            yield f"/* {note} */"
+        yield from define(quantity, words)
+
+
+def stage_lines(stage: Stage, words: Words) -> Iterator[str]:
+    """Yield the lines of one stage."""
+    yield from noted(stage.shared, words)
+    for loop in stage.loops:
+        yield from loop_lines(loop, words)
+
+
+def loop_lines(loop: Loop, words: Words) -> Iterator[str]:
+    """Yield a loop over the lanes of a bank, and what it starts from."""
+    sums = [words.names[quantity.name] for quantity in loop.sums]
+    parts = [*(["sums over lanes"] if loop.sums else []), *(["rows"] if loop.writes else [])]
+    yield f"/* {loop.bank}: {' and '.join(parts)} */"
+    yield from (f"double {name} = 0.0;" for name in sums)
+    yield from (f"{w.target} = INFINITY;" for w in loop.writes if w.how == "min")
+    if sums:
+        yield from _reduction(sums)
+    elif all(write.how == "=" for write in loop.writes):
+        yield "#pragma omp simd"
+    yield f"for (long {words.lane} = 0; {words.lane} < {loop.bank}_count; ++{words.lane}) {{"
+    yield from indented(_body(loop, words))
+    yield "}"
+
+
+def _reduction(sums: Sequence[str]) -> Iterator[str]:
+    """Yield the directive that lets a compiler add lanes in any order."""
+    line = "#pragma omp simd reduction(+:"
+    for name in sums[:-1]:
+        if len(line) + len(name) + 4 > WIDTH:
+            yield f"{line} \\"
+            line = "   "
+        line += f" {name}," if not line.endswith(":") else f"{name},"
+    joint = "" if line.endswith(":") else " "
+    yield f"{line}{joint}{sums[-1]})"
+
+
+def _body(loop: Loop, words: Words) -> Iterator[str]:
+    for quantity in loop.lanes:
+        yield from define(quantity, words)
+    for quantity in loop.sums:
+        value = quantity.value.arg if isinstance(quantity.value, LaneSum) else quantity.value
+        yield from statement(f"{words.names[quantity.name]} +=", value, words)
+    for write in loop.writes:
+        yield from write_lines(write, words)
+
+
+def write_lines(write: Write, words: Words) -> list[str]:
+    """Return the lines that write a value where it goes."""
+    if write.how == "min":
+        return [f"{write.target} = min({write.target}, {words.text(write.value)});"]
+    return statement(f"{write.target} {write.how}", write.value, words)
+
+
+def used_only(
+    body: Sequence[str], definitions: Sequence[tuple[str, str]], arguments: Iterable[str]
+) -> list[str]:
+    """Return the definitions that `body` needs, and a note to the compiler on unused arguments."""
+    seen = _identifiers(body)
+    kept: list[str] = []
+    for name, line in reversed(definitions):
+        if name in seen:
+            kept.append(line)
+            seen |= _identifiers([line])
+    idle = [f"(void){name};" for name in arguments if name not in seen]
+    return [*idle, *reversed(kept)]
+
+
+def _identifiers(lines: Iterable[str]) -> set[str]:
+    text = re.sub(r"/\*.*?\*/", "", "\n".join(lines))
+    return set(re.findall(r"(?<![\w.>])[A-Za-z_]\w*", text)) | set(re.findall(r"\b(\w+)->", text))

@@ -1,0 +1,75 @@
+"""Words that a spec may use and C may not: keywords, macros of the headers, called functions.
+
+Input: the names of a program.  Output: what C calls each of them: the name itself, or with an
+underscore.  The header is used together with others, and in C++: their macros and keywords count.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from piezo_sym.codegen.program import Program
+from piezo_sym.spec.names import fresh
+
+_CPLUSPLUS = """alignas alignof and and_eq asm bitand bitor catch char8_t char16_t char32_t class
+co_await co_return co_yield compl concept const_cast consteval constexpr constinit decltype delete
+dynamic_cast explicit export friend module mutable namespace new noexcept not not_eq nullptr
+operator or or_eq private protected public reinterpret_cast requires static_assert static_cast
+template this thread_local throw try typeid typename typeof typeof_unqual using virtual wchar_t xor
+xor_eq"""
+_MACROS = """assert complex errno imaginary I linux unix i386 far near small hyper interface min max
+stdin stdout stderr offsetof va_list signbit NULL EOF BUFSIZ ERROR TRUE FALSE IN OUT INFINITY NAN
+HUGE HUGE_VAL HUGE_VALF HUGE_VALL DOMAIN SING OVERFLOW UNDERFLOW PLOSS TLOSS MAXFLOAT EDOM ERANGE
+EILSEQ MATH_ERRNO MATH_ERREXCEPT math_errhandling FP_NAN FP_INFINITE FP_ZERO FP_NORMAL FP_SUBNORMAL
+FP_FAST_FMA FP_FAST_FMAF FP_FAST_FMAL FP_ILOGB0 FP_ILOGBNAN M_E M_LOG2E M_LOG10E M_LN2 M_LN10 M_PI
+M_PI_2 M_PI_4 M_1_PI M_2_PI M_2_SQRTPI M_SQRT2 M_SQRT1_2 L_tmpnam FILENAME_MAX FOPEN_MAX TMP_MAX
+SEEK_SET SEEK_CUR SEEK_END RAND_MAX EXIT_SUCCESS EXIT_FAILURE MB_CUR_MAX CHAR_BIT CHAR_MIN CHAR_MAX
+SCHAR_MIN SCHAR_MAX UCHAR_MAX SHRT_MIN SHRT_MAX USHRT_MAX INT_MIN INT_MAX UINT_MAX LONG_MIN LONG_MAX
+ULONG_MAX LLONG_MIN LLONG_MAX ULLONG_MAX SIZE_MAX FLT_RADIX DECIMAL_DIG SIGABRT SIGFPE SIGILL SIGINT
+SIGSEGV SIGTERM SIG_DFL SIG_ERR SIG_IGN CLOCKS_PER_SEC"""
+_FLOATS = "DIG EPSILON MANT_DIG MAX MAX_10_EXP MAX_EXP MIN MIN_10_EXP MIN_EXP"
+#: The functions that generated code calls, beside those that laws are written with.
+_CALLED = "copysign expm1 fabs pow " + " ".join(f"power_{n}" for n in range(2, 9))
+_ENDS = (
+    *("parameters", "states", "processes", "jacobian", "margins"),
+    *("input_count", "output_count", "body_count", "limit_count"),
+)
+
+KEPT = (
+    frozenset(f"{_CPLUSPLUS} {_MACROS} {_CALLED}".split())
+    | {f"{kind}_{word}" for kind in ("FLT", "DBL", "LDBL") for word in _FLOATS.split()}
+    | {f"{word}{end}" for word in ("M_PI", "M_E", "M_SQRT2", "M_LN2") for end in ("l", "f")}
+)
+
+
+def c_names(program: Program) -> dict[str, str]:
+    """Return what C calls each name of a program; no two have the same name."""
+    taken = {*program.taken, *KEPT, *_words(program)}
+    names: dict[str, str] = {}
+    for word in _all(program):
+        names[word] = fresh(word, taken) if word in KEPT or word in _words(program) else word
+        taken.add(names[word])
+    return names
+
+
+def _words(program: Program) -> frozenset[str]:
+    """Return the names that the module's own functions and types have."""
+    functions = (function.name for function in program.functions)
+    return frozenset(f"{program.name}_{end}" for end in (*functions, *_ENDS))
+
+
+def _all(program: Program) -> Iterable[str]:
+    fields = (*program.parameters, *program.inputs, *program.states)
+    yield from dict.fromkeys(field.name for field in fields)
+    yield from (f"{bank}_count" for bank in program.counts)
+    yield from (quantity.name for quantity in program.quantities)
+
+
+def added(words: Iterable[str], program: Program, names: Mapping[str, str]) -> dict[str, str]:
+    """Return names for what the printer adds, none of them in use."""
+    taken = {*program.taken, *names.values(), *KEPT}
+    found: dict[str, str] = {}
+    for word in words:
+        found[word] = fresh(word, taken)
+        taken.add(found[word])
+    return found

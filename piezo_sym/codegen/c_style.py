@@ -1,0 +1,104 @@
+"""How C spells the parts of an expression.
+
+Input: a tree and the C names of what stands in it.  Output: one line of C99.  Small whole powers
+are products, kinks are conditional expressions, and a quotient of numbers stays one: it is rounded
+once, as in NumPy.  The functions that a text calls and <math.h> lacks are in `helpers`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from fractions import Fraction
+
+from piezo_sym.codegen.branches import with_branches
+from piezo_sym.spec.expressions import Expr
+from piezo_sym.spec.text import (
+    ATOM,
+    CHOICE,
+    PRODUCT,
+    SUM,
+    UNARY,
+    Piece,
+    Style,
+    decimal,
+    enclose,
+    piece,
+)
+
+CALLS = {"abs": "fabs"}
+#: Beyond, a power calls the library; such exponents do not occur in laws of nature.
+MOST_FACTORS = 8
+#: Whole numbers up to here are floating-point numbers without rounding.
+EXACT = 2**53
+_NAN = "not a number stays so"
+_HELPERS = {
+    "sign": ("double z", "z > 0.0 ? 1.0 : z < 0.0 ? -1.0 : z"),
+    "min": ("double a, double b", f"a < b || a != a ? a : b; /* {_NAN} */"),
+    "max": ("double a, double b", f"a > b || a != a ? a : b; /* {_NAN} */"),
+    "saturate": ("double z, double w", "z > w ? w : z < -w ? -w : z"),
+    "deadzone": ("double z, double w", "z > w ? z - w : z < -w ? z + w : z - z"),
+}
+
+
+def c_number(value: Fraction) -> Piece:
+    """Return a rational number: an exact decimal, a quotient of whole numbers, or 17 digits."""
+    if value < 0:
+        return f"-{enclose(c_number(-value), PRODUCT)}", SUM
+    text = decimal(value)
+    if text is None and max(value.numerator, value.denominator) <= EXACT:
+        return f"{value.numerator}.0/{value.denominator}.0", PRODUCT
+    if text is None or len(text) > 17:
+        text = repr(float(value))
+    return (text if re.search(r"[.e]", text) else f"{text}.0"), ATOM
+
+
+def _power(base: Piece, exponent: Fraction) -> Piece:
+    if exponent == Fraction(1, 2):
+        return f"sqrt({base[0]})", ATOM
+    size = abs(exponent)
+    if size.denominator != 1 or not 1 <= size <= MOST_FACTORS:
+        return f"pow({base[0]}, {c_number(exponent)[0]})", ATOM
+    product = f"power_{size}({base[0]})" if size > 1 else base[0]
+    if exponent > 0:
+        return product, ATOM if size > 1 else base[1]
+    return f"1.0/{enclose((product, ATOM if size > 1 else base[1]), UNARY)}", PRODUCT
+
+
+def _call(function: str, args: tuple[Piece, ...]) -> Piece:
+    return f"{CALLS.get(function, function)}({', '.join(text for text, _ in args)})", ATOM
+
+
+def _choose(then: Piece, test: str, other: Piece) -> Piece:
+    return f"{test} ? {enclose(then, SUM)} : {enclose(other, SUM)}", CHOICE
+
+
+def _lane_sum(arg: Piece, bank: str) -> Piece:
+    msg = f"the sum of {arg[0]} over {bank} is a loop, not an expression"
+    raise TypeError(msg)
+
+
+def c_style(names: Mapping[str, str], arrays: Mapping[str, str], index: str) -> Style:
+    """Return the spelling of expressions; `arrays` have a value a lane, picked by `index`."""
+
+    def name(word: str) -> Piece:
+        return (f"{names[word]}[{index}]" if word in arrays else names[word]), ATOM
+
+    return Style(c_number, name, _power, _call, _choose, _lane_sum)
+
+
+def c_piece(node: Expr, style: Style) -> Piece:
+    """Return an expression as C, with the strength of its outermost operator."""
+    return piece(with_branches(node), style)
+
+
+def helpers(text: str) -> Iterator[str]:
+    """Yield the definition of each function that `text` calls and <math.h> lacks."""
+    for name, (arguments, value) in _HELPERS.items():
+        if re.search(rf"\b{name}\(", text):
+            ending = "" if value.endswith("*/") else ";"
+            yield f"static double {name}({arguments})\n{{\n    return {value}{ending}\n}}"
+    for n in range(2, MOST_FACTORS + 1):
+        if re.search(rf"\bpower_{n}\(", text):
+            product = "*".join(["z"] * n)
+            yield f"static double power_{n}(double z)\n{{\n    return {product};\n}}"

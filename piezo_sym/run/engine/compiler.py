@@ -1,0 +1,112 @@
+"""A C compiler of this machine, and one call of it.
+
+Input: the environment.  Output: `Compiler` records in the order in which they are tried: ``$CC``,
+cc, gcc, clang, then the one of the `zig` extra; and libraries, built from one source file.
+"""
+
+from __future__ import annotations
+
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from importlib.util import find_spec
+from pathlib import Path
+from typing import final
+
+from piezo_sym.errors import EngineError, one_line
+
+#: No contraction: a product and a sum are rounded apart, as in NumPy.  Measured, fused ones are no
+#: faster here: loops over lanes wait for divisions and memory.
+COMMON = ("-std=c99", "-fPIC", "-shared", "-ffp-contract=off")
+#: Flags, best first; the next are tried where a compiler refuses some.
+FLAGS: tuple[tuple[str, ...], ...] = (
+    ("-O3", "-march=native", "-fopenmp-simd", "-fno-math-errno", *COMMON),
+    ("-O3", "-fopenmp-simd", "-fno-math-errno", *COMMON),
+    ("-O2", *COMMON),
+)
+MOST_SECONDS = 120
+
+
+@final
+@dataclass(frozen=True)
+class Compiler:
+    """A command that compiles C, and what it says of itself."""
+
+    command: tuple[str, ...]
+    version: str
+
+
+def compilers() -> Iterator[Compiler]:
+    """Yield the compilers that there are and that answer, best first."""
+    seen: set[tuple[str, ...]] = set()
+    for command in _commands():
+        if command not in seen:
+            seen.add(command)
+            version = _version(command)
+            if version:
+                yield Compiler(command, version)
+
+
+def _commands() -> Iterator[tuple[str, ...]]:
+    chosen = _split(os.environ.get("CC", ""))
+    for words in (chosen, ("cc",), ("gcc",), ("clang",)):
+        path = shutil.which(words[0]) if words else None
+        if path:
+            yield (path, *words[1:])
+    if find_spec("ziglang") is not None:
+        yield (sys.executable, "-m", "ziglang", "cc")
+
+
+def _split(text: str) -> tuple[str, ...]:
+    try:
+        return tuple(shlex.split(text))
+    except ValueError:  # a quote that is not closed
+        return ()
+
+
+@lru_cache(maxsize=16)
+def _version(command: tuple[str, ...]) -> str:
+    """Return what a compiler says of itself, or nothing if it does not start."""
+    try:
+        done = _call([*command, "--version"])
+    except EngineError:
+        return ""
+    return done.stdout if done.returncode == 0 else ""
+
+
+def build(compiler: Compiler, flags: Sequence[str], source: Path, library: Path) -> None:
+    """Compile one source file into a shared library.
+
+    Raises
+    ------
+    EngineError
+        If the compiler fails; with the first line of what it says.
+    """
+    words = [*compiler.command, *flags, str(source), "-o", str(library), "-lm"]
+    done = _call(words)
+    if done.returncode != 0 or not library.is_file():
+        said = [line for line in done.stderr.splitlines() if "error" in line] or [done.stderr]
+        why = one_line(said[0].strip())[:120] or f"exit status {done.returncode}"
+        raise EngineError(f"the compiler failed: {why}", compiler.command[0])
+
+
+def _call(words: Sequence[str]) -> subprocess.CompletedProcess[str]:
+    """Run a command without input; its words are never read by a shell."""
+    try:
+        return subprocess.run(
+            words,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            errors="replace",
+            timeout=MOST_SECONDS,
+            check=False,
+        )
+    except (OSError, subprocess.SubprocessError) as error:
+        why = getattr(error, "strerror", None) or type(error).__name__
+        raise EngineError(f"the compiler does not run ({why})", words[0]) from error

@@ -1,0 +1,47 @@
+"""The C file that is compiled: a module's source and loops over the columns of a batch.
+
+Input: a model's name.  Output: text.  A column is one state; columns lie one after another.
+"""
+
+from __future__ import annotations
+
+#: Functions of (x, u, p) and of (x, p), and those that give one number.
+DRIVEN = ("rhs", "jacobian", "outputs", "supply", "heat", "entropy_production", "margins")
+PLAIN = ("temperatures",)
+SCALARS = ("energy", "entropy")
+
+HEAD = '#include "{model}.c"\n'
+#: Columns of x, u and the result are n, m and rows apart; m is 0 where all columns share u.
+LOOP = """
+void {model}_{name}_columns(
+    const double *x, const double *u, const {model}_parameters *p, double *out,
+    long columns, long n, long m, long rows);
+void {model}_{name}_columns(
+    const double *x, const double *u, const {model}_parameters *p, double *out,
+    long columns, long n, long m, long rows)
+{{
+    {idle}
+    for (long column = 0; column < columns; ++column) {{
+        {call}
+    }}
+}}
+"""
+
+
+def driver(model: str) -> str:
+    """Return the text of the file to compile."""
+    at = "x + column*n, u + column*m, p, out + column*rows"
+    parts = [HEAD.format(model=model)]
+    for name in DRIVEN:
+        parts.append(_loop(model, name, f"{model}_{name}({at});", ""))
+    for name in PLAIN:
+        call = f"{model}_{name}(x + column*n, p, out + column*rows);"
+        parts.append(_loop(model, name, call, "(void)u; (void)m;"))
+    for name in SCALARS:
+        call = f"out[column*rows] = {model}_{name}(x + column*n, p);"
+        parts.append(_loop(model, name, call, "(void)u; (void)m;"))
+    return "".join(parts)
+
+
+def _loop(model: str, name: str, call: str, idle: str) -> str:
+    return LOOP.format(model=model, name=name, call=call, idle=idle)

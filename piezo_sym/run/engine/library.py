@@ -1,0 +1,111 @@
+"""Source to a shared library in the user's cache.
+
+Input: the texts of a module's .c and .h.  Output: the path of its library.  A library is named by
+all that it depends on (texts, flags, compiler, processor), is built aside and moved into place in
+one step: any number of processes may ask at once, and none ever sees half a file.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import sys
+import tempfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import final
+
+from piezo_sym.errors import EngineError
+from piezo_sym.files import path_text
+from piezo_sym.run.engine.compiler import FLAGS, Compiler, build, compilers
+from piezo_sym.run.engine.driver import driver
+from piezo_sym.run.engine.processor import processor
+
+ENDINGS = {"win32": ".dll", "darwin": ".dylib"}
+
+
+@final
+@dataclass(frozen=True)
+class Sources:
+    """The texts of one module: its name, ``<name>.h``, ``<name>.c``."""
+
+    name: str
+    header: str
+    source: str
+
+    def files(self) -> dict[str, str]:
+        """Return what to compile, by file name."""
+        texts = {f"{self.name}.h": self.header, f"{self.name}.c": self.source}
+        return {**texts, "driver.c": driver(self.name)}
+
+
+def library(sources: Sources, *, again: bool = False) -> Path:
+    """Return the library of a module; it is compiled if it is not in the cache.
+
+    Parameters
+    ----------
+    sources : the texts.
+    again : compile even if there is a library, since that one cannot be loaded.
+
+    Raises
+    ------
+    EngineError
+        If there is no compiler, none of them can compile it, or the cache cannot be written.
+    """
+    first: EngineError | None = None
+    for compiler, flags in _ways():
+        path = _folder() / _key(sources, compiler, flags) / f"{sources.name}{_ending()}"
+        if path.is_file() and not again:
+            return path
+        try:
+            _build(sources, compiler, flags, path)
+        except EngineError as error:
+            first = first or error
+            continue
+        return path
+    if first:
+        raise first
+    remedy = "install gcc or clang, set CC, or `pip install piezo_sym[zig]`"
+    raise EngineError("no C compiler is found", "engine", remedy=remedy)
+
+
+def _ways() -> Iterator[tuple[Compiler, tuple[str, ...]]]:
+    for compiler in compilers():
+        for flags in FLAGS:
+            yield compiler, flags
+
+
+def _folder() -> Path:
+    import platformdirs
+
+    return Path(platformdirs.user_cache_dir("piezo_sym")) / "compiled"
+
+
+def _ending() -> str:
+    return ENDINGS.get(sys.platform, ".so")
+
+
+def _key(sources: Sources, compiler: Compiler, flags: tuple[str, ...]) -> str:
+    found = hashlib.sha256()
+    parts = (*compiler.command, compiler.version, *flags, processor())
+    for part in (*sources.files().values(), *parts):
+        found.update(part.encode() + b"\0")
+    return found.hexdigest()[:32]
+
+
+def _build(sources: Sources, compiler: Compiler, flags: tuple[str, ...], path: Path) -> None:
+    """Compile beside the library's place, then move the result there."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=".build-", dir=path.parent) as temporary:
+            folder = Path(temporary)
+            for name, text in sources.files().items():
+                (folder / name).write_text(text, encoding="utf-8")
+            built = folder / path.name
+            build(compiler, flags, folder / "driver.c", built)
+            built.replace(path)
+    except OSError as error:
+        if path.is_file() and sys.platform == "win32":  # another process has it, and uses it
+            return
+        what = f"the cache cannot be written ({error.strerror})"
+        raise EngineError(what, path_text(path.parent), remedy="check the path") from error

@@ -1,0 +1,116 @@
+"""Compiled modules of networks agree with NumPy, with SymPy's 40 digits, and with the raw laws."""
+
+import tempfile
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import platformdirs
+import pytest
+from agreement import (
+    check_against_sympy,
+    check_against_tableau,
+    check_batch,
+    check_entropy,
+    point,
+)
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
+from strategy import networks
+from test_specs import points
+
+from piezo_sym import derive, load
+from piezo_sym.codegen import c_header, c_source, lower, numpy_module
+from piezo_sym.errors import PiezoError
+from piezo_sym.modules import load_module
+from piezo_sym.run.engine.engine import OFFERED, engine_of
+from piezo_sym.spec.model import Model
+from piezo_sym.spec.tables import banks
+
+SPECS = sorted(Path(__file__).with_name("specs").glob("*.toml"))
+PLAIN = {"energy", "entropy", "temperatures"}
+AGREEMENT = 1e-11
+
+
+@pytest.fixture(scope="module", autouse=True)
+def cache(tmp_path_factory):
+    """A cache of our own: nothing is taken from a user's."""
+    folder = tmp_path_factory.mktemp("cache")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(platformdirs, "user_cache_dir", lambda name: str(folder / name))
+        yield folder
+
+
+def twins(iphs):
+    """Return a module, and the same with its functions compiled."""
+    program = lower(iphs, "verdict")
+    texts = {".py": numpy_module(program), ".h": c_header(program), ".c": c_source(program)}
+    with tempfile.TemporaryDirectory() as folder:
+        for ending, text in texts.items():
+            (Path(folder) / f"{program.name}{ending}").write_text(text, encoding="utf-8")
+        module = load_module(Path(folder) / f"{program.name}.py")
+        engine = engine_of(module)
+    compiled = {name: getattr(engine, name) for name in OFFERED}
+    return module, SimpleNamespace(**{**vars(module), **compiled})
+
+
+def check_twins(first, second, x, u):
+    """Check that both give the same rows, to the size of the largest row."""
+    p = first.Parameters()
+    for name in OFFERED:
+        given = (u, p) if name == "initial_state" else (x, p) if name in PLAIN else (x, u, p)
+        wanted, found = getattr(first, name)(*given), getattr(second, name)(*given)
+        assert np.shape(found) == np.shape(wanted), name
+        size = np.abs(wanted).max(initial=1e-30)
+        assert np.allclose(found, wanted, rtol=AGREEMENT, atol=AGREEMENT * size), name
+
+
+def check(spec, iphs, seed):
+    """Check the compiled module of a network at two states."""
+    module, compiled = twins(iphs)
+    places = [point(spec, iphs, seed + n) for n in range(2)]
+    systems = [iphs.expand(), *([iphs] if banks(iphs.model) else [])]
+    for x, u in places:
+        check_twins(module, compiled, x, u)
+        for system in systems:
+            check_against_sympy(compiled, system, x, u)
+        check_against_tableau(compiled, spec, x, u)
+        check_entropy(compiled, spec, x, u)
+    check_batch(compiled, places)
+
+
+def explore(number):
+    """Check a number of random networks that can be derived; return how many there were."""
+    derived = []
+
+    @settings(max_examples=number, suppress_health_check=list(HealthCheck), database=None)
+    @given(networks(), st.integers(0, 10**6))
+    def each(spec, seed):
+        try:
+            iphs = derive(Model(**spec))
+        except PiezoError:
+            assume(False)
+        check(spec, iphs, seed)
+        derived.append(spec)
+
+    each()
+    return len(derived)
+
+
+@pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
+def test_specs(path):
+    model = load(path)
+    module, compiled = twins(derive(model))
+    exact = derive(model).expand()
+    for x, u, _ in points(model, exact):
+        check_twins(module, compiled, x, u)
+        check_against_sympy(compiled, exact, x, u)
+
+
+def test_networks():
+    assert explore(30) >= 30
+
+
+@pytest.mark.long
+def test_many_networks():
+    assert explore(200) >= 200
