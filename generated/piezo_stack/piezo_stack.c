@@ -413,9 +413,9 @@ void piezo_stack_margins(const double *restrict x,
     /* co-states dU/dx */
     const double T_minus_T_0 = T_0*expm1(S/c_0);
     /* hysteron: rows */
-    out[3] = INFINITY;
-    out[4] = INFINITY;
-    out[9] = INFINITY;
+    out[3] = HUGE_VAL;
+    out[4] = HUGE_VAL;
+    out[9] = HUGE_VAL;
     for (long j = 0; j < hysteron_count; ++j) {
         out[3] = min(out[3], rho[j]);
         out[4] = min(out[4], i_0[j]);

@@ -194,7 +194,7 @@ class _Printer:
         yield "};"
         yield f"for (long {self.j} = 0; {self.j} < {row.slot.bank}_count; ++{self.j}) {{"
         place = self._row(rows, n)
-        yield f"    {self.out}[{place}] = {self.j} < {size} ? {name}[{self.j}] : NAN;"
+        yield f"    {self.out}[{place}] = {self.j} < {size} ? {name}[{self.j}] : (double)NAN;"
         yield "}"
 
     # Entries of the Jacobian
