@@ -170,6 +170,31 @@ void piezo_stack_margins(const double *x,
                          const piezo_stack_parameters *p_,
                          double *out);
 
+/*
+ * The step of the discrete gradient: x to x_new over h, inputs u at its middle.
+ * piezo_stack_newton: out[n], the change that Newton's method takes from x_new;
+ *     0 if its equations are singular.
+ * piezo_stack_means: means over the step of the power of each port [W], the heat [W] and
+ *     entropy production [W/K] of each process (of a bank: of each lane), and the
+ *     entropy rate of each of 1 heat exchanges [W/K].
+ * piezo_stack_inside: whether a state lies in the domain.
+ */
+enum { piezo_stack_exchange_count = 1 };
+int piezo_stack_newton(const double *x,
+                       const double *x_new,
+                       const double *u,
+                       double h,
+                       const piezo_stack_parameters *p_,
+                       double *out);
+void piezo_stack_means(const double *x,
+                       const double *x_new,
+                       const double *u,
+                       const piezo_stack_parameters *p_,
+                       double *out);
+int piezo_stack_inside(const double *x,
+                       const double *u,
+                       const piezo_stack_parameters *p_);
+
 #ifdef __cplusplus
 }
 #endif

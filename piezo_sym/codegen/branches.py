@@ -1,8 +1,8 @@
 """Dead zones as branches, with their factors and quotients inside the branch.
 
 Input: an expression.  Output: the same with ``f*deadzone(z, w)`` as
-``0 if abs(z) <= w else f*(z - copysign(w, z))``, for w >= 0.  Inside the zone nothing is divided, and in
-a loop over lanes a compiler makes masks of such branches.  Not a number stays not a number.
+``0 if abs(z) <= w else f*(z - copysign(w, z))``, for w >= 0.  Inside the zone nothing is divided,
+and in a loop over lanes a compiler makes masks of such branches.  What is not a number stays so.
 """
 
 from __future__ import annotations

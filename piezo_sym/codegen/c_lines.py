@@ -18,6 +18,8 @@ from piezo_sym.spec.expressions import Add, Expr, If, LaneSum
 from piezo_sym.spec.text import PRODUCT, SUM, Style, enclose, signed, write_comparison
 
 WIDTH = 96
+#: Calls that take one lane at a time: a loop with them is not to be vectorised.
+LIBRARY = re.compile(r"\b(?:exp|expm1|log|sin|cos|tanh|pow)\(")
 
 
 @final
@@ -104,18 +106,20 @@ def loop_lines(loop: Loop, words: Words) -> Iterator[str]:
     parts = [*(["sums over lanes"] if loop.sums else []), *(["rows"] if loop.writes else [])]
     yield f"/* {loop.bank}: {' and '.join(parts)} */"
     yield from (f"double {name} = 0.0;" for name in sums)
-    yield from (f"{w.target} = INFINITY;" for w in loop.writes if w.how == "min")
-    if sums:
-        yield from _reduction(sums)
-    elif all(write.how == "=" for write in loop.writes):
-        yield "#pragma omp simd"
+    yield from (f"{w.target} = HUGE_VAL;" for w in loop.writes if w.how == "min")
+    body = list(_body(loop, words))
+    if not any(map(LIBRARY.search, body)):
+        yield from _directive(sums, loop.writes)
     yield f"for (long {words.lane} = 0; {words.lane} < {loop.bank}_count; ++{words.lane}) {{"
-    yield from indented(_body(loop, words))
+    yield from indented(body)
     yield "}"
 
 
-def _reduction(sums: Sequence[str]) -> Iterator[str]:
-    """Yield the directive that lets a compiler add lanes in any order."""
+def _directive(sums: Sequence[str], writes: Sequence[Write]) -> Iterator[str]:
+    """Yield the directive that lets a compiler take lanes together, and add them in any order."""
+    if not sums:
+        yield from ["#pragma omp simd"] if all(write.how == "=" for write in writes) else []
+        return
     line = "#pragma omp simd reduction(+:"
     for name in sums[:-1]:
         if len(line) + len(name) + 4 > WIDTH:

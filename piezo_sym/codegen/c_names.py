@@ -29,7 +29,10 @@ ULONG_MAX LLONG_MIN LLONG_MAX ULLONG_MAX SIZE_MAX FLT_RADIX DECIMAL_DIG SIGABRT 
 SIGSEGV SIGTERM SIG_DFL SIG_ERR SIG_IGN CLOCKS_PER_SEC"""
 _FLOATS = "DIG EPSILON MANT_DIG MAX MAX_10_EXP MAX_EXP MIN MIN_10_EXP MIN_EXP"
 #: The functions that generated code calls, beside those that laws are written with.
-_CALLED = "copysign expm1 fabs pow " + " ".join(f"power_{n}" for n in range(2, 9))
+_CALLED = (
+    "copysign expm1 fabs pow phi1 phi2 phi3 ramp ramp_by_new mean_sign mean_sign_by_new "
+    + " ".join(f"power_{n}" for n in range(2, 9))
+)
 _ENDS = (
     *("parameters", "states", "processes", "jacobian", "margins"),
     *("input_count", "output_count", "body_count", "limit_count"),

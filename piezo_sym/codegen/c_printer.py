@@ -37,8 +37,8 @@ from piezo_sym.codegen.program import (
 from piezo_sym.spec.expressions import ZERO, Expr, Neg, Num
 
 
-def c_source(program: Program) -> str:
-    """Return the text of a program's C source file."""
+def c_source(program: Program, more: str = "") -> str:
+    """Return the text of a program's C source file; `more` stands at its end."""
     printer = _Printer(program)
     functions = [*printer.sizes(), *map(printer.function, program.functions)]
     functions += [printer.jacobian(), printer.margins()]
@@ -46,6 +46,7 @@ def c_source(program: Program) -> str:
         f'{opening(program)}\n#include "{program.name}.h"\n\n#include <math.h>',
         *helpers("\n".join(functions)),
         *functions,
+        *([more] if more else []),
     ]
     return "\n\n".join(parts) + "\n"
 
@@ -194,7 +195,7 @@ class _Printer:
         yield "};"
         yield f"for (long {self.j} = 0; {self.j} < {row.slot.bank}_count; ++{self.j}) {{"
         place = self._row(rows, n)
-        yield f"    {self.out}[{place}] = {self.j} < {size} ? {name}[{self.j}] : NAN;"
+        yield f"    {self.out}[{place}] = {self.j} < {size} ? {name}[{self.j}] : (double)NAN;"
         yield "}"
 
     # Entries of the Jacobian

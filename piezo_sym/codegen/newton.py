@@ -22,7 +22,6 @@ from piezo_sym.codegen.program import Entry, Field, Quantity, Row
 from piezo_sym.codegen.quantities import Quantities
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.calculus import add, div, mul, neg
-from piezo_sym.spec.elements.ports import Body
 from piezo_sym.spec.expressions import ONE, ZERO, Expr, Sym
 from piezo_sym.spec.names import fresh
 from piezo_sym.spec.tables import lane_parameters
@@ -44,8 +43,7 @@ class Step:
     lanes : for each state that is one a lane, its row: the change given y.
     rates : f, a row a state.
     supplies, entropies : power and entropy rate that ports put in, a row a port and an exchange.
-    heats, productions : of the processes, for the ledger and for the acceptance of a root.
-    temperatures : mean temperatures, for the acceptance of a root.
+    heats, productions : heat and entropy production of each process, a bank's one a lane.
     taken : every name in use.
     """
 
@@ -62,7 +60,6 @@ class Step:
     entropies: tuple[Row, ...]
     heats: tuple[Row, ...]
     productions: tuple[Row, ...]
-    temperatures: tuple[Row, ...]
     taken: frozenset[str]
 
 
@@ -151,11 +148,6 @@ class _Equations:
         unknowns = [self._name(f"change_{self.q.stores[n][1].state}") for n in self.shared]
         unknowns += [self._name(f"border_{n + 1}") for n in range(len(self.borders))]
         lanes = tuple((lane, self._change(lane, pivot, unknowns)) for lane, pivot in pivots.items())
-        temperatures = tuple(
-            Row(Slot(placed.element), Sym(port.temperature))
-            for placed, port in self.q.stores
-            if isinstance(port, Body)
-        )
         return Step(
             h=self.h,
             after=tuple(state.name for state in self.states),
@@ -170,7 +162,6 @@ class _Equations:
             entropies=self._entropies,
             heats=heats,
             productions=productions,
-            temperatures=temperatures,
             taken=frozenset(self.q.taken),
         )
 

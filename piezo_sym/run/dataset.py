@@ -80,7 +80,9 @@ def variables(system: System, trajectory: Trajectory) -> Iterator[Named]:
     supplied, processes = trajectory.integrals[:ports], trajectory.integrals[ports:]
     heat, produced = np.split(processes, 2)
     energy = module.energy(x, p)
-    residual = energy - module.energy(trajectory.start, p) - np.sum(supplied, axis=0)
+    balanced = x if trajectory.balanced is None else trajectory.balanced
+    gained = module.energy(balanced, p) - module.energy(trajectory.start, p)
+    residual = gained - np.sum(supplied, axis=0)
     yield from spread(system, module.STATES, x)
     yield from spread(system, module.INPUTS, u)
     yield from spread(system, module.OUTPUTS, module.outputs(x, u, p), "y_")

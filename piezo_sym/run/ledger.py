@@ -40,6 +40,8 @@ class Trajectory:
     integrals: FloatArray  # (ports + 2 processes, nt): supplied, heat, produced
     steps: int
     evaluations: int
+    balanced: FloatArray | None = None  # (n, nt): states whose balances are exact, if others
+    halvings: int = 0
 
 
 def record(

@@ -3,6 +3,7 @@
 import tempfile
 from pathlib import Path
 
+import numpy as np
 import platformdirs
 import pytest
 
@@ -10,6 +11,7 @@ from piezo_sym import Model, generate, load, simulate
 from piezo_sym.cli import run
 from piezo_sym.errors import DriftError, FileError, SpecError
 from piezo_sym.modules import module_of
+from piezo_sym.run.engine.engine import engine_of
 
 ROOT = Path(__file__).parents[2]
 COMMITTED = ROOT / "generated" / "piezo_stack" / "piezo_stack.py"
@@ -103,6 +105,13 @@ def test_a_spec_not_generated_yet_goes_to_the_cache(mine, cache):
     names = ("mine.c", "mine.h", "mine.py", "proofs.json", "proofs.smt2")
     assert sorted(files(cache)) == [Path(module.__file__).with_name(name) for name in names]
     assert not Path("generated").exists()
+
+
+def test_what_is_generated_into_the_cache_can_be_compiled(mine):
+    module = module_of(mine)
+    x, u = module.initial_state(module.INPUT_DEFAULTS, module.Parameters()), [1.0, 2.0, 300.0]
+    wanted = module.rhs(x, u, module.Parameters())
+    assert np.array_equal(engine_of(module).rhs(x, u, module.Parameters()), wanted)
 
 
 def test_the_cache_is_used_again(mine, monkeypatch):

@@ -18,7 +18,7 @@ from .test_numpy_against_sympy import MODULE, SIZES, TOLERANCE, assert_close, ex
 PLAIN = {"energy", "entropy", "temperatures"}
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="module", autouse=True)
 def cache(tmp_path_factory):
     """A cache of our own: nothing is taken from a user's."""
     folder = tmp_path_factory.mktemp("cache")
@@ -28,7 +28,7 @@ def cache(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def engine(cache):
+def engine():
     return engine_of(MODULE)
 
 
@@ -91,8 +91,8 @@ def test_both_twins_give_the_same(engine, r, name):
     draw = np.random.default_rng(r)
     for _ in range(10):
         x, u, p = lanes_at(r, draw)
-        given = arguments(name, x, u, p)
-        found, wanted = getattr(engine, name)(*given), getattr(MODULE, name)(*given)
+        at = arguments(name, x, u, p)
+        found, wanted = getattr(engine, name)(*at), getattr(MODULE, name)(*at)
         assert np.shape(found) == np.shape(wanted)
         np.testing.assert_allclose(found, wanted, rtol=1e-11, atol=size_of(name, x, u, p))
 
@@ -112,13 +112,13 @@ def test_a_batch_gives_what_single_states_give(engine, name, batch):
     draw = np.random.default_rng(3)
     x, u, p = lanes_at(5, draw)
     x = x.reshape(-1, *(1,) * len(batch)) * draw.uniform(0.5, 1, (len(x), *batch))
-    for given in (u, u.reshape(-1, *(1,) * len(batch)) * draw.uniform(0.9, 1, (3, *batch))):
-        if name == "initial_state" and given.ndim > 1:
+    for inputs in (u, u.reshape(-1, *(1,) * len(batch)) * draw.uniform(0.9, 1, (3, *batch))):
+        if name == "initial_state" and inputs.ndim > 1:
             continue
-        together = getattr(engine, name)(*arguments(name, x, given, p))
-        assert together.shape == getattr(MODULE, name)(*arguments(name, x, given, p)).shape
+        together = getattr(engine, name)(*arguments(name, x, inputs, p))
+        assert together.shape == getattr(MODULE, name)(*arguments(name, x, inputs, p)).shape
         for at in np.ndindex(*batch) if name != "initial_state" else ():
-            one = given[(slice(None), *at)] if given.ndim > 1 else given
+            one = inputs[(slice(None), *at)] if inputs.ndim > 1 else inputs
             single = getattr(engine, name)(*arguments(name, x[(slice(None), *at)], one, p))
             assert np.array_equal(together[(..., *at)], single)
 
@@ -173,7 +173,7 @@ def made(model, folder):
     return module, engine_of(module)
 
 
-def test_a_listed_start_is_each_lane_s_own(cache, tmp_path):
+def test_a_listed_start_is_each_lane_s_own(tmp_path):
     data = load("piezo_stack").model_dump()
     data["initial"]["phi"] = [1e-4, -2e-4]
     module, other = made(Model(**data), tmp_path)

@@ -1,9 +1,12 @@
-"""The C file that is compiled: a module's source and loops over the columns of a batch.
+"""The C file that is compiled: a module, loops over the columns of a batch, and runs of steps.
 
 Input: a model's name.  Output: text.  A column is one state; columns lie one after another.
 """
 
 from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
 
 #: Functions of (x, u, p) and of (x, p), and those that give one number.
 DRIVEN = ("rhs", "jacobian", "outputs", "supply", "heat", "entropy_production", "margins")
@@ -40,7 +43,14 @@ def driver(model: str) -> str:
     for name in SCALARS:
         call = f"out[column*rows] = {model}_{name}(x + column*n, p);"
         parts.append(_loop(model, name, call, "(void)u; (void)m;"))
+    parts.append(f"\n#define MODEL(name) {model}_##name\n{stepper()}")
     return "".join(parts)
+
+
+@cache
+def stepper() -> str:
+    """Return the text that runs steps, the same for every model."""
+    return Path(__file__).with_name("stepper.c").read_text(encoding="utf-8")
 
 
 def _loop(model: str, name: str, call: str, idle: str) -> str:

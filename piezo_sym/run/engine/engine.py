@@ -24,7 +24,7 @@ from piezo_sym.run.engine.structure import Structure, structure_of
 from piezo_sym.run.module import lanes
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
     from piezo_sym.run.checks import FloatArray
     from piezo_sym.run.module import GeneratedModule, Record
@@ -155,6 +155,49 @@ class Engine:
         rows = self._called("entropy", x, None, p, 1)
         return rows.reshape(rows.shape[1:])
 
+    @property
+    def exchanges(self) -> int:
+        """The number of heat exchanges, whose entropy the ledger of a run books last."""
+        return ctypes.c_long.in_dll(self.library, f"{self.module.NAME}_exchanges").value
+
+    def run(
+        self,
+        p: Any,
+        steps: NDArray[np.int_],
+        h: FloatArray,
+        u: FloatArray,
+        x: FloatArray,
+        ledger: FloatArray,
+        ends: FloatArray,
+        totals: FloatArray,
+        space: FloatArray,
+        ports: int,
+        counts: Any,
+    ) -> int:
+        """Take the steps of some intervals in C, and return how many intervals were done.
+
+        Parameters
+        ----------
+        steps, h : of each interval; `u` (steps in all, inputs), at the middle of each step.
+        x, ledger : the state (n,) and the sums (2*rows,), changed in place.
+        ends, totals : state (intervals, n) and sums (intervals, rows) after each interval.
+        space : room for 2 n + rows numbers.
+        counts : three integers: halvings, Newton iterations, steps done where it stopped.
+        """
+        structure = self.structure(p)
+        rows = totals.shape[1]
+        processes = (rows - ports - self.exchanges) // 2
+        function = getattr(self.library, f"{self.module.NAME}_run")
+        function.restype = ctypes.c_long
+        sizes = (u.shape[1], x.size, rows, ports, processes)
+        inputs, n, *others = map(ctypes.c_long, sizes)
+        done: int = function(
+            *(ctypes.c_long(steps.size), _at(steps), _at(h), _at(u), inputs),
+            *(ctypes.byref(structure.value), _at(x), _at(ledger), _at(ends), _at(totals)),
+            *(_at(space), n, *others, counts),
+        )
+        return done
+
     def _rows(self, records: Sequence[Record], p: Any) -> int:
         return sum(lanes(p, record.bank) if record.bank else 1 for record in records)
 
@@ -203,7 +246,7 @@ def _columns(array: FloatArray) -> FloatArray:
     return np.ascontiguousarray(array.reshape(array.shape[0], width).T)
 
 
-def _at(array: FloatArray) -> ctypes.c_void_p:
+def _at(array: NDArray[Any]) -> ctypes.c_void_p:
     return ctypes.c_void_p(array.ctypes.data)
 
 

@@ -1,0 +1,137 @@
+/*
+ * Runs of the discrete gradient: steps of Newton's method, root acceptance, halving, the ledger.
+ *
+ * Compiled behind a generated <model>.c, with MODEL(name) as <model>_name; no model is known here.
+ * A root counts only if all is finite, the state after the step lies in the domain and no process
+ * takes entropy; otherwise the step is halved.  Energy and entropy then close to round-off.
+ */
+
+extern const long MODEL(exchanges);
+const long MODEL(exchanges) = MODEL(exchange_count);
+
+enum { MOST_ITERATIONS = 14, MOST_HALVINGS = 40, MOST_SHARES = 60 };
+
+/* What a run needs beside the model: sizes, and arrays of n and of ledger rows. */
+typedef struct {
+    long n, rows, ports, processes;
+    double *after, *change, *means, *sums, *lost;
+    long halvings, iterations;
+} MODEL(space);
+
+/* Add h times the means of a step to the ledger, with compensation for what rounding loses. */
+static void MODEL(book)(MODEL(space) *s, double h)
+{
+    for (long k = 0; k < s->rows; ++k) {
+        const double part = h * s->means[k] - s->lost[k];
+        const double total = s->sums[k] + part;
+        s->lost[k] = (total - s->sums[k]) - part;
+        s->sums[k] = total;
+    }
+}
+
+/* Newton's method from s->after; whether it converged inside the domain. */
+static int MODEL(root)(MODEL(space) *s, const double *x, const double *u, double h,
+                       const MODEL(parameters) *p)
+{
+    double *y = s->after, *change = s->change;
+    for (int iteration = 0; iteration < MOST_ITERATIONS; ++iteration) {
+        double worst = 0.0, share = 1.0;
+        ++s->iterations;
+        if (!MODEL(newton)(x, y, u, h, p, change))
+            return 0;
+        for (long i = 0; i < s->n; ++i) {
+            const double size = 1e-9 * fabs(y[i] - change[i] - x[i]) + 1e-15 * fabs(x[i]) + 1e-300;
+            const double ratio = fabs(change[i]) / size;
+            worst = ratio <= worst ? worst : ratio; /* and if it is no number */
+            y[i] -= change[i];
+        }
+        if (!(worst < 1e300))
+            return 0;
+        for (int k = 0; !MODEL(inside)(y, u, p); ++k) { /* back towards where it came from */
+            if (k == MOST_SHARES)
+                return 0;
+            share *= 0.5;
+            for (long i = 0; i < s->n; ++i)
+                y[i] += share * change[i];
+        }
+        if (worst <= 1.0 && share == 1.0)
+            return 1;
+    }
+    return 0;
+}
+
+/* Whether the step from x to s->after is one of nature's: no process takes entropy. */
+static int MODEL(accepted)(MODEL(space) *s, const double *x, const double *u,
+                           const MODEL(parameters) *p)
+{
+    double total = 0.0, least = 0.0;
+    MODEL(means)(x, s->after, u, p, s->means);
+    for (long k = 0; k < s->rows; ++k)
+        if (!(fabs(s->means[k]) < 1e300))
+            return 0;
+    for (long k = s->ports + s->processes; k < s->ports + 2 * s->processes; ++k) {
+        total += fabs(s->means[k]);
+        least = s->means[k] < least ? s->means[k] : least;
+    }
+    return least >= -1e-14 * total;
+}
+
+/* One step over h, halved where it has to be; 0 where that does not help. */
+static int MODEL(step)(MODEL(space) *s, double *x, const double *u, double h,
+                       const MODEL(parameters) *p, int depth)
+{
+    for (long i = 0; i < s->n; ++i)
+        s->after[i] = x[i];
+    if (MODEL(root)(s, x, u, h, p) && MODEL(accepted)(s, x, u, p)) {
+        MODEL(book)(s, h);
+        for (long i = 0; i < s->n; ++i)
+            x[i] = s->after[i];
+        return 1;
+    }
+    if (depth == MOST_HALVINGS)
+        return 0;
+    ++s->halvings;
+    return MODEL(step)(s, x, u, 0.5 * h, p, depth + 1) && MODEL(step)(s, x, u, 0.5 * h, p, depth + 1);
+}
+
+/*
+ * Steps through intervals: interval k has steps[k] steps of h[k]; u holds the inputs at the middle of
+ * each step, one after another.  x[n] is the state, before and after; `ledger` holds rows sums, then
+ * rows compensations; states and sums after each interval go to out_x and out_sums.  `space` has room
+ * for 2 n + rows numbers.  Returns the number of intervals done; counts[0], counts[1] are the halvings
+ * and iterations, counts[2] the steps done in the interval that failed.
+ */
+long MODEL(run)(long intervals, const long *steps, const double *h, const double *u, long inputs,
+                const MODEL(parameters) *p, double *x, double *ledger, double *out_x,
+                double *out_sums, double *space, long n, long rows, long ports, long processes,
+                long *counts);
+long MODEL(run)(long intervals, const long *steps, const double *h, const double *u, long inputs,
+                const MODEL(parameters) *p, double *x, double *ledger, double *out_x,
+                double *out_sums, double *space, long n, long rows, long ports, long processes,
+                long *counts)
+{
+    MODEL(space) s = {.n = n, .rows = rows, .ports = ports, .processes = processes};
+    s.after = space;
+    s.change = space + n;
+    s.means = space + 2 * n;
+    s.sums = ledger;
+    s.lost = ledger + rows;
+    long done = 0;
+    counts[2] = 0;
+    for (; done < intervals; ++done) {
+        for (long k = 0; k < steps[done]; ++k, u += inputs) {
+            if (!MODEL(step)(&s, x, u, h[done], p, 0)) {
+                counts[2] = k;
+                goto end;
+            }
+        }
+        for (long i = 0; i < n; ++i)
+            out_x[done * n + i] = x[i];
+        for (long k = 0; k < rows; ++k)
+            out_sums[done * rows + k] = s.sums[k];
+    }
+end:
+    counts[0] += s.halvings;
+    counts[1] += s.iterations;
+    return done;
+}

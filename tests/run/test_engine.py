@@ -1,0 +1,250 @@
+"""The engine: compiled once, whoever asks; without a compiler one line, and NumPy goes on."""
+
+import ctypes
+import os
+import shutil
+import stat
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import numpy as np
+import platformdirs
+import pytest
+
+from piezo_sym.modules import load_module
+from piezo_sym.run.engine import Engine, EngineWarning, compiled, compiler
+from piezo_sym.run.engine import library as libraries
+from piezo_sym.run.engine.compiler import compilers
+from piezo_sym.run.engine.processor import processor
+
+ROOT = Path(__file__).parents[2]
+FILES = ROOT / "generated" / "piezo_stack"
+STATE, INPUTS = np.array([0.0, 1e-3, 1e-5, 1e-3, -2e-3, 0.05]), np.array([1.0, 50.0, 300.0])
+
+
+@pytest.fixture(autouse=True)
+def cache(tmp_path, monkeypatch):
+    """A cache of our own."""
+    monkeypatch.setattr(platformdirs, "user_cache_dir", lambda name: str(tmp_path / "cache" / name))
+    return tmp_path / "cache" / "piezo_sym" / "compiled"
+
+
+@pytest.fixture
+def module(tmp_path):
+    """A module of our own, with its sources."""
+    shutil.copytree(FILES, tmp_path / "piezo_stack")
+    return load_module(tmp_path / "piezo_stack" / "piezo_stack.py")
+
+
+@pytest.fixture
+def alone(tmp_path, monkeypatch):
+    """A folder that is the only one in which commands are found."""
+    (tmp_path / "bin").mkdir()
+    monkeypatch.setenv("PATH", str(tmp_path / "bin"))
+    monkeypatch.delenv("CC", raising=False)
+    monkeypatch.setattr(compiler, "find_spec", lambda _: None)
+    return tmp_path / "bin"
+
+
+def script(path, text):
+    path.write_text(f"#!/bin/sh\n{text}\n")
+    path.chmod(path.stat().st_mode | stat.S_IXUSR)
+    return path
+
+
+def rates(engine, module):
+    return engine.rhs(STATE, INPUTS, module.Parameters())
+
+
+def found(cache):
+    return [path for path in cache.rglob("*") if path.is_file()]
+
+
+def refused(module):
+    """Return the one line that says why there is no engine."""
+    with pytest.warns(EngineWarning) as caught:
+        assert compiled(module) is None
+    (warning,) = caught
+    message = str(warning.message)
+    assert message.isprintable()
+    assert message.endswith("; running in NumPy")
+    return message
+
+
+def test_a_module_is_compiled_and_computes_what_it_does(module, cache):
+    engine = compiled(module)
+    assert isinstance(engine, Engine)
+    assert np.array_equal(rates(engine, module), module.rhs(STATE, INPUTS, module.Parameters()))
+    assert [path.stem for path in found(cache)] == ["piezo_stack"]
+
+
+def test_what_is_compiled_is_used_again(module, tmp_path, cache, monkeypatch):
+    compiled(module)
+    (first,) = found(cache)
+    before = first.stat().st_mtime_ns
+    monkeypatch.setattr(libraries, "build", None)
+    shutil.copytree(FILES, tmp_path / "other")
+    assert compiled(load_module(tmp_path / "other" / "piezo_stack.py")) is not None
+    assert [path.stat().st_mtime_ns for path in found(cache)] == [before]
+
+
+@pytest.mark.parametrize("what", ["source", "flags", "version", "processor"])
+def test_whatever_changes_the_code_changes_its_place(monkeypatch, what):
+    sources = libraries.Sources("piezo_stack", "a", "b")
+    first, flags = next(compilers()), ("-O3",)
+    place = libraries._key(sources, first, flags)
+    assert libraries._key(sources, first, flags) == place
+    match what:
+        case "source":
+            sources = libraries.Sources("piezo_stack", "a", "c")
+        case "flags":
+            flags = ("-O2",)
+        case "version":
+            first = compiler.Compiler(first.command, first.version + " ")
+        case "processor":
+            monkeypatch.setattr(libraries, "processor", lambda: processor() + " avx1024")
+    assert libraries._key(sources, first, flags) != place
+
+
+def test_the_processor_is_known_by_its_instructions():
+    assert len(processor().splitlines()) >= 3
+
+
+@pytest.mark.usefixtures("alone")
+def test_no_compiler_is_one_line(module):
+    message = refused(module)
+    assert message == (
+        "engine: no C compiler is found; install gcc or clang, set CC, or "
+        "`pip install piezo_sym[zig]`; running in NumPy"
+    )
+
+
+def test_a_compiler_that_fails_is_one_line(module, alone):
+    says = 'test "$1" = --version && echo cc 1 && exit 0; echo "x.c:1: error: no\nmore" >&2; exit 1'
+    path = script(alone / "cc", says)
+    assert refused(module) == (f"{path}: the compiler failed: x.c:1: error: no; running in NumPy")
+
+
+def test_a_compiler_that_writes_nothing_is_one_line(module, alone):
+    script(alone / "cc", "echo cc 1")
+    assert "the compiler failed: exit status 0" in refused(module)
+
+
+def test_a_compiler_that_writes_no_library_is_one_line(module, alone):
+    says = 'for word; do test "$before" = -o && echo text > "$word"; before="$word"; done; echo cc'
+    script(alone / "cc", says)
+    assert "the compiled module cannot be loaded" in refused(module)
+
+
+@pytest.mark.parametrize("chosen", ["no_such_compiler", "'open", "", "/dev/null"])
+def test_a_compiler_that_is_not_there_is_passed_by(module, monkeypatch, chosen):
+    monkeypatch.setenv("CC", chosen)
+    assert compiled(module) is not None
+
+
+def test_a_compiler_that_fails_is_passed_by(module, tmp_path, monkeypatch):
+    monkeypatch.setenv("CC", str(script(tmp_path / "bad", "echo bad; test $1 = --version")))
+    assert next(compilers()).version == "bad\n"
+    assert compiled(module) is not None
+
+
+def test_the_chosen_compiler_is_asked_first(tmp_path, monkeypatch):
+    real = shutil.which("cc")
+    path = script(tmp_path / "mine", f'exec {real} "$@"')
+    monkeypatch.setenv("CC", f"{path} -pipe")
+    assert next(compilers()).command == (str(path), "-pipe")
+
+
+def test_flags_that_a_compiler_refuses_are_left_out(module, alone, cache):
+    real = shutil.which("cc", path=os.defpath)
+    says = f'case "$*" in *native*|*fopenmp*) echo error >&2; exit 1;; esac; exec {real} "$@"'
+    script(alone / "cc", f"PATH={os.defpath}; export PATH; {says}")
+    assert rates(compiled(module), module).shape == STATE.shape
+    assert len(found(cache)) == 1
+
+
+def test_a_cache_that_cannot_be_written_is_one_line(module, tmp_path):
+    (tmp_path / "cache").write_text("a file where the folder should be")
+    assert "the cache cannot be written (Not a directory); check the path" in refused(module)
+
+
+@pytest.mark.parametrize("content", [b"", b"no library", b"\x7fELF"])
+def test_a_damaged_library_is_compiled_again(module, content):
+    path = libraries.library(libraries.Sources("piezo_stack", *texts()))
+    path.write_bytes(content)
+    assert rates(compiled(module), module).shape == STATE.shape
+    ctypes.CDLL(str(path))
+
+
+def texts():
+    return [(FILES / f"piezo_stack{ending}").read_text() for ending in (".h", ".c")]
+
+
+@pytest.mark.parametrize("ending", [".h", ".c"])
+def test_a_source_that_is_missing_is_one_line(module, ending):
+    path = Path(module.__file__).with_suffix(ending)
+    path.unlink()
+    line = f"'{path}': is missing; run `piezo-sym generate`; running in NumPy"
+    assert refused(module) == line
+
+
+@pytest.mark.parametrize("ending", [".h", ".c"])
+def test_a_source_of_another_spec_is_not_compiled(module, ending, cache):
+    path = Path(module.__file__).with_suffix(ending)
+    path.write_text(path.read_text().replace(module.SPEC_SHA256, "0" * 64))
+    assert "is of another spec than the module" in refused(module)
+    assert found(cache) == []
+
+
+ASK = """
+import sys
+import platformdirs
+platformdirs.user_cache_dir = lambda name: sys.argv[2]
+from piezo_sym.modules import load_module
+from piezo_sym.run.engine import compiled
+module = load_module(__import__("pathlib").Path(sys.argv[1]))
+engine = compiled(module)
+print(engine.rhs([0, 1e-3, 1e-5, 1e-3, -2e-3, 0.05], [1, 50, 300], module.Parameters()).tolist())
+"""
+
+
+def test_ten_processes_at_once_get_one_library(module, tmp_path):
+    words = [sys.executable, "-W", "error", "-c", ASK, module.__file__, str(tmp_path / "many")]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    running = [subprocess.Popen(words, env=environment, **pipes) for _ in range(10)]
+    answers = [process.communicate() for process in running]
+    assert {said for _, said in answers} == {""}
+    expected = module.rhs(STATE, INPUTS, module.Parameters()).tolist()
+    assert {said for said, _ in answers} == {f"{expected}\n"}
+    assert [path.stem for path in found(tmp_path / "many")] == ["piezo_stack"]
+
+
+def test_threads_share_an_engine(module):
+    engine, wrong = compiled(module), []
+    draw = np.random.default_rng(0)
+    batches = [np.abs(draw.normal(size=(6, 500))) * 1e-2 for _ in range(8)]
+    wanted = [module.rhs(x, INPUTS, module.Parameters()) for x in batches]
+
+    def work(n):
+        for _ in range(20):
+            p = module.Parameters(hysteron_count=2)
+            close = np.allclose(engine.rhs(batches[n], INPUTS, p), wanted[n], rtol=1e-12)
+            wrong.extend([] if close else [n])
+
+    threads = [threading.Thread(target=work, args=(n,)) for n in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert wrong == []
+
+
+def test_an_engine_loads_nothing_of_the_derivation(tmp_path):
+    code = ASK + "print(sorted({'sympy', 'pydantic', 'pint', 'z3'} & {*sys.modules}))"
+    words = [sys.executable, "-c", code, str(FILES / "piezo_stack.py"), str(tmp_path)]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONDONTWRITEBYTECODE": "1"}
+    done = subprocess.run(words, env=environment, capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
