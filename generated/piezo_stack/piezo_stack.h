@@ -174,8 +174,8 @@ void piezo_stack_margins(const double *x,
  * The step of the discrete gradient: x to x_new over h, inputs u at its middle.
  * piezo_stack_newton: out[n], the change that Newton's method takes from x_new;
  *     0 if its equations are singular.
- * piezo_stack_means: means over the step of the power of each port [W], the heat [W] and
- *     entropy production [W/K] of each process (of a bank: of each lane), and the
+ * piezo_stack_means: over the step, the mean power of each port [W], heat [W] and
+ *     entropy production [W/K] of each process (of a bank: of each lane), and
  *     entropy rate of each of 1 heat exchanges [W/K].
  * piezo_stack_inside: whether a state lies in the domain.
  */

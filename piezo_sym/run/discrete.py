@@ -1,23 +1,24 @@
 """Runs of the discrete gradient in C: both balances to round-off, order two, extrapolated to four.
 
 Input: a `System`, its engine, the state x (n,) at t = 0 and the sample times.  Output: a
-`Trajectory`.  With a step, one run of it.  With a tolerance, runs whose steps are halved until the
-extrapolated states of two pairs agree: each run starts from the same state and keeps its own, so
-its balances stay exact; states are extrapolated, ledger and balances are those of the finest run.
+`Trajectory`.  With a step, one run of it.  With a tolerance, a mesh is fixed first; then two runs,
+on the mesh and on its halves, each with a state of its own, so that its balances stay exact.
+States are extrapolated from both; ledger and balances are those of the finer run.
 """
 
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Iterator
-from dataclasses import dataclass
-from itertools import pairwise
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import groupby, pairwise
 from typing import TYPE_CHECKING, final
 
 import numpy as np
 
 from piezo_sym.errors import RunError
 from piezo_sym.run.ledger import Trajectory, row_counts
+from piezo_sym.run.scales import shared
 
 if TYPE_CHECKING:
     from piezo_sym.run.checks import FloatArray
@@ -28,9 +29,11 @@ if TYPE_CHECKING:
 METHOD = "discrete_gradient"
 #: Steps whose inputs are sampled together: memory stays small, and a run can be stopped.
 CHUNK = 32_768
-#: Steps of the first run that a tolerance asks for, at least, and the most halvings of them.
-FEWEST_STEPS, MOST_LEVELS = 128, 24
-MOST_STEPS = 2_000_000_000
+#: Intervals that a tolerance starts from, at least; how often one may be halved, first and at most.
+FEWEST_STEPS = 128
+FIRST_DEPTH, MOST_DEPTH = 4, 20
+#: The finer run may be so much less accurate than the states extrapolated from it.
+LOOSER = 5.0
 
 
 @final
@@ -43,6 +46,21 @@ class Interval:
     stop: float
     steps: int
     sample: int
+
+    def cut(self, parts: int) -> Interval:
+        """Return the interval with each step cut into parts."""
+        return replace(self, steps=self.steps * parts)
+
+    def pieces(self, number: int = 0) -> Iterator[Interval]:
+        """Yield the interval in pieces: so many, or one a step; the sample is at the last."""
+        number = number or self.steps
+        if number == 1:
+            yield self
+            return
+        edges = np.linspace(self.start, self.stop, number + 1)
+        for n, (a, b) in enumerate(pairwise(edges)):
+            sample = self.sample if n == number - 1 else -1
+            yield Interval(self.segment, a, b, -(-self.steps // number), sample)
 
 
 @final
@@ -66,48 +84,70 @@ def fixed(
     ------
     RunError : a step has no solution inside the domain; the message says when.
     """
-    run = _run(system, engine, x, times, step)
+    run = _run(system, engine, x, times, _intervals(system, times, step))
     return _trajectory(system, x, times, run, run.states, run.steps)
 
 
 def adaptive(
-    system: System,
-    engine: Engine,
-    x: FloatArray,
-    times: FloatArray,
-    rtol: float,
-    atol: FloatArray,
+    system: System, engine: Engine, x: FloatArray, times: FloatArray, rtol: float
 ) -> Trajectory:
-    """Return a run whose extrapolated states change by less than the tolerance on halving.
+    """Return a run on a mesh that holds the error of each interval below rtol times a scale.
+
+    A coarse run gives the scale of each state, its largest magnitude.  A pass from interval to
+    interval then fixes the mesh by step doubling, and the pair runs on the mesh and on its halves.
 
     Raises
     ------
-    RunError : a step has no solution inside the domain, or the tolerance cannot be reached.
+    RunError : a step has no solution inside the domain; the message says when.
     """
-    span = times[-1]
-    step = min(system.inputs.max_step, span / FEWEST_STEPS)
-    coarse, last, spent = _run(system, engine, x, times, step), None, 0
-    for level in range(1, MOST_LEVELS):
-        spent += coarse.steps
-        fine = _run(system, engine, x, times, step, 2**level)
-        states = fine.states + (fine.states - coarse.states) / 3
-        if last is not None:
-            most = np.maximum(np.abs(states), np.abs(last))
-            if np.all(np.abs(states - last) <= rtol * most + atol[:, None]):
-                return _trajectory(system, x, times, fine, states, spent + fine.steps)
-        coarse, last = fine, states
-        if fine.steps > MOST_STEPS // 2:
-            break
-    what = f"the tolerance {rtol:g} is not reached with {coarse.steps} steps"
-    remedy = "allow a larger rtol, or give a fixed step"
-    raise RunError(what, f"model '{system.module.NAME}'", remedy=remedy)
+    base = _intervals(system, times, min(system.inputs.max_step, times[-1] / FEWEST_STEPS))
+    intervals = [piece for interval in base for piece in interval.pieces()]
+    rough = _run(system, engine, x, times, intervals)
+    scale = shared(system, np.nanmax(np.abs(rough.states), axis=1))
+    mesh = _mesh(system, engine, x, intervals, LOOSER * rtol * scale)
+    coarse = _run(system, engine, x, times, mesh)
+    fine = _run(system, engine, x, times, [interval.cut(2) for interval in mesh])
+    states = fine.states + (fine.states - coarse.states) / 3
+    return _trajectory(system, x, times, fine, states, coarse.steps + fine.steps)
+
+
+def _mesh(
+    system: System,
+    engine: Engine,
+    x: FloatArray,
+    intervals: list[Interval],
+    tolerance: FloatArray,
+) -> list[Interval]:
+    """Return intervals with as many steps as the tolerance asks for."""
+    _, m, rows = row_counts(system)
+    ports, rows = len(system.module.OUTPUTS), rows + engine.exchanges
+    mesh: list[Interval] = []
+    state, first, deepest = x.copy(), 0, FIRST_DEPTH
+    while len(mesh) < len(intervals):
+        part = intervals[len(mesh) : len(mesh) + max(1, CHUNK >> deepest)]
+        cuts = [1 << level for level in range(deepest + 1)]
+        u = np.concatenate([_middles(part, m, cut) for cut in cuts])
+        lengths = np.array([interval.stop - interval.start for interval in part])
+        levels = np.full(len(part), first, dtype=np.intc)
+        done, failed = engine.plan(
+            system.parameters, deepest, lengths, u, state, tolerance, levels, rows, ports
+        )
+        mesh += [i.cut(1 << int(n)) for i, n in zip(part, levels[:done], strict=False)]
+        if failed:
+            raise _stuck(system, part[done].start, state)
+        first = int(levels[done - 1]) if done else first
+        if done < len(part):
+            deepest += 2
+            if deepest > MOST_DEPTH:
+                raise _stuck(system, part[done].start, state)
+    return mesh
 
 
 def _trajectory(
     system: System, x: FloatArray, times: FloatArray, run: Run, states: FloatArray, steps: int
 ) -> Trajectory:
     _, _, rows = row_counts(system)
-    inputs = np.stack([_inputs_at(system, float(t)) for t in times], axis=1)
+    inputs = _inputs_at(system, times)
     return Trajectory(
         start=x,
         states=states,
@@ -120,17 +160,25 @@ def _trajectory(
     )
 
 
-def _inputs_at(system: System, t: float) -> FloatArray:
-    """Return the inputs at a sample: at a jump those after it, at the end those before."""
+def _inputs_at(system: System, times: FloatArray) -> FloatArray:
+    """Return the inputs at samples (m, nt): at a jump those after it, at the end those before."""
     segments = system.inputs.segments
-    later = [segment for segment in segments if segment.start <= t]
-    return (later or segments)[-1].at(t)
+    starts = np.array([segment.start for segment in segments])
+    place = np.maximum(np.searchsorted(starts, times, side="right") - 1, 0)
+    found = np.empty((len(system.module.INPUTS), times.size))
+    for n in np.unique(place):
+        found[:, place == n] = segments[n].over(times[place == n])
+    return found
 
 
 def _run(
-    system: System, engine: Engine, x: FloatArray, times: FloatArray, step: float, parts: int = 1
+    system: System,
+    engine: Engine,
+    x: FloatArray,
+    times: FloatArray,
+    intervals: Iterable[Interval],
 ) -> Run:
-    """Return one run with steps of at most `step`, each of them cut into `parts`."""
+    """Return one run through intervals, from the state x (n,)."""
     _, m, rows = row_counts(system)
     ports = len(system.module.OUTPUTS)
     rows += engine.exchanges
@@ -140,8 +188,8 @@ def _run(
         states[:, 0], sums[:, 0] = state, 0.0
     counts, steps = (ctypes.c_long * 3)(), 0
     space = np.empty(2 * x.size + rows)
-    for part in _chunks(_intervals(system, times, step, parts)):
-        u = np.concatenate([_middles(interval, m) for interval in part])
+    for part in _chunks(intervals):
+        u = _middles(part, m)
         sizes = np.array([interval.steps for interval in part], dtype=np.int_)
         lengths = np.array([(i.stop - i.start) / i.steps for i in part])
         ends, totals = np.empty((len(part), x.size)), np.empty((len(part), rows))
@@ -158,22 +206,19 @@ def _run(
     return Run(states, sums, steps, counts[0], counts[1])
 
 
-def _intervals(system: System, times: FloatArray, step: float, parts: int) -> Iterator[Interval]:
-    """Yield intervals between samples and breaks of inputs, none of many more steps than a chunk."""
+def _intervals(system: System, times: FloatArray, step: float) -> Iterator[Interval]:
+    """Yield intervals between samples and breaks of inputs, none much longer than a chunk."""
     for segment in system.inputs.segments:
         inner = times[(times > segment.start) & (times < segment.stop)]
         for start, stop in pairwise([segment.start, *inner, segment.stop]):
             at = int(np.searchsorted(times, stop))
             sample = at if at < times.size and times[at] == stop else -1
-            steps = parts * max(1, int(np.ceil((stop - start) / step * (1 - 1e-12))))
-            pieces = -(-steps // CHUNK)
-            edges = np.linspace(start, stop, pieces + 1)
-            for n, (a, b) in enumerate(pairwise(edges)):
-                last = n == pieces - 1
-                yield Interval(segment, a, b, -(-steps // pieces), sample if last else -1)
+            steps = max(1, int(np.ceil((stop - start) / step * (1 - 1e-12))))
+            whole = Interval(segment, start, stop, steps, sample)
+            yield from whole.pieces(-(-steps // CHUNK))
 
 
-def _chunks(intervals: Iterator[Interval]) -> Iterator[list[Interval]]:
+def _chunks(intervals: Iterable[Interval]) -> Iterator[list[Interval]]:
     """Yield intervals in lists of about `CHUNK` steps."""
     part: list[Interval] = []
     held = 0
@@ -187,11 +232,19 @@ def _chunks(intervals: Iterator[Interval]) -> Iterator[list[Interval]]:
         yield part
 
 
-def _middles(interval: Interval, m: int) -> FloatArray:
-    """Return the inputs at the middle of each step, (steps, m)."""
-    length = (interval.stop - interval.start) / interval.steps
-    t = interval.start + length * (np.arange(interval.steps, dtype=float) + 0.5)
-    return np.ascontiguousarray(interval.segment.over(t).T).reshape(interval.steps, m)
+def _middles(intervals: Sequence[Interval], m: int, cut: int = 1) -> FloatArray:
+    """Return the inputs at the middle of each step, (steps, m), each step cut into equal parts."""
+    parts = []
+    for segment, group in groupby(intervals, key=lambda interval: interval.segment):
+        own = list(group)
+        steps = np.array([interval.steps * cut for interval in own])
+        starts = np.array([interval.start for interval in own])
+        lengths = np.array([interval.stop - interval.start for interval in own]) / steps
+        first = np.repeat(np.cumsum(steps) - steps, steps)
+        place = np.arange(steps.sum(), dtype=float) - first + 0.5
+        times = np.repeat(starts, steps) + np.repeat(lengths, steps) * place
+        parts.append(segment.over(times).T)
+    return np.ascontiguousarray(np.concatenate(parts)).reshape(-1, m)
 
 
 def _stuck(system: System, t: float, x: FloatArray) -> RunError:

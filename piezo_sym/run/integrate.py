@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from piezo_sym.run.system import System
 
 METHODS = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
+OFFERED = (*METHODS, "discrete_gradient")
 IMPLICIT = ("Radau", "BDF", "LSODA")
 BATCH_NUMBERS = 100_000  # numbers of state that one batch may hold at its stops
 MOST_STOPS = 512
@@ -78,9 +79,9 @@ class Batch:
 
 def checked_method(method: object) -> str:
     """Return a method's name if SciPy has it; raise `UsageError` otherwise."""
-    if not isinstance(method, str) or method not in METHODS:
+    if not isinstance(method, str) or method not in OFFERED:
         what = f"unknown method {quote(method)}"
-        raise UsageError(what, "simulate.method", listing(METHODS))
+        raise UsageError(what, "simulate.method", listing(OFFERED))
     return method
 
 

@@ -1,4 +1,4 @@
-"""`simulate`: run a generated module with SciPy's solvers; the table of contents of this stage.
+"""`simulate`: run a generated module; the table of contents of this stage.
 
 Input: a generated module, and what the user wrote for inputs, parameters, initial state and times.
 Output: an `xarray.Dataset`.
@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING
 from piezo_sym.errors import UsageError
 from piezo_sym.run.checks import number, positive
 from piezo_sym.run.dataset import to_dataset
+from piezo_sym.run.discrete import METHOD, adaptive, fixed
+from piezo_sym.run.engine import compiled
 from piezo_sym.run.guard import check_start
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.integrate import Tolerance, batches, checked_method
@@ -28,7 +30,10 @@ if TYPE_CHECKING:
     import xarray
     from numpy.typing import ArrayLike
 
+    from piezo_sym.run.checks import FloatArray
+    from piezo_sym.run.engine import Engine
     from piezo_sym.run.inputs import InputValue
+    from piezo_sym.run.ledger import Trajectory
     from piezo_sym.run.module import GeneratedModule
     from piezo_sym.run.parameters import LaneValue
 
@@ -67,12 +72,14 @@ def simulate(
         SI units. Those left out keep the module's defaults.
     duration : length of the run [s].
     rtol : relative tolerance, 1e-13 to 0.1; 1e-5 when left out.
-    step : for fixed-step methods only; SciPy's take none.
+    step : a fixed step [s] instead of rtol, for discrete_gradient; of order two.
     parameters : name -> number, for a bank's parameter also a list of one number a lane; and
         `<bank>_count` -> number of lanes. SI units.
     initial : state -> number, for a bank's state also a list of one number a lane. SI units.
         Those left out keep the module's initial state.
-    method : RK23, RK45, DOP853, Radau, BDF or LSODA.
+    method : RK23, RK45, DOP853, Radau, BDF or LSODA; or discrete_gradient, compiled: both
+        balances to round-off, the error of its states below rtol of the largest magnitude of
+        each. Without a compiler it warns, and LSODA runs instead.
     times : the samples: a number of even ones (1001 when left out), or increasing times [s].
 
     Returns
@@ -92,13 +99,17 @@ def simulate(
     """
     checked(module)
     chosen, bound = checked_method(method), read_rtol(rtol)
-    refuse_step(step, chosen)
+    refuse_step(step, chosen, rtol)
     end = positive(duration, "simulate.duration")
     samples = read_times(times, end)
     values = read_parameters(module, parameters)
     system = System(module, values, read_inputs(module, inputs, end))
     x = read_initial(module, values, system.inputs.segments[0].at(0.0), initial)
     check_start(system, x)
+    if chosen == METHOD and (engine := compiled(module)):
+        trajectory, work = discrete(system, engine, x, samples, bound, step)
+        return to_dataset(system, samples, trajectory, work)
+    chosen = "LSODA" if chosen == METHOD else chosen
     scale, spent = magnitudes(system, x)
     tolerance = Tolerance(chosen, bound, bound * ATOL_FACTOR * scale)
     trajectory = record(system, x, batches(system, x, samples, tolerance), samples)
@@ -122,9 +133,41 @@ def read_rtol(rtol: object) -> float:
     return value
 
 
-def refuse_step(step: object, method: str) -> None:
+def refuse_step(step: object, method: str, rtol: object) -> None:
     """Raise `UsageError` if a fixed step was asked of a method that chooses its own."""
-    if step is not None:
+    if step is None:
+        return
+    if method != METHOD:
         what = f"method {method} chooses its own steps"
-        remedy = "leave out step; rtol sets the accuracy"
+        remedy = f"leave out step, for rtol sets the accuracy; or method='{METHOD}'"
         raise UsageError(what, "simulate.step", "nothing", remedy)
+    positive(step, "simulate.step")
+    if rtol is not None:
+        what = "step and rtol are both given"
+        raise UsageError(what, "simulate.step", "one of them", "leave out rtol for a fixed step")
+
+
+def discrete(
+    system: System,
+    engine: Engine,
+    x: FloatArray,
+    samples: FloatArray,
+    rtol: float,
+    step: float | None,
+) -> tuple[Trajectory, dict[str, object]]:
+    """Return a run of the discrete gradient, and what it took."""
+    if step is None:
+        trajectory = adaptive(system, engine, x, samples, rtol)
+        accuracy: dict[str, object] = {
+            "rtol": rtol,
+            "states": "extrapolated from two runs",
+            "ledger": "of the finer run, its balances exact",
+        }
+    else:
+        trajectory, accuracy = fixed(system, engine, x, samples, step), {"step": step}
+    work = {
+        "accepted_steps": trajectory.steps,
+        "newton_iterations": trajectory.evaluations,
+        "halvings": trajectory.halvings,
+    }
+    return trajectory, {"method": METHOD, **accuracy, **work}

@@ -198,6 +198,43 @@ class Engine:
         )
         return done
 
+    def plan(
+        self,
+        p: Any,
+        deepest: int,
+        h: FloatArray,
+        u: FloatArray,
+        x: FloatArray,
+        tolerance: FloatArray,
+        levels: NDArray[np.intc],
+        rows: int,
+        ports: int,
+    ) -> tuple[int, bool]:
+        """Choose how often intervals are halved; return how many are done, and if one failed.
+
+        Parameters
+        ----------
+        deepest : the deepest level whose inputs are in `u`, level after level.
+        h : lengths of the intervals; x (n,), changed in place, goes along them.
+        tolerance : of each state (n,), for the error of an interval.
+        levels : of each interval, written; the first is where to begin.
+        rows, ports : of the ledger.
+        """
+        structure = self.structure(p)
+        failed = ctypes.c_int(0)
+        processes = (rows - ports - self.exchanges) // 2
+        space = np.empty(4 * x.size + rows)
+        function = getattr(self.library, f"{self.module.NAME}_plan")
+        function.restype = ctypes.c_long
+        done: int = function(
+            *(ctypes.c_long(h.size), ctypes.c_int(deepest), _at(h), _at(u)),
+            *(ctypes.c_long(u.shape[1]), ctypes.byref(structure.value), _at(x), _at(tolerance)),
+            *(_at(levels), _at(space)),
+            *map(ctypes.c_long, (x.size, rows, ports, processes)),
+            ctypes.byref(failed),
+        )
+        return done, bool(failed.value)
+
     def _rows(self, records: Sequence[Record], p: Any) -> int:
         return sum(lanes(p, record.bank) if record.bank else 1 for record in records)
 

@@ -16,6 +16,7 @@ typedef struct {
     long n, rows, ports, processes;
     double *after, *change, *means, *sums, *lost;
     long halvings, iterations;
+    int booked;
 } MODEL(space);
 
 /* Add h times the means of a step to the ledger, with compensation for what rounding loses. */
@@ -83,7 +84,8 @@ static int MODEL(step)(MODEL(space) *s, double *x, const double *u, double h,
     for (long i = 0; i < s->n; ++i)
         s->after[i] = x[i];
     if (MODEL(root)(s, x, u, h, p) && MODEL(accepted)(s, x, u, p)) {
-        MODEL(book)(s, h);
+        if (s->booked)
+            MODEL(book)(s, h);
         for (long i = 0; i < s->n; ++i)
             x[i] = s->after[i];
         return 1;
@@ -111,6 +113,7 @@ long MODEL(run)(long intervals, const long *steps, const double *h, const double
                 long *counts)
 {
     MODEL(space) s = {.n = n, .rows = rows, .ports = ports, .processes = processes};
+    s.booked = 1;
     s.after = space;
     s.change = space + n;
     s.means = space + 2 * n;
@@ -134,4 +137,71 @@ end:
     counts[0] += s.halvings;
     counts[1] += s.iterations;
     return done;
+}
+
+/* Steps from x to y: 2^level of them over h, the inputs at their middles one after another. */
+static int MODEL(across)(MODEL(space) *s, const double *x, double *y, const double *u, long inputs,
+                         double h, int level, const MODEL(parameters) *p)
+{
+    const long steps = 1L << level;
+    for (long i = 0; i < s->n; ++i)
+        y[i] = x[i];
+    for (long k = 0; k < steps; ++k)
+        if (!MODEL(step)(s, y, u + k * inputs, h / (double)steps, p, 0))
+            return 0;
+    return 1;
+}
+
+/*
+ * Chooses for each interval how often it is halved: levels[k], so that 2^levels[k] steps and twice as
+ * many end within three times tolerance[n] of each other, from the same state.  u holds, for each
+ * level up to `deepest`, the inputs at the middles of all steps of all intervals; h the lengths of the
+ * intervals.  x goes from interval to interval, extrapolated.  `space` has room for 5 n + rows
+ * numbers; levels[0] is where to begin.  Returns the number of intervals done: less than all, if one
+ * needs a deeper level (failed = 0) or has no solution (failed = 1).
+ */
+long MODEL(plan)(long intervals, int deepest, const double *h, const double *u, long inputs,
+                 const MODEL(parameters) *p, double *x, const double *tolerance, int *levels,
+                 double *space, long n, long rows, long ports, long processes, int *failed);
+long MODEL(plan)(long intervals, int deepest, const double *h, const double *u, long inputs,
+                 const MODEL(parameters) *p, double *x, const double *tolerance, int *levels,
+                 double *space, long n, long rows, long ports, long processes, int *failed)
+{
+    MODEL(space) s = {.n = n, .rows = rows, .ports = ports, .processes = processes};
+    double *coarse = space + 2 * n + rows, *fine = coarse + n;
+    int level = levels[0];
+    s.after = space;
+    s.change = space + n;
+    s.means = space + 2 * n;
+    *failed = 0;
+    for (long k = 0; k < intervals; ++k) {
+        for (int known = 0;; ++level) {
+            double worst = 0.0;
+            if (level + 1 > deepest)
+                return k;
+            const double *at = u + inputs * (intervals * ((1L << level) - 1) + (k << level));
+            const double *next = u + inputs * (intervals * ((2L << level) - 1) + (k << (level + 1)));
+            if (!(known || MODEL(across)(&s, x, coarse, at, inputs, h[k], level, p)) ||
+                !MODEL(across)(&s, x, fine, next, inputs, h[k], level + 1, p)) {
+                *failed = 1;
+                return k;
+            }
+            for (long i = 0; i < n; ++i) {
+                const double ratio = fabs(fine[i] - coarse[i]) / (3.0 * tolerance[i]);
+                worst = ratio <= worst ? worst : ratio;
+            }
+            if (worst <= 1.0) {
+                for (long i = 0; i < n; ++i)
+                    x[i] = fine[i] + (fine[i] - coarse[i]) / 3.0;
+                levels[k] = level;
+                level = worst < 0.05 && level > 0 ? level - 1 : level;
+                break;
+            }
+            known = 1;
+            double *swap = coarse;
+            coarse = fine;
+            fine = swap;
+        }
+    }
+    return intervals;
 }
