@@ -244,7 +244,7 @@ def _middles(intervals: Sequence[Interval], m: int, cut: int = 1) -> FloatArray:
         place = np.arange(steps.sum(), dtype=float) - first + 0.5
         times = np.repeat(starts, steps) + np.repeat(lengths, steps) * place
         parts.append(segment.over(times).T)
-    return np.ascontiguousarray(np.concatenate(parts)).reshape(-1, m)
+    return np.ascontiguousarray(np.concatenate(parts).reshape(sum(map(len, parts)), m))
 
 
 def _stuck(system: System, t: float, x: FloatArray) -> RunError:
