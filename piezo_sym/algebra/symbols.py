@@ -7,12 +7,15 @@ bank's lane is spelled with the paper's index, ``phi_j``.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, final
 
 import sympy as sp
 
+from piezo_sym.algebra.sums import LaneSum
+from piezo_sym.errors import SpecError, quote
 from piezo_sym.spec.circuit import Circuit
 from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, Resistor, Storage
 from piezo_sym.spec.expressions import (
@@ -31,6 +34,7 @@ from piezo_sym.spec.expressions import (
 )
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import banks, conditions, lane_parameters, states
+from piezo_sym.spec.text import spell
 
 
 @final
@@ -54,8 +58,19 @@ class SymbolTable:
         return self.symbols[name]
 
     def law(self, tree: Expr, letters: Mapping[str, sp.Expr]) -> sp.Expr:
-        """Return a law as a SymPy expression, its letters replaced by what they stand for."""
-        return to_sympy(tree, {**self.symbols, **letters})
+        """Return a law as a SymPy expression, its letters replaced by what they stand for.
+
+        Raises
+        ------
+        SpecError
+            If it compares what is not real, such as ``log(sign(v)) < 1`` where v is negative.
+        """
+        try:
+            return to_sympy(tree, {**self.symbols, **letters})
+        except TypeError as error:
+            what = f"the law {quote(spell(tree))} compares what has no real value somewhere"
+            remedy = "keep its logarithms, roots and quotients defined"
+            raise SpecError(what, "elements", "real numbers to compare", remedy) from error
 
 
 def symbol_table(circuit: Circuit) -> SymbolTable:
@@ -128,20 +143,52 @@ def to_sympy(node: Expr, table: Mapping[str, sp.Expr]) -> sp.Expr:
         case Pow(base, exponent):
             return to_sympy(base, table) ** sp.Rational(exponent.numerator, exponent.denominator)
         case Call(function, args):
-            return _call(function, tuple(to_sympy(arg, table) for arg in args))
-        case If(then, condition, other):
-            parts = to_sympy(then, table), to_sympy(other, table)
-            return sp.Piecewise((parts[0], compare(condition, table)), (parts[1], True))
+            parts = tuple(to_sympy(arg, table) for arg in args)
+            if function in _SMOOTH:
+                return _SMOOTH[function](*parts)
+            return _by_branches(partial(_kinked, function), parts)
+        case If(then, Cmp(op, left, right), other):
+            choose = partial(_choice, op, to_sympy(then, table), to_sympy(other, table))
+            return _by_branches(choose, (to_sympy(left, table), to_sympy(right, table)))
     msg = f"{type(node).__name__} is no law"
     raise TypeError(msg)
 
 
-def compare(condition: Cmp, table: Mapping[str, sp.Expr]) -> Any:
-    """Return a comparison as a SymPy relation."""
-    relation = {"<": sp.Lt, "<=": sp.Le, ">": sp.Gt, ">=": sp.Ge}[condition.op]
-    return relation(to_sympy(condition.left, table), to_sympy(condition.right, table))
+def _choice(op: str, then: sp.Expr, other: sp.Expr, left: sp.Expr, right: sp.Expr) -> sp.Expr:
+    return sp.Piecewise((then, _relation(op, left, right)), (other, True))
 
 
+def _relation(op: str, left: sp.Expr, right: sp.Expr) -> Any:
+    """Return a comparison; one of sums as the sign of their difference.
+
+    SymPy orders the two sides for ever where a sum has terms of the other side.
+    """
+    plain = right.is_number or not (left.is_Add or right.is_Add)
+    return RELATIONS[op](left, right) if plain else RELATIONS[op](left - right, 0)
+
+
+def _by_branches(build: Callable[..., sp.Expr], args: tuple[sp.Expr, ...]) -> sp.Expr:
+    """Return ``build(*args)``, chosen by the branches of what chooses in `args`.
+
+    A condition is then free of choices; SymPy solves inequalities to get one that is not.
+    """
+    choice = next((found for arg in args for found in _choices(arg)), None)
+    if choice is None:
+        return build(*args)
+    cases = ((tuple(a.xreplace({choice: e}) for a in args), c) for e, c in choice.args)
+    return sp.Piecewise(*((_by_branches(build, here), c) for here, c in cases))
+
+
+def _choices(expr: sp.Basic) -> Iterator[sp.Piecewise]:
+    """Yield the choices in an expression, outermost first, but for those inside sums over lanes."""
+    if isinstance(expr, sp.Piecewise):
+        yield expr
+    elif not isinstance(expr, LaneSum):
+        for arg in expr.args:
+            yield from _choices(arg)
+
+
+RELATIONS = {"<": sp.Lt, "<=": sp.Le, ">": sp.Gt, ">=": sp.Ge}
 _SMOOTH = {
     "exp": sp.exp,
     "log": sp.log,
@@ -152,20 +199,21 @@ _SMOOTH = {
 }
 
 
-def _call(function: str, args: tuple[sp.Expr, ...]) -> sp.Expr:
-    """Return a function of the law language; those with kinks as their branches."""
-    if function in _SMOOTH:
-        return _SMOOTH[function](*args)
+def _kinked(function: str, *args: sp.Expr) -> sp.Expr:
+    """Return a function with kinks as its branches."""
     z, w = args[0], args[-1]
     match function:
         case "abs":
-            return sp.Piecewise((z, z >= 0), (-z, True))
-        case "sign":
-            return sp.Piecewise((1, z > 0), (-1, z < 0), (0, True))
+            return sp.Piecewise((z, _relation(">=", z, sp.S.Zero)), (-z, True))
         case "min":
-            return sp.Piecewise((z, z <= w), (w, True))
+            return sp.Piecewise((z, _relation("<=", z, w)), (w, True))
         case "max":
-            return sp.Piecewise((z, z >= w), (w, True))
+            return sp.Piecewise((z, _relation(">=", z, w)), (w, True))
+    edge = sp.S.Zero if function == "sign" else w
+    above, below = _relation(">", z, edge), _relation("<", z, -edge)
+    match function:
+        case "sign":
+            return sp.Piecewise((1, above), (-1, below), (0, True))
         case "deadzone":
-            return sp.Piecewise((z - w, z > w), (z + w, z < -w), (0, True))
-    return sp.Piecewise((w, z > w), (-w, z < -w), (z, True))  # saturate
+            return sp.Piecewise((z - w, above), (z + w, below), (0, True))
+    return sp.Piecewise((w, above), (-w, below), (z, True))  # saturate

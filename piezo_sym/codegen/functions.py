@@ -32,7 +32,7 @@ def functions_of(iphs: IPHS, q: Quantities) -> tuple[Function, ...]:
     return (
         Function("initial_state", doc, ("u", "p"), tuple(_starts(iphs))),
         Function("rhs", "Rates dx/dt = J_ir dU/dx + g u", STATE_INPUT, rates_of(iphs, q)),
-        *_of_ports(q),
+        *ports_of(q),
         *_of_stores(iphs, q),
         *_of_processes(iphs, q),
     )
@@ -75,14 +75,21 @@ def _entropy_rate(n: int, q: Quantities) -> Expr:
     heats = [q.heat(k) for k, row in enumerate(q.system.heats) if row == n]
     terms = [div(add(*heats), temperature)] if heats else []
     terms += [neg(term) for term in q.row(q.system.B, n, lambda k: q.outputs[k])]
-    for entry in q.ports:
-        if isinstance(entry.port, Exchange) and entry.port.body == placed.element:
-            drive = add(div(Sym(entry.port.input), temperature), neg(ONE))
-            terms.append(mul(entry.port.conductance, drive))
+    terms += [brought for body, brought in exchanges_of(q) if body == placed.element]
     return add(*terms)
 
 
-def _of_ports(q: Quantities) -> Iterator[Function]:
+def exchanges_of(q: Quantities) -> Iterator[tuple[str, Expr]]:
+    """Yield the entropy rate that each heat exchange brings, and the body that gets it."""
+    for entry in q.ports:
+        if isinstance(entry.port, Exchange):
+            temperature = Sym(q.bodies[entry.port.body].temperature)
+            drive = add(div(Sym(entry.port.input), temperature), neg(ONE))
+            yield entry.port.body, mul(entry.port.conductance, drive)
+
+
+def ports_of(q: Quantities) -> Iterator[Function]:
+    """Yield the outputs and the power put in, a row a port."""
     slots = [Slot(placed.element) for placed in q.ports]
     outputs = [_output(n, q) for n in range(len(slots))]
     powers = [_power(n, q, y) for n, y in enumerate(outputs)]

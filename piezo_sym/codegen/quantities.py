@@ -15,13 +15,25 @@ import sympy as sp
 from piezo_sym.algebra.coefficients import coefficient
 from piezo_sym.algebra.lanes import LaneMatrix, Slot
 from piezo_sym.codegen.excess import with_excess
+from piezo_sym.codegen.mean import is_affine, mean, mean_across_kinks, mean_excess
 from piezo_sym.codegen.program import Quantity
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name, heated
 from piezo_sym.network import port_order
 from piezo_sym.spec.calculus import add, div, mul, neg
+from piezo_sym.spec.circuit import Placed
 from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, Resistor, Source, Storage
-from piezo_sym.spec.expressions import Expr, LaneSum, Sym, rebuild, rename, replace
+from piezo_sym.spec.expressions import (
+    Call,
+    Expr,
+    LaneSum,
+    Mul,
+    Sym,
+    names,
+    rebuild,
+    rename,
+    replace,
+)
 from piezo_sym.spec.names import fresh
 
 
@@ -33,9 +45,16 @@ class Quantities:
     ----------
     defined : the definitions, in order.
     forces, outputs, heats : driving force, output W and heat of each process.
+    after : for a step, the name of each state after it; else empty.
+
+    Parameters
+    ----------
+    iphs : the system.
+    odd : for a step, the dissipative elements whose laws are odd; co-states are then means over the
+        step, and laws with kinks too.  None for the quantities at a point.
     """
 
-    def __init__(self, iphs: IPHS) -> None:
+    def __init__(self, iphs: IPHS, odd: frozenset[str] | None = None) -> None:
         self.system = iphs.system
         self.circuit = iphs.circuit
         self.stores = tuple(self.circuit.of(Storage, Body))
@@ -44,6 +63,8 @@ class Quantities:
         self.taken = set(self.circuit.names)
         self.taken |= {str(symbol.name) for symbol, _ in (*iphs.slopes, *iphs.shares)}
         self.defined: list[Quantity] = []
+        self.odd = odd or frozenset()
+        self.after = {} if odd is None else {p.state: self._after(p) for _, p in self.stores}
         self._sums: dict[LaneSum, Sym] = {}
         self._costates()
         self._ratios()
@@ -92,6 +113,9 @@ class Quantities:
     def _excess(self, hot: str, cold: Sym, value: Expr) -> Sym:
         """Return ``hot - cold`` as a quantity, and from now on hot as cold plus this quantity."""
         base = f"{hot}_minus_{cold.name}"
+        if self.after:
+            state = next(port.state for port in self.bodies.values() if port.temperature == hot)
+            value = mean_excess(value, cold, _exponent(value), *self._ends(state))
         known = next((q for q in self.defined if q.value == value), None)
         if known:
             return Sym(known.name)
@@ -103,6 +127,8 @@ class Quantities:
 
     def known(self, expr: Expr) -> Expr:
         """Return an expression with each part that is a temperature written by its name."""
+        if self.after:  # T is a mean there, and no part of a derivative
+            return expr
         laws = {law: Sym(name) for name, law in self._temperature_laws().items()}
         found = laws.get(expr)
         return found if found else rebuild(expr, self.known)
@@ -123,9 +149,21 @@ class Quantities:
             yield mul(coefficient(own), value)
 
     def _costates(self) -> None:
+        note = "mean co-states" if self.after else "co-states dU/dx"
         for placed, port in self.stores:
             law = rename(port.law, {port.letter: port.state})
-            self._defined(costate_name(port), law, placed.bank, "co-states dU/dx")
+            if self.after:
+                law = mean(law, *self._ends(port.state))
+            self._defined(costate_name(port), law, placed.bank, note)
+
+    def _after(self, port: Storage | Body) -> str:
+        name = fresh(f"{port.state}_new", self.taken)
+        self.taken.add(name)
+        return name
+
+    def _ends(self, state: str) -> tuple[dict[str, Expr], dict[str, Expr]]:
+        """Return what a state is before and after a step."""
+        return {state: Sym(state)}, {state: Sym(self.after[state])}
 
     def _ratios(self) -> None:
         for _, port in self.circuit.of(Coupling):
@@ -151,12 +189,12 @@ class Quantities:
         for k, (placed, port) in enumerate(self.circuit.of(Resistor, Conductor)):
             terms = [*self.row(self.system.B.T, k, self.costate)]
             terms += self.row(self.system.D.T, k, self.input)
-            effort = add(*terms)
+            effort = drive = add(*terms)
             if not isinstance(effort, Sym) and isinstance(port, Resistor):
                 effort = self._defined(port.effort, effort, placed.bank, "driving forces")
             if isinstance(port, Resistor):
                 force: Expr = effort
-                law = replace(self._at(port.law, port.heats), {port.letter: effort})
+                law = self._law(placed, port, drive, effort)
             else:
                 force = add(effort, neg(Sym(self.bodies[port.second].temperature)))
                 law = div(mul(port.conductance, force), effort)
@@ -166,6 +204,29 @@ class Quantities:
             heats.append(mul(output, effort))
         return forces, outputs, heats
 
+    def _law(self, placed: Placed, port: Resistor, drive: Expr, effort: Expr) -> Expr:
+        """Return a law at its driving force; over a step, averaged across the kinks of an odd law.
+
+        A mean law is passive if the force moves along a line, so its co-states have to be affine.
+        """
+        law = self._at(port.law, port.heats)
+        affine = {
+            costate_name(store): rename(store.law, {store.letter: store.state})
+            for _, store in self.stores
+            if is_affine(store.law, {store.letter})
+        }
+        still = {*self.circuit.model.inputs, *(port.name for _, port in self.circuit.of(Coupling))}
+        if placed.element in self.odd and {*names(drive)} <= affine.keys() | still:
+            later = {name: rename(tree, self.after) for name, tree in affine.items()}
+            old, new = (replace(drive, ends) for ends in (affine, later))
+            if not is_affine(law, {port.letter}) and mean_across_kinks(law, port.letter, old, new):
+                note = "driving forces before and after the step"
+                base = f"{port.letter}_{placed.element}"
+                first = self.define(f"{base}_old", old, placed.bank, note)
+                last = self.define(f"{base}_new", new, placed.bank, note)
+                return mean_across_kinks(law, port.letter, first, last) or law
+        return replace(law, {port.letter: effort})
+
     def heat(self, k: int) -> Sym:
         """Return the quantity that is the heat of process k, summed over the lanes of a bank."""
         slot = self.system.processes[k]
@@ -174,3 +235,12 @@ class Quantities:
             return self.total(self.heats[k], slot.bank, base)
         known = next((q for q in self.defined if q.value == self.heats[k]), None)
         return Sym(known.name) if known else self.define(base, self.heats[k], None, "heats")
+
+
+def _exponent(value: Expr) -> Expr:
+    """Return the argument of the exponential in ``T_0*expm1(S/c_0)``."""
+    match value:
+        case Mul(_, Call("expm1", (arg,))):
+            return arg
+    msg = "an excess is a constant times an exponential less one"
+    raise TypeError(msg)

@@ -12,7 +12,7 @@ import sympy as sp
 
 from piezo_sym.algebra.lanes import vector
 from piezo_sym.algebra.symbols import SymbolTable
-from piezo_sym.errors import SpecError
+from piezo_sym.errors import SpecError, quote
 from piezo_sym.iphs.system import System
 from piezo_sym.network import Junction, Slope, port_order
 from piezo_sym.spec.circuit import Circuit, Placed
@@ -91,7 +91,7 @@ def energy_of(element: str, port: Storage | Body) -> Expr:
     """
     energy = antiderivative(port.law, port.letter)
     if energy is None:
-        what = f"the law {spell(port.law)} has no energy in closed form"
+        what = f"the law {quote(spell(port.law))} has no energy in closed form"
         expected = f"a polynomial in {port.letter}, or an exponential"
         raise SpecError(what, f"elements.{element}", expected)
     return rename(energy, {port.letter: port.state})

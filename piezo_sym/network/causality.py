@@ -8,25 +8,13 @@ A law that is not linear keeps its causality; if that cannot be, the network is 
 
 from __future__ import annotations
 
-from dataclasses import replace
-
-import sympy as sp
-
 from piezo_sym.algebra.linear import SingularError
-from piezo_sym.algebra.symbols import SymbolTable, to_sympy
+from piezo_sym.algebra.symbols import SymbolTable
+from piezo_sym.network.inverse import turn
 from piezo_sym.network.kirchhoff import Laws
-from piezo_sym.spec.calculus import derivative, div, mul
+from piezo_sym.network.refusals import refusal
 from piezo_sym.spec.circuit import Circuit, Placed
-from piezo_sym.spec.elements.ports import Domain, Resistor
-from piezo_sym.spec.expressions import ONE, ZERO, Div, Expr, Sym, names
-
-#: The letter that a law has in the other causality.
-CONJUGATE = {
-    (Domain.ELECTRICAL, "i"): "v",
-    (Domain.ELECTRICAL, "v"): "i",
-    (Domain.MECHANICAL, "v"): "f",
-    (Domain.MECHANICAL, "f"): "v",
-}
+from piezo_sym.spec.elements.ports import Resistor
 
 
 def causal(circuit: Circuit, symbols: SymbolTable) -> Laws:
@@ -48,7 +36,7 @@ def causal(circuit: Circuit, symbols: SymbolTable) -> Laws:
             return laws
         found = _to_turn(laws, contradiction, turned)
         if found is None:
-            raise laws.refusal(contradiction)
+            raise refusal(laws, contradiction)
         placed, port = found
         turned.add(placed.element)
         circuit = circuit.replaced(placed, port)
@@ -67,40 +55,3 @@ def _to_turn(
                 if placed.element not in turned and other is not None:
                     return placed, other
     return None
-
-
-def turn(port: Resistor) -> Resistor | None:
-    """Return a resistor in its other causality if its law has a slope that is not 0, else None."""
-    slope = slope_of(port)
-    if slope is None or _is(slope, ZERO):  # what is zero whatever it is given has no other form
-        return None
-    letter = CONJUGATE[port.domain, port.letter]
-    return replace(
-        port,
-        letter=letter,
-        law=_over(Sym(letter), slope),
-        output=port.effort,
-        effort=port.output,
-        imposes=port.imposes.other,
-    )
-
-
-def slope_of(port: Resistor) -> Expr | None:
-    """Return the slope of a law that is linear in its letter, else None."""
-    slope = derivative(port.law, port.letter)
-    if port.letter in names(slope) or not _is(port.law, mul(slope, Sym(port.letter))):
-        return None
-    return slope
-
-
-def _over(top: Expr, slope: Expr) -> Expr:
-    match slope:
-        case Div(left, right) if left == ONE:
-            return mul(right, top)
-    return div(top, slope)
-
-
-def _is(law: Expr, other: Expr) -> bool:
-    """Return whether two laws are the same function."""
-    table = {name: sp.Symbol(name, real=True) for name in (*names(law), *names(other))}
-    return bool(sp.expand(to_sympy(law, table) - to_sympy(other, table)) == 0)

@@ -19,7 +19,7 @@ from sympy.polys.domains import QQ
 from piezo_sym.algebra.linear import Equation, Form, SingularError, accumulate, combine, solve
 from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import NetworkError
-from piezo_sym.network.nodes import is_reference
+from piezo_sym.network.nodes import is_inner, is_reference
 from piezo_sym.spec.circuit import Circuit, Placed
 from piezo_sym.spec.elements.ports import (
     Body,
@@ -106,7 +106,7 @@ class Laws:
         Raises
         ------
         SingularError
-            If the laws have no, or more than one, solution; `refusal` names the elements.
+            If the laws have no, or more than one, solution; `refusals` names the elements.
         NetworkError
             If a bank fixes a node that it shares.
         """
@@ -167,7 +167,7 @@ class Laws:
     def _solve_lane(self, bank: str) -> dict[Any, Form]:
         """Return one lane's own unknowns in terms of its givens and the shared nodes."""
         balances = self._balances(bank)
-        inner = {node: row for node, row in balances.items() if _is_inner(node)}
+        inner = {node: row for node, row in balances.items() if is_inner(node)}
         equations = [Equation(row.left, _negated(row.right)) for row in inner.values()]
         equations += list(self._constraints(bank))
         unknowns = [("e", node) for node in inner]
@@ -184,7 +184,7 @@ class Laws:
         balances = self._balances(None)
         for bank, solution in lanes.items():
             for node, row in self._balances(bank).items():
-                if not _is_inner(node):
+                if not is_inner(node):
                     total = balances.setdefault(node, Equation())
                     combine(total.right, self._summed(bank, row, solution), self.field.one)
         equations = [Equation(row.left, _negated(row.right)) for row in balances.values()]
@@ -206,22 +206,6 @@ class Laws:
             remedy = "put an inductor or a hysteron in each lane, so that its current is a state"
             raise NetworkError(what, f"elements.{bank}", remedy=remedy)
         return {("sum", label): coefficient for label, coefficient in drawn.items()}
-
-    def refusal(self, singular: SingularError) -> NetworkError:
-        """Return what laws without a solution mean, in the names of elements and nodes."""
-        elements = {edge.key: edge.placed.element for edge in self.edges}
-        for relation in singular.relations:
-            keys = [label[1] if label[0] == "sum" else label for label in relation]
-            found = {elements[key] for key in keys if key in elements}
-            declared = (name for name in self.circuit.model.elements if name in found)
-            tied = ", ".join(f"'{name}'" for name in declared)
-            what = f"elements {tied} fix each other's variables"
-            remedy = "merge those in parallel (or in series), or put a resistor or damper between"
-            return NetworkError(what, "network", "independent storage and sources", remedy)
-        loose = [label[1] for label in singular.undetermined if label[0] == "e"]
-        at = f"node '{loose[0]}'" if loose else "the network"
-        remedy = "connect a capacitor, mass, source or voltage-law resistor there"
-        return NetworkError(f"nothing determines {at}", "network", remedy=remedy)
 
     # The answers
 
@@ -245,11 +229,6 @@ class Laws:
 def _letter(n: int) -> sp.Symbol:
     """Return the stand-in of ratio n, the same object for ever: fields then compare at once."""
     return sp.Symbol(f"ratio_{n}")
-
-
-def _is_inner(node: str) -> bool:
-    """Return whether a node is an element's own (no spec can write the colon)."""
-    return ":" in node
 
 
 def _across(branch: Branch, factor: Any) -> Form:

@@ -23,7 +23,7 @@ from sympy.polys.matrices import DomainMatrix
 
 from piezo_sym.algebra.lanes import LaneMatrix
 from piezo_sym.errors import NetworkError, listing, quote
-from piezo_sym.network.causality import slope_of
+from piezo_sym.network.inverse import slope_of
 from piezo_sym.network.kirchhoff import Laws
 from piezo_sym.spec.elements.ports import Domain, Resistor
 from piezo_sym.spec.expressions import Expr

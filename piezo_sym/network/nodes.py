@@ -1,4 +1,4 @@
-"""Nodes of a network: each in one domain, none left hanging.
+"""Nodes of a network: each in one domain, none left hanging, all tied to their reference.
 
 Input: a `Circuit`.  Output: nothing, or one `NetworkError` that names the node and its elements.
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from piezo_sym.errors import NetworkError, nearest
+from piezo_sym.errors import NetworkError, listing, nearest
 from piezo_sym.spec.circuit import Circuit
 from piezo_sym.spec.elements.ports import Branch, Coupling, Domain, Resistor, Source, Storage
 
@@ -29,8 +29,13 @@ def branches(circuit: Circuit) -> Iterator[tuple[str, Branch, Domain]]:
             yield placed.element, port.branch, port.domain
 
 
+def is_inner(node: str) -> bool:
+    """Return whether a node is an element's own (no spec can write the colon)."""
+    return ":" in node
+
+
 def check_nodes(circuit: Circuit) -> None:
-    """Check that every node is of one domain and that at least two branches meet there.
+    """Check that every node is of one domain, shared by two branches, and tied to its reference.
 
     Raises
     ------
@@ -42,17 +47,14 @@ def check_nodes(circuit: Circuit) -> None:
     for element, branch, domain in branches(circuit):
         where = f"elements.{element}"
         if branch[0] == branch[1]:
-            what = f"both ends are at node '{branch[0]}'"
-            raise NetworkError(what, where, "two different nodes")
+            raise _short(circuit, element, branch[0])
         for node in branch:
             _check_domain(node, domain, where, domains)
             users.setdefault(node, []).append(element)
     for node, found in users.items():
         if len(found) < 2 and not is_reference(node):
-            what = f"connects to '{node}', which no other element uses"
-            others = [other for other in users if other != node and ":" not in other]
-            remedy = f"{nearest(node, others)}; or add an element there"
-            raise NetworkError(what, f"elements.{found[0]}", remedy=remedy)
+            raise _dangling(node, found[0], list(branches(circuit)))
+    _check_ground(circuit)
 
 
 def _check_domain(
@@ -61,9 +63,66 @@ def _check_domain(
     if is_reference(node):
         if REFERENCES[node] is not domain:
             what = f"'{node}' is the {REFERENCES[node].value} reference"
-            raise NetworkError(what, where, f"'{domain.reference}' in this {domain.value} branch")
+            expected = f"'{domain.reference}' in this {domain.value} branch"
+            remedy = f"write '{domain.reference}' there, or use {_an(REFERENCES[node])} element"
+            raise NetworkError(what, where, expected, remedy)
         return
     first, other = domains.setdefault(node, (domain, where))
     if first is not domain:
         what = f"node '{node}' is {domain.value} here and {first.value} in {other}"
         raise NetworkError(what, where, "a node of one domain", "rename one of the two nodes")
+
+
+def _an(domain: Domain) -> str:
+    return f"{'an' if domain is Domain.ELECTRICAL else 'a'} {domain.value}"
+
+
+def _short(circuit: Circuit, element: str, node: str) -> NetworkError:
+    """Return why both ends of a branch cannot be one node."""
+    where = f"elements.{element}"
+    if hasattr(circuit.model.elements[element], "at"):
+        what = f"stands at '{node}', which does not move"
+        return NetworkError(what, where, "a node that moves", "name another node")
+    what = f"both ends are at node '{node}'"
+    return NetworkError(what, where, "two different nodes", "rename one of them")
+
+
+def _dangling(node: str, element: str, found: list[tuple[str, Branch, Domain]]) -> NetworkError:
+    """Return an element that ends where nothing else does, with the nodes it may have meant."""
+    domain = next(own for _, branch, own in found if node in branch)
+    mine = {other for name, branch, _ in found if name == element for other in branch}
+    known = dict.fromkeys(
+        other
+        for _, branch, own in found
+        for other in branch
+        if own is domain and other not in mine and not is_inner(other)
+    )
+    what = f"connects to '{node}', which no other element uses"
+    remedy = f"{nearest(node, known)}; or add {_an(domain)} element there"
+    return NetworkError(what, f"elements.{element}", "two elements at a node", remedy)
+
+
+def _check_ground(circuit: Circuit) -> None:
+    """Check that branches connect every node to the reference of its domain."""
+    beside: dict[str, list[str]] = {}
+    for _, (one, other), _ in branches(circuit):
+        beside.setdefault(one, []).append(other)
+        beside.setdefault(other, []).append(one)
+    tied = _reached(list(REFERENCES), beside)
+    for element, (node, _), domain in branches(circuit):
+        if node not in tied:
+            near = sorted(n for n in _reached([node], beside) if not is_inner(n))
+            what = f"nothing connects node '{node}' to '{domain.reference}'"
+            expected = f"a path to '{domain.reference}', the {domain.value} reference"
+            remedy = f"call one of these nodes '{domain.reference}': {listing(near)}"
+            raise NetworkError(what, f"elements.{element}", expected, remedy)
+
+
+def _reached(start: list[str], beside: dict[str, list[str]]) -> set[str]:
+    """Return the nodes that branches connect to those of `start`, and these."""
+    found, todo = set(start), list(start)
+    while todo:
+        new = [node for node in beside.get(todo.pop(), ()) if node not in found]
+        found.update(new)
+        todo.extend(new)
+    return found

@@ -8,6 +8,7 @@ are answered, and the obligations it rests on hold.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import final
 
 import sympy as sp
@@ -57,6 +58,10 @@ class Question:
         TooManyBranchesError
             If a condition of the domain has too many branches.
         """
+        return self._query
+
+    @cached_property
+    def _query(self) -> Query:
         assumed = [clause for condition in self.where for clause in smooth_clauses(condition)]
         conditions = [*(part for clause in assumed for part in clause), self.claim]
         sides = [side for c in conditions for side in (c.left, c.right)]

@@ -148,10 +148,7 @@ def ratio(law: Expr) -> Ratio:
             inner = ratio(arg)
             return Ratio(neg(inner.top), inner.bottom)
         case Add(terms):
-            total = Ratio(ZERO)
-            for term in terms:
-                total = _sum(total, ratio(term))
-            return total
+            return _total([ratio(term) for term in terms])
         case Mul(left, right):
             a, b = ratio(left), ratio(right)
             return Ratio(mul(a.top, b.top), mul(a.bottom, b.bottom))
@@ -167,6 +164,16 @@ def ratio(law: Expr) -> Ratio:
             return Ratio(top, bottom) if exponent > 0 else Ratio(bottom, top)
     msg = f"{type(law).__name__} is not rational"
     raise TypeError(msg)
+
+
+def _total(parts: list[Ratio]) -> Ratio:
+    """Return a sum; where all have one denominator its length costs no more than its terms."""
+    if len({part.bottom for part in parts}) == 1:
+        return Ratio(add(*(part.top for part in parts)), parts[0].bottom)
+    total = Ratio(ZERO)
+    for part in parts:
+        total = _sum(total, part)
+    return total
 
 
 def _sum(a: Ratio, b: Ratio) -> Ratio:

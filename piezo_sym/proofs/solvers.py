@@ -21,7 +21,9 @@ from typing import Any, final
 from piezo_sym.proofs.query import Query
 
 #: The most seconds to wait for one answer; far above what the solvers' own limits come to.
-PATIENCE = 60.0
+PATIENCE = 20.0
+#: Answers that are kept: a query is asked again when a file is checked or a bank is written out.
+MOST_KNOWN = 10_000
 
 
 @final
@@ -49,19 +51,27 @@ class Solver:
         self.name, self.command, self.patience = name, command, patience
         self._process: subprocess.Popen[str] | None = None
         self._lock = threading.Lock()
+        self._known: dict[str, Answer] = {}
 
     def ask(self, query: Query) -> Answer:
         """Return the answer to a query; never raises for what the solver does."""
         request = json.dumps({"text": query.text(), "order": query.variables})
         with self._lock:
-            answer = self._exchange(request)
-        if answer is None:
-            self.close()
-            return Answer(
-                "unknown", reason=f"{self.name} stopped, or took more than {self.patience:g} s"
-            )
-        model = {name: Fraction(text) for name, text in answer.get("model", {}).items()}
-        return Answer(str(answer["result"]), model, str(answer.get("reason", "")))
+            if request not in self._known:
+                found = self._exchange(request)
+                if found is None:
+                    self.close()
+                    reason = f"{self.name} stopped, or took more than {self.patience:g} s"
+                    return Answer("unknown", reason=reason)
+                self._keep(request, found)
+            return self._known[request]
+
+    def _keep(self, request: str, found: dict[str, Any]) -> None:
+        model = {name: Fraction(text) for name, text in found.get("model", {}).items()}
+        answer = Answer(str(found["result"]), model, str(found.get("reason", "")))
+        self._known[request] = answer
+        if len(self._known) > MOST_KNOWN:
+            self._known.pop(next(iter(self._known)))
 
     def close(self) -> None:
         """Stop the process; the next question starts another."""

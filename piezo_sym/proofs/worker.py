@@ -32,7 +32,8 @@ def ask_z3(text: str, order: Sequence[str]) -> Answer:
     """Return z3's answer; a model's values are made simple one after the other."""
     import z3
 
-    solver = z3.Solver()
+    context = z3.Context()  # of its own: nothing that was asked before changes the answer
+    solver = z3.Solver(ctx=context)
     solver.set("rlimit", Z3_LIMIT)
     solver.from_string(text)
     result = str(solver.check())
@@ -42,24 +43,24 @@ def ask_z3(text: str, order: Sequence[str]) -> Answer:
         return {"result": result}
     model = solver.model()
     for name in order:
-        model = _simplify(z3, solver, model, name)
-    return {"result": "sat", "model": {name: _exact(z3, model, name) for name in order}}
+        model = _simplify(z3, solver, model, z3.Real(name, context))
+    values = {name: _exact(z3, model, z3.Real(name, context)) for name in order}
+    return {"result": "sat", "model": values}
 
 
-def _simplify(z3: Any, solver: Any, model: Any, name: str) -> Any:
+def _simplify(z3: Any, solver: Any, model: Any, symbol: Any) -> Any:
     """Fix one variable to the first simple value that still gives a model; return that model."""
-    symbol = z3.Real(name)
     for value in SIMPLE:
         solver.push()
-        solver.add(symbol == z3.Q(value.numerator, value.denominator))
+        solver.add(symbol == z3.Q(value.numerator, value.denominator, symbol.ctx))
         if str(solver.check()) == "sat":
             return solver.model()
         solver.pop()
     return model
 
 
-def _exact(z3: Any, model: Any, name: str) -> str:
-    value = model.evaluate(z3.Real(name), model_completion=True)
+def _exact(z3: Any, model: Any, symbol: Any) -> str:
+    value = model.evaluate(symbol, model_completion=True)
     if z3.is_algebraic_value(value):
         value = value.approx(20)
     return str(value.as_fraction())

@@ -41,16 +41,19 @@ def add(*terms: Expr) -> Expr:
 
 def _folded(terms: list[Expr]) -> list[Expr]:
     """Return terms with numbers added up and pairs of a term and its negative left out."""
-    kept: list[Expr] = []
-    for term in terms:
-        number = next((other for other in kept if isinstance(other, Num)), None)
-        if isinstance(term, Num) and number is not None:
-            kept[kept.index(number)] = Num(number.value + term.value)
-        elif neg(term) in kept:
-            kept.remove(neg(term))
+    kept: dict[int, Expr] = {}
+    places: dict[Expr, list[int]] = {}
+    number, total = -1, Fraction(0)
+    for n, term in enumerate(terms):
+        if isinstance(term, Num):
+            number, total = n if number < 0 else number, total + term.value
+            kept[number] = Num(total)
+        elif twins := places.get(neg(term)):
+            del kept[twins.pop(0)]
         else:
-            kept.append(term)
-    return [term for term in kept if term != ZERO]
+            kept[n] = term
+            places.setdefault(term, []).append(n)
+    return [term for term in kept.values() if term != ZERO]
 
 
 def neg(arg: Expr) -> Expr:
@@ -203,6 +206,12 @@ def _slopes(function: str, args: tuple[Expr, ...]) -> tuple[Expr, ...]:
             return (Call("sign", args),)
         case "sign":
             return (ZERO,)
+        case "phi1":  # (exp(z) - 1)/z; lowering makes it, and those below
+            return (add(Call("phi1", args), neg(Call("phi2", args))),)
+        case "phi2":  # (phi1(z) - 1)/z
+            return (add(Call("phi2", args), neg(mul(Num(Fraction(2)), Call("phi3", args)))),)
+        case "ramp" | "mean_sign":
+            return (Call(f"{function}_by_old", args), Call(f"{function}_by_new", args))
     return _slopes_of_two(function, z, args[1])
 
 

@@ -6,6 +6,7 @@ Input: a tree and a name.  Output: a tree, or None where there is none of a simp
 from __future__ import annotations
 
 from fractions import Fraction
+from math import comb
 
 from piezo_sym.spec.calculus import add, derivative, div, mul, neg, power
 from piezo_sym.spec.expressions import (
@@ -24,6 +25,9 @@ from piezo_sym.spec.expressions import (
     names,
     walk,
 )
+
+#: Products of polynomials are written out up to this size; beyond, no energy is found.
+MAX_PARTS = 20_000
 
 
 def antiderivative(node: Expr, name: str) -> Expr | None:
@@ -92,11 +96,28 @@ def _polynomial(node: Expr, name: str) -> dict[int, Expr] | None:
             inner = _polynomial(left, name)
             return None if inner is None else {n: div(c, right) for n, c in inner.items()}
         case Pow(base, exponent) if exponent.denominator == 1 and exponent > 0:
-            inner, total = _polynomial(base, name), _polynomial(base, name)
-            for _ in range(exponent.numerator - 1):
-                total = _product_of(total, inner)
-            return total
+            return _raised(_polynomial(base, name), exponent.numerator)
     return None
+
+
+def _raised(part: dict[int, Expr] | None, times: int) -> dict[int, Expr] | None:
+    """Return a power of a polynomial, one of two terms by the binomial theorem."""
+    if part is None or len(part) != 2:
+        total = part
+        for _ in range(times - 1):
+            total = _product_of(total, part)
+        return total
+    (low, a), (high, b) = part.items()
+    return {
+        low * (times - k) + high * k: mul(
+            Num(Fraction(comb(times, k))), mul(_whole(a, times - k), _whole(b, k))
+        )
+        for k in range(times + 1)
+    }
+
+
+def _whole(base: Expr, times: int) -> Expr:
+    return power(base, Fraction(times)) if times else ONE
 
 
 def _sum_of(parts: list[dict[int, Expr] | None]) -> dict[int, Expr] | None:
@@ -112,9 +133,13 @@ def _sum_of(parts: list[dict[int, Expr] | None]) -> dict[int, Expr] | None:
 def _product_of(
     left: dict[int, Expr] | None, right: dict[int, Expr] | None
 ) -> dict[int, Expr] | None:
-    if left is None or right is None:
+    if left is None or right is None or _size(left) * _size(right) > MAX_PARTS:
         return None
     return _sum_of([{n + m: mul(a, b)} for n, a in left.items() for m, b in right.items()])
+
+
+def _size(polynomial: dict[int, Expr]) -> int:
+    return sum(1 for coefficient in polynomial.values() for _ in walk(coefficient))
 
 
 def _power_rule(node: Expr, name: str) -> Expr | None:

@@ -9,7 +9,6 @@ from the source text as exact rationals.  Nothing is ever evaluated by Python.
 from __future__ import annotations
 
 import ast
-import math
 from collections.abc import Callable
 from fractions import Fraction
 from functools import lru_cache
@@ -42,13 +41,10 @@ from piezo_sym.spec.lexis import (
     check_letters,
     check_tokens,
 )
+from piezo_sym.spec.size import check_size
 from piezo_sym.spec.text import spell
 
 MAX_POWER = 16
-MAX_BRANCHES = 18
-#: Functions with kinks, and how many branches each has.
-KINKS = {"abs": 2, "min": 2, "max": 2, "sign": 3, "deadzone": 3, "saturate": 3}
-MAX_DEGREE = 32
 LARGEST = Fraction(10) ** MAX_MAGNITUDE
 SMALLEST = 1 / LARGEST
 
@@ -98,7 +94,8 @@ def _law(text: str) -> Expr:
     if isinstance(body, ast.Compare):
         raise RefusedError("is a comparison", "a law", "write 'a if x < y else b'")
     tree = _expression(body, text)
-    _check_values(tree)
+    check_size(tree)
+    _check_constants(tree)
     return tree
 
 
@@ -108,8 +105,9 @@ def _condition(text: str) -> Cmp:
     if not isinstance(body, ast.Compare):
         raise RefusedError("is not a comparison", "one of < <= > >=, as in 'T > T_0'")
     tree = _comparison(body, text)
-    _check_values(tree.left)
-    _check_values(tree.right)
+    for side in (tree.left, tree.right):
+        check_size(side)
+        _check_constants(side)
     return tree
 
 
@@ -228,37 +226,6 @@ def _call(function: str, args: list[ast.expr], text: str, depth: int) -> Expr:
         what = f"gives {function} {len(args)} arguments"
         raise RefusedError(what, f"{count}")
     return Call(function, tuple(_expression(arg, text, depth) for arg in args))
-
-
-def _check_values(tree: Expr) -> None:
-    """Refuse constant parts without a value, and powers of powers that could explode."""
-    if _degree(tree) > MAX_DEGREE:
-        raise RefusedError("has too high a degree", f"at most {MAX_DEGREE} in all")
-    if _branches(tree) > MAX_BRANCHES:
-        what = "nests functions with kinks too deeply"
-        raise RefusedError(what, f"at most {MAX_BRANCHES} branches", "split the law into elements")
-    _check_constants(tree)
-
-
-def _branches(node: Expr | Cmp) -> int:
-    """Return how many branches the deepest nest of functions with kinks has together."""
-    inner = [_branches(part) for part in children(node)]
-    if isinstance(node, Call) and node.function in KINKS:
-        return KINKS[node.function] * math.prod(inner)
-    return max(inner, default=1)
-
-
-def _degree(node: Expr | Cmp) -> Fraction:
-    match node:
-        case Num():
-            return Fraction(0)
-        case Sym():
-            return Fraction(1)
-        case Mul(left, right) | Div(left, right):
-            return _degree(left) + _degree(right)
-        case Pow(base, exponent):
-            return _degree(base) * max(abs(exponent), Fraction(1))
-    return max(_degree(part) for part in children(node))
 
 
 def _check_constants(node: Expr | Cmp) -> bool:

@@ -68,6 +68,8 @@ def _problem(detail: ErrorDetails) -> SpecError:
 
 
 def _expected(detail: ErrorDetails) -> str:
+    if detail["type"] in {"tuple_type", "too_long"} and detail["loc"][-1] != "assume":
+        return "a list of two names, such as ['a', 'b']"
     if detail["type"] == "value_error":
         return str(detail.get("ctx", {}).get("error", detail["msg"]))
     message = detail["msg"].removeprefix("Input should be ")

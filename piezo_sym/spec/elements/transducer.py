@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, final
 
-from piezo_sym.spec.elements.base import BodyName, Element, Law, Letters, Pair
+from piezo_sym.spec.elements.base import BodyName, Element, Law, Letters, Pair, Refers
 from piezo_sym.spec.elements.ports import Coupling, Domain, Port
 
 
@@ -20,7 +20,7 @@ class Transducer(Element):
     electrical: Pair
     mechanical: Pair
     ratio: Annotated[Law, Letters({"T": "K"}, unit="C/m")]
-    temperature: BodyName | None = None
+    temperature: Annotated[BodyName | None, Refers("thermal_mass")] = None
 
     def ports(self, name: str) -> tuple[Port, ...]:
         """Return the coupling."""

@@ -1,0 +1,74 @@
+"""A resistor's law turned round: from what it gives to what it is given.
+
+Input: a `Resistor`, whose law is a function of one letter.  Output: the same resistor in its other
+causality, ``voltage = "R*i"`` as ``current = "v/R"``, if its law is linear in the letter.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import sympy as sp
+
+from piezo_sym.algebra.symbols import to_sympy
+from piezo_sym.spec.calculus import derivative, div, mul
+from piezo_sym.spec.elements.ports import Domain, Resistor
+from piezo_sym.spec.expressions import ONE, ZERO, Div, Expr, Sym, names
+from piezo_sym.spec.expressions import replace as substitute
+
+#: The letter that a law has in the other causality.
+CONJUGATE = {
+    (Domain.ELECTRICAL, "i"): "v",
+    (Domain.ELECTRICAL, "v"): "i",
+    (Domain.MECHANICAL, "v"): "f",
+    (Domain.MECHANICAL, "f"): "v",
+}
+#: The field of the spec in which a law of each letter stands.
+FIELDS = {
+    (Domain.ELECTRICAL, "i"): "voltage",
+    (Domain.ELECTRICAL, "v"): "current",
+    (Domain.MECHANICAL, "v"): "force",
+    (Domain.MECHANICAL, "f"): "velocity",
+}
+
+
+def turn(port: Resistor) -> Resistor | None:
+    """Return the resistor in its other causality if its law is linear in its letter, else None."""
+    slope = slope_of(port)
+    if slope is None or _vanishes(slope):
+        return None
+    letter = CONJUGATE[port.domain, port.letter]
+    return replace(
+        port,
+        letter=letter,
+        law=_over(Sym(letter), slope),
+        output=port.effort,
+        effort=port.output,
+        imposes=port.imposes.other,
+    )
+
+
+def slope_of(port: Resistor) -> Expr | None:
+    """Return the slope of a law that is linear in its letter, else None."""
+    slope = derivative(port.law, port.letter)
+    at_zero = substitute(port.law, {port.letter: ZERO})
+    return slope if port.letter not in names(slope) and _vanishes(at_zero) else None
+
+
+def inverse_field(port: Resistor) -> tuple[str, str]:
+    """Return the field and the letter of a resistor's law in its other causality."""
+    letter = CONJUGATE[port.domain, port.letter]
+    return FIELDS[port.domain, letter], letter
+
+
+def _over(top: Expr, slope: Expr) -> Expr:
+    match slope:
+        case Div(left, right) if left == ONE:
+            return mul(right, top)
+    return div(top, slope)
+
+
+def _vanishes(law: Expr) -> bool:
+    """Return whether a law is seen to be zero, without multiplying it out."""
+    table = {name: sp.Symbol(name, real=True) for name in names(law)}
+    return bool(to_sympy(law, table) == 0)

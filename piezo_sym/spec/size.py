@@ -1,0 +1,196 @@
+"""How large a law becomes in later stages, known before any of them meets it.
+
+Input: the tree of a law.  Output: nothing, or a `RefusedError`.  Proofs multiply a law out, and a
+function with kinks is written as its branches: a short text can stand for more than any of them
+ends with.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import final
+
+from piezo_sym.spec.expressions import (
+    Add,
+    Call,
+    Cmp,
+    Div,
+    Expr,
+    If,
+    Mul,
+    Neg,
+    Num,
+    Pow,
+    Sym,
+    children,
+    names,
+    walk,
+)
+from piezo_sym.spec.lexis import MAX_MAGNITUDE, RefusedError
+
+MAX_BRANCHES = 18
+MAX_DEGREE = 32
+MAX_DIGITS = 2000
+MAX_NESTED = 8
+MAX_NESTED_CONSTANT = 4
+MAX_TERMS = 512
+#: Functions with kinks, and how many branches each has.
+KINKS = {"abs": 2, "min": 2, "max": 2, "sign": 3, "deadzone": 3, "saturate": 3}
+
+
+def check_size(tree: Expr) -> None:
+    """Refuse a law that would explode in a later stage.
+
+    Raises
+    ------
+    RefusedError
+        With the limit that the law exceeds.
+    """
+    if _degree(tree) > MAX_DEGREE:
+        raise RefusedError("has too high a degree", f"at most {MAX_DEGREE} in all")
+    if _extent(tree).most > MAX_TERMS:
+        what, remedy = "has too many terms when it is multiplied out", "nest fewer sums"
+        raise RefusedError(what, f"at most {MAX_TERMS}", f"{remedy} in products and powers")
+    if _most_branches(tree) > MAX_BRANCHES:
+        what = "nests functions with kinks too deeply"
+        raise RefusedError(what, f"at most {MAX_BRANCHES} branches", "split the law into elements")
+    _check_nesting(tree)
+    _check_numbers(tree)
+
+
+def _check_nesting(tree: Expr) -> None:
+    """Refuse functions in functions beyond what anybody writes; SymPy takes ever longer."""
+    if _nested(tree) > MAX_NESTED:
+        raise RefusedError("nests functions too deeply", f"at most {MAX_NESTED} in each other")
+    constant = (part for part in walk(tree) if not isinstance(part, Cmp) and not names(part))
+    if any(_nested(part) > MAX_NESTED_CONSTANT for part in constant):
+        what = "nests functions of numbers too deeply"
+        raise RefusedError(what, f"at most {MAX_NESTED_CONSTANT}", "give the number itself")
+
+
+def _check_numbers(tree: Expr) -> None:
+    """Refuse numbers that multiply to what no machine number holds, or to thousands of digits."""
+    if _magnitude(tree) > MAX_MAGNITUDE or _digits(tree) > MAX_DIGITS:
+        what = "has numbers that multiply to too large or too long ones"
+        expected = f"up to 1e+-{MAX_MAGNITUDE} and {MAX_DIGITS} digits in all"
+        raise RefusedError(what, expected, "use other units")
+
+
+def _nested(node: Expr | Cmp) -> int:
+    """Return how many functions and roots stand in each other at most."""
+    own = isinstance(node, Call) or (isinstance(node, Pow) and node.exponent.denominator > 1)
+    return int(own) + max((_nested(part) for part in children(node)), default=0)
+
+
+def _magnitude(node: Expr | Cmp) -> float:
+    """Return the largest power of ten, either sign, of the numbers in a law multiplied together."""
+    parts = [_magnitude(part) for part in children(node)]
+    match node:
+        case Num(value):
+            return abs(_log(value.numerator) - _log(value.denominator)) if value else 0.0
+        case Mul() | Div():
+            return sum(parts)
+        case Pow(_, exponent):
+            return parts[0] * float(max(abs(exponent), Fraction(1)))
+    return max(parts, default=0.0)
+
+
+def _digits(node: Expr | Cmp) -> float:
+    """Return how many digits the numbers in a law have together, in sums over one denominator."""
+    parts = [_digits(part) for part in children(node)]
+    match node:
+        case Num(value):
+            return _log(max(abs(value.numerator), 1)) + _log(value.denominator)
+        case Pow(_, exponent):
+            return parts[0] * float(max(abs(exponent), Fraction(1)))
+    return sum(parts)
+
+
+def _log(value: int) -> float:
+    return math.log10(abs(value))
+
+
+def _most_branches(tree: Expr) -> int:
+    """Return how many branches the largest function with kinks, or choice, has in a law.
+
+    What stands in a condition is written out branch by branch, and so is all that chooses there.
+    """
+    kinked = [part for part in walk(tree) if isinstance(part, Cmp) or _kinks(part) > 1]
+    return max((_branches(part) for part in kinked), default=1)
+
+
+def _kinks(node: Expr | Cmp) -> int:
+    return KINKS.get(node.function, 1) if isinstance(node, Call) else 1
+
+
+def _branches(node: Expr | Cmp) -> int:
+    """Return how many branches an expression has when it is written as one choice."""
+    if isinstance(node, If):
+        parts = _branches(node.then) + _branches(node.other)
+    else:
+        parts = math.prod(map(_branches, children(node)))
+    conditions = _branches(node.condition) if isinstance(node, If) else _kinks(node)
+    return min(parts * conditions, MAX_BRANCHES + 1)
+
+
+def _degree(node: Expr | Cmp) -> Fraction:
+    match node:
+        case Num():
+            return Fraction(0)
+        case Sym():
+            return Fraction(1)
+        case Mul(left, right) | Div(left, right):
+            return _degree(left) + _degree(right)
+        case Pow(base, exponent):
+            return _degree(base) * max(abs(exponent), Fraction(1))
+    return max(_degree(part) for part in children(node))
+
+
+@final
+@dataclass(frozen=True)
+class _Extent:
+    """How many terms a law has when multiplied out, the most of any part, and its divisors."""
+
+    own: int
+    most: int
+    divisors: Mapping[Expr, int]
+
+
+def _extent(node: Expr | Cmp) -> _Extent:
+    """Return the extent of a law; a sum of quotients counts over its common denominator."""
+    parts = [_extent(part) for part in children(node)]
+    divisors = {key: n for part in parts for key, n in part.divisors.items()}
+    inner = [part.own for part in parts]
+    own = 1
+    match node:
+        case Add():
+            own = sum(inner) * math.prod(divisors.values())
+        case Mul() | Div():
+            own = math.prod(inner)
+        case Pow(_, exponent):
+            times = max(math.ceil(abs(exponent)), 1)
+            own = math.comb(inner[0] + times - 1, times)
+        case Call("log", (arg,)):
+            own = _factors(arg)
+        case Neg() | If():
+            own = max(inner)
+    own = min(own, MAX_TERMS + 1)
+    most = max([own, *(part.most for part in parts)])
+    if isinstance(node, Div):
+        divisors = dict(parts[0].divisors) | {node.right: inner[1]}
+    elif isinstance(node, Call | Cmp | If | Add):
+        divisors = {}
+    return _Extent(own, most, divisors)
+
+
+def _factors(node: Expr | Cmp) -> int:
+    """Return of how many factors a law is the product: the terms of its logarithm."""
+    match node:
+        case Mul(left, right) | Div(left, right):
+            return _factors(left) + _factors(right)
+        case Pow(base, _):
+            return _factors(base)
+    return 1

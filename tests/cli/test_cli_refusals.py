@@ -1,0 +1,90 @@
+"""Hostile specs on the command line: one line, exit code 2, and no file left."""
+
+import pytest
+
+LAWS = ["__import__('os').system('touch canary')", "9**9**9", "exp(", "v if v else 0", "\\uff34"]
+EDITS = {
+    "text": [('"d*v"', f'"{law}"', "elements.damper.force") for law in LAWS],
+    "size": [
+        ('"d*v"', '"(((1+v)**16)**16)**16"', "has too high a degree"),
+        ('"d*v"', '"(v+d+T+M+k)**16"', "has too many terms"),
+        ('"d*v"', '"v*1e300*1e300"', "has numbers that multiply"),
+    ],
+    "names": [
+        ('state = "phi"', 'state = "lambda"', "call it 'lam'"),
+        ("[elements.damper]", '[elements."../up"]', "is not a name"),
+        ('name   = "mine"', 'name   = "../mine"', "model.name: '../mine' is not a name"),
+        ('name   = "mine"', 'name   = "/etc/mine"', "model.name: '/etc/mine' is not a name"),
+    ],
+    "numbers": [
+        ("value = 3.5e-3", "value = nan", "expected a finite number"),
+        ("value = 3.5e-3", "value = 0", "expected 'M > 0'"),
+        ("count = 2", "count = 0", "elements.hysteron.count"),
+        ('unit = "kg"', 'unit = "m**9**9**9"', "is not a unit"),
+        ('unit = "kg"', 'unit = "degC"', "has an offset"),
+        ('stiffness = "k"', 'stifness = "k"', "did you mean 'stiffness'?"),
+    ],
+}
+CASES = [(group, *case) for group, cases in EDITS.items() for case in cases]
+FILES = {
+    "not UTF-8": (b"\xff\xfe", "is not UTF-8 (byte 0)"),
+    "nested": (b"x = " + b"[" * 5000 + b"]" * 5000, "is nested too deeply"),
+    "a megabyte": (b"#" * 1_000_001, "is too large"),
+    "no TOML": (b"[model", "is not TOML"),
+    "nothing": (b"", "model: is missing"),
+}
+
+
+def files(folder):
+    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*"))
+
+
+def arguments(command, path):
+    return [command, path, *(["--duration", "1"] if command == "simulate" else [])]
+
+
+@pytest.mark.parametrize("command", ["verify", "show", "generate", "simulate"])
+@pytest.mark.parametrize(("group", "old", "new", "said"), CASES)
+def test_a_hostile_spec_is_refused(
+    refused, spec_file, tmp_path, monkeypatch, command, group, old, new, said
+):
+    assert group in EDITS
+    monkeypatch.chdir(tmp_path)
+    path = spec_file(old, new)
+    message = refused(*arguments(command, path))
+    assert message.startswith("mine.toml: ")
+    assert said in message
+    assert files(tmp_path) == ["mine.toml"]
+
+
+@pytest.mark.parametrize("command", ["verify", "show", "generate", "simulate"])
+@pytest.mark.parametrize(("content", "said"), FILES.values(), ids=FILES)
+def test_a_hostile_file_is_refused(refused, tmp_path, monkeypatch, command, content, said):
+    monkeypatch.chdir(tmp_path)
+    path = tmp_path / "mine.toml"
+    path.write_bytes(content)
+    assert said in refused(*arguments(command, path))
+    assert files(tmp_path) == ["mine.toml"]
+
+
+@pytest.mark.parametrize("command", ["verify", "show", "generate", "simulate"])
+def test_a_folder_is_no_spec(refused, tmp_path, command):
+    assert "cannot be read (Is a directory)" in refused(*arguments(command, tmp_path))
+
+
+def test_an_output_below_a_file_is_one_line(refused, spec_file, tmp_path):
+    path = spec_file()
+    message = refused("generate", path, "--out", path / "below")
+    assert "cannot be written (Not a directory)" in message
+    assert files(tmp_path) == ["mine.toml"]
+
+
+def test_an_unwritable_folder_is_one_line(refused, spec_file, tmp_path, monkeypatch):
+    def denied(*_, **__):
+        raise PermissionError(13, "Permission denied")
+
+    path = spec_file()
+    monkeypatch.setattr("tempfile.mkstemp", denied)
+    message = refused("generate", path, "--out", tmp_path / "closed")
+    assert "cannot be written (Permission denied)" in message
+    assert [name for name in files(tmp_path) if name.endswith(".py")] == []

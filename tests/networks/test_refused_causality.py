@@ -1,0 +1,207 @@
+"""Elements that fix each other: each refusal names them and says what to put where."""
+
+import pytest
+from drawing import (
+    BODY,
+    LC,
+    OTHER,
+    bank,
+    capacitor,
+    coupling,
+    current,
+    damper,
+    force,
+    inductor,
+    mass,
+    refused,
+    resistor,
+    spec,
+    spring,
+    transducer,
+    velocity,
+    voltage,
+)
+
+from piezo_sym import derive
+from piezo_sym.errors import NetworkError
+from piezo_sym.spec.load import parse
+
+MERGE = "merge those in parallel into one, or put a resistor in series with one of them"
+SERIES = "merge those in series into one, or put a capacitor between their node and 'gnd'"
+CUBIC = {"current": "v**3/R"}
+
+CONFLICTS = {
+    "two capacitors in parallel": (
+        LC + capacitor("C2", "a", "gnd"),
+        "elements 'C1', 'C2' fix each other's voltage at node 'a'",
+        MERGE,
+    ),
+    "three capacitors in a loop": (
+        capacitor("C1", "a", "gnd") + capacitor("C2", "a", "b") + capacitor("C3", "b", "gnd"),
+        "elements 'C1', 'C2', 'C3' fix each other's voltage",
+        MERGE,
+    ),
+    "a voltage source across a capacitor": (
+        voltage("s", "a", "gnd") + capacitor("C1", "a", "gnd"),
+        "elements 's', 'C1' fix each other's voltage at node 'a'",
+        MERGE,
+    ),
+    "two voltage sources in parallel": (
+        voltage("s", "a", "gnd") + voltage("s2", "a", "gnd") + inductor("L1", "a", "gnd"),
+        "elements 's', 's2' fix each other's voltage at node 'a'",
+        MERGE,
+    ),
+    "two inductors in series through a bare node": (
+        capacitor("C1", "a", "gnd") + inductor("L1", "a", "b") + inductor("L2", "b", "gnd"),
+        "elements 'L1', 'L2' fix each other's current at node 'b'",
+        SERIES,
+    ),
+    "a current source into an inductor": (
+        current("s", "gnd", "a") + inductor("L1", "a", "gnd"),
+        "elements 's', 'L1' fix each other's current at node 'a'",
+        SERIES,
+    ),
+    "two banks in series through a bare node": (
+        voltage("s", "in", "gnd") + bank("h1", "in", "n") + bank("h2", "n", "gnd", count=3) + BODY,
+        "elements 'h1', 'h2' fix each other's current at node 'n'",
+        SERIES,
+    ),
+    "a bank in series with an inductor": (
+        voltage("s", "in", "gnd") + bank("h1", "in", "n") + inductor("L1", "n", "gnd") + BODY,
+        "elements 'h1', 'L1' fix each other's current at node 'n'",
+        SERIES,
+    ),
+    "two masses on one node": (
+        mass("m1", "a") + mass("m2", "a") + spring("s1", "a", "wall"),
+        "elements 'm1', 'm2' fix each other's velocity at node 'a'",
+        "put a spring or damper between them",
+    ),
+    "a velocity source on a mass": (
+        velocity("s", "a") + mass("m1", "a"),
+        "elements 's', 'm1' fix each other's velocity at node 'a'",
+        "put a spring or damper between them",
+    ),
+    "two springs in series through a bare node": (
+        spring("s1", "wall", "a") + spring("s2", "a", "b") + mass("m1", "b"),
+        "elements 's1', 's2' fix each other's force at node 'a'",
+        "put a mass at the node between them",
+    ),
+    "a force on a spring without a mass": (
+        force("s", "a") + spring("s1", "a", "wall"),
+        "elements 's', 's1' fix each other's force at node 'a'",
+        "put a mass at the node between them",
+    ),
+    "two masses on a lever": (
+        mass("m1", "x") + mass("m2", "y") + coupling("lev", "lever", ("x", "wall"), ("y", "wall")),
+        "elements 'm1', 'm2' fix each other's velocity through 'lev'",
+        "put a resistor, spring or damper between two of them",
+    ),
+    "two inductors on a transformer": (
+        inductor("L1", "x", "gnd")
+        + inductor("L2", "y", "gnd")
+        + coupling("tr", "transformer", ("x", "gnd"), ("y", "gnd")),
+        "elements 'L1', 'L2' fix each other's current through 'tr'",
+        "put a resistor, spring or damper between two of them",
+    ),
+    "an inductor and a mass on a transducer": (
+        inductor("L1", "a", "gnd") + mass("m1", "x") + transducer("t", ("a", "gnd"), ("x", "wall")),
+        "elements 'L1', 'm1' fix each other's variables through 't'",
+        "or a capacitor or mass at a node",
+    ),
+    "two transformers side by side": (
+        capacitor("C1", "x", "gnd")
+        + inductor("L1", "y", "gnd")
+        + coupling("t1", "transformer", ("x", "gnd"), ("y", "gnd"))
+        + coupling("t2", "transformer", ("x", "gnd"), ("y", "gnd")),
+        "the voltage of 'C1' is forced to be zero through 't1', 't2'",
+        "connect it to other nodes",
+    ),
+}
+
+CAUSALITY = {
+    "a current law in series with an inductor": (
+        inductor("L1", "a", "b")
+        + resistor("R1", "b", "gnd", **CUBIC)
+        + capacitor("C1", "a", "gnd"),
+        "elements 'L1', 'R1' fix each other's current at node 'b'; expected the law of 'R1' as a "
+        "function of i, which is given",
+        "give the inverse law, voltage = '...' of i",
+    ),
+    "a voltage law across a capacitor": (
+        capacitor("C1", "a", "gnd") + resistor("R1", "a", "gnd", voltage="R*i**3"),
+        "elements 'C1', 'R1' fix each other's voltage at node 'a'; expected the law of 'R1' as a "
+        "function of v",
+        "give the inverse law, current = '...' of v",
+    ),
+    "a dead zone across a source": (
+        voltage("s", "a", "gnd") + resistor("R1", "a", "gnd", voltage="R*deadzone(i, 0.5)"),
+        "elements 's', 'R1' fix each other's voltage at node 'a'",
+        "give the inverse law, current = '...' of v",
+    ),
+    "a law with an offset across a source": (
+        voltage("s", "a", "gnd") + resistor("R1", "a", "gnd", voltage="R*i + 1"),
+        "elements 's', 'R1' fix each other's voltage",
+        "(only laws c*i are turned round)",
+    ),
+    "a law that is zero across a source": (
+        voltage("s", "a", "gnd") + resistor("R1", "a", "gnd", voltage="0*i"),
+        "elements 's', 'R1' fix each other's voltage",
+        "give the inverse law, current = '...' of v",
+    ),
+    "a law whose slope cancels across a source": (
+        voltage("s", "a", "gnd") + resistor("R1", "a", "gnd", voltage="R*i - R*i"),
+        "elements 's', 'R1' fix each other's voltage",
+        "give the inverse law, current = '...' of v",
+    ),
+    "a velocity law at a mass": (
+        mass("m1", "a") + damper("d1", "a", "wall", velocity="f**3/d"),
+        "elements 'm1', 'd1' fix each other's velocity at node 'a'",
+        "give the inverse law, force = '...' of v",
+    ),
+    "a force law in series with a spring": (
+        spring("s1", "wall", "a") + damper("d1", "a", "wall", force="d*v**3"),
+        "elements 's1', 'd1' fix each other's force at node 'a'",
+        "give the inverse law, velocity = '...' of f",
+    ),
+    "a current law in series with a bank": (
+        voltage("s", "in", "gnd") + bank("h", "in", "n") + resistor("R1", "n", "gnd", **CUBIC),
+        "elements 'h', 'R1' fix each other's current at node 'n'",
+        "give the inverse law, voltage = '...' of i",
+    ),
+    "two nonlinear resistors in series across a capacitor": (
+        resistor("R1", "a", "n", **CUBIC) + resistor("R2", "n", "gnd", **CUBIC) + LC,
+        "elements 'R1', 'R2' fix each other's current at node 'n'",
+        "put a capacitor between their node and 'gnd'",
+    ),
+}
+
+TIED = CONFLICTS | CAUSALITY
+
+
+@pytest.mark.parametrize(("text", "fault", "remedy"), TIED.values(), ids=TIED)
+def test_elements_that_fix_each_other_are_named_with_a_remedy(text, fault, remedy):
+    error = refused(text)
+    assert isinstance(error, NetworkError)
+    assert str(error).startswith(f"network: {fault}")
+    assert remedy in str(error)
+
+
+REMEDIED = {
+    "a resistor between two capacitors": capacitor("C1", "a", "gnd")
+    + resistor("R1", "a", "b")
+    + capacitor("C2", "b", "gnd"),
+    "a capacitor between two inductors": LC + inductor("L2", "a", "gnd"),
+    "a spring between two masses": mass("m1", "a") + spring("s1", "a", "b") + mass("m2", "b"),
+    "a mass between two springs": spring("s1", "wall", "a") + mass("m1", "a") + force("f1", "a"),
+    "a voltage law in series with an inductor": inductor("L1", "a", "b")
+    + resistor("R1", "b", "gnd", voltage="R*i**3")
+    + capacitor("C1", "a", "gnd"),
+    "a force law at a mass": mass("m1", "a") + damper("d1", "a", "wall", force="d*v**3"),
+    "a body for the heat": LC + resistor("R1", "a", "gnd") + BODY,
+    "inputs and a body that nothing uses": LC + BODY + OTHER,
+}
+
+
+@pytest.mark.parametrize("text", REMEDIED.values(), ids=REMEDIED)
+def test_what_the_remedies_say_is_accepted(text):
+    assert derive(parse(spec(text))).x
