@@ -67,7 +67,11 @@ def places(slots: Sequence[Slot], word: str, taken: Collection[str]) -> Places:
     banks = {n: slot for n, slot in enumerate(slots) if slot.bank}
     if len(banks) <= SPELLED:
         return Places(slots)
-    return Places(slots, {n: fresh(f"{word}_{slot.label}", taken) for n, slot in banks.items()})
+    used, ends = set(taken), {}
+    for n, slot in banks.items():
+        ends[n] = fresh(f"{word}_{slot.label}", used)
+        used.add(ends[n])
+    return Places(slots, ends)
 
 
 def size_in_words(slots: Sequence[Slot]) -> str:
