@@ -437,28 +437,34 @@ void piezo_stack_margins(const double *restrict x,
 static double phi2(double d)
 {
     double sum = 0.0;
+    if (fabs(d) < 0.03125)
+        return 0.5 + d*(1.0/6.0 + d*(1.0/24.0 + d*(1.0/120.0 + d*(1.0/720.0 + d*(1.0/5040.0
+            + d*(1.0/40320.0 + d*(1.0/362880.0 + d/3628800.0)))))));
     if (fabs(d) >= 1.0)
-        return ((exp(d) - 1.0) / d - 1.0) / d;
-    for (int k = fabs(d) < 0.03125 ? 9 : 19; k > 1; --k)
-        sum = (1.0 + sum) * d / (k + 1);
-    return 0.5 * (1.0 + sum);
+        return ((exp(d) - 1.0)/d - 1.0)/d;
+    for (int k = 19; k > 1; --k)
+        sum = (1.0 + sum)*d/(k + 1);
+    return 0.5*(1.0 + sum);
 }
 
 /* (exp(d) - 1)/d */
 static double phi1(double d)
 {
-    return fabs(d) < 0.03125 ? 1.0 + d * phi2(d) : expm1(d) / d;
+    return fabs(d) < 0.03125 ? 1.0 + d*phi2(d) : expm1(d)/d;
 }
 
 /* (phi2(d) - 1/2)/d */
 static double phi3(double d)
 {
     double sum = 0.0;
+    if (fabs(d) < 0.03125)
+        return 1.0/6.0 + d*(1.0/24.0 + d*(1.0/120.0 + d*(1.0/720.0 + d*(1.0/5040.0
+            + d*(1.0/40320.0 + d*(1.0/362880.0 + d/3628800.0))))));
     if (fabs(d) >= 1.0)
-        return (phi2(d) - 0.5) / d;
-    for (int k = fabs(d) < 0.03125 ? 9 : 19; k > 2; --k)
-        sum = (1.0 + sum) * d / (k + 1);
-    return (1.0 + sum) / 6.0;
+        return (phi2(d) - 0.5)/d;
+    for (int k = 19; k > 2; --k)
+        sum = (1.0 + sum)*d/(k + 1);
+    return (1.0 + sum)/6.0;
 }
 
 /* Mean of max(s, 0) for s from a to b. */
@@ -549,9 +555,13 @@ int piezo_stack_newton(const double *x,
     const double F_spring = k*(0.5*(q + q_new) - q_l);
     const double v_mass = 0.5*(p + p_new)/M;
     const double V_capacitor = 0.5*(Q_C + Q_C_new)/C;
+    /* means of exponentials */
+    const double change_T = (S_new - S)/c_0;
+    const double phi1_T = phi1(change_T);
+    const double phi2_T = phi2(change_T);
+    const double phi3_T = phi3(change_T);
     /* co-states dU/dx */
-    const double T_minus_T_0 = T_0*expm1(S/c_0)*phi1((S_new - S)/c_0)
-        + T_0*(S_new - S)/c_0*phi2((S_new - S)/c_0);
+    const double T_minus_T_0 = T_0*expm1(S/c_0)*phi1_T + T_0*(S_new - S)/c_0*phi2_T;
     /* mean co-states */
     const double T = T_0 + T_minus_T_0;
     /* transducer ratios */
@@ -563,9 +573,11 @@ int piezo_stack_newton(const double *x,
     /* derivatives */
     const double dF_damper_dp_new = 0.5*d/M;
     const double dheat_damper_dp_new = v_mass*dF_damper_dp_new + 0.5*F_damper/M;
-    const double dT_minus_T_0_dS_new = T_0*expm1(S/c_0)*(phi1((S_new - S)/c_0) - phi2((S_new - S)/c_0))/c_0
-        + T_0/c_0*phi2((S_new - S)/c_0)
-        + T_0*(S_new - S)/c_0*(phi2((S_new - S)/c_0) - 2.0*phi3((S_new - S)/c_0))/c_0;
+    const double dphi1_T_dS_new = (phi1_T - phi2_T)/c_0;
+    const double dphi2_T_dS_new = (phi2_T - 2.0*phi3_T)/c_0;
+    const double dT_minus_T_0_dS_new = T_0*expm1(S/c_0)*dphi1_T_dS_new
+        + T_0/c_0*phi2_T
+        + T_0*(S_new - S)/c_0*dphi2_T_dS_new;
     const double dalpha_transducer_dS_new = a/T_0*dT_minus_T_0_dS_new;
     /* residuals */
     const double gap_q = q_new - q - h*v_mass;
@@ -683,9 +695,12 @@ void piezo_stack_means(const double *x,
     const double T_e = u[2];
     /* mean co-states */
     const double v_mass = 0.5*(p + p_new)/M;
+    /* means of exponentials */
+    const double change_T = (S_new - S)/c_0;
+    const double phi1_T = phi1(change_T);
+    const double phi2_T = phi2(change_T);
     /* co-states dU/dx */
-    const double T_minus_T_0 = T_0*expm1(S/c_0)*phi1((S_new - S)/c_0)
-        + T_0*(S_new - S)/c_0*phi2((S_new - S)/c_0);
+    const double T_minus_T_0 = T_0*expm1(S/c_0)*phi1_T + T_0*(S_new - S)/c_0*phi2_T;
     /* mean co-states */
     const double T = T_0 + T_minus_T_0;
     /* dissipative laws */

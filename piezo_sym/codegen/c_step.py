@@ -26,28 +26,34 @@ HELPERS = {
 static double phi2(double d)
 {
     double sum = 0.0;
+    if (fabs(d) < 0.03125)
+        return 0.5 + d*(1.0/6.0 + d*(1.0/24.0 + d*(1.0/120.0 + d*(1.0/720.0 + d*(1.0/5040.0
+            + d*(1.0/40320.0 + d*(1.0/362880.0 + d/3628800.0)))))));
     if (fabs(d) >= 1.0)
-        return ((exp(d) - 1.0) / d - 1.0) / d;
-    for (int k = fabs(d) < 0.03125 ? 9 : 19; k > 1; --k)
-        sum = (1.0 + sum) * d / (k + 1);
-    return 0.5 * (1.0 + sum);
+        return ((exp(d) - 1.0)/d - 1.0)/d;
+    for (int k = 19; k > 1; --k)
+        sum = (1.0 + sum)*d/(k + 1);
+    return 0.5*(1.0 + sum);
 }""",
     "phi1": """\
 /* (exp(d) - 1)/d */
 static double phi1(double d)
 {
-    return fabs(d) < 0.03125 ? 1.0 + d * phi2(d) : expm1(d) / d;
+    return fabs(d) < 0.03125 ? 1.0 + d*phi2(d) : expm1(d)/d;
 }""",
     "phi3": """\
 /* (phi2(d) - 1/2)/d */
 static double phi3(double d)
 {
     double sum = 0.0;
+    if (fabs(d) < 0.03125)
+        return 1.0/6.0 + d*(1.0/24.0 + d*(1.0/120.0 + d*(1.0/720.0 + d*(1.0/5040.0
+            + d*(1.0/40320.0 + d*(1.0/362880.0 + d/3628800.0))))));
     if (fabs(d) >= 1.0)
-        return (phi2(d) - 0.5) / d;
-    for (int k = fabs(d) < 0.03125 ? 9 : 19; k > 2; --k)
-        sum = (1.0 + sum) * d / (k + 1);
-    return (1.0 + sum) / 6.0;
+        return (phi2(d) - 0.5)/d;
+    for (int k = 19; k > 2; --k)
+        sum = (1.0 + sum)*d/(k + 1);
+    return (1.0 + sum)/6.0;
 }""",
     "ramp": """\
 /* Mean of max(s, 0) for s from a to b. */

@@ -66,6 +66,7 @@ class Quantities:
         self.odd = odd or frozenset()
         self.after = {} if odd is None else {p.state: self._after(p) for _, p in self.stores}
         self._sums: dict[LaneSum, Sym] = {}
+        self._functions: dict[Expr, Sym] = {}
         self._costates()
         self._ratios()
         self._loops(iphs)
@@ -114,8 +115,9 @@ class Quantities:
         """Return ``hot - cold`` as a quantity, and from now on hot as cold plus this quantity."""
         base = f"{hot}_minus_{cold.name}"
         if self.after:
-            state = next(port.state for port in self.bodies.values() if port.temperature == hot)
-            value = mean_excess(value, cold, _exponent(value), *self._ends(state))
+            body = next(port for port in self.bodies.values() if port.temperature == hot)
+            value = mean_excess(value, cold, _exponent(value), *self._ends(body.state))
+            value = self._functions_named(value, body)
         known = next((q for q in self.defined if q.value == value), None)
         if known:
             return Sym(known.name)
@@ -127,8 +129,9 @@ class Quantities:
 
     def known(self, expr: Expr) -> Expr:
         """Return an expression with each part that is a temperature written by its name."""
-        if self.after:  # T is a mean there, and no part of a derivative
-            return expr
+        if self.after:  # T is a mean there, and no part of a derivative; functions have names
+            found = self._functions.get(expr)
+            return found if found else rebuild(expr, self.known)
         laws = {law: Sym(name) for name, law in self._temperature_laws().items()}
         found = laws.get(expr)
         return found if found else rebuild(expr, self.known)
@@ -153,8 +156,22 @@ class Quantities:
         for placed, port in self.stores:
             law = rename(port.law, {port.letter: port.state})
             if self.after:
-                law = mean(law, *self._ends(port.state))
+                law = self._functions_named(mean(law, *self._ends(port.state)), port)
             self._defined(costate_name(port), law, placed.bank, note)
+
+    def _functions_named(self, law: Expr, port: Storage | Body) -> Expr:
+        """Return a mean law whose phi1 and phi2 are quantities, computed once; phi3 with them."""
+        match law:
+            case Call("phi1" | "phi2", (arg,)):
+                if law not in self._functions:
+                    name, note = costate_name(port), "means of exponentials"
+                    change = self.define(f"change_{name}", arg, None, note)
+                    for function in ("phi1", "phi2", "phi3"):
+                        value = Call(function, (change,))
+                        named = self.define(f"{function}_{name}", value, None, note)
+                        self._functions[value] = self._functions[Call(function, (arg,))] = named
+                return self._functions[law]
+        return rebuild(law, lambda part: self._functions_named(part, port))
 
     def _after(self, port: Storage | Body) -> str:
         name = fresh(f"{port.state}_new", self.taken)
