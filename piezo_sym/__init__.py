@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from piezo_sym.version import VERSION as __version__
 
 if TYPE_CHECKING:
-    from piezo_sym.api import simulate
+    from piezo_sym.api import Stepper, simulate
     from piezo_sym.build import generate
     from piezo_sym.derivation import derive
     from piezo_sym.errors import PiezoError
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 _HOME = {
     "Model": "spec.model",
     "PiezoError": "errors",
+    "Stepper": "api",
     "chirp": "run",
     "derive": "derivation",
     "generate": "build",
@@ -49,6 +50,7 @@ _HOME = {
 __all__ = [
     "Model",
     "PiezoError",
+    "Stepper",
     "__version__",
     "chirp",
     "derive",

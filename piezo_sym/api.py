@@ -1,4 +1,4 @@
-"""`simulate`: a spec's generated module, and a run of it."""
+"""`simulate` and `Stepper`: a spec's generated module, and runs of it."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from piezo_sym.modules import module_of
 from piezo_sym.run import simulate as run
+from piezo_sym.run.stepper import Stepper as Steps
 
 if TYPE_CHECKING:
     import xarray
@@ -38,3 +39,24 @@ def simulate(model: str | Path | Model, **options: Any) -> xarray.Dataset:
         If the generated module is not of this spec.
     """
     return run(module_of(model), **options)
+
+
+def Stepper(model: str | Path | Model, **options: Any) -> Steps:
+    """Return a model that goes step by step, with inputs that the caller decides.
+
+    Parameters
+    ----------
+    model : the name of a shipped spec, the path of a spec file, or a `Model`.
+    **options : step, parameters, initial, inputs: see `piezo_sym.run.stepper.Stepper`.
+
+    Returns
+    -------
+    Stepper
+        With ``.step(u) -> y``, ``.x`` and ``.time``.
+
+    Raises
+    ------
+    UsageError, EngineError, RunError
+        If an option is wrong, there is no compiler, or the start is outside the domain.
+    """
+    return Steps(module_of(model), **options)

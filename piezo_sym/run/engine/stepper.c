@@ -205,3 +205,25 @@ long MODEL(plan)(long intervals, int deepest, const double *h, const double *u, 
     }
     return intervals;
 }
+
+/* One step at a time, for a caller who decides the inputs: all that a call needs, in one place. */
+typedef struct {
+    const MODEL(parameters) *p;
+    double *x, *u, *y, *space;
+    double h;
+    long n, rows, ports, processes;
+} MODEL(stepper);
+
+/* Takes a step over h with the inputs u, and writes the outputs after it; 0 if there is none. */
+int MODEL(tick)(const MODEL(stepper) *t);
+int MODEL(tick)(const MODEL(stepper) *t)
+{
+    MODEL(space) s = {.n = t->n, .rows = t->rows, .ports = t->ports, .processes = t->processes};
+    s.after = t->space;
+    s.change = t->space + t->n;
+    s.means = t->space + 2 * t->n;
+    if (!MODEL(step)(&s, t->x, t->u, t->h, t->p, 0))
+        return 0;
+    MODEL(outputs)(t->x, t->u, t->p, t->y);
+    return 1;
+}

@@ -1,0 +1,132 @@
+"""One step at a time, with inputs that the caller decides: closed loops, hardware in the loop.
+
+Input: a generated module, a step, parameters and initial values.  Output: a `Stepper`, whose
+`step(u)` takes one step of the discrete gradient in C and returns the outputs y.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from typing import TYPE_CHECKING, Any, final
+
+import numpy as np
+
+from piezo_sym.errors import RunError, UsageError
+from piezo_sym.run.checks import positive
+from piezo_sym.run.engine.engine import engine_of
+from piezo_sym.run.guard import check_start
+from piezo_sym.run.inputs import read_inputs
+from piezo_sym.run.ledger import row_counts
+from piezo_sym.run.module import checked
+from piezo_sym.run.parameters import read_initial, read_parameters
+from piezo_sym.run.system import System
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from piezo_sym.run.checks import FloatArray
+    from piezo_sym.run.module import GeneratedModule
+    from piezo_sym.run.parameters import LaneValue
+
+FIELDS = [
+    ("p", ctypes.c_void_p),
+    *((name, ctypes.c_void_p) for name in ("x", "u", "y", "space")),
+    ("h", ctypes.c_double),
+    *((name, ctypes.c_long) for name in ("n", "rows", "ports", "processes")),
+]
+
+
+@final
+class Stepper:
+    """A model that goes step by step, its inputs given anew for each step.
+
+    Parameters
+    ----------
+    module : a generated module; `piezo_sym.Stepper` also takes a model, a name or a path.
+    step : length of a step [s]; the step is halved inside where it has to be.
+    parameters, initial, inputs : as for `simulate`; `inputs` are those at t = 0, numbers only.
+
+    Attributes
+    ----------
+    x : the state (n,), a copy, banks spread.
+    time : the time [s] after the steps taken.
+
+    Raises
+    ------
+    UsageError : an argument is wrong.
+    EngineError : there is no compiler.
+    RunError : the state at t = 0 is outside the domain.
+    """
+
+    def __init__(
+        self,
+        module: GeneratedModule,
+        *,
+        step: float,
+        parameters: Mapping[str, LaneValue] | None = None,
+        initial: Mapping[str, LaneValue] | None = None,
+        inputs: Mapping[str, float] | None = None,
+    ) -> None:
+        checked(module)
+        self._h = positive(step, "Stepper.step")
+        engine = engine_of(module)
+        values = read_parameters(module, parameters)
+        system = System(module, values, read_inputs(module, inputs, self._h))
+        self._x = read_initial(module, values, system.inputs.segments[0].at(0.0), initial)
+        check_start(system, self._x)
+        n, m, rows = row_counts(system)
+        rows += engine.exchanges
+        self._u, self._y = np.zeros(m), np.zeros(len(module.OUTPUTS))
+        self._space = np.zeros(2 * n + rows)
+        self._structure = engine.structure(values)
+        kind = type("Stepper", (ctypes.Structure,), {"_fields_": FIELDS})
+        arrays = (self._x, self._u, self._y, self._space)
+        ports = self._y.size
+        self._all = kind(
+            ctypes.addressof(self._structure.value),
+            *(array.ctypes.data for array in arrays),
+            self._h,
+            *(n, rows, ports, (rows - ports - engine.exchanges) // 2),
+        )
+        self._tick: Any = getattr(engine.library, f"{module.NAME}_tick")
+        self._at = ctypes.byref(self._all)
+        self._names = [record.name for record in module.INPUTS]
+        self._taken = 0
+
+    @property
+    def x(self) -> FloatArray:
+        """The state, shape (n,)."""
+        return self._x.copy()
+
+    @property
+    def time(self) -> float:
+        """The time [s]."""
+        return self._taken * self._h
+
+    def step(self, u: Sequence[float] | FloatArray) -> FloatArray:
+        """Take one step with the inputs u held, and return the outputs y after it.
+
+        Parameters
+        ----------
+        u : one number an input, in the spec's order, SI units.
+
+        Returns
+        -------
+        numpy.ndarray
+            y, one a port (shared with the next call: copy what you keep).
+
+        Raises
+        ------
+        UsageError : there are more or fewer numbers than inputs.
+        RunError : no step stays in the domain; the state is that before the step.
+        """
+        try:
+            self._u[:] = u
+        except (ValueError, TypeError) as error:
+            expected = f"one number each for {', '.join(self._names)}"
+            raise UsageError("these are no inputs", "Stepper.step", expected) from error
+        if not self._tick(self._at):
+            what = f"no step stays in the domain at t = {self.time:.6g} s"
+            raise RunError(what, "Stepper.step", remedy="look at the inputs, or take shorter steps")
+        self._taken += 1
+        return self._y
