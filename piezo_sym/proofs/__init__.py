@@ -1,7 +1,7 @@
 """Proofs: obligations on an `IPHS`, and verdicts on them.
 
 stage          from -> to                      in
-obligations    IPHS -> Obligation              balances (algebra), laws, bodies, divisors
+obligations    IPHS -> Obligation              balances, laws, continuity, bodies, divisors
 queries        Question -> Query               obligations, branches, rational, query (SMT-LIB)
 answers        Query -> Answer                 solvers, in processes of their own (worker)
 verdicts       Obligation -> Row               prove, exactly (witnesses), units
@@ -16,6 +16,7 @@ from itertools import groupby
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs import balances, bodies, laws
+from piezo_sym.proofs.continuity import continuous
 from piezo_sym.proofs.divisors import divisors
 from piezo_sym.proofs.obligations import Obligation
 from piezo_sym.proofs.prove import prove
@@ -94,7 +95,7 @@ def _of_element(
     """Yield what has to be shown of the laws of one element."""
     yield from filter(None, [laws.welldef(own, ground)])
     for law in own:
-        yield from filter(None, [laws.continuous(law, ground)])
+        yield from filter(None, [continuous(law, ground)])
         if law.letter:
             yield from (laws.passive(law, ground), laws.odd(law, ground))
         elif iphs.model.elements[element].kind == "conduction":

@@ -7,12 +7,13 @@ are answered, and the obligations it rests on hold.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import final
 
 import sympy as sp
 
-from piezo_sym.proofs.branches import smooth_clauses
+from piezo_sym.proofs.branches import Branch, smooth_clauses
 from piezo_sym.proofs.query import Query, query
 from piezo_sym.proofs.rational import cleared, parts_of
 from piezo_sym.spec.expressions import Cmp, Expr, names
@@ -29,6 +30,16 @@ class Residual:
 
 @final
 @dataclass(frozen=True)
+class Meeting:
+    """Two branches of a law that must agree where they meet."""
+
+    law: Expr
+    sides: tuple[Branch, Branch]
+    domain: tuple[Cmp, ...]
+
+
+@final
+@dataclass(frozen=True)
 class Question:
     """A claim on smooth laws, for every real number where some comparisons hold.
 
@@ -40,6 +51,7 @@ class Question:
     claim : what should follow, on one branch of a law.
     original : the same on the law as the spec has it; a witness is checked on this.
     branch : the part of `where` that says which branch it is.
+    meeting : for a question on the border of two branches, these; a witness must show a jump.
     """
 
     label: str
@@ -48,6 +60,7 @@ class Question:
     claim: Cmp
     original: Cmp
     branch: tuple[Cmp, ...] = ()
+    meeting: Meeting | None = None
 
     def query(self) -> Query:
         """Return the question in polynomials, for a solver.
@@ -73,9 +86,16 @@ class Question:
             self.order,
             [*given, *parts.facts()],
             plain(self.claim),
-            about=names(self.original),
+            about=tuple(self._about()),
             exact=parts.exact,
         )
+
+    def _about(self) -> Iterator[str]:
+        """Yield the names that a witness needs: of the law, and of what says where it is."""
+        for condition in (self.original, *self.branch):
+            yield from names(condition)
+        if self.meeting:
+            yield from names(self.meeting.law)
 
 
 @final
@@ -102,6 +122,7 @@ class Obligation:
     questions : must be answered with yes.
     rests_on : other obligations, as (id, element), that must hold.
     sign : the law behind the questions, where it is one law's sign.
+    letter : a letter whose simple values are tried where questions are left open.
     required : whether `generate` insists on it; else it is information.
     open_because : why nothing could be asked, where a law is beyond what is looked at.
     """
@@ -115,5 +136,6 @@ class Obligation:
     questions: tuple[Question, ...] = ()
     rests_on: tuple[tuple[str, str], ...] = ()
     sign: SignOf | None = None
+    letter: str = ""
     required: bool = True
     open_because: str = ""

@@ -8,18 +8,19 @@ needs a witness that was evaluated exactly in the law itself.  All else is OPEN,
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from fractions import Fraction
-from typing import Any
 
 import sympy as sp
 
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.exactly import holds, value_of
+from piezo_sym.proofs.jumps import jumps
 from piezo_sym.proofs.obligations import Obligation, Question, Residual
 from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.proofs.solvers import Answer, Solver
-from piezo_sym.proofs.whole import whole_sign
-from piezo_sym.spec.expressions import names
+from piezo_sym.proofs.whole import tried, whole_sign
+from piezo_sym.spec.expressions import ONE, ZERO, Cmp, Expr, names
 from piezo_sym.spec.text import spell
 
 #: Lanes a refutation is written out for; one lane hides what couples two.
@@ -65,6 +66,8 @@ def _decide(obligation: Obligation, iphs: IPHS, before: tuple[Row, ...], solver:
     failed = _asked(obligation.questions, solver)
     if failed and failed[0] is Verdict.OPEN and obligation.sign:
         method, failed = "intervals", _as_a_whole(obligation, failed, solver)
+    if failed and failed[0] is Verdict.OPEN and obligation.letter:
+        failed = _by_numbers(obligation, solver) or failed
     proved: Found = (Verdict.PROVED, None, "")
     return *(failed or _grounded(obligation, before) or proved), method
 
@@ -91,6 +94,13 @@ def _as_a_whole(obligation: Obligation, still_open: Found, solver: Solver) -> Fo
     if verdict is Verdict.REFUTED and numbers is not None:
         return _broken(obligation.questions[0], numbers)
     return Verdict.OPEN, None, f"{obligation.statement}: {reason}"
+
+
+def _by_numbers(obligation: Obligation, solver: Solver) -> Found | None:
+    """Return the refutation of a claim by simple numbers, or None."""
+    question = obligation.questions[0]
+    numbers = tried(question, obligation.letter, solver)
+    return _broken(question, numbers) if numbers else None
 
 
 def _grounded(obligation: Obligation, before: tuple[Row, ...]) -> Found | None:
@@ -134,11 +144,23 @@ def _answered(question: Question, solver: Solver) -> Found | None:
     """Return None if the claim follows, else how it fails or why it is open."""
     query = question.query()
     answer = solver.ask(query)
-    if answer.result == "unsat":
+    if answer.result == "unsat" or _never_meet(question, solver):
         return None
     if answer.result == "sat":
         return _refuted(question, answer)
     return Verdict.OPEN, None, f"{question.label}: {answer.reason}"
+
+
+def _never_meet(question: Question, solver: Solver) -> bool:
+    """Return whether one of two branches that should agree is never taken."""
+    if question.meeting is None:
+        return False
+    domain, claim = question.meeting.domain, Cmp("<", ONE, ZERO)
+    taken = [
+        replace(question, where=(*domain, *side.conditions), claim=claim, branch=side.conditions)
+        for side in question.meeting.sides
+    ]
+    return any(solver.ask(made.query()).result == "unsat" for made in taken)
 
 
 def _refuted(question: Question, answer: Answer) -> Found:
@@ -147,7 +169,10 @@ def _refuted(question: Question, answer: Answer) -> Found:
     near = [c for c in question.where if {*names(c)} <= values.keys()]
     try:
         inside = all(holds(condition, values) for condition in near)
-        broken = inside and not holds(question.original, values)
+        if question.meeting:
+            broken = inside and jumps(question.meeting, values)
+        else:
+            broken = inside and not holds(question.original, values)
     except (ArithmeticError, ValueError, KeyError):
         broken = False
     if not broken:
@@ -159,14 +184,15 @@ def _refuted(question: Question, answer: Answer) -> Found:
 def _broken(question: Question, values: Mapping[str, Fraction]) -> Found:
     """Return the refutation of a claim by numbers that break it."""
     left, right = question.original.left, question.original.right
-    reason = f"{spell(left)} = {_shown(value_of(left, values))}"
+    reason = f"{spell(left)} = {_value(left, values)}"
     if question.original.op == "=":
-        reason = f"{question.label} is false: {_shown(value_of(left, values))} and "
-        reason += _shown(value_of(right, values))
+        reason = f"{question.label} is false: {_value(left, values)} and {_value(right, values)}"
     return Verdict.REFUTED, {name: str(value) for name, value in values.items()}, reason
 
 
-def _shown(value: Any) -> str:
-    if isinstance(value, Fraction):
-        return str(value)
-    return f"{float(value.mid):.6g}"
+def _value(law: Expr, values: Mapping[str, Fraction]) -> str:
+    try:
+        value = value_of(law, values)
+    except (ArithmeticError, ValueError):
+        return "no value"
+    return str(value) if isinstance(value, Fraction) else f"{float(value.mid):.6g}"

@@ -155,7 +155,7 @@ def ratio(law: Expr) -> Ratio:
         case Mul(left, right):
             a, b = ratio(left), ratio(right)
             return Ratio(mul(a.top, b.top), mul(a.bottom, b.bottom))
-        case Div(left, Num(value)):
+        case Div(left, Num(value)) if value != 0:
             a = ratio(left)
             return Ratio(mul(Num(1 / value), a.top), a.bottom)
         case Div(left, right):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from piezo_sym.spec.calculus import add, div, mul, neg, power
 from piezo_sym.spec.expressions import (
+    ZERO,
     Add,
     Call,
     Cmp,
@@ -40,7 +41,8 @@ def reflected(law: Expr, letter: str) -> Expr:
         case Mul(left, right):
             return mul(turned(left), turned(right))
         case Div(left, right):
-            return div(turned(left), turned(right))
+            below = turned(right)
+            return Div(turned(left), ZERO) if below == ZERO else div(turned(left), below)
         case Pow(base, exponent):
             inner = turned(base)
             if isinstance(inner, Neg) and exponent.denominator == 1:

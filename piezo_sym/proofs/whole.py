@@ -38,10 +38,9 @@ def whole_sign(obligation: Obligation, solver: Solver) -> Outcome | None:
     if sign is None or not obligation.questions:
         return None
     question = obligation.questions[0]
-    point = _model(question, Cmp("<", ONE, ZERO), solver, {*names(question.original)})
-    tried = _tried(question, sign.letter, point)
-    if tried:
-        return Verdict.REFUTED, tried, ""
+    numbers = tried(question, sign.letter, solver)
+    if numbers:
+        return Verdict.REFUTED, numbers, ""
     return _decided(sign.law, sign, question, solver)
 
 
@@ -108,8 +107,9 @@ def _model(question: Question, claim: Cmp, solver: Solver, wanted: set[str]) -> 
     return {name: value for name, value in answer.model.items() if name in question.order}
 
 
-def _tried(question: Question, letter: str, point: Numbers | None) -> Numbers | None:
+def tried(question: Question, letter: str, solver: Solver) -> Numbers | None:
     """Return the first simple numbers at which the law breaks its claim."""
+    point = _model(question, Cmp("<", ONE, ZERO), solver, {*names(question.original)})
     for value in TRIED if point is not None else ():
         numbers = {**(point or {}), letter: value}
         if _breaks(question, numbers):

@@ -6,6 +6,7 @@ and with `Fraction` where the text is rational.
 
 import ast
 from fractions import Fraction
+from typing import ClassVar
 
 import mpmath
 import numpy as np
@@ -42,7 +43,7 @@ def number(node):
 class Floats:
     """Arithmetic on arrays: the search."""
 
-    functions = {
+    functions: ClassVar = {
         "exp": np.exp,
         "log": np.log,
         "sqrt": np.sqrt,
@@ -95,7 +96,7 @@ class Digits:
             raise ValueError(z)
         return mpmath.sqrt(z)
 
-    functions = {
+    functions: ClassVar = {
         "exp": _exp,
         "log": _log,
         "sqrt": _sqrt,
@@ -134,7 +135,7 @@ class Digits:
 class Rationals:
     """Arithmetic with fractions: exact, or not rational."""
 
-    functions = {
+    functions: ClassVar = {
         "abs": abs,
         "sign": lambda z: Fraction((z > 0) - (z < 0)),
         "min": min,
@@ -432,10 +433,11 @@ def _apart(law, points, below, above):
         legal = np.ones(len(x), bool)
         for condition in points.domain:
             legal &= floats(condition, one) & floats(condition, other)
-        gap = np.abs(x - y) / (np.abs(x) + np.abs(y) + 1e-300)
+        gap = np.abs(x - y)
+        gap = np.where(gap > 1e-6 * (np.abs(x) + np.abs(y)), gap, 0)  # rounding aside
         sizes.append(np.where(legal & np.isfinite(gap), gap, 0))
-    near, middle, far = sizes
-    bad = np.flatnonzero((near > 1e-4) & (near > 0.5 * middle) & (middle > 0.5 * far * 1e-3))
+    near, middle, _ = sizes  # what is continuous is smaller a thousand times, or thirty for roots
+    bad = np.flatnonzero((near > 0) & (near > 0.2 * middle))
     for n in bad:
         one, other = points.at(n, below[0]), points.at(n, above[0])
         if is_jump_between(law, points.domain, one, other):
@@ -448,7 +450,7 @@ def is_jump_between(law, domain, one, other):
     with mpmath.workdps(DIGITS):
         try:
             start, end = precise(law, one), precise(law, other)
-            for _ in range(100):
+            for _ in range(130):
                 middle = {name: (one[name] + other[name]) / 2 for name in one}
                 value = precise(law, middle)
                 if abs(value - start) < abs(value - end):
@@ -457,9 +459,7 @@ def is_jump_between(law, domain, one, other):
                     other, end = middle, value
         except (ArithmeticError, ValueError, TooLargeError):
             return False
-        return abs(start - end) > mpmath.mpf(10) ** -6 * (abs(start) + abs(end)) and inside(
-            domain, one
-        )
+        return abs(start - end) > mpmath.mpf(10) ** -18 and inside(domain, one)
 
 
 def jumps_at(law, domain, values, random):
@@ -482,7 +482,9 @@ def jumps_at(law, domain, values, random):
                 found.append(value)
             if centre is None or None in found:
                 continue
-            if all(abs(value - centre) > mpmath.mpf(10) ** -9 * (1 + abs(centre)) for value in found):
+            if all(
+                abs(value - centre) > mpmath.mpf(10) ** -9 * (1 + abs(centre)) for value in found
+            ):
                 return True
         return False
 

@@ -17,7 +17,7 @@ from piezo_sym.proofs import Verdict, obligations, prove
 from piezo_sym.proofs.solvers import solver
 from piezo_sym.spec.load import parse
 from tests.proofs import law_oracle as oracle
-from tests.proofs.law_edits import BASES, LETTER, VALUES, mutant
+from tests.proofs.law_edits import BASES, LETTER, VALUES, law, mutant
 
 SPEC = """
 [model]
@@ -84,8 +84,9 @@ def breaks_passive(made, witness, _):
 
 BREAKS = {
     "welldef": lambda made, witness, _: not oracle.has_value(made.tree, witness),
-    "continuous": lambda made, witness, seed: oracle.jumps_at(
-        made.tree, made.conditions, witness, seed
+    "continuous": lambda made, witness, seed: (
+        not oracle.has_value(made.tree, witness)
+        or oracle.jumps_at(made.tree, made.conditions, witness, seed)
     ),
     "passive": breaks_passive,
     "odd": lambda made, witness, _: oracle.is_not_odd(made.tree, LETTER, witness),
@@ -99,7 +100,7 @@ SEARCH = {
 
 
 def looked_at(count, seed):
-    """Look at so many mutants; return how many verdicts of each kind, what is open, what is wrong."""
+    """Look at so many mutants; return the count of verdicts, what is open, what is wrong."""
     draw, counts, still_open, wrong, seen = random.Random(seed), Counter(), [], [], set()
     refused = 0
     while len(seen) < count:
@@ -129,7 +130,11 @@ def check(count, seed):
     for made, name, reason in still_open:
         print(f"  open: {name} of {made.text}  [{', '.join(made.domain)}]: {reason}")
     for made, row, found in wrong:
-        print(f"  WRONG: {row.id} {row.verdict.value} {made.text} [{', '.join(made.domain)}]", found, row.witness)
+        print(
+            f"  WRONG: {row.id} {row.verdict.value} {made.text} [{', '.join(made.domain)}]",
+            found,
+            row.witness,
+        )
     assert wrong == []
     assert len(still_open) <= 0.05 * sum(counts.values())
     for name in PROPERTIES:  # both verdicts were put to the test
@@ -144,6 +149,31 @@ def test_no_verdict_on_a_slip_is_wrong():
 @pytest.mark.long
 def test_no_verdict_on_many_slips_is_wrong():
     check(5000, "long")
+
+
+SEEN = [  # the oracle is worth something only if it sees what is there
+    ("passive", "R*i - 0.001*i**2", "R > 0"),
+    ("passive", "R*i if i > -100 else -R*i", "R > 0"),
+    ("passive", "R*(i - i_0) if i > i_0 else R*(i + i_0) if i < i_0 else 0", "R > 0, i_0 >= 0"),
+    ("continuous", "R*i if i < i_0 else R*i + 0.01", ""),
+    ("continuous", "R*i if T > 2*T_0 else a*i", "R > a"),
+    ("continuous", "(1 if -2*i < -i_0 else 0) if 2*i > i_0 else 0", ""),
+    ("continuous", "1/i if i > 0 else 0", ""),
+    ("welldef", "R*i/(T - 2*T_0)", ""),
+    ("welldef", "sqrt(i - i_0)", "i_0 > 0"),
+    ("odd", "R*i + 0.0001*abs(i)", ""),
+]
+
+
+@pytest.mark.parametrize(("name", "text", "domain"), SEEN)
+def test_the_oracle_sees_what_is_there(name, text, domain):
+    made = law(text, domain)
+    seed = np.random.default_rng(0)
+    points = oracle.Points(made.names, made.conditions, seed)
+    with np.errstate(all="ignore"):
+        assert SEARCH[name](made, points, seed) is not None
+    assert verdicts(made)[name].verdict is Verdict.REFUTED
+    assert contradiction(made, verdicts(made)[name]) is None
 
 
 @pytest.mark.parametrize("base", BASES, ids=lambda base: base.text)
