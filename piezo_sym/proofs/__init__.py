@@ -23,7 +23,7 @@ from piezo_sym.proofs.prove import prove
 from piezo_sym.proofs.recheck import recheck
 from piezo_sym.proofs.record import proofs_json, smt2
 from piezo_sym.proofs.report import Report, Row, Verdict
-from piezo_sym.proofs.solvers import solver
+from piezo_sym.proofs.solvers import opinions
 from piezo_sym.proofs.units import units
 
 __all__ = [
@@ -55,9 +55,9 @@ def verify(iphs: IPHS) -> Report:
         comes with a witness; all else is OPEN, and says why.
     """
     rows: list[Row] = []
-    found = obligations(iphs)
+    found, asked = obligations(iphs), opinions()
     for obligation in found:
-        rows.append(prove(obligation, iphs, rows, solver("z3")))
+        rows.append(prove(obligation, iphs, rows, asked))
     return Report(iphs.model.name, (*rows, *units(iphs)), found)
 
 

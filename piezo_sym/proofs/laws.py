@@ -183,6 +183,8 @@ def passive(law: Law, ground: Ground) -> Obligation:
         )
     except TooManyBranchesError:
         return replace(made, open_because=too_many(law))
+    except ZeroDivisionError:
+        return replace(made, open_because=f"the law of {law.element} divides by zero")
     return replace(made, questions=questions)
 
 
@@ -199,8 +201,6 @@ def conducts(law: Law, ground: Ground) -> Obligation:
 def odd(law: Law, ground: Ground) -> Obligation:
     """State that a law is odd, which allows the mean law of the discrete gradient."""
     ground = ground.about(law)
-    turned = reflected(law.tree, law.letter)
-    total = add(reflected(turned, law.letter), turned)  # twice: signs then stand alike in both
     made = Obligation(
         "odd",
         law.element,
@@ -210,10 +210,10 @@ def odd(law: Law, ground: Ground) -> Obligation:
         letter=law.letter,
         required=False,
     )
-    if total == ZERO:
-        return made
-    claim = Cmp("=", law.tree, neg(turned))
     try:
+        turned = reflected(law.tree, law.letter)
+        total = add(reflected(turned, law.letter), turned)  # twice: signs then stand alike in both
+        claim = Cmp("=", law.tree, neg(turned))
         questions = tuple(
             Question(
                 f"{made.statement}{_under(branch.conditions)}",
@@ -223,11 +223,13 @@ def odd(law: Law, ground: Ground) -> Obligation:
                 claim,
                 branch.conditions,
             )
-            for branch in branches(total)
+            for branch in (branches(total) if total != ZERO else ())
             if branch.value != ZERO
         )
     except TooManyBranchesError:
         return replace(made, open_because=too_many(law))
+    except ZeroDivisionError:
+        return replace(made, open_because=f"the law of {law.element} divides by zero")
     return replace(made, questions=questions)
 
 

@@ -18,7 +18,7 @@ from piezo_sym.proofs.exactly import holds, value_of
 from piezo_sym.proofs.jumps import jumps
 from piezo_sym.proofs.obligations import Obligation, Question, Residual
 from piezo_sym.proofs.report import Row, Verdict
-from piezo_sym.proofs.solvers import Answer, Solver
+from piezo_sym.proofs.solvers import Answer, Asks
 from piezo_sym.proofs.whole import tried, whole_sign
 from piezo_sym.spec.expressions import ONE, ZERO, Cmp, Expr, names
 from piezo_sym.spec.text import spell
@@ -31,7 +31,7 @@ Found = tuple[Verdict, Mapping[str, str] | None, str]
 Decided = tuple[Verdict, Mapping[str, str] | None, str, str]
 
 
-def prove(obligation: Obligation, iphs: IPHS, before: Iterable[Row], solver: Solver) -> Row:
+def prove(obligation: Obligation, iphs: IPHS, before: Iterable[Row], solver: Asks) -> Row:
     """Return the verdict on one obligation.
 
     Parameters
@@ -54,7 +54,7 @@ def prove(obligation: Obligation, iphs: IPHS, before: Iterable[Row], solver: Sol
     )
 
 
-def _decide(obligation: Obligation, iphs: IPHS, before: tuple[Row, ...], solver: Solver) -> Decided:
+def _decide(obligation: Obligation, iphs: IPHS, before: tuple[Row, ...], solver: Asks) -> Decided:
     """Return the first thing that fails, or that nothing does, and the method that says so."""
     if obligation.open_because:
         return Verdict.OPEN, None, obligation.open_because, "branches"
@@ -72,7 +72,7 @@ def _decide(obligation: Obligation, iphs: IPHS, before: tuple[Row, ...], solver:
     return *(failed or _grounded(obligation, before) or proved), method
 
 
-def _asked(questions: Iterable[Question], solver: Solver) -> Found | None:
+def _asked(questions: Iterable[Question], solver: Asks) -> Found | None:
     """Return the first question that is refuted, else the first that is open, else None."""
     first_open: Found | None = None
     for question in questions:
@@ -83,7 +83,7 @@ def _asked(questions: Iterable[Question], solver: Solver) -> Found | None:
     return first_open
 
 
-def _as_a_whole(obligation: Obligation, still_open: Found, solver: Solver) -> Found | None:
+def _as_a_whole(obligation: Obligation, still_open: Found, solver: Asks) -> Found | None:
     """Return None if the law is shown to be passive as a whole, else how it fails or is open."""
     found = whole_sign(obligation, solver)
     if found is None:
@@ -96,7 +96,7 @@ def _as_a_whole(obligation: Obligation, still_open: Found, solver: Solver) -> Fo
     return Verdict.OPEN, None, f"{obligation.statement}: {reason}"
 
 
-def _by_numbers(obligation: Obligation, solver: Solver) -> Found | None:
+def _by_numbers(obligation: Obligation, solver: Asks) -> Found | None:
     """Return the refutation of a claim by simple numbers, or None."""
     question = obligation.questions[0]
     numbers = tried(question, obligation.letter, solver)
@@ -140,7 +140,7 @@ def _nonzero(iphs: IPHS, expr: sp.Expr) -> tuple[dict[str, str], sp.Expr] | None
     return None
 
 
-def _answered(question: Question, solver: Solver) -> Found | None:
+def _answered(question: Question, solver: Asks) -> Found | None:
     """Return None if the claim follows, else how it fails or why it is open."""
     query = question.query()
     answer = solver.ask(query)
@@ -151,7 +151,7 @@ def _answered(question: Question, solver: Solver) -> Found | None:
     return Verdict.OPEN, None, f"{question.label}: {answer.reason}"
 
 
-def _never_meet(question: Question, solver: Solver) -> bool:
+def _never_meet(question: Question, solver: Asks) -> bool:
     """Return whether one of two branches that should agree is never taken."""
     if question.meeting is None:
         return False

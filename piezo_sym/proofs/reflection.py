@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from piezo_sym.spec.calculus import add, div, mul, neg, power
 from piezo_sym.spec.expressions import (
-    ZERO,
     Add,
     Call,
     Cmp,
@@ -26,7 +25,13 @@ EVEN = frozenset({"cos", "abs"})
 
 
 def reflected(law: Expr, letter: str) -> Expr:
-    """Return a law with its letter's sign turned."""
+    """Return a law with its letter's sign turned.
+
+    Raises
+    ------
+    ZeroDivisionError
+        If a divisor is zero by its form.
+    """
 
     def turned(node: Expr) -> Expr:
         return reflected(node, letter)
@@ -41,8 +46,7 @@ def reflected(law: Expr, letter: str) -> Expr:
         case Mul(left, right):
             return mul(turned(left), turned(right))
         case Div(left, right):
-            below = turned(right)
-            return Div(turned(left), ZERO) if below == ZERO else div(turned(left), below)
+            return div(turned(left), turned(right))
         case Pow(base, exponent):
             inner = turned(base)
             if isinstance(inner, Neg) and exponent.denominator == 1:

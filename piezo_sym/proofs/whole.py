@@ -17,7 +17,7 @@ from piezo_sym.proofs.exactly import holds
 from piezo_sym.proofs.obligations import Obligation, Question, SignOf
 from piezo_sym.proofs.report import Verdict
 from piezo_sym.proofs.signs import Reduction, decide_sign, reduce
-from piezo_sym.proofs.solvers import Solver
+from piezo_sym.proofs.solvers import Asks
 from piezo_sym.spec.calculus import mul
 from piezo_sym.spec.expressions import ONE, ZERO, Add, Cmp, Expr, Neg, Sym, names
 
@@ -32,7 +32,7 @@ Numbers = Mapping[str, Fraction]
 Outcome = tuple[Verdict, Numbers | None, str]
 
 
-def whole_sign(obligation: Obligation, solver: Solver) -> Outcome | None:
+def whole_sign(obligation: Obligation, solver: Asks) -> Outcome | None:
     """Return the verdict on the law of an obligation, with the numbers that refute it."""
     sign = obligation.sign
     if sign is None or not obligation.questions:
@@ -44,7 +44,7 @@ def whole_sign(obligation: Obligation, solver: Solver) -> Outcome | None:
     return _decided(sign.law, sign, question, solver)
 
 
-def _decided(law: Expr, sign: SignOf, question: Question, solver: Solver) -> Outcome | None:
+def _decided(law: Expr, sign: SignOf, question: Question, solver: Asks) -> Outcome | None:
     """Return the verdict on a law, or on a sum from its terms."""
     reduction = reduce(law, sign.letter, _positive(question))
     if reduction is not None:
@@ -57,7 +57,7 @@ def _decided(law: Expr, sign: SignOf, question: Question, solver: Solver) -> Out
     return None
 
 
-def _of_reduction(reduction: Reduction, question: Question, solver: Solver) -> Outcome | None:
+def _of_reduction(reduction: Reduction, question: Question, solver: Asks) -> Outcome | None:
     """Return the verdict on ``prefactors * f(s) * s``."""
     start: Expr = ONE
     front = fold(mul, reduction.prefactors, start)
@@ -91,12 +91,12 @@ def _domain(question: Question) -> tuple[Cmp, ...]:
     return tuple(c for c in question.where if c not in question.branch)
 
 
-def _follows(question: Question, claim: Cmp, solver: Solver) -> bool:
+def _follows(question: Question, claim: Cmp, solver: Asks) -> bool:
     made = Question("", question.order, _domain(question), claim, claim)
     return claim.left == ONE or solver.ask(made.query()).result == "unsat"
 
 
-def _model(question: Question, claim: Cmp, solver: Solver, wanted: set[str]) -> Numbers | None:
+def _model(question: Question, claim: Cmp, solver: Asks, wanted: set[str]) -> Numbers | None:
     """Return simple numbers in the domain at which a claim is false, or None."""
     about = tuple(name for name in question.order if name in wanted)
     original = Cmp(">=", Add((claim.left, *map(Sym, about))), ZERO)  # all of their names
@@ -107,7 +107,7 @@ def _model(question: Question, claim: Cmp, solver: Solver, wanted: set[str]) -> 
     return {name: value for name, value in answer.model.items() if name in question.order}
 
 
-def tried(question: Question, letter: str, solver: Solver) -> Numbers | None:
+def tried(question: Question, letter: str, solver: Asks) -> Numbers | None:
     """Return the first simple numbers at which the law breaks its claim."""
     point = _model(question, Cmp("<", ONE, ZERO), solver, {*names(question.original)})
     for value in TRIED if point is not None else ():

@@ -450,6 +450,7 @@ def is_jump_between(law, domain, one, other):
     with mpmath.workdps(DIGITS):
         try:
             start, end = precise(law, one), precise(law, other)
+            first = max(abs(start), abs(end))
             for _ in range(130):
                 middle = {name: (one[name] + other[name]) / 2 for name in one}
                 value = precise(law, middle)
@@ -459,7 +460,8 @@ def is_jump_between(law, domain, one, other):
                     other, end = middle, value
         except (ArithmeticError, ValueError, TooLargeError):
             return False
-        return abs(start - end) > mpmath.mpf(10) ** -18 and inside(domain, one)
+        pole = min(abs(start), abs(end)) > 10**6 * first  # no value there: not the law's fault
+        return not pole and abs(start - end) > mpmath.mpf(10) ** -18 and inside(domain, one)
 
 
 def jumps_at(law, domain, values, random):
