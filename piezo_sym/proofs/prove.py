@@ -19,6 +19,7 @@ from piezo_sym.proofs.jumps import jumps
 from piezo_sym.proofs.obligations import Obligation, Question, Residual
 from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.proofs.solvers import Answer, Asks
+from piezo_sym.proofs.total import negative_total
 from piezo_sym.proofs.whole import tried, whole_sign
 from piezo_sym.spec.expressions import ONE, ZERO, Cmp, Expr, names
 from piezo_sym.spec.text import spell
@@ -69,7 +70,10 @@ def _decide(obligation: Obligation, iphs: IPHS, before: tuple[Row, ...], solver:
     if failed and failed[0] is Verdict.OPEN and obligation.letter:
         failed = _by_numbers(obligation, solver) or failed
     proved: Found = (Verdict.PROVED, None, "")
-    return *(failed or _grounded(obligation, before) or proved), method
+    failed = failed or _grounded(obligation, before)
+    if failed and obligation.id == "sigma":
+        failed = _total(iphs, before, solver) or failed
+    return *(failed or proved), method
 
 
 def _asked(questions: Iterable[Question], solver: Asks) -> Found | None:
@@ -110,6 +114,14 @@ def _grounded(obligation: Obligation, before: tuple[Row, ...]) -> Found | None:
             name = f"{row.id} of {row.element}" if row.element else row.id
             return Verdict.OPEN, None, f"it rests on {name}, which is {row.verdict.value}"
     return None
+
+
+def _total(iphs: IPHS, before: tuple[Row, ...], solver: Asks) -> Found | None:
+    """Return the refutation of the second law by one law that is active alone, or None."""
+    found = negative_total(iphs, before, solver)
+    if found is None:
+        return None
+    return Verdict.REFUTED, found[0], f"sigma = {found[1]}"
 
 
 def _vanishes(residual: Residual, iphs: IPHS) -> Found | None:
