@@ -212,7 +212,8 @@ def odd(law: Law, ground: Ground) -> Obligation:
     )
     try:
         turned = reflected(law.tree, law.letter)
-        total = add(reflected(turned, law.letter), turned)  # twice: signs then stand alike in both
+        twice = reflected(turned, law.letter)  # signs then stand alike in both
+        total = ZERO if twice == neg(turned) else add(twice, turned)
         claim = Cmp("=", law.tree, neg(turned))
         questions = tuple(
             Question(

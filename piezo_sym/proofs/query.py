@@ -74,7 +74,7 @@ def query(
         if grown == near:
             break
         near = grown
-    kept = tuple(clause for clause in clauses if words[clause] & near)
+    kept = tuple(clause for clause in clauses if words[clause] & near or not words[clause])
     known = list(dict.fromkeys([*order, *sorted(near)]))
     return Query(label, tuple(name for name in known if name in near), kept, claim, exact)
 
