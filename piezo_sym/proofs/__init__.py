@@ -72,7 +72,7 @@ def obligations(iphs: IPHS) -> tuple[Obligation, ...]:
     if not isinstance(iphs, IPHS):
         remedy = "derive it first: verify(derive(load('piezo_stack')))"
         raise UsageError(f"{quote(iphs)} is no IPHS", "verify", remedy=remedy)
-    return tuple(_obligations(iphs))
+    return tuple(obligation.smooth() for obligation in _obligations(iphs))
 
 
 def _obligations(iphs: IPHS) -> Iterator[Obligation]:

@@ -8,15 +8,22 @@ are answered, and the obligations it rests on hold.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import final
 
 import sympy as sp
 
-from piezo_sym.proofs.branches import Branch, smooth_clauses
+from piezo_sym.proofs.branches import (
+    MOST,
+    Branch,
+    TooManyBranchesError,
+    branches,
+    parts,
+    smooth_clauses,
+)
 from piezo_sym.proofs.query import Query, query
 from piezo_sym.proofs.rational import cleared, parts_of
-from piezo_sym.spec.expressions import Cmp, Expr, names
+from piezo_sym.spec.expressions import Call, Cmp, Expr, names
 
 
 @final
@@ -74,20 +81,37 @@ class Question:
         conditions = [*(part for clause in assumed for part in clause), self.claim]
         sides = [side for c in conditions for side in (c.left, c.right)]
         taken = frozenset(name for side in sides for name in names(side))
-        parts = parts_of(sides, taken)
+        known = parts_of(sides, taken)
 
         def plain(condition: Cmp) -> Cmp:
-            left, right = map(parts.without_functions, (condition.left, condition.right))
+            left, right = map(known.without_functions, (condition.left, condition.right))
             return cleared(Cmp(condition.op, left, right))
 
         given = [tuple(map(plain, clause)) for clause in assumed]
         return query(
             self.label,
             self.order,
-            [*given, *parts.facts()],
+            [*given, *known.facts()],
             plain(self.claim),
             about=tuple(self._about()),
-            exact=parts.exact,
+            exact=known.exact,
+        )
+
+    def smooth(self) -> tuple[Question, ...]:
+        """Return the question, or if its claim has kinks, the same on each branch of it.
+
+        Raises
+        ------
+        TooManyBranchesError
+            If there are too many.
+        """
+        found = branches(Call("together", (self.claim.left, self.claim.right)))
+        if len(found) == 1:
+            return (self,)
+        claims = [Cmp(self.claim.op, *parts(branch)) for branch in found]
+        return tuple(
+            replace(self, where=(*self.where, *b.conditions), claim=claim, branch=b.conditions)
+            for b, claim in zip(found, claims, strict=True)
         )
 
     def _about(self) -> Iterator[str]:
@@ -139,3 +163,12 @@ class Obligation:
     letter: str = ""
     required: bool = True
     open_because: str = ""
+
+    def smooth(self) -> Obligation:
+        """Return the obligation with questions on smooth claims only."""
+        try:
+            questions = tuple(part for q in self.questions for part in q.smooth())
+        except TooManyBranchesError:
+            reason = f"its claims have more than {MOST} branches; use fewer kinks"
+            return replace(self, questions=(), open_because=reason)
+        return replace(self, questions=questions)
