@@ -33,7 +33,7 @@ from piezo_sym.spec.expressions import (
     Sym,
 )
 from piezo_sym.spec.model import Model
-from piezo_sym.spec.tables import banks, conditions, lane_parameters, states
+from piezo_sym.spec.tables import banks, conditions, greater, lane_parameters, states
 from piezo_sym.spec.text import spell
 
 
@@ -117,7 +117,7 @@ def _signs(model: Model) -> dict[str, dict[str, bool]]:
     """Return what the domain says of single parameters and inputs: > 0 or >= 0."""
     found: dict[str, dict[str, bool]] = {}
     for condition in conditions(model):
-        match condition.tree:
+        match greater(condition.tree):
             case Cmp(">" | ">=" as op, Sym(name), right) if right == ZERO:
                 if found.get(name) != {"positive": True}:
                     found[name] = {"positive": True} if op == ">" else {"nonnegative": True}

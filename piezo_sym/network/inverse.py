@@ -13,7 +13,7 @@ import sympy as sp
 from piezo_sym.algebra.symbols import to_sympy
 from piezo_sym.spec.calculus import derivative, div, mul
 from piezo_sym.spec.elements.ports import Domain, Resistor
-from piezo_sym.spec.expressions import ONE, ZERO, Div, Expr, Sym, names
+from piezo_sym.spec.expressions import ONE, ZERO, Call, Cmp, Div, Expr, Sym, names, walk
 from piezo_sym.spec.expressions import replace as substitute
 
 #: The letter that a law has in the other causality.
@@ -50,6 +50,8 @@ def turn(port: Resistor) -> Resistor | None:
 
 def slope_of(port: Resistor) -> Expr | None:
     """Return the slope of a law that is linear in its letter, else None."""
+    if any(port.letter in names(node) for node in walk(port.law) if isinstance(node, Call | Cmp)):
+        return None  # a function or a branch of the letter: its slope would not show a jump
     slope = derivative(port.law, port.letter)
     at_zero = substitute(port.law, {port.letter: ZERO})
     return slope if port.letter not in names(slope) and _vanishes(at_zero) else None

@@ -1,7 +1,7 @@
 """Proofs: obligations on an `IPHS`, and verdicts on them.
 
 stage          from -> to                      in
-obligations    IPHS -> Obligation              balances (algebra), laws, bodies, divisors
+obligations    IPHS -> Obligation              balances, laws, continuity, bodies, divisors
 queries        Question -> Query               obligations, branches, rational, query (SMT-LIB)
 answers        Query -> Answer                 solvers, in processes of their own (worker)
 verdicts       Obligation -> Row               prove, exactly (witnesses), units
@@ -16,13 +16,14 @@ from itertools import groupby
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs import balances, bodies, laws
+from piezo_sym.proofs.continuity import continuous
 from piezo_sym.proofs.divisors import divisors
 from piezo_sym.proofs.obligations import Obligation
 from piezo_sym.proofs.prove import prove
 from piezo_sym.proofs.recheck import recheck
 from piezo_sym.proofs.record import proofs_json, smt2
 from piezo_sym.proofs.report import Report, Row, Verdict
-from piezo_sym.proofs.solvers import solver
+from piezo_sym.proofs.solvers import opinions
 from piezo_sym.proofs.units import units
 
 __all__ = [
@@ -54,9 +55,9 @@ def verify(iphs: IPHS) -> Report:
         comes with a witness; all else is OPEN, and says why.
     """
     rows: list[Row] = []
-    found = obligations(iphs)
+    found, asked = obligations(iphs), opinions()
     for obligation in found:
-        rows.append(prove(obligation, iphs, rows, solver("z3")))
+        rows.append(prove(obligation, iphs, rows, asked))
     return Report(iphs.model.name, (*rows, *units(iphs)), found)
 
 
@@ -71,7 +72,7 @@ def obligations(iphs: IPHS) -> tuple[Obligation, ...]:
     if not isinstance(iphs, IPHS):
         remedy = "derive it first: verify(derive(load('piezo_stack')))"
         raise UsageError(f"{quote(iphs)} is no IPHS", "verify", remedy=remedy)
-    return tuple(_obligations(iphs))
+    return tuple(obligation.smooth() for obligation in _obligations(iphs))
 
 
 def _obligations(iphs: IPHS) -> Iterator[Obligation]:
@@ -94,7 +95,7 @@ def _of_element(
     """Yield what has to be shown of the laws of one element."""
     yield from filter(None, [laws.welldef(own, ground)])
     for law in own:
-        yield from filter(None, [laws.continuous(law, ground)])
+        yield from filter(None, [continuous(law, ground)])
         if law.letter:
             yield from (laws.passive(law, ground), laws.odd(law, ground))
         elif iphs.model.elements[element].kind == "conduction":

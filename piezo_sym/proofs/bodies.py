@@ -16,7 +16,7 @@ from piezo_sym.spec.calculus import add, derivative, div, mul, neg
 from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, Resistor
 from piezo_sym.spec.expressions import ONE, ZERO, Cmp, Expr, Sym, names, rename
 from piezo_sym.spec.names import fresh
-from piezo_sym.spec.tables import conditions
+from piezo_sym.spec.tables import conditions, greater
 from piezo_sym.spec.text import spell
 
 
@@ -59,32 +59,50 @@ def invariant(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
     The coldest body only gains from processes and conduction; where T <= m < T_e, heat exchange
     brings it at least lam*(T_e/m - 1) >= 0.  So T never falls below the least of its start and m.
     """
-    floors = {
-        condition.tree.left.name: condition.tree.right
-        for condition in conditions(iphs.model)
-        if condition.tree.op == ">" and isinstance(condition.tree.left, Sym)
-    }
-    laws = [placed.element for placed, _ in iphs.circuit.of(Resistor, Conductor)]
+    above = [greater(condition.tree) for condition in conditions(iphs.model)]
+    floors = {c.left.name: c.right for c in above if c.op == ">" and isinstance(c.left, Sym)}
+    laws = [("passive", placed.element) for placed, _ in iphs.circuit.of(Resistor, Conductor)]
+    warm = [("temperature", placed.element) for placed, _ in iphs.circuit.of(Body)]
     for placed, port in iphs.circuit.of(Body):
         exchanges = [p for _, p in iphs.circuit.of(Exchange) if p.body == placed.element]
         floor = floors.get(port.temperature)
         if floor is None or not exchanges:
             continue
+        contacts = tuple(_contacts(iphs, placed.element))
+        others = ", no neighbour colder" if contacts else ""
         yield Obligation(
             "invariant",
             placed.element,
-            f"{spell(floor)} < T <= m < T_e: dS/dt >= lam*(T_e/m - 1) >= 0",
+            f"{spell(floor)} < T <= m < T_e{others}: dS/dt >= lam*(T_e/m - 1) >= 0",
             r"T_0 < T \le m < T_e \Rightarrow \dot S \ge \lambda (T_e/m - 1) \ge 0",
             ground.texts,
-            questions=tuple(_gains(port, exchanges, ground)),
-            rests_on=tuple(("passive", name) for name in laws),
+            questions=tuple(_gains(port, exchanges, contacts, ground)),
+            rests_on=(*warm, *laws),
             required=False,
         )
 
 
-def _gains(port: Body, exchanges: list[Exchange], ground: Ground) -> Iterator[Question]:
-    """Yield that heat exchange brings at least what it brings at T = m, and that this is >= 0."""
+def _contacts(iphs: IPHS, element: str) -> Iterator[tuple[Expr, Sym]]:
+    """Yield the conductance to each body in contact, and that body's temperature."""
+    for _, port in iphs.circuit.of(Conductor):
+        if element in (port.first, port.second):
+            other = port.second if port.first == element else port.first
+            yield port.conductance, Sym(iphs.circuit.body(other).temperature)
+
+
+def _gains(
+    port: Body,
+    exchanges: list[Exchange],
+    contacts: tuple[tuple[Expr, Sym], ...],
+    ground: Ground,
+) -> Iterator[Question]:
+    """Yield that conduction from warmer bodies brings entropy, and heat exchange at least as at m."""
     T, m = Sym(port.temperature), Sym(fresh("m", ground.order))
+    for conductance, other in contacts:
+        claim = Cmp(">=", mul(conductance, add(div(other, T), neg(ONE))), ZERO)
+        colder = Cmp("<=", T, other)
+        label = f"conduction from {other.name} brings entropy"
+        yield Question(label, ground.order, (*ground.where, colder), claim, claim)
     for exchange in exchanges:
         hot, lam = Sym(exchange.input), exchange.conductance
         between = (Cmp("<=", T, m), Cmp("<", m, hot))

@@ -7,8 +7,9 @@ rounded outward.  A witness is shown only after its law has been evaluated here.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, final
 
 from mpmath import iv
 
@@ -39,6 +40,13 @@ OUTCOMES: Mapping[str, Callable[[int], bool]] = {
     "!=": lambda sign: sign != 0,
 }
 
+
+@final
+@dataclass(eq=False)
+class TooCloseError(ArithmeticError):
+    """A sign that 40 digits do not tell."""
+
+
 Value = Any  # Fraction, or an interval of mpmath
 
 
@@ -48,7 +56,9 @@ def value_of(node: Expr, values: Mapping[str, Fraction]) -> Value:
     Raises
     ------
     ArithmeticError, ValueError
-        Where the law has no value (1/0, log(0)), or a comparison cannot be decided.
+        Where the law has no value (1/0, log(0)).
+    TooCloseError
+        Where that, or a comparison, cannot be decided.
     """
     before = iv.dps
     iv.dps = DIGITS
@@ -70,17 +80,17 @@ def holds(condition: Cmp, values: Mapping[str, Fraction]) -> bool:
 
     Raises
     ------
-    ArithmeticError
+    TooCloseError
         If it cannot be decided.
+    ArithmeticError, ValueError
+        If a side has no value.
     """
-    sign = sign_of(_minus(value_of(condition.left, values), value_of(condition.right, values)))
-    if sign is None:
-        msg = "a comparison is too close to call"
-        raise ArithmeticError(msg)
-    return OUTCOMES[condition.op](sign)
+    difference = minus(value_of(condition.left, values), value_of(condition.right, values))
+    return OUTCOMES[condition.op](_certain(difference))
 
 
-def _minus(left: Value, right: Value) -> Value:
+def minus(left: Value, right: Value) -> Value:
+    """Return the difference of two values."""
     a, b = _alike([left, right])
     return a - b
 
@@ -127,7 +137,7 @@ def _alike(parts: list[Value]) -> list[Value]:
 
 
 def _quotient(a: Value, b: Value) -> Value:
-    if sign_of(b) in {0, None}:
+    if _certain(b) == 0:
         msg = "division by zero"
         raise ZeroDivisionError(msg)
     return a / b
@@ -138,8 +148,8 @@ def _power(base: Value, exponent: Fraction) -> Value:
         whole = base ** abs(exponent.numerator)
         one = Fraction(1) if isinstance(base, Fraction) else iv.mpf(1)
         return whole if exponent > 0 else _quotient(one, whole)
-    sign = sign_of(base)
-    if sign is None or sign < 0 or (sign == 0 and exponent < 0):
+    sign = _certain(base)
+    if sign < 0 or (sign == 0 and exponent < 0):
         msg = "root of a negative number"
         raise ValueError(msg)
     if sign == 0:
@@ -158,7 +168,7 @@ def _call(function: str, args: list[Value]) -> Value:
         case "exp":
             return iv.exp(_interval(z))
         case "log":
-            if sign_of(z) != 1:
+            if _certain(z) != 1:
                 msg = "logarithm of a number that is not positive"
                 raise ValueError(msg)
             return iv.log(_interval(z))
@@ -185,17 +195,16 @@ def _kinked(function: str, z: Value, w: Value) -> Value:
         case "max":
             return z if _above(z, w) else w
         case "deadzone":
-            return _minus(z, _kinked("saturate", z, w))
+            return minus(z, _kinked("saturate", z, w))
     return w if _above(z, w) else -w if _above(-w, z) else z  # saturate
 
 
 def _above(a: Value, b: Value) -> bool:
-    return _certain(_minus(a, b)) > 0
+    return _certain(minus(a, b)) > 0
 
 
 def _certain(value: Value) -> int:
     sign = sign_of(value)
     if sign is None:
-        msg = "a sign is too close to call"
-        raise ArithmeticError(msg)
+        raise TooCloseError
     return sign

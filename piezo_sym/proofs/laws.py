@@ -1,4 +1,4 @@
-"""What has to be shown of each law: welldef, continuous, passive, odd.
+"""What has to be shown of each law: welldef, passive, odd (and continuous, in `continuity`).
 
 Input: an `IPHS`.  Output: obligations, their questions asked branch by branch.  Laws stand in the
 words of the domain: a state by its symbol, the temperature of the body that is heated by its own.
@@ -15,10 +15,6 @@ from piezo_sym.proofs.branches import (
     MOST,
     TooManyBranchesError,
     branches,
-    choices,
-    decided,
-    parts,
-    with_choices,
 )
 from piezo_sym.proofs.obligations import Obligation, Question, SignOf
 from piezo_sym.proofs.reflection import reflected
@@ -125,7 +121,7 @@ def welldef(laws: tuple[Law, ...], ground: Ground) -> Obligation | None:
                 where = (*ask(found, condition, where, ground), condition)
             ask(found, branch.value, where, ground)
     except TooManyBranchesError:
-        return replace(made, open_because=_too_many(laws[0]))
+        return replace(made, open_because=too_many(laws[0]))
     questions = tuple(dict.fromkeys(found))
     needed = questions or any(law.letter for law in laws)
     return replace(made, questions=questions) if needed else None
@@ -137,7 +133,8 @@ def ask(
     """Add the questions whether `node` has a value; return what is then known."""
     for claim in partial(node):
         label = f"{spell(claim.left)} {claim.op} 0"
-        found.append(Question(label, ground.order, where, claim, claim))
+        branch = tuple(c for c in where if c not in ground.where)
+        found.append(Question(label, ground.order, where, claim, claim, branch))
         where = (*where, claim)
     return where
 
@@ -146,7 +143,7 @@ def partial(node: Node) -> Iterator[Cmp]:
     """Yield what must hold for a smooth tree to have a value, inner parts first."""
     for part in reversed(tuple(walk(node))):
         match part:
-            case Div(_, right) if not isinstance(right, Num):
+            case Div(_, right) if not isinstance(right, Num) or right == ZERO:
                 yield Cmp("!=", right, ZERO)
             case Pow(base, exponent) if exponent.denominator != 1:
                 yield Cmp(">=" if exponent > 0 else ">", base, ZERO)
@@ -156,62 +153,6 @@ def partial(node: Node) -> Iterator[Cmp]:
                 yield Cmp(">=", arg, ZERO)
             case Call("log", (arg,)):
                 yield Cmp(">", arg, ZERO)
-
-
-def continuous(law: Law, ground: Ground) -> Obligation | None:
-    """State that a law agrees with itself on both sides of each edge; None without an edge."""
-    tree, ground = with_choices(law.tree), ground.about(law)
-    if law.jumps or not choices(tree):
-        return None
-    statement = f"{law.name} has no jump where its branches meet"
-    made = Obligation("continuous", law.element, statement, r"W_k(z^-) = W_k(z^+)", ground.texts)
-    found: list[Question] = []
-    try:
-        for left, right, group in _edges(tree):
-            at = {side: decided(tree, _decisions(group, side)) for side in (-1, 0, 1)}
-            for side in (1, -1):
-                found += _meeting(left, right, at[side], at[0], ground)
-    except TooManyBranchesError:
-        return replace(made, open_because=_too_many(law))
-    return replace(made, questions=tuple(dict.fromkeys(found)))
-
-
-def _edges(tree: Expr) -> Iterator[tuple[Expr, Expr, tuple[tuple[Cmp, int], ...]]]:
-    """Yield each edge left = right, and the comparisons that change there with their sides."""
-    groups: dict[Expr, list[tuple[Cmp, int]]] = {}
-    for choice in choices(tree):
-        difference = add(choice.left, neg(choice.right))
-        turned = add(choice.right, neg(choice.left))
-        key, sign = (turned, -1) if turned in groups else (difference, 1)
-        groups.setdefault(key, []).append((choice, sign))
-    for group in groups.values():
-        first = group[0][0]
-        yield first.left, first.right, tuple(group)
-
-
-def _decisions(group: tuple[tuple[Cmp, int], ...], side: int) -> dict[Cmp, bool]:
-    """Return how comparisons come out where left - right has the sign `side`."""
-    outcome = {"<": -1, "<=": -1, ">": 1, ">=": 1}
-    return {
-        choice: (side * sign == outcome[choice.op]) or (side == 0 and "=" in choice.op)
-        for choice, sign in group
-    }
-
-
-def _meeting(left: Expr, right: Expr, beside: Expr, at: Expr, ground: Ground) -> Iterator[Question]:
-    """Yield the questions whether what holds beside an edge agrees on it with what holds there."""
-    if beside == at:
-        return
-    for branch in branches(Call("together", (beside, at, left, right))):
-        one, other, edge_left, edge_right = parts(branch)
-        edge = Cmp("=", edge_left, edge_right)
-        where = (*ground.where, *branch.conditions, edge)
-        found: list[Question] = []
-        ask(found, add(one, neg(other)), where, ground)
-        yield from found
-        claim = Cmp("=", one, other)
-        label = f"{spell(one)} = {spell(other)} at {spell(edge_left)} = {spell(edge_right)}"
-        yield Question(label, ground.order, where, claim, claim)
 
 
 def passive(law: Law, ground: Ground) -> Obligation:
@@ -241,7 +182,9 @@ def passive(law: Law, ground: Ground) -> Obligation:
             if branch.value != ZERO
         )
     except TooManyBranchesError:
-        return replace(made, open_because=_too_many(law))
+        return replace(made, open_because=too_many(law))
+    except ZeroDivisionError:
+        return replace(made, open_because=f"the law of {law.element} divides by zero")
     return replace(made, questions=questions)
 
 
@@ -258,19 +201,20 @@ def conducts(law: Law, ground: Ground) -> Obligation:
 def odd(law: Law, ground: Ground) -> Obligation:
     """State that a law is odd, which allows the mean law of the discrete gradient."""
     ground = ground.about(law)
-    total = add(law.tree, reflected(law.tree, law.letter))
     made = Obligation(
         "odd",
         law.element,
         f"{law.name}(-{law.letter}) = -{law.name}({law.letter})",
         "W_k(-z_k) = -W_k(z_k)",
         ground.texts,
+        letter=law.letter,
         required=False,
     )
-    if total == ZERO:
-        return made
-    claim = Cmp("=", law.tree, neg(reflected(law.tree, law.letter)))
     try:
+        turned = reflected(law.tree, law.letter)
+        twice = reflected(turned, law.letter)  # signs then stand alike in both
+        total = ZERO if twice == neg(turned) else add(twice, turned)
+        claim = Cmp("=", law.tree, neg(turned))
         questions = tuple(
             Question(
                 f"{made.statement}{_under(branch.conditions)}",
@@ -278,12 +222,15 @@ def odd(law: Law, ground: Ground) -> Obligation:
                 (*ground.where, *branch.conditions),
                 Cmp("=", branch.value, ZERO),
                 claim,
+                branch.conditions,
             )
-            for branch in branches(total)
+            for branch in (branches(total) if total != ZERO else ())
             if branch.value != ZERO
         )
     except TooManyBranchesError:
-        return replace(made, open_because=_too_many(law))
+        return replace(made, open_because=too_many(law))
+    except ZeroDivisionError:
+        return replace(made, open_because=f"the law of {law.element} divides by zero")
     return replace(made, questions=questions)
 
 
@@ -291,5 +238,6 @@ def _under(where: tuple[Cmp, ...]) -> str:
     return f" where {' and '.join(map(condition_text, where))}" if where else ""
 
 
-def _too_many(law: Law) -> str:
+def too_many(law: Law) -> str:
+    """Return why a law with too many branches is left open."""
     return f"the law of {law.element} has more than {MOST} branches; use fewer kinks"

@@ -7,16 +7,24 @@ are answered, and the obligations it rests on hold.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import final
 
 import sympy as sp
 
-from piezo_sym.proofs.branches import smooth_clauses
-from piezo_sym.proofs.query import Query, query
+from piezo_sym.proofs.branches import (
+    MOST,
+    Branch,
+    TooManyBranchesError,
+    branches,
+    parts,
+    smooth_clauses,
+)
+from piezo_sym.proofs.query import Query, connected, query
 from piezo_sym.proofs.rational import cleared, parts_of
-from piezo_sym.spec.expressions import Cmp, Expr, names
+from piezo_sym.spec.expressions import Call, Cmp, Expr, names
 
 
 @final
@@ -26,6 +34,16 @@ class Residual:
 
     place: str
     expr: sp.Expr
+
+
+@final
+@dataclass(frozen=True)
+class Meeting:
+    """Two branches of a law that must agree where they meet."""
+
+    law: Expr
+    sides: tuple[Branch, Branch]
+    domain: tuple[Cmp, ...]
 
 
 @final
@@ -41,6 +59,9 @@ class Question:
     claim : what should follow, on one branch of a law.
     original : the same on the law as the spec has it; a witness is checked on this.
     branch : the part of `where` that says which branch it is.
+    meeting : for a question on the border of two branches, these; a witness must show a jump.
+    whole : whether all that is assumed goes into the query, as a counterexample needs; a proof
+        needs what is connected to the claim by names.
     """
 
     label: str
@@ -49,6 +70,8 @@ class Question:
     claim: Cmp
     original: Cmp
     branch: tuple[Cmp, ...] = ()
+    meeting: Meeting | None = None
+    whole: bool = False
 
     def query(self) -> Query:
         """Return the question in polynomials, for a solver.
@@ -62,25 +85,47 @@ class Question:
 
     @cached_property
     def _query(self) -> Query:
-        assumed = [clause for condition in self.where for clause in smooth_clauses(condition)]
+        about = {*names(self.claim), *self._about()}
+        kept = self.where if self.whole else connected(self.where, about)
+        assumed = [clause for condition in kept for clause in smooth_clauses(condition)]
         conditions = [*(part for clause in assumed for part in clause), self.claim]
         sides = [side for c in conditions for side in (c.left, c.right)]
         taken = frozenset(name for side in sides for name in names(side))
-        parts = parts_of(sides, taken)
+        known = parts_of(sides, taken)
 
         def plain(condition: Cmp) -> Cmp:
-            left, right = map(parts.without_functions, (condition.left, condition.right))
+            left, right = map(known.without_functions, (condition.left, condition.right))
             return cleared(Cmp(condition.op, left, right))
 
         given = [tuple(map(plain, clause)) for clause in assumed]
+        words = (*about, *(name for condition in kept for name in names(condition)))
         return query(
-            self.label,
-            self.order,
-            [*given, *parts.facts()],
-            plain(self.claim),
-            about=names(self.original),
-            exact=parts.exact,
+            self.label, self.order, [*given, *known.facts()], plain(self.claim), about=words
         )
+
+    def smooth(self) -> tuple[Question, ...]:
+        """Return the question, or if its claim has kinks, the same on each branch of it.
+
+        Raises
+        ------
+        TooManyBranchesError
+            If there are too many.
+        """
+        found = branches(Call("together", (self.claim.left, self.claim.right)))
+        if len(found) == 1:
+            return (self,)
+        claims = [Cmp(self.claim.op, *parts(branch)) for branch in found]
+        return tuple(
+            replace(self, where=(*self.where, *b.conditions), claim=claim, branch=b.conditions)
+            for b, claim in zip(found, claims, strict=True)
+        )
+
+    def _about(self) -> Iterator[str]:
+        """Yield the names that a witness needs: of the law, and of what says where it is."""
+        for condition in (self.original, *self.branch):
+            yield from names(condition)
+        if self.meeting:
+            yield from names(self.meeting.law)
 
 
 @final
@@ -107,6 +152,7 @@ class Obligation:
     questions : must be answered with yes.
     rests_on : other obligations, as (id, element), that must hold.
     sign : the law behind the questions, where it is one law's sign.
+    letter : a letter whose simple values are tried where questions are left open.
     required : whether `generate` insists on it; else it is information.
     open_because : why nothing could be asked, where a law is beyond what is looked at.
     """
@@ -120,5 +166,15 @@ class Obligation:
     questions: tuple[Question, ...] = ()
     rests_on: tuple[tuple[str, str], ...] = ()
     sign: SignOf | None = None
+    letter: str = ""
     required: bool = True
     open_because: str = ""
+
+    def smooth(self) -> Obligation:
+        """Return the obligation with questions on smooth claims only."""
+        try:
+            questions = tuple(part for q in self.questions for part in q.smooth())
+        except TooManyBranchesError:
+            reason = f"its claims have more than {MOST} branches; use fewer kinks"
+            return replace(self, questions=(), open_because=reason)
+        return replace(self, questions=questions)

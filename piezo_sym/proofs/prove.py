@@ -8,29 +8,34 @@ needs a witness that was evaluated exactly in the law itself.  All else is OPEN,
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from fractions import Fraction
-from typing import Any
 
 import sympy as sp
 
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.exactly import holds, value_of
+from piezo_sym.proofs.jumps import jumps
 from piezo_sym.proofs.obligations import Obligation, Question, Residual
 from piezo_sym.proofs.report import Row, Verdict
-from piezo_sym.proofs.solvers import Answer, Solver
-from piezo_sym.proofs.whole import whole_sign
-from piezo_sym.spec.expressions import names
+from piezo_sym.proofs.solvers import Answer, Asks
+from piezo_sym.proofs.total import negative_total
+from piezo_sym.proofs.whole import tried, whole_sign
+from piezo_sym.spec.expressions import ONE, ZERO, Cmp, Expr, names
 from piezo_sym.spec.text import spell
 
 #: Lanes a refutation is written out for; one lane hides what couples two.
 LANES = 2
 TRIES = (1, 2, 3)
 
+#: Questions of one obligation left open before the others are not asked any more.
+MOST_OPEN = 4
+
 Found = tuple[Verdict, Mapping[str, str] | None, str]
 Decided = tuple[Verdict, Mapping[str, str] | None, str, str]
 
 
-def prove(obligation: Obligation, iphs: IPHS, before: Iterable[Row], solver: Solver) -> Row:
+def prove(obligation: Obligation, iphs: IPHS, before: Iterable[Row], solver: Asks) -> Row:
     """Return the verdict on one obligation.
 
     Parameters
@@ -53,7 +58,7 @@ def prove(obligation: Obligation, iphs: IPHS, before: Iterable[Row], solver: Sol
     )
 
 
-def _decide(obligation: Obligation, iphs: IPHS, before: tuple[Row, ...], solver: Solver) -> Decided:
+def _decide(obligation: Obligation, iphs: IPHS, before: tuple[Row, ...], solver: Asks) -> Decided:
     """Return the first thing that fails, or that nothing does, and the method that says so."""
     if obligation.open_because:
         return Verdict.OPEN, None, obligation.open_because, "branches"
@@ -65,22 +70,29 @@ def _decide(obligation: Obligation, iphs: IPHS, before: tuple[Row, ...], solver:
     failed = _asked(obligation.questions, solver)
     if failed and failed[0] is Verdict.OPEN and obligation.sign:
         method, failed = "intervals", _as_a_whole(obligation, failed, solver)
+    if failed and failed[0] is Verdict.OPEN and obligation.letter:
+        failed = _by_numbers(obligation, solver) or failed
     proved: Found = (Verdict.PROVED, None, "")
-    return *(failed or _grounded(obligation, before) or proved), method
+    failed = failed or _grounded(obligation, before)
+    if failed and obligation.id == "sigma":
+        failed = _total(iphs, before, solver) or failed
+    return *(failed or proved), method
 
 
-def _asked(questions: Iterable[Question], solver: Solver) -> Found | None:
+def _asked(questions: Iterable[Question], solver: Asks) -> Found | None:
     """Return the first question that is refuted, else the first that is open, else None."""
-    first_open: Found | None = None
+    left: list[Found] = []
     for question in questions:
         found = _answered(question, solver)
         if found and found[0] is Verdict.REFUTED:
             return found
-        first_open = first_open or found
-    return first_open
+        left += [found] if found else []
+        if len(left) == MOST_OPEN:
+            break
+    return left[0] if left else None
 
 
-def _as_a_whole(obligation: Obligation, still_open: Found, solver: Solver) -> Found | None:
+def _as_a_whole(obligation: Obligation, still_open: Found, solver: Asks) -> Found | None:
     """Return None if the law is shown to be passive as a whole, else how it fails or is open."""
     found = whole_sign(obligation, solver)
     if found is None:
@@ -93,13 +105,32 @@ def _as_a_whole(obligation: Obligation, still_open: Found, solver: Solver) -> Fo
     return Verdict.OPEN, None, f"{obligation.statement}: {reason}"
 
 
+def _by_numbers(obligation: Obligation, solver: Asks) -> Found | None:
+    """Return the refutation of a claim by simple numbers, or None."""
+    question = obligation.questions[0]
+    numbers = tried(question, obligation.letter, solver)
+    return _broken(question, numbers) if numbers else None
+
+
 def _grounded(obligation: Obligation, before: tuple[Row, ...]) -> Found | None:
     """Return what an obligation rests on that is not proved."""
-    for row in before:
-        if (row.id, row.element) in obligation.rests_on and row.verdict is not Verdict.PROVED:
-            name = f"{row.id} of {row.element}" if row.element else row.id
-            return Verdict.OPEN, None, f"it rests on {name}, which is {row.verdict.value}"
+    for premise in obligation.rests_on:
+        name = f"{premise[0]} of {premise[1]}" if premise[1] else premise[0]
+        verdicts = [row.verdict for row in before if (row.id, row.element) == premise]
+        if not verdicts:
+            return Verdict.OPEN, None, f"it rests on {name}, which was not looked at"
+        for verdict in verdicts:
+            if verdict is not Verdict.PROVED:
+                return Verdict.OPEN, None, f"it rests on {name}, which is {verdict.value}"
     return None
+
+
+def _total(iphs: IPHS, before: tuple[Row, ...], solver: Asks) -> Found | None:
+    """Return the refutation of the second law by one law that is active alone, or None."""
+    found = negative_total(iphs, before, solver)
+    if found is None:
+        return None
+    return Verdict.REFUTED, found[0], f"sigma = {found[1]}"
 
 
 def _vanishes(residual: Residual, iphs: IPHS) -> Found | None:
@@ -130,43 +161,65 @@ def _nonzero(iphs: IPHS, expr: sp.Expr) -> tuple[dict[str, str], sp.Expr] | None
     return None
 
 
-def _answered(question: Question, solver: Solver) -> Found | None:
+def _answered(question: Question, solver: Asks) -> Found | None:
     """Return None if the claim follows, else how it fails or why it is open."""
-    query = question.query()
-    answer = solver.ask(query)
-    if answer.result == "unsat":
+    try:
+        answer = solver.ask(question.query())
+    except TooManyBranchesError:
+        return Verdict.OPEN, None, f"{question.label}: the domain has too many branches"
+    if answer.result == "unsat" or _never_meet(question, solver):
         return None
     if answer.result == "sat":
-        return _refuted(question, answer)
+        shown = question.query().variables
+        answer = solver.ask(replace(question, whole=True).query())
+        if answer.result == "unsat":
+            return None
+        if answer.result == "sat":
+            return _refuted(question, answer, shown)
     return Verdict.OPEN, None, f"{question.label}: {answer.reason}"
 
 
-def _refuted(question: Question, answer: Answer) -> Found:
+def _never_meet(question: Question, solver: Asks) -> bool:
+    """Return whether one of two branches that should agree is never taken."""
+    if question.meeting is None:
+        return False
+    domain, claim = question.meeting.domain, Cmp("<", ONE, ZERO)
+    taken = [
+        replace(question, where=(*domain, *side.conditions), claim=claim, branch=side.conditions)
+        for side in question.meeting.sides
+    ]
+    return any(solver.ask(made.query()).result == "unsat" for made in taken)
+
+
+def _refuted(question: Question, answer: Answer, shown: tuple[str, ...]) -> Found:
     """Return REFUTED if the model breaks the claim in the law itself, else OPEN."""
     values = {name: value for name, value in answer.model.items() if name in question.order}
-    near = [c for c in question.where if {*names(c)} <= values.keys()]
     try:
-        inside = all(holds(condition, values) for condition in near)
-        broken = inside and not holds(question.original, values)
+        inside = all(holds(condition, values) for condition in question.where)
+        if question.meeting:
+            broken = inside and jumps(question.meeting, values)
+        else:
+            broken = inside and not holds(question.original, values)
     except (ArithmeticError, ValueError, KeyError):
         broken = False
     if not broken:
         reason = f"{question.label}: bounds on the functions in it do not decide it"
         return Verdict.OPEN, None, reason
-    return _broken(question, values)
+    return _broken(question, {name: value for name, value in values.items() if name in shown})
 
 
 def _broken(question: Question, values: Mapping[str, Fraction]) -> Found:
     """Return the refutation of a claim by numbers that break it."""
     left, right = question.original.left, question.original.right
-    reason = f"{spell(left)} = {_shown(value_of(left, values))}"
+    reason = f"{spell(left)} = {_value(left, values)}"
     if question.original.op == "=":
-        reason = f"{question.label} is false: {_shown(value_of(left, values))} and "
-        reason += _shown(value_of(right, values))
+        reason = f"{question.label} is false: {_value(left, values)} and {_value(right, values)}"
     return Verdict.REFUTED, {name: str(value) for name, value in values.items()}, reason
 
 
-def _shown(value: Any) -> str:
-    if isinstance(value, Fraction):
-        return str(value)
-    return f"{float(value.mid):.6g}"
+def _value(law: Expr, values: Mapping[str, Fraction]) -> str:
+    try:
+        value = value_of(law, values)
+    except (ArithmeticError, ValueError):
+        return "no value"
+    return str(value) if isinstance(value, Fraction) else f"{float(value.mid):.6g}"

@@ -34,14 +34,12 @@ class Query:
     variables : names, in the order in which a witness should be simple.
     given : clauses, of each at least one comparison holds.
     claim : the comparison that should follow.
-    exact : whether `given` says all there is; else a counterexample has to be confirmed.
     """
 
     label: str
     variables: tuple[str, ...]
     given: tuple[Clause, ...]
     claim: Cmp
-    exact: bool = True
 
     def text(self) -> str:
         """Return the query in SMT-LIB 2, without ``check-sat``."""
@@ -51,6 +49,18 @@ class Query:
         return "\n".join(lines)
 
 
+def connected(conditions: Iterable[Cmp], words: Iterable[str]) -> tuple[Cmp, ...]:
+    """Return the conditions that are joined to some names, directly or by way of others.
+
+    Leaving out the others can only make a claim harder to prove; a counterexample has to keep them.
+    """
+    near = set(words)
+    found = [(condition, {*names(condition)}) for condition in conditions]
+    while grown := set().union(*(own for _, own in found if own & near)) - near:
+        near |= grown
+    return tuple(condition for condition, own in found if own & near or not own)
+
+
 def query(
     label: str,
     order: Iterable[str],
@@ -58,25 +68,13 @@ def query(
     claim: Cmp,
     *,
     about: Iterable[str] = (),
-    exact: bool = True,
 ) -> Query:
-    """Return a query of what the claim depends on: clauses about other names are left out.
-
-    Names in `about` are kept in any case, so that a witness has a value for each.
-
-    Leaving out what is given can only make a claim harder to prove.
-    """
-    near = {*names(claim), *about}
+    """Return a query; it declares every name in it, and those in `about`."""
     clauses = tuple(dict.fromkeys(given))
-    words = {clause: {name for part in clause for name in names(part)} for clause in clauses}
-    while True:
-        grown = near.union(*(found for found in words.values() if found & near))
-        if grown == near:
-            break
-        near = grown
-    kept = tuple(clause for clause in clauses if words[clause] & near)
-    known = list(dict.fromkeys([*order, *sorted(near)]))
-    return Query(label, tuple(name for name in known if name in near), kept, claim, exact)
+    used = {*names(claim), *about}
+    used |= {name for clause in clauses for part in clause for name in names(part)}
+    known = dict.fromkeys([*order, *sorted(used)])
+    return Query(label, tuple(name for name in known if name in used), clauses, claim)
 
 
 def _clause(clause: Clause) -> str:

@@ -77,15 +77,6 @@ class Parts:
         """Return a law with each function replaced by its symbol."""
         return _replaced(law, dict(self.words))
 
-    def ratio(self, law: Expr) -> Ratio:
-        """Return a smooth law as a quotient of polynomials."""
-        return ratio(self.without_functions(law))
-
-    @property
-    def exact(self) -> bool:
-        """Whether the facts say all there is to say: roots only."""
-        return all(part.function == "root" for part in self.parts)
-
     def facts(self) -> Iterator[Clause]:
         """Yield what is known of the parts."""
         for part in self.parts:
@@ -126,7 +117,7 @@ def _function(node: Node) -> tuple[str, Expr, Fraction] | None:
     match node:
         case Call("sqrt", (arg,)):
             return "root", arg, Fraction(1, 2)
-        case Call(function, (arg,)):
+        case Call("exp" | "log" | "tanh" | "sin" | "cos" as function, (arg,)):
             return function, arg, Fraction(1)
         case Pow(base, exponent) if exponent.denominator != 1:
             return "root", base, exponent
@@ -152,7 +143,7 @@ def ratio(law: Expr) -> Ratio:
         case Mul(left, right):
             a, b = ratio(left), ratio(right)
             return Ratio(mul(a.top, b.top), mul(a.bottom, b.bottom))
-        case Div(left, Num(value)):
+        case Div(left, Num(value)) if value != 0:
             a = ratio(left)
             return Ratio(mul(Num(1 / value), a.top), a.bottom)
         case Div(left, right):

@@ -41,7 +41,7 @@ def recheck(
     asked, found = 0, []
     for label, answers in _answers(report, first, second):
         asked += 1
-        if answers[0] != answers[1]:
+        if answers[0] != answers[1] or "unknown" in answers:
             found.append(Difference(label, answers))
     return asked, found
 

@@ -25,7 +25,13 @@ EVEN = frozenset({"cos", "abs"})
 
 
 def reflected(law: Expr, letter: str) -> Expr:
-    """Return a law with its letter's sign turned."""
+    """Return a law with its letter's sign turned.
+
+    Raises
+    ------
+    ZeroDivisionError
+        If a divisor is zero by its form.
+    """
 
     def turned(node: Expr) -> Expr:
         return reflected(node, letter)

@@ -15,15 +15,19 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
-from typing import Any, final
+from typing import Any, Protocol, final
 
 from piezo_sym.proofs.query import Query
 
 #: The most seconds to wait for one answer; far above what the solvers' own limits come to.
 PATIENCE = 20.0
+#: The most seconds to wait for a second opinion, which is asked for only where there is no first.
+LESS_PATIENCE = 5.0
 #: Answers that are kept: a query is asked again when a file is checked or a bank is written out.
 MOST_KNOWN = 10_000
+RESULTS = frozenset({"unsat", "sat", "unknown"})
 
 
 @final
@@ -34,6 +38,13 @@ class Answer:
     result: str
     model: Mapping[str, Fraction] = field(default_factory=dict)
     reason: str = ""
+
+
+class Asks(Protocol):
+    """Whatever answers queries."""
+
+    def ask(self, query: Query) -> Answer:
+        """Return the answer to a query; never raises for what a solver does."""
 
 
 @final
@@ -58,17 +69,21 @@ class Solver:
         request = json.dumps({"text": query.text(), "order": query.variables})
         with self._lock:
             if request not in self._known:
-                found = self._exchange(request)
-                if found is None:
+                try:
+                    answer = _read(self._exchange(request))
+                except (
+                    BaseException
+                ):  # an answer that comes later would be taken for the next one's
+                    self.close()
+                    raise
+                if answer is None:
                     self.close()
                     reason = f"{self.name} stopped, or took more than {self.patience:g} s"
                     return Answer("unknown", reason=reason)
-                self._keep(request, found)
+                self._keep(request, answer)
             return self._known[request]
 
-    def _keep(self, request: str, found: dict[str, Any]) -> None:
-        model = {name: Fraction(text) for name, text in found.get("model", {}).items()}
-        answer = Answer(str(found["result"]), model, str(found.get("reason", "")))
+    def _keep(self, request: str, answer: Answer) -> None:
         self._known[request] = answer
         if len(self._known) > MOST_KNOWN:
             self._known.pop(next(iter(self._known)))
@@ -80,9 +95,12 @@ class Solver:
             self._process.communicate()
             self._process = None
 
-    def _exchange(self, request: str) -> dict[str, Any] | None:
-        """Send one line and read one; None if the process stops or hangs."""
-        process = self._running()
+    def _exchange(self, request: str) -> str:
+        """Send one line and read one; what comes is no whole line if the process stops or hangs."""
+        try:
+            process = self._running()
+        except OSError:
+            return ""
         watch = threading.Timer(self.patience, process.kill)
         watch.start()
         try:
@@ -90,13 +108,11 @@ class Solver:
             assert process.stdout is not None
             process.stdin.write(request + "\n")
             process.stdin.flush()
-            line = process.stdout.readline()
-            found: dict[str, Any] | None = json.loads(line) if line.endswith("\n") else None
+            return process.stdout.readline()
         except (OSError, ValueError):
-            return None
+            return ""
         finally:
             watch.cancel()
-        return found
 
     def _running(self) -> subprocess.Popen[str]:
         if self._process is None or self._process.poll() is not None:
@@ -107,10 +123,53 @@ class Solver:
         return self._process
 
 
+def _read(line: str) -> Answer | None:
+    """Return the answer in a line, or None if there is none in it."""
+    if not line.endswith("\n"):
+        return None
+    try:
+        found: dict[str, Any] = json.loads(line)
+        model = {str(name): Fraction(text) for name, text in found.get("model", {}).items()}
+        answer = Answer(str(found["result"]), model, str(found.get("reason", "")))
+    except (ValueError, TypeError, AttributeError, LookupError, ZeroDivisionError):
+        return None
+    return answer if answer.result in RESULTS else None
+
+
+@final
+@dataclass(frozen=True)
+class Opinions:
+    """Two solvers: where the first does not know, the second is asked.
+
+    Of the second only a proof counts: it gives no model that could be checked.
+    """
+
+    first: Asks
+    second: Asks
+
+    def ask(self, query: Query) -> Answer:
+        """Return the first's answer, or that the second has a proof, or the reasons of both."""
+        answer = self.first.ask(query)
+        if answer.result != "unknown":
+            return answer
+        other = self.second.ask(query)
+        if other.result == "unsat":
+            return Answer("unsat")
+        said = other.reason or f"a second solver says {other.result}, without a model"
+        return Answer("unknown", reason=f"{answer.reason}; {said}")
+
+
+def opinions() -> Asks:
+    """Return z3, and cvc5 for what z3 does not know, if it is installed."""
+    if find_spec("cvc5") is None:
+        return solver("z3")
+    return Opinions(solver("z3"), solver("cvc5", LESS_PATIENCE))
+
+
 @cache
-def solver(name: str) -> Solver:
+def solver(name: str, patience: float = PATIENCE) -> Solver:
     """Return the solver ``z3`` or ``cvc5``, one process of each for the whole run."""
     worker = str(Path(__file__).with_name("worker.py"))
-    made = Solver(name, (sys.executable, "-E", worker, name))
+    made = Solver(name, (sys.executable, "-E", worker, name), patience)
     atexit.register(made.close)
     return made

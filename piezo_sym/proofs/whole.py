@@ -17,8 +17,9 @@ from piezo_sym.proofs.exactly import holds
 from piezo_sym.proofs.obligations import Obligation, Question, SignOf
 from piezo_sym.proofs.report import Verdict
 from piezo_sym.proofs.signs import Reduction, decide_sign, reduce
-from piezo_sym.proofs.solvers import Solver
+from piezo_sym.proofs.solvers import Asks
 from piezo_sym.spec.calculus import mul
+from piezo_sym.spec.tables import greater
 from piezo_sym.spec.expressions import ONE, ZERO, Add, Cmp, Expr, Neg, Sym, names
 
 #: Values of a letter that are tried against a law, in this order.
@@ -32,20 +33,19 @@ Numbers = Mapping[str, Fraction]
 Outcome = tuple[Verdict, Numbers | None, str]
 
 
-def whole_sign(obligation: Obligation, solver: Solver) -> Outcome | None:
+def whole_sign(obligation: Obligation, solver: Asks) -> Outcome | None:
     """Return the verdict on the law of an obligation, with the numbers that refute it."""
     sign = obligation.sign
     if sign is None or not obligation.questions:
         return None
     question = obligation.questions[0]
-    point = _model(question, Cmp("<", ONE, ZERO), solver, {*names(question.original)})
-    tried = _tried(question, sign.letter, point)
-    if tried:
-        return Verdict.REFUTED, tried, ""
+    numbers = tried(question, sign.letter, solver)
+    if numbers:
+        return Verdict.REFUTED, numbers, ""
     return _decided(sign.law, sign, question, solver)
 
 
-def _decided(law: Expr, sign: SignOf, question: Question, solver: Solver) -> Outcome | None:
+def _decided(law: Expr, sign: SignOf, question: Question, solver: Asks) -> Outcome | None:
     """Return the verdict on a law, or on a sum from its terms."""
     reduction = reduce(law, sign.letter, _positive(question))
     if reduction is not None:
@@ -58,7 +58,7 @@ def _decided(law: Expr, sign: SignOf, question: Question, solver: Solver) -> Out
     return None
 
 
-def _of_reduction(reduction: Reduction, question: Question, solver: Solver) -> Outcome | None:
+def _of_reduction(reduction: Reduction, question: Question, solver: Asks) -> Outcome | None:
     """Return the verdict on ``prefactors * f(s) * s``."""
     start: Expr = ONE
     front = fold(mul, reduction.prefactors, start)
@@ -82,22 +82,22 @@ def _positive(question: Question) -> frozenset[str]:
     """Return the names that the domain says are positive."""
     return frozenset(
         c.left.name
-        for c in question.where
+        for c in map(greater, question.where)
         if c.op == ">" and isinstance(c.left, Sym) and c.right == ZERO
     )
 
 
 def _domain(question: Question) -> tuple[Cmp, ...]:
     """Return what is assumed of a question besides the conditions of its branch."""
-    return tuple(c for c in question.where if c not in question.branch)
+    return question.where[: len(question.where) - len(question.branch)]
 
 
-def _follows(question: Question, claim: Cmp, solver: Solver) -> bool:
+def _follows(question: Question, claim: Cmp, solver: Asks) -> bool:
     made = Question("", question.order, _domain(question), claim, claim)
     return claim.left == ONE or solver.ask(made.query()).result == "unsat"
 
 
-def _model(question: Question, claim: Cmp, solver: Solver, wanted: set[str]) -> Numbers | None:
+def _model(question: Question, claim: Cmp, solver: Asks, wanted: set[str]) -> Numbers | None:
     """Return simple numbers in the domain at which a claim is false, or None."""
     about = tuple(name for name in question.order if name in wanted)
     original = Cmp(">=", Add((claim.left, *map(Sym, about))), ZERO)  # all of their names
@@ -108,8 +108,9 @@ def _model(question: Question, claim: Cmp, solver: Solver, wanted: set[str]) -> 
     return {name: value for name, value in answer.model.items() if name in question.order}
 
 
-def _tried(question: Question, letter: str, point: Numbers | None) -> Numbers | None:
+def tried(question: Question, letter: str, solver: Asks) -> Numbers | None:
     """Return the first simple numbers at which the law breaks its claim."""
+    point = _model(question, Cmp("<", ONE, ZERO), solver, {*names(question.original)})
     for value in TRIED if point is not None else ():
         numbers = {**(point or {}), letter: value}
         if _breaks(question, numbers):

@@ -164,6 +164,14 @@ def _with_state(condition: Cmp, element: Element, name: str) -> Cmp:
     return Cmp(condition.op, left, right)
 
 
+def greater(condition: Cmp) -> Cmp:
+    """Return a comparison with > or >=, turned round if it has < or <=."""
+    turned = {"<": ">", "<=": ">="}
+    if condition.op not in turned:
+        return condition
+    return Cmp(turned[condition.op], condition.right, condition.left)
+
+
 def condition_text(condition: Cmp) -> str:
     """Return a condition as a reader would write it."""
     return f"{spell(condition.left)} {condition.op} {spell(condition.right)}"

@@ -1,0 +1,80 @@
+"""What has to be shown of a law with branches: that it does not jump where two of them meet.
+
+Input: a law.  Output: an obligation, its questions asked of each pair of branches.  With each <
+read as <=, the conditions of a branch describe a closed part of the domain; the parts cover it.  A
+law that is continuous on each of finitely many closed parts, and agrees with itself where they
+meet, is continuous: the pasting lemma.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import combinations
+
+from piezo_sym.proofs.branches import (
+    Branch,
+    TooManyBranchesError,
+    branches,
+    opposite,
+    with_choices,
+)
+from piezo_sym.proofs.laws import Ground, Law, ask, too_many
+from piezo_sym.proofs.obligations import Meeting, Obligation, Question
+from piezo_sym.spec.calculus import add, neg
+from piezo_sym.spec.expressions import Cmp
+from piezo_sym.spec.text import spell
+
+#: More branches than these are not compared, each with each.
+MOST = 60
+RELAXED = {"<": "<=", ">": ">="}
+
+
+def continuous(law: Law, ground: Ground) -> Obligation | None:
+    """State that a law has no jump; None if it has one branch only, or jumps on purpose."""
+    statement = f"{law.name} has no jump where its branches meet"
+    made = Obligation("continuous", law.element, statement, r"W_k(z^-) = W_k(z^+)", ground.texts)
+    try:
+        found = branches(law.tree)
+    except TooManyBranchesError:
+        return None if law.jumps else replace(made, open_because=too_many(law))
+    if law.jumps or len(found) < 2:
+        return None
+    if len(found) > MOST:
+        reason = f"the law of {law.element} has {len(found)} branches, too many to compare in pairs"
+        return replace(made, open_because=f"{reason}; use fewer kinks")
+    ground, tree = ground.about(law), with_choices(law.tree)
+    questions = [
+        question
+        for one, other in combinations(found, 2)
+        if one.value != other.value
+        for question in _meeting(Meeting(tree, (one, other), ground.where), ground)
+    ]
+    return replace(made, questions=tuple(dict.fromkeys(questions)))
+
+
+def _meeting(meeting: Meeting, ground: Ground) -> Iterator[Question]:
+    """Yield the questions whether two branches have values, and the same, where they meet."""
+    one, other = meeting.sides
+    found: list[Question] = []
+    where, border = ground.where, tuple(_border(one, other))
+    for condition in border:
+        where = (*ask(found, condition, where, ground), condition)
+    where = ask(found, add(one.value, neg(other.value)), where, ground)
+    claim = Cmp("=", one.value, other.value)
+    edge = next(c for c in border if c.op == "=")
+    at = f"{spell(edge.left)} = {spell(edge.right)}"
+    label = f"{spell(one.value)} = {spell(other.value)} at {at}"
+    found.append(Question(label, ground.order, where, claim, claim))
+    for question in found:
+        yield replace(question, branch=border, meeting=meeting)
+
+
+def _border(one: Branch, other: Branch) -> Iterator[Cmp]:
+    """Yield what holds where the closed parts of two branches meet; one comparison is an edge."""
+    for condition in dict.fromkeys((*one.conditions, *other.conditions)):
+        both = condition in one.conditions and opposite(condition) in other.conditions
+        if both:
+            yield Cmp("=", condition.left, condition.right)
+        elif not (condition in other.conditions and opposite(condition) in one.conditions):
+            yield Cmp(RELAXED.get(condition.op, condition.op), condition.left, condition.right)

@@ -1,0 +1,136 @@
+"""The second law as a whole, refuted where one law that takes no power in is driven alone.
+
+Input: a system, and the rows so far.  Output: exact numbers at which ``sigma`` is negative, and its
+value, or None.  A law may be active and the total not: another in parallel may outweigh it.  So the
+whole of ``sigma`` is evaluated, with one lane a bank and every co-state zero but one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from fractions import Fraction
+
+import sympy as sp
+
+from piezo_sym.iphs import IPHS
+from piezo_sym.proofs.exactly import holds
+from piezo_sym.proofs.laws import ground_of
+from piezo_sym.proofs.obligations import Question
+from piezo_sym.proofs.report import Row, Verdict
+from piezo_sym.proofs.solvers import Asks
+from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, Resistor, Source, Storage
+from piezo_sym.spec.expressions import ONE, ZERO, Cmp, Num, Sym
+from piezo_sym.spec.tables import banks, states
+
+Values = Mapping[str, Fraction]
+Found = tuple[dict[str, str], sp.Rational]
+
+
+def negative_total(iphs: IPHS, rows: Iterable[Row], solver: Asks) -> Found | None:
+    """Return numbers at which sigma < 0, found from the laws that are refuted."""
+    sizes = dict.fromkeys(banks(iphs.model), 1)
+    single = iphs.expand(sizes) if sizes else iphs
+    for row in rows:
+        if row.id == "passive" and row.verdict is Verdict.REFUTED and row.witness:
+            lane = "_1" if row.element in sizes else ""
+            given = {_in_lane(n, lane, single): Fraction(v) for n, v in row.witness.items()}
+            found = _driven(single, f"{row.element}{lane}", given, solver)
+            if found:
+                counts = {f"{bank}_count": "1" for bank in sizes}
+                return {**counts, **found[0]}, found[1]
+    return None
+
+
+def _in_lane(name: str, lane: str, iphs: IPHS) -> str:
+    """Return what a name of a bank's law is called in its first lane."""
+    return name + lane if name + lane in iphs.symbols.symbols else name
+
+
+def _driven(iphs: IPHS, element: str, given: Values, solver: Asks) -> Found | None:
+    """Return numbers at which sigma < 0 while all that drives the system drives one element."""
+    processes = [(placed.element, port) for placed, port in iphs.circuit.of(Resistor, Conductor)]
+    k = [name for name, _ in processes].index(element)
+    port = processes[k][1]
+    known = _point(iphs, port, given, solver)
+    if known is None:
+        return None
+    sigma = _named(iphs, iphs.system.sigma)
+    rest = dict.fromkeys(_drives(iphs), sp.S.Zero)
+    named = {iphs.symbols[n]: sp.Rational(v.numerator, v.denominator) for n, v in known.items()}
+    fixed = {symbol: value for symbol, value in named.items() if symbol not in rest}
+    z = _named(iphs, iphs.system.z[k, 0]).xreplace(fixed)
+    for drive in _one_drive(z, rest, given.get(getattr(port, "letter", ""))):
+        values = {**fixed, **rest, **drive}
+        value = sigma.xreplace(values)
+        if value.is_Rational and value < 0 and _allowed(iphs, sigma, values):
+            return {s.name: str(v) for s, v in values.items() if s in sigma.free_symbols}, value
+    return None
+
+
+def _named(iphs: IPHS, expr: sp.Expr) -> sp.Expr:
+    """Return an expression with laws, shares, slopes and ratios written out; co-states stay."""
+    for definitions in (iphs.laws, iphs.shares, iphs.slopes, iphs.ratios):
+        expr = expr.xreplace(dict(definitions))
+    return expr
+
+
+def _point(iphs: IPHS, port: Resistor | Conductor, given: Values, solver: Asks) -> Values | None:
+    """Return simple numbers of the domain, with those given, for parameters and temperatures."""
+    ground, letter = ground_of(iphs), getattr(port, "letter", "")
+    where = [*ground.where]
+    where += [Cmp("=", Sym(n), Num(v)) for n, v in given.items() if n != letter]
+    if isinstance(port, Conductor):
+        hot, cold = (iphs.circuit.body(b).temperature for b in (port.first, port.second))
+        where.append(Cmp(">", Sym(hot), Sym(cold)))
+    wanted = tuple(n for n in ground.order if n not in states(iphs.model))
+    about = tuple(Cmp("=", Sym(n), Sym(n)) for n in wanted)
+    claim = Cmp("<", ONE, ZERO)
+    made = Question("", ground.order, tuple(where), claim, claim, about)
+    answer = solver.ask(made.query())
+    return {n: answer.model[n] for n in wanted} if answer.result == "sat" else None
+
+
+def _drives(iphs: IPHS) -> Iterator[sp.Symbol]:
+    """Yield what drives the processes: co-states that are no temperature, inputs of sources."""
+    yield from (iphs.symbols[port.costate] for _, port in iphs.circuit.of(Storage))
+    exchanged = {port.input for _, port in iphs.circuit.of(Exchange)}
+    for _, port in iphs.circuit.of(Source):
+        if port.input not in exchanged:
+            yield iphs.symbols[port.input]
+
+
+def _one_drive(
+    z: sp.Expr, rest: Mapping[sp.Symbol, sp.Expr], value: Fraction | None
+) -> Iterator[dict[sp.Symbol, sp.Expr]]:
+    """Yield the one co-state or input, and its value, that alone gives z the value of a witness."""
+    if value is None:  # conduction, driven by temperatures
+        yield {}
+        return
+    for symbol in (symbol for symbol in rest if symbol in z.free_symbols):
+        share = z.xreplace({**rest, symbol: sp.S.One}) - z.xreplace(dict(rest))
+        if share.is_Rational and share != 0:
+            yield {symbol: sp.Rational(value.numerator, value.denominator) / share}
+
+
+def _allowed(iphs: IPHS, sigma: sp.Expr, values: Mapping[sp.Symbol, sp.Expr]) -> bool:
+    """Return whether numbers lie in the domain, and every co-state in sigma can have its value."""
+    exact = {s.name: Fraction(int(v.p), int(v.q)) for s, v in values.items()}
+    try:
+        inside = all(holds(condition, exact) for condition in ground_of(iphs).where)
+    except (ArithmeticError, ValueError, KeyError):
+        return False
+    return inside and all(
+        _takes_every_value(iphs, symbol, law)
+        for symbol, law in iphs.costates
+        if symbol in sigma.free_symbols
+    )
+
+
+def _takes_every_value(iphs: IPHS, costate: sp.Symbol, law: sp.Expr) -> bool:
+    """Return whether a co-state is linear in its state, or a temperature exponential in it."""
+    stores = iphs.circuit.of(Storage, Body)
+    owner = {p.temperature if isinstance(p, Body) else p.costate: p for _, p in stores}
+    state = iphs.symbols[owner[costate.name].state]
+    slope = sp.diff(law, state)
+    linear = slope != 0 and state not in slope.free_symbols
+    return linear or (costate.is_positive and state not in (slope / law).free_symbols)

@@ -1,0 +1,51 @@
+"""Conductances with kinks: each branch is asked about, and the row says what holds."""
+
+import pytest
+
+from piezo_sym import derive, verify
+from piezo_sym.proofs import Verdict
+from piezo_sym.spec.load import parse
+
+SPEC = """
+[model]
+name = "m"
+[parameters]
+lam = {{ value = 1.0, unit = "W/K" }}
+c = {{ value = 1.0, unit = "J/K" }}
+T_0 = {{ value = 300.0, unit = "K" }}
+[inputs]
+T_e = {{ unit = "K", default = 300.0 }}
+[domain]
+assume = ["T_e > 0"]
+[elements]
+a = {{ kind = "thermal_mass", temperature = "T_0*exp(S/c)" }}
+b = {{ kind = "thermal_mass", temperature = "T_0*exp(S/c)" }}
+contact = {{ kind = "conduction", between = ["a", "b"], conductance = "{0}" }}
+outside = {{ kind = "ambient", body = "a", conductance = "{0}", input = "T_e" }}
+"""
+ROWS = [("passive", "contact"), ("exergy", ""), ("environment", "")]
+
+
+def rows(law):
+    found = {(r.id, r.element): r for r in verify(derive(parse(SPEC.format(law)))).rows}
+    return [found[name] for name in ROWS]
+
+
+@pytest.mark.parametrize(
+    "law", ["max(lam, 0)", "abs(lam)", "lam if lam > 0 else 0*lam", "lam**2/lam*sign(lam)"]
+)
+def test_a_conductance_that_is_never_negative_is_proved(law):
+    assert {row.verdict for row in rows(law)} == {Verdict.PROVED}
+
+
+@pytest.mark.parametrize("law", ["min(lam, 0)", "lam if lam > -1 else 0*lam", "lam - abs(lam)"])
+def test_one_that_may_be_negative_is_refuted(law):
+    passive, *others = rows(law.replace("-1", "-abs(lam) - abs(lam)"))
+    assert passive.verdict is Verdict.REFUTED
+    assert float(passive.witness["lam"]) < 0
+    assert Verdict.PROVED not in {row.verdict for row in others}
+
+
+def test_too_many_kinks_are_open():
+    law = " + ".join(f"abs(lam - {n}*lam/T_0*T_0)" for n in range(2, 12))
+    assert {row.verdict for row in rows(law)} == {Verdict.OPEN}
