@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from piezo_sym.cli.output import about
+from piezo_sym.errors import UsageError, quote
 
 if TYPE_CHECKING:
     from piezo_sym.spec.model import Model
@@ -38,6 +39,7 @@ def generate(
 
     names = specs or []
     models = [load(spec) for spec in names] or list(shipped_models())
+    _refuse_namesakes(models)
     if check:
         _check(models, names, out, allow_unproved, every or not names)
         return
@@ -47,6 +49,15 @@ def generate(
         with about(spec):
             for path in write(model, out, allow_unproved=allow_unproved):
                 typer.echo(f"{path}")
+
+
+def _refuse_namesakes(models: list[Model]) -> None:
+    """Raise if two models have one name: their files would be the same."""
+    names = [model.name for model in models]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice:
+        what = f"two specs are called {quote(twice)}"
+        raise UsageError(what, "generate", remedy="give each model a name of its own")
 
 
 def _check(

@@ -12,11 +12,15 @@ from xml.etree import ElementTree as ET
 from piezo_sym.version import VERSION
 
 if TYPE_CHECKING:
+    from piezo_sym.errors import PiezoError
     from piezo_sym.proofs.report import Report, Row
 
 
-def junit_xml(reports: Iterable[Report]) -> str:
-    """Return JUnit XML: REFUTED is a failure, OPEN an error, unless it is only information."""
+def junit_xml(reports: Iterable[Report], errors: Iterable[PiezoError] = ()) -> str:
+    """Return JUnit XML: REFUTED is a failure, OPEN an error, unless it is only information.
+
+    A spec that could not be read is a suite of its own, with one error.
+    """
     root = ET.Element("testsuites", name=f"piezo-sym {VERSION}")
     for report in reports:
         failed = [row.verdict.value for row in report.failures]
@@ -30,6 +34,12 @@ def junit_xml(reports: Iterable[Report]) -> str:
         )
         for row in report.rows:
             _case(suite, report, row)
+    for error in errors:
+        suite = ET.SubElement(
+            root, "testsuite", name=error.where or "spec", tests="1", failures="0", errors="1"
+        )
+        case = ET.SubElement(suite, "testcase", classname=error.where or "spec", name="load")
+        ET.SubElement(case, "error", message=str(error), type=type(error).__name__)
     ET.indent(root)
     return ET.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
 

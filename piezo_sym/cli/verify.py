@@ -42,7 +42,7 @@ def verify(
         for report in reports:
             _print(report)
     if junit is not None:
-        write_text(junit, junit_xml(reports))
+        write_text(junit, junit_xml(reports, errors))
     if recheck:
         errors += _rechecked(reports)
     for error in errors[:-1]:

@@ -13,7 +13,8 @@ import sympy as sp
 
 from piezo_sym.algebra.lanes import LaneMatrix
 from piezo_sym.iphs import IPHS
-from piezo_sym.proofs.laws import Ground
+from piezo_sym.proofs.ground import Ground
+from piezo_sym.proofs.laws import ask
 from piezo_sym.proofs.obligations import Obligation, Question, Residual
 from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, Resistor, Source, Storage
 from piezo_sym.spec.expressions import ZERO, Cmp, Sym
@@ -134,6 +135,9 @@ def _cooling(iphs: IPHS, ground: Ground) -> Iterator[Question]:
     """Yield what heat exchange needs: a conductance that is not negative, a T_e above zero."""
     for placed, port in iphs.circuit.of(Exchange):
         warm, conducts = Cmp(">", Sym(port.input), ZERO), Cmp(">=", port.conductance, ZERO)
+        found: list[Question] = []
+        ask(found, port.conductance, ground.where, ground)
+        yield from found
         label = f"{spell(port.conductance)} >= 0 ({placed.element})"
         yield Question(label, ground.order, ground.where, conducts, conducts)
         yield Question(f"{port.input} > 0", ground.order, ground.where, warm, warm)

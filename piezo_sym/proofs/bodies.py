@@ -10,7 +10,8 @@ from dataclasses import replace
 
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.branches import TooManyBranchesError, branches, choices, with_choices
-from piezo_sym.proofs.laws import Ground
+from piezo_sym.proofs.ground import Ground
+from piezo_sym.proofs.laws import ask
 from piezo_sym.proofs.obligations import Obligation, Question
 from piezo_sym.spec.calculus import add, derivative, div, mul, neg
 from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, Resistor
@@ -30,9 +31,16 @@ def temperature(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
         where = (*domain, here) if known else domain
         statement, latex = "T > 0 and dT/dS > 0", r"T > 0,\quad \partial T/\partial S > 0"
         made = Obligation("temperature", placed.element, statement, latex, ground.texts)
+        values: list[Question] = []
         slope = derivative(law, port.state)
         try:
+            for branch in (*branches(law), *branches(slope)):
+                within = where
+                for condition in branch.conditions:
+                    within = (*ask(values, condition, within, ground), condition)
+                ask(values, branch.value, within, ground)
             questions = (
+                *dict.fromkeys(values),
                 *_positive("T > 0", law, where, ground),
                 *_positive("dT/dS > 0", slope, where, ground),
             )
@@ -96,7 +104,7 @@ def _gains(
     contacts: tuple[tuple[Expr, Sym], ...],
     ground: Ground,
 ) -> Iterator[Question]:
-    """Yield that conduction from warmer bodies brings entropy, and heat exchange at least as at m."""
+    """Yield that warmer neighbours bring entropy, and heat exchange at least as much as at m."""
     T, m = Sym(port.temperature), Sym(fresh("m", ground.order))
     for conductance, other in contacts:
         claim = Cmp(">=", mul(conductance, add(div(other, T), neg(ONE))), ZERO)

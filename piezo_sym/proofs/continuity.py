@@ -19,7 +19,8 @@ from piezo_sym.proofs.branches import (
     opposite,
     with_choices,
 )
-from piezo_sym.proofs.laws import Ground, Law, ask, too_many
+from piezo_sym.proofs.ground import Ground, Law
+from piezo_sym.proofs.laws import ask, too_many
 from piezo_sym.proofs.obligations import Meeting, Obligation, Question
 from piezo_sym.spec.calculus import add, neg
 from piezo_sym.spec.expressions import Cmp
@@ -33,7 +34,8 @@ RELAXED = {"<": "<=", ">": ">="}
 def continuous(law: Law, ground: Ground) -> Obligation | None:
     """State that a law has no jump; None if it has one branch only, or jumps on purpose."""
     statement = f"{law.name} has no jump where its branches meet"
-    made = Obligation("continuous", law.element, statement, r"W_k(z^-) = W_k(z^+)", ground.texts)
+    latex = r"W_k(z^-) = W_k(z^+)"
+    made = Obligation("continuous", law.element, statement, latex, ground.texts)
     try:
         found = branches(law.tree)
     except TooManyBranchesError:

@@ -14,10 +14,11 @@ from piezo_sym.algebra.coefficients import coefficient
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import heated
 from piezo_sym.proofs.branches import TooManyBranchesError, branches
-from piezo_sym.proofs.laws import Ground, ask
+from piezo_sym.proofs.ground import Ground
+from piezo_sym.proofs.laws import ask
 from piezo_sym.proofs.obligations import Obligation, Question
 from piezo_sym.spec.elements.ports import Conductor, Coupling, Resistor
-from piezo_sym.spec.expressions import ZERO, Cmp, Expr, rename
+from piezo_sym.spec.expressions import ZERO, Cmp, Expr, Neg, rename
 from piezo_sym.spec.expressions import replace as put
 from piezo_sym.spec.text import spell
 
@@ -33,10 +34,12 @@ def divisors(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
 
 def _obligation(divisor: sp.Expr, words: Mapping[str, Expr], ground: Ground) -> Obligation:
     form = coefficient(divisor)
+    form = form.arg if isinstance(form, Neg) else form
     text = spell(form)
     short = text if len(text) <= MOST_TEXT else f"{text[: MOST_TEXT - 3]}..."
     statement = f"{short} != 0: the junction laws divide by it"
-    made = Obligation("welldef", "", statement, r"\det \ne 0", ground.texts)
+    latex = r"\det \ne 0"
+    made = Obligation("welldef", "", statement, latex, ground.texts)
     found: list[Question] = []
     try:
         for branch in branches(put(form, words)):

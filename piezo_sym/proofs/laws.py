@@ -7,18 +7,19 @@ words of the domain: a state by its symbol, the temperature of the body that is 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from typing import final
+from dataclasses import replace
 
 from piezo_sym.iphs import IPHS
+from piezo_sym.iphs.definitions import costate_name
 from piezo_sym.proofs.branches import (
     MOST,
     TooManyBranchesError,
     branches,
 )
+from piezo_sym.proofs.ground import Ground, Law
 from piezo_sym.proofs.obligations import Obligation, Question, SignOf
 from piezo_sym.proofs.reflection import reflected
-from piezo_sym.spec.calculus import add, mul, neg
+from piezo_sym.spec.calculus import add, derivative, mul, neg
 from piezo_sym.spec.circuit import Placed
 from piezo_sym.spec.elements.ports import (
     Body,
@@ -29,61 +30,49 @@ from piezo_sym.spec.elements.ports import (
     Source,
     Storage,
 )
-from piezo_sym.spec.expressions import ZERO, Call, Cmp, Div, Expr, Node, Num, Pow, Sym, rename, walk
+from piezo_sym.spec.expressions import (
+    ZERO,
+    Call,
+    Cmp,
+    Div,
+    Node,
+    Num,
+    Pow,
+    Sym,
+    names,
+    rename,
+    walk,
+)
 from piezo_sym.spec.tables import condition_text, conditions
 from piezo_sym.spec.text import spell
 
 
-@final
-@dataclass(frozen=True)
-class Law:
-    """A law of an element, in the words of the domain.
+def _forces(iphs: IPHS) -> Iterator[tuple[str, Cmp]]:
+    """Yield for each process that is driven by one co-state what ties its letter to the state.
 
-    Attributes
-    ----------
-    element : whose it is.
-    name : what it gives, such as ``V_hysteron``.
-    tree : the law.
-    letter : of a dissipative law, the letter of its conjugate variable.
-    jumps : whether the spec says that it is discontinuous on purpose.
+    A current phi/L takes every value; it needs no tie, unless the domain speaks of phi.
     """
-
-    element: str
-    name: str
-    tree: Expr
-    letter: str = ""
-    jumps: bool = False
-
-
-@final
-@dataclass(frozen=True)
-class Ground:
-    """What questions about a model may assume, and the order of names in a witness."""
-
-    where: tuple[Cmp, ...]
-    order: tuple[str, ...]
-    texts: tuple[str, ...]
-
-    def about(self, *laws: Law) -> Ground:
-        """Return the ground for questions about laws, whose letters are names too."""
-        letters = dict.fromkeys(law.letter for law in laws if law.letter)
-        return replace(self, order=(*self.order, *letters))
-
-
-def ground_of(iphs: IPHS) -> Ground:
-    """Return the domain of a model, and that temperatures are positive (row ``temperature``)."""
-    trees = tuple(condition.tree for condition in conditions(iphs.model))
-    words = [port.temperature for _, port in iphs.circuit.of(Body)]
-    warm = tuple(Cmp(">", Sym(word), ZERO) for word in words)
-    states = [port.state for _, port in iphs.circuit.of(Storage, Body)]
-    order = (*iphs.model.parameters, *words, *iphs.model.inputs, *states)
-    return Ground((*trees, *warm), order, tuple(map(condition_text, trees)))
+    used = {name for c in conditions(iphs.model) for name in names(c.tree)}
+    stores = {costate_name(port): port for _, port in iphs.circuit.of(Storage, Body)}
+    processes = iphs.circuit.of(Resistor, Conductor)
+    for (placed, port), force in zip(processes, iphs.system.drive, strict=True):
+        store = stores.get(str(getattr(force, "name", "")).removesuffix("_j"))
+        if isinstance(port, Resistor) and isinstance(store, Storage):
+            bent = store.letter in names(derivative(store.law, store.letter))
+            if bent or store.state in used:
+                law = rename(store.law, {store.letter: store.state})
+                yield placed.element, Cmp("=", Sym(port.letter), law)
 
 
 def laws_of(iphs: IPHS) -> tuple[Law, ...]:
     """Return every law of a model, in declaration order."""
     heat = {placed.element: port.temperature for placed, port in iphs.circuit.of(Body)}
-    return tuple(law for placed in iphs.circuit.ports if (law := _law(iphs, placed, heat)))
+    ties = dict(_forces(iphs))
+    found = [law for placed in iphs.circuit.ports if (law := _law(iphs, placed, heat))]
+    return tuple(
+        replace(law, ties=(ties[law.element],)) if law.letter and law.element in ties else law
+        for law in found
+    )
 
 
 def _law(iphs: IPHS, placed: Placed, heat: dict[str, str]) -> Law | None:
@@ -165,6 +154,7 @@ def passive(law: Law, ground: Ground) -> Obligation:
         f"{power} >= 0",
         r"W_k z_k \ge 0",
         ground.texts,
+        rests_on=(("welldef", law.element),),
         sign=SignOf(law.tree, law.letter),
     )
     original = Cmp(">=", mul(law.tree, Sym(law.letter)), ZERO)
@@ -193,9 +183,10 @@ def conducts(law: Law, ground: Ground) -> Obligation:
     claim = Cmp(">=", law.tree, ZERO)
     question = Question(f"{spell(law.tree)} >= 0", ground.order, ground.where, claim, claim)
     statement = f"{spell(law.tree)} >= 0: heat flows from warm to cold"
-    return Obligation(
-        "passive", law.element, statement, r"\lambda \ge 0", ground.texts, questions=(question,)
-    )
+    made = Obligation("passive", law.element, statement, r"\lambda \ge 0", ground.texts)
+    found: list[Question] = []
+    ask(found, law.tree, ground.where, ground)
+    return replace(made, questions=(*found, question))
 
 
 def odd(law: Law, ground: Ground) -> Obligation:
@@ -207,6 +198,7 @@ def odd(law: Law, ground: Ground) -> Obligation:
         f"{law.name}(-{law.letter}) = -{law.name}({law.letter})",
         "W_k(-z_k) = -W_k(z_k)",
         ground.texts,
+        rests_on=(("welldef", law.element),),
         letter=law.letter,
         required=False,
     )

@@ -14,14 +14,16 @@ from fractions import Fraction
 import sympy as sp
 
 from piezo_sym.iphs import IPHS
+from piezo_sym.proofs.branches import TooManyBranchesError
 from piezo_sym.proofs.exactly import holds, value_of
+from piezo_sym.proofs.ground import Ground
 from piezo_sym.proofs.jumps import jumps
 from piezo_sym.proofs.obligations import Obligation, Question, Residual
 from piezo_sym.proofs.report import Row, Verdict
-from piezo_sym.proofs.solvers import Answer, Asks
+from piezo_sym.proofs.solvers import Answer, Asks, opinions
 from piezo_sym.proofs.total import negative_total
 from piezo_sym.proofs.whole import tried, whole_sign
-from piezo_sym.spec.expressions import ONE, ZERO, Cmp, Expr, names
+from piezo_sym.spec.expressions import ONE, ZERO, Cmp, Expr
 from piezo_sym.spec.text import spell
 
 #: Lanes a refutation is written out for; one lane hides what couples two.
@@ -35,17 +37,24 @@ Found = tuple[Verdict, Mapping[str, str] | None, str]
 Decided = tuple[Verdict, Mapping[str, str] | None, str, str]
 
 
-def prove(obligation: Obligation, iphs: IPHS, before: Iterable[Row], solver: Asks) -> Row:
+def prove(
+    obligation: Obligation, iphs: IPHS, before: Iterable[Row] = (), solver: Asks | None = None
+) -> Row:
     """Return the verdict on one obligation.
 
     Parameters
     ----------
-    obligation : what to show.
+    obligation : what to show; from `obligations`.
     iphs : the system it is about.
-    before : the verdicts so far, with those of what it rests on.
-    solver : for its questions.
+    before : the verdicts so far, with those of what it rests on; without them it stays open.
+    solver : for its questions; z3, and cvc5 where z3 does not know, if none is given.
     """
-    verdict, witness, reason, method = _decide(obligation, iphs, tuple(before), solver)
+    try:
+        asked = solver or opinions()
+        verdict, witness, reason, method = _decide(obligation, iphs, tuple(before), asked)
+    except TooManyBranchesError:
+        reason = "the domain or a law has too many branches; use fewer kinks"
+        verdict, witness, method = Verdict.OPEN, None, "branches"
     return Row(
         obligation.id,
         obligation.element,
@@ -56,6 +65,18 @@ def prove(obligation: Obligation, iphs: IPHS, before: Iterable[Row], solver: Ask
         obligation.required,
         method,
     )
+
+
+def nothing_inside(ground: Ground, solver: Asks) -> str:
+    """Return what to say of a domain that no point is in; everything would be true there."""
+    never = Cmp("<", ONE, ZERO)
+    question = Question("the domain is empty", ground.order, ground.where, never, never, whole=True)
+    try:
+        empty = solver.ask(question.query()).result == "unsat"
+    except TooManyBranchesError:
+        return ""
+    conditions = ", ".join(ground.texts)
+    return f"no point is in the domain, where all is true: {conditions}" if empty else ""
 
 
 def _decide(obligation: Obligation, iphs: IPHS, before: tuple[Row, ...], solver: Asks) -> Decided:
@@ -214,6 +235,7 @@ def _broken(question: Question, values: Mapping[str, Fraction]) -> Found:
     reason = f"{spell(left)} = {_value(left, values)}"
     if question.original.op == "=":
         reason = f"{question.label} is false: {_value(left, values)} and {_value(right, values)}"
+        reason += "; a law that jumps on purpose says discontinuous = true" * bool(question.meeting)
     return Verdict.REFUTED, {name: str(value) for name, value in values.items()}, reason
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from itertools import zip_longest
 
 from piezo_sym.proofs.branches import TooManyBranchesError
 from piezo_sym.proofs.obligations import Obligation
@@ -55,12 +56,12 @@ def queries(obligation: Obligation) -> Iterator[Query]:
 
 def proofs_json(report: Report, model: Model, made: str) -> str:
     """Return every obligation of a report and its verdict, as JSON."""
-    known = {(o.id, o.element): o for o in report.obligations}
+    entries = zip_longest(report.rows, report.obligations)  # units have rows alone
     content = {
         "made": made,
         "model": report.model,
         "spec_sha256": model.sha256,
-        "obligations": [_entry(row, known.get((row.id, row.element))) for row in report.rows],
+        "obligations": [_entry(row, obligation) for row, obligation in entries],
     }
     return json.dumps(content, indent=1) + "\n"
 

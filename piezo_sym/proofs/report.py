@@ -113,9 +113,10 @@ class Report:
     def __str__(self) -> str:
         """Return the verdicts as lines of text."""
         lines = [f"{self.model}: {self.summary()}"]
-        lines += [
-            f"  {r.verdict.value:8} {r.id:12} {r.element:12} {r.statement}" for r in self.rows
-        ]
+        for row in self.rows:
+            at = ", ".join(f"{name} = {value}" for name, value in (row.witness or {}).items())
+            lines.append(f"  {row.verdict.value:8} {row.id:12} {row.element:12} {row.statement}")
+            lines += [f"           {row.reason}{f' at {at}' if at else ''}"] if row.reason else []
         return "\n".join(lines)
 
     __repr__ = __str__

@@ -14,7 +14,7 @@ import sympy as sp
 
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.exactly import holds
-from piezo_sym.proofs.laws import ground_of
+from piezo_sym.proofs.ground import ground_of
 from piezo_sym.proofs.obligations import Question
 from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.proofs.solvers import Asks

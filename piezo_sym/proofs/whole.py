@@ -19,8 +19,8 @@ from piezo_sym.proofs.report import Verdict
 from piezo_sym.proofs.signs import Reduction, decide_sign, reduce
 from piezo_sym.proofs.solvers import Asks
 from piezo_sym.spec.calculus import mul
-from piezo_sym.spec.tables import greater
 from piezo_sym.spec.expressions import ONE, ZERO, Add, Cmp, Expr, Neg, Sym, names
+from piezo_sym.spec.tables import greater
 
 #: Values of a letter that are tried against a law, in this order.
 TRIED = tuple(

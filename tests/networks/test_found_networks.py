@@ -4,7 +4,8 @@ import pytest
 from agreement import DERIVED, REFUSED, check
 
 from piezo_sym import derive
-from piezo_sym.errors import NetworkError
+from piezo_sym.errors import NetworkError, PiezoError
+from piezo_sym.spec.load import parse
 from piezo_sym.spec.model import Model
 
 BODY = {"kind": "thermal_mass", "temperature": "T_0*exp(S/c)"}
@@ -66,3 +67,41 @@ def test_a_network_without_a_reference_is_refused():
         "coil": {"kind": "inductor", "between": ["a", "b"], "inductance": "C"},
     }
     assert check(spec(elements)) == REFUSED
+
+
+JUMP = """
+[model]
+name = "jump"
+[parameters]
+R = { value = 2.0, unit = "ohm" }
+V_c = { value = 1.0, unit = "V" }
+C = { value = 0.1, unit = "F" }
+T_0 = { value = 300.0, unit = "K" }
+c = { value = 2.0, unit = "J/K" }
+[inputs]
+V = { unit = "V" }
+[elements]
+body = { kind = "thermal_mass", temperature = "T_0*exp(S/c)" }
+supply = { kind = "voltage_source", between = ["in", "gnd"], input = "V" }
+store = { kind = "capacitor", between = ["n", "gnd"], capacitance = "C" }
+"""
+
+
+@pytest.mark.parametrize("law", ["R*i + V_c*sign(i)", "R*i + V_c if i > 0 else R*i"])
+def test_a_law_with_a_jump_is_not_turned_round_as_if_it_were_linear(law):
+    text = (
+        f'r = {{ kind = "resistor", between = ["in", "n"], voltage = "{law}", heats = "body" }}\n'
+    )
+    with pytest.raises(PiezoError, match="give"):
+        derive(parse(JUMP + text))
+
+
+@pytest.mark.parametrize("law", ["R*i + V_c*sign(i)", "R*i + V_c if i > 0 else R*i"])
+def test_a_law_with_a_jump_is_not_solved_in_a_loop_as_if_it_were_linear(law):
+    text = f"""
+first = {{ kind = "resistor", between = ["in", "n"], current = "v/R", heats = "body" }}
+second = {{ kind = "resistor", between = ["n", "m"], current = "v/R", heats = "body" }}
+third = {{ kind = "resistor", between = ["m", "gnd"], voltage = "{law}", heats = "body" }}
+"""
+    with pytest.raises(PiezoError, match="determine each other's flow"):
+        derive(parse(JUMP + text))

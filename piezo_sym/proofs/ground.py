@@ -1,0 +1,104 @@
+"""What may be assumed of a model: its domain, that temperatures are positive, what ties names.
+
+Input: an `IPHS`.  Output: a `Ground`; and the `Law` records that questions are about.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import final
+
+from piezo_sym.iphs import IPHS
+from piezo_sym.proofs.branches import TooManyBranchesError
+from piezo_sym.proofs.obligations import Obligation
+from piezo_sym.spec.elements.ports import Body, Storage
+from piezo_sym.spec.expressions import ZERO, Call, Cmp, Div, Expr, Mul, Sym, names, rename
+from piezo_sym.spec.tables import condition_text, conditions
+
+
+@final
+@dataclass(frozen=True)
+class Law:
+    """A law of an element, in the words of the domain.
+
+    Attributes
+    ----------
+    element : whose it is.
+    name : what it gives, such as ``V_hysteron``.
+    tree : the law.
+    letter : of a dissipative law, the letter of its conjugate variable.
+    jumps : whether the spec says that it is discontinuous on purpose.
+    ties : what its letter is as a function of a state, where not every value is taken.
+    """
+
+    element: str
+    name: str
+    tree: Expr
+    letter: str = ""
+    jumps: bool = False
+    ties: tuple[Cmp, ...] = ()
+
+
+@final
+@dataclass(frozen=True)
+class Ground:
+    """What questions about a model may assume, and the order of names in a witness.
+
+    Attributes
+    ----------
+    where : the domain, that temperatures are positive, and what ties names to states.
+    order : names, in the order in which a witness should be simple.
+    texts : the domain, as text.
+    warm : each temperature, and the obligation that it is positive.
+    """
+
+    where: tuple[Cmp, ...]
+    order: tuple[str, ...]
+    texts: tuple[str, ...]
+    warm: tuple[tuple[str, tuple[str, str]], ...] = ()
+
+    def about(self, *laws: Law) -> Ground:
+        """Return the ground for questions about laws, whose letters are names too."""
+        letters = dict.fromkeys(law.letter for law in laws if law.letter)
+        ties = [tie for law in laws for tie in law.ties]
+        return replace(self, order=(*self.order, *letters), where=(*self.where, *ties))
+
+
+def ground_of(iphs: IPHS) -> Ground:
+    """Return the domain of a model, and that temperatures are positive (row ``temperature``)."""
+    trees = tuple(condition.tree for condition in conditions(iphs.model))
+    placed = tuple(iphs.circuit.of(Body))
+    words = [port.temperature for _, port in placed]
+    warm = tuple(Cmp(">", Sym(word), ZERO) for word in words)
+    states = [port.state for _, port in iphs.circuit.of(Storage, Body)]
+    order = (*iphs.model.parameters, *words, *iphs.model.inputs, *states)
+    rows = tuple((port.temperature, ("temperature", body.element)) for body, port in placed)
+    used = {name for tree in trees for name in names(tree)}
+    ties = tuple(
+        Cmp("=", Sym(port.temperature), rename(port.law, {port.letter: port.state}))
+        for _, port in placed
+        if port.state in used or not _is_exponential(port.law)
+    )
+    return Ground((*trees, *warm, *ties), order, tuple(map(condition_text, trees)), rows)
+
+
+def _is_exponential(law: Expr) -> bool:
+    """Return whether a temperature takes every positive value: a constant times exp(S/c)."""
+    match law:
+        case Mul(Sym(), Call("exp", (Div(Sym(), _) | Sym(),))):
+            return True
+    return False
+
+
+def on_warm_bodies(obligation: Obligation, ground: Ground) -> Obligation:
+    """Return an obligation that rests on the temperatures its questions speak of."""
+    if obligation.id == "temperature":
+        return obligation
+    used: set[str] = set()
+    for question in obligation.questions:
+        try:
+            used |= {*question.query().variables}
+        except TooManyBranchesError:
+            used |= {word for word, _ in ground.warm}
+    rows = tuple(row for word, row in ground.warm if word in used)
+    return replace(obligation, rests_on=(*obligation.rests_on, *rows))
