@@ -94,7 +94,8 @@ def _domain(question: Question) -> tuple[Cmp, ...]:
 
 def _follows(question: Question, claim: Cmp, solver: Asks) -> bool:
     made = Question("", question.order, _domain(question), claim, claim)
-    return claim.left == ONE or solver.ask(made.query()).result == "unsat"
+    answers = (solver.ask(part.query()).result for part in made.smooth())
+    return claim.left == ONE or all(answer == "unsat" for answer in answers)
 
 
 def _model(question: Question, claim: Cmp, solver: Asks, wanted: set[str]) -> Numbers | None:
@@ -102,10 +103,12 @@ def _model(question: Question, claim: Cmp, solver: Asks, wanted: set[str]) -> Nu
     about = tuple(name for name in question.order if name in wanted)
     original = Cmp(">=", Add((claim.left, *map(Sym, about))), ZERO)  # all of their names
     made = Question("", question.order, _domain(question), claim, original)
-    answer = solver.ask(made.query())
-    if answer.result != "sat":
-        return None
-    return {name: value for name, value in answer.model.items() if name in question.order}
+    for part in made.smooth():
+        answer = solver.ask(part.query())
+        if answer.result == "sat":
+            found = answer.model.items()
+            return {name: value for name, value in found if name in question.order}
+    return None
 
 
 def tried(question: Question, letter: str, solver: Asks) -> Numbers | None:
