@@ -76,9 +76,10 @@ def _rechecked(reports: list[Report]) -> list[PiezoError]:
     errors: list[PiezoError] = []
     for report in reports:
         asked, found = compare(report)
-        typer.echo(
-            f"{report.model}: cvc5 agrees on {asked - len(found)} of {asked} queries", err=True
-        )
+        agreed = f"cvc5 agrees on {asked - len(found)} of {asked} queries"
+        whole = sum(row.method == "intervals" for row in report.rows)
+        agreed += f"; rows decided by intervals, without a query: {whole}" if whole else ""
+        typer.echo(f"{report.model}: {agreed}", err=True)
         if found:
             first = found[0]
             said = f"z3 says {first.answers[0]}, cvc5 says {first.answers[1]}"

@@ -94,3 +94,12 @@ def test_junit_keeps_information_apart(call, spec_file, tmp_path):
     case = next(case for case in suite if case.get("name") == "odd hysteron")
     assert case.find("skipped").get("message").startswith("information: REFUTED: ")
     assert (suite.get("failures"), suite.get("errors")) == ("0", "0")
+
+
+def test_rows_without_a_query_are_counted_apart(call, spec_file):
+    law = "rho/(T - T_0)*(i + 4*i_0*sin(i/i_0))"
+    path = spec_file("rho/(T - T_0)*deadzone(i, i_0)", law)
+    path.write_text(path.read_text().replace('"i_0 >= 0"', '"i_0 > 0"'), encoding="utf-8")
+    answer = call("verify", path, "--recheck")
+    assert answer.code == 0
+    assert "; rows decided by intervals, without a query: 1" in answer.err
