@@ -30,12 +30,12 @@ typedef struct {
 long MODEL(room)(const MODEL(model) *m);
 long MODEL(room)(const MODEL(model) *m)
 {
-    return 2 * m->n + MODEL(newton_size)(m->p) + m->rows;
+    return 3 * m->n + MODEL(newton_size)(m->p) + m->rows;
 }
 
 static double *MODEL(means_of)(const MODEL(model) *m)
 {
-    return m->space + 2 * m->n + MODEL(newton_size)(m->p);
+    return m->space + 3 * m->n + MODEL(newton_size)(m->p);
 }
 
 /* Add h times the means of a step to the ledger, with compensation for what rounding loses. */
@@ -52,28 +52,28 @@ static void MODEL(book)(const MODEL(model) *m, const MODEL(path) *path, double h
 }
 
 /*
- * Newton's method for the state y after a step; whether it converged inside the domain.  It stops
- * when the last change was 1e-9 of the step's, or, since its error falls quadratically, when the
- * next one would be 1e-15 of it.
+ * Newton's method for the state y after a step; whether it converged inside the domain.  A change is
+ * measured in 1e-9 of the step's.  It stops when the last one was less, or, since its error falls
+ * quadratically, when the next one would be 1e-15 of the step's.
  */
 static int MODEL(root)(MODEL(model) *m, const double *restrict x, double *restrict y,
                        const double *u, double h)
 {
-    double *restrict change = m->space + 2 * m->n;
+    double *restrict change = m->space + 3 * m->n, *restrict weight = m->space + m->n;
     double before = 0.0;
     for (int iteration = 0; iteration < MOST_ITERATIONS; ++iteration) {
-        double worst = 0.0, share = 1.0;
+        double size = 0.0, share = 1.0;
         ++m->iterations;
         if (!MODEL(newton)(x, y, u, h, m->p, change))
             return 0;
-        for (long i = 0; i < m->n; ++i) {
-            const double after = y[i] - change[i];
-            const double size = 1e-9 * fabs(after - x[i]) + 1e-15 * fabs(x[i]) + 1e-300;
-            const double ratio = fabs(change[i]) / size;
-            worst = ratio <= worst ? worst : ratio; /* and if it is no number */
-            y[i] = after;
-        }
-        if (!(worst < 1e300))
+        for (long i = 0; i < m->n; ++i)
+            y[i] -= change[i];
+        if (iteration == 0)
+            for (long i = 0; i < m->n; ++i)
+                weight[i] = 1.0 / (1e-9 * fabs(y[i] - x[i]) + 1e-15 * fabs(x[i]) + 1e-300);
+        for (long i = 0; i < m->n; ++i)
+            size += (change[i] * weight[i]) * (change[i] * weight[i]);
+        if (!(size < 1e300))
             return 0;
         for (int k = 0; !MODEL(inside)(y, u, m->p); ++k) { /* back towards where it came from */
             if (k == MOST_SHARES)
@@ -82,9 +82,9 @@ static int MODEL(root)(MODEL(model) *m, const double *restrict x, double *restri
             for (long i = 0; i < m->n; ++i)
                 y[i] += share * change[i];
         }
-        if (share == 1.0 && (worst <= 1.0 || worst * worst * worst <= 1e-6 * before * before))
+        if (share == 1.0 && (size <= 1.0 || size * size * size <= 1e-12 * before * before))
             return 1;
-        before = share == 1.0 ? worst : 0.0;
+        before = share == 1.0 ? size : 0.0;
     }
     return 0;
 }
@@ -127,7 +127,7 @@ static int MODEL(step)(MODEL(model) *m, MODEL(path) *path, const double *u, doub
                 MODEL(accepted)(m, path->x, y, u);
     }
     if (!found) {
-        double *before = m->space + m->n;
+        double *before = m->space + 2 * m->n;
         if (depth == MOST_HALVINGS)
             return 0;
         ++m->halvings;
@@ -269,7 +269,7 @@ long MODEL(adapt)(MODEL(model) *m, MODEL(pair) *pair, long intervals, const doub
             memcpy(out_fine + sample[k] * m->n, fine, (size_t)m->n * sizeof(double));
             memcpy(out_sums + sample[k] * m->rows, pair->fine.sums, (size_t)m->rows * sizeof(double));
         }
-        if (worst < 0.3 && pair->level > 0) /* half as many steps and more give 2.25 times that */
+        if (worst < 0.05 && pair->level > 0) /* half as many steps and more give 2.25 times that */
             --pair->level;
     }
     return intervals;
