@@ -30,12 +30,12 @@ typedef struct {
 long MODEL(room)(const MODEL(model) *m);
 long MODEL(room)(const MODEL(model) *m)
 {
-    return 3 * m->n + MODEL(newton_size)(m->p) + m->rows;
+    return 2 * m->n + MODEL(newton_size)(m->p) + m->rows;
 }
 
 static double *MODEL(means_of)(const MODEL(model) *m)
 {
-    return m->space + 3 * m->n + MODEL(newton_size)(m->p);
+    return m->space + 2 * m->n + MODEL(newton_size)(m->p);
 }
 
 /* Add h times the means of a step to the ledger, with compensation for what rounding loses. */
@@ -59,21 +59,21 @@ static void MODEL(book)(const MODEL(model) *m, const MODEL(path) *path, double h
 static int MODEL(root)(MODEL(model) *m, const double *restrict x, double *restrict y,
                        const double *u, double h)
 {
-    double *restrict change = m->space + 3 * m->n, *restrict weight = m->space + m->n;
+    double *restrict change = m->space + 2 * m->n;
     double before = 0.0;
     for (int iteration = 0; iteration < MOST_ITERATIONS; ++iteration) {
-        double size = 0.0, share = 1.0;
+        double worst = 0.0, share = 1.0;
         ++m->iterations;
         if (!MODEL(newton)(x, y, u, h, m->p, change))
             return 0;
-        for (long i = 0; i < m->n; ++i)
-            y[i] -= change[i];
-        if (iteration == 0)
-            for (long i = 0; i < m->n; ++i)
-                weight[i] = 1.0 / (1e-9 * fabs(y[i] - x[i]) + 1e-15 * fabs(x[i]) + 1e-300);
-        for (long i = 0; i < m->n; ++i)
-            size += (change[i] * weight[i]) * (change[i] * weight[i]);
-        if (!(size < 1e300))
+        for (long i = 0; i < m->n; ++i) {
+            const double after = y[i] - change[i];
+            const double size = 1e-9 * fabs(after - x[i]) + 1e-15 * fabs(x[i]) + 1e-300;
+            const double ratio = fabs(change[i]) / size;
+            worst = ratio <= worst ? worst : ratio; /* and if it is no number */
+            y[i] = after;
+        }
+        if (!(worst < 1e300))
             return 0;
         for (int k = 0; !MODEL(inside)(y, u, m->p); ++k) { /* back towards where it came from */
             if (k == MOST_SHARES)
@@ -82,9 +82,9 @@ static int MODEL(root)(MODEL(model) *m, const double *restrict x, double *restri
             for (long i = 0; i < m->n; ++i)
                 y[i] += share * change[i];
         }
-        if (share == 1.0 && (size <= 1.0 || size * size * size <= 1e-12 * before * before))
+        if (share == 1.0 && (worst <= 1.0 || worst * worst * worst <= 1e-6 * before * before))
             return 1;
-        before = share == 1.0 ? size : 0.0;
+        before = share == 1.0 ? worst : 0.0;
     }
     return 0;
 }
@@ -127,7 +127,7 @@ static int MODEL(step)(MODEL(model) *m, MODEL(path) *path, const double *u, doub
                 MODEL(accepted)(m, path->x, y, u);
     }
     if (!found) {
-        double *before = m->space + 2 * m->n;
+        double *before = m->space + m->n;
         if (depth == MOST_HALVINGS)
             return 0;
         ++m->halvings;
