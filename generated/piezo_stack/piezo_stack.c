@@ -462,6 +462,8 @@ static double ramp_by_new(double a, double b)
     return low >= 0.0 ? 0.5 : b > a ? share - 0.5 * share * share : 0.5 * share * share;
 }
 
+/* The step of the discrete gradient, of one state or of many side by side. */
+
 long piezo_stack_newton_size(const piezo_stack_parameters *restrict p_)
 {
     const long hysteron_count = p_->hysteron_count;
@@ -628,12 +630,6 @@ int piezo_stack_newton(const double *restrict x,
     const double change_Q_C = (right_change_Q_C - entry_change_Q_C_4*change_S)*per_pivot_change_Q_C;
     const double change_p = (right_change_p - entry_change_p_3*change_Q_C - entry_change_p_4*change_S)*per_pivot_change_p;
     const double change_q = gap_q - entry_change_q_2*change_p;
-    if (!(pivot_change_p > 0.0))
-        return 0;
-    if (!(pivot_change_Q_C > 0.0))
-        return 0;
-    if (!(pivot_change_S > 0.0))
-        return 0;
     out[0] = change_q;
     out[1] = change_p;
     out[2] = change_Q_C;
@@ -643,7 +639,7 @@ int piezo_stack_newton(const double *restrict x,
     for (long j = 0; j < hysteron_count; ++j) {
         out[3 + j] -= kept_reaction_phi_3[j]*change_Q_C + kept_reaction_phi_4[j]*change_S;
     }
-    return 1;
+    return (pivot_change_p > 0.0) & (pivot_change_Q_C > 0.0) & (pivot_change_S > 0.0);
 }
 
 void piezo_stack_means(const double *restrict x,
@@ -717,5 +713,5 @@ int piezo_stack_inside(const double *restrict x,
     const long hysteron_count = p_->hysteron_count;
     const double S = x[3 + hysteron_count];
     const double margin_1_ = S;
-    return margin_1_ > 0.0;
+    return (margin_1_ > 0.0);
 }

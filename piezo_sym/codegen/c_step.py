@@ -21,6 +21,9 @@ from piezo_sym.codegen.step import Step
 from piezo_sym.spec.expressions import Call, Div, Expr, Mul, Sym, names
 from piezo_sym.spec.names import fresh
 
+#: Opens the part of a source that also holds where `double` stands for a vector of many states'
+#: numbers: no conditions of C, no constants without type.
+STEP = "/* The step of the discrete gradient, of one state or of many side by side. */"
 #: The functions of a step: what each returns, and its arguments.
 HEADS = {
     "newton_size": ("long", ("p",)),
@@ -35,7 +38,7 @@ def c_step(program: Program, step: Step) -> tuple[str, str]:
     printer = _Printer(program, step)
     functions = [printer.newton_size(), printer.newton(), printer.means(), printer.inside()]
     text = "\n".join(functions)
-    return "\n\n".join([*step_helpers(text), *functions]), printer.declarations()
+    return "\n\n".join([*step_helpers(text), STEP, *functions]), printer.declarations()
 
 
 @final
@@ -74,7 +77,7 @@ class _Printer:
         fields = (*program.parameters, *whole.states)
         arrays = {field.name: field.bank for field in fields if field.bank}
         self.lanes = {**whole.lane_names()}
-        self.lines = Words(self.names, arrays, self.words["j"])
+        self.lines = Words(self.names, arrays, self.words["j"], picked=True)
         slots = [Slot(field.name, field.bank) for field in program.states]
         self.states = places(slots, "end", whole.taken)
 
@@ -99,13 +102,12 @@ class _Printer:
         roots = [*step.pivots, *unknowns, *(step.changes[n].free for n in shared)]
         body = [f"double *restrict {k.array} = {k.place};" for k in kept]
         body += self._stages(roots, writes)
-        for pivot in step.pivots:
-            body += [f"if (!({self.lines.text(pivot)} > 0.0))", "    return 0;"]
         for n in shared:
             body += statement(f"{out}[{self._row(n)}] =", step.changes[n].free, self.lines)
         for n in lanes:
             body += self._lane_change(n, [k for k in kept if k.state == n])
-        return self._function("newton", body, last="return 1;")
+        solved = [f"({self.lines.text(pivot)} > 0.0)" for pivot in step.pivots]
+        return self._function("newton", body, last=f"return {' & '.join(solved) or '1'};")
 
     def _kept(self) -> Iterator[_Kept]:
         """Yield what lanes have to remember, and where."""
@@ -161,13 +163,13 @@ class _Printer:
                 body.append(f"double {name};")
             target = name if bank else f"const double {name}"
             writes.append(Write(target, margin, bank, "min" if bank else "="))
-            parts.append(f"{name} {'>' if limit.strict else '>='} 0.0")
+            parts.append(f"({name} {'>' if limit.strict else '>='} 0.0)")
         for stage in stages(quantities, writes, self.program.counts):
             body += stage_lines(stage, plain)
         for write in writes:
             if not write.bank:
                 body += statement(f"{write.target} =", write.value, plain)
-        last = f"return {' && '.join(parts) or '1'};"
+        last = f"return {' & '.join(parts) or '1'};"
         return self._function("inside", body, last=last)
 
     def declarations(self) -> str:

@@ -20,6 +20,7 @@ from piezo_sym.files import path_text
 from piezo_sym.run.engine.compiler import FLAGS, Compiler, build, compilers
 from piezo_sym.run.engine.driver import driver
 from piezo_sym.run.engine.processor import processor
+from piezo_sym.run.engine.vector import wide_text
 
 ENDINGS = {"win32": ".dll", "darwin": ".dylib"}
 
@@ -27,16 +28,20 @@ ENDINGS = {"win32": ".dll", "darwin": ".dylib"}
 @final
 @dataclass(frozen=True)
 class Sources:
-    """The texts of one module: its name, ``<name>.h``, ``<name>.c``."""
+    """The texts of one module: its name, ``<name>.h``, ``<name>.c``; whether for members side by side."""
 
     name: str
     header: str
     source: str
+    wide: bool = False
 
     def files(self) -> dict[str, str]:
         """Return what to compile, by file name."""
         texts = {f"{self.name}.h": self.header, f"{self.name}.c": self.source}
-        return {**texts, "driver.c": driver(self.name)}
+        text = driver(self.name)
+        if self.wide:
+            text += wide_text(self.name, self.header, self.source)
+        return {**texts, "driver.c": text}
 
 
 def library(sources: Sources, *, again: bool = False) -> Path:

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from piezo_sym.run.checks import FloatArray
     from piezo_sym.run.engine.engine import Engine
 
+#: Members of more states are computed one by one: then the lanes of their banks fill the vectors.
+MOST_STATES = 32
+MODES = {"survey": 0, "march": 1, "adapt": 2}
 POINTER, LONG, DOUBLE = ctypes.c_void_p, ctypes.c_long, ctypes.c_double
 
 
@@ -52,6 +55,7 @@ class Member(ctypes.Structure):
         *((name, Path) for name in ("fine", "coarse", "trial")),
         *((name, POINTER) for name in ("kept", "tolerance", "out_x", "out_fine", "out_sums")),
         *((name, LONG) for name in ("level", "done", "steps", "failed")),
+        ("worst", DOUBLE),
     ]
 
 
@@ -116,6 +120,7 @@ class Batch:
         self._ledgers = np.zeros((size, 2, ledger))
         self._kept = np.zeros((size, n + 2 * ledger))
         self.members = (Member * size)(*map(self._member, range(size)))
+        self._wide, self._vectors = self._side_by_side(engine)
 
     def __len__(self) -> int:
         """Return the number of members."""
@@ -154,9 +159,29 @@ class Batch:
         block.u = ctypes.cast(pointers, POINTER)
         for member in () if again else self.members:
             member.done = 0
-        function = self._function(name)
-        function(self.members, LONG(len(self.members)), ctypes.byref(block))
+        arguments = (self.members, LONG(len(self.members)), ctypes.byref(block))
+        if self._wide is None:
+            self._function(name)(*arguments)
+        else:
+            self._wide(*arguments, ctypes.c_int(MODES[name]), at(self._vectors))
         return [member.done for member in self.members]
+
+    def _side_by_side(self, engine: Engine) -> tuple[Any, FloatArray]:
+        """Return the function that runs members side by side, and its room; None for few members."""
+        library = (
+            engine.side_by_side() if len(self.members) > 1 and self.rows.n <= MOST_STATES else None
+        )
+        if library is None:
+            return None, np.empty(0)
+        width = LONG.in_dll(library, f"{self._name}_width").value
+        size = getattr(library, f"{self._name}_wide_size")
+        size.restype = LONG
+        room = size(ctypes.byref(self.members[0].model)) * width
+        numbers = np.zeros(room + width)
+        skipped = -numbers.ctypes.data % (8 * width) // 8  # vectors have to be aligned
+        function = getattr(library, f"{self._name}_run_wide")
+        function.restype = None
+        return function, numbers[skipped : skipped + room]
 
     def _member(self, k: int) -> Member:
         changes, ledger = self._changes[k], self._ledgers[k]
