@@ -56,12 +56,12 @@ def simulate(
 ) -> xarray.Dataset:
     """Run a generated module from t = 0 and return all its quantities over time.
 
-    The method is the discrete gradient, compiled, unless another is named. It closes both balances
-    to round-off at every step, and holds the error that one interval adds to a state below 5 rtol
-    of the largest magnitude of that state in the run (for a bank: of any of its lanes). States are
-    extrapolated from two runs, which makes them better than that, about rtol at the end; the
-    ledger is the finer run's, exact for it. Errors that a system amplifies are not held. With
-    `step`, one run of that step; its error falls with the square of the step.
+    The method is the discrete gradient, compiled, unless another is named. Both its balances close
+    to round-off at every step. With `rtol` there are two runs, one with steps of half the length;
+    what an interval adds to the error of the finer run's states is held below 5 rtol of the largest
+    magnitude of each state (of a bank: of any lane) in a coarse first run. The states given are
+    extrapolated from both runs, which mostly makes them far better than rtol; the ledger is the
+    finer run's. With `step` there is one run, and its error falls with the square of the step.
 
     SciPy's methods hold the error of each step below rtol*|x| + atol. atol is rtol*1e-3 times the
     scale of the state, which is the largest magnitude that the state (for a bank: any of its
@@ -79,7 +79,8 @@ def simulate(
     inputs : name -> number, (t, values) joined by straight lines, function of t [s], or signal;
         SI units. Those left out keep the module's defaults.
     duration : length of the run [s].
-    rtol : relative tolerance, 1e-13 to 0.1; 1e-5 when left out.
+    rtol : relative tolerance, 1e-13 to 0.1; 1e-5 when left out. The discrete gradient takes less
+        than 1e-11 as 1e-11, for below that it would measure its own round-off.
     step : a fixed step [s] instead of rtol, for the discrete gradient alone; steps end at samples
         and breaks of inputs, so that some are shorter.
     parameters : name -> number, for a bank's parameter also a list of one number a lane; and
