@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 CALL = re.compile(r"(?P<name>[a-z]+)\((?P<numbers>[^()]*)\)")
 SIGNALS = ("sine", "step", "ramp", "triangle", "chirp")
 ENDINGS = (".nc", ".csv")
+METHODS = """discrete_gradient (compiled) if left out; or SciPy's RK23, RK45, DOP853, Radau, BDF or
+LSODA."""
 
 
 def simulate(
@@ -32,16 +34,10 @@ def simulate(
         list[str] | None, typer.Option("--set", "-p", help="PARAMETER=NUMBER; SI; repeat.")
     ] = None,
     rtol: Annotated[
-        float | None, typer.Option(help="Relative tolerance of each state; 1e-5 if left out.")
+        float | None, typer.Option(help="Relative tolerance; 1e-5 if left out.")
     ] = None,
     step: Annotated[float | None, typer.Option(help="A fixed step [s] instead of --rtol.")] = None,
-    method: Annotated[
-        str | None,
-        typer.Option(
-            help="discrete_gradient (compiled) if left out; or SciPy's RK23, RK45, DOP853, Radau, "
-            "BDF, LSODA."
-        ),
-    ] = None,
+    method: Annotated[str | None, typer.Option(help=METHODS)] = None,
     times: Annotated[int, typer.Option(help="Number of samples.")] = 1001,
     out: Annotated[Path | None, typer.Option(help="Result as .nc (NetCDF) or .csv.")] = None,
 ) -> None:
