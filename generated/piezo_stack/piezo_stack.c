@@ -433,35 +433,15 @@ void piezo_stack_margins(const double *restrict x,
     out[11] = c_0;
 }
 
-/* (exp(d) - 1 - d)/d^2, by its series where that would cancel. */
-static double phi2(double d)
-{
-    double sum = 0.0;
-    if (fabs(d) < 0.03125)
-        return 0.5 + d*(1.0/6.0 + d*(1.0/24.0 + d*(1.0/120.0 + d*(1.0/720.0 + d*(1.0/5040.0
-            + d*(1.0/40320.0 + d*(1.0/362880.0 + d/3628800.0)))))));
-    if (fabs(d) >= 1.0)
-        return ((exp(d) - 1.0)/d - 1.0)/d;
-    for (int k = 19; k > 1; --k)
-        sum = (1.0 + sum)*d/(k + 1);
-    return 0.5*(1.0 + sum);
-}
-
-/* (exp(d) - 1)/d */
-static double phi1(double d)
-{
-    return fabs(d) < 0.03125 ? 1.0 + d*phi2(d) : expm1(d)/d;
-}
-
-/* (phi2(d) - 1/2)/d */
+/* (exp(d) - 1 - d - d^2/2)/d^3, by its series where that would cancel. */
 static double phi3(double d)
 {
+    const double size = fabs(d);
     double sum = 0.0;
-    if (fabs(d) < 0.03125)
-        return 1.0/6.0 + d*(1.0/24.0 + d*(1.0/120.0 + d*(1.0/720.0 + d*(1.0/5040.0
-            + d*(1.0/40320.0 + d*(1.0/362880.0 + d/3628800.0))))));
-    if (fabs(d) >= 1.0)
-        return (phi2(d) - 0.5)/d;
+    if (size < 0x1p-10)
+        return 1.0/6.0 + d*(1.0/24.0 + d*(1.0/120.0 + d*(1.0/720.0 + d/5040.0)));
+    if (size >= 1.0)
+        return (((exp(d) - 1.0)/d - 1.0)/d - 0.5)/d;
     for (int k = 19; k > 2; --k)
         sum = (1.0 + sum)*d/(k + 1);
     return (1.0 + sum)/6.0;
@@ -471,7 +451,7 @@ static double phi3(double d)
 static double ramp(double a, double b)
 {
     const double top = a > b ? a : b, low = a > b ? b : a;
-    return low >= 0.0 ? 0.5 * (a + b) : top <= 0.0 ? 0.0 : 0.5 * top * top / (top - low);
+    return low >= 0.0 ? 0.5 * (a + b) : top <= 0.0 ? 0.0 : 0.5 * top * (top / (top - low));
 }
 
 /* Derivative of ramp by b. */
@@ -482,48 +462,18 @@ static double ramp_by_new(double a, double b)
     return low >= 0.0 ? 0.5 : b > a ? share - 0.5 * share * share : 0.5 * share * share;
 }
 
-/* Solve a*y = b for y, in place of b, by elimination with pivots; 0 if a is singular. */
-static int piezo_stack_solve_(double *restrict a, double *restrict b)
+long piezo_stack_newton_size(const piezo_stack_parameters *restrict p_)
 {
-    enum { size = 4 };
-    for (int k = 0; k < size; ++k) {
-        int best = k;
-        for (int i = k + 1; i < size; ++i)
-            best = fabs(a[i * size + k]) > fabs(a[best * size + k]) ? i : best;
-        const double pivot = a[best * size + k];
-        if (!(fabs(pivot) > 0.0))
-            return 0;
-        if (best != k) {
-            for (int j = k; j < size; ++j) {
-                const double kept = a[k * size + j];
-                a[k * size + j] = a[best * size + j];
-                a[best * size + j] = kept;
-            }
-            const double kept = b[k];
-            b[k] = b[best];
-            b[best] = kept;
-        }
-        for (int i = k + 1; i < size; ++i) {
-            const double share = a[i * size + k] / pivot;
-            for (int j = k + 1; j < size; ++j)
-                a[i * size + j] -= share * a[k * size + j];
-            b[i] -= share * b[k];
-        }
-    }
-    for (int k = size - 1; k >= 0; --k) {
-        for (int j = k + 1; j < size; ++j)
-            b[k] -= a[k * size + j] * b[j];
-        b[k] /= a[k * size + k];
-    }
-    return 1;
+    const long hysteron_count = p_->hysteron_count;
+    return 4 + hysteron_count + hysteron_count + hysteron_count;
 }
 
-int piezo_stack_newton(const double *x,
-                       const double *x_new,
-                       const double *u,
+int piezo_stack_newton(const double *restrict x,
+                       const double *restrict x_new,
+                       const double *restrict u,
                        double h,
-                       const piezo_stack_parameters *p_,
-                       double *out)
+                       const piezo_stack_parameters *restrict p_,
+                       double *restrict out)
 {
     const long hysteron_count = p_->hysteron_count;
     const double M = p_->M;
@@ -551,40 +501,61 @@ int piezo_stack_newton(const double *x,
     const double F_ext = u[0];
     const double V_in = u[1];
     const double T_e = u[2];
+    double *restrict kept_reaction_phi_3 = out + 4 + hysteron_count;
+    double *restrict kept_reaction_phi_4 = kept_reaction_phi_3 + hysteron_count;
+    /* reciprocals */
+    const double per_C = 1.0/C;
+    const double per_M = 1.0/M;
+    const double per_T_0 = 1.0/T_0;
+    const double per_c_0 = 1.0/c_0;
     /* mean co-states */
     const double F_spring = k*(0.5*(q + q_new) - q_l);
-    const double v_mass = 0.5*(p + p_new)/M;
-    const double V_capacitor = 0.5*(Q_C + Q_C_new)/C;
+    const double v_mass = 0.5*((p + p_new)*per_M);
+    const double V_capacitor = 0.5*((Q_C + Q_C_new)*per_C);
     /* means of exponentials */
-    const double change_T = (S_new - S)/c_0;
-    const double phi1_T = phi1(change_T);
-    const double phi2_T = phi2(change_T);
+    const double change_T = (S_new - S)*per_c_0;
     const double phi3_T = phi3(change_T);
+    const double phi2_T = 0.5 + change_T*phi3_T;
+    const double phi1_T = 1.0 + change_T*phi2_T;
     /* co-states dU/dx */
-    const double T_minus_T_0 = T_0*expm1(S/c_0)*phi1_T + T_0*(S_new - S)/c_0*phi2_T;
+    const double T_minus_T_0 = T_0*expm1(S*per_c_0)*phi1_T + T_0*(S_new - S)*per_c_0*phi2_T;
+    const double per_T_minus_T_0 = 1.0/T_minus_T_0;
     /* mean co-states */
     const double T = T_0 + T_minus_T_0;
+    const double per_T = 1.0/T;
     /* transducer ratios */
-    const double alpha_transducer = a*T/T_0;
+    const double alpha_transducer = a*T*per_T_0;
     /* dissipative laws */
     const double F_damper = d*v_mass;
     /* heats */
     const double heat_damper = F_damper*v_mass;
     /* derivatives */
-    const double dF_damper_dp_new = 0.5*d/M;
-    const double dheat_damper_dp_new = v_mass*dF_damper_dp_new + 0.5*F_damper/M;
-    const double dphi1_T_dS_new = (phi1_T - phi2_T)/c_0;
-    const double dphi2_T_dS_new = (phi2_T - 2.0*phi3_T)/c_0;
-    const double dT_minus_T_0_dS_new = T_0*expm1(S/c_0)*dphi1_T_dS_new
-        + T_0/c_0*phi2_T
-        + T_0*(S_new - S)/c_0*dphi2_T_dS_new;
-    const double dalpha_transducer_dS_new = a/T_0*dT_minus_T_0_dS_new;
+    const double dF_damper_dp_new = 0.5*(d*per_M);
+    const double dheat_damper_dp_new = v_mass*dF_damper_dp_new + 0.5*(F_damper*per_M);
+    const double dphi2_T_dS_new = (phi2_T - 2.0*phi3_T)*per_c_0;
+    const double dphi1_T_dS_new = (phi1_T - phi2_T)*per_c_0;
+    const double dT_minus_T_0_dS_new = T_0*expm1(S*per_c_0)*dphi1_T_dS_new
+        + T_0*per_c_0*phi2_T
+        + T_0*(S_new - S)*per_c_0*dphi2_T_dS_new;
+    const double dalpha_transducer_dS_new = a*per_T_0*dT_minus_T_0_dS_new;
     /* residuals */
     const double gap_q = q_new - q - h*v_mass;
     const double gap_p = p_new
         - p
         - h*(alpha_transducer*V_capacitor - F_spring - F_damper + F_ext);
-    /* hysteron: sums over lanes */
+    /* Newton's equations, solved */
+    const double entry_change_q_2 = -0.5*(h*per_M);
+    const double share_change_q_2 = 0.5*(h*k);
+    const double pivot_change_p = 1.0
+        + h*dF_damper_dp_new
+        - share_change_q_2*entry_change_q_2;
+    const double per_pivot_change_p = 1.0/pivot_change_p;
+    const double entry_change_p_3 = -0.5*(h*alpha_transducer*per_C);
+    const double entry_change_p_4 = -h*V_capacitor*dalpha_transducer_dS_new;
+    const double right_change_p = gap_p - share_change_q_2*gap_q;
+    const double share_change_p_3 = 0.5*(h*alpha_transducer*per_M*per_pivot_change_p);
+    const double share_change_p_4 = -h*dheat_damper_dp_new*per_T*per_pivot_change_p;
+    /* hysteron: sums over lanes and rows */
     double sum_i_hysteron = 0.0;
     double heat_hysteron = 0.0;
     double dheat_hysteron_dS_new = 0.0;
@@ -597,83 +568,89 @@ int piezo_stack_newton(const double *x,
 #pragma omp simd reduction(+:sum_i_hysteron, heat_hysteron, dheat_hysteron_dS_new, \
         sum_share_phi_3, sum_share_phi_3_3, sum_share_phi_3_4, sum_share_phi_4, sum_share_phi_4_3, sum_share_phi_4_4)
     for (long j = 0; j < hysteron_count; ++j) {
-        const double i_hysteron = 0.5*(phi[j] + phi_new[j])/L[j];
-        const double i_hysteron_old = phi[j]/L[j];
-        const double i_hysteron_new = phi_new[j]/L[j];
-        const double V_hysteron = rho[j]/T_minus_T_0*(ramp(i_hysteron_old - i_0[j], i_hysteron_new - i_0[j]) - ramp(-(i_hysteron_old + i_0[j]), -(i_hysteron_new + i_0[j])));
-        const double dV_hysteron_dphi_new = rho[j]/T_minus_T_0*(ramp_by_new(i_hysteron_old - i_0[j], i_hysteron_new - i_0[j]) + ramp_by_new(-(i_hysteron_old + i_0[j]), -(i_hysteron_new + i_0[j])))/L[j];
+        const double per_L = 1.0/L[j];
+        const double i_hysteron = 0.5*((phi[j] + phi_new[j])*per_L);
+        const double i_hysteron_old = phi[j]*per_L;
+        const double i_hysteron_new = phi_new[j]*per_L;
+        const double V_hysteron = rho[j]*per_T_minus_T_0*(ramp(i_hysteron_old - i_0[j], i_hysteron_new - i_0[j]) - ramp(-(i_hysteron_old + i_0[j]), -(i_hysteron_new + i_0[j])));
+        const double dV_hysteron_dphi_new = rho[j]*per_T_minus_T_0*(ramp_by_new(i_hysteron_old - i_0[j], i_hysteron_new - i_0[j]) + ramp_by_new(-(i_hysteron_old + i_0[j]), -(i_hysteron_new + i_0[j])))*per_L;
         const double dheat_hysteron_dphi_new = i_hysteron*dV_hysteron_dphi_new
-            + 0.5*V_hysteron/L[j];
-        const double dV_hysteron_dS_new = -rho[j]/power_2(T_minus_T_0)*(ramp(i_hysteron_old - i_0[j], i_hysteron_new - i_0[j]) - ramp(-(i_hysteron_old + i_0[j]), -(i_hysteron_new + i_0[j])))*dT_minus_T_0_dS_new;
+            + 0.5*(V_hysteron*per_L);
+        const double dV_hysteron_dS_new = -rho[j]*per_T_minus_T_0*per_T_minus_T_0*(ramp(i_hysteron_old - i_0[j], i_hysteron_new - i_0[j]) - ramp(-(i_hysteron_old + i_0[j]), -(i_hysteron_new + i_0[j])))*dT_minus_T_0_dS_new;
         const double gap_phi = phi_new[j] - phi[j] - h*(V_in - V_capacitor - V_hysteron);
         const double pivot_phi = 1.0 + h*dV_hysteron_dphi_new;
-        const double share_phi_3 = -0.5*h/L[j]/pivot_phi;
-        const double share_phi_4 = -h*dheat_hysteron_dphi_new/T/pivot_phi;
+        const double per_pivot_phi = 1.0/pivot_phi;
+        const double free_phi = gap_phi*per_pivot_phi;
+        const double reaction_phi_3 = 0.5*(h*per_C*per_pivot_phi);
+        const double reaction_phi_4 = h*dV_hysteron_dS_new*per_pivot_phi;
+        const double share_phi_3 = -0.5*(h*per_L);
+        const double share_phi_4 = -h*dheat_hysteron_dphi_new*per_T;
         sum_i_hysteron += i_hysteron;
         heat_hysteron += V_hysteron*i_hysteron;
         dheat_hysteron_dS_new += i_hysteron*dV_hysteron_dS_new;
-        sum_share_phi_3 += share_phi_3*gap_phi;
-        sum_share_phi_3_3 += 0.5*(share_phi_3*h)/C;
-        sum_share_phi_3_4 += share_phi_3*h*dV_hysteron_dS_new;
-        sum_share_phi_4 += share_phi_4*gap_phi;
-        sum_share_phi_4_3 += 0.5*(share_phi_4*h)/C;
-        sum_share_phi_4_4 += share_phi_4*h*dV_hysteron_dS_new;
+        sum_share_phi_3 += share_phi_3*free_phi;
+        sum_share_phi_3_3 += share_phi_3*reaction_phi_3;
+        sum_share_phi_3_4 += share_phi_3*reaction_phi_4;
+        sum_share_phi_4 += share_phi_4*free_phi;
+        sum_share_phi_4_3 += share_phi_4*reaction_phi_3;
+        sum_share_phi_4_4 += share_phi_4*reaction_phi_4;
+        kept_reaction_phi_3[j] = reaction_phi_3;
+        kept_reaction_phi_4[j] = reaction_phi_4;
+        out[3 + j] = free_phi;
     }
     /* residuals */
     const double gap_Q_C = Q_C_new - Q_C - h*(sum_i_hysteron - alpha_transducer*v_mass);
     const double gap_S = S_new
         - S
-        - h*((heat_hysteron + heat_damper)/T + lam*(T_e/T - 1.0));
-    double matrix[16] = {0.0};
-    matrix[0] = 1.0;
-    matrix[1] = -0.5*h/M;
-    matrix[4] = 0.5*(h*k);
-    matrix[5] = 1.0 + h*dF_damper_dp_new;
-    matrix[6] = -0.5*(h*alpha_transducer)/C;
-    matrix[7] = -h*V_capacitor*dalpha_transducer_dS_new;
-    matrix[9] = 0.5*(h*alpha_transducer)/M;
-    matrix[10] = 1.0 - sum_share_phi_3_3;
-    matrix[11] = h*v_mass*dalpha_transducer_dS_new - sum_share_phi_3_4;
-    matrix[13] = -h*dheat_damper_dp_new/T;
-    matrix[14] = -sum_share_phi_4_3;
-    matrix[15] = 1.0
-        - h*(dheat_hysteron_dS_new/T + (-(heat_hysteron + heat_damper)/power_2(T) - lam*T_e/power_2(T))*dT_minus_T_0_dS_new)
-        - sum_share_phi_4_4;
-    double right[4];
-    right[0] = gap_q;
-    right[1] = gap_p;
-    right[2] = gap_Q_C - sum_share_phi_3;
-    right[3] = gap_S - sum_share_phi_4;
-    if (!piezo_stack_solve_(matrix, right))
+        - h*((heat_hysteron + heat_damper)*per_T + lam*(T_e*per_T - 1.0));
+    /* Newton's equations, solved */
+    const double pivot_change_Q_C = 1.0
+        - sum_share_phi_3_3
+        - share_change_p_3*entry_change_p_3;
+    const double per_pivot_change_Q_C = 1.0/pivot_change_Q_C;
+    const double entry_change_Q_C_4 = h*v_mass*dalpha_transducer_dS_new
+        - sum_share_phi_3_4
+        - share_change_p_3*entry_change_p_4;
+    const double right_change_Q_C = gap_Q_C
+        - sum_share_phi_3
+        - share_change_p_3*right_change_p;
+    const double share_change_Q_C_4 = (-sum_share_phi_4_3 - share_change_p_4*entry_change_p_3)*per_pivot_change_Q_C;
+    const double pivot_change_S = 1.0
+        - h*(dheat_hysteron_dS_new*per_T + (-(heat_hysteron + heat_damper)*per_T*per_T - lam*T_e*per_T*per_T)*dT_minus_T_0_dS_new)
+        - sum_share_phi_4_4
+        - share_change_p_4*entry_change_p_4
+        - share_change_Q_C_4*entry_change_Q_C_4;
+    const double right_change_S = gap_S
+        - sum_share_phi_4
+        - share_change_p_4*right_change_p
+        - share_change_Q_C_4*right_change_Q_C;
+    const double change_S = right_change_S/pivot_change_S;
+    const double change_Q_C = (right_change_Q_C - entry_change_Q_C_4*change_S)*per_pivot_change_Q_C;
+    const double change_p = (right_change_p - entry_change_p_3*change_Q_C - entry_change_p_4*change_S)*per_pivot_change_p;
+    const double change_q = gap_q - entry_change_q_2*change_p;
+    if (!(pivot_change_p > 0.0))
         return 0;
-    const double change_q = right[0];
-    const double change_p = right[1];
-    const double change_Q_C = right[2];
-    const double change_S = right[3];
+    if (!(pivot_change_Q_C > 0.0))
+        return 0;
+    if (!(pivot_change_S > 0.0))
+        return 0;
     out[0] = change_q;
     out[1] = change_p;
     out[2] = change_Q_C;
     out[3 + hysteron_count] = change_S;
-    /* hysteron: rows */
+    /* hysteron: reactions */
 #pragma omp simd
     for (long j = 0; j < hysteron_count; ++j) {
-        const double i_hysteron_old = phi[j]/L[j];
-        const double i_hysteron_new = phi_new[j]/L[j];
-        const double V_hysteron = rho[j]/T_minus_T_0*(ramp(i_hysteron_old - i_0[j], i_hysteron_new - i_0[j]) - ramp(-(i_hysteron_old + i_0[j]), -(i_hysteron_new + i_0[j])));
-        const double dV_hysteron_dphi_new = rho[j]/T_minus_T_0*(ramp_by_new(i_hysteron_old - i_0[j], i_hysteron_new - i_0[j]) + ramp_by_new(-(i_hysteron_old + i_0[j]), -(i_hysteron_new + i_0[j])))/L[j];
-        const double dV_hysteron_dS_new = -rho[j]/power_2(T_minus_T_0)*(ramp(i_hysteron_old - i_0[j], i_hysteron_new - i_0[j]) - ramp(-(i_hysteron_old + i_0[j]), -(i_hysteron_new + i_0[j])))*dT_minus_T_0_dS_new;
-        const double gap_phi = phi_new[j] - phi[j] - h*(V_in - V_capacitor - V_hysteron);
-        const double pivot_phi = 1.0 + h*dV_hysteron_dphi_new;
-        out[3 + j] = (gap_phi - 0.5*h/C*change_Q_C - h*dV_hysteron_dS_new*change_S)/pivot_phi;
+        out[3 + j] -= kept_reaction_phi_3[j]*change_Q_C + kept_reaction_phi_4[j]*change_S;
     }
     return 1;
 }
 
-void piezo_stack_means(const double *x,
-                       const double *x_new,
-                       const double *u,
-                       const piezo_stack_parameters *p_,
-                       double *out)
+void piezo_stack_means(const double *restrict x,
+                       const double *restrict x_new,
+                       const double *restrict u,
+                       const piezo_stack_parameters *restrict p_,
+                       double *restrict out)
 {
     const long hysteron_count = p_->hysteron_count;
     const double M = p_->M;
@@ -693,49 +670,52 @@ void piezo_stack_means(const double *x,
     const double F_ext = u[0];
     const double V_in = u[1];
     const double T_e = u[2];
+    /* reciprocals */
+    const double per_M = 1.0/M;
+    const double per_c_0 = 1.0/c_0;
     /* mean co-states */
-    const double v_mass = 0.5*(p + p_new)/M;
+    const double v_mass = 0.5*((p + p_new)*per_M);
     /* means of exponentials */
-    const double change_T = (S_new - S)/c_0;
-    const double phi1_T = phi1(change_T);
-    const double phi2_T = phi2(change_T);
+    const double change_T = (S_new - S)*per_c_0;
+    const double phi3_T = phi3(change_T);
+    const double phi2_T = 0.5 + change_T*phi3_T;
+    const double phi1_T = 1.0 + change_T*phi2_T;
     /* co-states dU/dx */
-    const double T_minus_T_0 = T_0*expm1(S/c_0)*phi1_T + T_0*(S_new - S)/c_0*phi2_T;
+    const double T_minus_T_0 = T_0*expm1(S*per_c_0)*phi1_T + T_0*(S_new - S)*per_c_0*phi2_T;
+    const double per_T_minus_T_0 = 1.0/T_minus_T_0;
     /* mean co-states */
     const double T = T_0 + T_minus_T_0;
+    const double per_T = 1.0/T;
     /* dissipative laws */
     const double F_damper = d*v_mass;
     /* hysteron: sums over lanes and rows */
     double sum_i_hysteron = 0.0;
 #pragma omp simd reduction(+:sum_i_hysteron)
     for (long j = 0; j < hysteron_count; ++j) {
-        const double i_hysteron = 0.5*(phi[j] + phi_new[j])/L[j];
-        const double i_hysteron_old = phi[j]/L[j];
-        const double i_hysteron_new = phi_new[j]/L[j];
-        const double V_hysteron = rho[j]/T_minus_T_0*(ramp(i_hysteron_old - i_0[j], i_hysteron_new - i_0[j]) - ramp(-(i_hysteron_old + i_0[j]), -(i_hysteron_new + i_0[j])));
+        const double per_L = 1.0/L[j];
+        const double i_hysteron = 0.5*((phi[j] + phi_new[j])*per_L);
+        const double i_hysteron_old = phi[j]*per_L;
+        const double i_hysteron_new = phi_new[j]*per_L;
+        const double V_hysteron = rho[j]*per_T_minus_T_0*(ramp(i_hysteron_old - i_0[j], i_hysteron_new - i_0[j]) - ramp(-(i_hysteron_old + i_0[j]), -(i_hysteron_new + i_0[j])));
         sum_i_hysteron += i_hysteron;
         out[3 + j] = V_hysteron*i_hysteron;
-        out[4 + hysteron_count + j] = V_hysteron*i_hysteron/T;
+        out[4 + hysteron_count + j] = V_hysteron*i_hysteron*per_T;
     }
     out[0] = v_mass*F_ext;
     out[1] = sum_i_hysteron*V_in;
     out[2] = lam*(T_e - T);
     out[3 + hysteron_count] = F_damper*v_mass;
-    out[4 + hysteron_count + hysteron_count] = F_damper*v_mass/T;
-    out[5 + hysteron_count + hysteron_count] = lam*(T_e/T - 1.0);
+    out[4 + hysteron_count + hysteron_count] = F_damper*v_mass*per_T;
+    out[5 + hysteron_count + hysteron_count] = lam*(T_e*per_T - 1.0);
 }
 
-int piezo_stack_inside(const double *x,
-                       const double *u,
-                       const piezo_stack_parameters *p_)
+int piezo_stack_inside(const double *restrict x,
+                       const double *restrict u,
+                       const piezo_stack_parameters *restrict p_)
 {
     (void)u;
     const long hysteron_count = p_->hysteron_count;
-    const double T_0 = p_->T_0;
-    const double c_0 = p_->c_0;
     const double S = x[3 + hysteron_count];
-    /* co-states dU/dx */
-    const double T_minus_T_0 = T_0*expm1(S/c_0);
-    const double margin_1_ = T_minus_T_0;
+    const double margin_1_ = S;
     return margin_1_ > 0.0;
 }

@@ -172,14 +172,15 @@ void piezo_stack_margins(const double *x,
 
 /*
  * The step of the discrete gradient: x to x_new over h, inputs u at its middle.
- * piezo_stack_newton: out[n], the change that Newton's method takes from x_new;
- *     0 if its equations are singular.
+ * piezo_stack_newton: out[n], the change that Newton's method takes from x_new, in
+ *     an array of piezo_stack_newton_size numbers; 0 if the step is too long.
  * piezo_stack_means: over the step, the mean power of each port [W], heat [W] and
  *     entropy production [W/K] of each process (of a bank: of each lane), and
  *     entropy rate of each of 1 heat exchanges [W/K].
  * piezo_stack_inside: whether a state lies in the domain.
  */
 enum { piezo_stack_exchange_count = 1 };
+long piezo_stack_newton_size(const piezo_stack_parameters *p_);
 int piezo_stack_newton(const double *x,
                        const double *x_new,
                        const double *u,

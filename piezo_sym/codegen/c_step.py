@@ -7,27 +7,48 @@ Each loops over lanes twice at most, so a step costs O(r).
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
-from piezo_sym.codegen.c_lines import Words, indented, loop_lines, stage_lines, statement, used_only
-from piezo_sym.codegen.c_means import SOLVE, step_helpers
+from piezo_sym.codegen.c_lines import Words, indented, stage_lines, statement, used_only
+from piezo_sym.codegen.c_means import step_helpers
 from piezo_sym.codegen.c_names import KEPT, added, c_names
-from piezo_sym.codegen.c_stages import Loop, Write, lane_quantities, stages
-from piezo_sym.codegen.newton import Step
+from piezo_sym.codegen.c_stages import Write, stages
 from piezo_sym.codegen.places import Places, places
 from piezo_sym.codegen.program import Field, Limit, Program, Row, bank_of, needed
-from piezo_sym.spec.expressions import Expr, names
+from piezo_sym.codegen.step import Step
+from piezo_sym.spec.expressions import Call, Div, Expr, Mul, Sym, names
 from piezo_sym.spec.names import fresh
+
+#: The functions of a step: what each returns, and its arguments.
+HEADS = {
+    "newton_size": ("long", ("p",)),
+    "newton": ("int", ("x", "x_new", "u", "h", "p", "out")),
+    "means": ("void", ("x", "x_new", "u", "p", "out")),
+    "inside": ("int", ("x", "u", "p")),
+}
 
 
 def c_step(program: Program, step: Step) -> tuple[str, str]:
     """Return the functions of the step, and their declarations for the header."""
     printer = _Printer(program, step)
-    functions = [printer.newton(), printer.means(), printer.inside()]
+    functions = [printer.newton_size(), printer.newton(), printer.means(), printer.inside()]
     text = "\n".join(functions)
     return "\n\n".join([*step_helpers(text), *functions]), printer.declarations()
+
+
+@final
+@dataclass(frozen=True)
+class _Kept:
+    """A reaction that a bank's lanes remember: of which state, in which array, at which place."""
+
+    state: int
+    bank: str
+    array: str
+    place: str
+    value: Sym
+    unknown: Sym
 
 
 @final
@@ -45,9 +66,9 @@ class _Printer:
             taken=step.taken,
         )
         self.names = c_names(whole)
-        for word in (step.h, *step.unknowns):
-            self.names[word] = fresh(word, {*step.taken, *KEPT}) if word in KEPT else word
-        words = ("x", "x_new", "u", "p", "out", "j", "matrix", "right", "solved")
+        self.names[step.h] = fresh(step.h, {*step.taken, *KEPT}) if step.h in KEPT else step.h
+        reactions = (value for change in step.changes for value, _ in change.reactions)
+        words = ["x", "x_new", "u", "p", "out", "j", *map(_array, reactions)]
         self.words = added(words, whole, self.names)
         self.after = after
         fields = (*program.parameters, *whole.states)
@@ -60,30 +81,56 @@ class _Printer:
     # Functions
 
     def newton(self) -> str:
-        """Return Newton's equations, solved: the change to take from the state after the step."""
-        step, size = self.step, len(self.step.right)
-        w = self.words
-        roots = [*(value for _, value in step.matrix), *step.right]
-        body = list(self._stages(roots, ()))
-        body.append(f"double {w['matrix']}[{size * size}] = {{0.0}};")
-        for (row, col), value in step.matrix:
-            body += statement(f"{w['matrix']}[{row * size + col}] =", value, self.lines)
-        body.append(f"double {w['right']}[{size}];")
-        for row, value in enumerate(step.right):
-            body += statement(f"{w['right']}[{row}] =", value, self.lines)
-        solve = f"{self.name}_solve_"
-        body += [f"if (!{solve}({w['matrix']}, {w['right']}))", "    return 0;"]
-        for n, unknown in enumerate(step.unknowns):
-            body.append(f"const double {self.names[unknown]} = {w['right']}[{n}];")
-        for unknown, state in zip(step.unknowns, step.shared, strict=False):
-            body.append(f"{w['out']}[{self._row(state)}] = {self.names[unknown]};")
-        for state, value in step.lanes:
-            bank = str(self.program.states[state].bank)
-            write = Write(f"{w['out']}[{self._row(state)}]", value, bank)
-            own = lane_quantities(step.quantities, bank, [value])
-            body += loop_lines(Loop(bank, own, (), (write,)), self.lines)
-        function = self._function("newton", body, last="return 1;")
-        return f"{SOLVE.format(name=solve, size=size)}\n\n{function}"
+        """Return Newton's equations, solved: the change to take from the state after the step.
+
+        A lane's change needs those of shared states, which need sums over lanes: what a lane has
+        to remember meanwhile is kept in `out`, beyond the states.
+        """
+        step, out = self.step, self.words["out"]
+        lanes = [n for n, field in enumerate(self.program.states) if field.bank]
+        shared = [n for n, field in enumerate(self.program.states) if not field.bank]
+        kept = list(self._kept())
+        writes = [Write(f"{k.array}[{self.words['j']}]", k.value, k.bank) for k in kept]
+        writes += [
+            Write(f"{out}[{self._row(n)}]", step.changes[n].free, self.program.states[n].bank)
+            for n in lanes
+        ]
+        unknowns = [unknown for n in lanes for _, unknown in step.changes[n].reactions]
+        roots = [*step.pivots, *unknowns, *(step.changes[n].free for n in shared)]
+        body = [f"double *restrict {k.array} = {k.place};" for k in kept]
+        body += self._stages(roots, writes)
+        for pivot in step.pivots:
+            body += [f"if (!({self.lines.text(pivot)} > 0.0))", "    return 0;"]
+        for n in shared:
+            body += statement(f"{out}[{self._row(n)}] =", step.changes[n].free, self.lines)
+        for n in lanes:
+            body += self._lane_change(n, [k for k in kept if k.state == n])
+        return self._function("newton", body, last="return 1;")
+
+    def _kept(self) -> Iterator[_Kept]:
+        """Yield what lanes have to remember, and where."""
+        place = f"{self.words['out']} + {self.states.size}"
+        for n, field in enumerate(self.program.states):
+            for value, unknown in self.step.changes[n].reactions if field.bank else ():
+                array = self.words[_array(value)]
+                yield _Kept(n, str(field.bank), array, place, value, unknown)
+                place = f"{array} + {field.bank}_count"
+
+    def _lane_change(self, n: int, kept: Sequence[_Kept]) -> Iterator[str]:
+        """Yield the loop that takes the reactions of a bank's lanes from their changes."""
+        bank, j = str(self.program.states[n].bank), self.words["j"]
+        terms = [f"{k.array}[{j}]*{self.lines.text(k.unknown)}" for k in kept]
+        if terms:
+            yield f"/* {bank}: reactions */"
+            yield "#pragma omp simd"
+            yield f"for (long {j} = 0; {j} < {bank}_count; ++{j}) {{"
+            yield f"    {self.words['out']}[{self._row(n)}] -= {' + '.join(terms)};"
+            yield "}"
+
+    def newton_size(self) -> str:
+        """Return the function that tells how much room `newton` needs."""
+        sizes = [self.states.size, *(f"{kept.bank}_count" for kept in self._kept())]
+        return self._function("newton_size", [], last=f"return {' + '.join(sizes)};")
 
     def means(self) -> str:
         """Return what the ledger books of a step: rates, each a mean over the step."""
@@ -101,18 +148,19 @@ class _Printer:
         """Return whether a state lies in the domain."""
         states = {field.name for field in self.program.states}
         limits = [limit for limit in self.program.limits if self._moves(limit, states)]
+        margins = [self._like(limit.margin) for limit in limits]
         parts: list[str] = []
         body: list[str] = []
-        quantities, _ = needed(self.program.quantities, [limit.margin for limit in limits])
+        quantities, _ = needed(self.program.quantities, margins)
         plain = _own_words(self, self.program)
         writes = []
-        for n, limit in enumerate(limits):
+        for n, (limit, margin) in enumerate(zip(limits, margins, strict=True)):
             name = f"margin_{n + 1}_"
-            bank = bank_of(limit.margin, self.program.lane_names())
+            bank = bank_of(margin, self.program.lane_names())
             if bank:
                 body.append(f"double {name};")
             target = name if bank else f"const double {name}"
-            writes.append(Write(target, limit.margin, bank, "min" if bank else "="))
+            writes.append(Write(target, margin, bank, "min" if bank else "="))
             parts.append(f"{name} {'>' if limit.strict else '>='} 0.0")
         for stage in stages(quantities, writes, self.program.counts):
             body += stage_lines(stage, plain)
@@ -120,7 +168,7 @@ class _Printer:
             if not write.bank:
                 body += statement(f"{write.target} =", write.value, plain)
         last = f"return {' && '.join(parts) or '1'};"
-        return self._function("inside", body, last=last, over_step=False)
+        return self._function("inside", body, last=last)
 
     def declarations(self) -> str:
         """Return the declarations of the functions, with what they are for."""
@@ -129,15 +177,15 @@ class _Printer:
             [
                 "/*",
                 " * The step of the discrete gradient: x to x_new over h, inputs u at its middle.",
-                f" * {name}_newton: out[n], the change that Newton's method takes from x_new;",
-                " *     0 if its equations are singular.",
+                f" * {name}_newton: out[n], the change that Newton's method takes from x_new, in",
+                f" *     an array of {name}_newton_size numbers; 0 if the step is too long.",
                 f" * {name}_means: over the step, the mean power of each port [W], heat [W] and",
                 " *     entropy production [W/K] of each process (of a bank: of each lane), and",
                 f" *     entropy rate of each of {exchanges} heat exchanges [W/K].",
                 f" * {name}_inside: whether a state lies in the domain.",
                 " */",
                 f"enum {{ {name}_exchange_count = {exchanges} }};",
-                *(f"{line};" for line in map(self._head, ("newton", "means", "inside"))),
+                *(f"{line};" for line in map(self._head, HEADS)),
             ]
         )
 
@@ -146,6 +194,26 @@ class _Printer:
     def _mean_rows(self) -> tuple[Row, ...]:
         step = self.step
         return (*step.supplies, *step.heats, *step.productions, *step.entropies)
+
+    def _like(self, margin: Expr) -> Expr:
+        """Return a number of the sign of a margin: positive factors, and exp(d) - 1, are left out.
+
+        Newton's method asks at every iteration, and only for the sign.
+        """
+        values = {quantity.name: quantity.value for quantity in self.program.quantities}
+        positive = {
+            limit.margin.name
+            for limit in self.program.limits
+            if limit.strict and isinstance(limit.margin, Sym) and limit.margin.name not in values
+        }
+        given = values.get(margin.name, margin) if isinstance(margin, Sym) else margin
+        match given:
+            case Mul(Sym(name), Call("expm1", (Div(top, Sym(below)),))) if {
+                name,
+                below,
+            } <= positive:
+                return top
+        return margin
 
     def _moves(self, limit: Limit, states: set[str]) -> bool:
         """Return whether a condition depends on the state."""
@@ -172,36 +240,27 @@ class _Printer:
             return first
         return self.words["j"] if first == "0" else f"{first} + {self.words['j']}"
 
-    def _head(self, name: str) -> str:
+    def _head(self, name: str, restrict: str = "") -> str:
         w = self.words
-        state = f"const double *{w['x']}"
-        after = f"const double *{w['x_new']}"
-        inputs, p = f"const double *{w['u']}", f"const {self.name}_parameters *{w['p']}"
-        out = f"double *{w['out']}"
-        given = {
-            "newton": ("int", [state, after, inputs, f"double {self.names[self.step.h]}", p, out]),
-            "means": ("void", [state, after, inputs, p, out]),
-            "inside": ("int", [state, inputs, p]),
+        kinds = {
+            **{word: f"const double *{restrict}{w[word]}" for word in ("x", "x_new", "u")},
+            "h": f"double {self.names[self.step.h]}",
+            "p": f"const {self.name}_parameters *{restrict}{w['p']}",
+            "out": f"double *{restrict}{w['out']}",
         }
-        result, arguments = given[name]
+        result, arguments = HEADS[name]
         start = f"{result} {self.name}_{name}("
-        return start + f",\n{' ' * len(start)}".join(arguments) + ")"
+        return start + f",\n{' ' * len(start)}".join(kinds[word] for word in arguments) + ")"
 
-    def _function(
-        self,
-        name: str,
-        body: Sequence[str],
-        *,
-        last: str = "",
-        over_step: bool = True,
-    ) -> str:
+    def _function(self, name: str, body: Sequence[str], *, last: str = "") -> str:
         lines = [*body, *([last] if last else [])]
-        w = self.words
-        given = [w["x"], w["u"], w["p"], *([w["x_new"]] if over_step else [])]
-        kept = used_only(lines, list(self._unpacked(over_step)), given)
-        return "\n".join([self._head(name), "{", *indented([*kept, *lines]), "}"])
+        given = [word for word in HEADS[name][1] if word != "h"]
+        definitions = list(self._unpacked(over_step="x_new" in given))
+        kept = used_only(lines, definitions, [self.words[word] for word in given])
+        head = self._head(name, "restrict ")
+        return "\n".join([head, "{", *indented([*kept, *lines]), "}"])
 
-    def _unpacked(self, over_step: bool) -> Iterator[tuple[str, str]]:
+    def _unpacked(self, *, over_step: bool) -> Iterator[tuple[str, str]]:
         program, names_, w = self.program, self.names, self.words
         for bank in program.counts:
             yield f"{bank}_count", f"const long {bank}_count = {w['p']}->{bank}_count;"
@@ -224,6 +283,11 @@ class _Printer:
             name, place = self.names[field.name], self.states.position(n)
             pointer = f"const double *restrict {name} = {array} + {place};"
             yield name, pointer if field.bank else f"const double {name} = {array}[{place}];"
+
+
+def _array(reaction: Sym) -> str:
+    """Return the name of the array that keeps a reaction of all lanes."""
+    return f"kept_{reaction.name}"
 
 
 def _own_words(printer: _Printer, program: Program) -> Words:

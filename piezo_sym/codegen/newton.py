@@ -1,66 +1,33 @@
-"""One step of the mean-value discrete gradient, and Newton's equations for it, lanes eliminated.
+"""One step of the mean-value discrete gradient, and Newton's equations for it, solved.
 
 Input: an `IPHS`, and the elements whose laws are proved odd.  Output: a `Step`.  The step solves
 
-    x_new - x - h*f(x, x_new, u) = 0        f = J0 Ebar - sum b_k Wbar_k + g u, and the bodies' rows
+    x_new - x - h*f(x, x_new, u) = 0      f = J0 Ebar - sum b_k Wbar_k + g u, bodies apart
 
 with mean co-states Ebar and laws at the mean temperature.  Newton's matrix is 1 - h*df/dx_new.
-Each lane has a row of its own, ``pivot*d + B y = gap``: it is solved for d and put into the shared
-rows (a Schur complement), whose unknowns y are the changes of the shared states, and one border
-unknown for each sum over lanes through which lanes act on each other.  A step costs O(r).
+Each lane has a row of its own, ``pivot*d + B y = gap``, solved for ``d = free - reaction y`` and
+put into the shared rows (a Schur complement).  Their unknowns y are the changes of the shared
+states, and one border unknown for each sum over lanes through which lanes act on each other;
+`eliminate` solves them as they stand, term by term.  A step costs O(r).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
+from piezo_sym.codegen.economy import economical
+from piezo_sym.codegen.eliminate import Equations, eliminate
 from piezo_sym.codegen.functions import exchanges_of, ports_of, rates_of
 from piezo_sym.codegen.jacobian import jacobian_of
-from piezo_sym.codegen.program import Entry, Field, Quantity, Row
+from piezo_sym.codegen.program import Entry, Field, Row
 from piezo_sym.codegen.quantities import Quantities
+from piezo_sym.codegen.step import Change, Step
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.calculus import add, div, mul, neg
-from piezo_sym.spec.expressions import ONE, ZERO, Expr, Sym
+from piezo_sym.spec.expressions import ONE, Expr, Sym
 from piezo_sym.spec.names import fresh
 from piezo_sym.spec.tables import lane_parameters
-
-
-@final
-@dataclass(frozen=True)
-class Step:
-    """What a step computes, before any language.
-
-    Attributes
-    ----------
-    h, after : the names of the step size and of each state after the step, in state order.
-    quantities : in an order in which they can be computed.
-    unknowns : names of y: the change of each shared state, then the border unknowns.
-    matrix : entries of the shared rows, those that are not zero, as ((row, column), value).
-    right : right-hand sides of the shared rows.
-    shared : the state of each of the first unknowns.
-    lanes : for each state that is one a lane, its row: the change given y.
-    rates : f, a row a state.
-    supplies, entropies : power and entropy rate that ports put in, a row a port and an exchange.
-    heats, productions : heat and entropy production of each process, a bank's one a lane.
-    taken : every name in use.
-    """
-
-    h: str
-    after: tuple[str, ...]
-    quantities: tuple[Quantity, ...]
-    unknowns: tuple[str, ...]
-    matrix: tuple[tuple[tuple[int, int], Expr], ...]
-    right: tuple[Expr, ...]
-    shared: tuple[int, ...]
-    lanes: tuple[tuple[int, Expr], ...]
-    rates: tuple[Row, ...]
-    supplies: tuple[Row, ...]
-    entropies: tuple[Row, ...]
-    heats: tuple[Row, ...]
-    productions: tuple[Row, ...]
-    taken: frozenset[str]
 
 
 def step_of(iphs: IPHS, odd: frozenset[str]) -> Step:
@@ -80,10 +47,27 @@ def step_of(iphs: IPHS, odd: frozenset[str]) -> Step:
     productions = tuple(
         Row(slot, div(mul(output, force), q.costate(row))) for slot, output, force, row in produced
     )
+    supplies = next(f for f in ports_of(q) if f.name == "supply").rows
+    entropies = tuple(Row(Slot(body), rate) for body, rate in exchanges_of(q))
     lanes = {**lane_parameters(iphs.model), **_banks(q)}
     jacobian = jacobian_of(rates, states, lanes, q)
     equations = _Equations(q, states, rates, jacobian.entries)
-    return equations.step(heats, productions)
+    pivots, changes = equations.solved()
+    return economical(
+        Step(
+            h=equations.h,
+            after=tuple(state.name for state in states),
+            quantities=tuple(q.defined),
+            pivots=pivots,
+            changes=changes,
+            supplies=supplies,
+            entropies=entropies,
+            heats=heats,
+            productions=productions,
+            taken=frozenset(q.taken),
+        ),
+        lanes,
+    )
 
 
 def _banks(q: Quantities) -> dict[str, str]:
@@ -98,7 +82,7 @@ def _banks(q: Quantities) -> dict[str, str]:
 
 @final
 class _Equations:
-    """Newton's equations of one step on their way to a `Step`; adds quantities to `q`."""
+    """Newton's equations of one step, as they are solved; adds quantities to `q`."""
 
     def __init__(
         self,
@@ -108,8 +92,6 @@ class _Equations:
         entries: tuple[Entry, ...],
     ) -> None:
         self.q, self.states, self.rates, self.entries = q, states, rates, entries
-        self._supplies = next(f for f in ports_of(q) if f.name == "supply").rows
-        self._entropies = tuple(Row(Slot(body), rate) for body, rate in exchanges_of(q))
         self.h = self._name("h")
         self.shared = tuple(n for n, state in enumerate(states) if not state.bank)
         self.borders: dict[tuple[int, Expr], int] = {}
@@ -132,44 +114,47 @@ class _Equations:
         value = add(moved, neg(mul(Sym(self.h), self.rates[n].value)))
         return self.q.define(f"gap_{before}", value, self.states[n].bank, "residuals")
 
-    def step(self, heats: tuple[Row, ...], productions: tuple[Row, ...]) -> Step:
-        """Return the step."""
-        pivots = {n: self._pivot(n) for n, state in enumerate(self.states) if state.bank}
-        matrix: dict[tuple[int, int], list[Expr]] = {}
-        for n in range(len(self.shared) + len(self.borders)):
-            matrix[n, n] = [ONE]
+    def solved(self) -> tuple[tuple[Sym, ...], tuple[Change, ...]]:
+        """Return the pivots, and the change of each state."""
+        names = [f"change_{self.q.stores[n][1].state}" for n in self.shared]
+        names += [f"border_{n + 1}" for n in range(len(self.borders))]
+        equations = Equations([self._name(name) for name in names])
+        for n in range(len(names)):
+            equations.add((n, n), ONE)
+        for n, state in enumerate(self.shared):
+            equations.right[n] = self.gaps[state]
         for entry in self.entries:
             if entry.row in self.columns and entry.col in self.columns:
                 place = self.columns[entry.row], self.columns[entry.col]
-                matrix.setdefault(place, []).append(neg(mul(Sym(self.h), entry.value)))
-        right = [self.gaps[n] for n in self.shared] + [ZERO] * len(self.borders)
-        for lane, pivot in pivots.items():
-            self._eliminate(lane, pivot, matrix, right)
-        unknowns = [self._name(f"change_{self.q.stores[n][1].state}") for n in self.shared]
-        unknowns += [self._name(f"border_{n + 1}") for n in range(len(self.borders))]
-        lanes = tuple((lane, self._change(lane, pivot, unknowns)) for lane, pivot in pivots.items())
-        return Step(
-            h=self.h,
-            after=tuple(state.name for state in self.states),
-            quantities=tuple(self.q.defined),
-            unknowns=tuple(unknowns),
-            matrix=tuple((place, add(*matrix[place])) for place in sorted(matrix)),
-            right=tuple(right),
-            shared=self.shared,
-            lanes=lanes,
-            rates=self.rates,
-            supplies=self._supplies,
-            entropies=self._entropies,
-            heats=heats,
-            productions=productions,
-            taken=frozenset(self.q.taken),
-        )
+                equations.add(place, neg(mul(Sym(self.h), entry.value)))
+        lanes = [n for n, state in enumerate(self.states) if state.bank]
+        found = {lane: self._lane(lane, equations) for lane in lanes}
+        pivots, unknowns = eliminate(equations, self.q)
+        for n, state in enumerate(self.shared):
+            found[state] = Change(unknowns[n])
+        return pivots, tuple(found[n] for n in range(len(self.states)))
 
-    def _pivot(self, lane: int) -> Expr:
+    def _lane(self, lane: int, equations: Equations) -> Change:
+        """Return the change of a lane's state; its row is solved and put into the shared rows."""
+        bank, state = str(self.states[lane].bank), self.q.stores[lane][1].state
         values = [e.value for e in self.entries if (e.row, e.col) == (lane, lane)]
-        value = add(ONE, *(neg(mul(Sym(self.h), v)) for v in values))
-        state = self.q.stores[lane][1].state
-        return self.q.define(f"pivot_{state}", value, self.states[lane].bank, "pivots of lanes")
+        pivot = add(ONE, *(neg(mul(Sym(self.h), v)) for v in values))
+        pivot = self.q.define(f"pivot_{state}", pivot, bank, "pivots of lanes")
+        note = "lanes eliminated"
+        free = self.q.define(f"free_{state}", div(self.gaps[lane], pivot), bank, note)
+        reactions = {
+            n: self.q.define(f"reaction_{state}_{n + 1}", div(value, pivot), bank, note)
+            for n, value in self._row_of(lane).items()
+        }
+        for n, factor in self._column_of(lane).items():
+            share = self.q.define(f"share_{state}_{n + 1}", factor, bank, note)
+            total = self.q.total(mul(share, free), bank, f"sum_{share.name}")
+            equations.right[n] = add(equations.right[n], neg(total))
+            for column, value in reactions.items():
+                total = self.q.total(mul(share, value), bank, f"sum_{share.name}_{column + 1}")
+                equations.add((n, column), neg(total))
+        unknowns = equations.unknowns
+        return Change(free, tuple((value, Sym(unknowns[n])) for n, value in reactions.items()))
 
     def _row_of(self, lane: int) -> dict[int, Expr]:
         """Return B: what a lane's row has in the columns of the shared unknowns."""
@@ -194,27 +179,3 @@ class _Equations:
         }
         borders = {n: neg(right) for (col, right), n in self.borders.items() if col == lane}
         return {**found, **borders}
-
-    def _eliminate(
-        self,
-        lane: int,
-        pivot: Expr,
-        matrix: dict[tuple[int, int], list[Expr]],
-        right: list[Expr],
-    ) -> None:
-        """Put the solution of a lane's row into the shared rows."""
-        bank, state = str(self.states[lane].bank), self.q.stores[lane][1].state
-        row = self._row_of(lane)
-        for n, factor in self._column_of(lane).items():
-            base, note = f"share_{state}_{n + 1}", "lanes eliminated"
-            share = self.q.define(base, div(factor, pivot), bank, note)
-            total = self.q.total(mul(share, self.gaps[lane]), bank, f"sum_{share.name}")
-            right[n] = add(right[n], neg(total))
-            for column, value in row.items():
-                total = self.q.total(mul(share, value), bank, f"sum_{share.name}_{column + 1}")
-                matrix.setdefault((n, column), []).append(neg(total))
-
-    def _change(self, lane: int, pivot: Expr, unknowns: list[str]) -> Expr:
-        """Return the change of a lane's state, given those of the shared unknowns."""
-        taken = [mul(value, Sym(unknowns[n])) for n, value in self._row_of(lane).items()]
-        return div(add(self.gaps[lane], *(neg(term) for term in taken)), pivot)

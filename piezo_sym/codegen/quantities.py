@@ -76,9 +76,10 @@ class Quantities:
         """Add a definition under a fresh name, and return the name."""
         name = fresh(base, self.taken)
         self.taken.add(name)
-        return self._defined(name, value, bank, note)
+        return self.defined_as(name, value, bank, note)
 
-    def _defined(self, name: str, value: Expr, bank: str | None, note: str) -> Sym:
+    def defined_as(self, name: str, value: Expr, bank: str | None, note: str) -> Sym:
+        """Add a definition under a name that is taken for it, and return the name."""
         self.defined.append(Quantity(name, value, bank, note))
         return Sym(name)
 
@@ -157,21 +158,25 @@ class Quantities:
             law = rename(port.law, {port.letter: port.state})
             if self.after:
                 law = self._functions_named(mean(law, *self._ends(port.state)), port)
-            self._defined(costate_name(port), law, placed.bank, note)
+            self.defined_as(costate_name(port), law, placed.bank, note)
 
     def _functions_named(self, law: Expr, port: Storage | Body) -> Expr:
         """Return a mean law whose phi1 and phi2 are quantities, computed once; phi3 with them."""
         match law:
             case Call("phi1" | "phi2", (arg,)):
                 if law not in self._functions:
-                    name, note = costate_name(port), "means of exponentials"
-                    change = self.define(f"change_{name}", arg, None, note)
-                    for function in ("phi1", "phi2", "phi3"):
-                        value = Call(function, (change,))
-                        named = self.define(f"{function}_{name}", value, None, note)
-                        self._functions[value] = self._functions[Call(function, (arg,))] = named
+                    self._define_functions(arg, costate_name(port))
                 return self._functions[law]
         return rebuild(law, lambda part: self._functions_named(part, port))
+
+    def _define_functions(self, arg: Expr, name: str) -> None:
+        """Define phi3, phi2 and phi1 of a change."""
+        note = "means of exponentials"
+        change = self.define(f"change_{name}", arg, None, note)
+        for function in ("phi3", "phi2", "phi1"):
+            value = Call(function, (change,))
+            named = self.define(f"{function}_{name}", value, None, note)
+            self._functions[value] = self._functions[Call(function, (arg,))] = named
 
     def _after(self, port: Storage | Body) -> str:
         name = fresh(f"{port.state}_new", self.taken)
@@ -185,17 +190,17 @@ class Quantities:
     def _ratios(self) -> None:
         for _, port in self.circuit.of(Coupling):
             law = self._at(port.ratio, port.body)
-            self._defined(port.name, law, None, "transducer ratios")
+            self.defined_as(port.name, law, None, "transducer ratios")
 
     def _loops(self, iphs: IPHS) -> None:
         """Define how resistors in a loop share what drives them."""
         processes = tuple(self.circuit.of(Resistor, Conductor))
         for slope in iphs.junction.slopes:
             law = self._at(slope.law, heated(processes[slope.process][1]))
-            self._defined(str(slope.symbol.name), law, None, "slopes of laws in a loop")
+            self.defined_as(str(slope.symbol.name), law, None, "slopes of laws in a loop")
         for symbol, value in iphs.shares:
             name = str(symbol.name)
-            self._defined(name, coefficient(value), None, "shares of resistors in a loop")
+            self.defined_as(name, coefficient(value), None, "shares of resistors in a loop")
 
     def _at(self, law: Expr, body: str | None) -> Expr:
         """Return a law in which ``T`` is the temperature of `body`."""
@@ -208,14 +213,14 @@ class Quantities:
             terms += self.row(self.system.D.T, k, self.input)
             effort = drive = add(*terms)
             if not isinstance(effort, Sym) and isinstance(port, Resistor):
-                effort = self._defined(port.effort, effort, placed.bank, "driving forces")
+                effort = self.defined_as(port.effort, effort, placed.bank, "driving forces")
             if isinstance(port, Resistor):
                 force: Expr = effort
                 law = self._law(placed, port, drive, effort)
             else:
                 force = add(effort, neg(Sym(self.bodies[port.second].temperature)))
                 law = div(mul(port.conductance, force), effort)
-            output = self._defined(port.output, law, placed.bank, "dissipative laws")
+            output = self.defined_as(port.output, law, placed.bank, "dissipative laws")
             forces.append(force)
             outputs.append(output)
             heats.append(mul(output, effort))

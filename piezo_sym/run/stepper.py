@@ -14,9 +14,9 @@ import numpy as np
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.checks import positive
 from piezo_sym.run.engine.engine import engine_of
+from piezo_sym.run.engine.march import March, Model, Path, at
 from piezo_sym.run.guard import check_start
 from piezo_sym.run.inputs import read_inputs
-from piezo_sym.run.ledger import row_counts
 from piezo_sym.run.module import checked
 from piezo_sym.run.parameters import read_initial, read_parameters
 from piezo_sym.run.system import System
@@ -28,12 +28,17 @@ if TYPE_CHECKING:
     from piezo_sym.run.module import GeneratedModule
     from piezo_sym.run.parameters import LaneValue
 
-FIELDS = [
-    ("p", ctypes.c_void_p),
-    *((name, ctypes.c_void_p) for name in ("x", "u", "y", "space")),
-    ("h", ctypes.c_double),
-    *((name, ctypes.c_long) for name in ("n", "rows", "ports", "processes")),
-]
+
+class Tick(ctypes.Structure):
+    """MODEL(stepper) of stepper.c."""
+
+    _fields_ = [
+        ("model", Model),
+        ("path", Path),
+        ("u", ctypes.c_void_p),
+        ("y", ctypes.c_void_p),
+        ("h", ctypes.c_double),
+    ]
 
 
 @final
@@ -79,22 +84,12 @@ class Stepper:
         engine = engine_of(module)
         values = read_parameters(module, parameters)
         system = System(module, values, read_inputs(module, inputs, self._h))
-        self._x = read_initial(module, values, system.inputs.segments[0].at(0.0), initial)
-        check_start(system, self._x)
-        n, m, rows = row_counts(system)
-        rows += engine.exchanges
-        self._u, self._y = np.zeros(m), np.zeros(len(module.OUTPUTS))
-        self._space = np.zeros(2 * n + rows)
-        self._structure = engine.structure(values)
-        kind = type("Stepper", (ctypes.Structure,), {"_fields_": FIELDS})
-        arrays = (self._x, self._u, self._y, self._space)
-        ports = self._y.size
-        self._all = kind(
-            ctypes.addressof(self._structure.value),
-            *(array.ctypes.data for array in arrays),
-            self._h,
-            *(n, rows, ports, (rows - ports - engine.exchanges) // 2),
-        )
+        x = read_initial(module, values, system.inputs.segments[0].at(0.0), initial)
+        check_start(system, x)
+        self._march = March(engine, values, x)
+        self._march.path.sums = None  # nobody asks for the ledger
+        self._u, self._y = np.zeros(len(module.INPUTS)), np.zeros(len(module.OUTPUTS))
+        self._all = Tick(self._march.model, self._march.path, at(self._u), at(self._y), self._h)
         self._tick: Any = getattr(engine.library, f"{module.NAME}_tick")
         self._at = ctypes.byref(self._all)
         self._names = [record.name for record in module.INPUTS]
@@ -103,7 +98,7 @@ class Stepper:
     @property
     def x(self) -> FloatArray:
         """The state, shape (n,)."""
-        return self._x.copy()
+        return self._march.x.copy()
 
     @property
     def time(self) -> float:

@@ -114,13 +114,9 @@ def newton(step, names, lanes, x, u, h, constants, iterations=8):
         for quantity in step.quantities:
             found = value(quantity.value, at)
             at[quantity.name] = found + np.zeros(lanes[quantity.bank]) if quantity.bank else found
-        matrix = np.zeros((len(step.right), len(step.right)))
-        for place, entry in step.matrix:
-            matrix[place] = value(entry, at)
-        changes = np.linalg.solve(matrix, [float(value(r, at)) for r in step.right])
-        at |= dict(zip(step.unknowns, changes, strict=True))
-        for state, change in zip(step.shared, changes, strict=False):
-            new[state] = new[state] - change
-        for state, change in step.lanes:
-            new[state] = new[state] - value(change, at)
+        for state, change in enumerate(step.changes):
+            reactions = sum(
+                at[value.name] * at[unknown.name] for value, unknown in change.reactions
+            )
+            new[state] = new[state] - (value(change.free, at) - reactions)
     return new, at

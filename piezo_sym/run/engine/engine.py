@@ -20,11 +20,12 @@ from piezo_sym.errors import EngineError, FileError
 from piezo_sym.files import path_text, read_text
 from piezo_sym.run.engine.driver import DRIVEN, PLAIN, SCALARS
 from piezo_sym.run.engine.library import Sources, library
+from piezo_sym.run.engine.march import at
 from piezo_sym.run.engine.structure import Structure, structure_of
 from piezo_sym.run.module import lanes
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
     from piezo_sym.run.checks import FloatArray
     from piezo_sym.run.module import GeneratedModule, Record
@@ -105,19 +106,19 @@ class Engine:
     def initial_state(self, u: ArrayLike, p: Any, /) -> FloatArray:
         """Return the state at t = 0, shape (n,), for the inputs u (inputs,) at t = 0."""
         u = self._array(u, len(self.module.INPUTS), "inputs").ravel()
-        out = np.empty(self._rows(self.module.STATES, p))
+        out = np.empty(self.rows(self.module.STATES, p))
         function = getattr(self.library, f"{self.module.NAME}_initial_state")
         structure = self.structure(p)  # a name of its own keeps the arrays of its lanes alive
-        function(_at(u), ctypes.byref(structure.value), _at(out))
+        function(at(u), ctypes.byref(structure.value), at(out))
         return out
 
     def rhs(self, x: ArrayLike, u: ArrayLike, p: Any, /) -> FloatArray:
         """Return dx/dt, shape (n, *batch)."""
-        return self._called("rhs", x, u, p, self._rows(self.module.STATES, p))
+        return self._called("rhs", x, u, p, self.rows(self.module.STATES, p))
 
     def jacobian(self, x: ArrayLike, u: ArrayLike, p: Any, /) -> FloatArray:
         """Return the derivative of `rhs` by the state, shape (n, n, *batch)."""
-        n = self._rows(self.module.STATES, p)
+        n = self.rows(self.module.STATES, p)
         found = self._called("jacobian", x, u, p, n * n)
         return found.reshape(n, n, *found.shape[1:])
 
@@ -131,11 +132,11 @@ class Engine:
 
     def heat(self, x: ArrayLike, u: ArrayLike, p: Any, /) -> FloatArray:
         """Return the heat of each process [W], shape (processes, *batch), banks spread."""
-        return self._called("heat", x, u, p, self._rows(self.module.PROCESSES, p))
+        return self._called("heat", x, u, p, self.rows(self.module.PROCESSES, p))
 
     def entropy_production(self, x: ArrayLike, u: ArrayLike, p: Any, /) -> FloatArray:
         """Return the entropy produced [W/K], shape (processes, *batch), banks spread."""
-        return self._called("entropy_production", x, u, p, self._rows(self.module.PROCESSES, p))
+        return self._called("entropy_production", x, u, p, self.rows(self.module.PROCESSES, p))
 
     def margins(self, x: ArrayLike, u: ArrayLike, p: Any, /) -> FloatArray:
         """Return the margin of each condition of the domain, shape (conditions, *batch)."""
@@ -160,82 +161,8 @@ class Engine:
         """The number of heat exchanges, whose entropy the ledger of a run books last."""
         return ctypes.c_long.in_dll(self.library, f"{self.module.NAME}_exchanges").value
 
-    def run(
-        self,
-        p: Any,
-        steps: NDArray[np.int_],
-        h: FloatArray,
-        u: FloatArray,
-        x: FloatArray,
-        ledger: FloatArray,
-        ends: FloatArray,
-        totals: FloatArray,
-        space: FloatArray,
-        ports: int,
-        counts: Any,
-    ) -> int:
-        """Take the steps of some intervals in C, and return how many intervals were done.
-
-        Parameters
-        ----------
-        steps, h : of each interval; `u` (steps in all, inputs), at the middle of each step.
-        x, ledger : the state (n,) and the sums (2*rows,), changed in place.
-        ends, totals : state (intervals, n) and sums (intervals, rows) after each interval.
-        space : room for 2 n + rows numbers.
-        counts : three integers: halvings, Newton iterations, steps done where it stopped.
-        """
-        structure = self.structure(p)
-        rows = totals.shape[1]
-        processes = (rows - ports - self.exchanges) // 2
-        function = getattr(self.library, f"{self.module.NAME}_run")
-        function.restype = ctypes.c_long
-        sizes = (u.shape[1], x.size, rows, ports, processes)
-        inputs, n, *others = map(ctypes.c_long, sizes)
-        done: int = function(
-            *(ctypes.c_long(steps.size), _at(steps), _at(h), _at(u), inputs),
-            *(ctypes.byref(structure.value), _at(x), _at(ledger), _at(ends), _at(totals)),
-            *(_at(space), n, *others, counts),
-        )
-        return done
-
-    def plan(
-        self,
-        p: Any,
-        deepest: int,
-        h: FloatArray,
-        u: FloatArray,
-        x: FloatArray,
-        tolerance: FloatArray,
-        levels: NDArray[np.intc],
-        rows: int,
-        ports: int,
-    ) -> tuple[int, bool]:
-        """Choose how often intervals are halved; return how many are done, and if one failed.
-
-        Parameters
-        ----------
-        deepest : the deepest level whose inputs are in `u`, level after level.
-        h : lengths of the intervals; x (n,), changed in place, goes along them.
-        tolerance : of each state (n,), for the error of an interval.
-        levels : of each interval, written; the first is where to begin.
-        rows, ports : of the ledger.
-        """
-        structure = self.structure(p)
-        failed = ctypes.c_int(0)
-        processes = (rows - ports - self.exchanges) // 2
-        space = np.empty(4 * x.size + rows)
-        function = getattr(self.library, f"{self.module.NAME}_plan")
-        function.restype = ctypes.c_long
-        done: int = function(
-            *(ctypes.c_long(h.size), ctypes.c_int(deepest), _at(h), _at(u)),
-            *(ctypes.c_long(u.shape[1]), ctypes.byref(structure.value), _at(x), _at(tolerance)),
-            *(_at(levels), _at(space)),
-            *map(ctypes.c_long, (x.size, rows, ports, processes)),
-            ctypes.byref(failed),
-        )
-        return done, bool(failed.value)
-
-    def _rows(self, records: Sequence[Record], p: Any) -> int:
+    def rows(self, records: Sequence[Record], p: Any) -> int:
+        """Return the number of rows that records take, banks spread."""
         return sum(lanes(p, record.bank) if record.bank else 1 for record in records)
 
     def _array(self, value: ArrayLike, rows: int, what: str) -> FloatArray:
@@ -249,7 +176,7 @@ class Engine:
         self, name: str, x: ArrayLike, u: ArrayLike | None, p: Any, rows: int
     ) -> FloatArray:
         """Return a function's rows for every column of a batch, shape (rows, *batch)."""
-        states = self._array(x, self._rows(self.module.STATES, p), "states")
+        states = self._array(x, self.rows(self.module.STATES, p), "states")
         batch = states.shape[1:]
         columns = _columns(states)
         inputs, step = self._inputs(u, batch)
@@ -258,10 +185,10 @@ class Engine:
         sizes = (columns.shape[0], columns.shape[1], step, rows)
         structure = self.structure(p)  # a name of its own keeps the arrays of its lanes alive
         function(
-            _at(columns),
-            _at(inputs),
+            at(columns),
+            at(inputs),
             ctypes.byref(structure.value),
-            _at(out),
+            at(out),
             *map(ctypes.c_long, sizes),
         )
         return out.T.reshape(rows, *batch)
@@ -281,10 +208,6 @@ def _columns(array: FloatArray) -> FloatArray:
     """Return an array (n, *batch) as columns one after another, (columns, n)."""
     width = int(np.prod(array.shape[1:], dtype=int))
     return np.ascontiguousarray(array.reshape(array.shape[0], width).T)
-
-
-def _at(array: NDArray[Any]) -> ctypes.c_void_p:
-    return ctypes.c_void_p(array.ctypes.data)
 
 
 #: The functions of a module that a library computes.

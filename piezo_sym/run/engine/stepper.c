@@ -11,219 +11,284 @@ const long MODEL(exchanges) = MODEL(exchange_count);
 
 enum { MOST_ITERATIONS = 14, MOST_HALVINGS = 40, MOST_SHARES = 60 };
 
-/* What a run needs beside the model: sizes, and arrays of n and of ledger rows. */
+/* A model with its sizes, and room for one step: arrays of n, of newton_size and of rows numbers. */
 typedef struct {
-    long n, rows, ports, processes;
-    double *after, *change, *means, *sums, *lost;
-    long halvings, iterations;
-    int booked;
-} MODEL(space);
+    const MODEL(parameters) *p;
+    long n, rows, ports, processes, inputs;
+    double *space;
+    long iterations, halvings;
+} MODEL(model);
+
+/* A state on its way: x[n], its last change and the one before, and the ledger (or none). */
+typedef struct {
+    double *x, *last, *prior;
+    double h, h_prior;
+    double *sums, *lost;
+} MODEL(path);
+
+/* How many numbers `space` of a model has to hold. */
+long MODEL(room)(const MODEL(model) *m);
+long MODEL(room)(const MODEL(model) *m)
+{
+    return 2 * m->n + MODEL(newton_size)(m->p) + m->rows;
+}
+
+static double *MODEL(means_of)(const MODEL(model) *m)
+{
+    return m->space + 2 * m->n + MODEL(newton_size)(m->p);
+}
 
 /* Add h times the means of a step to the ledger, with compensation for what rounding loses. */
-static void MODEL(book)(MODEL(space) *s, double h)
+static void MODEL(book)(const MODEL(model) *m, const MODEL(path) *path, double h)
 {
-    for (long k = 0; k < s->rows; ++k) {
-        const double part = h * s->means[k] - s->lost[k];
-        const double total = s->sums[k] + part;
-        s->lost[k] = (total - s->sums[k]) - part;
-        s->sums[k] = total;
+    const double *restrict means = MODEL(means_of)(m);
+    double *restrict sums = path->sums, *restrict lost = path->lost;
+    for (long k = 0; k < m->rows; ++k) {
+        const double part = h * means[k] - lost[k];
+        const double total = sums[k] + part;
+        lost[k] = (total - sums[k]) - part;
+        sums[k] = total;
     }
 }
 
-/* Newton's method from s->after; whether it converged inside the domain. */
-static int MODEL(root)(MODEL(space) *s, const double *x, const double *u, double h,
-                       const MODEL(parameters) *p)
+/*
+ * Newton's method for the state y after a step; whether it converged inside the domain.  A change is
+ * measured in 1e-9 of the step's.  It stops when the last one was less, or, since its error falls
+ * quadratically, when the next one would be 1e-15 of the step's.
+ */
+static int MODEL(root)(MODEL(model) *m, const double *restrict x, double *restrict y,
+                       const double *u, double h)
 {
-    double *y = s->after, *change = s->change;
+    double *restrict change = m->space + 2 * m->n;
+    double before = 0.0;
     for (int iteration = 0; iteration < MOST_ITERATIONS; ++iteration) {
         double worst = 0.0, share = 1.0;
-        ++s->iterations;
-        if (!MODEL(newton)(x, y, u, h, p, change))
+        ++m->iterations;
+        if (!MODEL(newton)(x, y, u, h, m->p, change))
             return 0;
-        for (long i = 0; i < s->n; ++i) {
-            const double size = 1e-9 * fabs(y[i] - change[i] - x[i]) + 1e-15 * fabs(x[i]) + 1e-300;
+        for (long i = 0; i < m->n; ++i) {
+            const double after = y[i] - change[i];
+            const double size = 1e-9 * fabs(after - x[i]) + 1e-15 * fabs(x[i]) + 1e-300;
             const double ratio = fabs(change[i]) / size;
             worst = ratio <= worst ? worst : ratio; /* and if it is no number */
-            y[i] -= change[i];
+            y[i] = after;
         }
         if (!(worst < 1e300))
             return 0;
-        for (int k = 0; !MODEL(inside)(y, u, p); ++k) { /* back towards where it came from */
+        for (int k = 0; !MODEL(inside)(y, u, m->p); ++k) { /* back towards where it came from */
             if (k == MOST_SHARES)
                 return 0;
             share *= 0.5;
-            for (long i = 0; i < s->n; ++i)
+            for (long i = 0; i < m->n; ++i)
                 y[i] += share * change[i];
         }
-        if (worst <= 1.0 && share == 1.0)
+        if (share == 1.0 && (worst <= 1.0 || worst * worst * worst <= 1e-6 * before * before))
             return 1;
+        before = share == 1.0 ? worst : 0.0;
     }
     return 0;
 }
 
-/* Whether the step from x to s->after is one of nature's: no process takes entropy. */
-static int MODEL(accepted)(MODEL(space) *s, const double *x, const double *u,
-                           const MODEL(parameters) *p)
+/* Whether the step from x to y is one of nature's: no process takes entropy. */
+static int MODEL(accepted)(const MODEL(model) *m, const double *x, const double *y, const double *u)
 {
+    double *means = MODEL(means_of)(m);
     double total = 0.0, least = 0.0;
-    MODEL(means)(x, s->after, u, p, s->means);
-    for (long k = 0; k < s->rows; ++k)
-        if (!(fabs(s->means[k]) < 1e300))
+    MODEL(means)(x, y, u, m->p, means);
+    for (long k = 0; k < m->rows; ++k)
+        if (!(fabs(means[k]) < 1e300))
             return 0;
-    for (long k = s->ports + s->processes; k < s->ports + 2 * s->processes; ++k) {
-        total += fabs(s->means[k]);
-        least = s->means[k] < least ? s->means[k] : least;
+    for (long k = m->ports + m->processes; k < m->ports + 2 * m->processes; ++k) {
+        total += fabs(means[k]);
+        least = means[k] < least ? means[k] : least;
     }
     return least >= -1e-14 * total;
 }
 
-/* One step over h, halved where it has to be; 0 where that does not help. */
-static int MODEL(step)(MODEL(space) *s, double *x, const double *u, double h,
-                       const MODEL(parameters) *p, int depth)
+/* Where Newton's method begins: on the parabola through the last steps, if they were alike. */
+static void MODEL(predict)(const MODEL(model) *m, const MODEL(path) *path, double h, double *y)
 {
-    for (long i = 0; i < s->n; ++i)
-        s->after[i] = x[i];
-    if (MODEL(root)(s, x, u, h, p) && MODEL(accepted)(s, x, u, p)) {
-        if (s->booked)
-            MODEL(book)(s, h);
-        for (long i = 0; i < s->n; ++i)
-            x[i] = s->after[i];
-        return 1;
-    }
-    if (depth == MOST_HALVINGS)
-        return 0;
-    ++s->halvings;
-    return MODEL(step)(s, x, u, 0.5 * h, p, depth + 1) && MODEL(step)(s, x, u, 0.5 * h, p, depth + 1);
+    const double line = path->h > 0.0 ? h / path->h : 0.0;
+    const double bend = path->h == h && path->h_prior == h ? 1.0 : 0.0;
+    for (long i = 0; i < m->n; ++i)
+        y[i] = path->x[i] + line * path->last[i] + bend * (path->last[i] - path->prior[i]);
 }
 
-/*
- * Steps through intervals: interval k has steps[k] steps of h[k]; u holds the inputs at the middle of
- * each step, one after another.  x[n] is the state, before and after; `ledger` holds rows sums, then
- * rows compensations; states and sums after each interval go to out_x and out_sums.  `space` has room
- * for 2 n + rows numbers.  Returns the number of intervals done; counts[0], counts[1] are the halvings
- * and iterations, counts[2] the steps done in the interval that failed.
- */
-long MODEL(run)(long intervals, const long *steps, const double *h, const double *u, long inputs,
-                const MODEL(parameters) *p, double *x, double *ledger, double *out_x,
-                double *out_sums, double *space, long n, long rows, long ports, long processes,
-                long *counts);
-long MODEL(run)(long intervals, const long *steps, const double *h, const double *u, long inputs,
-                const MODEL(parameters) *p, double *x, double *ledger, double *out_x,
-                double *out_sums, double *space, long n, long rows, long ports, long processes,
-                long *counts)
+/* One step over h, halved where it has to be; 0, and the state as before, if that does not help. */
+static int MODEL(step)(MODEL(model) *m, MODEL(path) *path, const double *u, double h, int depth)
 {
-    MODEL(space) s = {.n = n, .rows = rows, .ports = ports, .processes = processes};
-    s.booked = 1;
-    s.after = space;
-    s.change = space + n;
-    s.means = space + 2 * n;
-    s.sums = ledger;
-    s.lost = ledger + rows;
-    long done = 0;
-    counts[2] = 0;
-    for (; done < intervals; ++done) {
-        for (long k = 0; k < steps[done]; ++k, u += inputs) {
-            if (!MODEL(step)(&s, x, u, h[done], p, 0)) {
-                counts[2] = k;
-                goto end;
-            }
-        }
-        for (long i = 0; i < n; ++i)
-            out_x[done * n + i] = x[i];
-        for (long k = 0; k < rows; ++k)
-            out_sums[done * rows + k] = s.sums[k];
+    double *restrict y = m->space;
+    int found = 0;
+    MODEL(predict)(m, path, h, y);
+    for (int trial = path->h > 0.0 ? 0 : 1; trial < 2 && !found; ++trial) {
+        if (trial == 1) /* not from a prediction */
+            memcpy(y, path->x, (size_t)m->n * sizeof *y);
+        found = MODEL(inside)(y, u, m->p) && MODEL(root)(m, path->x, y, u, h) &&
+                MODEL(accepted)(m, path->x, y, u);
     }
-end:
-    counts[0] += s.halvings;
-    counts[1] += s.iterations;
-    return done;
-}
-
-/* Steps from x to y: 2^level of them over h, the inputs at their middles one after another. */
-static int MODEL(across)(MODEL(space) *s, const double *x, double *y, const double *u, long inputs,
-                         double h, int level, const MODEL(parameters) *p)
-{
-    const long steps = 1L << level;
-    for (long i = 0; i < s->n; ++i)
-        y[i] = x[i];
-    for (long k = 0; k < steps; ++k)
-        if (!MODEL(step)(s, y, u + k * inputs, h / (double)steps, p, 0))
+    if (!found) {
+        double *before = m->space + m->n;
+        if (depth == MOST_HALVINGS)
             return 0;
+        ++m->halvings;
+        if (depth == 0)
+            memcpy(before, path->x, (size_t)m->n * sizeof *before);
+        found = MODEL(step)(m, path, u, 0.5 * h, depth + 1) &&
+                MODEL(step)(m, path, u, 0.5 * h, depth + 1);
+        if (!found && depth == 0)
+            memcpy(path->x, before, (size_t)m->n * sizeof *before);
+        return found;
+    }
+    if (path->sums)
+        MODEL(book)(m, path, h);
+    double *kept = path->prior;
+    path->prior = path->last;
+    path->last = kept;
+    path->h_prior = path->h;
+    path->h = h;
+    for (long i = 0; i < m->n; ++i) {
+        path->last[i] = y[i] - path->x[i];
+        path->x[i] = y[i];
+    }
     return 1;
 }
 
 /*
- * Chooses for each interval how often it is halved: levels[k], so that 2^levels[k] steps and twice as
- * many end within three times tolerance[n] of each other, from the same state.  u holds, for each
- * level up to `deepest`, the inputs at the middles of all steps of all intervals; h the lengths of the
- * intervals.  x goes from interval to interval, extrapolated.  `space` has room for 5 n + rows
- * numbers; levels[0] is where to begin.  Returns the number of intervals done: less than all, if one
- * needs a deeper level (failed = 0) or has no solution (failed = 1).
+ * One step over each interval: over h[k], the inputs u[k] at its middle.  State and sums after
+ * interval k go to row sample[k] of out_x and out_sums, if it is not negative.  Returns the number
+ * of intervals done.
  */
-long MODEL(plan)(long intervals, int deepest, const double *h, const double *u, long inputs,
-                 const MODEL(parameters) *p, double *x, const double *tolerance, int *levels,
-                 double *space, long n, long rows, long ports, long processes, int *failed);
-long MODEL(plan)(long intervals, int deepest, const double *h, const double *u, long inputs,
-                 const MODEL(parameters) *p, double *x, const double *tolerance, int *levels,
-                 double *space, long n, long rows, long ports, long processes, int *failed)
+long MODEL(run)(MODEL(model) *m, MODEL(path) *path, long intervals, const double *h,
+                const double *u, const long *sample, double *out_x, double *out_sums);
+long MODEL(run)(MODEL(model) *m, MODEL(path) *path, long intervals, const double *h,
+                const double *u, const long *sample, double *out_x, double *out_sums)
 {
-    MODEL(space) s = {.n = n, .rows = rows, .ports = ports, .processes = processes};
-    double *coarse = space + 2 * n + rows, *fine = coarse + n;
-    int level = levels[0];
-    s.after = space;
-    s.change = space + n;
-    s.means = space + 2 * n;
+    for (long k = 0; k < intervals; ++k) {
+        if (!MODEL(step)(m, path, u + k * m->inputs, h[k], 0))
+            return k;
+        if (sample[k] >= 0) {
+            memcpy(out_x + sample[k] * m->n, path->x, (size_t)m->n * sizeof(double));
+            memcpy(out_sums + sample[k] * m->rows, path->sums, (size_t)m->rows * sizeof(double));
+        }
+    }
+    return intervals;
+}
+
+/* Takes equal steps, the inputs at their middles one after another; 0 if one has no solution. */
+static int MODEL(across)(MODEL(model) *m, MODEL(path) *path, const double *u, double h, long steps)
+{
+    for (long k = 0; k < steps; ++k)
+        if (!MODEL(step)(m, path, u + k * m->inputs, h, 0))
+            return 0;
+    return 1;
+}
+
+/* How many steps a level has: 1, 2, 3, 4, 6, 8, 12 ...; from 1 on, level + 2 has twice as many. */
+static long MODEL(steps_at)(long level)
+{
+    return level == 0 ? 1 : (2 + (level + 1) % 2) << ((level - 1) / 2);
+}
+
+/* Three paths through one mesh: fine, of half the steps, and of half the steps from the fine one. */
+typedef struct {
+    MODEL(path) fine, coarse, trial;
+    double *kept; /* of n and of 2 rows: state and ledger of the fine path before an interval */
+    long level;
+} MODEL(pair);
+
+static void MODEL(keep)(const MODEL(model) *m, const MODEL(pair) *pair)
+{
+    memcpy(pair->kept, pair->fine.x, (size_t)m->n * sizeof(double));
+    memcpy(pair->kept + m->n, pair->fine.sums, (size_t)m->rows * sizeof(double));
+    memcpy(pair->kept + m->n + m->rows, pair->fine.lost, (size_t)m->rows * sizeof(double));
+}
+
+static void MODEL(back)(const MODEL(model) *m, MODEL(pair) *pair)
+{
+    memcpy(pair->fine.x, pair->kept, (size_t)m->n * sizeof(double));
+    memcpy(pair->fine.sums, pair->kept + m->n, (size_t)m->rows * sizeof(double));
+    memcpy(pair->fine.lost, pair->kept + m->n + m->rows, (size_t)m->rows * sizeof(double));
+    pair->fine.h = 0.0;
+}
+
+/*
+ * Runs a mesh and its halves side by side, each with a state and a balance of its own.  How finely
+ * interval k of length h[k] is divided is chosen on the way: so that steps and half steps from the
+ * finer state end within three times tolerance[n] of each other.  u[level - lowest] holds, for
+ * levels lowest to highest, the inputs at the middles of all steps of all intervals.  After interval
+ * k, row sample[k] of out_x, out_fine, out_sums gets the state extrapolated from both paths, the
+ * finer one and its ledger.  Returns the number of intervals done: less than all if one needs a
+ * level that is not there (failed = 0) or a step has no solution (failed = 1).
+ */
+long MODEL(adapt)(MODEL(model) *m, MODEL(pair) *pair, long intervals, const double *h,
+                  const double *const *u, long lowest, long highest, const double *tolerance,
+                  const long *sample, double *out_x, double *out_fine, double *out_sums,
+                  long *taken, int *failed);
+long MODEL(adapt)(MODEL(model) *m, MODEL(pair) *pair, long intervals, const double *h,
+                  const double *const *u, long lowest, long highest, const double *tolerance,
+                  const long *sample, double *out_x, double *out_fine, double *out_sums,
+                  long *taken, int *failed)
+{
     *failed = 0;
     for (long k = 0; k < intervals; ++k) {
-        for (int known = 0;; ++level) {
-            double worst = 0.0;
-            if (level + 1 > deepest)
+        double worst = 0.0;
+        MODEL(keep)(m, pair);
+        for (;; ++pair->level, MODEL(back)(m, pair)) {
+            const long level = pair->level, finer = level ? level + 2 : 1;
+            const long steps = MODEL(steps_at)(level);
+            if (level < lowest || finer > highest)
                 return k;
-            const double *at = u + inputs * (intervals * ((1L << level) - 1) + (k << level));
-            const double *next = u + inputs * (intervals * ((2L << level) - 1) + (k << (level + 1)));
-            if (!(known || MODEL(across)(&s, x, coarse, at, inputs, h[k], level, p)) ||
-                !MODEL(across)(&s, x, fine, next, inputs, h[k], level + 1, p)) {
-                *failed = 1;
+            const double *at = u[level - lowest] + m->inputs * steps * k;
+            const double *twice = u[finer - lowest] + m->inputs * 2 * steps * k;
+            const double length = h[k] / (double)steps;
+            memcpy(pair->trial.x, pair->kept, (size_t)m->n * sizeof(double));
+            *failed = !MODEL(across)(m, &pair->trial, at, length, steps) ||
+                      !MODEL(across)(m, &pair->fine, twice, 0.5 * length, 2 * steps);
+            *taken += 3 * steps;
+            if (*failed) {
+                MODEL(back)(m, pair);
                 return k;
             }
-            for (long i = 0; i < n; ++i) {
-                const double ratio = fabs(fine[i] - coarse[i]) / (3.0 * tolerance[i]);
+            worst = 0.0;
+            for (long i = 0; i < m->n; ++i) {
+                const double ratio = fabs(pair->fine.x[i] - pair->trial.x[i]) / (3.0 * tolerance[i]);
                 worst = ratio <= worst ? worst : ratio;
             }
-            if (worst <= 1.0) {
-                for (long i = 0; i < n; ++i)
-                    x[i] = fine[i] + (fine[i] - coarse[i]) / 3.0;
-                levels[k] = level;
-                level = worst < 0.05 && level > 0 ? level - 1 : level;
-                break;
-            }
-            known = 1;
-            double *swap = coarse;
-            coarse = fine;
-            fine = swap;
+            if (!(worst <= 1.0))
+                continue;
+            *taken += steps;
+            *failed = !MODEL(across)(m, &pair->coarse, at, length, steps);
+            if (*failed)
+                return k;
+            break;
         }
+        if (sample[k] >= 0) {
+            double *restrict best = out_x + sample[k] * m->n, *fine = pair->fine.x;
+            for (long i = 0; i < m->n; ++i)
+                best[i] = fine[i] + (fine[i] - pair->coarse.x[i]) / 3.0;
+            memcpy(out_fine + sample[k] * m->n, fine, (size_t)m->n * sizeof(double));
+            memcpy(out_sums + sample[k] * m->rows, pair->fine.sums, (size_t)m->rows * sizeof(double));
+        }
+        if (worst < 0.05 && pair->level > 0) /* half as many steps and more give 2.25 times that */
+            --pair->level;
     }
     return intervals;
 }
 
 /* One step at a time, for a caller who decides the inputs: all that a call needs, in one place. */
 typedef struct {
-    const MODEL(parameters) *p;
-    double *x, *u, *y, *space;
+    MODEL(model) model;
+    MODEL(path) path;
+    double *u, *y;
     double h;
-    long n, rows, ports, processes;
 } MODEL(stepper);
 
 /* Takes a step over h with the inputs u, and writes the outputs after it; 0 if there is none. */
-int MODEL(tick)(const MODEL(stepper) *t);
-int MODEL(tick)(const MODEL(stepper) *t)
+int MODEL(tick)(MODEL(stepper) *t);
+int MODEL(tick)(MODEL(stepper) *t)
 {
-    MODEL(space) s = {.n = t->n, .rows = t->rows, .ports = t->ports, .processes = t->processes};
-    s.after = t->space;
-    s.change = t->space + t->n;
-    s.means = t->space + 2 * t->n;
-    if (!MODEL(step)(&s, t->x, t->u, t->h, t->p, 0))
+    if (!MODEL(step)(&t->model, &t->path, t->u, t->h, 0))
         return 0;
-    MODEL(outputs)(t->x, t->u, t->p, t->y);
+    MODEL(outputs)(t->path.x, t->u, t->model.p, t->y);
     return 1;
 }

@@ -1,0 +1,97 @@
+"""The intervals that a run steps through, in blocks, and the inputs at the middles of their steps.
+
+Input: a `System`, the sample times (nt,), the longest interval.  Output: `Block` records, made one
+at a time, so that memory does not grow with the steps.  Intervals end at samples and at breaks of
+inputs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, final
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from piezo_sym.run.checks import FloatArray
+    from piezo_sym.run.inputs import Segment
+    from piezo_sym.run.system import System
+
+
+@final
+@dataclass(frozen=True)
+class Block:
+    """Some intervals of one segment, one after another.
+
+    Attributes
+    ----------
+    segment : the inputs in it.
+    starts, lengths : of each interval [s], (k,).
+    samples : of each interval, which sample time is its end; -1 for none.
+    """
+
+    segment: Segment
+    starts: FloatArray
+    lengths: FloatArray
+    samples: NDArray[np.int_]
+
+    def __len__(self) -> int:
+        """Return the number of intervals."""
+        return self.starts.size
+
+    def rest(self, done: int) -> Block:
+        """Return what is left after `done` intervals."""
+        parts = (self.starts[done:], self.lengths[done:], self.samples[done:])
+        return Block(self.segment, *parts)
+
+    def middles(self, steps: int = 1) -> FloatArray:
+        """Return the inputs at the middles of equal steps of each interval, (k*steps, m)."""
+        places = (np.arange(steps) + 0.5) / steps
+        times = self.starts[:, None] + self.lengths[:, None] * places
+        return np.ascontiguousarray(self.segment.over(times.ravel()).T)
+
+
+def blocks(
+    system: System, times: FloatArray, longest: float, size: Callable[[], int]
+) -> Iterator[Block]:
+    """Yield the intervals of a run, in order.
+
+    Parameters
+    ----------
+    longest : no interval is longer [s].
+    size : asked before each block: how many intervals it may have.
+    """
+    for segment in system.inputs.segments:
+        inner = times[(times > segment.start) & (times < segment.stop)]
+        edges = np.array([segment.start, *inner, segment.stop])
+        samples = np.searchsorted(times, edges[1:])
+        hit = samples < times.size
+        hit[hit] = times[samples[hit]] == edges[1:][hit]
+        samples = np.where(hit, samples, -1)
+        widths = np.diff(edges)
+        counts = np.maximum(1, np.ceil(widths / longest * (1 - 1e-12))).astype(int)
+        ends = np.cumsum(counts)
+        first = 0
+        while first < ends[-1]:
+            place = np.arange(first, min(first + size(), ends[-1]))
+            stretch = np.searchsorted(ends, place, side="right")
+            local = place - (ends - counts)[stretch]
+            lengths = (widths / counts)[stretch]
+            starts = edges[stretch] + local * lengths
+            last = local == counts[stretch] - 1
+            yield Block(segment, starts, lengths, np.where(last, samples[stretch], -1))
+            first += place.size
+
+
+def inputs_at(system: System, times: FloatArray) -> FloatArray:
+    """Return the inputs at samples (m, nt): at a jump those after it, at the end those before."""
+    segments = system.inputs.segments
+    starts = np.array([segment.start for segment in segments])
+    place = np.maximum(np.searchsorted(starts, times, side="right") - 1, 0)
+    found = np.empty((len(system.module.INPUTS), times.size))
+    for n in np.unique(place):
+        found[:, place == n] = segments[n].over(times[place == n])
+    return found
