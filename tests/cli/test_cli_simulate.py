@@ -219,10 +219,10 @@ def compiled(folder):
     return any(".build-" not in str(path) for path in folder.rglob("piezo_stack.*"))
 
 
-LONG = ("--duration", "100", "-i", "V_in=sine(100,100)")
+LONG = ("--duration", "1e5", "-i", "V_in=sine(100,100)")
 
 
-@pytest.mark.parametrize("words", [("--step", "1e-5"), ()], ids=["ten million steps", "tolerance"])
+@pytest.mark.parametrize("words", [("--step", "1e-5"), ()], ids=["step", "tolerance"])
 def test_a_long_run_stops_within_a_second_of_ctrl_c(words, tmp_path):
     command = [sys.executable, "-m", "piezo_sym", "simulate", "piezo_stack", *LONG, *words]
     environment = {
