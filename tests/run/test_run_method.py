@@ -355,6 +355,21 @@ def test_a_run_that_ends_before_the_edge_is_not_stopped(leak):
     assert np.all(run.T_body > 296.15)
 
 
+def test_a_condition_on_state_and_input_is_looked_at_with_the_state_of_the_time(tmp_path):
+    """T starts 5 K above where T_e ends, and follows it; the start and the end never meet."""
+    limit = 'T_low = { value = 280.0, unit = "K" }\ngap = { value = 3.0, unit = "K" }'
+    text = LEAK.replace('T_low = { value = 296.15, unit = "K" }', limit)
+    path = tmp_path / "gap.toml"
+    path.write_text(
+        text.replace('["T > T_low", ', '["T > T_low", "T - T_e < gap", ').replace("290.0", "297.0")
+    )
+    slide = ramp(10.0, 110.0, 297.0, 292.92)
+    run = piezo_sym.simulate(path, inputs={"T_e": slide}, duration=120.0)
+    assert run.T_body[0] - run.T_e[-1] > 3 > (run.T_body - run.T_e).max()
+    with pytest.raises(RunError, match=r"condition 'T - T_e < gap' has margin .*T_e = 29"):
+        piezo_sym.simulate(path, inputs={"T_e": step(60.0, 297.0, 292.92)}, duration=120.0)
+
+
 def test_samples_lie_in_the_domain_however_near_its_edge(module):
     """Extrapolation must not carry a state over the edge that both its runs keep away from."""
     inputs = {"T_e": 296.15 + 1e-9, "V_in": sine(1e-3, 100)}
