@@ -56,14 +56,16 @@ def compiled_run(
     rtol = max(rtol, LEAST_RTOL)
     try:
         if step is None:
-            trajectory = inside(system, adaptive(system, engine, x, samples, rtol))
+            runs = adaptive([system], engine, x[None], samples, rtol)
+            trajectory = inside(system, runs.trajectory(0))
             accuracy: dict[str, object] = {
                 "rtol": rtol,
                 "extrapolated": extrapolated(system),
                 "balances": FINER,
             }
         else:
-            trajectory, accuracy = fixed(system, engine, x, samples, step), {"step": step}
+            trajectory = fixed([system], engine, x[None], samples, step).trajectory(0)
+            accuracy = {"step": step}
     except RunError as stopped:
         raise cause(system, x, samples, stopped) from stopped
     work = {
