@@ -122,18 +122,30 @@ def adaptive(
     batch = run.batch
     batch.scale[:] = LOOSER * rtol * _scale(systems, engine, x, times, longest)
     for block in blocks(first, times, longest, lambda: _block_size(batch)):
-        done, again = [0], False
-        while min(done) < len(block) and batch.levels and max(batch.levels) <= MOST_LEVEL:
-            lowest = max(0, min(batch.levels) - BELOW)
-            levels = range(lowest, max(batch.levels) + ABOVE + 1)
-            u = [block.middles(steps_at(level)) for level in levels]
-            done = batch.run("adapt", block.lengths, u, lowest, block.samples, again=again)
-            done = [n for n, member in zip(done, batch.members, strict=True) if not member.failed]
-            done, again = done or [len(block)], True
-        run.note(block, [member.done for member in batch.members])
+        run.note(block, _through(batch, block))
         if not run.goes_on(block, watch):
             break
     return run.runs(extrapolated=True)
+
+
+def _through(batch: Batch, block: Block) -> list[int]:
+    """Take members through a block, and return how many of its intervals each has done.
+
+    Where a level is missing, members stop; what is left is then cut anew, for inputs are sampled
+    at the middles of all steps that a level may take.
+    """
+    done = [0] * len(batch)
+    while True:
+        left = [n for n, member in zip(done, batch.members, strict=True) if not member.failed]
+        if not left or min(left) == len(block) or max(batch.levels) > MOST_LEVEL:
+            return done
+        first = min(left)
+        part = block.part(first, first + _block_size(batch))
+        levels = range(max(0, min(batch.levels) - BELOW), max(batch.levels) + ABOVE + 1)
+        u = [part.middles(steps_at(level)) for level in levels]
+        before = [n - first for n in done]
+        found = batch.run("adapt", part.lengths, u, levels[0], part.samples, before)
+        done = [first + n for n in found]
 
 
 @final
@@ -154,9 +166,10 @@ class _Run:
         """Note why members did not come through a block."""
         for k, reached in enumerate(done):
             if reached < len(block) and self.errors[k] is None:
+                member = self.batch.members[k]
                 t, x = float(block.starts[reached]), self.batch.x[k]
-                self.errors[k] = _stuck(self.systems[k], t, x)
-                self.batch.members[k].failed = 1
+                self.errors[k] = (_stuck if member.failed else _too_fine)(self.systems[k], t, x)
+                member.failed = 1
 
     def goes_on(self, block: Block, watch: Watch | None) -> bool:
         """Tell the time reached; return whether any member goes on."""
@@ -197,9 +210,21 @@ def _scale(
 
 def _stuck(system: System, t: float, x: FloatArray) -> RunError:
     """Return the error of a run that cannot go on: it says when and where."""
+    why = "no step stays in the domain"
+    remedy = "look at the inputs and the state there, or allow the state more room in [domain]"
+    return _stopped(system, t, x, why, remedy)
+
+
+def _too_fine(system: System, t: float, x: FloatArray) -> RunError:
+    """Return the error of a run whose tolerance asks for steps without end."""
+    why = "the tolerance is out of reach there"
+    remedy = "allow a larger rtol; give an input that jumps as a signal or as (t, values)"
+    return _stopped(system, t, x, why, remedy)
+
+
+def _stopped(system: System, t: float, x: FloatArray, why: str, remedy: str) -> RunError:
     names = [record.name for record in system.module.STATES]
     rows = system.rows(system.module.STATES)
     values = ", ".join(f"{n} = {x[row.start]:.6g}" for n, row in zip(names, rows, strict=True))
-    what = f"{METHOD} cannot go on from t = {t:.6g} s at {values}: no step stays in the domain"
-    remedy = "look at the inputs and the state there, or allow the state more room in [domain]"
+    what = f"{METHOD} cannot go on from t = {t:.6g} s at {values}: {why}"
     return RunError(what, f"model '{system.module.NAME}'", remedy=remedy)

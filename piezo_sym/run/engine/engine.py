@@ -93,7 +93,8 @@ def _sources(module: GeneratedModule) -> Sources:
             what = "is missing" if text is None else "is of another spec than the module"
             raise EngineError(what, path_text(file), remedy="run `piezo-sym generate`")
         texts.append(text)
-    return Sources(module.NAME, *texts)
+    header, source = texts
+    return Sources(module.NAME, header, source)
 
 
 @final

@@ -30,7 +30,10 @@ ENDINGS = {"win32": ".dll", "darwin": ".dylib"}
 @final
 @dataclass(frozen=True)
 class Sources:
-    """The texts of one module: its name, ``<name>.h``, ``<name>.c``; whether for members side by side."""
+    """The texts of one module: its name, ``<name>.h``, ``<name>.c``.
+
+    `wide` asks for a library that also runs members side by side.
+    """
 
     name: str
     header: str

@@ -138,8 +138,7 @@ class Batch:
         u: Sequence[FloatArray],
         lowest: int,
         samples: NDArray[np.int_],
-        *,
-        again: bool = False,
+        done: Sequence[int] = (),
     ) -> list[int]:
         """Go through intervals, and return how many of them each member has done.
 
@@ -151,14 +150,14 @@ class Batch:
         u : inputs at the middles of steps (k*steps, inputs), for each level from the lowest on.
         lowest : the lowest level.
         samples : the sample after each interval (k,), -1 for none.
-        again : whether members go on where they stopped, and not with the first interval.
+        done : how many of these intervals each member has done before; none when left out.
         """
         pointers = (POINTER * len(u))(*(level.ctypes.data for level in u))
         highest = lowest + len(u) - 1
         block = Intervals(lengths.size, lowest, highest, at(lengths), None, at(samples))
         block.u = ctypes.cast(pointers, POINTER)
-        for member in () if again else self.members:
-            member.done = 0
+        for k, member in enumerate(self.members):
+            member.done = done[k] if done else 0
         arguments = (self.members, LONG(len(self.members)), ctypes.byref(block))
         if self._wide is None:
             self._function(name)(*arguments)
@@ -167,10 +166,9 @@ class Batch:
         return [member.done for member in self.members]
 
     def _side_by_side(self, engine: Engine) -> tuple[Any, FloatArray]:
-        """Return the function that runs members side by side, and its room; None for few members."""
-        library = (
-            engine.side_by_side() if len(self.members) > 1 and self.rows.n <= MOST_STATES else None
-        )
+        """Return the function that runs members side by side, or None, and its room."""
+        few = len(self.members) < 2 or self.rows.n > MOST_STATES
+        library = None if few else engine.side_by_side()
         if library is None:
             return None, np.empty(0)
         width = LONG.in_dll(library, f"{self._name}_width").value

@@ -57,29 +57,24 @@ def wide_source(model: str, header: str, source: str) -> str:
         If the texts have no such part.
     """
     _, opening, step = source.partition(OPENING)
-    record = re.search(
-        r"typedef struct \{(.*?)\} " + re.escape(model) + "_parameters;", header, re.S
-    )
+    name = re.escape(model)
+    record = re.search(rf"typedef struct \{{(.*?)\}} {name}_parameters;", header, re.DOTALL)
     if not opening or not record:
         msg = "the module has no step"
         raise ValueError(msg)
-    kept = re.sub(r"^#pragma(?:.*\\\n)*.*\n", "", step, flags=re.M)
-    kept = re.sub(
-        rf"\b{model}_(newton_size|newton|means|inside|parameters)\b", rf"{model}_wide_\1", kept
-    )
-    kept = re.sub(rf"^int ({model}_wide_)", r"static mask \1", kept, flags=re.M)
-    kept = re.sub(rf"^(void|long) ({model}_wide_)", r"static \1 \2", kept, flags=re.M)
-    kept = re.sub(r"return 1;", "return everywhere;", kept)
-    kept = re.sub(
-        rf"^( *(?:(?:const )?double \w+|\w+\[.*\]|\w+) =) ({NUMBER});$",
-        r"\1 wide(\2);",
-        kept,
-        flags=re.M,
-    )
-    kept = re.sub(r"\bdouble\b", "real", kept)
-    return "\n".join(
-        [_defined(), _record(model, record[1]), kept, _undefined(), _loader(model, record[1])]
-    )
+    for pattern, instead in (
+        (r"^#pragma(?:[^\n]*\\\n)*[^\n]*\n", ""),
+        (rf"^long {name}_newton_size\(.*?^}}\n", ""),
+        (rf"\b{name}_(newton|means|inside|parameters)\b", rf"{model}_wide_\1"),
+        (rf"^int ({name}_wide_)", r"static mask \1"),
+        (rf"^(void) ({name}_wide_)", r"static \1 \2"),
+        (r"return 1;", "return everywhere;"),
+        (rf"^( *(?:(?:const )?double \w+|\w+\[[^\n]*\]|\w+) =) ({NUMBER});$", r"\1 wide(\2);"),
+        (r"\bdouble\b", "real"),
+    ):
+        step = re.sub(pattern, instead, step, flags=re.MULTILINE | re.DOTALL)
+    texts = (_defined(), _record(model, record[1]), step, _undefined(), _loader(model, record[1]))
+    return "\n".join(texts)
 
 
 def _defined() -> str:
@@ -100,7 +95,7 @@ def _undefined() -> str:
 
 
 def _fields(record: str) -> Iterator[tuple[str, str]]:
-    """Yield the kind and the name of each parameter: "number", "bank:<name>" or "count"."""
+    """Yield the kind and the name of each parameter: "number", "bank:<bank>" or "count"."""
     for line in record.splitlines():
         found = re.match(
             r"\s*(double |const double \*|long )(\w+);(?:.*one a lane of (\w+))?", line
