@@ -142,9 +142,9 @@ class _Printer:
             Write(f"{self.words['out']}[{self._index(at, n)}]", row.value, row.slot.bank)
             for n, row in enumerate(rows)
         ]
-        body = [f"const long {line};" for line in at.definitions()]
-        body += self._stages([write.value for write in writes], writes)
-        return self._function("means", body)
+        body = list(self._stages([write.value for write in writes], writes))
+        ends = [(line.split()[0], f"const long {line};") for line in at.definitions()]
+        return self._function("means", [*used_only(body, ends, ()), *body])
 
     def inside(self) -> str:
         """Return whether a state lies in the domain."""
