@@ -124,4 +124,4 @@ def test_networks():
 def test_many_networks():
     outcomes = explore(150)
     assert outcomes[FINISHED] >= 75
-    assert outcomes[STOPPED] >= 5
+    assert outcomes[STOPPED] >= 1
