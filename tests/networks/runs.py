@@ -120,3 +120,8 @@ def distance(found, wanted, module):
         np.abs(found[n].values - wanted[n].values).max() / (np.abs(wanted[n].values).max() + 1e-9)
         for n in names
     )
+
+
+def jumps(spec):
+    """Return whether a law jumps: where a state would have to slide along it, a run may stop."""
+    return any("sign(" in str(value) for e in spec["elements"].values() for value in e.values())

@@ -14,6 +14,7 @@ from edges import ABOVE, edges, heated, on_edges, rounded
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from precise import DIGITS
+from runs import jumps
 from strategy import networks
 from test_c_networks import check_twins, twins
 
@@ -149,7 +150,7 @@ def explore(number):
     @settings(max_examples=number, suppress_health_check=list(HealthCheck), database=None)
     @given(networks(), st.integers(0, 10**6))
     def each(spec, seed):
-        assume(not any(element.get("discontinuous") for element in spec["elements"].values()))
+        assume(not jumps(spec))
         try:
             model = Model(**spec)
             assume(edges(derive(model).expand()))

@@ -11,13 +11,14 @@ import pytest
 from agreement import point
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
-from runs import check_run, distance, written
+from runs import METHOD, check_run, distance, jumps, written
 from strategy import networks
 
 from piezo_sym import derive, load, sine
 from piezo_sym.errors import PiezoError, RunError
 from piezo_sym.run import simulate
 from piezo_sym.run.module import rows
+from piezo_sym.spec.load import parse
 from piezo_sym.spec.model import Model
 
 SPECS = sorted(Path(__file__).with_name("specs").glob("*.toml"))
@@ -59,11 +60,6 @@ def attempted(run):
         message = str(error)
         assert message.isprintable()
         return float(re.search(r" t = (\S+) s", message)[1])
-
-
-def jumps(spec):
-    """Return whether a law jumps: where a state would have to slide along it, a run may stop."""
-    return any(element.get("discontinuous") for element in spec["elements"].values())
 
 
 def check(spec, iphs, seed):
@@ -113,6 +109,56 @@ def test_specs(path, accuracy, tmp_path, monkeypatch):
     found = check_run(monkeypatch, module, start, **accuracy, **options)
     wanted = simulate(module, rtol=1e-12, **options)
     assert distance(found, wanted, module) <= 20 * accuracy.get("rtol", 1e-6)
+
+
+RUBBING = """
+[model]
+name = "rubbing"
+[parameters]
+m   = { value = 2.0,   unit = "kg" }
+F_c = { value = 3.0,   unit = "N" }
+T_0 = { value = 300.0, unit = "K" }
+c   = { value = 2.0,   unit = "J/K" }
+[inputs]
+F = { unit = "N" }
+[domain]
+assume = ["F_c >= 0"]
+[initial]
+p = 1.0
+[elements]
+push  = { kind = "force_source", at = "a", input = "F" }
+block = { kind = "mass", at = "a", mass = "m", state = "p" }
+body  = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }
+[elements.dry]
+kind = "damper"
+between = ["a", "wall"]
+force = "F_c*sign(v)"
+heats = "body"
+discontinuous = true
+"""
+
+
+@pytest.mark.parametrize("accuracy", [{"rtol": 1e-6}, {"step": 1e-3}], ids=str)
+def test_friction_is_right_until_the_block_sticks(accuracy, tmp_path, monkeypatch):
+    """It slows down by 2 N and stands at 0.5 s, where sign(v) has no value that holds it."""
+    module, options = written(parse(RUBBING), tmp_path), {"inputs": {"F": 1.0}, "times": 6}
+    found = check_run(monkeypatch, module, [1.0, 0.0], duration=0.49, **accuracy, **options)
+    assert np.allclose(found.p, 1 - 2 * found.time, rtol=0, atol=1e-12)
+    stop = attempted(lambda: simulate(module, duration=1.0, method=METHOD, **accuracy, **options))
+    assert stop == pytest.approx(0.5, abs=1e-2)
+
+
+@pytest.mark.parametrize("accuracy", [{"rtol": 1e-6}, {"step": 1e-2}], ids=str)
+def test_a_run_never_takes_entropy_even_of_a_model_that_would(accuracy, tmp_path):
+    """A damper that drives, generated though it is refuted: its first step is not taken."""
+    data = load(next(path for path in SPECS if "a2" in path.stem)).model_dump()
+    data["domain"]["assume"] = []
+    data["parameters"]["d"]["value"] = -0.4
+    module = written(Model(**data), tmp_path, allow_unproved=True)
+    free = simulate(module, duration=1.0, rtol=1e-8, times=11)
+    assert free.produced_damper[-1] < 0
+    with pytest.raises(RunError, match="cannot go on from t = 0 s"):
+        simulate(module, duration=1.0, method=METHOD, **accuracy)
 
 
 def test_networks():
