@@ -72,7 +72,8 @@ def blocks(
         hit[hit] = times[samples[hit]] == edges[1:][hit]
         samples = np.where(hit, samples, -1)
         widths = np.diff(edges)
-        counts = np.maximum(1, np.ceil(widths / longest * (1 - 1e-12))).astype(int)
+        rounding = 4 * np.finfo(float).eps * segment.stop / longest
+        counts = np.maximum(1, np.ceil(widths / longest - rounding)).astype(int)
         ends = np.cumsum(counts)
         first = 0
         while first < ends[-1]:

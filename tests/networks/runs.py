@@ -4,7 +4,6 @@ Input: a module, and what `simulate` takes.  The balances are those of the step:
 the engine shows the state and the ledger that belong together.
 """
 
-import inspect
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +13,7 @@ import numpy as np
 from piezo_sym.build import render
 from piezo_sym.modules import load_module
 from piezo_sym.run import simulate
-from piezo_sym.run.engine import Engine
+from piezo_sym.run.engine.march import Batch
 
 METHOD = "discrete_gradient"
 
@@ -29,31 +28,30 @@ def written(model, folder, **options):
 
 @dataclass
 class Last:
-    """What the last call of the engine has left: the state and the ledger."""
+    """The batch that went through the engine last: a run that is the only member of it."""
 
-    engine: Engine = None
-    x: np.ndarray = None
-    ledger: np.ndarray = None
+    batch: Batch = None
+
+    @property
+    def x(self):
+        return self.batch.x[0]
 
     def exchanged(self):
         """Return the entropy that each heat exchange brought in: the last sums of the ledger."""
-        rows = self.ledger.size // 2
-        return self.ledger[rows - self.engine.exchanges : rows]
+        return self.batch.ledgers[0, 0, self.batch.rows.booked :]
 
 
 @contextmanager
 def watched(monkeypatch):
-    """Let a `Last` know of every call of `Engine.run`."""
-    last, run = Last(), Engine.run
-    signature = inspect.signature(run)
+    """Let a `Last` know of every batch that is run."""
+    last, run = Last(), Batch.run
 
-    def seen(*args, **options):
-        given = signature.bind(*args, **options).arguments
-        last.engine, last.x, last.ledger = given["self"], given["x"], given["ledger"]
-        return run(*args, **options)
+    def seen(self, *args, **options):
+        last.batch = self
+        return run(self, *args, **options)
 
     with monkeypatch.context() as patch:
-        patch.setattr(Engine, "run", seen)
+        patch.setattr(Batch, "run", seen)
         yield last
 
 

@@ -145,7 +145,7 @@ def test_friction_is_right_until_the_block_sticks(accuracy, tmp_path, monkeypatc
     found = check_run(monkeypatch, module, [1.0, 0.0], duration=0.49, **accuracy, **options)
     assert np.allclose(found.p, 1 - 2 * found.time, rtol=0, atol=1e-12)
     stop = attempted(lambda: simulate(module, duration=1.0, method=METHOD, **accuracy, **options))
-    assert stop == pytest.approx(0.5, abs=1e-2)
+    assert 0.5 - 1 / 32 <= stop <= 0.5  # the start of the interval that it did not come through
 
 
 @pytest.mark.parametrize("accuracy", [{"rtol": 1e-6}, {"step": 1e-2}], ids=str)
@@ -155,7 +155,7 @@ def test_a_run_never_takes_entropy_even_of_a_model_that_would(accuracy, tmp_path
     data["domain"]["assume"] = []
     data["parameters"]["d"]["value"] = -0.4
     module = written(Model(**data), tmp_path, allow_unproved=True)
-    free = simulate(module, duration=1.0, rtol=1e-8, times=11)
+    free = simulate(module, duration=1.0, rtol=1e-8, times=11, method="LSODA")
     assert free.produced_damper[-1] < 0
     with pytest.raises(RunError, match="cannot go on from t = 0 s"):
         simulate(module, duration=1.0, method=METHOD, **accuracy)

@@ -60,9 +60,16 @@ class Repeated:
         setattr(self.function, name, value)
 
     def __call__(self, *args):
-        found = self.function(*args)
-        self.counted.append(grown(lambda: self.function(*args), self.times))
-        return found
+        self.function(*args)
+        member = args[0][0]
+        done = member.done
+
+        def again():
+            member.done = 0
+            self.function(*args)
+
+        self.counted.append(grown(again, self.times))
+        member.done = done
 
 
 def test_a_leak_of_sixteen_bytes_is_seen():
@@ -74,7 +81,7 @@ def test_a_leak_of_sixteen_bytes_is_seen():
 
 @pytest.mark.parametrize(
     ("name", "times", "accuracy"),
-    [("run", CALLS, {"step": 1e-6}), ("plan", CALLS // 50, {"rtol": 1e-3})],
+    [("march", CALLS, {"step": 1e-6}), ("adapt", CALLS // 50, {"rtol": 1e-3})],
 )
 def test_runs_in_c(monkeypatch, name, times, accuracy):
     """The call that a run makes is made again, on the same arrays: each goes on from the last."""

@@ -97,6 +97,7 @@ class Batch:
     ----------
     rows : the sizes.
     x : the states (members, n) after what was run.
+    ledgers : the sums booked so far, and what rounding lost of them (members, 2, ledger).
     scale : the largest magnitude of each state met by `survey` (members, n); for `adapt`, the
         tolerance of each state.
     states, fine, sums : at samples: states (members, samples, n), extrapolated or else those of the
@@ -117,7 +118,7 @@ class Batch:
         first = self._model(0, None)
         self._space = np.zeros((size, self._function("room")(ctypes.byref(first))))
         self._changes = np.zeros((size, 3, 2, max(n, 1)))
-        self._ledgers = np.zeros((size, 2, ledger))
+        self.ledgers = np.zeros((size, 2, ledger))
         self._kept = np.zeros((size, n + 2 * ledger))
         self.members = (Member * size)(*map(self._member, range(size)))
         self._wide, self._vectors = self._side_by_side(engine)
@@ -182,7 +183,7 @@ class Batch:
         return function, numbers[skipped : skipped + room]
 
     def _member(self, k: int) -> Member:
-        changes, ledger = self._changes[k], self._ledgers[k]
+        changes, ledger = self._changes[k], self.ledgers[k]
         states = (self.x[k], self._others[0, k], self._others[1, k])
         paths = [Path(at(x), at(c[0]), at(c[1])) for x, c in zip(states, changes, strict=True)]
         paths[0].sums, paths[0].lost = at(ledger[0]), at(ledger[1])
