@@ -41,7 +41,8 @@ def draw(data: xarray.Dataset) -> Figure:
         label = f"{frequency:.0f} Hz"
         axes.plot(one.V_in, one.q * 1e3, linestyle=dash, color=colour, linewidth=1.1, label=label)
     name_axes(axes, "voltage $V_{\\mathrm{in}}$ [V]", "displacement $q$ [mm]")
-    legend(axes, "$f$", loc="upper left")
+    axes.set_ylim(-2.3, 2.9)
+    legend(axes, "$f$", loc="upper center", ncols=4, handlelength=2, columnspacing=1)
     return figure
 
 
