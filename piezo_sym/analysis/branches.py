@@ -12,7 +12,6 @@ the temperature jump: it runs away to another branch, or falls back to one.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
@@ -20,10 +19,11 @@ from typing import TYPE_CHECKING, final
 
 import numpy as np
 
-from piezo_sym.analysis.balance import Settled, SteadyWarning, grid, scan, settled, zeros
+from piezo_sym.analysis.balance import grid, scan, settled, zeros
+from piezo_sym.analysis.curves import Point, folds, traced, with_folds
 from piezo_sym.analysis.steady import temperature_range
 from piezo_sym.analysis.stroboscope import Stroboscope, stroboscope
-from piezo_sym.errors import RunError, UsageError
+from piezo_sym.errors import UsageError
 from piezo_sym.run.checks import positive
 
 if TYPE_CHECKING:
@@ -35,32 +35,7 @@ if TYPE_CHECKING:
     from piezo_sym.run.parameters import LaneValue
 
 STEPS = 256  # a period
-LONGEST, SHORTEST = 0.15, 1e-4  # step along a curve, in log f and log T
-SHARP = 0.3  # rad: a curve may turn so much in a step
-MOST_POINTS = 2000
-EXACT = 1e-10  # in log f and log T
 SAME = 1e-3  # zeros nearer than this in log T are one
-
-
-@final
-@dataclass(frozen=True)
-class Point:
-    """A periodic steady state on a curve."""
-
-    frequency: float
-    state: Settled
-    rising: float  # d drift/d log T: stable if negative
-    place: FloatArray  # (log f, log T)
-
-    @property
-    def stable(self) -> bool:
-        """Whether the body comes back to this temperature."""
-        return self.rising < 0
-
-    def described(self) -> tuple[float, ...]:
-        """Return frequency, the body's mean, least and greatest temperature, and 1 if stable."""
-        T = self.state.period
-        return self.frequency, T.mean, T.coldest, T.hottest, float(self.stable)
 
 
 @final
@@ -153,13 +128,13 @@ def steady_branches(
     strobe = stroboscope(module, inputs, low, parameters, initial, STEPS)
     span = np.log([[low, high], temperature_range(strobe, low, temperatures)])
     curves: list[tuple[Point, ...]] = []
-    folds: list[tuple[int, Point, bool]] = []
+    ends: list[tuple[int, Point, bool]] = []
     for curve in _curves(strobe, span):
-        found = tuple(_folds(strobe, curve))
-        folds += found
-        curves.append(_with_folds(curve, found))
+        found = tuple(folds(strobe, curve))
+        ends += found
+        curves.append(with_folds(curve, found))
     whole = tuple(curves)
-    return Branches(whole, tuple(_jump(strobe, whole, point, up) for _, point, up in folds))
+    return Branches(whole, tuple(_jump(strobe, whole, point, up) for _, point, up in ends))
 
 
 def _curves(strobe: Stroboscope, span: FloatArray) -> Iterator[tuple[Point, ...]]:
@@ -173,121 +148,11 @@ def _curves(strobe: Stroboscope, span: FloatArray) -> Iterator[tuple[Point, ...]
             place = np.array([log_f, np.log(zero.temperature)])
             if any(np.max(np.abs(place - other)) < SAME for other in reached):
                 continue
-            curve = tuple(_traced(strobe, place, zero, way, span))
+            curve = tuple(traced(strobe, place, zero, way, span))
             if not curve:
                 continue
             reached += [curve[0].place, curve[-1].place]
             yield curve
-
-
-def _traced(
-    strobe: Stroboscope, place: FloatArray, zero: Settled, way: float, span: FloatArray
-) -> Iterator[Point]:
-    """Yield the points of the curve through a zero, to where it leaves the ranges."""
-    tangent = np.array([way, 0.0])
-    try:
-        point = _corrected(strobe, place, np.array([0.0, 1.0]), zero)
-    except RunError as error:
-        warnings.warn(f"{error}; a curve is left out", SteadyWarning, stacklevel=4)
-        return
-    yield point
-    length = LONGEST / 8
-    for _ in range(MOST_POINTS):
-        new = _next(strobe, point, tangent, length, span)
-        if new is None:
-            if length < SHORTEST:
-                return
-            length /= 2
-            continue
-        ahead = new.place - point.place
-        step = float(np.hypot(*ahead))
-        turn = float(np.arccos(np.clip(ahead @ tangent / step, -1, 1)))
-        if turn > SHARP and length > SHORTEST:
-            length /= 2
-            continue
-        tangent, point = ahead / step, new
-        yield point
-        if not np.all((span[:, 0] + EXACT < new.place) & (new.place < span[:, 1] - EXACT)):
-            return
-        length = min(LONGEST, length * (1.5 if turn < SHARP / 3 else 1.0))
-
-
-def _next(
-    strobe: Stroboscope, point: Point, tangent: FloatArray, length: float, span: FloatArray
-) -> Point | None:
-    """Return the next point, at most `length` on; on the edge, if it would leave the range."""
-    guess = point.place + length * tangent
-    across = np.array([-tangent[1], tangent[0]])
-    if not span[0, 0] <= guess[0] <= span[0, 1]:
-        edge = float(np.clip(guess[0], *span[0]))
-        part = (edge - point.place[0]) / (guess[0] - point.place[0])
-        guess = np.array([edge, (point.place + part * length * tangent)[1]])
-        across = np.array([0.0, 1.0])
-    try:
-        new = _corrected(strobe, guess, across, point.state)
-    except RunError:
-        return None
-    far = float(np.hypot(*(new.place - point.place)))
-    return new if EXACT < far < 2 * length else None
-
-
-def _corrected(strobe: Stroboscope, guess: FloatArray, across: FloatArray, near: Settled) -> Point:
-    """Return the zero of the drift on the line through `guess` along `across`, by secants.
-
-    Raises
-    ------
-    RunError : the secants do not meet one, or nothing settles on the way.
-    """
-    s, last, slope = 0.0, None, 0.0
-    for _ in range(20):
-        log_f, log_T = guess + s * across
-        f = float(np.exp(log_f))
-        state = settled(strobe, f, float(np.exp(log_T)), near.x, near.slope)
-        rate = state.drift * f
-        if last is None:
-            move = 1e-4 if s == 0 else 0.0
-        else:
-            slope = (rate - last[1]) / (s - last[0])
-            move = -rate / slope if slope else 0.0
-            if abs(move) <= EXACT or rate == 0:
-                return Point(f, state, slope * float(across[1]), guess + s * across)
-        last, s, near = (s, rate), s + float(np.clip(move, -LONGEST, LONGEST)), state
-    what = f"no steady state near {f:g} Hz and {near.temperature:.6g} K"
-    raise RunError(what, f"model '{strobe.module.NAME}'")
-
-
-def _folds(strobe: Stroboscope, curve: tuple[Point, ...]) -> Iterator[tuple[int, Point, bool]]:
-    """Yield each fold, the number of the point nearest to it, and whether it is the highest f."""
-    for n in range(1, len(curve) - 1):
-        a, b, c = curve[n - 1 : n + 2]
-        if (b.place[0] - a.place[0]) * (c.place[0] - b.place[0]) < 0:
-            yield n, _fold(strobe, a, b, c), bool(b.place[0] > a.place[0])
-
-
-def _with_folds(
-    curve: tuple[Point, ...], folds: tuple[tuple[int, Point, bool], ...]
-) -> tuple[Point, ...]:
-    """Return a curve with its folds in place of the points nearest to them."""
-    at = {n: point for n, point, _ in folds}
-    return tuple(at.get(n, point) for n, point in enumerate(curve))
-
-
-def _fold(strobe: Stroboscope, a: Point, b: Point, c: Point) -> Point:
-    """Return the point of extreme frequency between three, by parabolas of log f over log T."""
-    for _ in range(3):
-        x = np.array([p.place[1] - b.place[1] for p in (a, b, c)])
-        y = np.array([p.place[0] - b.place[0] for p in (a, b, c)])
-        curve = np.polyfit(x, y, 2)
-        top = float(np.clip(-curve[1] / (2 * curve[0]), min(x), max(x)))
-        if abs(top) < 1e-7:
-            break
-        guess = b.place + np.array([np.polyval(curve, top), top])
-        new = _corrected(strobe, guess, np.array([1.0, 0.0]), b.state)
-        if (new.place[0] - b.place[0]) * curve[0] > 0:  # no further out than b
-            break
-        a, c = (b, c) if (new.place[1] - b.place[1]) * (c.place[1] - b.place[1]) > 0 else (a, b)
-        b = new
-    return b
 
 
 def _jump(

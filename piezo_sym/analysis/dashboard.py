@@ -1,8 +1,8 @@
 """`plot`: a run at a glance: states, inputs and outputs, temperatures, and the ledger.
 
 Input: the `xarray.Dataset` of a run.  Output: a Matplotlib figure: a panel for each unit that
-states, inputs, outputs and temperatures have; heat released and entropy produced, stacked by process; the
-residual of the energy balance.  Panels that would be empty are left out.
+states, inputs, outputs and temperatures have; heat released and entropy produced, stacked by
+process; the residual of the energy balance.  Panels that would be empty are left out.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def plot(run: xarray.Dataset) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        Save it with ``.savefig("run.png")``; a notebook shows it.
+        Save it with ``.savefig("run.png")``; a notebook shows it after ``%matplotlib inline``.
 
     Raises
     ------
