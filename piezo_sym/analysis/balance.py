@@ -50,7 +50,7 @@ class SteadyWarning(UserWarning):
 
 
 @final
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Settled:
     """A state x (n,) whose rows but the body's entropy repeat after a period."""
 
@@ -62,7 +62,7 @@ class Settled:
 
 
 @final
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Try:
     """A period from a state x (n,), and by how much its fast rows fail to repeat, in sizes."""
 

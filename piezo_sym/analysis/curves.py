@@ -34,7 +34,7 @@ MOST_SECANTS = 20
 
 
 @final
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Point:
     """A periodic steady state on a curve."""
 

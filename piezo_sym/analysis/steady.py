@@ -52,7 +52,7 @@ MOST_MOVES = 12
 
 
 @final
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SteadyState:
     """A periodic steady state of a model with one body; temperatures in K.
 
@@ -211,9 +211,9 @@ def _first(
     if at.drift == 0:
         return at
     if not side:
-        end = known[-1 if heats else 0].temperature
+        ends = sorted([at.temperature, known[-1 if heats else 0].temperature])
         what = f"no periodic steady state: the body {'heats' if heats else 'cools'} at every "
-        what += f"temperature between {T:.6g} K and {end:.6g} K"
+        what += f"temperature between {ends[0]:.6g} K and {ends[1]:.6g} K at t = 0"
         remedy = "let an ambient cool the body, or give a wider range as 'temperatures'"
         raise RunError(what, f"model '{strobe.module.NAME}' at {frequency:g} Hz", remedy=remedy)
     return side[0] if heats else side[-1]

@@ -22,6 +22,7 @@ from piezo_sym.errors import RunError, UsageError, quote
 from piezo_sym.run import simulate
 from piezo_sym.run.checks import known_keys
 from piezo_sym.run.discrete import METHOD
+from piezo_sym.run.engine import compiled
 from piezo_sym.run.inputs import as_signal, read_inputs
 from piezo_sym.run.module import checked, rows
 from piezo_sym.run.parameters import read_initial, read_parameters
@@ -39,12 +40,13 @@ if TYPE_CHECKING:
 
 LOOKS = 16  # times in a period at which sizes and the mean temperature are taken
 FLOOR = 1e-15  # so that no size is 0
+FINE = 1e-9  # rtol where nothing can compile
 CLOSE = 1e-6  # of an input's range: what repeats
 PROBES = np.sort(np.r_[0.0, np.modf(np.arange(1, 64) * 0.6180339887498949)[0]])  # of a period
 
 
 @final
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Period:
     """One period from a state x (n,): the state after it, sizes (n,), the body's temperature."""
 
@@ -73,8 +75,8 @@ class Stroboscope:
         ------
         RunError : the run leaves the domain.
         """
-        period = 1 / frequency
-        run = self.run(x, frequency, times=LOOKS + 1, step=period / self.steps)
+        accuracy = {"step": 1 / frequency / self.steps} if self.compiled else {"rtol": FINE}
+        run = self.run(x, frequency, times=LOOKS + 1, **accuracy)
         states = self.states_of(run)
         size = np.maximum(np.max(np.abs(states), axis=1), FLOOR)
         for part in rows(self.module.STATES, self.values):
@@ -91,7 +93,7 @@ class Stroboscope:
             duration=1 / frequency,
             parameters=self.parameters,
             initial=self.named(x),
-            method=METHOD,
+            method=METHOD if self.compiled else "LSODA",
             **accuracy,
         )
 
@@ -109,6 +111,11 @@ class Stroboscope:
         records = self.module.STATES
         parts = zip(records, rows(records, self.values), strict=True)
         return {r.name: x[part] if r.bank else float(x[part.start]) for r, part in parts}
+
+    @cached_property
+    def compiled(self) -> bool:
+        """Whether the module runs in C; if not, LSODA follows a period to 1e-9, slowly."""
+        return compiled(self.module) is not None
 
     @cached_property
     def values(self) -> Any:
@@ -166,6 +173,7 @@ def stroboscope(
     Raises
     ------
     UsageError : the module has not one body, an input does not repeat, or an argument is wrong.
+    RunError : a run leaves the domain in its first period.
     """
     bodies = [record.name for record in checked(module).BODIES]
     if len(bodies) != 1:
@@ -173,7 +181,9 @@ def stroboscope(
         raise UsageError(what, "periodic_steady_state.model", "a model with one body")
     refuse_unperiodic(module, inputs(frequency), frequency)
     known_keys(initial, [record.name for record in module.STATES], "periodic_steady_state.initial")
-    return Stroboscope(module, inputs, parameters or {}, initial or {}, steps)
+    strobe = Stroboscope(module, inputs, parameters or {}, initial or {}, steps)
+    strobe.look(strobe.start(frequency), frequency)
+    return strobe
 
 
 def refuse_unperiodic(

@@ -272,6 +272,20 @@ def test_a_wrong_argument_is_one_line(changed, said):
     assert len(str(error.value).splitlines()) == 1
 
 
+def test_a_start_outside_the_domain_says_so():
+    with pytest.raises(RunError, match="start is outside the domain"):
+        periodic_steady_state("piezo_stack", **STACK, parameters={"L": -1.0})
+
+
+def test_without_a_compiler_another_solver_finds_the_same(heater, monkeypatch):
+    drive = {"inputs": {"V": sine(V, F)}, "frequency": F, "temperatures": (320.0, 340.0)}
+    expected = steady.periodic_steady_state(heater, **drive).temperature
+    monkeypatch.setattr("piezo_sym.analysis.stroboscope.compiled", lambda _: None)
+    found = steady.periodic_steady_state(heater, **drive)
+    assert found.orbit.attrs["method"] == "LSODA"
+    assert found.temperature == pytest.approx(expected, rel=1e-6)
+
+
 @pytest.mark.parametrize(("spec", "bodies"), [("a1_two_bodies", 2)])
 def test_a_model_without_exactly_one_body_is_refused(spec, bodies):
     model = load(f"tests/networks/specs/{spec}.toml")
