@@ -185,7 +185,16 @@ def zeros(strobe: Stroboscope, frequency: float, known: Sequence[Settled]) -> li
 
     Where the drift comes near to zero without crossing it between three of them, the top of a
     parabola through them is looked at too, so that two zeros close together are found.
+
+    Raises
+    ------
+    RunError : every temperature is steady, for nothing heats or cools the body.
     """
+    for a, b in pairwise(known):
+        if a.drift == b.drift == 0:
+            what = f"any temperature from {a.temperature:.6g} K to {b.temperature:.6g} K is steady"
+            remedy = "let an ambient cool the body, or drive it so that it heats"
+            raise RunError(what, f"model '{strobe.module.NAME}'", remedy=remedy)
     points = list(known)
     for a, b, c in zip(known, known[1:], known[2:], strict=False):
         if a.drift * b.drift > 0 < b.drift * c.drift and abs(b.drift) < min(

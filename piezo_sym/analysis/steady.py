@@ -111,9 +111,7 @@ def periodic_steady_state(
     """
     strobe, f = _read(module, inputs, frequency, parameters, initial)
     accuracy = _accuracy(rtol)
-    known = _known(strobe, f, temperatures)
-    found = zeros(strobe, f, known)
-    first = _first(strobe, f, known, found)
+    first = _first(strobe, f, _known(strobe, f, temperatures))
     return _state(strobe, f, first, accuracy)
 
 
@@ -197,19 +195,18 @@ def _known(
     return known
 
 
-def _first(
-    strobe: Stroboscope, frequency: float, known: list[Settled], found: list[Settled]
-) -> Settled:
+def _first(strobe: Stroboscope, frequency: float, known: list[Settled]) -> Settled:
     """Return the zero that a run from the start goes to."""
     T = strobe.temperature(strobe.start(frequency))
     if not known:
         what = f"nothing settles at {T:.6g} K or anywhere in the range"
         raise RunError(what, f"model '{strobe.module.NAME}'", remedy="look at the inputs")
     at = min(known, key=lambda state: abs(state.temperature - T))
-    heats = at.drift > 0
-    side = [zero for zero in found if (zero.temperature > at.temperature) == heats]
     if at.drift == 0:
         return at
+    heats = at.drift > 0
+    found = zeros(strobe, frequency, known)
+    side = [zero for zero in found if (zero.temperature > at.temperature) == heats]
     if not side:
         ends = sorted([at.temperature, known[-1 if heats else 0].temperature])
         what = f"no periodic steady state: the body {'heats' if heats else 'cools'} at every "
@@ -270,7 +267,7 @@ def _described(
 ) -> SteadyState:
     orbit = strobe.run(x, frequency, times=SAMPLES + 1, rtol=ORBIT_RTOL)
     states, T = strobe.states_of(orbit), strobe.temperature_of(orbit)
-    size = np.maximum(np.max(np.abs(states), axis=1), 1e-300)
+    size = strobe.look(x, frequency).size
     heats = [orbit[f"heat_{name}"] for name in {r.name: None for r in strobe.module.PROCESSES}]
     multiplier = float(np.max(np.abs(np.linalg.eigvals(slope))))
     return SteadyState(

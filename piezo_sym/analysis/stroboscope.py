@@ -40,6 +40,7 @@ if TYPE_CHECKING:
 
 LOOKS = 16  # times in a period at which sizes and the mean temperature are taken
 FLOOR = 1e-15  # so that no size is 0
+GENTLE = 1.01  # a difference quotient may change the temperature by so much
 FINE = 1e-9  # rtol where nothing can compile
 CLOSE = 1e-6  # of an input's range: what repeats
 PROBES = np.sort(np.r_[0.0, np.modf(np.arange(1, 64) * 0.6180339887498949)[0]])  # of a period
@@ -128,16 +129,15 @@ class Stroboscope:
         return read_initial(self.module, self.values, u, self.initial)
 
     def temperature(self, x: FloatArray) -> float:
-        """Return the body's temperature in the state x (n,)."""
-        return float(self.module.temperatures(x, self.values)[0])
+        """Return the body's temperature in the state x (n,); inf far outside of what it can be."""
+        with np.errstate(over="ignore"):
+            return float(self.module.temperatures(x, self.values)[0])
 
     def entropy_row(self, x: FloatArray) -> int:
         """Return the row of the body's entropy: the only state that its temperature depends on."""
         T = self.temperature(x)
         for row in range(x.size):
-            moved = x.copy()
-            moved[row] += 1e-3 * max(1.0, abs(x[row]))
-            if self.temperature(moved) != T:
+            if self.temperature(_moved(x, row, 1e-3 * max(1.0, abs(x[row])))) != T:
                 return row
         what = f"the temperature of '{self.module.BODIES[0].name}' depends on no state"
         raise RunError(what, f"model '{self.module.NAME}'", "a temperature that rises with entropy")
@@ -145,19 +145,28 @@ class Stroboscope:
     def at_temperature(self, x: FloatArray, T: float) -> FloatArray:
         """Return the state x (n,) with the body's entropy such that its temperature is T.
 
-        Newton's method on the temperature, which is proved to rise with the entropy.
+        By Newton's method on log T, which is linear in the entropy for an exponential law, and
+        proved to rise with it.
         """
         found, row = x.copy(), self.entropy_row(x)
+        step = 1e-3 * max(1.0, abs(x[row]))
         for _ in range(100):
             now = self.temperature(found)
-            probe = found.copy()
-            probe[row] += 1e-6 * max(1.0, abs(found[row]))
-            rise = (self.temperature(probe) - now) / (probe[row] - found[row])
-            move = np.log(T / now) * now / rise  # exact for an exponential law
+            while not self.temperature(_moved(found, row, step)) < now * GENTLE:
+                step /= 10
+            ahead = self.temperature(_moved(found, row, step))
+            move = np.log(T / now) * step / np.log(ahead / now)
             found[row] += move
-            if abs(move) <= 1e-14 * max(1.0, abs(found[row])):
+            if abs(move) <= 1e-14 * max(step, abs(found[row])):
                 break
         return found
+
+
+def _moved(x: FloatArray, row: int, by: float) -> FloatArray:
+    """Return the state x (n,) with one row moved."""
+    moved = x.copy()
+    moved[row] += by
+    return moved
 
 
 def stroboscope(

@@ -212,6 +212,23 @@ def test_another_solver_finds_the_same_orbit(at_50):
         assert np.abs(run[name].values[-1] - state.initial[name]).max() < 2e-6 * size
 
 
+def test_a_tiny_heat_capacity_is_no_obstacle(module):
+    small = module(HEATER.replace("value = 0.02", "value = 1e-7"))
+    found = steady.periodic_steady_state(small, inputs={"V": 20.0}, frequency=1.0, rtol=1e-3)
+    assert found.temperature == pytest.approx(T_E + 400 / (R * LAM), rel=1e-6)
+
+
+def test_where_nothing_heats_or_cools_every_temperature_is_steady():
+    """An oscillator at rest, without an ambient: one state is its start, all are a continuum."""
+    model = load("tests/networks/specs/a2_oscillator.toml")
+    rest = {"inputs": {}, "frequency": 1.0, "initial": {"q": 0.0}}
+    found = periodic_steady_state(model, **rest)
+    assert found.temperature == pytest.approx(300.0)
+    assert found.residual == 0
+    with pytest.raises(RunError, match=r"any temperature from 300 K to 300\.03 K is steady"):
+        periodic_steady_states(model, **rest)
+
+
 def test_a_neutral_motion_is_no_obstacle():
     """At 1 Hz the currents stay in the dead zone: their difference neither grows nor decays."""
     found = periodic_steady_state("piezo_stack", inputs={"V_in": sine(100, 1)}, frequency=1)
@@ -278,7 +295,7 @@ def test_a_start_outside_the_domain_says_so():
 
 
 def test_without_a_compiler_another_solver_finds_the_same(heater, monkeypatch):
-    drive = {"inputs": {"V": sine(V, F)}, "frequency": F, "temperatures": (320.0, 340.0)}
+    drive = {"inputs": {"V": sine(V, F)}, "frequency": F, "temperatures": (340.0, 350.0)}
     expected = steady.periodic_steady_state(heater, **drive).temperature
     monkeypatch.setattr("piezo_sym.analysis.stroboscope.compiled", lambda _: None)
     found = steady.periodic_steady_state(heater, **drive)
