@@ -20,7 +20,14 @@ from typing import TYPE_CHECKING, Any
 from piezo_sym.version import VERSION as __version__
 
 if TYPE_CHECKING:
-    from piezo_sym.api import Stepper, simulate
+    from piezo_sym.analysis.dashboard import plot
+    from piezo_sym.api import (
+        Stepper,
+        periodic_steady_state,
+        periodic_steady_states,
+        simulate,
+        steady_branches,
+    )
     from piezo_sym.build import generate
     from piezo_sym.derivation import derive
     from piezo_sym.errors import PiezoError
@@ -37,11 +44,15 @@ _HOME = {
     "derive": "derivation",
     "generate": "build",
     "load": "spec.load",
+    "periodic_steady_state": "api",
+    "periodic_steady_states": "api",
+    "plot": "analysis.dashboard",
     "ramp": "run",
     "samples": "run",
     "samples_from_csv": "run",
     "simulate": "api",
     "sine": "run",
+    "steady_branches": "api",
     "step": "run",
     "triangle": "run",
     "verify": "proofs",
@@ -56,11 +67,15 @@ __all__ = [
     "derive",
     "generate",
     "load",
+    "periodic_steady_state",
+    "periodic_steady_states",
+    "plot",
     "ramp",
     "samples",
     "samples_from_csv",
     "simulate",
     "sine",
+    "steady_branches",
     "step",
     "triangle",
     "verify",

@@ -1,10 +1,15 @@
-"""`simulate` and `Stepper`: a spec's generated module, and runs of it."""
+"""Specs run: `simulate`, `Stepper` and steady states, of a spec's generated module.
+
+Input: the name of a shipped spec, a path or a `Model`, and the options of what is called.  Output:
+what that returns for the module.
+"""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from piezo_sym.analysis import branches, steady
 from piezo_sym.modules import module_of
 from piezo_sym.run import simulate as run
 from piezo_sym.run.stepper import Stepper as Steps
@@ -72,3 +77,44 @@ def Stepper(model: str | Path | Model, **options: Any) -> Steps:
         If an option is wrong, there is no compiler, or the start is outside the domain.
     """
     return Steps(module_of(model), **options)
+
+
+def periodic_steady_state(model: str | Path | Model, **options: Any) -> steady.SteadyState:
+    """Return the periodic steady state that a driven model settles in.
+
+    Parameters
+    ----------
+    model : the name of a shipped spec, the path of a spec file, or a `Model`, with one body.
+    **options : inputs, frequency, parameters, initial, temperatures, rtol: see
+        `piezo_sym.analysis.steady.periodic_steady_state`.
+
+    Raises
+    ------
+    UsageError, RunError
+        If an option is wrong, or there is no steady state in the range.
+    """
+    return steady.periodic_steady_state(module_of(model), **options)
+
+
+def periodic_steady_states(
+    model: str | Path | Model, **options: Any
+) -> tuple[steady.SteadyState, ...]:
+    """Return all periodic steady states of a driven model, stable or not, coldest first.
+
+    Parameters
+    ----------
+    model, **options : as for `periodic_steady_state`.
+    """
+    return steady.periodic_steady_states(module_of(model), **options)
+
+
+def steady_branches(model: str | Path | Model, **options: Any) -> branches.Branches:
+    """Return the periodic steady states of a model over a range of frequencies, and the jumps.
+
+    Parameters
+    ----------
+    model : the name of a shipped spec, the path of a spec file, or a `Model`, with one body.
+    **options : inputs (a function of the frequency), frequencies, parameters, initial,
+        temperatures: see `piezo_sym.analysis.branches.steady_branches`.
+    """
+    return branches.steady_branches(module_of(model), **options)

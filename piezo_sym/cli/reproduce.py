@@ -3,27 +3,46 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from piezo_sym.cli.output import warnings_as_lines
+from piezo_sym.cli.output import progress, warnings_as_lines
+
+if TYPE_CHECKING:
+    from types import ModuleType
+
+    from piezo_sym.analysis.figures import PaperFigure
 
 
 def reproduce(
     out: Annotated[Path, typer.Option(help="Folder for the figures.")] = Path("figures"),
 ) -> None:
-    """Draw Figure 3 of the paper: hysteresis of displacement over voltage at 25, 30, 35, 40 degC.
+    """Draw Figures 2 to 6 of the paper, each as PNG, SVG and CSV.
+
+    2: the operator w_T. 3: hysteresis at 25, 30, 35, 40 degC. 4: steady temperature over frequency
+    and inductance, with its jumps. 5: step response. 6: hysteresis at 10, 50, 100, 200 Hz.
 
     The module is the committed one of piezo_stack; it is compared with its spec first.
     """
-    from piezo_sym.analysis.figures import draw_figure_3, figure_3, save, slopes
     from piezo_sym.modules import module_of
 
     with warnings_as_lines():
-        data = figure_3(module_of("piezo_stack"))
-    for path in save(draw_figure_3(data), data, out, "figure_3"):
-        typer.echo(f"{path}")
-    rows = zip(data.T_e.values, slopes(data), strict=True)
-    found = ", ".join(f"{slope * 1e6:.3f} at {celsius:.0f} degC" for celsius, slope in rows)
-    typer.echo(f"slope of the loops [um/V]: {found}")
+        _write(module_of("piezo_stack"), out)
+
+
+def _write(module: ModuleType, out: Path) -> None:
+    """Write the figures one by one, and what each shows."""
+    from piezo_sym.analysis.figures import FIGURES
+    from piezo_sym.analysis.style import save
+
+    jobs = [(figure, value) for figure in FIGURES for value in figure.values]
+    done: dict[PaperFigure, list[Any]] = {figure: [] for figure in FIGURES}
+    for figure, value in progress(jobs, "curves"):
+        done[figure].append(figure.curve(module, value))
+        if len(done[figure]) < len(figure.values):
+            continue
+        data = figure.joined(done[figure])
+        for path in save(figure.draw(data), data, out, figure.name):
+            typer.echo(f"{path}")
+        typer.echo(figure.summary(data))

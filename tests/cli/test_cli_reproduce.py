@@ -1,4 +1,4 @@
-"""``piezo-sym reproduce``: the paper's Figure 3, and the data it is drawn from."""
+"""``piezo-sym reproduce``: the paper's Figures 2 to 6, and the data they are drawn from."""
 
 import csv
 
@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 A_PERIOD = 401  # samples of the last period, both ends
+NAMES = [f"figure_{n}" for n in range(2, 7)]
 
 
 @pytest.fixture(scope="module")
@@ -17,56 +18,114 @@ def folder(tmp_path_factory):
     return path
 
 
-@pytest.fixture(scope="module")
-def loops(folder):
-    """Voltage and displacement of the last period, by temperature."""
-    with (folder / "figure_3.csv").open(newline="") as file:
+def columns(path, over):
+    """Rows of numbers by the value in one column, as a dict of arrays; empty cells are nan."""
+    with path.open(newline="") as file:
         rows = list(csv.DictReader(file))
-    names = dict.fromkeys(row["T_e"] for row in rows)
-    columns = {n: [(r["V_in"], r["q"]) for r in rows if r["T_e"] == n] for n in names}
-    return {float(n): np.array(c, dtype=float)[-A_PERIOD:].T for n, c in columns.items()}
+    found = {}
+    for value in dict.fromkeys(row[over] for row in rows):
+        own = [row for row in rows if row[over] == value]
+        found[float(value)] = {
+            name: np.array([float(row[name] or "nan") for row in own]) for name in own[0]
+        }
+    return found
 
 
-def test_three_files_are_written(folder):
-    assert sorted(path.name for path in folder.iterdir()) == [
-        "figure_3.csv",
-        "figure_3.png",
-        "figure_3.svg",
-    ]
+def loops(path, over):
+    """Voltage and displacement of the last period, by the value in one column."""
+    tables = columns(path, over).items()
+    return {value: (t["V_in"][-A_PERIOD:], t["q"][-A_PERIOD:]) for value, t in tables}
 
 
-def test_the_pictures_are_pictures(folder):
-    assert (folder / "figure_3.png").read_bytes().startswith(b"\x89PNG\r\n")
-    assert "<svg" in (folder / "figure_3.svg").read_text(encoding="utf-8")
+@pytest.fixture(scope="module")
+def steady(folder):
+    """The steady states of Figure 4, by inductance [mH]."""
+    return columns(folder / "figure_4.csv", "L")
 
 
-def test_the_runs_are_those_of_the_paper(loops):
-    assert list(loops) == [25.0, 30.0, 35.0, 40.0]
-    for voltage, _ in loops.values():
+def test_fifteen_files_are_written(folder):
+    names = {f"{name}.{ending}" for name in NAMES for ending in ("csv", "png", "svg")}
+    assert {path.name for path in folder.iterdir()} == names
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_pictures_are_pictures(folder, name):
+    assert (folder / f"{name}.png").read_bytes().startswith(b"\x89PNG\r\n")
+    assert "<svg" in (folder / f"{name}.svg").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("name", "over", "values"),
+    [
+        ("figure_3", "T_e", [25.0, 30.0, 35.0, 40.0]),
+        ("figure_6", "frequency", [10.0, 50.0, 100.0, 200.0]),
+    ],
+)
+def test_the_loops_are_those_of_the_paper(folder, name, over, values):
+    found = loops(folder / f"{name}.csv", over)
+    assert list(found) == values
+    for voltage, displacement in found.values():
         assert max(voltage) == pytest.approx(100)
         assert min(voltage) == pytest.approx(-100)
+        assert np.sum((voltage[1:] + voltage[:-1]) / 2 * np.diff(displacement)) > 0  # it lags
 
 
-def test_the_loops_are_steeper_where_it_is_warmer(loops):
+def test_the_loops_are_steeper_where_it_is_warmer(folder):
     def slope(loop):
         voltage, displacement = loop
         high, low = np.argmax(voltage), np.argmin(voltage)
         return (displacement[high] - displacement[low]) / (voltage[high] - voltage[low])
 
-    slopes = [slope(loop) for loop in loops.values()]
+    slopes = [slope(loop) for loop in loops(folder / "figure_3.csv", "T_e").values()]
     assert slopes == sorted(slopes)
     assert slopes[0] > 0
     assert slopes[-1] > 1.05 * slopes[0]
 
 
-def test_the_displacement_lags_behind_the_voltage(loops):
-    """The integral of V dq over a period is positive if q lags, zero if it follows at once."""
-    areas = [np.sum((voltage[1:] + voltage[:-1]) / 2 * np.diff(q)) for voltage, q in loops.values()]
-    assert min(areas) > 0
+def test_the_operator_is_dead_in_the_middle_and_flatter_where_it_is_warmer(folder):
+    for celsius, table in columns(folder / "figure_2.csv", "T").items():
+        i, w = table["i"], table["w_T"]
+        assert np.all(w[np.abs(i) < 0.5] == 0)
+        assert w[-1] == pytest.approx(10 / (celsius - 23) * 1.5)
 
 
-def test_a_folder_that_cannot_be_written_is_one_line(refused, tmp_path, monkeypatch):
-    monkeypatch.setattr("piezo_sym.analysis.figures.DURATION", 0.01)
+def test_the_step_ends_where_the_temperature_says(folder):
+    for celsius, table in columns(folder / "figure_5.csv", "T_e").items():
+        static = 100 * 10 * (celsius + 273.15) / (296.15 * 5e5)
+        assert table["q"][0] == pytest.approx(static / 2, rel=1e-9)
+        assert table["q"][-1] == pytest.approx(static, rel=3e-4)
+
+
+def test_the_temperature_rises_up_to_a_frequency_that_the_inductance_sets(steady):
+    ends = []
+    for table in steady.values():
+        cool = (table["curve"] == 0) & (table["stable"] == 1)
+        assert np.all(np.diff(table["temperature"][cool]) > 0)
+        assert table["temperature"][cool][0] == pytest.approx(299.85, abs=0.02)
+        (fold,) = np.flatnonzero(~np.isnan(table["jumps_to"]))
+        ends.append(table["frequency"][fold])
+    assert list(steady) == [0.1, 0.5, 1.0, 5.0]
+    assert ends == pytest.approx([71.44, 69.40, 67.29, 57.55], abs=0.02)
+
+
+def test_the_hot_branch_is_where_long_runs_end(steady):
+    """ACCEPTANCE, case P: 2722 K and, with 5 mH, 1066.8 K at 100 Hz."""
+    for millihenry, expected in ((1.0, 2722), (5.0, 1066.8)):
+        table = steady[millihenry]
+        hot = (table["curve"] == 1) & (table["stable"] == 1)
+        order = np.argsort(table["frequency"][hot])
+        f, T = (np.log(table[name][hot][order]) for name in ("frequency", "temperature"))
+        assert np.exp(np.interp(np.log(100), f, T)) == pytest.approx(expected, rel=3e-3)
+
+
+def test_a_folder_that_cannot_be_written_is_one_line(refused, tmp_path):
     (tmp_path / "file").write_text("")
     message = refused("reproduce", "--out", tmp_path / "file")
-    assert message.startswith(f"'{tmp_path / 'file' / 'figure_3.png'}': cannot be written")
+    assert message.startswith(f"'{tmp_path / 'file' / 'figure_2.png'}': cannot be written")
+
+
+def test_progress_goes_to_a_terminal_alone(capsys):
+    from piezo_sym.cli.output import progress
+
+    assert list(progress([1, 2, 3], "curves")) == [1, 2, 3]
+    assert capsys.readouterr() == ("", "")

@@ -1,0 +1,181 @@
+"""Branches of periodic steady states over the frequency of the drive, their folds, and the jumps.
+
+Input: a generated module with one body, its inputs as a function of the frequency, a range of
+frequencies and of temperatures.  Output: `Branches`: curves in the plane of frequency and
+temperature, stable or not, and the jumps where a stable part ends.
+
+    drift(T, f) = 0        traced as a curve in (log f, log T), from every zero at the two ends
+
+A stable part ends in a fold, where it meets an unstable one. Who moves the frequency past it sees
+the temperature jump: it runs away to another branch, or falls back to one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, final
+
+import numpy as np
+
+from piezo_sym.analysis.balance import grid, scan, settled, zeros
+from piezo_sym.analysis.curves import Point, folds, traced, with_folds
+from piezo_sym.analysis.steady import temperature_range
+from piezo_sym.analysis.stroboscope import Stroboscope, stroboscope
+from piezo_sym.errors import UsageError
+from piezo_sym.run.checks import positive
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from piezo_sym.analysis.stroboscope import Driven
+    from piezo_sym.run.checks import FloatArray
+    from piezo_sym.run.module import GeneratedModule
+    from piezo_sym.run.parameters import LaneValue
+
+STEPS = 256  # a period
+SAME = 1e-3  # zeros nearer than this in log T are one
+
+
+@final
+@dataclass(frozen=True)
+class Jump:
+    """Where a stable part of a curve ends: move the frequency on, and the temperature jumps.
+
+    Attributes
+    ----------
+    frequency : at which it ends [Hz].
+    upward : whether it ends as the frequency rises.
+    temperature : mean of the body there [K].
+    lands : mean temperature of the stable state that it goes to [K], nan if none is known.
+    """
+
+    frequency: float
+    upward: bool
+    temperature: float
+    lands: float
+
+
+COLUMNS = ("curve", "frequency", "temperature", "coldest", "hottest", "stable", "jumps_to")
+
+
+@final
+@dataclass(frozen=True)
+class Branches:
+    """Curves of periodic steady states, each a tuple of points in order, and the jumps."""
+
+    curves: tuple[tuple[Point, ...], ...]
+    jumps: tuple[Jump, ...]
+
+    def table(self) -> dict[str, FloatArray]:
+        """Return columns, a row a point.
+
+        The number of its curve, frequency [Hz], temperature (mean), coldest and hottest [K], stable
+        (0 or 1), and at a fold the temperature that the body jumps to [K] (inf if beyond the
+        range), elsewhere nan.
+        """
+        lands = {jump.frequency: jump.lands for jump in self.jumps}
+        rows = [
+            (n, *p.described(), _nan_elsewhere(lands.get(p.frequency)))
+            for n, curve in enumerate(self.curves)
+            for p in curve
+        ]
+        columns = np.array(rows, dtype=float).reshape(-1, len(COLUMNS)).T
+        return dict(zip(COLUMNS, columns, strict=True))
+
+
+def _nan_elsewhere(lands: float | None) -> float:
+    """Return where a fold lands, inf if it is not known; nan for what is no fold."""
+    if lands is None:
+        return np.nan
+    return np.inf if np.isnan(lands) else lands
+
+
+def steady_branches(
+    module: GeneratedModule,
+    *,
+    inputs: Driven,
+    frequencies: tuple[float, float],
+    parameters: Mapping[str, LaneValue] | None = None,
+    initial: Mapping[str, LaneValue] | None = None,
+    temperatures: tuple[float, float] | None = None,
+) -> Branches:
+    """Return the periodic steady states of a model over a range of frequencies.
+
+    Parameters
+    ----------
+    module : a generated module; `piezo_sym.steady_branches` also takes a model, a name or a path.
+    inputs : function of the frequency [Hz] to inputs as for `simulate`, which repeat with it.
+    frequencies, temperatures : least and greatest [Hz], [K]; temperatures when left out from the
+        module's own start to 20 times that. Curves end where they leave the ranges.
+    parameters, initial : as for `simulate`.
+
+    Raises
+    ------
+    UsageError : an argument is wrong, an input does not repeat, or there is not one body.
+
+    Notes
+    -----
+    Curves that touch neither end of the range of frequencies are not found. Temperatures are those
+    of 256 steps a period, within about 1e-4 of the rise over the environment; where more is asked
+    for, give a point's frequency to `periodic_steady_state`.
+    """
+    low, high = (positive(f, "steady_branches.frequencies") for f in frequencies)
+    if low >= high:
+        what = f"{low:g} Hz to {high:g} Hz is no range"
+        raise UsageError(what, "steady_branches.frequencies", "the least, then the greatest")
+    strobe = stroboscope(module, inputs, low, parameters, initial, STEPS)
+    span = np.log([[low, high], temperature_range(strobe, low, temperatures)])
+    curves: list[tuple[Point, ...]] = []
+    ends: list[tuple[int, Point, bool]] = []
+    for curve in _curves(strobe, span):
+        found = tuple(folds(strobe, curve))
+        ends += found
+        curves.append(with_folds(curve, found))
+    whole = tuple(curves)
+    return Branches(whole, tuple(_jump(strobe, whole, point, up) for _, point, up in ends))
+
+
+def _curves(strobe: Stroboscope, span: FloatArray) -> Iterator[tuple[Point, ...]]:
+    """Yield curves from the zeros at both ends of the range of frequencies, each once."""
+    reached: list[FloatArray] = []
+    for log_f, way in ((span[0, 0], 1.0), (span[0, 1], -1.0)):
+        f = float(np.exp(log_f))
+        asked = grid(*np.exp(span[1]).tolist())
+        known = [state for state in scan(strobe, f, asked, strobe.start(f)) if state]
+        for zero in zeros(strobe, f, known):
+            place = np.array([log_f, np.log(zero.temperature)])
+            if any(np.max(np.abs(place - other)) < SAME for other in reached):
+                continue
+            curve = tuple(traced(strobe, place, zero, way, span))
+            if not curve:
+                continue
+            reached += [curve[0].place, curve[-1].place]
+            yield curve
+
+
+def _jump(
+    strobe: Stroboscope, curves: tuple[tuple[Point, ...], ...], fold: Point, upward: bool
+) -> Jump:
+    """Return where the temperature goes from a fold: the drift just beyond it says which way."""
+    beyond = fold.frequency * (1.01 if upward else 0.99)
+    heats = settled(strobe, beyond, fold.state.temperature, fold.state.x, None).drift > 0
+    log_f = float(np.log(beyond))
+    found = [p for p in _crossings(curves, log_f) if (p[0] > fold.place[1]) == heats]
+    found.sort(reverse=not heats)
+    lands = found[0][1] if found else np.nan
+    return Jump(fold.frequency, upward, fold.state.period.mean, float(lands))
+
+
+def _crossings(
+    curves: tuple[tuple[Point, ...], ...], log_f: float
+) -> Iterator[tuple[float, float]]:
+    """Yield log T at t = 0 and mean T of the stable states at a frequency, between points."""
+    for curve in curves:
+        for a, b in pairwise(curve):
+            if a.stable and b.stable and (a.place[0] - log_f) * (b.place[0] - log_f) <= 0:
+                part = (log_f - a.place[0]) / (b.place[0] - a.place[0])
+                log_T = a.place[1] + part * (b.place[1] - a.place[1])
+                means = np.log([a.state.period.mean, b.state.period.mean])
+                yield float(log_T), float(np.exp(means[0] + part * (means[1] - means[0])))

@@ -1,0 +1,184 @@
+"""Curves of periodic steady states in the plane of frequency and temperature, and their folds.
+
+Input: a `Stroboscope`, a zero of its drift, the ranges of both axes.  Output: points of the curve
+
+    drift(T, f) = 0        in (log f, log T)
+
+A step goes along the last chord, and then across it, by secants, to where the drift is zero again;
+so a curve is followed around its folds, where it is vertical over the frequency.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, final
+
+import numpy as np
+
+from piezo_sym.analysis.balance import Settled, SteadyWarning, settled
+from piezo_sym.errors import RunError
+
+if TYPE_CHECKING:
+    from piezo_sym.analysis.stroboscope import Stroboscope
+    from piezo_sym.run.checks import FloatArray
+
+LONGEST, SHORTEST = 0.12, 1e-4  # step along a curve, in log f and log T
+SHARP = 0.2  # rad: a curve may turn so much in a step
+MOST_POINTS = 2000
+NEARBY = 1e-5  # in log T: a difference that a derivative is taken over
+FIRST = 1e-4  # move of a secant that knows no steepness
+EXACT = 1e-8  # in log f and log T
+MOST_SECANTS = 20
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Point:
+    """A periodic steady state on a curve."""
+
+    frequency: float
+    state: Settled
+    rising: float  # drift per second over log T: stable if negative
+    steepness: float  # of the drift per second, along the line on which the point was found
+    place: FloatArray  # (log f, log T)
+
+    @property
+    def stable(self) -> bool:
+        """Whether the body comes back to this temperature."""
+        return self.rising < 0
+
+    def described(self) -> tuple[float, ...]:
+        """Return frequency, the body's mean, least and greatest temperature, and 1 if stable."""
+        T = self.state.period
+        return self.frequency, T.mean, T.coldest, T.hottest, float(self.stable)
+
+
+def traced(
+    strobe: Stroboscope, place: FloatArray, zero: Settled, way: float, span: FloatArray
+) -> Iterator[Point]:
+    """Yield the points of the curve through a zero, to where it leaves the ranges."""
+    tangent, known = np.array([way, 0.0]), False
+    try:
+        point = _corrected(strobe, place, np.array([0.0, 1.0]), zero)
+    except RunError as error:
+        warnings.warn(f"{error}; a curve is left out", SteadyWarning, stacklevel=4)
+        return
+    yield point
+    length = LONGEST / 8
+    for _ in range(MOST_POINTS):
+        new = _next(strobe, point, tangent, length, span)
+        if new is None:
+            if length < SHORTEST:
+                return
+            length /= 2
+            continue
+        ahead = new.place - point.place
+        step = float(np.hypot(*ahead))
+        turn = float(np.arccos(np.clip(ahead @ tangent / step, -1, 1)))
+        if known and turn > SHARP and length > SHORTEST:
+            length /= 2
+            continue
+        tangent, point, known = ahead / step, new, True
+        yield point
+        if not np.all((span[:, 0] + EXACT < new.place) & (new.place < span[:, 1] - EXACT)):
+            return
+        length = min(LONGEST, length * (1.5 if turn < SHARP / 3 else 1.0))
+
+
+def _next(
+    strobe: Stroboscope, point: Point, tangent: FloatArray, length: float, span: FloatArray
+) -> Point | None:
+    """Return the next point, at most `length` on; on the edge, if it would leave the range."""
+    guess = point.place + length * tangent
+    across, hint = np.array([-tangent[1], tangent[0]]), point.steepness
+    if not span[0, 0] <= guess[0] <= span[0, 1]:
+        edge = float(np.clip(guess[0], *span[0]))
+        part = (edge - point.place[0]) / (guess[0] - point.place[0])
+        guess = np.array([edge, (point.place + part * length * tangent)[1]])
+        across, hint = np.array([0.0, 1.0]), point.rising
+    try:
+        new = _corrected(strobe, guess, across, point.state, hint)
+    except RunError:
+        return None
+    far = float(np.hypot(*(new.place - point.place)))
+    return new if EXACT < far < 2 * length else None
+
+
+def _corrected(
+    strobe: Stroboscope,
+    guess: FloatArray,
+    across: FloatArray,
+    near: Settled,
+    steepness: float = 0.0,
+) -> Point:
+    """Return the zero of the drift on the line through `guess` along `across`, by secants.
+
+    Parameters
+    ----------
+    steepness : of the drift along the line, if it is known from a point nearby.
+
+    Raises
+    ------
+    RunError : the secants do not meet one, or nothing settles on the way.
+    """
+    s, before = 0.0, (0.0, 0.0)
+    for n in range(MOST_SECANTS):
+        place = guess + s * across
+        f = float(np.exp(place[0]))
+        state = settled(strobe, f, float(np.exp(place[1])), near.x, near.slope)
+        rate = state.drift * f
+        if n:
+            steepness = (rate - before[1]) / (s - before[0])
+        move = -rate / steepness if steepness else FIRST
+        if (n and abs(move) <= EXACT) or rate == 0:
+            return _point(strobe, f, state, place, steepness)
+        before, near = (s, rate), state
+        s += float(np.clip(move, -LONGEST, LONGEST)) or FIRST
+    what = f"no steady state near {f:g} Hz and {near.temperature:.6g} K"
+    raise RunError(what, f"model '{strobe.module.NAME}'")
+
+
+def _point(
+    strobe: Stroboscope, f: float, state: Settled, place: FloatArray, steepness: float
+) -> Point:
+    """Return a zero of the drift as a point, with how the drift changes with the temperature."""
+    T = state.temperature * (1 + NEARBY)
+    beside = settled(strobe, f, T, state.x, state.slope)
+    rising = (beside.drift - state.drift) * f / NEARBY
+    return Point(f, state, rising, steepness, place)
+
+
+def folds(strobe: Stroboscope, curve: tuple[Point, ...]) -> Iterator[tuple[int, Point, bool]]:
+    """Yield each fold, the number of the point nearest to it, and whether it is the highest f."""
+    for n in range(1, len(curve) - 1):
+        a, b, c = curve[n - 1 : n + 2]
+        if (b.place[0] - a.place[0]) * (c.place[0] - b.place[0]) < 0:
+            yield n, _fold(strobe, a, b, c), bool(b.place[0] > a.place[0])
+
+
+def with_folds(
+    curve: tuple[Point, ...], folds: tuple[tuple[int, Point, bool], ...]
+) -> tuple[Point, ...]:
+    """Return a curve with its folds in place of the points nearest to them."""
+    at = {n: point for n, point, _ in folds}
+    return tuple(at.get(n, point) for n, point in enumerate(curve))
+
+
+def _fold(strobe: Stroboscope, a: Point, b: Point, c: Point) -> Point:
+    """Return the point of extreme frequency between three, by parabolas of log f over log T."""
+    for _ in range(3):
+        x = np.array([p.place[1] - b.place[1] for p in (a, b, c)])
+        y = np.array([p.place[0] - b.place[0] for p in (a, b, c)])
+        curve = np.polyfit(x, y, 2)
+        top = float(np.clip(-curve[1] / (2 * curve[0]), min(x), max(x)))
+        if abs(top) < 1e-7:
+            break
+        guess = b.place + np.array([np.polyval(curve, top), top])
+        new = _corrected(strobe, guess, np.array([1.0, 0.0]), b.state)
+        if (new.place[0] - b.place[0]) * curve[0] > 0:  # no further out than b
+            break
+        a, c = (b, c) if (new.place[1] - b.place[1]) * (c.place[1] - b.place[1]) > 0 else (a, b)
+        b = new
+    return b

@@ -1,0 +1,152 @@
+"""`plot`: a run at a glance: states, inputs and outputs, temperatures, and the ledger.
+
+Input: the `xarray.Dataset` of a run.  Output: a Matplotlib figure: a panel for each unit that
+states, inputs, outputs and temperatures have; heat released and entropy produced, stacked by
+process; the residual of the energy balance.  Panels that would be empty are left out.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from piezo_sym.analysis.style import COLOURS, LABEL, SMALL, dress
+from piezo_sym.errors import UsageError, quote
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    import xarray
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from piezo_sym.run.checks import FloatArray
+
+    Panel = tuple[str, Callable[[Axes], None]]
+
+ACROSS = 3  # panels in a row
+WIDTH, HEIGHT = 3.2, 2.1  # of a panel, inches
+MOST_NAMES = 6  # in a legend
+MOST_LANES = 8  # drawn one by one; more are drawn as the range they fill
+LEDGER = ("energy_residual", "energy", "entropy")
+PREFIXES = ("y_", "T_", "supplied_", "heat_", "produced_")
+
+
+def plot(run: xarray.Dataset) -> Figure:
+    """Return a dashboard of a run.
+
+    Parameters
+    ----------
+    run : what `simulate` returns; with a single sample, points are drawn.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Save it with ``.savefig("run.png")``; a notebook shows it after ``%matplotlib inline``.
+
+    Raises
+    ------
+    UsageError : this is no run.
+    """
+    from matplotlib.figure import Figure
+
+    if "energy_residual" not in getattr(run, "data_vars", ()) or "time" not in run.dims:
+        what = f"{quote(type(run).__name__)} is no run"
+        raise UsageError(what, "plot.run", "a Dataset that simulate() returned")
+    panels = list(_panels(run))
+    rows = -(-len(panels) // ACROSS)
+    figure = Figure(figsize=(ACROSS * WIDTH, rows * HEIGHT + 0.3), dpi=120, layout="constrained")
+    grid = figure.subplots(rows, ACROSS, sharex=True, squeeze=False).ravel()
+    for axes, (label, draw) in zip(grid, panels, strict=False):
+        dress(axes)
+        axes.ticklabel_format(axis="y", scilimits=(-2, 4), useMathText=True)
+        axes.yaxis.get_offset_text().set_fontsize(SMALL)
+        draw(axes)
+        axes.set_ylabel(label, fontsize=LABEL)
+        _small_legend(axes)
+    for axes in grid[len(panels) :]:
+        axes.remove()
+    for axes in grid[max(0, len(panels) - ACROSS) : len(panels)]:
+        axes.set_xlabel("time [s]", fontsize=LABEL)
+        axes.tick_params(labelbottom=True)
+    figure.suptitle(str(run.attrs.get("model", "run")), fontsize=LABEL + 1)
+    return figure
+
+
+def _panels(run: xarray.Dataset) -> Iterator[Panel]:
+    """Yield the label of each panel, and what draws it."""
+    for unit, names in _by_unit(run).items():
+        yield f"{_short(names)} [{unit}]", partial(_lines, run=run, names=names)
+    if heats := _with_prefix(run, "heat_"):
+        yield "heat released [J]", partial(_stack, run=run, names=heats, prefix="heat_")
+    if produced := _with_prefix(run, "produced_"):
+        yield "entropy produced [J/K]", partial(_stack, run=run, names=produced, prefix="produced_")
+    if supplied := _with_prefix(run, "supplied_"):
+        yield "energy put in [J]", partial(_lines, run=run, names=supplied, prefix="supplied_")
+    yield "energy residual [J]", partial(_lines, run=run, names=["energy_residual"])
+
+
+def _by_unit(run: xarray.Dataset) -> dict[str, list[str]]:
+    """Return the names of states, inputs, outputs and temperatures, by unit."""
+    found: dict[str, list[str]] = {}
+    for name in map(str, run.data_vars):
+        doubled = name.startswith("y_") and run[name].attrs.get("units") == "K"  # a body's T
+        if name in LEDGER or name.startswith(PREFIXES[2:]) or doubled:
+            continue
+        found.setdefault(str(run[name].attrs.get("units", "1")), []).append(name)
+    return found
+
+
+def _with_prefix(run: xarray.Dataset, prefix: str) -> list[str]:
+    return [str(name) for name in run.data_vars if str(name).startswith(prefix)]
+
+
+def _short(names: list[str]) -> str:
+    shown = ", ".join(names[:3])
+    return f"{shown}, ..." if len(names) > 3 else shown
+
+
+def _lines(axes: Axes, run: xarray.Dataset, names: list[str], prefix: str = "") -> None:
+    """Draw variables as lines; the lanes of a bank as thin ones, or as the range they fill."""
+    time = run.time.values
+    mark = "." if time.size == 1 else ""
+    for n, name in enumerate(names):
+        colour, label = COLOURS[n % len(COLOURS)], name.removeprefix(prefix)
+        values = _lanes(run[name])
+        if values.shape[1] <= MOST_LANES:
+            lines = axes.plot(time, values, color=colour, linewidth=0.9, marker=mark)
+        else:
+            low, high = values.min(axis=1), values.max(axis=1)
+            axes.fill_between(time, low, high, color=colour, alpha=0.3, linewidth=0)
+            lines = axes.plot(time, values.mean(axis=1), color=colour, linewidth=0.9, marker=mark)
+            label = f"{label}: mean and range"
+        lines[0].set_label(label if n < MOST_NAMES else "_more")
+
+
+def _lanes(variable: xarray.DataArray) -> FloatArray:
+    """Return a variable over time and, if it is a bank's, lanes: shape (nt, lanes)."""
+    values = np.asarray(variable.transpose("time", ...).values, dtype=float)
+    return values.reshape(values.shape[0], -1)
+
+
+def _stack(axes: Axes, run: xarray.Dataset, names: list[str], prefix: str) -> None:
+    """Draw what processes have summed up to, one on top of the other; lanes of a bank together."""
+    time = run.time.values
+    base = np.zeros(time.size)
+    for n, name in enumerate(names):
+        top = base + _lanes(run[name]).sum(axis=1)
+        colour = COLOURS[n % len(COLOURS)]
+        label = name.removeprefix(prefix) if n < MOST_NAMES else "_more"
+        if time.size == 1:
+            axes.plot(time, top, ".", color=colour, label=label)
+        else:
+            axes.fill_between(time, base, top, color=colour, alpha=0.7, linewidth=0, label=label)
+        base = top
+
+
+def _small_legend(axes: Axes) -> None:
+    """Add a legend where more than one thing is drawn."""
+    if len(axes.get_legend_handles_labels()[1]) > 1:
+        axes.legend(fontsize=SMALL - 1, loc="best", framealpha=0.6, handlelength=1.5)

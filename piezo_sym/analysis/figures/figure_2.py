@@ -1,0 +1,66 @@
+"""Figure 2: the voltage of a hysteron's resistance over its current, at several temperatures.
+
+Input: the generated module of ``piezo_stack``.  Output: `FIGURE_2`.  Values are those of the module
+(heat over current), not of the formula typed again; the paper does not name its temperatures, taken
+are those of the other figures.
+
+    w_T(i) = rho/(T - T_0) deadzone(i, i_0)
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from piezo_sym.analysis.figures.figure import TEMPERATURES, ZERO_CELSIUS, PaperFigure
+from piezo_sym.analysis.style import COLOURS, DASHES, column_figure, legend, name_axes
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.figure import Figure
+
+    from piezo_sym.run import GeneratedModule
+
+MOST_CURRENT = 2.0  # A
+POINTS = 400  # none at i = 0, where heat over current is 0/0
+
+
+def curve(module: GeneratedModule, celsius: float) -> xarray.Dataset:
+    """Return w_T over the current, at one temperature of the body [degrees Celsius]."""
+    import xarray
+
+    p = module.Parameters(hysteron_count=1)
+    T = celsius + ZERO_CELSIUS
+    current = MOST_CURRENT * (2 * np.arange(POINTS) + 1 - POINTS) / (POINTS - 1)
+    rest = module.initial_state(np.array([0.0, 0.0, T]), p)  # there the body has T_e
+    states = np.repeat(rest[:, None], POINTS, axis=1)
+    states[3] = p.L * current
+    voltage = module.heat(states, np.array([0.0, 0.0, T]), p)[0] / current
+    attrs = {"units": "V", "long_name": "voltage of the resistance"}
+    axis = xarray.DataArray(current, dims="i", attrs={"units": "A", "long_name": "current"})
+    return xarray.Dataset({"w_T": ("i", voltage, attrs)}, {"i": axis})
+
+
+def draw(data: xarray.Dataset) -> Figure:
+    """Return Figure 2."""
+    figure, axes = column_figure(2.5)
+    for celsius, colour, dash in zip(data["T"].values, COLOURS, DASHES, strict=False):
+        label = f"{celsius:.0f} \N{DEGREE SIGN}C"
+        line = data.w_T.sel(T=celsius)
+        axes.plot(data.i, line, linestyle=dash, color=colour, linewidth=1.2, label=label)
+    name_axes(axes, "current $i$ [A]", "voltage $w_T(i)$ [V]")
+    legend(axes, "$T$", loc="upper left")
+    return figure
+
+
+def summary(data: xarray.Dataset) -> str:
+    """Return the slopes of the operator outside its dead zone, for a log."""
+    rise = data.w_T.isel(i=-1) - data.w_T.isel(i=-2)
+    slopes = (rise / (data.i.isel(i=-1) - data.i.isel(i=-2))).values
+    return "resistance outside the dead zone [ohm]: " + ", ".join(f"{s:.3g}" for s in slopes)
+
+
+FIGURE_2 = PaperFigure(
+    "figure_2", "the operator w_T", "T", TEMPERATURES, "degC", curve, draw, summary
+)

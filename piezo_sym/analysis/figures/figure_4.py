@@ -1,0 +1,114 @@
+"""Figure 4: static temperature change of the body over the frequency, for four inductances.
+
+Input: the generated module of ``piezo_stack``.  Output: `FIGURE_4`: 100 V, 25 degrees Celsius.
+Shown is the mean temperature of the true periodic steady states: the stable ones as lines, unstable
+ones between them thin and dotted, and arrows where the temperature jumps.
+
+With Table 1's numbers the damper's heat grows with alpha^2, so with T^2, and the cooling with T
+only.  Up to 58 to 71 Hz, by the inductance, there is a cool steady state, whose temperature rises
+with the frequency, as the paper reports; past the fold none, and the temperature runs away until
+the inductance limits the current, at thousands of kelvin.  The hot state cools down as the
+frequency rises, since it follows the resonance of inductance and reflected capacitance.
+
+Shaded are bodies above 400 K.  There the printed laws have left any sensible range: alpha = a T/T_0
+and rho/(T - T_0) are fits near room temperature; stacks on sale are rated to 350 to 420 K, and at
+the Curie temperature of soft PZT (420 to 620 K) the piezoelectric effect is gone.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from piezo_sym.analysis.branches import steady_branches
+from piezo_sym.analysis.figures.figure import AMPLITUDE, TEMPERATURES, ZERO_CELSIUS, PaperFigure
+from piezo_sym.analysis.style import COLOURS, SMALL, column_figure, legend, name_axes
+from piezo_sym.run import sine
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from piezo_sym.run import GeneratedModule
+
+T_E = TEMPERATURES[0] + ZERO_CELSIUS  # K
+INDUCTANCES = (0.1, 0.5, 1.0, 5.0)  # mH
+FREQUENCIES = (10.0, 1000.0)  # Hz
+HOTTEST = 1e4  # K: where curves end
+SENSIBLE = 400.0  # K: above, the printed law means nothing
+LEAST, MOST = 1.0, 1e4  # of the axis [K]
+
+
+def curve(module: GeneratedModule, millihenry: float) -> xarray.Dataset:
+    """Return the steady states at one inductance [mH], point after point along their curves."""
+    import xarray
+
+    found = steady_branches(
+        module,
+        inputs=lambda f: {"V_in": sine(AMPLITUDE, f), "T_e": T_E},
+        frequencies=FREQUENCIES,
+        temperatures=(T_E, HOTTEST),
+        parameters={"L": millihenry * 1e-3},
+    )
+    units = {"frequency": "Hz", "temperature": "K", "coldest": "K", "hottest": "K", "jumps_to": "K"}
+    columns = {
+        name: ("point", values, {"units": units.get(name, "1")})
+        for name, values in found.table().items()
+    }
+    return xarray.Dataset(columns, {"point": np.arange(columns["curve"][1].size)})
+
+
+def draw(data: xarray.Dataset) -> Figure:
+    """Return Figure 4, the rise over the environment, both axes logarithmic."""
+    figure, axes = column_figure(3.1)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.axhspan(SENSIBLE - T_E, MOST, color="0.9", linewidth=0, zorder=0)
+    for millihenry, colour in zip(data.L.values, COLOURS, strict=False):
+        one = data.sel(L=millihenry).dropna("point", subset=["frequency"])
+        label = f"{millihenry:g} mH"
+        for number in np.unique(one["curve"].values):
+            _draw_curve(axes, one.isel(point=one["curve"].values == number), colour, label)
+            label = "_again"
+        _draw_jumps(axes, one, colour)
+    text = f"over {SENSIBLE:.0f} K: outside\nthe laws' range"
+    axes.text(11, 130, text, fontsize=SMALL - 1, color="0.25", va="bottom")
+    axes.set_xlim(*FREQUENCIES)
+    axes.set_ylim(LEAST, MOST)
+    name_axes(axes, "frequency $f$ [Hz]", "temperature rise $T - T_{\\mathrm{e}}$ [K]")
+    legend(axes, "$L$", loc="lower right")
+    return figure
+
+
+def _draw_curve(axes: Axes, curve: xarray.Dataset, colour: str, label: str) -> None:
+    """Draw one curve: solid where stable, dotted where not; a fold belongs to both."""
+    frequency, rise = curve.frequency.values, curve.temperature.values - T_E
+    fold = np.isfinite(curve.jumps_to.values) | np.isinf(curve.jumps_to.values)
+    stable = curve.stable.values > 0
+    solid, dotted = (np.where(kind | fold, rise, np.nan) for kind in (stable, ~stable))
+    axes.plot(frequency, solid, color=colour, linewidth=1.2, label=label)
+    axes.plot(frequency, dotted, ":", color=colour, linewidth=0.8)
+
+
+def _draw_jumps(axes: Axes, one: xarray.Dataset, colour: str) -> None:
+    """Draw an arrow from each fold to where the temperature goes."""
+    for n in np.flatnonzero(~np.isnan(one.jumps_to.values)):
+        f, start = float(one.frequency[n]), float(one.temperature[n]) - T_E
+        end = min(float(one.jumps_to[n]) - T_E, MOST)
+        style = {"arrowstyle": "->", "color": colour, "linewidth": 0.8, "linestyle": "--"}
+        axes.annotate("", (f, end), (f, start), arrowprops={**style, "shrinkA": 0, "shrinkB": 0})
+        axes.plot(f, start, "o", color=colour, markersize=2.5)
+
+
+def summary(data: xarray.Dataset) -> str:
+    """Return where the temperature jumps, for a log."""
+    at = [one.frequency.values[~np.isnan(one.jumps_to.values)] for _, one in data.groupby("L")]
+    shown = ", ".join("/".join(f"{f:.1f}" for f in each) or "nowhere" for each in at)
+    return f"runaway from [Hz], by inductance: {shown}"
+
+
+FIGURE_4 = PaperFigure(
+    "figure_4", "steady temperature over frequency", "L", INDUCTANCES, "mH", curve, draw, summary
+)

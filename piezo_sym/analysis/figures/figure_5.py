@@ -1,0 +1,82 @@
+"""Figure 5: displacement after a step of the voltage from 50 V to 100 V, at four temperatures.
+
+Input: the generated module of ``piezo_stack``.  Output: `FIGURE_5`.  The run starts in equilibrium
+at 50 V and at the environment's temperature.  In thermal equilibrium the tip rests at
+
+    q = V a T_e/(T_0 k)
+
+The step leaves 0.3 J in the body, which warms it by 0.05 K; after the 10 ms shown the tip is
+therefore 2e-4 of its travel further out than that, and comes back with c_0/lam = 2.5 s.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from piezo_sym.analysis.figures.figure import TEMPERATURES, ZERO_CELSIUS, PaperFigure
+from piezo_sym.analysis.style import COLOURS, DASHES, column_figure, legend, name_axes
+from piezo_sym.run import simulate, step
+from piezo_sym.run.discrete import METHOD
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.figure import Figure
+
+    from piezo_sym.run import GeneratedModule
+
+BEFORE, AFTER = 50.0, 100.0  # V
+AT, DURATION = 1e-3, 11e-3  # s
+SAMPLES = 1101
+RTOL = 1e-7
+
+
+def static(module: GeneratedModule, voltage: float, T_e: float) -> float:
+    """Return the displacement [m] in equilibrium at a voltage [V] and a temperature [K]."""
+    p = module.Parameters()
+    return float(voltage * p.a * T_e / (p.T_0 * p.k))
+
+
+def stepped(
+    module: GeneratedModule, T_e: float, duration: float = DURATION, times: int = SAMPLES
+) -> xarray.Dataset:
+    """Return a run from equilibrium at 50 V through the step to 100 V, T_e in K."""
+    charge = BEFORE * module.Parameters().C
+    return simulate(
+        module,
+        inputs={"V_in": step(AT, BEFORE, AFTER), "T_e": T_e},
+        initial={"q": static(module, BEFORE, T_e), "Q_C": charge},
+        duration=duration,
+        rtol=RTOL,
+        times=times,
+        method=METHOD,
+    )
+
+
+def curve(module: GeneratedModule, celsius: float) -> xarray.Dataset:
+    """Return the run at one temperature of the environment [degrees Celsius]."""
+    return stepped(module, celsius + ZERO_CELSIUS)[["V_in", "q", "T_body"]]
+
+
+def draw(data: xarray.Dataset) -> Figure:
+    """Return Figure 5, over the time since the step."""
+    figure, axes = column_figure()
+    for celsius, colour, dash in zip(data.T_e.values, COLOURS, DASHES, strict=False):
+        one = data.sel(T_e=celsius)
+        label = f"{celsius:.0f} \N{DEGREE SIGN}C"
+        time = (one.time - AT) * 1e3
+        axes.plot(time, one.q * 1e3, linestyle=dash, color=colour, linewidth=1.1, label=label)
+    name_axes(axes, "time since the step [ms]", "displacement $q$ [mm]")
+    axes.set_xlim(-AT * 1e3, (DURATION - AT) * 1e3)
+    legend(axes, "$T_{\\mathrm{e}}$", loc="lower right")
+    return figure
+
+
+def summary(data: xarray.Dataset) -> str:
+    """Return where the tip comes to rest, for a log."""
+    ends = ", ".join(f"{q * 1e3:.4f}" for q in data.q.isel(time=-1).values)
+    return f"displacement at the end [mm]: {ends}"
+
+
+FIGURE_5 = PaperFigure(
+    "figure_5", "step response", "T_e", TEMPERATURES, "degC", curve, draw, summary
+)

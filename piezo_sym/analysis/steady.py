@@ -1,0 +1,284 @@
+"""Periodic steady states: where a driven model ends up when its body no longer drifts.
+
+Input: a generated module with one body, inputs that repeat, their frequency.  Output: a
+`SteadyState`, or all of them: one period of it as a Dataset, the body's temperature, the heat of a
+cycle, by how much the states fail to repeat, and whether it is stable.
+
+    P(x; f) = x        P: the state to that one period later; stable: |eigenvalues of dP/dx| <= 1
+
+Found in two steps: zeros of the heat balance over a range of temperatures (`balance`), then
+Newton's method on the whole state, with twice as many steps a period until it no longer moves.
+A drive can have several steady states: in ``piezo_stack`` at 50 Hz one at 354 K, one at 4750 K, and
+an unstable one between them, from which the temperature runs away one way or the other.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, final
+
+import numpy as np
+
+from piezo_sym.analysis.balance import (
+    NUDGE,
+    Settled,
+    SteadyWarning,
+    grid,
+    scan,
+    solved,
+    zeros,
+)
+from piezo_sym.analysis.stroboscope import Stroboscope, stroboscope
+from piezo_sym.errors import RunError, UsageError
+from piezo_sym.run.checks import number, positive, vector
+
+if TYPE_CHECKING:
+    import xarray
+
+    from piezo_sym.run.checks import FloatArray
+    from piezo_sym.run.inputs import InputValue
+    from piezo_sym.run.module import GeneratedModule
+    from piezo_sym.run.parameters import LaneValue
+
+RTOL = 1e-6
+STEPS, MOST_STEPS = 256, 1 << 16  # a period
+SAMPLES = 400  # of the orbit returned
+ORBIT_RTOL = 1e-8
+HOTTEST = 20.0  # times the temperature at the start: how far is looked, if nothing is said
+MARGIN = 1e-6  # of a multiplier over 1: the accuracy of its difference quotient
+MOST_MOVES = 12
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class SteadyState:
+    """A periodic steady state of a model with one body; temperatures in K.
+
+    Attributes
+    ----------
+    frequency : of the inputs [Hz].
+    temperature, coldest, hottest : of the body, over a period: mean, least, greatest.
+    loss : heat released by all processes in a period [J].
+    residual : by how much the states fail to repeat in `orbit`, as a part of their sizes.
+    multiplier : the greatest magnitude of the eigenvalues of dP/dx.
+    stable : whether it is at most 1; a motion that neither grows nor decays is allowed.
+    initial : the state at t = 0, as `simulate(initial=...)` takes it.
+    orbit : one period, 401 samples, as `simulate` returns it.
+    """
+
+    frequency: float
+    temperature: float
+    coldest: float
+    hottest: float
+    loss: float
+    residual: float
+    multiplier: float
+    stable: bool
+    initial: Mapping[str, LaneValue]
+    orbit: xarray.Dataset
+
+
+def periodic_steady_state(
+    module: GeneratedModule,
+    *,
+    inputs: Mapping[str, InputValue],
+    frequency: float,
+    parameters: Mapping[str, LaneValue] | None = None,
+    initial: Mapping[str, LaneValue] | None = None,
+    temperatures: tuple[float, float] | None = None,
+    rtol: float = RTOL,
+) -> SteadyState:
+    """Return the periodic steady state that a run from its initial state goes to.
+
+    That is the first zero of the heat balance in the direction in which the body's temperature
+    drifts at the start, all else settled. Where heat is not the slowest motion, compare with a run.
+
+    Parameters
+    ----------
+    module : a generated module; `piezo_sym.periodic_steady_state` also takes a model, name, path.
+    inputs : as for `simulate`; they repeat with `frequency` [Hz], at t = 0 as at 1/frequency.
+    parameters, initial : as for `simulate`.
+    temperatures : where to look [K]: least and greatest, of the body at t = 0; when left out, from
+        the module's own start (lower if the body cools there) to 20 times that.
+    rtol : accuracy of the states at t = 0, as a part of their sizes, 1e-9 to 0.01.
+
+    Raises
+    ------
+    UsageError : an argument is wrong, an input does not repeat, or there is not one body.
+    RunError : no steady state lies in the range; the message says which way the body drifts.
+    """
+    strobe, f = _read(module, inputs, frequency, parameters, initial)
+    accuracy = _accuracy(rtol)
+    first = _first(strobe, f, _known(strobe, f, temperatures))
+    return _state(strobe, f, first, accuracy)
+
+
+def periodic_steady_states(
+    module: GeneratedModule,
+    *,
+    inputs: Mapping[str, InputValue],
+    frequency: float,
+    parameters: Mapping[str, LaneValue] | None = None,
+    initial: Mapping[str, LaneValue] | None = None,
+    temperatures: tuple[float, float] | None = None,
+    rtol: float = RTOL,
+) -> tuple[SteadyState, ...]:
+    """Return all periodic steady states in a range of temperatures, stable or not, coldest first.
+
+    Two that are closer together than a hundredth of their temperature may be missed, and so may
+    states whose period is a multiple of the inputs'. Parameters and errors: see
+    `periodic_steady_state`; none found is no error.
+    """
+    strobe, f = _read(module, inputs, frequency, parameters, initial)
+    accuracy = _accuracy(rtol)
+    found = zeros(strobe, f, _known(strobe, f, temperatures))
+    return tuple(_state(strobe, f, zero, accuracy) for zero in found)
+
+
+def _read(
+    module: GeneratedModule,
+    inputs: Mapping[str, InputValue],
+    frequency: float,
+    parameters: Mapping[str, LaneValue] | None,
+    initial: Mapping[str, LaneValue] | None,
+) -> tuple[Stroboscope, float]:
+    f = positive(frequency, "periodic_steady_state.frequency")
+    return stroboscope(module, lambda _: inputs, f, parameters, initial, STEPS), f
+
+
+def _accuracy(rtol: object) -> float:
+    value = number(rtol, "periodic_steady_state.rtol")
+    if not 1e-9 <= value <= 0.01:
+        what = f"{value:g} is out of range"
+        raise UsageError(what, "periodic_steady_state.rtol", "1e-9 to 0.01")
+    return value
+
+
+def temperature_range(
+    strobe: Stroboscope, frequency: float, given: tuple[float, float] | None
+) -> tuple[float, float]:
+    """Return where to look for steady states: what a user gave, or from the start on."""
+    if given is None:
+        T = strobe.temperature(strobe.start(frequency))
+        own = strobe.temperature(replace(strobe, initial={}).start(frequency))
+        return min(T, own), HOTTEST * own
+    where = "periodic_steady_state.temperatures"
+    ends = vector(list(given), where)
+    if ends.size != 2 or not 0 < ends[0] < ends[1]:
+        what = f"{list(given)} is no range"
+        raise UsageError(what, where, "the least and the greatest temperature in K")
+    return float(ends[0]), float(ends[1])
+
+
+def _known(
+    strobe: Stroboscope, frequency: float, given: tuple[float, float] | None
+) -> list[Settled]:
+    """Return settled states over the range, and below it while the body cools at its low end."""
+    low, high = temperature_range(strobe, frequency, given)
+    start = strobe.start(frequency)
+    asked = grid(low, high)
+    known = [state for state in scan(strobe, frequency, asked, start) if state]
+    if len(known) < len(asked):
+        lost = sorted(set(asked) - {state.temperature for state in known})
+        text = f"nothing settles at {len(lost)} of {len(asked)} temperatures, first {lost[0]:.6g} K"
+        warnings.warn(f"{text}; steady states there may be missed", SteadyWarning, stacklevel=3)
+    if given is None and known and known[0].temperature == low and known[0].drift < 0:
+        below = [2 * low - T for T in grid(low, 1.99 * low)[1:]]
+        for state in scan(strobe, frequency, below, known[0].x):
+            if state is None:
+                break
+            known.insert(0, state)
+            if state.drift >= 0:
+                break
+    return known
+
+
+def _first(strobe: Stroboscope, frequency: float, known: list[Settled]) -> Settled:
+    """Return the zero that a run from the start goes to."""
+    T = strobe.temperature(strobe.start(frequency))
+    if not known:
+        what = f"nothing settles at {T:.6g} K or anywhere in the range"
+        raise RunError(what, f"model '{strobe.module.NAME}'", remedy="look at the inputs")
+    at = min(known, key=lambda state: abs(state.temperature - T))
+    if at.drift == 0:
+        return at
+    heats = at.drift > 0
+    found = zeros(strobe, frequency, known)
+    side = [zero for zero in found if (zero.temperature > at.temperature) == heats]
+    if not side:
+        ends = sorted([at.temperature, known[-1 if heats else 0].temperature])
+        what = f"no periodic steady state: the body {'heats' if heats else 'cools'} at every "
+        what += f"temperature between {ends[0]:.6g} K and {ends[1]:.6g} K at t = 0"
+        remedy = "let an ambient cool the body, or give a wider range as 'temperatures'"
+        raise RunError(what, f"model '{strobe.module.NAME}' at {frequency:g} Hz", remedy=remedy)
+    return side[0] if heats else side[-1]
+
+
+def _state(strobe: Stroboscope, frequency: float, zero: Settled, rtol: float) -> SteadyState:
+    """Return the steady state at a zero of the heat balance, to the accuracy asked for."""
+    slope = whole_slope(strobe, frequency, zero.x)
+    x, before = zero.x, None
+    while before is None or _moved(strobe, frequency, x, before) > rtol:
+        before = x
+        strobe = replace(strobe, steps=2 * strobe.steps)
+        if strobe.steps > MOST_STEPS:
+            what = f"rtol {rtol:g} asks for more than {MOST_STEPS} steps a period"
+            raise RunError(what, f"model '{strobe.module.NAME}'", remedy="give a larger rtol")
+        x = closed(strobe, frequency, x, slope)
+    return _described(strobe, frequency, x, slope)
+
+
+def _moved(strobe: Stroboscope, frequency: float, x: FloatArray, before: FloatArray) -> float:
+    """Return the error of x, of which the steps have been halved: a third of the last move."""
+    size = strobe.look(x, frequency).size
+    return float(np.max(np.abs(x - before) / size)) / 3
+
+
+def whole_slope(strobe: Stroboscope, frequency: float, x: FloatArray) -> FloatArray:
+    """Return dP/dx (n, n) in units of the states' sizes, by central differences."""
+    size = strobe.look(x, frequency).size
+    columns = []
+    for row in range(x.size):
+        step = np.zeros(x.size)
+        step[row] = NUDGE * size[row]
+        rise = strobe.look(x + step, frequency).end - strobe.look(x - step, frequency).end
+        columns.append(rise / size / (2 * NUDGE))
+    return np.array(columns).T
+
+
+def closed(strobe: Stroboscope, frequency: float, x: FloatArray, slope: FloatArray) -> FloatArray:
+    """Return the fixed point (n,) of a period near x, by Newton's method with one derivative."""
+    matrix = slope - np.eye(x.size)
+    error = np.inf
+    for _ in range(MOST_MOVES):
+        period = strobe.look(x, frequency)
+        move = solved(matrix, (period.end - x) / period.size)
+        if np.max(np.abs(move)) >= error:  # no better: at round-off
+            break
+        error = float(np.max(np.abs(move)))
+        x = x - move * period.size
+    return x
+
+
+def _described(
+    strobe: Stroboscope, frequency: float, x: FloatArray, slope: FloatArray
+) -> SteadyState:
+    orbit = strobe.run(x, frequency, times=SAMPLES + 1, rtol=ORBIT_RTOL)
+    states, T = strobe.states_of(orbit), strobe.temperature_of(orbit)
+    size = strobe.look(x, frequency).size
+    heats = [orbit[f"heat_{name}"] for name in {r.name: None for r in strobe.module.PROCESSES}]
+    multiplier = float(np.max(np.abs(np.linalg.eigvals(slope))))
+    return SteadyState(
+        frequency=frequency,
+        temperature=float((T[0] + T[-1]) / 2 + T[1:-1].sum()) / SAMPLES,
+        coldest=float(T.min()),
+        hottest=float(T.max()),
+        loss=float(sum(heat.isel(time=-1).sum() for heat in heats)),
+        residual=float(np.max(np.abs(states[:, -1] - states[:, 0]) / size)),
+        multiplier=multiplier,
+        stable=multiplier <= 1 + MARGIN,
+        initial=strobe.named(x),
+        orbit=orbit,
+    )

@@ -1,0 +1,81 @@
+"""How figures look: one column of a journal, legible there, told apart without colour.
+
+Input: sizes, labels, data.  Output: Matplotlib figures without any global state, and their files: a
+PNG to look at, an SVG to print, a CSV of the data; the same bytes in every run.
+"""
+
+from __future__ import annotations
+
+import io
+from typing import TYPE_CHECKING, Any
+
+from piezo_sym.files import write_bytes
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import xarray
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+#: Okabe and Ito's colours, told apart by colour-blind readers; dashes, for print in grey.
+COLOURS = ("#0072B2", "#009E73", "#E69F00", "#D55E00", "#CC79A7", "#56B4E9", "#000000", "#F0E442")
+DASHES: tuple[str | tuple[int, tuple[int, ...]], ...] = ("-", (0, (6, 2)), (0, (6, 2, 1, 2)), ":")
+COLUMN = 3.5  # inches
+LABEL, SMALL = 8, 7  # points
+
+
+def column_figure(height: float = 2.7) -> tuple[Figure, Axes]:
+    """Return a figure one column wide, and its axes; `height` in inches."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(COLUMN, height), dpi=300, layout="constrained")
+    axes = figure.add_subplot()
+    dress(axes)
+    return figure, axes
+
+
+def dress(axes: Axes) -> None:
+    """Give axes a light grid and legible numbers."""
+    axes.grid(linewidth=0.3, alpha=0.6)
+    axes.set_axisbelow(True)
+    axes.tick_params(labelsize=SMALL)
+
+
+def name_axes(axes: Axes, x: str, y: str) -> None:
+    """Write what the axes show, with units."""
+    axes.set_xlabel(x, fontsize=LABEL)
+    axes.set_ylabel(y, fontsize=LABEL)
+
+
+def legend(axes: Axes, title: str, **place: Any) -> None:
+    """Add a small legend; `place` as for Matplotlib."""
+    place = {"fontsize": SMALL, "title_fontsize": SMALL, "handlelength": 2.6, **place}
+    axes.legend(title=title, **place)
+
+
+def save(figure: Figure, data: xarray.Dataset, folder: Path, name: str) -> tuple[Path, ...]:
+    """Write a figure as PNG and SVG and its data as CSV, each in one step; return the paths.
+
+    Raises
+    ------
+    FileError
+        If the folder cannot be written.
+    """
+    paths = tuple(folder / f"{name}{ending}" for ending in (".png", ".svg", ".csv"))
+    for path in paths:
+        write_bytes(path, _content(figure, data, path.suffix))
+    return paths
+
+
+def _content(figure: Figure, data: xarray.Dataset, ending: str) -> bytes:
+    if ending == ".csv":
+        frame = data.to_dataframe().reset_index().dropna(how="all", subset=list(data.data_vars))
+        return bytes(frame.to_csv(index=False, float_format="%.10g").encode())
+    from matplotlib import rc_context
+
+    stream = io.BytesIO()
+    metadata = {"Date": None, "Creator": None} if ending == ".svg" else {"Software": None}
+    with rc_context({"svg.hashsalt": "piezo_sym"}):
+        figure.savefig(stream, format=ending[1:], metadata=metadata)
+    return stream.getvalue()

@@ -1,0 +1,116 @@
+"""Branches of steady states over the frequency: their folds and jumps, against single states."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from piezo_sym import periodic_steady_state, periodic_steady_states, sine, steady_branches
+from piezo_sym.errors import UsageError
+
+SPAN = (298.15, 6000.0)
+
+
+def drive(frequency):
+    return {"V_in": sine(100, frequency)}
+
+
+@pytest.fixture(scope="module")
+def found():
+    return steady_branches(
+        "piezo_stack", inputs=drive, frequencies=(45.0, 110.0), temperatures=SPAN
+    )
+
+
+def states(frequency):
+    return periodic_steady_states(
+        "piezo_stack", inputs=drive(frequency), frequency=frequency, temperatures=SPAN, rtol=1e-3
+    )
+
+
+def test_there_is_one_jump_and_it_goes_up(found):
+    (jump,) = found.jumps
+    assert jump.upward
+    assert jump.frequency == pytest.approx(67.29, abs=0.02)
+    assert jump.temperature == pytest.approx(541.9, abs=2)
+    assert jump.lands == pytest.approx(3698, rel=0.01)
+
+
+def test_steady_states_come_and_go_at_the_jump(found):
+    """Three below the fold, one above; independent searches, half a per cent to either side."""
+    f = found.jumps[0].frequency
+    assert [state.stable for state in states(f * 0.995)] == [True, False, True]
+    assert [state.stable for state in states(f * 1.005)] == [True]
+
+
+def test_points_are_steady_states(found):
+    for curve in found.curves:
+        for point in curve[:: len(curve) // 3]:
+            f = point.frequency
+            near = point.state.temperature
+            (alone,) = periodic_steady_states(
+                "piezo_stack",
+                inputs=drive(f),
+                frequency=f,
+                temperatures=(near * 0.99, near * 1.01),
+                rtol=1e-4,
+            )
+            rise = alone.temperature - 298.15
+            assert point.state.period.mean - 298.15 == pytest.approx(rise, rel=1e-3)
+            assert point.stable == alone.stable
+
+
+def test_curves_reach_the_ends_of_the_range(found):
+    ends = sorted(round(curve[n].frequency, 6) for curve in found.curves for n in (0, -1))
+    assert ends == [45.0, 45.0, 45.0, 110.0]
+    for curve in found.curves:
+        steps = [np.abs(b.place - a.place).max() for a, b in itertools.pairwise(curve)]
+        assert max(steps) < 0.31
+
+
+def test_the_cool_branch_warms_with_the_frequency_up_to_its_end(found):
+    cool = [p for p in found.curves[0] if p.stable]
+    rise = np.diff([p.state.period.mean for p in cool])
+    assert np.all(rise > 0)
+    assert np.all(np.diff([p.frequency for p in cool]) > 0)
+
+
+def test_the_hot_branch_cools_with_the_frequency(found):
+    hot = sorted(found.curves[1], key=lambda p: p.frequency)
+    assert all(p.stable for p in hot)
+    assert np.all(np.diff([p.state.period.mean for p in hot]) < 0)
+
+
+def test_the_table_has_a_row_a_point(found):
+    table = found.table()
+    sizes = {len(column) for column in table.values()}
+    assert sizes == {sum(len(curve) for curve in found.curves)}
+    (fold,) = np.flatnonzero(~np.isnan(table["jumps_to"]))
+    assert (
+        table["frequency"][fold]
+        == found.jumps[0].frequency
+        == max(table["frequency"][table["curve"] == 0])
+    )
+    assert np.all(table["coldest"] <= table["temperature"])
+    assert np.all(table["temperature"] <= table["hottest"])
+
+
+def test_a_drive_without_jumps_has_none():
+    """A tenth of the voltage: heat a hundredth, and no fold within reach."""
+    found = steady_branches(
+        "piezo_stack",
+        inputs=lambda f: {"V_in": sine(10, f)},
+        frequencies=(20.0, 60.0),
+        temperatures=(298.15, 400.0),
+    )
+    assert found.jumps == ()
+    (curve,) = found.curves
+    assert all(point.stable for point in curve)
+    alone = periodic_steady_state("piezo_stack", inputs={"V_in": sine(10, 60)}, frequency=60)
+    assert curve[-1].state.period.mean == pytest.approx(alone.temperature, abs=1e-3)
+
+
+@pytest.mark.parametrize("frequencies", [(100.0, 50.0), (50.0, 50.0), (0.0, 50.0)])
+def test_no_range_is_refused(frequencies):
+    with pytest.raises(UsageError):
+        steady_branches("piezo_stack", inputs=drive, frequencies=frequencies)

@@ -1,0 +1,117 @@
+"""The dashboard of a run: a panel for every unit and the ledger, for any model."""
+
+import numpy as np
+import pytest
+import xarray
+
+from piezo_sym import plot, simulate, sine
+from piezo_sym.errors import UsageError
+
+SPECS = "tests/networks/specs"
+COLUMNS = """
+[model]
+name = "massless_of_heat"
+[parameters]
+L = { value = 1.0, unit = "H" }
+C = { value = 1.0, unit = "F" }
+[initial]
+Q = 1.0
+[elements]
+coil = { kind = "inductor", between = ["a", "gnd"], inductance = "L", state = "phi" }
+cap  = { kind = "capacitor", between = ["a", "gnd"], capacitance = "C", state = "Q" }
+"""
+
+
+def labels(figure):
+    return [axes.get_ylabel() for axes in figure.axes]
+
+
+def actuator(**changed):
+    options = {"duration": 0.02, "rtol": 1e-5, "method": "discrete_gradient", **changed}
+    return simulate("piezo_stack", inputs={"V_in": sine(100, 100)}, **options)
+
+
+def panel(figure, start):
+    return next(axes for axes in figure.axes if axes.get_ylabel().startswith(start))
+
+
+def test_every_quantity_has_its_panel():
+    run = actuator()
+    figure = plot(run)
+    assert labels(figure) == [
+        "q [m]",
+        "p [kg*m/s]",
+        "Q_C [C]",
+        "phi [Wb]",
+        "S [J/K]",
+        "F_ext [N]",
+        "V_in [V]",
+        "T_e, T_body [K]",
+        "y_load [m/s]",
+        "y_supply [A]",
+        "heat released [J]",
+        "entropy produced [J/K]",
+        "energy put in [J]",
+        "energy residual [J]",
+    ]
+
+
+def test_curves_are_the_run():
+    run = actuator()
+    figure = plot(run)
+    (line,) = panel(figure, "q").lines
+    assert np.array_equal(line.get_ydata(), run.q.values)
+    assert len(panel(figure, "phi").lines) == 2
+    (residual,) = panel(figure, "energy residual").lines
+    assert np.array_equal(residual.get_ydata(), run.energy_residual.values)
+
+
+@pytest.mark.parametrize(("start", "prefix"), [("heat", "heat_"), ("entropy", "produced_")])
+def test_the_ledger_is_stacked_by_process(start, prefix):
+    run = actuator()
+    areas = panel(plot(run), start).collections
+    tops = [area.get_paths()[0].vertices[:, 1].max() for area in areas]
+    bank, damper = run[f"{prefix}hysteron"].sum("hysteron"), run[f"{prefix}damper"]
+    assert tops == pytest.approx([float(bank.max()), float((bank + damper).max())])
+
+
+def test_many_lanes_are_drawn_as_the_range_they_fill():
+    run = actuator(parameters={"hysteron_count": 64, "i_0": [0.02 * n for n in range(64)]})
+    axes = panel(plot(run), "phi")
+    assert len(axes.lines) == 1
+    assert np.allclose(axes.lines[0].get_ydata(), run.phi.mean("hysteron"))
+    (filled,) = axes.collections
+    assert filled.get_paths()[0].vertices[:, 1].max() == pytest.approx(float(run.phi.max()))
+
+
+def test_several_bodies():
+    figure = plot(simulate(f"{SPECS}/a1_two_bodies.toml", duration=5))
+    assert len(panel(figure, "T_hot, T_cold").lines) == 2
+    assert [text.get_text() for text in panel(figure, "T_hot").get_legend().get_texts()] == [
+        "T_hot",
+        "T_cold",
+    ]
+
+
+def test_a_model_without_heat_has_no_panel_for_it(module):
+    from piezo_sym.run import simulate as run_module
+
+    figure = plot(run_module(module(COLUMNS), duration=5.0))
+    assert labels(figure) == ["phi [Wb]", "Q [C]", "energy residual [J]"]
+
+
+def test_one_sample_is_points():
+    figure = plot(actuator(times=[0.01]))
+    assert all(line.get_marker() == "." for axes in figure.axes for line in axes.lines)
+    assert len(panel(figure, "heat").lines) == 2
+
+
+def test_it_can_be_saved(tmp_path):
+    plot(actuator(times=11)).savefig(tmp_path / "run.png")
+    assert (tmp_path / "run.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("thing", [xarray.Dataset(), None, {"q": 1}, np.zeros(3)])
+def test_what_is_no_run_is_refused(thing):
+    with pytest.raises(UsageError, match=r"is no run; expected a Dataset that simulate\(\)"):
+        plot(thing)

@@ -1,0 +1,322 @@
+"""Periodic steady states against a closed form, against long runs, and what is refused."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+from piezo_sym import (
+    load,
+    periodic_steady_state,
+    periodic_steady_states,
+    samples,
+    simulate,
+    sine,
+    step,
+    triangle,
+)
+from piezo_sym.analysis import loops, steady
+from piezo_sym.analysis.balance import SteadyWarning, settled
+from piezo_sym.analysis.stroboscope import stroboscope
+from piezo_sym.errors import RunError, UsageError
+
+HEATER = """
+[model]
+name = "heater"
+[parameters]
+R   = { value = 5.0, unit = "ohm" }
+T_0 = { value = 300.0, unit = "K" }
+c   = { value = 0.02, unit = "J/K" }
+lam = { value = 0.5, unit = "W/K" }
+[inputs]
+V   = { unit = "V" }
+T_e = { unit = "K", default = 290.0 }
+[domain]
+assume = ["R > 0", "lam >= 0", "T_e > 0"]
+[initial]
+S = "c*log(T_e/T_0)"
+[elements]
+supply = { kind = "voltage_source", between = ["in", "gnd"], input = "V" }
+heater = { kind = "resistor", between = ["in", "gnd"], current = "v/R", heats = "body" }
+body   = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }
+air    = { kind = "ambient", body = "body", conductance = "lam", input = "T_e" }
+"""
+R, C, LAM, T_E, V, F = 5.0, 0.02, 0.5, 290.0, 20.0, 3.0
+
+
+@pytest.fixture(scope="module")
+def heater(module):
+    return module(HEATER)
+
+
+def test_a_heated_body_against_its_closed_form(heater):
+    """c dT/dt = V^2/(2R) (1 - cos 2wt) - lam (T - T_e): mean, swing and decay are known."""
+    found = steady.periodic_steady_state(heater, inputs={"V": sine(V, F)}, frequency=F, rtol=1e-7)
+    power = V**2 / (2 * R)
+    swing = power / np.hypot(LAM, 2 * 2 * np.pi * F * C)
+    assert found.temperature == pytest.approx(T_E + power / LAM, rel=1e-8)
+    assert found.hottest == pytest.approx(T_E + power / LAM + swing, abs=1e-3 * swing)
+    assert found.coldest == pytest.approx(T_E + power / LAM - swing, abs=1e-3 * swing)
+    assert found.loss == pytest.approx(power / F, rel=1e-6)
+    assert found.multiplier == pytest.approx(np.exp(-LAM / (C * F)), rel=2e-3)
+    assert found.stable
+    assert found.residual < 1e-6
+
+
+def test_a_hot_start_cools_to_the_same_state(heater):
+    drive = {"inputs": {"V": sine(V, F)}, "frequency": F}
+    found = steady.periodic_steady_state(heater, initial={"S": C * np.log(900 / 300)}, **drive)
+    assert found.temperature == pytest.approx(T_E + V**2 / (2 * R * LAM), rel=1e-6)
+    (only,) = steady.periodic_steady_states(heater, **drive)
+    assert only.temperature == pytest.approx(found.temperature, rel=1e-6)
+
+
+def test_a_body_that_starts_over_the_environment_cools_below_its_start(module):
+    warm = module(HEATER.replace("log(T_e/T_0)", "log(2*T_e/T_0)"))
+    found = steady.periodic_steady_state(warm, inputs={"V": sine(V, F)}, frequency=F)
+    assert found.temperature == pytest.approx(T_E + V**2 / (2 * R * LAM), rel=1e-6)
+
+
+def test_constant_inputs_have_an_equilibrium(heater):
+    found = steady.periodic_steady_state(heater, inputs={"V": 20.0}, frequency=1.0)
+    assert found.temperature == pytest.approx(T_E + 400 / (R * LAM), rel=1e-6)
+    assert found.hottest - found.coldest < 1e-5
+
+
+@pytest.mark.parametrize(
+    ("wave", "mean_square"),
+    [
+        (triangle(V, F), V**2 / 3),
+        (samples([0, 0.5 / F, 1 / F], [0.0, V, 0.0]), V**2 / 3),
+        (lambda t: V * np.cos(2 * np.pi * F * t), V**2 / 2),
+    ],
+)
+def test_any_input_that_repeats(heater, wave, mean_square):
+    found = steady.periodic_steady_state(heater, inputs={"V": wave}, frequency=F, rtol=1e-5)
+    assert found.temperature == pytest.approx(T_E + mean_square / (R * LAM), rel=2e-5)
+
+
+def test_heat_that_no_one_takes_away_has_no_steady_state(module):
+    alone = "\n".join(line for line in HEATER.splitlines() if not line.startswith("air"))
+    alone = alone.replace('T_e = { unit = "K", default = 290.0 }\n', "").replace(', "T_e > 0"', "")
+    closed = module(alone.replace('S = "c*log(T_e/T_0)"', "S = 0.0"))
+    with pytest.raises(RunError, match=r"the body heats at every temperature between 300 K"):
+        steady.periodic_steady_state(closed, inputs={"V": sine(V, F)}, frequency=F)
+
+
+@pytest.mark.parametrize(
+    ("L", "frequency", "expected", "tolerance"),
+    [
+        (1e-3, 10, 299.84, 0.01),
+        (1e-3, 50, 354.1, 0.05),
+        (1e-3, 70, 3604, 10),
+        (1e-3, 100, 2722, 0.5),
+        (5e-3, 100, 1066.8, 0.2),
+    ],
+)
+def test_settled_temperatures_of_the_actuator(L, frequency, expected, tolerance):
+    """ACCEPTANCE, case P: fixed-step runs of 40 s by another program."""
+    found = periodic_steady_state(
+        "piezo_stack",
+        inputs={"V_in": sine(100, frequency)},
+        frequency=frequency,
+        parameters={"L": L},
+    )
+    assert abs(found.temperature - expected) < tolerance
+    assert found.stable
+    assert found.residual < 2e-6
+
+
+@pytest.fixture(scope="module")
+def at_50():
+    return periodic_steady_states("piezo_stack", inputs={"V_in": sine(100, 50)}, frequency=50)
+
+
+def test_all_branches_are_found(at_50):
+    assert [state.stable for state in at_50] == [True, False, True]
+    assert [state.temperature for state in at_50] == sorted(state.temperature for state in at_50)
+    assert at_50[0].multiplier < 1 < at_50[1].multiplier
+
+
+def test_heat_and_cooling_of_a_cycle_balance(at_50):
+    for state in at_50:
+        assert state.loss == pytest.approx(2.0 * (state.temperature - 298.15) / 50, rel=2e-6)
+
+
+def test_the_area_of_voltage_over_charge_is_the_heat_of_a_cycle(at_50):
+    """With F_ext = 0 all energy comes through V_in, and leaves as heat."""
+    for state in (at_50[0], at_50[2]):
+        run = simulate(
+            "piezo_stack",
+            inputs={"V_in": sine(100, 50)},
+            initial=state.initial,
+            duration=0.02,
+            times=4001,
+            rtol=1e-8,
+            method="discrete_gradient",
+        )
+        area = loops.area(run.V_in.values, loops.drawn(run, "supply").values)
+        heat = float(run.heat_hysteron[-1].sum() + run.heat_damper[-1])
+        assert area == pytest.approx(heat, rel=3e-6)
+        assert area == pytest.approx(state.loss, rel=1e-5)
+        assert area == pytest.approx(float(run.supplied_supply[-1]), rel=3e-6)
+
+
+def test_an_orbit_repeats_itself(at_50):
+    for state in at_50:
+        orbit = state.orbit
+        for name in ("q", "p", "Q_C", "phi", "S"):
+            values = orbit[name].values
+            assert np.abs(values[-1] - values[0]).max() < 3e-6 * np.abs(values).max()
+
+
+@pytest.mark.parametrize(("factor", "way"), [(0.98, -1), (1.02, 1)])
+def test_the_unstable_state_parts_runs(at_50, factor, way):
+    """One that starts a little colder cools, one that starts a little hotter runs away."""
+    middle = at_50[1]
+    start = {**middle.initial, "S": middle.initial["S"] + 5 * np.log(factor)}
+    run = simulate(
+        "piezo_stack",
+        inputs={"V_in": sine(100, 50)},
+        initial=start,
+        duration=1.0,
+        times=[0.02, 1.0],
+        rtol=1e-5,
+        method="discrete_gradient",
+    )
+    assert way * float(run.T_body[-1] - run.T_body[0]) > 5
+
+
+def test_a_long_run_ends_there():
+    run = simulate(
+        "piezo_stack",
+        inputs={"V_in": sine(100, 10)},
+        initial={"S": 5 * np.log(299.8 / 296.15)},
+        duration=20.0,
+        times=[20.0],
+        rtol=1e-4,
+        method="discrete_gradient",
+    )
+    found = periodic_steady_state("piezo_stack", inputs={"V_in": sine(100, 10)}, frequency=10)
+    for name in ("q", "p", "Q_C", "S"):
+        size = float(np.abs(found.orbit[name]).max())
+        assert float(run[name][-1]) == pytest.approx(found.initial[name], abs=1e-4 * size)
+
+
+def test_another_solver_finds_the_same_orbit(at_50):
+    state = at_50[0]
+    drive = {"inputs": {"V_in": sine(100, 50)}, "initial": state.initial, "duration": 0.02}
+    run = simulate("piezo_stack", **drive, times=[0.02], rtol=1e-9, method="LSODA")
+    for name in ("q", "p", "Q_C", "phi", "S"):
+        size = float(np.abs(state.orbit[name]).max())
+        assert np.abs(run[name].values[-1] - state.initial[name]).max() < 2e-6 * size
+
+
+def test_a_tiny_heat_capacity_is_no_obstacle(module):
+    small = module(HEATER.replace("value = 0.02", "value = 1e-7"))
+    found = steady.periodic_steady_state(small, inputs={"V": 20.0}, frequency=1.0, rtol=1e-3)
+    assert found.temperature == pytest.approx(T_E + 400 / (R * LAM), rel=1e-6)
+
+
+def test_where_nothing_heats_or_cools_every_temperature_is_steady():
+    """An oscillator at rest, without an ambient: one state is its start, all are a continuum."""
+    model = load("tests/networks/specs/a2_oscillator.toml")
+    rest = {"inputs": {}, "frequency": 1.0, "initial": {"q": 0.0}}
+    found = periodic_steady_state(model, **rest)
+    assert found.temperature == pytest.approx(300.0)
+    assert found.residual == 0
+    with pytest.raises(RunError, match=r"any temperature from 300 K to 300\.03 K is steady"):
+        periodic_steady_states(model, **rest)
+
+
+def test_a_neutral_motion_is_no_obstacle():
+    """At 1 Hz the currents stay in the dead zone: their difference neither grows nor decays."""
+    found = periodic_steady_state("piezo_stack", inputs={"V_in": sine(100, 1)}, frequency=1)
+    assert found.stable
+    assert found.multiplier == pytest.approx(1.0, abs=1e-6)
+    assert found.temperature == pytest.approx(298.166, abs=1e-3)
+
+
+def test_equal_hysterons_settle_as_one():
+    def settles(**parameters):
+        return periodic_steady_state(
+            "piezo_stack",
+            inputs={"V_in": sine(100, 50)},
+            frequency=50,
+            parameters=parameters,
+            temperatures=(298.15, 600),
+        ).temperature
+
+    one = settles(hysteron_count=1, L=5e-4, rho=5.0, i_0=1.0)
+    assert one == pytest.approx(
+        settles(), rel=1e-6
+    )  # two equal hysterons are one with half of each
+    many = settles(hysteron_count=8, L=4e-3, rho=40.0, i_0=0.125)
+    assert many == pytest.approx(one, rel=1e-6)
+
+
+def test_the_settled_state_repeats_but_for_its_entropy(stack):
+    drive = {"V_in": sine(100, 50)}
+    strobe = stroboscope(stack, lambda _: drive, 50, None, None, 256)
+    found = settled(strobe, 50, 350.0, strobe.start(50), None)
+    assert strobe.temperature(found.x) == pytest.approx(350.0, rel=1e-12)
+    again = strobe.look(found.x, 50)
+    assert np.abs((again.end - found.x)[:-1] / again.size[:-1]).max() < 1e-7
+    assert again.end[-1] - found.x[-1] == pytest.approx(found.drift, rel=1e-9)
+
+
+STACK = {"inputs": {"V_in": sine(100, 50)}, "frequency": 50}
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"frequency": 40}, "'V_in' does not repeat after 0.025 s"),
+        ({"frequency": 0}, "is not positive"),
+        ({"inputs": {"V_in": step(0.01, 0, 100)}}, "'V_in' does not repeat"),
+        ({"inputs": {"V": 1.0}}, "unknown name 'V'"),
+        ({"inputs": {"V_in": samples([0, 1], [0, 1])}}, "'V_in' does not repeat"),
+        ({"initial": {"z": 1.0}}, "unknown name 'z'"),
+        ({"parameters": {"LL": 1.0}}, "unknown name 'LL'"),
+        ({"rtol": 1e-12}, "out of range"),
+        ({"temperatures": (400, 300)}, "no range"),
+        ({"temperatures": (300,)}, "no range"),
+    ],
+)
+def test_a_wrong_argument_is_one_line(changed, said):
+    with pytest.raises(UsageError, match=said) as error:
+        periodic_steady_state("piezo_stack", **{**STACK, **changed})
+    assert len(str(error.value).splitlines()) == 1
+
+
+def test_a_start_outside_the_domain_says_so():
+    with pytest.raises(RunError, match="start is outside the domain"):
+        periodic_steady_state("piezo_stack", **STACK, parameters={"L": -1.0})
+
+
+def test_without_a_compiler_another_solver_finds_the_same(heater, monkeypatch):
+    drive = {"inputs": {"V": sine(V, F)}, "frequency": F, "temperatures": (340.0, 350.0)}
+    expected = steady.periodic_steady_state(heater, **drive).temperature
+    monkeypatch.setattr("piezo_sym.analysis.stroboscope.compiled", lambda _: None)
+    found = steady.periodic_steady_state(heater, **drive)
+    assert found.orbit.attrs["method"] == "LSODA"
+    assert found.temperature == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize(("spec", "bodies"), [("a1_two_bodies", 2)])
+def test_a_model_without_exactly_one_body_is_refused(spec, bodies):
+    model = load(f"tests/networks/specs/{spec}.toml")
+    with pytest.raises(UsageError, match=f"has {bodies} bodies; expected a model with one body"):
+        periodic_steady_state(model, inputs={}, frequency=1.0)
+
+
+def test_what_does_not_settle_is_said(stack):
+    """A start far outside what can be integrated: the part of the range that fails is named."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        found = steady.periodic_steady_states(
+            stack, inputs={"V_in": sine(100, 50)}, frequency=50, temperatures=(250.0, 400.0)
+        )
+    assert any(issubclass(one.category, SteadyWarning) for one in caught)
+    assert "nothing settles at" in str(caught[0].message)
+    assert [round(state.temperature) for state in found] == [354]
