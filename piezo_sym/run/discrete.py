@@ -1,20 +1,21 @@
 """Runs of the discrete gradient in C: both balances to round-off, order two, extrapolated to four.
 
-Input: a `System`, its engine, the state x (n,) at t = 0 and the sample times.  Output: a
-`Trajectory`.  With a step, one run of it.  With a tolerance, two runs side by side on one mesh, the
-second with half its steps, each with a state of its own, so that its balances stay exact.  States
-are extrapolated from both; ledger and balances are those of the finer run.
+Input: systems that differ in parameters, their engine, their states at t = 0 and the sample times.
+Output: `Runs`.  With a step, one run of each.  With a tolerance, two runs side by side on one mesh,
+the second with half its steps, each with a state of its own, so that its balances stay exact.
+States are extrapolated from both; ledger and balances are those of the finer run.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias, final
 
 import numpy as np
 
 from piezo_sym.errors import RunError
-from piezo_sym.run.engine.march import March, Pair, steps_at
+from piezo_sym.run.engine.march import Batch, steps_at
 from piezo_sym.run.ledger import Trajectory
 from piezo_sym.run.mesh import Block, blocks, inputs_at
 from piezo_sym.run.scales import shared
@@ -39,141 +40,166 @@ Watch: TypeAlias = Callable[[float], object]
 
 
 @final
-class _Kept:
-    """What a run leaves at its samples (nt,): rows of states and ledgers."""
+@dataclass(frozen=True)
+class Runs:
+    """Runs of some systems, and why those that did not come through stopped.
 
-    def __init__(self, march: March, x: FloatArray, times: FloatArray) -> None:
-        rows = march.rows
-        self.states = np.full((times.size, rows.n), np.nan)
-        self.fine = np.full((times.size, rows.n), np.nan)
-        self.sums = np.full((times.size, rows.ledger), np.nan)
-        if times[0] == 0:
-            self.states[0] = self.fine[0] = x
-            self.sums[0] = 0.0
+    Attributes
+    ----------
+    batch : what the runs left at samples.
+    times : the sample times (nt,).
+    errors : of each system, its error, or None.
+    """
+
+    systems: Sequence[System]
+    start: FloatArray
+    batch: Batch
+    times: FloatArray
+    errors: Sequence[RunError | None]
+    extrapolated: bool
+
+    def trajectory(self, k: int) -> Trajectory:
+        """Return run k; raise its error if it stopped."""
+        if error := self.errors[k]:
+            raise error
+        batch, member = self.batch, self.batch.members[k]
+        balanced = batch.fine if self.extrapolated else batch.states
+        return Trajectory(
+            start=self.start[k],
+            states=batch.states[k].T,
+            inputs=inputs_at(self.systems[k], self.times),
+            integrals=batch.sums[k].T[: batch.rows.booked],
+            steps=member.steps,
+            evaluations=member.model.iterations,
+            balanced=balanced[k].T,
+            halvings=member.model.halvings,
+        )
 
 
 def fixed(
-    system: System,
+    systems: Sequence[System],
     engine: Engine,
     x: FloatArray,
     times: FloatArray,
     step: float,
     watch: Watch | None = None,
-) -> Trajectory:
-    """Return a run with steps of at most `step`; they end at samples and at breaks of inputs.
+) -> Runs:
+    """Return runs with steps of at most `step`; they end at samples and at breaks of inputs.
 
     Parameters
     ----------
+    systems : with equal inputs and sizes.
+    x : their states (systems, n) at t = 0.
     watch : told the time reached, now and then.
-
-    Raises
-    ------
-    RunError : a step has no solution inside the domain; the message says when.
     """
-    march = March(engine, system.parameters, x)
-    kept = _Kept(march, x, times)
-    size = max(1, CHUNK // x.size)
-    for block in blocks(system, times, step, lambda: size):
-        out = (kept.states, kept.sums)
-        done = march.run(block.lengths, block.middles(), block.samples, *out)
-        _check(system, march, block, done)
-        _tell(watch, block)
-    return _trajectory(system, x, times, march, kept, kept.states)
+    run = _Run(systems, engine, x, times)
+    size = max(1, CHUNK // x.shape[1])
+    for block in blocks(systems[0], times, step, lambda: size):
+        done = run.batch.run("march", block.lengths, [block.middles()], 0, block.samples)
+        run.note(block, done)
+        if not run.goes_on(block, watch):
+            break
+    return run.runs(extrapolated=False)
 
 
 def adaptive(
-    system: System,
+    systems: Sequence[System],
     engine: Engine,
     x: FloatArray,
     times: FloatArray,
     rtol: float,
     watch: Watch | None = None,
-) -> Trajectory:
-    """Return a run on a mesh that holds the error of each interval below rtol times a scale.
+) -> Runs:
+    """Return runs on a mesh that holds the error of each interval below rtol times a scale.
 
     A coarse run gives the scale of each state, its largest magnitude.  The pair then goes from
     interval to interval; how finely one is divided is decided by a trial from the finer state, with
-    half its steps.
-
-    Raises
-    ------
-    RunError : a step has no solution inside the domain; the message says when.
+    half its steps.  Parameters as for `fixed`.
     """
-    longest = min(system.inputs.max_step, times[-1] / FEWEST_INTERVALS)
-    tolerance = LOOSER * rtol * _scale(system, engine, x, times, longest)
-    march = March(engine, system.parameters, x)
-    kept, pair = _Kept(march, x, times), Pair(march)
-    for whole in blocks(system, times, longest, lambda: _block_size(pair, x.size)):
-        block = whole
-        while len(block):
-            lowest = max(0, pair.level - BELOW)
-            levels = range(lowest, pair.level + ABOVE + 1)
+    first = systems[0]
+    longest = min(first.inputs.max_step, times[-1] / FEWEST_INTERVALS)
+    run = _Run(systems, engine, x, times)
+    batch = run.batch
+    batch.scale[:] = LOOSER * rtol * _scale(systems, engine, x, times, longest)
+    for block in blocks(first, times, longest, lambda: _block_size(batch)):
+        done, again = [0], False
+        while min(done) < len(block) and batch.levels and max(batch.levels) <= MOST_LEVEL:
+            lowest = max(0, min(batch.levels) - BELOW)
+            levels = range(lowest, max(batch.levels) + ABOVE + 1)
             u = [block.middles(steps_at(level)) for level in levels]
-            out = (kept.states, kept.fine, kept.sums)
-            done = pair.run(block.lengths, u, lowest, tolerance, block.samples, *out)
-            if pair.failed or pair.level > MOST_LEVEL:
-                _check(system, march, block, done)
-            block = block.rest(done)
-        _tell(watch, whole)
-    return _trajectory(system, x, times, march, kept, kept.fine)
+            done = batch.run("adapt", block.lengths, u, lowest, block.samples, again=again)
+            done = [n for n, member in zip(done, batch.members, strict=True) if not member.failed]
+            done, again = done or [len(block)], True
+        run.note(block, [member.done for member in batch.members])
+        if not run.goes_on(block, watch):
+            break
+    return run.runs(extrapolated=True)
 
 
-def _block_size(pair: Pair, n: int) -> int:
+@final
+class _Run:
+    """A batch on its way, and the errors of members that stopped."""
+
+    def __init__(
+        self, systems: Sequence[System], engine: Engine, x: FloatArray, times: FloatArray
+    ) -> None:
+        self.systems, self.start, self.times = systems, x, times
+        self.batch = Batch(engine, [system.parameters for system in systems], x, times.size)
+        self.errors: list[RunError | None] = [None] * len(systems)
+        if times[0] == 0:
+            self.batch.states[:, 0] = self.batch.fine[:, 0] = x
+            self.batch.sums[:, 0] = 0.0
+
+    def note(self, block: Block, done: Sequence[int]) -> None:
+        """Note why members did not come through a block."""
+        for k, reached in enumerate(done):
+            if reached < len(block) and self.errors[k] is None:
+                t, x = float(block.starts[reached]), self.batch.x[k]
+                self.errors[k] = _stuck(self.systems[k], t, x)
+                self.batch.members[k].failed = 1
+
+    def goes_on(self, block: Block, watch: Watch | None) -> bool:
+        """Tell the time reached; return whether any member goes on."""
+        if watch:
+            watch(float(block.starts[-1] + block.lengths[-1]))
+        return not all(self.errors)
+
+    def runs(self, *, extrapolated: bool) -> Runs:
+        """Return what the batch has become."""
+        parts = (self.systems, self.start, self.batch, self.times, tuple(self.errors))
+        return Runs(*parts, extrapolated)
+
+
+def _block_size(batch: Batch) -> int:
     """Return how many intervals to hand over at once: few at first, when no level is known."""
-    if not pair.march.steps:
+    levels = batch.levels
+    if not levels or not batch.members[0].steps:
         return 16
-    return max(1, CHUNK // (n * steps_at(pair.level + ABOVE)))
+    return max(1, CHUNK // (max(batch.rows.n, 1) * steps_at(max(levels) + ABOVE)))
 
 
 def _scale(
-    system: System, engine: Engine, x: FloatArray, times: FloatArray, longest: float
-) -> FloatArray:
-    """Return the scale of each state (n,): its largest magnitude in a coarse run."""
-    march = March(engine, system.parameters, x)
-    size = max(1, CHUNK // x.size)
-    states, sums = np.empty((size, x.size)), np.empty((size, march.rows.ledger))
-    scale = np.abs(x)
-    for block in blocks(system, times, longest, lambda: size):
-        rows = np.arange(len(block))
-        done = march.run(block.lengths, block.middles(), rows, states, sums)
-        _check(system, march, block, done)
-        scale = np.maximum(scale, np.abs(states[: len(block)]).max(axis=0))
-    return shared(system, scale)
-
-
-def _trajectory(
-    system: System,
+    systems: Sequence[System],
+    engine: Engine,
     x: FloatArray,
     times: FloatArray,
-    march: March,
-    kept: _Kept,
-    balanced: FloatArray,
-) -> Trajectory:
-    return Trajectory(
-        start=x,
-        states=kept.states.T,
-        inputs=inputs_at(system, times),
-        integrals=kept.sums.T[: march.rows.booked],
-        steps=march.steps,
-        evaluations=march.work["iterations"],
-        balanced=balanced.T,
-        halvings=march.work["halvings"],
+    longest: float,
+) -> FloatArray:
+    """Return the scale of each state (systems, n): its largest magnitude in a coarse run."""
+    batch = Batch(engine, [system.parameters for system in systems], x, 0)
+    size = max(1, CHUNK // x.shape[1])
+    for block in blocks(systems[0], times, longest, lambda: size):
+        batch.run("survey", block.lengths, [block.middles()], 0, block.samples)
+    return np.array(
+        [shared(system, scale) for system, scale in zip(systems, batch.scale, strict=True)]
     )
 
 
-def _tell(watch: Watch | None, block: Block) -> None:
-    if watch:
-        watch(float(block.starts[-1] + block.lengths[-1]))
-
-
-def _check(system: System, march: March, block: Block, done: int) -> None:
-    """Raise `RunError` if a run did not come through a block: the error says when and where."""
-    if done == len(block):
-        return
-    t, x = float(block.starts[done]), march.x
+def _stuck(system: System, t: float, x: FloatArray) -> RunError:
+    """Return the error of a run that cannot go on: it says when and where."""
     names = [record.name for record in system.module.STATES]
     rows = system.rows(system.module.STATES)
     values = ", ".join(f"{n} = {x[row.start]:.6g}" for n, row in zip(names, rows, strict=True))
     what = f"{METHOD} cannot go on from t = {t:.6g} s at {values}: no step stays in the domain"
     remedy = "look at the inputs and the state there, or allow the state more room in [domain]"
-    raise RunError(what, f"model '{system.module.NAME}'", remedy=remedy)
+    return RunError(what, f"model '{system.module.NAME}'", remedy=remedy)

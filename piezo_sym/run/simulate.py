@@ -157,14 +157,15 @@ def discrete(
 ) -> tuple[Trajectory, dict[str, object]]:
     """Return a run of the discrete gradient, and what it took."""
     if step is None:
-        trajectory = adaptive(system, engine, x, samples, rtol)
+        trajectory = adaptive([system], engine, x[None], samples, rtol).trajectory(0)
         accuracy: dict[str, object] = {
             "rtol": rtol,
             "states": "extrapolated from two runs",
             "ledger": "of the finer run, its balances exact",
         }
     else:
-        trajectory, accuracy = fixed(system, engine, x, samples, step), {"step": step}
+        trajectory = fixed([system], engine, x[None], samples, step).trajectory(0)
+        accuracy = {"step": step}
     work = {
         "accepted_steps": trajectory.steps,
         "newton_iterations": trajectory.evaluations,

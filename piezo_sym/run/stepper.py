@@ -14,7 +14,7 @@ import numpy as np
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.checks import positive
 from piezo_sym.run.engine.engine import engine_of
-from piezo_sym.run.engine.march import March, Model, Path, at
+from piezo_sym.run.engine.march import Batch, Model, Path, at
 from piezo_sym.run.guard import check_start
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.module import checked
@@ -79,10 +79,11 @@ class Stepper:
         system = System(module, values, read_inputs(module, inputs, self._h))
         x = read_initial(module, values, system.inputs.segments[0].at(0.0), initial)
         check_start(system, x)
-        self._march = March(engine, values, x)
-        self._march.path.sums = None  # nobody asks for the ledger
+        self._batch = Batch(engine, [values], x[None], 0)
+        member = self._batch.members[0]
+        member.fine.sums = None  # nobody asks for the ledger
         self._u, self._y = np.zeros(len(module.INPUTS)), np.zeros(len(module.OUTPUTS))
-        self._all = Tick(self._march.model, self._march.path, at(self._u), at(self._y), self._h)
+        self._all = Tick(member.model, member.fine, at(self._u), at(self._y), self._h)
         self._tick: Any = getattr(engine.library, f"{module.NAME}_tick")
         self._at = ctypes.byref(self._all)
         self._names = [record.name for record in module.INPUTS]
@@ -91,7 +92,8 @@ class Stepper:
     @property
     def x(self) -> FloatArray:
         """The state, shape (n,)."""
-        return self._march.x.copy()
+        x: FloatArray = self._batch.x[0].copy()
+        return x
 
     @property
     def time(self) -> float:

@@ -1,23 +1,26 @@
-"""Steps of the discrete gradient in C: the records that stepper.c works on, filled from NumPy.
+"""Runs of the discrete gradient in C: the records that stepper.c works on, filled from NumPy.
 
-Input: an `Engine`, parameters, a state.  Output: `March`, a state on its way with its ledger, and
-`Pair`, two of them on one mesh.  Arrays live as long as the object that holds them.
+Input: an `Engine`, the parameters and states of some members.  Output: `Batch`, members on their
+way through one mesh, with what they leave at samples.  Arrays live as long as the object that holds
+them.
 """
 
 from __future__ import annotations
 
 import ctypes
-from typing import TYPE_CHECKING, Any, final
+from typing import TYPE_CHECKING, Any, Literal, final
 
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from piezo_sym.run.checks import FloatArray
     from piezo_sym.run.engine.engine import Engine
 
-POINTER, LONG = ctypes.c_void_p, ctypes.c_long
+POINTER, LONG, DOUBLE = ctypes.c_void_p, ctypes.c_long, ctypes.c_double
 
 
 class Model(ctypes.Structure):
@@ -27,8 +30,7 @@ class Model(ctypes.Structure):
         ("p", POINTER),
         *((name, LONG) for name in ("n", "rows", "ports", "processes", "inputs")),
         ("space", POINTER),
-        ("iterations", LONG),
-        ("halvings", LONG),
+        *((name, LONG) for name in ("iterations", "halvings")),
     ]
 
 
@@ -37,18 +39,28 @@ class Path(ctypes.Structure):
 
     _fields_ = [
         *((name, POINTER) for name in ("x", "last", "prior")),
-        *((name, ctypes.c_double) for name in ("h", "h_prior")),
+        *((name, DOUBLE) for name in ("h", "h_prior")),
         *((name, POINTER) for name in ("sums", "lost")),
     ]
 
 
-class PathPair(ctypes.Structure):
-    """MODEL(pair): three paths, what is kept of the first, and the level of division."""
+class Member(ctypes.Structure):
+    """MODEL(member): a run among others."""
 
     _fields_ = [
+        ("model", Model),
         *((name, Path) for name in ("fine", "coarse", "trial")),
-        ("kept", POINTER),
-        ("level", LONG),
+        *((name, POINTER) for name in ("kept", "tolerance", "out_x", "out_fine", "out_sums")),
+        *((name, LONG) for name in ("level", "done", "steps", "failed")),
+    ]
+
+
+class Intervals(ctypes.Structure):
+    """MODEL(block): the intervals that members go through, and the inputs in them."""
+
+    _fields_ = [
+        *((name, LONG) for name in ("intervals", "lowest", "highest")),
+        *((name, POINTER) for name in ("h", "u", "sample")),
     ]
 
 
@@ -67,129 +79,103 @@ class Rows:
 
 
 @final
-class March:
-    """States on their way through intervals, in C.
+class Batch:
+    """Members of equal sizes on their way through one mesh, in C.
 
     Parameters
     ----------
-    engine, p : the compiled module and its parameters.
-    x : the state (n,) to start from.
+    engine : the compiled module.
+    parameters : of each member.
+    x : the states (members, n) to start from.
+    samples : the number of samples.
 
     Attributes
     ----------
-    x, sums : the state (n,) and the ledger (rows,) after what was run.
-    steps : the steps taken.
+    rows : the sizes.
+    x : the states (members, n) after what was run.
+    scale : the largest magnitude of each state met by `survey` (members, n); for `adapt`, the
+        tolerance of each state.
+    states, fine, sums : at samples: states (members, samples, n), extrapolated or else those of the
+        finer run, and its ledgers (members, samples, ledger).
     """
 
-    def __init__(self, engine: Engine, p: Any, x: FloatArray) -> None:
-        self.rows = Rows(engine, p)
-        self.x, self.sums = x.copy(), np.zeros(self.rows.ledger)
-        self.steps = 0
-        self._held: list[Any] = []
+    def __init__(
+        self, engine: Engine, parameters: Sequence[Any], x: FloatArray, samples: int
+    ) -> None:
+        rows = self.rows = Rows(engine, parameters[0])
+        size, n, ledger = len(parameters), rows.n, rows.ledger
         self._library, self._name = engine.library, engine.module.NAME
-        structure = engine.structure(p)
-        self._held.append(structure)
-        r = self.rows
-        address = ctypes.addressof(structure.value)
-        self.model = Model(address, r.n, r.ledger, r.ports, r.processes, r.inputs)
-        self.model.space = self.room(self.function("room")(ctypes.byref(self.model)))
-        self.path = self.start(self.x, self.sums)
+        self._structures = [engine.structure(p) for p in parameters]
+        self.x, self.scale = x.copy(), np.abs(x)
+        self.states, self.fine = np.full((2, size, samples, n), np.nan)
+        self.sums = np.full((size, samples, ledger), np.nan)
+        self._others = np.stack([x, x])  # of the coarse and the trial path
+        first = self._model(0, None)
+        self._space = np.zeros((size, self._function("room")(ctypes.byref(first))))
+        self._changes = np.zeros((size, 3, 2, max(n, 1)))
+        self._ledgers = np.zeros((size, 2, ledger))
+        self._kept = np.zeros((size, n + 2 * ledger))
+        self.members = (Member * size)(*map(self._member, range(size)))
+
+    def __len__(self) -> int:
+        """Return the number of members."""
+        return len(self.members)
 
     @property
-    def work(self) -> dict[str, int]:
-        """Newton iterations and halvings so far."""
-        return {"iterations": self.model.iterations, "halvings": self.model.halvings}
-
-    def run(
-        self, lengths: FloatArray, u: FloatArray, samples: NDArray[np.int_], *out: FloatArray
-    ) -> int:
-        """Take one step over each interval, and return how many were done.
-
-        Parameters
-        ----------
-        lengths : of the intervals [s], (k,); u (k, m), the inputs at their middles.
-        samples : of each interval, the row of `out` that gets what is after it; -1 for none.
-        out : states (rows, n) and ledgers (rows, ledger), written.
-        """
-        done: int = self.function("run")(
-            *(ctypes.byref(self.model), ctypes.byref(self.path), LONG(lengths.size)),
-            *(at(lengths), at(u), at(samples), *map(at, out)),
-        )
-        self.steps += done
-        return done
-
-    def function(self, name: str) -> Any:
-        """Return a function of stepper.c that returns a long."""
-        function = getattr(self._library, f"{self._name}_{name}")
-        function.restype = LONG
-        return function
-
-    def start(self, x: FloatArray, sums: FloatArray | None = None) -> Path:
-        """Return a path of the state x, which the caller keeps."""
-        path = Path(at(x), self.room(x.size), self.room(x.size))
-        if sums is not None:
-            path.sums, path.lost = at(sums), self.room(sums.size)
-        return path
-
-    def room(self, size: int) -> ctypes.c_void_p:
-        """Return the address of an array of zeros that lives as long as this object."""
-        array = np.zeros(max(size, 1))
-        self._held.append(array)
-        return at(array)
-
-
-@final
-class Pair:
-    """Two runs on one mesh, the second with half its steps, and the mesh chosen on the way.
-
-    Parameters
-    ----------
-    march : the finer of the two, before its first step.
-    """
-
-    def __init__(self, march: March) -> None:
-        self.march, self.failed = march, False
-        others = [march.x.copy() for _ in range(2)]
-        self._held = others
-        paths = [march.path, *(march.start(x) for x in others)]
-        kept = march.room(march.rows.n + 2 * march.rows.ledger)
-        self._pair = PathPair(*paths, kept, 0)
-
-    @property
-    def level(self) -> int:
-        """How finely the next interval is divided: `steps_at` says how often."""
-        return int(self._pair.level)
+    def levels(self) -> list[int]:
+        """How finely each member divides its next interval: `steps_at` says how often."""
+        return [member.level for member in self.members if not member.failed]
 
     def run(
         self,
+        name: Literal["survey", "march", "adapt"],
         lengths: FloatArray,
-        u: list[FloatArray],
+        u: Sequence[FloatArray],
         lowest: int,
-        tolerance: FloatArray,
         samples: NDArray[np.int_],
-        *out: FloatArray,
-    ) -> int:
-        """Run through intervals, and return how many were done: fewer if a level is missing.
+        *,
+        again: bool = False,
+    ) -> list[int]:
+        """Go through intervals, and return how many of them each member has done.
 
         Parameters
         ----------
-        lengths : of the intervals [s], (k,).
-        u : for each level from `lowest` on, the inputs at the middles of all steps.
-        tolerance : of each state (n,), for the error of an interval.
-        samples : of each interval, the row of `out` that gets what is after it; -1 for none.
-        out : extrapolated states and those of the finer run (rows, n), and its ledgers, written.
+        name : "march", one step over each; "survey", the same for `scale` alone, from where the run
+            began; "adapt", as many steps and half steps as the tolerance asks for.
+        lengths : of the intervals, (k,).
+        u : inputs at the middles of steps (k*steps, inputs), for each level from the lowest on.
+        lowest : the lowest level.
+        samples : the sample after each interval (k,), -1 for none.
+        again : whether members go on where they stopped, and not with the first interval.
         """
-        march = self.march
         pointers = (POINTER * len(u))(*(level.ctypes.data for level in u))
-        taken, failed = LONG(0), ctypes.c_int(0)
-        done: int = march.function("adapt")(
-            *(ctypes.byref(march.model), ctypes.byref(self._pair), LONG(lengths.size)),
-            *(at(lengths), pointers, LONG(lowest), LONG(lowest + len(u) - 1), at(tolerance)),
-            *(at(samples), *map(at, out), ctypes.byref(taken), ctypes.byref(failed)),
-        )
-        march.steps += taken.value
-        self.failed = bool(failed.value)
-        return done
+        highest = lowest + len(u) - 1
+        block = Intervals(lengths.size, lowest, highest, at(lengths), None, at(samples))
+        block.u = ctypes.cast(pointers, POINTER)
+        for member in () if again else self.members:
+            member.done = 0
+        function = self._function(name)
+        function(self.members, LONG(len(self.members)), ctypes.byref(block))
+        return [member.done for member in self.members]
+
+    def _member(self, k: int) -> Member:
+        changes, ledger = self._changes[k], self._ledgers[k]
+        states = (self.x[k], self._others[0, k], self._others[1, k])
+        paths = [Path(at(x), at(c[0]), at(c[1])) for x, c in zip(states, changes, strict=True)]
+        paths[0].sums, paths[0].lost = at(ledger[0]), at(ledger[1])
+        out = (self.states[k], self.fine[k], self.sums[k])
+        model = self._model(k, at(self._space[k]))
+        return Member(model, *paths, at(self._kept[k]), at(self.scale[k]), *map(at, out))
+
+    def _model(self, k: int, space: ctypes.c_void_p | None) -> Model:
+        r, structure = self.rows, self._structures[k].value
+        sizes = (r.n, r.ledger, r.ports, r.processes, r.inputs)
+        return Model(ctypes.addressof(structure), *sizes, space)
+
+    def _function(self, name: str) -> Any:
+        function = getattr(self._library, f"{self._name}_{name}")
+        function.restype = LONG if name == "room" else None
+        return function
 
 
 def steps_at(level: int) -> int:

@@ -82,7 +82,7 @@ static int MODEL(root)(MODEL(model) *m, const double *restrict x, double *restri
             for (long i = 0; i < m->n; ++i)
                 y[i] += share * change[i];
         }
-        if (share == 1.0 && (worst <= 1.0 || worst * worst * worst <= 1e-6 * before * before))
+        if (share == 1.0 && (worst <= 1.0 || worst * (worst / before) * (worst / before) <= 1e-6))
             return 1;
         before = share == 1.0 ? worst : 0.0;
     }
@@ -153,27 +153,6 @@ static int MODEL(step)(MODEL(model) *m, MODEL(path) *path, const double *u, doub
     return 1;
 }
 
-/*
- * One step over each interval: over h[k], the inputs u[k] at its middle.  State and sums after
- * interval k go to row sample[k] of out_x and out_sums, if it is not negative.  Returns the number
- * of intervals done.
- */
-long MODEL(run)(MODEL(model) *m, MODEL(path) *path, long intervals, const double *h,
-                const double *u, const long *sample, double *out_x, double *out_sums);
-long MODEL(run)(MODEL(model) *m, MODEL(path) *path, long intervals, const double *h,
-                const double *u, const long *sample, double *out_x, double *out_sums)
-{
-    for (long k = 0; k < intervals; ++k) {
-        if (!MODEL(step)(m, path, u + k * m->inputs, h[k], 0))
-            return k;
-        if (sample[k] >= 0) {
-            memcpy(out_x + sample[k] * m->n, path->x, (size_t)m->n * sizeof(double));
-            memcpy(out_sums + sample[k] * m->rows, path->sums, (size_t)m->rows * sizeof(double));
-        }
-    }
-    return intervals;
-}
-
 /* Takes equal steps, the inputs at their middles one after another; 0 if one has no solution. */
 static int MODEL(across)(MODEL(model) *m, MODEL(path) *path, const double *u, double h, long steps)
 {
@@ -183,96 +162,159 @@ static int MODEL(across)(MODEL(model) *m, MODEL(path) *path, const double *u, do
     return 1;
 }
 
+/*
+ * A run among others: three paths through one mesh, `fine`, `coarse` with half its steps, and
+ * `trial`, which takes such steps from the fine one; arrays for its results at samples, a row each.
+ */
+typedef struct {
+    MODEL(model) model;
+    MODEL(path) fine, coarse, trial;
+    double *kept;      /* of n and of 2 rows: state and ledger of the fine path before an interval */
+    double *tolerance; /* of n: for the error of an interval */
+    double *out_x, *out_fine, *out_sums;
+    long level, done, steps, failed;
+} MODEL(member);
+
+/*
+ * Intervals that members go through: of lengths h[k]; u[level - lowest] holds, for levels lowest to
+ * highest, the inputs at the middles of all steps of all intervals.  Results after interval k go to
+ * row sample[k], if it is not negative.
+ */
+typedef struct {
+    long intervals, lowest, highest;
+    const double *h;
+    const double *const *u;
+    const long *sample;
+} MODEL(block);
+
 /* How many steps a level has: 1, 2, 3, 4, 6, 8, 12 ...; from 1 on, level + 2 has twice as many. */
 static long MODEL(steps_at)(long level)
 {
     return level == 0 ? 1 : (2 + (level + 1) % 2) << ((level - 1) / 2);
 }
 
-/* Three paths through one mesh: fine, of half the steps, and of half the steps from the fine one. */
-typedef struct {
-    MODEL(path) fine, coarse, trial;
-    double *kept; /* of n and of 2 rows: state and ledger of the fine path before an interval */
-    long level;
-} MODEL(pair);
-
-static void MODEL(keep)(const MODEL(model) *m, const MODEL(pair) *pair)
+/* One step over each interval, on the trial path: tolerance[n] becomes the largest |x[n]| met. */
+void MODEL(survey)(MODEL(member) *members, long count, const MODEL(block) *b);
+void MODEL(survey)(MODEL(member) *members, long count, const MODEL(block) *b)
 {
-    memcpy(pair->kept, pair->fine.x, (size_t)m->n * sizeof(double));
-    memcpy(pair->kept + m->n, pair->fine.sums, (size_t)m->rows * sizeof(double));
-    memcpy(pair->kept + m->n + m->rows, pair->fine.lost, (size_t)m->rows * sizeof(double));
+    for (MODEL(member) *s = members; s < members + count; ++s) {
+        for (; s->done < b->intervals && !s->failed; ++s->done) {
+            const double *x = s->trial.x, *u = b->u[0] + s->done * s->model.inputs;
+            s->failed = !MODEL(step)(&s->model, &s->trial, u, b->h[s->done], 0);
+            for (long i = 0; i < s->model.n; ++i)
+                s->tolerance[i] = fabs(x[i]) > s->tolerance[i] ? fabs(x[i]) : s->tolerance[i];
+        }
+        s->done -= s->failed;
+    }
 }
 
-static void MODEL(back)(const MODEL(model) *m, MODEL(pair) *pair)
+/* One step over each interval, on the fine path. */
+void MODEL(march)(MODEL(member) *members, long count, const MODEL(block) *b);
+void MODEL(march)(MODEL(member) *members, long count, const MODEL(block) *b)
 {
-    memcpy(pair->fine.x, pair->kept, (size_t)m->n * sizeof(double));
-    memcpy(pair->fine.sums, pair->kept + m->n, (size_t)m->rows * sizeof(double));
-    memcpy(pair->fine.lost, pair->kept + m->n + m->rows, (size_t)m->rows * sizeof(double));
-    pair->fine.h = 0.0;
+    for (MODEL(member) *s = members; s < members + count; ++s) {
+        const MODEL(model) *m = &s->model;
+        for (; s->done < b->intervals; ++s->done, ++s->steps) {
+            const double *u = b->u[0] + s->done * m->inputs;
+            const long row = b->sample[s->done];
+            if (s->failed || !MODEL(step)(&s->model, &s->fine, u, b->h[s->done], 0)) {
+                s->failed = 1;
+                break;
+            }
+            if (row < 0)
+                continue;
+            memcpy(s->out_x + row * m->n, s->fine.x, (size_t)m->n * sizeof(double));
+            memcpy(s->out_sums + row * m->rows, s->fine.sums, (size_t)m->rows * sizeof(double));
+        }
+    }
+}
+
+static void MODEL(keep)(const MODEL(member) *s)
+{
+    const size_t n = (size_t)s->model.n, rows = (size_t)s->model.rows;
+    memcpy(s->kept, s->fine.x, n * sizeof(double));
+    memcpy(s->kept + n, s->fine.sums, rows * sizeof(double));
+    memcpy(s->kept + n + rows, s->fine.lost, rows * sizeof(double));
+}
+
+static void MODEL(back)(MODEL(member) *s)
+{
+    const size_t n = (size_t)s->model.n, rows = (size_t)s->model.rows;
+    memcpy(s->fine.x, s->kept, n * sizeof(double));
+    memcpy(s->fine.sums, s->kept + n, rows * sizeof(double));
+    memcpy(s->fine.lost, s->kept + n + rows, rows * sizeof(double));
+    s->fine.h = 0.0;
 }
 
 /*
- * Runs a mesh and its halves side by side, each with a state and a balance of its own.  How finely
- * interval k of length h[k] is divided is chosen on the way: so that steps and half steps from the
- * finer state end within three times tolerance[n] of each other.  u[level - lowest] holds, for
- * levels lowest to highest, the inputs at the middles of all steps of all intervals.  After interval
- * k, row sample[k] of out_x, out_fine, out_sums gets the state extrapolated from both paths, the
- * finer one and its ledger.  Returns the number of intervals done: less than all if one needs a
- * level that is not there (failed = 0) or a step has no solution (failed = 1).
+ * One interval: as many steps, and half steps, as its level says.  Returns how far steps and half
+ * steps from the finer state end apart, in three times the tolerance; negative if there is no step.
  */
-long MODEL(adapt)(MODEL(model) *m, MODEL(pair) *pair, long intervals, const double *h,
-                  const double *const *u, long lowest, long highest, const double *tolerance,
-                  const long *sample, double *out_x, double *out_fine, double *out_sums,
-                  long *taken, int *failed);
-long MODEL(adapt)(MODEL(model) *m, MODEL(pair) *pair, long intervals, const double *h,
-                  const double *const *u, long lowest, long highest, const double *tolerance,
-                  const long *sample, double *out_x, double *out_fine, double *out_sums,
-                  long *taken, int *failed)
+static double MODEL(try)(MODEL(member) *s, const MODEL(block) *b, long finer)
 {
-    *failed = 0;
-    for (long k = 0; k < intervals; ++k) {
-        double worst = 0.0;
-        MODEL(keep)(m, pair);
-        for (;; ++pair->level, MODEL(back)(m, pair)) {
-            const long level = pair->level, finer = level ? level + 2 : 1;
-            const long steps = MODEL(steps_at)(level);
-            if (level < lowest || finer > highest)
-                return k;
-            const double *at = u[level - lowest] + m->inputs * steps * k;
-            const double *twice = u[finer - lowest] + m->inputs * 2 * steps * k;
-            const double length = h[k] / (double)steps;
-            memcpy(pair->trial.x, pair->kept, (size_t)m->n * sizeof(double));
-            *failed = !MODEL(across)(m, &pair->trial, at, length, steps) ||
-                      !MODEL(across)(m, &pair->fine, twice, 0.5 * length, 2 * steps);
-            *taken += 3 * steps;
-            if (*failed) {
-                MODEL(back)(m, pair);
-                return k;
-            }
-            worst = 0.0;
-            for (long i = 0; i < m->n; ++i) {
-                const double ratio = fabs(pair->fine.x[i] - pair->trial.x[i]) / (3.0 * tolerance[i]);
-                worst = ratio <= worst ? worst : ratio;
-            }
-            if (!(worst <= 1.0))
-                continue;
-            *taken += steps;
-            *failed = !MODEL(across)(m, &pair->coarse, at, length, steps);
-            if (*failed)
-                return k;
-            break;
-        }
-        if (sample[k] >= 0) {
-            double *restrict best = out_x + sample[k] * m->n, *fine = pair->fine.x;
-            for (long i = 0; i < m->n; ++i)
-                best[i] = fine[i] + (fine[i] - pair->coarse.x[i]) / 3.0;
-            memcpy(out_fine + sample[k] * m->n, fine, (size_t)m->n * sizeof(double));
-            memcpy(out_sums + sample[k] * m->rows, pair->fine.sums, (size_t)m->rows * sizeof(double));
-        }
-        if (worst < 0.05 && pair->level > 0) /* half as many steps and more give 2.25 times that */
-            --pair->level;
+    const long steps = MODEL(steps_at)(s->level), inputs = s->model.inputs;
+    const double *at = b->u[s->level - b->lowest] + inputs * steps * s->done;
+    const double *twice = b->u[finer - b->lowest] + inputs * 2 * steps * s->done;
+    const double length = b->h[s->done] / (double)steps;
+    double worst = 0.0;
+    memcpy(s->trial.x, s->fine.x, (size_t)s->model.n * sizeof(double));
+    s->steps += 3 * steps;
+    if (!MODEL(across)(&s->model, &s->trial, at, length, steps) ||
+        !MODEL(across)(&s->model, &s->fine, twice, 0.5 * length, 2 * steps))
+        return -1.0;
+    for (long i = 0; i < s->model.n; ++i) {
+        const double ratio = fabs(s->fine.x[i] - s->trial.x[i]) / (3.0 * s->tolerance[i]);
+        worst = ratio <= worst ? worst : ratio;
     }
-    return intervals;
+    if (!(worst <= 1.0))
+        return worst;
+    s->steps += steps;
+    return MODEL(across)(&s->model, &s->coarse, at, length, steps) ? worst : -1.0;
+}
+
+/* Writes the state extrapolated from both paths, the finer one and its ledger. */
+static void MODEL(write)(const MODEL(member) *s, long row)
+{
+    const long n = s->model.n, rows = s->model.rows;
+    double *restrict best = s->out_x + row * n;
+    const double *fine = s->fine.x, *coarse = s->coarse.x;
+    for (long i = 0; i < n; ++i)
+        best[i] = fine[i] + (fine[i] - coarse[i]) / 3.0;
+    memcpy(s->out_fine + row * n, fine, (size_t)n * sizeof(double));
+    memcpy(s->out_sums + row * rows, s->fine.sums, (size_t)rows * sizeof(double));
+}
+
+/*
+ * Runs a mesh and its halves side by side, each with a state and a balance of its own.  How finely an
+ * interval is divided is chosen on the way, so that steps and half steps from the finer state end
+ * within three times the tolerance of each other.  A member stops before an interval that needs a
+ * level that is not there, and for good where a step has no solution.
+ */
+void MODEL(adapt)(MODEL(member) *members, long count, const MODEL(block) *b);
+void MODEL(adapt)(MODEL(member) *members, long count, const MODEL(block) *b)
+{
+    for (MODEL(member) *s = members; s < members + count; ++s) {
+        while (s->done < b->intervals && !s->failed) {
+            const long finer = s->level ? s->level + 2 : 1;
+            if (s->level < b->lowest || finer > b->highest)
+                break;
+            MODEL(keep)(s);
+            const double worst = MODEL(try)(s, b, finer);
+            if (worst < 0.0) {
+                MODEL(back)(s);
+                s->failed = 1;
+            } else if (!(worst <= 1.0)) {
+                MODEL(back)(s);
+                ++s->level;
+            } else {
+                if (b->sample[s->done] >= 0)
+                    MODEL(write)(s, b->sample[s->done]);
+                if (worst < 0.05 && s->level > 0)
+                    --s->level;
+                ++s->done;
+            }
+        }
+    }
 }
 
 /* One step at a time, for a caller who decides the inputs: all that a call needs, in one place. */
