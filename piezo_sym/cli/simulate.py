@@ -34,6 +34,9 @@ def simulate(
     rtol: Annotated[float | None, typer.Option(help="Relative tolerance.")] = None,
     method: Annotated[str, typer.Option(help="A SciPy method.")] = "LSODA",
     times: Annotated[int, typer.Option(help="Number of samples.")] = 1001,
+    dissipative_start: Annotated[
+        bool, typer.Option("--dissipative-start", help="Damp what rings after a jump of an input.")
+    ] = False,
     out: Annotated[Path | None, typer.Option(help="Result as .nc (NetCDF) or .csv.")] = None,
 ) -> None:
     """Simulate a spec's generated module and print its last values.
@@ -53,6 +56,7 @@ def simulate(
         rtol=rtol,
         method=method,
         times=times,
+        dissipative_start=dissipative_start,
     )
     _print(result)
     if out is not None:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from piezo_sym.errors import UsageError
+from piezo_sym.errors import UsageError, quote
 from piezo_sym.run.checks import number, positive
 from piezo_sym.run.dataset import to_dataset
 from piezo_sym.run.discrete import METHOD, adaptive, fixed
@@ -53,6 +53,7 @@ def simulate(
     initial: Mapping[str, LaneValue] | None = None,
     method: str = "LSODA",
     times: int | ArrayLike | None = None,
+    dissipative_start: bool = False,
 ) -> xarray.Dataset:
     """Run a generated module from t = 0 and return all its quantities over time.
 
@@ -81,6 +82,13 @@ def simulate(
         balances to round-off, the error of its states below rtol of the largest magnitude of
         each. Without a compiler it warns, and LSODA runs instead.
     times : the samples: a number of even ones (1001 when left out), or increasing times [s].
+    dissipative_start : for discrete_gradient. The first step after t = 0, and after each jump of
+        an input, is made of four quarters that damp whatever is much faster than they are: a
+        longer step otherwise rings after a jump, for a long time. What the quarters lose on the
+        way is heat of the first thermal_mass, `heat_numerical` and `produced_numerical`; both
+        balances stay exact. It pays where steps are long: after 100 V on piezo_stack the error
+        falls from 1e-2 to 1e-4 with steps of 0.2 ms, from 3e-4 to 4e-5 with 0.1 ms; with steps
+        of 5 us, shorter than the fastest time constant, it grows from 7e-7 to 4e-6.
 
     Returns
     -------
@@ -100,6 +108,7 @@ def simulate(
     checked(module)
     chosen, bound = checked_method(method), read_rtol(rtol)
     refuse_step(step, chosen, rtol)
+    refuse_start(dissipative_start, chosen)
     end = positive(duration, "simulate.duration")
     samples = read_times(times, end)
     values = read_parameters(module, parameters)
@@ -107,7 +116,9 @@ def simulate(
     x = read_initial(module, values, system.inputs.segments[0].at(0.0), initial)
     check_start(system, x)
     if chosen == METHOD and (engine := compiled(module)):
-        trajectory, work = discrete(system, engine, x, samples, bound, step)
+        if dissipative_start:
+            refuse_lossless(engine)
+        trajectory, work = discrete(system, engine, x, samples, bound, step, dissipative_start)
         return to_dataset(system, samples, trajectory, work)
     chosen = "LSODA" if chosen == METHOD else chosen
     scale, spent = magnitudes(system, x)
@@ -147,6 +158,24 @@ def refuse_step(step: object, method: str, rtol: object) -> None:
         raise UsageError(what, "simulate.step", "one of them", "leave out rtol for a fixed step")
 
 
+def refuse_start(dissipative_start: object, method: str) -> None:
+    """Raise `UsageError` if a dissipative start was asked of a method that has none."""
+    where = "simulate.dissipative_start"
+    if not isinstance(dissipative_start, bool):
+        raise UsageError(f"{quote(dissipative_start)} is no truth value", where, "True or False")
+    if dissipative_start and method != METHOD:
+        what = f"method {method} has no dissipative start"
+        raise UsageError(what, where, "False", f"leave it out, or method='{METHOD}'")
+
+
+def refuse_lossless(engine: Engine) -> None:
+    """Raise `UsageError` if a model has no store to damp, or no body to give the loss to."""
+    if not engine.starts:
+        what = f"model '{engine.module.NAME}' has no thermal_mass to take a loss, or no storage"
+        remedy = "leave it out, or add a thermal_mass"
+        raise UsageError(what, "simulate.dissipative_start", "False", remedy)
+
+
 def discrete(
     system: System,
     engine: Engine,
@@ -154,17 +183,18 @@ def discrete(
     samples: FloatArray,
     rtol: float,
     step: float | None,
+    starts: bool,
 ) -> tuple[Trajectory, dict[str, object]]:
     """Return a run of the discrete gradient, and what it took."""
     if step is None:
-        trajectory = adaptive([system], engine, x[None], samples, rtol).trajectory(0)
+        trajectory = adaptive([system], engine, x[None], samples, rtol, starts=starts).trajectory(0)
         accuracy: dict[str, object] = {
             "rtol": rtol,
             "states": "extrapolated from two runs",
             "ledger": "of the finer run, its balances exact",
         }
     else:
-        trajectory = fixed([system], engine, x[None], samples, step).trajectory(0)
+        trajectory = fixed([system], engine, x[None], samples, step, starts=starts).trajectory(0)
         accuracy = {"step": step}
     work = {
         "accepted_steps": trajectory.steps,

@@ -36,7 +36,8 @@ class Sources:
     def files(self) -> dict[str, str]:
         """Return what to compile, by file name."""
         texts = {f"{self.name}.h": self.header, f"{self.name}.c": self.source}
-        return {**texts, "driver.c": driver(self.name)}
+        starts = f" {self.name}_newton_start(" in self.header
+        return {**texts, "driver.c": driver(self.name, starts=starts)}
 
 
 def library(sources: Sources, *, again: bool = False) -> Path:
