@@ -22,8 +22,7 @@ def simulate(model: str | Path | Model, **options: Any) -> xarray.Dataset:
     ----------
     model : the name of a shipped spec, the path of a spec file, or a `Model`.
     **options : inputs, duration, rtol, step, parameters, initial, method, times,
-        dissipative_start: see
-        `piezo_sym.run.simulate`.
+        dissipative_start: see `piezo_sym.run.simulate`.
 
     Returns
     -------

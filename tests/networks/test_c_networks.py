@@ -20,7 +20,7 @@ from strategy import networks
 from test_specs import points
 
 from piezo_sym import derive, load
-from piezo_sym.codegen import c_header, c_source, c_step, lower, numpy_module, step_of
+from piezo_sym.codegen import c_header, c_source, c_step, lower, numpy_module, start_of, step_of
 from piezo_sym.errors import PiezoError
 from piezo_sym.modules import load_module
 from piezo_sym.run.engine.engine import OFFERED, engine_of
@@ -44,7 +44,7 @@ def cache(tmp_path_factory):
 def twins(iphs):
     """Return a module, and the same with its functions compiled."""
     program = lower(iphs, "verdict")
-    step, declared = c_step(program, step_of(iphs, frozenset()))
+    step, declared = c_step(program, step_of(iphs, frozenset()), start_of(iphs))
     texts = {
         ".py": numpy_module(program),
         ".h": c_header(program, declared),

@@ -164,7 +164,8 @@ static int MODEL(step)(MODEL(model) *m, MODEL(path) *path, const double *u, doub
 
 /*
  * A start after a jump: one step over h as four dissipative quarters, the inputs of each in u[4].
- * Where a quarter has no such step, since an energy is not convex there, it is an ordinary one.
+ * A quarter that has no such step is an ordinary one, halved if need be: where an energy is not
+ * convex, a dissipative step takes entropy however short it is.
  */
 static int MODEL(begin)(MODEL(model) *m, MODEL(path) *path, const double *u, double h)
 {
@@ -172,7 +173,7 @@ static int MODEL(begin)(MODEL(model) *m, MODEL(path) *path, const double *u, dou
     int found = 1;
     for (int k = 0; k < 4 && found; ++k) {
         m->start = 1;
-        found = MODEL(step)(m, path, u + k * m->inputs, 0.25 * h, 0);
+        found = MODEL(step)(m, path, u + k * m->inputs, 0.25 * h, MOST_HALVINGS);
         m->start = 0;
         loss[0] = loss[1] = 0.0; /* ordinary steps write nothing there */
         found = found || MODEL(step)(m, path, u + k * m->inputs, 0.25 * h, 0);
