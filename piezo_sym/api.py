@@ -21,7 +21,7 @@ def simulate(model: str | Path | Model, **options: Any) -> xarray.Dataset:
     Parameters
     ----------
     model : the name of a shipped spec, the path of a spec file, or a `Model`.
-    **options : inputs, duration, rtol, step, parameters, initial, method, times,
+    **options : inputs, duration, rtol or step, parameters, initial, method, times,
         dissipative_start: see `piezo_sym.run.simulate`.
 
     Returns
@@ -43,6 +43,18 @@ def simulate(model: str | Path | Model, **options: Any) -> xarray.Dataset:
 
 def Stepper(model: str | Path | Model, **options: Any) -> Steps:
     """Return a model that goes step by step, with inputs that the caller decides.
+
+    A PI controller of the actuator's position (q is the first state), 0.1 mm within 1 s:
+
+    >>> from piezo_sym import Stepper
+    >>> h, target, integral = 2e-5, 1e-4, 0.0
+    >>> actuator = Stepper("piezo_stack", step=h)
+    >>> for _ in range(50_000):
+    ...     error = target - actuator.x[0]
+    ...     integral += error * h
+    ...     y = actuator.step([0.0, 2e4 * error + 4e7 * integral, 298.15])  # F_ext, V_in, T_e
+    >>> print(f"q = {actuator.x[0] * 1e6:.2f} um at t = {actuator.time:.2f} s")
+    q = 100.00 um at t = 1.00 s
 
     Parameters
     ----------

@@ -23,6 +23,9 @@ from piezo_sym.errors import PiezoError, one_line
 #: What typer raises for a wrong command line, in every version of it.
 CommandError: Any = typer.BadParameter.__mro__[2]
 
+#: Exit code of a command that the user stopped (Ctrl-C), as shells have it.
+STOPPED = 130
+
 app = typer.Typer(
     name="piezo-sym",
     help="Physical elements to a proved irreversible port-Hamiltonian system and fast modules.",
@@ -71,7 +74,9 @@ def run(words: list[str]) -> int:
     except MemoryError:
         return _failed("out of memory; use smaller banks or fewer --times", 2)
     except (KeyboardInterrupt, typer.Abort):
-        return _failed("stopped", 130)
+        code = STOPPED  # which newer versions of typer return themselves
+    if code == STOPPED:
+        return _failed("stopped", STOPPED)
     return code if isinstance(code, int) else 0
 
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
+import typer
 from rich import box
 from rich.console import Console
 from rich.table import Table
@@ -26,6 +29,24 @@ def about(spec: str) -> Iterator[None]:
         if name not in str(error):
             error.where = f"{name}: {error.where}" if error.where else name
         raise
+
+
+@contextmanager
+def warnings_as_lines() -> Iterator[None]:
+    """Print what runs from within warn of as one line on stderr."""
+    from piezo_sym.run.engine import EngineWarning
+
+    def shown(message: Warning | str, *others: Any, **named: Any) -> None:
+        if isinstance(message, EngineWarning):
+            typer.echo(f"piezo-sym: {one_line(str(message))}", err=True)
+        else:
+            before(message, *others, **named)
+
+    with warnings.catch_warnings():
+        before = warnings.showwarning
+        warnings.showwarning = shown
+        warnings.simplefilter("always", EngineWarning)
+        yield
 
 
 def console() -> Console:

@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from piezo_sym.cli.output import warnings_as_lines
+
 
 def reproduce(
     out: Annotated[Path, typer.Option(help="Folder for the figures.")] = Path("figures"),
@@ -18,7 +20,8 @@ def reproduce(
     from piezo_sym.analysis.figures import draw_figure_3, figure_3, save, slopes
     from piezo_sym.modules import module_of
 
-    data = figure_3(module_of("piezo_stack"))
+    with warnings_as_lines():
+        data = figure_3(module_of("piezo_stack"))
     for path in save(draw_figure_3(data), data, out, "figure_3"):
         typer.echo(f"{path}")
     rows = zip(data.T_e.values, slopes(data), strict=True)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from piezo_sym.cli.output import console, row, table
+from piezo_sym.cli.output import console, row, table, warnings_as_lines
 from piezo_sym.errors import UsageError, listing, nearest, quote
 from piezo_sym.files import path_text, write_bytes
 
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 CALL = re.compile(r"(?P<name>[a-z]+)\((?P<numbers>[^()]*)\)")
 SIGNALS = ("sine", "step", "ramp", "triangle", "chirp")
 ENDINGS = (".nc", ".csv")
+METHODS = """discrete_gradient (compiled) if left out; or SciPy's RK23, RK45, DOP853, Radau, BDF or
+LSODA."""
 
 
 def simulate(
@@ -31,8 +33,11 @@ def simulate(
     parameters: Annotated[
         list[str] | None, typer.Option("--set", "-p", help="PARAMETER=NUMBER; SI; repeat.")
     ] = None,
-    rtol: Annotated[float | None, typer.Option(help="Relative tolerance.")] = None,
-    method: Annotated[str, typer.Option(help="A SciPy method.")] = "LSODA",
+    rtol: Annotated[
+        float | None, typer.Option(help="Relative tolerance; 1e-5 if left out.")
+    ] = None,
+    step: Annotated[float | None, typer.Option(help="A fixed step [s] instead of --rtol.")] = None,
+    method: Annotated[str | None, typer.Option(help=METHODS)] = None,
     times: Annotated[int, typer.Option(help="Number of samples.")] = 1001,
     dissipative_start: Annotated[
         bool, typer.Option("--dissipative-start", help="Damp what rings after a jump of an input.")
@@ -48,16 +53,18 @@ def simulate(
 
     if out is not None and out.suffix not in ENDINGS:
         raise UsageError(f"{path_text(out)} has no known ending", "--out", listing(ENDINGS))
-    result = run(
-        spec,
-        duration=duration,
-        inputs=dict(_pairs(inputs or (), "--input", _signal)),
-        parameters=dict(_pairs(parameters or (), "--set", _values)),
-        rtol=rtol,
-        method=method,
-        times=times,
-        dissipative_start=dissipative_start,
-    )
+    with warnings_as_lines():
+        result = run(
+            spec,
+            duration=duration,
+            inputs=dict(_pairs(inputs or (), "--input", _signal)),
+            parameters=dict(_pairs(parameters or (), "--set", _values)),
+            rtol=rtol,
+            step=step,
+            method=method,
+            times=times,
+            dissipative_start=dissipative_start,
+        )
     _print(result)
     if out is not None:
         _write(result, out)

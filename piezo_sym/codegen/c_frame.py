@@ -19,11 +19,11 @@ from piezo_sym.codegen.step import Step
 from piezo_sym.spec.expressions import Expr, Sym
 from piezo_sym.spec.names import fresh
 
-STEP = ("x", "x_new", "u", "h", "p", "out")
+_STEP = ("x", "x_new", "u", "h", "p", "out")
 #: The functions of a step: what each returns, and its arguments.
 HEADS = {
     "newton_size": ("long", ("p",)),
-    "newton": ("int", STEP),
+    "newton": ("int", _STEP),
     "means": ("void", ("x", "x_new", "u", "p", "out")),
     "inside": ("int", ("x", "u", "p")),
 }
@@ -31,7 +31,7 @@ HEADS = {
 START_HEADS = {
     "newton_size_start": HEADS["newton_size"],
     "newton_start": HEADS["newton"],
-    "means_start": ("void", STEP),
+    "means_start": ("void", _STEP),
 }
 _ALL = {**HEADS, **START_HEADS}
 
@@ -59,7 +59,7 @@ class Frame:
         fields = (*program.parameters, *whole.states)
         arrays = {field.name: field.bank for field in fields if field.bank}
         self.lanes = {**whole.lane_names()}
-        self.lines = Words(self.names, arrays, self.words["j"])
+        self.lines = Words(self.names, arrays, self.words["j"], picked=True)
         slots = [Slot(field.name, field.bank) for field in program.states]
         self.states = places(slots, "end", whole.taken)
 

@@ -34,13 +34,13 @@ def inside(frame: Frame) -> str:
             body.append(f"double {name};")
         target = name if bank else f"const double {name}"
         writes.append(Write(target, margin, bank, "min" if bank else "="))
-        parts.append(f"{name} {'>' if limit.strict else '>='} 0.0")
+        parts.append(f"({name} {'>' if limit.strict else '>='} 0.0)")
     for stage in stages(quantities, writes, program.counts):
         body += stage_lines(stage, plain)
     for write in writes:
         if not write.bank:
             body += statement(f"{write.target} =", write.value, plain)
-    last = f"return {' && '.join(parts) or '1'};"
+    last = f"return {' & '.join(parts) or '1'};"
     return frame.function("inside", body, last=last)
 
 

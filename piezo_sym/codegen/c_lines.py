@@ -32,15 +32,17 @@ class Words:
     names : what C calls each name of the program.
     arrays : the parameters and states of a bank, and which bank's.
     lane : the lane of a loop.
+    picked : whether choices are calls of ``pick``.
     """
 
     names: Mapping[str, str]
     arrays: Mapping[str, str]
     lane: str
+    picked: bool = False
 
     def style(self, lane: str | None = None) -> Style:
         """Return the spelling of expressions in lane `lane`: in the loop's, if none is given."""
-        return c_style(self.names, self.arrays, lane or self.lane)
+        return c_style(self.names, self.arrays, lane or self.lane, picked=self.picked)
 
     def text(self, value: Expr, lane: str | None = None) -> str:
         """Return an expression as C."""
@@ -57,10 +59,11 @@ def statement(target: str, value: Expr, words: Words, lane: str | None = None) -
     """Return ``target value;``, target with an operator; a long value has a line a term or case."""
     text = words.text(value, lane)
     parts = with_branches(value)
-    if len(target) + len(text) + 10 <= WIDTH or not isinstance(parts, Add | If):
+    split = Add if words.picked else Add | If
+    if len(target) + len(text) + 10 <= WIDTH or not isinstance(parts, split):
         return [f"{target} {text};"]
     style = words.style(lane)
-    lines = list(_terms(parts, style) if isinstance(parts, Add) else _cases(parts, style))
+    lines = list(_cases(parts, style) if isinstance(parts, If) else _terms(parts, style))
     return [f"{target} {lines[0]}", *(f"    {line}" for line in lines[1:-1]), f"    {lines[-1]};"]
 
 

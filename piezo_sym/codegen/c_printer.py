@@ -44,7 +44,7 @@ def c_source(program: Program, more: str = "") -> str:
     functions += [printer.jacobian(), printer.margins()]
     parts = [
         f'{opening(program)}\n#include "{program.name}.h"\n\n#include <math.h>',
-        *helpers("\n".join(functions)),
+        *helpers("\n".join([*functions, more])),
         *functions,
         *([more] if more else []),
     ]

@@ -20,6 +20,10 @@ from piezo_sym.codegen.program import Program, Row
 from piezo_sym.codegen.step import Step
 from piezo_sym.spec.expressions import Sym
 
+#: Opens the part of a source that also holds where `double` stands for a vector of many states'
+#: numbers: no conditions of C, no constants without type.
+STEP = "/* The step of the discrete gradient, of one state or of many side by side. */"
+
 
 def c_step(program: Program, step: Step, start: Step | None = None) -> tuple[str, str]:
     """Return the functions of the step, and their declarations for the header.
@@ -29,11 +33,11 @@ def c_step(program: Program, step: Step, start: Step | None = None) -> tuple[str
     start : the dissipative step, if the system has one.
     """
     frame = Frame(program, step)
-    functions = [*_Printer(frame).functions(), inside(frame)]
+    functions = [STEP, *_Printer(frame).functions(), inside(frame)]
     declared = _declarations(frame)
     if start:
         lossy = Frame(program, start)
-        functions += _Printer(lossy, "_start").functions()
+        functions = [*_Printer(lossy, "_start").functions(), *functions]
         declared += f"\n\n{_start_declarations(lossy)}"
     text = "\n".join(functions)
     return "\n\n".join([*step_helpers(text), *functions]), declared
@@ -84,13 +88,13 @@ class _Printer:
         roots = [*step.pivots, *unknowns, *(step.changes[n].free for n in shared)]
         body = [f"double *restrict {k.array} = {k.place};" for k in kept]
         body += self.frame.stages(roots, writes)
-        for pivot in step.pivots:
-            body += [f"if (!({self.lines.text(pivot)} > 0.0))", "    return 0;"]
         for n in shared:
             body += statement(f"{out}[{self.frame.row(n)}] =", step.changes[n].free, self.lines)
         for n in lanes:
             body += self._lane_change(n, [k for k in kept if k.state == n])
-        return self.frame.function(f"newton{self.ending}", body, last="return 1;")
+        solved = [f"({self.lines.text(pivot)} > 0.0)" for pivot in step.pivots]
+        last = f"return {' & '.join(solved) or '1'};"
+        return self.frame.function(f"newton{self.ending}", body, last=last)
 
     def _kept(self) -> Iterator[_Kept]:
         """Yield what lanes have to remember, and where."""

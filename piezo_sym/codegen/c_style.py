@@ -33,6 +33,7 @@ MOST_FACTORS = 8
 EXACT = 2**53
 _NAN = "not a number stays so"
 _HELPERS = {
+    "pick": ("int condition, double a, double b", "condition ? a : b"),
     "sign": ("double z", "z > 0.0 ? 1.0 : z < 0.0 ? -1.0 : z"),
     "min": ("double a, double b", f"a < b || a != a ? a : b; /* {_NAN} */"),
     "max": ("double a, double b", f"a > b || a != a ? a : b; /* {_NAN} */"),
@@ -73,18 +74,28 @@ def _choose(then: Piece, test: str, other: Piece) -> Piece:
     return f"{test} ? {enclose(then, SUM)} : {enclose(other, SUM)}", CHOICE
 
 
+def _pick(then: Piece, test: str, other: Piece) -> Piece:
+    return f"pick({test}, {then[0]}, {other[0]})", ATOM
+
+
 def _lane_sum(arg: Piece, bank: str) -> Piece:
     msg = f"the sum of {arg[0]} over {bank} is a loop, not an expression"
     raise TypeError(msg)
 
 
-def c_style(names: Mapping[str, str], arrays: Mapping[str, str], index: str) -> Style:
-    """Return the spelling of expressions; `arrays` have a value a lane, picked by `index`."""
+def c_style(
+    names: Mapping[str, str], arrays: Mapping[str, str], index: str, *, picked: bool = False
+) -> Style:
+    """Return the spelling of expressions; `arrays` have a value a lane, picked by `index`.
+
+    A choice is a conditional expression, or else a call of ``pick``: then the text also holds where
+    numbers are vectors of many states.
+    """
 
     def name(word: str) -> Piece:
         return (f"{names[word]}[{index}]" if word in arrays else names[word]), ATOM
 
-    return Style(c_number, name, _power, _call, _choose, _lane_sum)
+    return Style(c_number, name, _power, _call, _pick if picked else _choose, _lane_sum)
 
 
 def c_piece(node: Expr, style: Style) -> Piece:
@@ -94,6 +105,7 @@ def c_piece(node: Expr, style: Style) -> Piece:
 
 def helpers(text: str) -> Iterator[str]:
     """Yield the definition of each function that `text` calls and <math.h> lacks."""
+    text = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
     for name, (arguments, value) in _HELPERS.items():
         if re.search(rf"\b{name}\(", text):
             ending = "" if value.endswith("*/") else ";"

@@ -130,17 +130,30 @@ def adaptive(
     batch = run.batch
     batch.scale[:] = LOOSER * rtol * _scale(run, engine, longest)
     for block in blocks(first, times, longest, lambda: _block_size(batch)):
-        done, again = [0], False
-        while min(done) < len(block) and batch.levels and max(batch.levels) <= MOST_LEVEL:
-            lowest = max(0, min(batch.levels) - BELOW)
-            levels = range(lowest, max(batch.levels) + ABOVE + 1)
-            done = run.through(batch, "adapt", block, levels, again=again)
-            done = [n for n, member in zip(done, batch.members, strict=True) if not member.failed]
-            done, again = done or [len(block)], True
-        run.note(block, [member.done for member in batch.members])
+        run.note(block, _through(run, block))
         if not run.goes_on(block, watch):
             break
     return run.runs(extrapolated=True)
+
+
+def _through(run: _Run, block: Block) -> list[int]:
+    """Take members through a block, and return how many of its intervals each has done.
+
+    Where a level is missing, members stop; what is left is then cut anew, for inputs are sampled
+    at the middles of all steps that a level may take.
+    """
+    batch = run.batch
+    done = [0] * len(batch)
+    while True:
+        left = [n for n, member in zip(done, batch.members, strict=True) if not member.failed]
+        if not left or min(left) == len(block) or max(batch.levels) > MOST_LEVEL:
+            return done
+        first = min(left)
+        part = block.part(first, first + _block_size(batch))
+        levels = range(max(0, min(batch.levels) - BELOW), max(batch.levels) + ABOVE + 1)
+        before = [n - first for n in done]
+        found = run.through(batch, "adapt", part, levels, before)
+        done = [first + n for n in found]
 
 
 @final
@@ -155,7 +168,7 @@ class _Run:
         times: FloatArray,
         starts: bool,
     ) -> None:
-        self.systems, self.start, self.times = systems, x, times
+        self.systems, self.start, self.times, self.starts = systems, x, times, starts
         parameters = [system.parameters for system in systems]
         self.batch = Batch(engine, parameters, x, times.size, starts=starts)
         self.jumps = systems[0].inputs.jumps if starts else frozenset()
@@ -165,22 +178,22 @@ class _Run:
             self.batch.sums[:, 0] = 0.0
 
     def through(
-        self, batch: Batch, name: Way, block: Block, levels: range, *, again: bool = False
+        self, batch: Batch, name: Way, block: Block, levels: range, done: Sequence[int] = ()
     ) -> list[int]:
         """Take a batch through a block, and return how many intervals each member has done."""
         u = [block.middles(steps_at(level)) for level in levels]
         starts = levels if block.starts[0] in self.jumps else ()
         first = [block.quarters(steps_at(level)) for level in starts]
-        place = (block.lengths, u, levels[0], block.samples)
-        return batch.run(name, *place, first=first, again=again)
+        return batch.run(name, block.lengths, u, levels[0], block.samples, done, first)
 
     def note(self, block: Block, done: Sequence[int]) -> None:
         """Note why members did not come through a block."""
         for k, reached in enumerate(done):
             if reached < len(block) and self.errors[k] is None:
+                member = self.batch.members[k]
                 t, x = float(block.starts[reached]), self.batch.x[k]
-                self.errors[k] = _stuck(self.systems[k], t, x)
-                self.batch.members[k].failed = 1
+                self.errors[k] = (_stuck if member.failed else _too_fine)(self.systems[k], t, x)
+                member.failed = 1
 
     def goes_on(self, block: Block, watch: Watch | None) -> bool:
         """Tell the time reached; return whether any member goes on."""
@@ -204,8 +217,8 @@ def _block_size(batch: Batch) -> int:
 
 def _scale(run: _Run, engine: Engine, longest: float) -> FloatArray:
     """Return the scale of each state (systems, n): its largest magnitude in a coarse run."""
-    systems, x, starts = run.systems, run.start, bool(run.jumps)
-    batch = Batch(engine, [system.parameters for system in systems], x, 0, starts=starts)
+    systems, x = run.systems, run.start
+    batch = Batch(engine, [system.parameters for system in systems], x, 0, starts=run.starts)
     size = max(1, CHUNK // x.shape[1])
     for block in blocks(systems[0], run.times, longest, lambda: size):
         run.through(batch, "survey", block, range(1))
@@ -216,9 +229,21 @@ def _scale(run: _Run, engine: Engine, longest: float) -> FloatArray:
 
 def _stuck(system: System, t: float, x: FloatArray) -> RunError:
     """Return the error of a run that cannot go on: it says when and where."""
+    why = "no step stays in the domain"
+    remedy = "look at the inputs and the state there, or allow the state more room in [domain]"
+    return _stopped(system, t, x, why, remedy)
+
+
+def _too_fine(system: System, t: float, x: FloatArray) -> RunError:
+    """Return the error of a run whose tolerance asks for steps without end."""
+    why = "the tolerance is out of reach there"
+    remedy = "allow a larger rtol; give an input that jumps as a signal or as (t, values)"
+    return _stopped(system, t, x, why, remedy)
+
+
+def _stopped(system: System, t: float, x: FloatArray, why: str, remedy: str) -> RunError:
     names = [record.name for record in system.module.STATES]
     rows = system.rows(system.module.STATES)
     values = ", ".join(f"{n} = {x[row.start]:.6g}" for n, row in zip(names, rows, strict=True))
-    what = f"{METHOD} cannot go on from t = {t:.6g} s at {values}: no step stays in the domain"
-    remedy = "look at the inputs and the state there, or allow the state more room in [domain]"
+    what = f"{METHOD} cannot go on from t = {t:.6g} s at {values}: {why}"
     return RunError(what, f"model '{system.module.NAME}'", remedy=remedy)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 
-from piezo_sym.errors import PiezoError, RunError, UsageError, listing, quote
+from piezo_sym.errors import PiezoError, RunError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterator
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from piezo_sym.run.system import System
 
 METHODS = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
-OFFERED = (*METHODS, "discrete_gradient")
 IMPLICIT = ("Radau", "BDF", "LSODA")
 BATCH_NUMBERS = 100_000  # numbers of state that one batch may hold at its stops
 MOST_STOPS = 512
@@ -75,14 +74,6 @@ class Batch:
     stretches: tuple[Stretch, ...]
     steps: int
     evaluations: int
-
-
-def checked_method(method: object) -> str:
-    """Return a method's name if SciPy has it; raise `UsageError` otherwise."""
-    if not isinstance(method, str) or method not in OFFERED:
-        what = f"unknown method {quote(method)}"
-        raise UsageError(what, "simulate.method", listing(OFFERED))
-    return method
 
 
 def batches(

@@ -42,10 +42,10 @@ class Block:
         """Return the number of intervals."""
         return self.starts.size
 
-    def rest(self, done: int) -> Block:
-        """Return what is left after `done` intervals."""
-        parts = (self.starts[done:], self.lengths[done:], self.samples[done:])
-        return Block(self.segment, *parts)
+    def part(self, first: int, stop: int) -> Block:
+        """Return some of the intervals."""
+        here = slice(first, stop)
+        return Block(self.segment, self.starts[here], self.lengths[here], self.samples[here])
 
     def middles(self, steps: int = 1) -> FloatArray:
         """Return the inputs at the middles of equal steps of each interval, (k*steps, m)."""

@@ -31,16 +31,16 @@ MOST_STEPS = 50_000
 TRUSTED = 0.9
 
 
-def magnitudes(system: System, x: FloatArray) -> tuple[FloatArray, int]:
+def magnitudes(system: System, x: FloatArray, most: int = MOST_STEPS) -> tuple[FloatArray, int]:
     """Return the scale of each state (n,), lanes of a bank sharing theirs, and the evaluations.
 
-    Where the coarse run stops early, its last states may be on their way to infinity: then only
-    the first nine tenths of the time it reached count.
+    The coarse run takes at most `most` steps. Where it stops early, its last states may be on
+    their way to infinity: then only the first nine tenths of the time it reached count.
     """
     t, scale, evaluations = 0.0, shared(system, x), 0
     known = [(t, scale)]
     with suppress(PiezoError):
-        for t, met, cost in islice(coarse_run(system, x), MOST_STEPS):
+        for t, met, cost in islice(coarse_run(system, x), most):
             scale, evaluations = met, evaluations + cost
             if np.any(scale > 2 * known[-1][1]):
                 known.append((t, scale))

@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING
 
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.run.checks import number, positive
+from piezo_sym.run.compiled import compiled_run
 from piezo_sym.run.dataset import to_dataset
-from piezo_sym.run.discrete import METHOD, adaptive, fixed
-from piezo_sym.run.engine import compiled
+from piezo_sym.run.discrete import METHOD
 from piezo_sym.run.guard import check_start
 from piezo_sym.run.inputs import read_inputs
-from piezo_sym.run.integrate import Tolerance, batches, checked_method
+from piezo_sym.run.integrate import Tolerance, batches
 from piezo_sym.run.ledger import record
+from piezo_sym.run.method import checked_method, way_of
 from piezo_sym.run.module import checked
 from piezo_sym.run.parameters import read_initial, read_parameters, read_times
 from piezo_sym.run.scales import magnitudes
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.engine import Engine
     from piezo_sym.run.inputs import InputValue
     from piezo_sym.run.ledger import Trajectory
     from piezo_sym.run.module import GeneratedModule
@@ -51,20 +51,28 @@ def simulate(
     step: float | None = None,
     parameters: Mapping[str, LaneValue] | None = None,
     initial: Mapping[str, LaneValue] | None = None,
-    method: str = "LSODA",
+    method: str | None = None,
     times: int | ArrayLike | None = None,
     dissipative_start: bool = False,
 ) -> xarray.Dataset:
     """Run a generated module from t = 0 and return all its quantities over time.
 
-    The error of each step is held below rtol*|x| + atol. atol is rtol*1e-3 times the scale of
-    the state, which is the largest magnitude that the state (for a bank: any of its lanes) has
-    in a coarse first run with rtol 1e-3, or 1e-15 if that is larger; a coarse run that stops
-    early never fails the run, and counts up to nine tenths of the time it reached. The solver
-    starts again at every jump or corner of an input (samples: while they are at most 1000), and
-    takes no step longer than an eighth of a period of an input, than the median distance of more
+    The method is the discrete gradient, compiled, unless another is named. Both its balances close
+    to round-off at every step. With `rtol` there are two runs, one with steps of half the length;
+    what an interval adds to the error of the finer run's states is held below 5 rtol of the largest
+    magnitude of each state (of a bank: of any lane) in a coarse first run. The states given are
+    extrapolated from both runs, which mostly makes them far better than rtol; the ledger is the
+    finer run's. With `step` there is one run, and its error falls with the square of the step.
+
+    SciPy's methods hold the error of each step below rtol*|x| + atol. atol is rtol*1e-3 times the
+    scale of the state, which is the largest magnitude that the state (for a bank: any of its
+    lanes) has in a coarse first run with rtol 1e-3, or 1e-15 if that is larger; a coarse run that
+    stops early never fails the run, and counts up to nine tenths of the time it reached.
+
+    Steps end at every jump or corner of an input (samples: while they are at most 1000). With
+    rtol, none is longer than an eighth of a period of an input, than the median distance of more
     than 1000 samples, or than 1/500 of the run where an input is a function. A function's own
-    jumps are not known to it: give a signal, or (t, values).
+    jumps are not known: give a signal, or (t, values).
 
     Parameters
     ----------
@@ -72,15 +80,17 @@ def simulate(
     inputs : name -> number, (t, values) joined by straight lines, function of t [s], or signal;
         SI units. Those left out keep the module's defaults.
     duration : length of the run [s].
-    rtol : relative tolerance, 1e-13 to 0.1; 1e-5 when left out.
-    step : a fixed step [s] instead of rtol, for discrete_gradient; of order two.
+    rtol : relative tolerance, 1e-13 to 0.1; 1e-5 when left out. The discrete gradient takes less
+        than 1e-11 as 1e-11, for below that it would measure its own round-off.
+    step : a fixed step [s] instead of rtol, for the discrete gradient alone; steps end at samples
+        and breaks of inputs, so that some are shorter.
     parameters : name -> number, for a bank's parameter also a list of one number a lane; and
         `<bank>_count` -> number of lanes. SI units.
     initial : state -> number, for a bank's state also a list of one number a lane. SI units.
         Those left out keep the module's initial state.
-    method : RK23, RK45, DOP853, Radau, BDF or LSODA; or discrete_gradient, compiled: both
-        balances to round-off, the error of its states below rtol of the largest magnitude of
-        each. Without a compiler it warns, and LSODA runs instead.
+    method : discrete_gradient when left out, or one of SciPy's: RK23, RK45, DOP853, Radau, BDF,
+        LSODA. Left out, a module without C beside it runs by LSODA; and so does one whose C cannot
+        be compiled here, with one `EngineWarning`.
     times : the samples: a number of even ones (1001 when left out), or increasing times [s].
     dissipative_start : for discrete_gradient. The first step after t = 0, and after each jump of
         an input, is made of four quarters that damp whatever is much faster than they are: a
@@ -96,47 +106,59 @@ def simulate(
     xarray.Dataset
         Over `time` (nt,), and for banks (nt, lanes): states, inputs, `y_<port>`, `T_<body>`,
         `energy`, `entropy`; integrals since t = 0 `supplied_<port>`, `heat_<element>` [J] and
-        `produced_<element>` [J/K]; `energy_residual` = U - U(0) - energy put in, which is the
-        error of solver and quadrature. At a jump, inputs have their value after it, but at the
-        end of the run their value before it. Attributes: units, model, method and its work.
+        `produced_<element>` [J/K]; `energy_residual` = U - U(0) - energy put in: round-off with
+        the discrete gradient, the error of solver and quadrature with SciPy's. At a jump, inputs
+        have their value after it, but at the end of the run their value before it. Attributes:
+        units, model, parameters; `method`, `rtol` or `step`, `engine` (its compiler, or why there
+        is none), the work (`accepted_steps`, `newton_iterations`, `halvings`; for SciPy
+        `rhs_evaluations`), and which quantities are `extrapolated`.
 
     Raises
     ------
     UsageError : an argument is unknown, of the wrong kind, or not finite.
+    EngineError : `step` or method='discrete_gradient' was asked for, and there is no engine.
     RunError : the state leaves the domain, at t = 0, a sample or an accepted step; or the solver
         cannot go on. The message says when, and with which values.
     """
     checked(module)
-    chosen, bound = checked_method(method), read_rtol(rtol)
-    refuse_step(step, chosen, rtol)
-    refuse_start(dissipative_start, chosen)
+    named, bound = checked_method(method), read_rtol(rtol)
+    refuse_step(step, named, rtol)
+    named = start_method(dissipative_start, named)
     end = positive(duration, "simulate.duration")
     samples = read_times(times, end)
     values = read_parameters(module, parameters)
     system = System(module, values, read_inputs(module, inputs, end))
     x = read_initial(module, values, system.inputs.segments[0].at(0.0), initial)
     check_start(system, x)
-    if chosen == METHOD and (engine := compiled(module)):
-        if dissipative_start:
-            refuse_lossless(engine)
-        trajectory, work = discrete(system, engine, x, samples, bound, step, dissipative_start)
-        return to_dataset(system, samples, trajectory, work)
-    chosen = "LSODA" if chosen == METHOD else chosen
+    way = way_of(module, named, step)
+    if way.engine:
+        trajectory, work = compiled_run(
+            system, way.engine, x, samples, bound, step, starts=dissipative_start
+        )
+    else:
+        trajectory, work = solver_run(system, way.method, x, samples, bound)
+    return to_dataset(system, samples, trajectory, {**work, "engine": way.note})
+
+
+def solver_run(
+    system: System, method: str, x: FloatArray, samples: FloatArray, rtol: float
+) -> tuple[Trajectory, dict[str, object]]:
+    """Return a run of one of SciPy's solvers, and what it took."""
     scale, spent = magnitudes(system, x)
-    tolerance = Tolerance(chosen, bound, bound * ATOL_FACTOR * scale)
+    tolerance = Tolerance(method, rtol, rtol * ATOL_FACTOR * scale)
     trajectory = record(system, x, batches(system, x, samples, tolerance), samples)
     work = {
-        "method": chosen,
-        "rtol": bound,
+        "method": method,
+        "rtol": rtol,
         "accepted_steps": trajectory.steps,
         "rhs_evaluations": trajectory.evaluations,
         "scale_evaluations": spent,
     }
-    return to_dataset(system, samples, trajectory, work)
+    return trajectory, work
 
 
 def read_rtol(rtol: object) -> float:
-    """Return the relative tolerance; raise `UsageError` if SciPy could not honour it."""
+    """Return the relative tolerance; raise `UsageError` if no method could honour it."""
     value = RTOL if rtol is None else number(rtol, "simulate.rtol")
     if not RTOL_LEAST <= value <= RTOL_MOST:
         expected = f"{RTOL_LEAST:g} to {RTOL_MOST:g}"
@@ -145,13 +167,13 @@ def read_rtol(rtol: object) -> float:
     return value
 
 
-def refuse_step(step: object, method: str, rtol: object) -> None:
+def refuse_step(step: object, method: str | None, rtol: object) -> None:
     """Raise `UsageError` if a fixed step was asked of a method that chooses its own."""
     if step is None:
         return
-    if method != METHOD:
+    if method not in (None, METHOD):
         what = f"method {method} chooses its own steps"
-        remedy = f"leave out step, for rtol sets the accuracy; or method='{METHOD}'"
+        remedy = "leave out step, for rtol sets the accuracy; or leave out method"
         raise UsageError(what, "simulate.step", "nothing", remedy)
     positive(step, "simulate.step")
     if rtol is not None:
@@ -159,47 +181,12 @@ def refuse_step(step: object, method: str, rtol: object) -> None:
         raise UsageError(what, "simulate.step", "one of them", "leave out rtol for a fixed step")
 
 
-def refuse_start(dissipative_start: object, method: str) -> None:
-    """Raise `UsageError` if a dissipative start was asked of a method that has none."""
+def start_method(dissipative_start: object, method: str | None) -> str | None:
+    """Return the method to run; raise `UsageError` if it has no dissipative start, but shall."""
     where = "simulate.dissipative_start"
     if not isinstance(dissipative_start, bool):
         raise UsageError(f"{quote(dissipative_start)} is no truth value", where, "True or False")
-    if dissipative_start and method != METHOD:
+    if dissipative_start and method not in (None, METHOD):
         what = f"method {method} has no dissipative start"
         raise UsageError(what, where, "False", f"leave it out, or method='{METHOD}'")
-
-
-def refuse_lossless(engine: Engine) -> None:
-    """Raise `UsageError` if a model has no store to damp, or no body to give the loss to."""
-    if not engine.starts:
-        what = f"model '{engine.module.NAME}' has no thermal_mass to take a loss, or no storage"
-        remedy = "leave it out, or add a thermal_mass"
-        raise UsageError(what, "simulate.dissipative_start", "False", remedy)
-
-
-def discrete(
-    system: System,
-    engine: Engine,
-    x: FloatArray,
-    samples: FloatArray,
-    rtol: float,
-    step: float | None,
-    starts: bool,
-) -> tuple[Trajectory, dict[str, object]]:
-    """Return a run of the discrete gradient, and what it took."""
-    if step is None:
-        trajectory = adaptive([system], engine, x[None], samples, rtol, starts=starts).trajectory(0)
-        accuracy: dict[str, object] = {
-            "rtol": rtol,
-            "states": "extrapolated from two runs",
-            "ledger": "of the finer run, its balances exact",
-        }
-    else:
-        trajectory = fixed([system], engine, x[None], samples, step, starts=starts).trajectory(0)
-        accuracy = {"step": step}
-    work = {
-        "accepted_steps": trajectory.steps,
-        "newton_iterations": trajectory.evaluations,
-        "halvings": trajectory.halvings,
-    }
-    return trajectory, {"method": METHOD, **accuracy, **work}
+    return METHOD if dissipative_start else method

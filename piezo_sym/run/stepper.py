@@ -45,6 +45,13 @@ class Tick(ctypes.Structure):
 class Stepper:
     """A model that goes step by step, its inputs given anew for each step.
 
+    >>> from piezo_sym import Stepper
+    >>> actuator = Stepper("piezo_stack", step=2e-5)
+    >>> for _ in range(1000):
+    ...     v, i, T = actuator.step([0.0, 50.0, 298.15])  # y of the ports; u = F_ext, V_in, T_e
+    >>> print(f"q = {actuator.x[0] * 1e6:.0f} um, T = {T:.2f} K at t = {actuator.time:.2f} s")
+    q = 1007 um, T = 298.20 K at t = 0.02 s
+
     Parameters
     ----------
     module : a generated module; `piezo_sym.Stepper` also takes a model, a name or a path.

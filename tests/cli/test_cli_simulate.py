@@ -1,12 +1,23 @@
 """``piezo-sym simulate``: inputs and parameters from words, results to files, refusals."""
 
 import csv
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
 
+import platformdirs
 import pytest
 import xarray
 
 import piezo_sym
 from piezo_sym import sine
+from piezo_sym.run import method
+from piezo_sym.run.engine import compiler, engine
+
+ROOT = Path(__file__).parents[2]
 
 SHORT = ("simulate", "piezo_stack", "--duration", "1e-3", "--times", "11")
 DRIVEN = (*SHORT, "--input", "V_in=sine(100, 100)", "--set", "L=5e-4")
@@ -133,3 +144,101 @@ def test_a_module_of_another_spec_is_exit_code_1(refused, spec_file, tmp_path, m
     path = spec_file("3.5e-3", "4e-3")
     message = refused("simulate", path, "--duration", "1e-3", code=1)
     assert f"run `piezo-sym generate {path}`, or give the model another name" in message
+
+
+def last(path):
+    with xarray.open_dataset(path, engine="scipy") as result:
+        return result.load()
+
+
+@pytest.mark.parametrize(
+    ("words", "method", "more"),
+    [
+        ((), "discrete_gradient", {"rtol": 1e-5}),
+        (("--rtol", "1e-7"), "discrete_gradient", {"rtol": 1e-7}),
+        (("--step", "1e-5"), "discrete_gradient", {"step": 1e-5}),
+        (("--method", "discrete_gradient"), "discrete_gradient", {"rtol": 1e-5}),
+        (("--method", "Radau", "--rtol", "1e-7"), "Radau", {"rtol": 1e-7}),
+    ],
+)
+def test_method_tolerance_and_step_are_those_given(call, tmp_path, words, method, more):
+    answer = call(*DRIVEN, *words, "--out", tmp_path / "run.nc")
+    assert (answer.code, answer.err) == (0, "")
+    attrs = last(tmp_path / "run.nc").attrs
+    assert attrs["method"] == method
+    assert {name: attrs[name] for name in ("rtol", "step") if name in attrs} == more
+
+
+def test_help_names_methods_tolerance_and_step(call):
+    said = " ".join(call("simulate", "--help").out.split())
+    for words in ("discrete_gradient (compiled)", "LSODA", "--rtol", "--step", "1e-5 if left out"):
+        assert words in said
+
+
+@pytest.fixture
+def no_compiler(monkeypatch, tmp_path):
+    """A machine without a compiler; nobody has been told."""
+    (tmp_path / "bin").mkdir()
+    monkeypatch.setenv("PATH", str(tmp_path / "bin"))
+    monkeypatch.delenv("CC", raising=False)
+    monkeypatch.setattr(compiler, "find_spec", lambda _: None)
+    monkeypatch.setattr(platformdirs, "user_cache_dir", lambda _: str(tmp_path / "cache"))
+    for remembered in (method._warn, engine._engine):
+        remembered.cache_clear()
+
+
+@pytest.mark.usefixtures("no_compiler")
+def test_no_compiler_is_one_line_and_a_good_run(call, tmp_path):
+    answer = call(*DRIVEN, "--out", tmp_path / "run.nc")
+    assert answer.code == 0
+    assert answer.err == (
+        "piezo-sym: model 'piezo_stack' runs by LSODA in NumPy, not compiled by "
+        "discrete_gradient: engine: no C compiler is found; install gcc or clang, set CC, or "
+        "`pip install piezo_sym[zig]`\n"
+    )
+    assert last(tmp_path / "run.nc").attrs["method"] == "LSODA"
+
+
+@pytest.mark.usefixtures("no_compiler")
+def test_drawing_without_a_compiler_is_one_line(call, tmp_path, monkeypatch):
+    monkeypatch.setenv("MPLBACKEND", "agg")
+    answer = call("reproduce", "--out", tmp_path / "figures")
+    assert answer.code == 0
+    assert len(answer.err.splitlines()) == 1
+    assert "runs by LSODA in NumPy" in answer.err
+
+
+@pytest.mark.usefixtures("no_compiler")
+@pytest.mark.parametrize("words", [("--step", "1e-5"), ("--method", "discrete_gradient")])
+def test_what_was_asked_for_without_a_compiler_is_one_line_and_exit_code_2(refused, words):
+    assert refused(*DRIVEN, *words).startswith("engine: no C compiler is found; install gcc")
+
+
+def compiled(folder):
+    """Return whether the module is compiled, so that its run begins."""
+    return any(".build-" not in str(path) for path in folder.rglob("piezo_stack.*"))
+
+
+LONG = ("--duration", "1e5", "-i", "V_in=sine(100,100)")
+
+
+@pytest.mark.parametrize("words", [("--step", "1e-5"), ()], ids=["step", "tolerance"])
+def test_a_long_run_stops_within_a_second_of_ctrl_c(words, tmp_path):
+    command = [sys.executable, "-m", "piezo_sym", "simulate", "piezo_stack", *LONG, *words]
+    environment = {
+        **os.environ,
+        "PYTHONPATH": str(ROOT),
+        "XDG_CACHE_HOME": str(tmp_path),
+        "HOME": str(tmp_path),
+    }
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    with subprocess.Popen(command, env=environment, **pipes) as process:
+        while not compiled(tmp_path):
+            assert process.poll() is None
+            time.sleep(0.05)
+        time.sleep(1.0)
+        process.send_signal(signal.SIGINT)
+        begun = time.monotonic()
+        out, err = process.communicate(timeout=60)
+    assert time.monotonic() - begun < 2.0  # one, and what two busy cores make of it
+    assert (process.returncode, out, err.strip("\n")) == (130, "", "piezo-sym: stopped")

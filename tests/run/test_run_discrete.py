@@ -68,8 +68,8 @@ def test_extrapolation_is_of_fourth_order_where_laws_are_smooth():
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
 def test_every_network_runs_and_closes_both_balances(path):
     model = load(path)
-    slow = simulate(model, duration=1e-3, rtol=1e-10, times=11)
-    found = simulate(model, duration=1e-3, rtol=1e-7, times=11, method="discrete_gradient")
+    slow = simulate(model, duration=1e-3, rtol=1e-10, times=11, method="LSODA")
+    found = run(model, duration=1e-3, rtol=1e-7, times=11)
     for name in slow.data_vars:
         if name != "energy_residual":
             scale = np.max(np.abs(slow[name].values))
@@ -91,7 +91,11 @@ def test_runs_that_start_next_to_the_reference_temperature_finish(above):
 def test_a_jump_of_an_input_lands_on_a_step():
     found = run(inputs={"V_in": step(0.0, 100.0, 0.0313)}, rtol=1e-6)
     slow = simulate(
-        "piezo_stack", inputs={"V_in": step(0.0, 100.0, 0.0313)}, duration=0.1, rtol=1e-9
+        "piezo_stack",
+        inputs={"V_in": step(0.0, 100.0, 0.0313)},
+        duration=0.1,
+        rtol=1e-9,
+        method="LSODA",
     )
     assert np.allclose(found.q, slow.q, rtol=0, atol=2e-6 * float(np.abs(slow.q).max()))
 
@@ -103,7 +107,7 @@ def test_thousands_of_hysterons_run():
 
 
 def test_a_state_that_leaves_the_domain_stops_the_run():
-    with pytest.raises(RunError, match=r"cannot go on from t = .* s at q = "):
+    with pytest.raises(RunError, match=r"domain at t = 2e-05 s: condition 'T_e > T_0' has margin"):
         run(inputs={"T_e": lambda t: 298.15 - 1e5 * t}, step=1e-3)
 
 

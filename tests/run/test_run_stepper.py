@@ -1,10 +1,13 @@
 """Step by step: the same states as a run, inputs decided on the way, at the cost of a C call."""
 
+import doctest
+
 import numpy as np
 import pytest
 
 from piezo_sym import Stepper, simulate
 from piezo_sym.errors import RunError, UsageError
+from piezo_sym.run.stepper import Stepper as Steps
 
 H = 1e-5
 
@@ -59,3 +62,10 @@ def test_no_step_out_of_the_domain():
 
     with pytest.raises(RunError, match="no step stays in the domain"):
         cool()
+
+
+@pytest.mark.parametrize("documented", [Stepper, Steps], ids=["function", "class"])
+def test_the_examples_of_its_documentation_run_as_they_say(documented):
+    examples = doctest.DocTestFinder(recurse=False).find(documented, "Stepper", globs={})
+    assert [len(example.examples) > 3 for example in examples] == [True]
+    assert doctest.DocTestRunner().run(examples[0]).failed == 0

@@ -29,7 +29,8 @@ FLAGS: tuple[tuple[str, ...], ...] = (
     ("-O3", "-fopenmp-simd", "-fno-math-errno", *COMMON),
     ("-O2", *COMMON),
 )
-MOST_SECONDS = 120
+#: Bounds on a compiler that hangs: asked for its version, and at work.
+VERSION_SECONDS, MOST_SECONDS = 10.0, 120.0
 
 
 @final
@@ -73,7 +74,7 @@ def _split(text: str) -> tuple[str, ...]:
 def _version(command: tuple[str, ...]) -> str:
     """Return what a compiler says of itself, or nothing if it does not start."""
     try:
-        done = _call([*command, "--version"])
+        done = _call([*command, "--version"], VERSION_SECONDS)
     except EngineError:
         return ""
     return done.stdout if done.returncode == 0 else ""
@@ -88,14 +89,14 @@ def build(compiler: Compiler, flags: Sequence[str], source: Path, library: Path)
         If the compiler fails; with the first line of what it says.
     """
     words = [*compiler.command, *flags, str(source), "-o", str(library), "-lm"]
-    done = _call(words)
+    done = _call(words, MOST_SECONDS)
     if done.returncode != 0 or not library.is_file():
         said = [line for line in done.stderr.splitlines() if "error" in line] or [done.stderr]
         why = one_line(said[0].strip())[:120] or f"exit status {done.returncode}"
         raise EngineError(f"the compiler failed: {why}", compiler.command[0])
 
 
-def _call(words: Sequence[str]) -> subprocess.CompletedProcess[str]:
+def _call(words: Sequence[str], seconds: float) -> subprocess.CompletedProcess[str]:
     """Run a command without input; its words are never read by a shell."""
     try:
         return subprocess.run(
@@ -104,9 +105,11 @@ def _call(words: Sequence[str]) -> subprocess.CompletedProcess[str]:
             capture_output=True,
             text=True,
             errors="replace",
-            timeout=MOST_SECONDS,
+            timeout=seconds,
             check=False,
         )
+    except subprocess.TimeoutExpired as error:
+        raise EngineError(f"the compiler takes more than {seconds:g} s", words[0]) from error
     except (OSError, subprocess.SubprocessError) as error:
         why = getattr(error, "strerror", None) or type(error).__name__
         raise EngineError(f"the compiler does not run ({why})", words[0]) from error

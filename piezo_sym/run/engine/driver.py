@@ -30,12 +30,24 @@ void {model}_{name}_columns(
     }}
 }}
 """
+#: Who compiled the file, for the attributes of a run.
+MAKER = """
+#if defined(__clang__)
+#define MAKER "clang " __clang_version__
+#elif defined(__GNUC__)
+#define MAKER "gcc " __VERSION__
+#else
+#define MAKER "a C compiler"
+#endif
+extern const char {model}_compiler[];
+const char {model}_compiler[] = MAKER;
+"""
 
 
 def driver(model: str, *, starts: bool) -> str:
     """Return the text of the file to compile."""
     at = "x + column*n, u + column*m, p, out + column*rows"
-    parts = [HEAD.format(model=model)]
+    parts = [HEAD.format(model=model), MAKER.format(model=model)]
     for name in DRIVEN:
         parts.append(_loop(model, name, f"{model}_{name}({at});", ""))
     for name in PLAIN:

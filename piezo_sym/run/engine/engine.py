@@ -9,7 +9,7 @@ from __future__ import annotations
 import ctypes
 import warnings
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, final
@@ -63,12 +63,17 @@ def engine_of(module: GeneratedModule) -> Engine:
 
 @lru_cache(maxsize=64)
 def _engine(module: GeneratedModule, sources: Sources) -> Engine:
+    return Engine(module, _loaded(sources), structure_of(module), sources)
+
+
+@lru_cache(maxsize=64)
+def _loaded(sources: Sources) -> ctypes.CDLL:
     try:
-        return Engine(module, ctypes.CDLL(str(library(sources))), structure_of(module))
+        return ctypes.CDLL(str(library(sources)))
     except OSError:  # a damaged file in the cache
         path = library(sources, again=True)
     try:
-        return Engine(module, ctypes.CDLL(str(path)), structure_of(module))
+        return ctypes.CDLL(str(path))
     except OSError as error:
         what = "the compiled module cannot be loaded"
         raise EngineError(what, path_text(path), remedy="delete it") from error
@@ -88,7 +93,8 @@ def _sources(module: GeneratedModule) -> Sources:
             what = "is missing" if text is None else "is of another spec than the module"
             raise EngineError(what, path_text(file), remedy="run `piezo-sym generate`")
         texts.append(text)
-    return Sources(module.NAME, *texts)
+    header, source = texts
+    return Sources(module.NAME, header, source)
 
 
 @final
@@ -102,6 +108,14 @@ class Engine:
     module: GeneratedModule
     library: ctypes.CDLL
     structure: Callable[[Any], Structure]
+    sources: Sources
+
+    def side_by_side(self) -> ctypes.CDLL | None:
+        """Return the library that also runs members side by side, if this compiler can make one."""
+        try:
+            return _loaded(replace(self.sources, wide=True))
+        except EngineError:
+            return None
 
     def initial_state(self, u: ArrayLike, p: Any, /) -> FloatArray:
         """Return the state at t = 0, shape (n,), for the inputs u (inputs,) at t = 0."""

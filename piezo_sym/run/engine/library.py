@@ -8,11 +8,13 @@ one step: any number of processes may ask at once, and none ever sees half a fil
 from __future__ import annotations
 
 import hashlib
+import os
 import sys
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from subprocess import TimeoutExpired
 from typing import final
 
 from piezo_sym.errors import EngineError
@@ -20,6 +22,7 @@ from piezo_sym.files import path_text
 from piezo_sym.run.engine.compiler import FLAGS, Compiler, build, compilers
 from piezo_sym.run.engine.driver import driver
 from piezo_sym.run.engine.processor import processor
+from piezo_sym.run.engine.vector import wide_text
 
 ENDINGS = {"win32": ".dll", "darwin": ".dylib"}
 
@@ -27,17 +30,24 @@ ENDINGS = {"win32": ".dll", "darwin": ".dylib"}
 @final
 @dataclass(frozen=True)
 class Sources:
-    """The texts of one module: its name, ``<name>.h``, ``<name>.c``."""
+    """The texts of one module: its name, ``<name>.h``, ``<name>.c``.
+
+    `wide` asks for a library that also runs members side by side.
+    """
 
     name: str
     header: str
     source: str
+    wide: bool = False
 
     def files(self) -> dict[str, str]:
         """Return what to compile, by file name."""
         texts = {f"{self.name}.h": self.header, f"{self.name}.c": self.source}
         starts = f" {self.name}_newton_start(" in self.header
-        return {**texts, "driver.c": driver(self.name, starts=starts)}
+        text = driver(self.name, starts=starts)
+        if self.wide:
+            text += wide_text(self.name, self.header, self.source)
+        return {**texts, "driver.c": text}
 
 
 def library(sources: Sources, *, again: bool = False) -> Path:
@@ -54,14 +64,19 @@ def library(sources: Sources, *, again: bool = False) -> Path:
         If there is no compiler, none of them can compile it, or the cache cannot be written.
     """
     first: EngineError | None = None
+    hung: set[Compiler] = set()
     for compiler, flags in _ways():
-        path = _folder() / _key(sources, compiler, flags) / f"{sources.name}{_ending()}"
-        if path.is_file() and not again:
+        if compiler in hung:
+            continue
+        path = cache_folder() / _key(sources, compiler, flags) / f"{sources.name}{_ending()}"
+        if os.path.isfile(path) and not again:  # a folder that cannot be read holds none
             return path
         try:
             _build(sources, compiler, flags, path)
         except EngineError as error:
             first = first or error
+            if isinstance(error.__cause__, TimeoutExpired):  # other flags will not wake it
+                hung.add(compiler)
             continue
         return path
     if first:
@@ -76,7 +91,8 @@ def _ways() -> Iterator[tuple[Compiler, tuple[str, ...]]]:
             yield compiler, flags
 
 
-def _folder() -> Path:
+def cache_folder() -> Path:
+    """Return the folder of all compiled modules."""
     import platformdirs
 
     return Path(platformdirs.user_cache_dir("piezo_sym")) / "compiled"
@@ -106,7 +122,8 @@ def _build(sources: Sources, compiler: Compiler, flags: tuple[str, ...], path: P
             build(compiler, flags, folder / "driver.c", built)
             built.replace(path)
     except OSError as error:
-        if path.is_file() and sys.platform == "win32":  # another process has it, and uses it
+        if os.path.isfile(path) and sys.platform == "win32":  # another process has it, and uses it
             return
-        what = f"the cache cannot be written ({error.strerror})"
+        why = error.strerror or type(error).__name__
+        what = f"the cache cannot be written ({why})"
         raise EngineError(what, path_text(path.parent), remedy="check the path") from error

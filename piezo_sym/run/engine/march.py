@@ -20,7 +20,10 @@ if TYPE_CHECKING:
     from piezo_sym.run.checks import FloatArray
     from piezo_sym.run.engine.engine import Engine
 
+#: Members of more states are computed one by one: then the lanes of their banks fill the vectors.
+MOST_STATES = 32
 Way = Literal["survey", "march", "adapt"]
+MODES: dict[Way, int] = {"survey": 0, "march": 1, "adapt": 2}
 POINTER, LONG, DOUBLE = ctypes.c_void_p, ctypes.c_long, ctypes.c_double
 
 
@@ -53,6 +56,7 @@ class Member(ctypes.Structure):
         *((name, Path) for name in ("fine", "coarse", "trial")),
         *((name, POINTER) for name in ("kept", "tolerance", "out_x", "out_fine", "out_sums")),
         *((name, LONG) for name in ("level", "done", "steps", "failed")),
+        ("worst", DOUBLE),
     ]
 
 
@@ -125,6 +129,7 @@ class Batch:
         self._ledgers = np.zeros((size, 2, ledger))
         self._kept = np.zeros((size, n + 2 * ledger))
         self.members = (Member * size)(*map(self._member, range(size)))
+        self._wide, self._vectors = self._side_by_side(engine)
 
     def __len__(self) -> int:
         """Return the number of members."""
@@ -142,9 +147,8 @@ class Batch:
         u: Sequence[FloatArray],
         lowest: int,
         samples: NDArray[np.int_],
-        *,
+        done: Sequence[int] = (),
         first: Sequence[FloatArray] = (),
-        again: bool = False,
     ) -> list[int]:
         """Go through intervals, and return how many of them each member has done.
 
@@ -157,17 +161,36 @@ class Batch:
         lowest : the lowest level.
         samples : the sample after each interval (k,), -1 for none.
         first : after a jump, inputs of the quarters of the first step (4, inputs), likewise.
-        again : whether members go on where they stopped, and not with the first interval.
+        done : how many of these intervals each member has done before; none when left out.
         """
         held = _pointers(u), _pointers(first) if first else None
         highest = lowest + len(u) - 1
         block = Intervals(lengths.size, lowest, highest, at(lengths), None, at(samples))
         block.u, block.first = (ctypes.cast(p, POINTER) if p else None for p in held)
-        for member in () if again else self.members:
-            member.done = 0
-        function = self._function(name)
-        function(self.members, LONG(len(self.members)), ctypes.byref(block))
+        for k, member in enumerate(self.members):
+            member.done = done[k] if done else 0
+        arguments = (self.members, LONG(len(self.members)), ctypes.byref(block))
+        if self._wide is None:
+            self._function(name)(*arguments)
+        else:
+            self._wide(*arguments, ctypes.c_int(MODES[name]), at(self._vectors))
         return [member.done for member in self.members]
+
+    def _side_by_side(self, engine: Engine) -> tuple[Any, FloatArray]:
+        """Return the function that runs members side by side, or None, and its room."""
+        few = len(self.members) < 2 or self.rows.n > MOST_STATES or self.rows.numerical > 0
+        library = None if few else engine.side_by_side()
+        if library is None:
+            return None, np.empty(0)
+        width = LONG.in_dll(library, f"{self._name}_width").value
+        size = getattr(library, f"{self._name}_wide_size")
+        size.restype = LONG
+        room = size(ctypes.byref(self.members[0].model)) * width
+        numbers = np.zeros(room + width)
+        skipped = -numbers.ctypes.data % (8 * width) // 8  # vectors have to be aligned
+        function = getattr(library, f"{self._name}_run_wide")
+        function.restype = None
+        return function, numbers[skipped : skipped + room]
 
     def _member(self, k: int) -> Member:
         changes, ledger = self._changes[k], self._ledgers[k]

@@ -10,6 +10,8 @@ extern const long MODEL(exchanges);
 const long MODEL(exchanges) = MODEL(exchange_count);
 
 enum { MOST_ITERATIONS = 14, MOST_HALVINGS = 40, MOST_SHARES = 60 };
+/* An interval whose error is below this share of the tolerance tells the next to take fewer steps. */
+#define MUCH_TOO_FINE 0.05
 
 /*
  * A model with its sizes, and room for one step: arrays of n, of change_size and of rows numbers.
@@ -207,6 +209,7 @@ typedef struct {
     double *tolerance; /* of n: for the error of an interval */
     double *out_x, *out_fine, *out_sums;
     long level, done, steps, failed;
+    double worst; /* of the interval at hand, in wide.c */
 } MODEL(member);
 
 /*
@@ -355,7 +358,7 @@ void MODEL(adapt)(MODEL(member) *members, long count, const MODEL(block) *b)
             } else {
                 if (b->sample[s->done] >= 0)
                     MODEL(write)(s, b->sample[s->done]);
-                if (worst < 0.05 && s->level > 0)
+                if (worst < MUCH_TOO_FINE && s->level > 0)
                     --s->level;
                 ++s->done;
             }

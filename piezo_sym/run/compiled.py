@@ -1,0 +1,171 @@
+"""Runs of the discrete gradient as `simulate` gives them: what they took, and why one stopped.
+
+Input: a `System`, its engine, the state x (n,) at t = 0, the sample times, and a tolerance or a
+step.  Output: a `Trajectory` whose samples lie in the domain, and the attributes of the run; or a
+`RunError` that says which condition of the domain the state leaves, when, and with which values.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from piezo_sym.errors import RunError, UsageError
+from piezo_sym.run.discrete import METHOD, adaptive, fixed
+from piezo_sym.run.guard import NAME, crossing, depth, domain_error
+from piezo_sym.run.integrate import Batch, Tolerance, batches
+from piezo_sym.run.ledger import record
+from piezo_sym.run.scales import magnitudes
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from piezo_sym.run.checks import FloatArray
+    from piezo_sym.run.engine import Engine
+    from piezo_sym.run.inputs import Segment
+    from piezo_sym.run.ledger import Trajectory
+    from piezo_sym.run.system import System
+
+FINER = "those of the finer run, exact: supplied_*, heat_*, produced_*, energy_residual"
+#: How a run that stopped is looked at again: to find the cause, not to take its place.
+LOOK_RTOL, LOOK_ATOL = 1e-8, 1e-11
+MOST_STEPS = 20_000
+#: No finer mesh is asked for: the round-off of its steps would be all that is left to measure.
+LEAST_RTOL = 1e-11
+#: Inputs are looked at so often in each of the longest steps they allow, with so many numbers.
+LOOKS, MOST_NUMBERS = 4, 5_000_000
+
+
+def compiled_run(
+    system: System,
+    engine: Engine,
+    x: FloatArray,
+    samples: FloatArray,
+    rtol: float,
+    step: float | None,
+    *,
+    starts: bool = False,
+) -> tuple[Trajectory, dict[str, object]]:
+    """Return a run with a fixed step, or with a tolerance where `step` is None.
+
+    Parameters
+    ----------
+    starts : whether the first step after a jump of the inputs is dissipative.
+
+    Raises
+    ------
+    UsageError : it shall be, but the model has no store to damp, or no body to take the loss.
+    RunError : the state leaves the domain, or no step can go on; says when, and with which values.
+    """
+    if starts and not engine.starts:
+        what = f"model '{engine.module.NAME}' has no thermal_mass to take a loss, or no storage"
+        remedy = "leave it out, or add a thermal_mass"
+        raise UsageError(what, "simulate.dissipative_start", "False", remedy)
+    check_inputs(system, x, samples)
+    rtol = max(rtol, LEAST_RTOL)
+    try:
+        if step is None:
+            runs = adaptive([system], engine, x[None], samples, rtol, starts=starts)
+            trajectory = inside(system, runs.trajectory(0))
+            accuracy: dict[str, object] = {
+                "rtol": rtol,
+                "extrapolated": extrapolated(system),
+                "balances": FINER,
+            }
+        else:
+            runs = fixed([system], engine, x[None], samples, step, starts=starts)
+            trajectory = runs.trajectory(0)
+            accuracy = {"step": step}
+    except RunError as stopped:
+        raise cause(system, x, samples, stopped) from stopped
+    work = {
+        "accepted_steps": trajectory.steps,
+        "newton_iterations": trajectory.evaluations,
+        "halvings": trajectory.halvings,
+    }
+    return trajectory, {"method": METHOD, **accuracy, **work}
+
+
+def check_inputs(system: System, x: FloatArray, samples: FloatArray) -> None:
+    """Raise `RunError` if inputs leave the domain; steps look at conditions on the state alone.
+
+    Conditions on inputs do not depend on the state: that at t = 0, x (n,), stands for all.
+    """
+    known = {record.name for record in system.module.INPUTS}
+    conditions = enumerate(condition.text for condition in system.module.DOMAIN)
+    limits = [n for n, text in conditions if depth(system, text) == 1]
+    said = {name for n in limits for name in NAME.findall(system.module.DOMAIN[n].text)} & known
+    rows = {n for n, record in enumerate(system.module.INPUTS) if record.name in said}
+    for segment in system.inputs.segments if rows else ():
+        times = np.array([segment.start])
+        if rows & {row for row, _ in segment.varying}:
+            times = looks(system, segment, samples, MOST_NUMBERS / x.size)
+        states = np.tile(x[:, None], times.size)
+        failed = np.any(system.violated(states, segment.over(times))[limits], axis=0)
+        if np.any(failed):
+            raise left(system, segment, x, times[: np.argmax(failed) + 1])
+
+
+def left(system: System, segment: Segment, x: FloatArray, times: FloatArray) -> RunError:
+    """Return the error of inputs that leave the domain at the last of `times`, or just before."""
+    t = float(times[-1])
+    if times.size > 1:
+        t = crossing(system, float(times[-2]), t, lambda time: (x, segment.at(time)))
+    return domain_error(system, t, x, segment.at(t))
+
+
+def looks(system: System, segment: Segment, samples: FloatArray, most: float) -> FloatArray:
+    """Return the times of a segment at which its inputs are looked at, samples among them."""
+    part = (segment.stop - segment.start) / system.inputs.duration
+    number = LOOKS * part * system.inputs.duration / system.inputs.max_step
+    even = np.linspace(segment.start, segment.stop, 2 + int(min(number, most * part)))
+    inner = samples[(samples > segment.start) & (samples < segment.stop)]
+    return np.union1d(even, inner)
+
+
+def extrapolated(system: System) -> str:
+    """Return which quantities of a run with a tolerance are extrapolated from its two runs."""
+    states = ", ".join(record.name for record in system.module.STATES)
+    return f"{states}; and y_*, T_*, energy, entropy, which are computed from them"
+
+
+def inside(system: System, trajectory: Trajectory) -> Trajectory:
+    """Return a trajectory with the finer run's state where the extrapolated one is no state.
+
+    A state may come so near to the edge of the domain that the extrapolation crosses it.
+    """
+    x, u, finer = trajectory.states, trajectory.inputs, trajectory.balanced
+    outside = np.any(system.violated(x, u), axis=0) | ~np.all(system.finite(x, u), axis=0)
+    if finer is None or not np.any(outside):
+        return trajectory
+    return replace(trajectory, states=np.where(outside, finer, x))
+
+
+def cause(system: System, x: FloatArray, samples: FloatArray, stopped: RunError) -> RunError:
+    """Return why a run stopped: the condition that the state leaves, or else what it said itself.
+
+    Steps shrink towards the edge of the domain and do not reach it.  LSODA goes over the edge, and
+    so finds time and condition; where it finds none in its first steps, the run's own error stands.
+    """
+    scale, _ = magnitudes(system, x, MOST_STEPS)
+    tolerance = Tolerance("LSODA", LOOK_RTOL, LOOK_ATOL * scale)
+    try:
+        record(system, x, going(batches(system, x, samples, tolerance)), samples)
+    except RunError as found:
+        return found
+    return stopped
+
+
+def going(parts: Iterator[Batch]) -> Iterator[Batch]:
+    """Yield batches for as long as a solver goes on, and not too long."""
+    steps = 0
+    try:
+        for part in parts:
+            yield part
+            steps += part.steps
+            if steps > MOST_STEPS:
+                return
+    except RunError:
+        return

@@ -1,0 +1,204 @@
+/*
+ * Vectors of numbers, one of each of WIDTH states that are computed side by side, and the functions
+ * that a step calls on them.  For compilers with vector extensions (gcc, clang).
+ */
+#include <math.h>
+#include <string.h>
+
+#if defined(__AVX512F__)
+enum { WIDTH = 8 };
+#elif defined(__AVX__)
+enum { WIDTH = 4 };
+#else
+enum { WIDTH = 2 };
+#endif
+typedef double real __attribute__((vector_size(8 * WIDTH), may_alias));
+#if defined(__SIZEOF_LONG__) && __SIZEOF_LONG__ == 8
+typedef long bits; /* what a comparison of doubles gives */
+#else
+typedef long long bits;
+#endif
+typedef bits mask __attribute__((vector_size(8 * WIDTH), may_alias)); /* 0, or -1: all bits */
+
+static const real zero = {0.0};
+static const mask nowhere = {0};
+#define everywhere (nowhere - 1)
+
+/* A number or a vector as a vector, unchanged: x - 0 is x, also for -0. */
+#define wide(value) ((value) - zero)
+
+static inline real chosen(mask where, real a, real b)
+{
+    return (real)((where & (mask)a) | (~where & (mask)b));
+}
+
+static inline int any(mask where)
+{
+    bits found = 0;
+    for (int lane = 0; lane < WIDTH; ++lane)
+        found |= where[lane];
+    return found != 0;
+}
+
+static inline real size_of(real a)
+{
+    const mask sign = (mask)wide(-0.0);
+    return (real)((mask)a & ~sign);
+}
+
+static inline real with_sign(real a, real b)
+{
+    const mask sign = (mask)wide(-0.0);
+    return (real)(((mask)a & ~sign) | ((mask)b & sign));
+}
+
+/* 2^k for whole k from -1022 to 1023, given as k + 0x1.8p52. */
+static inline real power_of_two(real k)
+{
+    const mask bits = (mask)k - (mask)wide(0x1.8p52) + 1023;
+    return (real)(bits << 52);
+}
+
+/* exp(r) - 1 for |r| <= log(2)/2, by its series. */
+static inline real small_expm1(real r)
+{
+    real sum = wide(1.0 / 6227020800.0);
+    sum = sum * r + 1.0 / 479001600.0;
+    sum = sum * r + 1.0 / 39916800.0;
+    sum = sum * r + 1.0 / 3628800.0;
+    sum = sum * r + 1.0 / 362880.0;
+    sum = sum * r + 1.0 / 40320.0;
+    sum = sum * r + 1.0 / 5040.0;
+    sum = sum * r + 1.0 / 720.0;
+    sum = sum * r + 1.0 / 120.0;
+    sum = sum * r + 1.0 / 24.0;
+    sum = sum * r + 1.0 / 6.0;
+    return r + r * r * (0.5 + r * sum);
+}
+
+/* exp(d) = 2^k (1 + e); returns e, and 2^k in scale; d from -708 to 709. */
+static inline real reduced(real d, real *scale)
+{
+    const real shifted = d * 0x1.71547652b82fep0 + 0x1.8p52;
+    const real k = shifted - 0x1.8p52;
+    const real r = (d - k * 0x1.62e42fefa3800p-1) - k * 0x1.ef35793c76730p-45;
+    *scale = power_of_two(shifted);
+    return small_expm1(r);
+}
+
+static inline real exp_of(real d)
+{
+    real scale;
+    const real inner = chosen(d > 709.0, wide(709.0), chosen(d < -708.0, wide(-708.0), d));
+    const real e = reduced(inner, &scale);
+    return chosen(d > 709.0, wide(HUGE_VAL), chosen(d < -708.0, zero, scale + scale * e));
+}
+
+static inline real expm1_of(real d)
+{
+    real scale;
+    const real inner = chosen(d > 709.0, wide(709.0), chosen(d < -40.0, wide(-40.0), d));
+    const real e = reduced(inner, &scale);
+    return chosen(d > 709.0, wide(HUGE_VAL), scale * e + (scale - 1.0));
+}
+
+#define LANE_BY_LANE(name, function)                                                               \
+    static inline real name(real a)                                                                \
+    {                                                                                              \
+        real found;                                                                                \
+        for (int lane = 0; lane < WIDTH; ++lane)                                                   \
+            found[lane] = function(a[lane]);                                                       \
+        return found;                                                                              \
+    }
+LANE_BY_LANE(sqrt_of, sqrt)
+LANE_BY_LANE(log_of, log)
+LANE_BY_LANE(sin_of, sin)
+LANE_BY_LANE(cos_of, cos)
+LANE_BY_LANE(tanh_of, tanh)
+
+static inline real pow_of(real a, real b)
+{
+    real found;
+    for (int lane = 0; lane < WIDTH; ++lane)
+        found[lane] = pow(a[lane], b[lane]);
+    return found;
+}
+
+static inline real whole_power(real z, int n)
+{
+    real product = z;
+    for (int k = 1; k < n; ++k)
+        product *= z;
+    return product;
+}
+
+static inline real least(real a, real b)
+{
+    return chosen((a < b) | (a != a), a, b);
+}
+
+static inline real largest(real a, real b)
+{
+    return chosen((a > b) | (a != a), a, b);
+}
+
+static inline real sign_of(real z)
+{
+    return chosen(z > 0.0, wide(1.0), chosen(z < 0.0, wide(-1.0), z));
+}
+
+static inline real deadzone_of(real z, real w)
+{
+    return chosen(z > w, z - w, chosen(z < -w, z + w, z - z));
+}
+
+static inline real saturate_of(real z, real w)
+{
+    return chosen(z > w, w, chosen(z < -w, -w, z));
+}
+
+/* (exp(d) - 1 - d - d^2/2)/d^3 */
+static inline real phi3_of(real d)
+{
+    const real size = size_of(d);
+    real near = 1.0 / 6.0 + d * (1.0 / 24.0 + d * (1.0 / 120.0 + d * (1.0 / 720.0 + d / 5040.0)));
+    if (!any(size >= 0x1p-10))
+        return near;
+    real sum = zero;
+    for (int k = 19; k > 2; --k)
+        sum = (1.0 + sum) * d / (double)(k + 1);
+    sum = (1.0 + sum) / 6.0;
+    const real far = (((exp_of(d) - 1.0) / d - 1.0) / d - 0.5) / d;
+    return chosen(size < 0x1p-10, near, chosen(size >= 1.0, far, sum));
+}
+
+/* How much of the way from low to top lies above zero, if top does. */
+static inline real share_above(real low, real top)
+{
+    return chosen(top <= 0.0, zero, chosen(low >= 0.0, wide(1.0), top / (top - low)));
+}
+
+/* Mean of max(s, 0) for s from a to b, and its derivative by b. */
+static inline real ramp_of(real a, real b)
+{
+    const real top = chosen(a > b, a, b), low = chosen(a > b, b, a);
+    return chosen(low >= 0.0, 0.5 * (a + b), 0.5 * top * share_above(low, top));
+}
+
+static inline real ramp_by_new_of(real a, real b)
+{
+    const real top = chosen(a > b, a, b), low = chosen(a > b, b, a);
+    const real share = share_above(low, top), half = 0.5 * share * share;
+    return chosen(low >= 0.0, wide(0.5), chosen(b > a, share - half, half));
+}
+
+static inline real mean_sign_of(real a, real b)
+{
+    const real same = chosen(a != 0.0, sign_of(a), sign_of(b));
+    return chosen(a * b >= 0.0, same, (size_of(b) - size_of(a)) / (b - a));
+}
+
+static inline real mean_sign_by_new_of(real a, real b)
+{
+    return chosen(a * b >= 0.0, zero, 2.0 * size_of(a) / ((b - a) * (b - a)));
+}

@@ -1,0 +1,144 @@
+"""Which method runs a module, and its engine: the discrete gradient in C wherever there is one.
+
+Input: a generated module, the method and the step that a user named, or none.  Output: a `Way`:
+the method, its engine, and a note that says why it is that one.
+
+A user who names no method gets the discrete gradient.  A module without C beside it, written by
+hand or changed in Python, is run by LSODA; so is one whose C cannot be compiled here, with one
+warning.  A method or a step that was named is never replaced: without an engine it is refused.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import warnings
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, final
+
+from piezo_sym.errors import EngineError, UsageError, listing, one_line, quote
+from piezo_sym.files import path_text
+from piezo_sym.run.discrete import METHOD
+from piezo_sym.run.engine import Engine, EngineWarning
+from piezo_sym.run.engine.engine import engine_of
+from piezo_sym.run.engine.library import cache_folder
+from piezo_sym.run.integrate import METHODS
+
+if TYPE_CHECKING:
+    from piezo_sym.run.module import GeneratedModule
+
+OFFERED = (METHOD, *METHODS)
+FALLBACK = "LSODA"
+
+
+@final
+@dataclass(frozen=True)
+class Way:
+    """How a module is run: `engine` is there for the discrete gradient, and for it alone."""
+
+    method: str
+    engine: Engine | None
+    note: str
+
+
+def checked_method(method: object) -> str | None:
+    """Return a method's name, or None where none is named; raise `UsageError` otherwise."""
+    if method is not None and (not isinstance(method, str) or method not in OFFERED):
+        what = f"unknown method {quote(method)}"
+        raise UsageError(what, "simulate.method", listing(OFFERED))
+    return method
+
+
+def way_of(module: GeneratedModule, method: str | None, step: object) -> Way:
+    """Return how to run a module.
+
+    Parameters
+    ----------
+    method : the one that the user named, or None.
+    step : the fixed step that the user asked for, or None.
+
+    Raises
+    ------
+    EngineError : the discrete gradient or a step was asked for, and there is no engine.
+    """
+    if method not in (None, METHOD):
+        return Way(method, None, f"none: method {method} was asked for")
+    free = method is None and step is None
+    if free and not _has_source(module):
+        return Way(FALLBACK, None, "none: the module has no C source beside it")
+    found = _found(module)
+    if isinstance(found, Engine):
+        return Way(METHOD, found, f"compiled by {_compiler(found)}")
+    if free:
+        _warn(module.NAME, str(found))
+        return Way(FALLBACK, None, f"none: {found}")
+    instead = f"leave out step, and take method='{FALLBACK}' for a run in NumPy"
+    remedy = f"{found.remedy}; or {instead}" if found.remedy else instead
+    raise EngineError(found.what, found.where, remedy=remedy)
+
+
+def _found(module: GeneratedModule) -> Engine | EngineError:
+    """Return a module's engine, or why there is none."""
+    if not _loaded(module):
+        what = "is no module loaded from a file, so no C source is its own"
+        return EngineError(what, f"model '{module.NAME}'")
+    return _tried(module, _surroundings(module))  # type: ignore[arg-type]  # a module can be a key
+
+
+def _compiler(engine: Engine) -> str:
+    """Return the compiler of an engine, as the library itself says."""
+    text = ctypes.c_char.in_dll(engine.library, f"{engine.module.NAME}_compiler")
+    return one_line(ctypes.string_at(ctypes.addressof(text)).decode(errors="replace").strip())
+
+
+def _loaded(module: object) -> bool:
+    """Return whether it is a module of a file, so that C beside that file may be its own."""
+    return isinstance(module, ModuleType) and bool(getattr(module, "__file__", None))
+
+
+def _source(module: GeneratedModule, ending: str) -> Path:
+    return Path(str(getattr(module, "__file__", ""))).with_name(f"{module.NAME}{ending}")
+
+
+def _has_source(module: GeneratedModule) -> bool:
+    """Return whether a module came with C: there is some, or not even its own file is left."""
+    if not _loaded(module):
+        return False
+    own = Path(str(getattr(module, "__file__", "")))
+    beside = (_source(module, ending) for ending in (".h", ".c"))
+    return not os.path.isfile(own) or any(os.path.isfile(path) for path in beside)
+
+
+def _surroundings(module: GeneratedModule) -> tuple[object, ...]:
+    """Return what an attempt to compile depends on: it is not made twice for the same."""
+    stamps: list[int] = []
+    for ending in (".h", ".c"):
+        try:
+            stamps.append(_source(module, ending).stat().st_mtime_ns)
+        except OSError:
+            stamps.append(-1)
+    return (*stamps, os.environ.get("CC"), os.environ.get("PATH"), cache_folder())
+
+
+@lru_cache(maxsize=64)
+def _tried(module: GeneratedModule, surroundings: tuple[object, ...]) -> Engine | EngineError:
+    """Return a module's engine, or why there is none, kept: compilers that fail may take long."""
+    del surroundings  # they tell one attempt from another
+    own = Path(str(getattr(module, "__file__", "")))
+    if not os.path.isfile(own):
+        remedy = f"check that {path_text(cache_folder())} can be written"
+        return EngineError("its C source was not kept", remedy=remedy)
+    try:
+        return engine_of(module)
+    except EngineError as error:
+        return EngineError(error.what, error.where, error.expected, error.remedy)
+
+
+@lru_cache(maxsize=256)
+def _warn(name: str, why: str) -> None:
+    """Warn that a model runs in NumPy, once in a process."""
+    text = f"model '{name}' runs by {FALLBACK} in NumPy, not compiled by {METHOD}: {why}"
+    warnings.warn(text, EngineWarning, stacklevel=5)

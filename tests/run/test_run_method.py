@@ -1,0 +1,403 @@
+"""Which method runs when none is named; what is said, and how often, where C cannot be compiled."""
+
+import os
+import shutil
+import stat
+import subprocess
+import sys
+import tempfile
+import warnings
+from math import log
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import platformdirs
+import pytest
+
+import piezo_sym
+from piezo_sym.errors import EngineError, RunError
+from piezo_sym.modules import load_module
+from piezo_sym.run import method as methods
+from piezo_sym.run import ramp, simulate, sine, step
+from piezo_sym.run.compiled import inside
+from piezo_sym.run.engine import EngineWarning, compiler
+from piezo_sym.run.engine import library as libraries
+from piezo_sym.run.inputs import read_inputs
+from piezo_sym.run.ledger import Trajectory
+from piezo_sym.run.system import System
+
+ROOT = Path(__file__).parents[2]
+FILES = ROOT / "generated" / "piezo_stack"
+SHORT = {"inputs": {"V_in": sine(100, 100)}, "duration": 1e-3, "times": 11}
+
+
+@pytest.fixture
+def cache(tmp_path, monkeypatch):
+    """A cache of our own, and no memory of what was said before."""
+    monkeypatch.setattr(platformdirs, "user_cache_dir", lambda name: str(tmp_path / "cache" / name))
+    methods._warn.cache_clear()
+    return tmp_path / "cache" / "piezo_sym" / "compiled"
+
+
+@pytest.fixture
+def module(tmp_path, cache):
+    """A module of our own, with its sources."""
+    assert not cache.exists()
+    shutil.copytree(FILES, tmp_path / "piezo_stack")
+    return load_module(tmp_path / "piezo_stack" / "piezo_stack.py")
+
+
+@pytest.fixture
+def alone(tmp_path, monkeypatch):
+    """A folder that is the only one in which commands are found."""
+    (tmp_path / "bin").mkdir()
+    monkeypatch.setenv("PATH", str(tmp_path / "bin"))
+    monkeypatch.delenv("CC", raising=False)
+    monkeypatch.setattr(compiler, "find_spec", lambda _: None)
+    return tmp_path / "bin"
+
+
+def script(path, text):
+    path.write_text(f"#!/bin/sh\n{text}\n")
+    path.chmod(path.stat().st_mode | stat.S_IXUSR)
+    return path
+
+
+def warned(module):
+    """Return the one line of three runs, and the last run."""
+    with pytest.warns(EngineWarning) as caught:
+        runs = [simulate(module, **SHORT) for _ in range(3)]
+    (warning,) = caught
+    message = str(warning.message)
+    assert message.isprintable()
+    start = "model 'piezo_stack' runs by LSODA in NumPy, not compiled by discrete_gradient: "
+    assert message.startswith(start)
+    assert {run.attrs["method"] for run in runs} == {"LSODA"}
+    assert runs[-1].attrs["engine"] == f"none: {message.removeprefix(start)}"
+    return message.removeprefix(start)
+
+
+def test_the_discrete_gradient_is_the_default(module):
+    run = simulate(module, **SHORT)
+    named = simulate(module, **SHORT, method="discrete_gradient")
+    assert run.attrs == named.attrs
+    assert run.equals(named)
+    assert run.attrs["method"] == "discrete_gradient"
+    assert run.attrs["rtol"] == 1e-5
+    assert run.attrs["engine"].startswith(("compiled by gcc ", "compiled by clang "))
+    assert run.attrs["extrapolated"].startswith("q, p, Q_C, phi, S;")
+    assert run.attrs["newton_iterations"] >= run.attrs["accepted_steps"] > 100
+    assert run.attrs["halvings"] == 0
+
+
+@pytest.mark.parametrize("name", sorted(filter(shutil.which, ("gcc", "clang"))))
+def test_the_compiler_that_was_used_is_named(module, monkeypatch, name):
+    monkeypatch.setenv("CC", name)
+    version = subprocess.run([name, "-dumpversion"], capture_output=True, text=True, check=True)
+    engine = simulate(module, **SHORT).attrs["engine"]
+    assert engine.startswith(f"compiled by {name} {version.stdout.split('.')[0].strip()}")
+
+
+def test_a_step_alone_runs_the_discrete_gradient(module):
+    run = simulate(module, **SHORT, step=1e-5)
+    assert (run.attrs["method"], run.attrs["step"]) == ("discrete_gradient", 1e-5)
+    assert "rtol" not in run.attrs
+    assert "extrapolated" not in run.attrs
+
+
+def test_a_method_of_scipy_is_run_and_says_so(module):
+    run = simulate(module, **SHORT, method="BDF")
+    assert run.attrs["method"] == "BDF"
+    assert run.attrs["engine"] == "none: method BDF was asked for"
+
+
+def test_a_module_without_c_runs_by_lsoda_and_says_nothing(piezo, module):
+    assert simulate(piezo, **SHORT).attrs["engine"] == "none: the module has no C source beside it"
+    for ending in (".h", ".c"):
+        Path(module.__file__).with_suffix(ending).unlink()
+    run = simulate(module, **SHORT)
+    assert (run.attrs["method"], run.attrs["engine"][:5]) == ("LSODA", "none:")
+
+
+def test_functions_changed_in_python_are_those_that_run(module, variant):
+    """The C beside the module is not of them."""
+    changed = variant(module, rhs=lambda x, u, p, /: 0 * module.rhs(x, u, p))
+    run = simulate(changed, **SHORT, initial={"q": 1e-3})
+    assert run.attrs["method"] == "LSODA"
+    assert np.all(run.q == 1e-3)
+    with pytest.raises(EngineError, match="is no module loaded from a file"):
+        simulate(changed, **SHORT, step=1e-5)
+
+
+@pytest.mark.parametrize("more", [{"method": "discrete_gradient"}, {"step": 1e-5}])
+def test_what_was_asked_for_is_not_replaced(piezo, module, alone, more):
+    with pytest.raises(EngineError) as error:
+        simulate(module, **SHORT, **more)
+    assert str(error.value) == (
+        "engine: no C compiler is found; install gcc or clang, set CC, or `pip install "
+        "piezo_sym[zig]`; or leave out step, and take method='LSODA' for a run in NumPy"
+    )
+    with pytest.raises(EngineError, match="is missing; run `piezo-sym generate`"):
+        simulate(piezo, **SHORT, **more)
+    assert list(alone.iterdir()) == []
+
+
+@pytest.mark.usefixtures("alone")
+def test_no_compiler_is_one_line(module):
+    assert warned(module) == (
+        "engine: no C compiler is found; install gcc or clang, set CC, or "
+        "`pip install piezo_sym[zig]`"
+    )
+
+
+GARBAGE = r"printf 'x\377\000\033[31m\r\n\n'; printf '\377\000\033[2J\n\n' >&2; exit 1"
+BROKEN = [
+    ("exit 1", "no C compiler is found"),
+    (f'test "$1" = --version && echo 1 && exit; {GARBAGE}', "the compiler failed: \\ufffd\\x00"),
+    ("echo cc 1", "the compiler failed: exit status 0"),
+    (GARBAGE.replace("exit 1", "exit 0"), "the compiler failed: \\ufffd\\x00"),
+    ("kill -9 $$", "no C compiler is found"),
+]
+
+
+@pytest.mark.parametrize(("text", "words"), BROKEN)
+def test_a_broken_compiler_is_one_line(module, alone, monkeypatch, text, words):
+    monkeypatch.setenv("CC", str(script(alone / "mine", text)))
+    assert words in warned(module)
+
+
+@pytest.mark.parametrize("chosen", ["/bin/false", "no-such-compiler", "'", "/"])
+@pytest.mark.usefixtures("alone")
+def test_a_choice_that_is_no_compiler_is_one_line(module, monkeypatch, chosen):
+    monkeypatch.setenv("CC", chosen)
+    assert "no C compiler is found" in warned(module)
+
+
+def test_a_compiler_that_hangs_is_waited_for_once(module, alone, monkeypatch):
+    monkeypatch.setattr(compiler, "MOST_SECONDS", 0.5)
+    sleep, log = shutil.which("sleep", path=os.defpath), alone / "log"
+    says = f'test "$1" = --version && echo 1 && exit; echo >> {log}; exec {sleep} 60'
+    script(alone / "cc", says)
+    assert "the compiler takes more than 0.5 s" in warned(module)
+    assert log.read_text() == "\n"  # not with other flags, nor for every run
+
+
+def test_a_compiler_that_does_not_say_what_it_is_is_passed_by(module, alone, monkeypatch):
+    monkeypatch.setattr(compiler, "VERSION_SECONDS", 0.5)
+    sleep = shutil.which("sleep", path=os.defpath)
+    script(alone / "cc", f"exec {sleep} 60")
+    assert "no C compiler is found" in warned(module)
+
+
+def test_a_cache_that_cannot_be_written_is_one_line(module, tmp_path):
+    (tmp_path / "cache").write_text("a file where the folder should be")
+    assert "the cache cannot be written (Not a directory); check the path" in warned(module)
+
+
+@pytest.mark.parametrize("error", [OSError(28, "No space left on device"), OSError("strange")])
+def test_a_full_disk_is_one_line(module, monkeypatch, error):
+    def full(*_, **__):
+        raise error
+
+    monkeypatch.setattr(Path, "write_text", full)
+    assert f"the cache cannot be written ({error.strerror or 'OSError'})" in warned(module)
+
+
+def test_a_model_of_a_cache_that_cannot_be_written_runs(tmp_path, monkeypatch, cache):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    (tmp_path / "cache").write_text("a file where the folder should be")
+    model = piezo_sym.load(ROOT / "tests" / "networks" / "specs" / "a2_oscillator.toml")
+    with pytest.warns(
+        EngineWarning, match="runs by LSODA .*: its C source was not kept; check that "
+    ) as said:
+        runs = [piezo_sym.simulate(model, duration=1.0, times=2) for _ in range(2)]
+    assert len(said) == 1
+    assert {run.attrs["method"] for run in runs} == {"LSODA"}
+    assert cache.parent.parent.is_file()
+
+
+def test_what_was_mended_is_tried_again(module, alone, monkeypatch):
+    warned(module)
+    monkeypatch.setenv("PATH", os.defpath)
+    assert simulate(module, **SHORT).attrs["method"] == "discrete_gradient"
+    assert list(alone.iterdir()) == []
+
+
+def test_nothing_is_compiled_twice_for_one_process(module, monkeypatch, cache):
+    simulate(module, **SHORT)
+    shutil.rmtree(cache)
+    monkeypatch.setattr(libraries, "build", None)
+    assert simulate(module, **SHORT).attrs["method"] == "discrete_gradient"
+
+
+SCRIPT = """
+from piezo_sym import simulate
+for _ in range(3):
+    simulate("piezo_stack", duration=1e-3, times=2)
+"""
+
+
+def test_a_program_is_told_once(tmp_path):
+    (tmp_path / "file").write_text("")
+    environment = {
+        **os.environ,
+        "PYTHONPATH": str(ROOT),
+        "XDG_CACHE_HOME": str(tmp_path / "file"),
+        "HOME": str(tmp_path / "file"),
+    }
+    words = [sys.executable, "-c", SCRIPT]
+    done = subprocess.run(words, env=environment, capture_output=True, text=True, check=True)
+    assert done.stderr.count("EngineWarning: model 'piezo_stack' runs by LSODA") == 1
+
+
+# The edge of the domain
+
+
+def message(module, **more):
+    with pytest.raises(RunError) as error:
+        simulate(module, **more)
+    text = str(error.value)
+    assert text.isprintable()
+    return text
+
+
+def time_in(text):
+    return float(text.split("t = ")[1].split(" s")[0])
+
+
+WAYS = [{}, {"rtol": 1e-9}, {"step": 1e-3}, {"step": 2e-5}]
+
+
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize(
+    ("T_e", "known"),
+    [
+        (step(0.0021, 298.15, 291.15), 0.0021),
+        (ramp(0.002, 0.006, 298.15, 294.15), 0.004),
+        (lambda t: 298.15 - 2e2 * t, 0.01),
+        (sine(4.0, 10.0, 298.15), 7 / 120),
+    ],
+)
+def test_inputs_that_leave_the_domain(module, way, T_e, known):
+    text = message(module, inputs={"T_e": T_e}, duration=0.1, **way)
+    assert time_in(text) == pytest.approx(known, rel=1e-5)
+    assert "state leaves the domain at t = " in text
+    assert "condition 'T_e > T_0' has margin " in text
+    assert text.endswith("expected T_e > T_0 throughout the run; change input 'T_e'")
+
+
+def test_inputs_that_come_near_the_edge_do_not_stop_a_run(module):
+    run = simulate(module, inputs={"T_e": sine(1.999, 100.0, 298.15)}, duration=0.02)
+    assert 296.15 < run.T_e.min() < 296.16
+
+
+LEAK = """
+[model]
+name = "leak"
+
+[parameters]
+T_0 = { value = 296.15, unit = "K" }
+c = { value = 5.0, unit = "J/K" }
+lam = { value = 2.0, unit = "W/K" }
+T_low = { value = 296.15, unit = "K" }
+
+[inputs]
+T_e = { unit = "K", default = 290.0 }
+
+[domain]
+assume = ["T > T_low", "T_low > 0", "T_e > 0", "lam >= 0"]
+
+[initial]
+S = 0.03
+
+[elements.body]
+kind = "thermal_mass"
+temperature = "T_0*exp(S/c)"
+state = "S"
+
+[elements.ambient]
+kind = "ambient"
+body = "body"
+conductance = "lam"
+input = "T_e"
+"""
+
+
+@pytest.fixture(scope="module")
+def leak(tmp_path_factory):
+    """A body that an ambient cools below what its domain allows."""
+    path = tmp_path_factory.mktemp("leak") / "leak.toml"
+    path.write_text(LEAK)
+    return path
+
+
+@pytest.mark.parametrize("way", [{}, {"rtol": 1e-8}, {"step": 0.5}, {"step": 1e-3}])
+def test_a_state_that_leaves_the_domain_is_said_with_time_and_value(leak, way):
+    """C dT/dt = lam (T_e - T): the time is known in closed form."""
+    with pytest.raises(RunError) as error:
+        piezo_sym.simulate(leak, duration=20.0, **way)
+    text = str(error.value)
+    start = 296.15 * np.exp(0.03 / 5)
+    known = 5 / 2 * log((start - 290) / (296.15 - 290))
+    assert time_in(text) == pytest.approx(known, rel=1e-5)
+    assert "model 'leak': state leaves the domain at t = " in text
+    assert "condition 'T > T_low' has margin " in text
+    assert "(T_body = 296.15 K, T_low = 296.15 K)" in text
+    assert "discrete_gradient cannot go on from t = " in str(error.value.__cause__)
+
+
+def test_a_run_that_ends_before_the_edge_is_not_stopped(leak):
+    start = 296.15 * np.exp(0.03 / 5)
+    known = 5 / 2 * log((start - 290) / (296.15 - 290))
+    run = piezo_sym.simulate(leak, duration=known - 1e-6, rtol=1e-8)
+    assert float(run.T_body[-1]) == pytest.approx(296.15, abs=1e-5)
+    assert np.all(run.T_body > 296.15)
+
+
+def test_a_condition_on_state_and_input_is_looked_at_with_the_state_of_the_time(tmp_path):
+    """T starts 5 K above where T_e ends, and follows it; the start and the end never meet."""
+    limit = 'T_low = { value = 280.0, unit = "K" }\ngap = { value = 3.0, unit = "K" }'
+    text = LEAK.replace('T_low = { value = 296.15, unit = "K" }', limit)
+    path = tmp_path / "gap.toml"
+    path.write_text(
+        text.replace('["T > T_low", ', '["T > T_low", "T - T_e < gap", ').replace("290.0", "297.0")
+    )
+    slide = ramp(10.0, 110.0, 297.0, 292.92)
+    run = piezo_sym.simulate(path, inputs={"T_e": slide}, duration=120.0)
+    assert run.T_body[0] - run.T_e[-1] > 3 > (run.T_body - run.T_e).max()
+    with pytest.raises(RunError, match=r"condition 'T - T_e < gap' has margin .*T_e = 29"):
+        piezo_sym.simulate(path, inputs={"T_e": step(60.0, 297.0, 292.92)}, duration=120.0)
+
+
+def test_samples_lie_in_the_domain_however_near_its_edge(module):
+    """Extrapolation must not carry a state over the edge that both its runs keep away from."""
+    inputs = {"T_e": 296.15 + 1e-9, "V_in": sine(1e-3, 100)}
+    run = simulate(module, inputs=inputs, duration=0.05, initial={"S": 1e-6})
+    assert np.all(run.T_body > 296.15)
+
+
+def test_where_extrapolation_crosses_the_edge_the_finer_run_is_given(piezo):
+    system = System(piezo, piezo.Parameters(), read_inputs(piezo, {}, 1.0))
+    finer = np.tile(piezo.initial_state((0, 0, 298.15), system.parameters)[:, None], 3)
+    states = finer + 1e-6
+    states[-1, 1] = -1e-9  # S < 0 is T < T_0
+    inputs = np.tile(np.array([[0.0], [0.0], [298.15]]), 3)
+    found = inside(
+        system, Trajectory(finer[:, 0], states, inputs, np.zeros((9, 3)), 1, 1, balanced=finer)
+    )
+    assert np.array_equal(found.states[:, 1], finer[:, 1])
+    assert np.array_equal(found.states[:, ::2], states[:, ::2])
+    assert found.balanced is finer
+
+
+def test_a_finer_tolerance_than_round_off_is_not_paid_for(module):
+    run = simulate(module, inputs={"V_in": 50.0}, duration=1e-3, times=5, rtol=1e-13)
+    assert run.attrs["rtol"] == 1e-11
+
+
+def test_no_warning_is_left_over(module):
+    assert isinstance(module, ModuleType)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        simulate(module, **SHORT)

@@ -1,0 +1,110 @@
+"""Members in lanes of vectors run as they do one by one, whatever the network."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from piezo_sym import load, sine
+from piezo_sym.modules import module_of
+from piezo_sym.run.discrete import adaptive, fixed
+from piezo_sym.run.engine import march
+from piezo_sym.run.engine.engine import engine_of
+from piezo_sym.run.engine.vector import CALLS, wide_source
+from piezo_sym.run.inputs import read_inputs
+from piezo_sym.run.parameters import read_initial, read_parameters
+from piezo_sym.run.system import System
+
+SPECS = sorted((Path(__file__).parents[1] / "networks" / "specs").glob("*.toml"))
+
+
+class Members:
+    """Members of one model that differ in one parameter, more than the lanes of any vector."""
+
+    def __init__(self, model, size=11, duration=1e-3, inputs=None):
+        self.module = module_of(model)
+        self.engine = engine_of(self.module)
+        fields = self.module.PARAMETERS
+        self.inputs = read_inputs(self.module, inputs, duration)
+        self.times = np.linspace(0, duration, 5)
+        factors = np.linspace(0.9, 1.1, size)
+        name = next(
+            (f.name for f in fields if f.name in {"L", "L_1", "m", "M", "k", "c", "C"}), None
+        )
+        usual = read_parameters(self.module, None)
+        self.systems = []
+        for factor in factors if name else ():
+            value = np.asarray(getattr(usual, name)) * factor
+            changed = {name: value.tolist() if value.ndim else float(value)}
+            parameters = read_parameters(self.module, changed)
+            self.systems.append(System(self.module, parameters, self.inputs))
+        self.systems = self.systems or [System(self.module, usual, self.inputs)] * size
+        u = self.inputs.segments[0].at(0.0)
+        self.x = np.array([read_initial(self.module, s.parameters, u, None) for s in self.systems])
+
+    def run(self, monkeypatch, most_states, **how):
+        monkeypatch.setattr(march, "MOST_STATES", most_states)
+        method = fixed if "step" in how else adaptive
+        return method(self.systems, self.engine, self.x, self.times, *how.values())
+
+
+def close(one, other):
+    scale = np.nanmax(np.abs(one), axis=(0, 1), keepdims=True)
+    return np.allclose(one / (scale + 1e-300), other / (scale + 1e-300), rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
+@pytest.mark.parametrize("how", [{"rtol": 1e-6}, {"step": 1e-5}], ids=["rtol", "step"])
+def test_lanes_compute_what_members_alone_do(monkeypatch, path, how):
+    members = Members(load(path))
+    alone, together = (members.run(monkeypatch, most, **how) for most in (0, 10**6))
+    assert alone.errors == together.errors == (None,) * len(members.systems)
+    for name in ("states", "sums"):
+        assert close(getattr(alone.batch, name), getattr(together.batch, name))
+    lanes = [member.model.iterations for member in together.batch.members]
+    assert together.batch._wide is not None
+    assert min(lanes) > 0
+
+
+def test_both_balances_of_every_member_close(monkeypatch):
+    members = Members("piezo_stack", 37, 0.05, {"V_in": sine(100, 100)})
+    runs = members.run(monkeypatch, 10**6, rtol=1e-5)
+    batch, module = runs.batch, members.module
+    for k, system in enumerate(members.systems):
+        energy = module.energy(batch.fine[k].T, system.parameters)
+        supplied = batch.sums[k, :, :3].sum(axis=1)
+        assert np.max(np.abs(energy - energy[0] - supplied)) <= 4 * np.spacing(energy.max()) + 1e-12
+        entropy = module.entropy(batch.fine[k].T, system.parameters)
+        produced = batch.sums[k, :, 3 + 3 :].sum(axis=1)
+        assert np.allclose(entropy - entropy[0], produced, rtol=0, atol=1e-15)
+        assert np.all(np.diff(batch.sums[k, :, 6:9], axis=0) >= 0)
+
+
+def test_a_member_that_stops_leaves_the_others_alone(monkeypatch):
+    members = Members("piezo_stack", 9, 0.02, {"V_in": sine(100, 100)})
+    alone = members.run(monkeypatch, 10**6, rtol=1e-5)
+    members.x[4, 2] = np.nan
+    runs = members.run(monkeypatch, 10**6, rtol=1e-5)
+    assert [error is not None for error in runs.errors] == [k == 4 for k in range(9)]
+    others = [k for k in range(9) if k != 4]
+    assert np.array_equal(alone.batch.states[others], runs.batch.states[others])
+
+
+def test_a_lane_whose_step_is_halved_goes_on_with_the_rest(monkeypatch):
+    members = Members("piezo_stack", 9, 0.02, {"V_in": sine(100, 100), "T_e": 296.15 + 1e-6})
+    alone, together = (members.run(monkeypatch, most, step=5e-4) for most in (0, 10**6))
+    halved = [member.model.halvings for member in together.batch.members]
+    assert sum(halved) > 0
+    assert close(alone.batch.states, together.batch.states)
+
+
+def test_every_function_of_a_step_has_its_vector():
+    from piezo_sym.codegen import c_means, c_style
+
+    known = {*c_means.HELPERS, *c_style._HELPERS, "exp", "log", "sqrt", "sin", "cos", "tanh", "pow"}
+    assert known | {"fabs", "copysign", "expm1"} == set(CALLS)
+
+
+def test_a_source_without_a_step_is_refused():
+    with pytest.raises(ValueError, match="no step"):
+        wide_source("piezo_stack", "", "int main(void) { return 0; }")
