@@ -8,7 +8,7 @@ import pytest
 from piezo_sym import load, simulate, sine, step
 from piezo_sym.errors import UsageError
 from piezo_sym.modules import module_of
-from piezo_sym.run.discrete import fixed
+from piezo_sym.run.discrete import adaptive, fixed
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.system import System
@@ -130,6 +130,25 @@ def ledger(model, h, duration, **inputs):
     assert np.all(np.diff(produced, axis=0) >= 0)
     assert np.all(np.diff(numerical) >= 0)
     return states, numerical
+
+
+def test_members_of_a_batch_start_as_they_do_alone():
+    module = module_of("piezo_stack")
+    inputs = read_inputs(module, {"V_in": step(3e-4, 0.0, 100.0)}, 2e-3)
+    systems = [System(module, module.Parameters(L=L), inputs) for L in (1e-3, 5e-4, 2e-3)]
+    x = module.initial_state(inputs.segments[0].at(0.0), systems[0].parameters)
+    times = np.linspace(0.0, 2e-3, 5)
+    engine = engine_of(module)
+    for solve, accuracy in ((fixed, 1e-4), (adaptive, 1e-5)):
+        together = solve(systems, engine, np.tile(x, (3, 1)), times, accuracy, starts=True)
+        for k, system in enumerate(systems):
+            alone = solve([system], engine, x[None], times, accuracy, starts=True)
+            one, other = together.trajectory(k), alone.trajectory(0)
+            size = np.abs(other.states).max(axis=1, keepdims=True)
+            tight = 0.0 if solve is fixed else accuracy
+            assert np.all(np.abs(one.states - other.states) <= tight * size)
+            assert np.all(np.diff(one.numerical, axis=1)[:, 1:] >= 0)
+            assert one.numerical[0, -1] > 0
 
 
 STORES = {"spring", "mass", "capacitor", "inductor", "hysteron"}

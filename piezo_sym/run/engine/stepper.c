@@ -169,7 +169,7 @@ static int MODEL(step)(MODEL(model) *m, MODEL(path) *path, const double *u, doub
  * A quarter that has no such step is an ordinary one, halved if need be: where an energy is not
  * convex, a dissipative step takes entropy however short it is.
  */
-static int MODEL(begin)(MODEL(model) *m, MODEL(path) *path, const double *u, double h)
+static int MODEL(quarters)(MODEL(model) *m, MODEL(path) *path, const double *u, double h)
 {
     double *loss = MODEL(means_of)(m) + m->rows - 2;
     int found = 1;
@@ -190,7 +190,7 @@ static int MODEL(begin)(MODEL(model) *m, MODEL(path) *path, const double *u, dou
 static int MODEL(across)(MODEL(model) *m, MODEL(path) *path, const double *u, double h, long steps,
                          const double *first)
 {
-    if (first && !MODEL(begin)(m, path, first, h))
+    if (first && !MODEL(quarters)(m, path, first, h))
         return 0;
     for (long k = first ? 1 : 0; k < steps; ++k)
         if (!MODEL(step)(m, path, u + k * m->inputs, h, 0))
