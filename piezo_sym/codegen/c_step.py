@@ -12,7 +12,7 @@ from typing import final
 
 from piezo_sym.codegen.c_frame import HEADS, START_HEADS, Frame, array_of
 from piezo_sym.codegen.c_inside import inside
-from piezo_sym.codegen.c_lines import statement
+from piezo_sym.codegen.c_lines import statement, used_only
 from piezo_sym.codegen.c_means import step_helpers
 from piezo_sym.codegen.c_stages import Write
 from piezo_sym.codegen.places import places
@@ -131,9 +131,10 @@ class _Printer:
             Write(f"{self.words['out']}[{self.frame.index(at, n)}]", row.value, row.slot.bank)
             for n, row in enumerate(rows)
         ]
-        body = [f"const long {line};" for line in at.definitions()]
-        body += self.frame.stages([write.value for write in writes], writes)
-        return self.frame.function(f"means{self.ending}", body)
+        body = list(self.frame.stages([write.value for write in writes], writes))
+        ends = [(line.split()[0], f"const long {line};") for line in at.definitions()]
+        lines = [*used_only(body, ends, ()), *body]
+        return self.frame.function(f"means{self.ending}", lines)
 
 
 def _declarations(frame: Frame) -> str:

@@ -229,8 +229,8 @@ def _scale(run: _Run, engine: Engine, longest: float) -> FloatArray:
 
 def _stuck(system: System, t: float, x: FloatArray) -> RunError:
     """Return the error of a run that cannot go on: it says when and where."""
-    why = "no step stays in the domain"
-    remedy = "look at the inputs and the state there, or allow the state more room in [domain]"
+    why = "no step stays in the domain, or a law that jumps holds the state there"
+    remedy = "look at inputs and state; allow more room in [domain]; tanh(v/w) for sign(v)"
     return _stopped(system, t, x, why, remedy)
 
 

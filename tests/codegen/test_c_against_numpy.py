@@ -3,6 +3,9 @@
 Errors are measured against the sum of the absolute terms of a row, as for NumPy.
 """
 
+import shutil
+from pathlib import Path
+
 import numpy as np
 import platformdirs
 import pytest
@@ -11,8 +14,11 @@ from hypothesis import assume, given, settings
 from piezo_sym import Model, load
 from piezo_sym.build import render
 from piezo_sym.modules import load_module
+from piezo_sym.run.engine import library as libraries
+from piezo_sym.run.engine.compiler import FLAGS, compilers
 from piezo_sym.run.engine.engine import OFFERED, engine_of
 
+from .c_compilers import COMPILERS
 from .test_numpy_against_sympy import MODULE, SIZES, TOLERANCE, assert_close, exact, mp, points
 
 PLAIN = {"energy", "entropy", "temperatures"}
@@ -27,9 +33,26 @@ def cache(tmp_path_factory):
         yield folder
 
 
-@pytest.fixture(scope="module")
-def engine():
-    return engine_of(MODULE)
+@pytest.fixture(scope="module", params=COMPILERS)
+def engine(request, tmp_path_factory):
+    """The engine of each compiler, of the files of `MODULE` in a folder of their own."""
+    name = Path(MODULE.__file__).stem
+    folder = tmp_path_factory.mktemp(request.param) / name
+    shutil.copytree(Path(MODULE.__file__).parent, folder)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("CC", " ".join(COMPILERS[request.param]))
+        found = engine_of(load_module(folder / f"{name}.py"))
+        chosen = next(compilers())
+    assert chosen.command[-1].endswith(COMPILERS[request.param][-1])
+    assert Path(found.library._name).parent.name in keys(found.module, chosen)
+    return found
+
+
+def keys(module, compiler):
+    """Return the places in the cache of what one compiler makes of a module."""
+    texts = [Path(module.__file__).with_suffix(ending).read_text() for ending in (".h", ".c")]
+    sources = libraries.Sources(module.NAME, *texts)
+    return {libraries._key(sources, compiler, flags) for flags in FLAGS}
 
 
 def arguments(name, x, u, p):

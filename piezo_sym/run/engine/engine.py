@@ -67,6 +67,15 @@ def _engine(module: GeneratedModule, sources: Sources) -> Engine:
 
 
 @lru_cache(maxsize=64)
+def _side_by_side(module: GeneratedModule, sources: Sources) -> ctypes.CDLL | None:
+    """Return a module's library for members side by side; None, once and for all, without one."""
+    del module  # libraries belong to modules: another one of the same source has its own
+    try:
+        return _loaded(replace(sources, wide=True))
+    except EngineError:
+        return None
+
+
 def _loaded(sources: Sources) -> ctypes.CDLL:
     try:
         return ctypes.CDLL(str(library(sources)))
@@ -112,10 +121,7 @@ class Engine:
 
     def side_by_side(self) -> ctypes.CDLL | None:
         """Return the library that also runs members side by side, if this compiler can make one."""
-        try:
-            return _loaded(replace(self.sources, wide=True))
-        except EngineError:
-            return None
+        return _side_by_side(self.module, self.sources)  # type: ignore[arg-type]  # as above
 
     def initial_state(self, u: ArrayLike, p: Any, /) -> FloatArray:
         """Return the state at t = 0, shape (n,), for the inputs u (inputs,) at t = 0."""

@@ -1,0 +1,173 @@
+"""Networks run in C: both balances, no entropy taken, and the states of another kind of solver."""
+
+import re
+import tempfile
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import platformdirs
+import pytest
+from agreement import point
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
+from runs import METHOD, check_run, distance, jumps, written
+from strategy import networks
+
+from piezo_sym import derive, load, sine
+from piezo_sym.errors import PiezoError, RunError
+from piezo_sym.run import simulate
+from piezo_sym.run.module import rows
+from piezo_sym.spec.load import parse
+from piezo_sym.spec.model import Model
+
+SPECS = sorted(Path(__file__).with_name("specs").glob("*.toml"))
+#: What a run is asked for, and how far its states may be from the reference.
+ACCURACIES = ((("rtol", 1e-6), 2e-5), (("rtol", 1e-8), 2e-7), (("step", 1e-3), 1e-3))
+FINISHED, STOPPED = "finished", "stopped"
+
+
+@pytest.fixture(scope="module", autouse=True)
+def cache(tmp_path_factory):
+    """A cache of our own: nothing is taken from a user's."""
+    folder = tmp_path_factory.mktemp("cache")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(platformdirs, "user_cache_dir", lambda name: str(folder / name))
+        yield folder
+
+
+def initial(module, x):
+    """Return a state as `simulate` takes it."""
+    places = zip(module.STATES, rows(module.STATES, module.Parameters()), strict=True)
+    return {r.name: x[at].tolist() if r.bank else float(x[at.start]) for r, at in places}
+
+
+def driven(spec, u, seed):
+    """Return signals with the amplitudes u; temperatures stay as they are."""
+    rng = np.random.default_rng(seed)
+    units = [entry["unit"] for entry in spec["inputs"].values()]
+    return {
+        name: float(v) if unit == "K" else sine(float(v), float(rng.uniform(0.2, 2)))
+        for name, v, unit in zip(spec["inputs"], u, units, strict=True)
+    }
+
+
+def attempted(run):
+    """Return a run, or the time at which it says that it cannot go on."""
+    try:
+        return run()
+    except RunError as error:
+        message = str(error)
+        assert message.isprintable()
+        return float(re.search(r" t = (\S+) s", message)[1])
+
+
+def check(spec, iphs, seed):
+    """Run a network from some state with every accuracy, and return how that came out."""
+    x, u = point(spec, iphs, seed)
+    with tempfile.TemporaryDirectory() as folder:
+        module = written(iphs.model, folder, allow_unproved=True)
+        options = {"initial": initial(module, x), "inputs": driven(spec, u, seed)}
+        options |= {"duration": 1.0, "times": 21}
+        wanted = attempted(lambda: simulate(module, rtol=1e-10, **options))
+        for (name, value), bound in ACCURACIES:
+            given = {name: value, **options}
+            with pytest.MonkeyPatch.context() as patch:
+                found = attempted(lambda g=given, p=patch: check_run(p, module, x, **g))
+            if isinstance(wanted, float):
+                assert found == pytest.approx(wanted, abs=1e-2)
+            elif not (isinstance(found, float) and jumps(spec)):
+                assert distance(found, wanted, module) <= bound
+    return STOPPED if isinstance(wanted, float) else FINISHED
+
+
+def explore(number):
+    """Check a number of random networks that can be derived; count how their runs came out."""
+    outcomes = Counter()
+
+    @settings(max_examples=number, suppress_health_check=list(HealthCheck), database=None)
+    @given(networks(), st.integers(0, 10**6))
+    def each(spec, seed):
+        try:
+            iphs = derive(Model(**spec))
+        except PiezoError:
+            assume(False)
+        outcomes[check(spec, iphs, seed)] += 1
+
+    each()
+    return outcomes
+
+
+@pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
+@pytest.mark.parametrize("accuracy", [{"rtol": 1e-6}, {"rtol": 1e-9}, {"step": 1e-6}], ids=str)
+def test_specs(path, accuracy, tmp_path, monkeypatch):
+    model = load(path)
+    module = written(model, tmp_path)
+    u = np.array([entry.si for entry in model.inputs.values()])
+    start = module.initial_state(u, module.Parameters())
+    options = {"duration": 1e-3, "times": 11}
+    found = check_run(monkeypatch, module, start, **accuracy, **options)
+    wanted = simulate(module, rtol=1e-12, **options)
+    assert distance(found, wanted, module) <= 20 * accuracy.get("rtol", 1e-6)
+
+
+RUBBING = """
+[model]
+name = "rubbing"
+[parameters]
+m   = { value = 2.0,   unit = "kg" }
+F_c = { value = 3.0,   unit = "N" }
+T_0 = { value = 300.0, unit = "K" }
+c   = { value = 2.0,   unit = "J/K" }
+[inputs]
+F = { unit = "N" }
+[domain]
+assume = ["F_c >= 0"]
+[initial]
+p = 1.0
+[elements]
+push  = { kind = "force_source", at = "a", input = "F" }
+block = { kind = "mass", at = "a", mass = "m", state = "p" }
+body  = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }
+[elements.dry]
+kind = "damper"
+between = ["a", "wall"]
+force = "F_c*sign(v)"
+heats = "body"
+discontinuous = true
+"""
+
+
+@pytest.mark.parametrize("accuracy", [{"rtol": 1e-6}, {"step": 1e-3}], ids=str)
+def test_friction_is_right_until_the_block_sticks(accuracy, tmp_path, monkeypatch):
+    """It slows down by 2 N and stands at 0.5 s, where sign(v) has no value that holds it."""
+    module, options = written(parse(RUBBING), tmp_path), {"inputs": {"F": 1.0}, "times": 6}
+    found = check_run(monkeypatch, module, [1.0, 0.0], duration=0.49, **accuracy, **options)
+    assert np.allclose(found.p, 1 - 2 * found.time, rtol=0, atol=1e-12)
+    stop = attempted(lambda: simulate(module, duration=1.0, method=METHOD, **accuracy, **options))
+    assert stop == pytest.approx(0.5, abs=1e-2)
+
+
+@pytest.mark.parametrize("accuracy", [{"rtol": 1e-6}, {"step": 1e-2}], ids=str)
+def test_a_run_never_takes_entropy_even_of_a_model_that_would(accuracy, tmp_path):
+    """A damper that drives, generated though it is refuted: its first step is not taken."""
+    data = load(next(path for path in SPECS if "a2" in path.stem)).model_dump()
+    data["domain"]["assume"] = []
+    data["parameters"]["d"]["value"] = -0.4
+    module = written(Model(**data), tmp_path, allow_unproved=True)
+    free = simulate(module, duration=1.0, rtol=1e-8, times=11)
+    assert free.produced_damper[-1] < 0
+    with pytest.raises(RunError, match="cannot go on from t = 0 s"):
+        simulate(module, duration=1.0, method=METHOD, **accuracy)
+
+
+def test_networks():
+    outcomes = explore(8)
+    assert outcomes[FINISHED] >= 4
+
+
+@pytest.mark.long
+def test_many_networks():
+    outcomes = explore(150)
+    assert outcomes[FINISHED] >= 75
+    assert outcomes[STOPPED] >= 1
