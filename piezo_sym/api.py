@@ -26,8 +26,8 @@ def simulate(model: str | Path | Model, **options: Any) -> xarray.Dataset:
     Parameters
     ----------
     model : the name of a shipped spec, the path of a spec file, or a `Model`.
-    **options : inputs, duration, rtol or step, parameters, initial, method, times: see
-        `piezo_sym.run.simulate`.
+    **options : inputs, duration, rtol or step, parameters, initial, method, times,
+        dissipative_start: see `piezo_sym.run.simulate`.
 
     Returns
     -------

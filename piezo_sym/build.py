@@ -13,7 +13,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import final
 
-from piezo_sym.codegen import MARK, c_header, c_source, c_step, lower, numpy_module, step_of
+from piezo_sym.codegen import (
+    MARK,
+    c_header,
+    c_source,
+    c_step,
+    lower,
+    numpy_module,
+    start_of,
+    step_of,
+)
 from piezo_sym.derivation import derive
 from piezo_sym.errors import DriftError
 from piezo_sym.files import path_text, read_text, write_together
@@ -57,7 +66,7 @@ def render(model: Model, *, allow_unproved: bool = False) -> dict[str, str]:
     if not allow_unproved:
         report.raise_if_not_proved()
     program = lower(iphs, verdict_line(report))
-    step, declared = c_step(program, step_of(iphs, odd_laws(report)))
+    step, declared = c_step(program, step_of(iphs, odd_laws(report)), start_of(iphs))
     made = f"{MARK} {VERSION}; do not edit: change the spec, then run `piezo-sym generate`."
     return {
         f"{model.name}/{model.name}.py": numpy_module(program),

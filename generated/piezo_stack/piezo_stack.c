@@ -16,6 +16,11 @@
 
 #include <math.h>
 
+static double pick(int condition, double a, double b)
+{
+    return condition ? a : b;
+}
+
 static double min(double a, double b)
 {
     return a < b || a != a ? a : b; /* not a number stays so */
@@ -460,6 +465,282 @@ static double ramp_by_new(double a, double b)
     const double top = a > b ? a : b, low = a > b ? b : a;
     const double share = top <= 0.0 ? 0.0 : top / (top - low);
     return low >= 0.0 ? 0.5 : b > a ? share - 0.5 * share * share : 0.5 * share * share;
+}
+
+long piezo_stack_newton_size_start(const piezo_stack_parameters *restrict p_)
+{
+    const long hysteron_count = p_->hysteron_count;
+    return 4 + hysteron_count + hysteron_count + hysteron_count;
+}
+
+int piezo_stack_newton_start(const double *restrict x,
+                             const double *restrict x_new,
+                             const double *restrict u,
+                             double h,
+                             const piezo_stack_parameters *restrict p_,
+                             double *restrict out)
+{
+    const long hysteron_count = p_->hysteron_count;
+    const double M = p_->M;
+    const double k = p_->k;
+    const double q_l = p_->q_l;
+    const double d = p_->d;
+    const double C = p_->C;
+    const double *restrict L = p_->L;
+    const double *restrict rho = p_->rho;
+    const double *restrict i_0 = p_->i_0;
+    const double a = p_->a;
+    const double T_0 = p_->T_0;
+    const double c_0 = p_->c_0;
+    const double lam = p_->lam;
+    const double q = x[0];
+    const double p = x[1];
+    const double Q_C = x[2];
+    const double *restrict phi = x + 3;
+    const double S = x[3 + hysteron_count];
+    const double q_new = x_new[0];
+    const double p_new = x_new[1];
+    const double Q_C_new = x_new[2];
+    const double *restrict phi_new = x_new + 3;
+    const double S_new = x_new[3 + hysteron_count];
+    const double F_ext = u[0];
+    const double V_in = u[1];
+    const double T_e = u[2];
+    double *restrict kept_reaction_phi_3 = out + 4 + hysteron_count;
+    double *restrict kept_reaction_phi_4 = kept_reaction_phi_3 + hysteron_count;
+    /* reciprocals */
+    const double per_C = 1.0/C;
+    const double per_M = 1.0/M;
+    const double per_T_0 = 1.0/T_0;
+    const double per_c_0 = 1.0/c_0;
+    const double per_h = 1.0/h;
+    /* co-states dU/dx */
+    const double F_spring = k*(q_new - q_l);
+    const double v_mass = p_new*per_M;
+    const double V_capacitor = Q_C_new*per_C;
+    /* means of exponentials */
+    const double change_T = (S_new - S)*per_c_0;
+    const double phi3_T = phi3(change_T);
+    const double phi2_T = 0.5 + change_T*phi3_T;
+    const double phi1_T = 1.0 + change_T*phi2_T;
+    /* co-states dU/dx */
+    const double T_minus_T_0 = T_0*expm1(S*per_c_0)*phi1_T + T_0*(S_new - S)*per_c_0*phi2_T;
+    const double per_T_minus_T_0 = 1.0/T_minus_T_0;
+    const double T = T_0 + T_minus_T_0;
+    const double per_T = 1.0/T;
+    /* transducer ratios */
+    const double alpha_transducer = a*T*per_T_0;
+    /* dissipative laws */
+    const double F_damper = d*v_mass;
+    /* heats */
+    const double heat_damper = F_damper*v_mass;
+    /* numerical losses */
+    const double loss_q = 0.5*(k*power_2(q_new - q));
+    const double loss_p = 0.5*(power_2(p_new - p)*per_M);
+    const double loss_Q_C = 0.5*(power_2(Q_C_new - Q_C)*per_C);
+    /* derivatives */
+    const double dloss_q_dq_new = k*(q_new - q);
+    const double dheat_numerical_dq_new = dloss_q_dq_new*per_h;
+    const double dF_damper_dp_new = d*per_M;
+    const double dheat_damper_dp_new = v_mass*dF_damper_dp_new + F_damper*per_M;
+    const double dloss_p_dp_new = 0.5*(2.0*((p_new - p)*per_M));
+    const double dheat_numerical_dp_new = dloss_p_dp_new*per_h;
+    const double dloss_Q_C_dQ_C_new = 0.5*(2.0*((Q_C_new - Q_C)*per_C));
+    const double dheat_numerical_dQ_C_new = dloss_Q_C_dQ_C_new*per_h;
+    const double dphi2_T_dS_new = (phi2_T - 2.0*phi3_T)*per_c_0;
+    const double dphi1_T_dS_new = (phi1_T - phi2_T)*per_c_0;
+    const double dT_minus_T_0_dS_new = T_0*expm1(S*per_c_0)*dphi1_T_dS_new
+        + T_0*per_c_0*phi2_T
+        + T_0*(S_new - S)*per_c_0*dphi2_T_dS_new;
+    const double dalpha_transducer_dS_new = a*per_T_0*dT_minus_T_0_dS_new;
+    /* residuals */
+    const double gap_q = q_new - q - h*v_mass;
+    const double gap_p = p_new
+        - p
+        - h*(alpha_transducer*V_capacitor - F_spring - F_damper + F_ext);
+    /* Newton's equations, solved */
+    const double entry_change_q_2 = -h*per_M;
+    const double share_change_q_2 = h*k;
+    const double share_change_q_4 = -h*dheat_numerical_dq_new*per_T;
+    const double pivot_change_p = 1.0
+        + h*dF_damper_dp_new
+        - share_change_q_2*entry_change_q_2;
+    const double per_pivot_change_p = 1.0/pivot_change_p;
+    const double entry_change_p_3 = -h*alpha_transducer*per_C;
+    const double entry_change_p_4 = -h*V_capacitor*dalpha_transducer_dS_new;
+    const double right_change_p = gap_p - share_change_q_2*gap_q;
+    const double share_change_p_3 = h*alpha_transducer*per_M*per_pivot_change_p;
+    const double share_change_p_4 = (-h*(dheat_damper_dp_new*per_T + dheat_numerical_dp_new*per_T) - share_change_q_4*entry_change_q_2)*per_pivot_change_p;
+    /* hysteron: sums over lanes and rows */
+    double sum_i_hysteron = 0.0;
+    double heat_hysteron = 0.0;
+    double sum_loss_phi = 0.0;
+    double dheat_hysteron_dS_new = 0.0;
+    double sum_share_phi_3 = 0.0;
+    double sum_share_phi_3_3 = 0.0;
+    double sum_share_phi_3_4 = 0.0;
+    double sum_share_phi_4 = 0.0;
+    double sum_share_phi_4_3 = 0.0;
+    double sum_share_phi_4_4 = 0.0;
+#pragma omp simd reduction(+:sum_i_hysteron, heat_hysteron, sum_loss_phi, \
+        dheat_hysteron_dS_new, sum_share_phi_3, sum_share_phi_3_3, sum_share_phi_3_4, \
+        sum_share_phi_4, sum_share_phi_4_3, sum_share_phi_4_4)
+    for (long j = 0; j < hysteron_count; ++j) {
+        const double per_L = 1.0/L[j];
+        const double i_hysteron = phi_new[j]*per_L;
+        const double V_hysteron = pick(fabs(i_hysteron) <= i_0[j], 0.0, rho[j]*per_T_minus_T_0*(i_hysteron - copysign(i_0[j], i_hysteron)));
+        const double loss_phi = 0.5*(power_2(phi_new[j] - phi[j])*per_L);
+        const double dV_hysteron_dphi_new = pick(fabs(i_hysteron) > i_0[j], rho[j]*per_T_minus_T_0, 0.0)*per_L;
+        const double dheat_hysteron_dphi_new = i_hysteron*dV_hysteron_dphi_new
+            + V_hysteron*per_L;
+        const double dloss_phi_dphi_new = 0.5*(2.0*((phi_new[j] - phi[j])*per_L));
+        const double dheat_numerical_dphi_new = dloss_phi_dphi_new*per_h;
+        const double dV_hysteron_dS_new = pick(fabs(i_hysteron) <= i_0[j], 0.0, -rho[j]*per_T_minus_T_0*per_T_minus_T_0*(i_hysteron - copysign(i_0[j], i_hysteron))*dT_minus_T_0_dS_new);
+        const double gap_phi = phi_new[j] - phi[j] - h*(V_in - V_capacitor - V_hysteron);
+        const double pivot_phi = 1.0 + h*dV_hysteron_dphi_new;
+        const double per_pivot_phi = 1.0/pivot_phi;
+        const double free_phi = gap_phi*per_pivot_phi;
+        const double reaction_phi_3 = h*per_C*per_pivot_phi;
+        const double reaction_phi_4 = h*dV_hysteron_dS_new*per_pivot_phi;
+        const double share_phi_3 = -h*per_L;
+        const double share_phi_4 = -h*(dheat_hysteron_dphi_new*per_T + dheat_numerical_dphi_new*per_T);
+        sum_i_hysteron += i_hysteron;
+        heat_hysteron += V_hysteron*i_hysteron;
+        sum_loss_phi += loss_phi;
+        dheat_hysteron_dS_new += i_hysteron*dV_hysteron_dS_new;
+        sum_share_phi_3 += share_phi_3*free_phi;
+        sum_share_phi_3_3 += share_phi_3*reaction_phi_3;
+        sum_share_phi_3_4 += share_phi_3*reaction_phi_4;
+        sum_share_phi_4 += share_phi_4*free_phi;
+        sum_share_phi_4_3 += share_phi_4*reaction_phi_3;
+        sum_share_phi_4_4 += share_phi_4*reaction_phi_4;
+        kept_reaction_phi_3[j] = reaction_phi_3;
+        kept_reaction_phi_4[j] = reaction_phi_4;
+        out[3 + j] = free_phi;
+    }
+    /* numerical losses */
+    const double heat_numerical = (loss_q + loss_p + loss_Q_C + sum_loss_phi)*per_h;
+    /* residuals */
+    const double gap_Q_C = Q_C_new - Q_C - h*(sum_i_hysteron - alpha_transducer*v_mass);
+    const double gap_S = S_new
+        - S
+        - h*((heat_hysteron + heat_damper)*per_T + lam*(T_e*per_T - 1.0) + heat_numerical*per_T);
+    /* Newton's equations, solved */
+    const double pivot_change_Q_C = 1.0
+        - sum_share_phi_3_3
+        - share_change_p_3*entry_change_p_3;
+    const double per_pivot_change_Q_C = 1.0/pivot_change_Q_C;
+    const double entry_change_Q_C_4 = h*v_mass*dalpha_transducer_dS_new
+        - sum_share_phi_3_4
+        - share_change_p_3*entry_change_p_4;
+    const double right_change_Q_C = gap_Q_C
+        - sum_share_phi_3
+        - share_change_p_3*right_change_p;
+    const double share_change_Q_C_4 = (-h*dheat_numerical_dQ_C_new*per_T - sum_share_phi_4_3 - share_change_p_4*entry_change_p_3)*per_pivot_change_Q_C;
+    const double pivot_change_S = 1.0
+        - h*(dheat_hysteron_dS_new*per_T + (-(heat_hysteron + heat_damper)*per_T*per_T - lam*T_e*per_T*per_T - heat_numerical*per_T*per_T)*dT_minus_T_0_dS_new)
+        - sum_share_phi_4_4
+        - share_change_p_4*entry_change_p_4
+        - share_change_Q_C_4*entry_change_Q_C_4;
+    const double right_change_S = gap_S
+        - sum_share_phi_4
+        - share_change_q_4*gap_q
+        - share_change_p_4*right_change_p
+        - share_change_Q_C_4*right_change_Q_C;
+    const double change_S = right_change_S/pivot_change_S;
+    const double change_Q_C = (right_change_Q_C - entry_change_Q_C_4*change_S)*per_pivot_change_Q_C;
+    const double change_p = (right_change_p - entry_change_p_3*change_Q_C - entry_change_p_4*change_S)*per_pivot_change_p;
+    const double change_q = gap_q - entry_change_q_2*change_p;
+    out[0] = change_q;
+    out[1] = change_p;
+    out[2] = change_Q_C;
+    out[3 + hysteron_count] = change_S;
+    /* hysteron: reactions */
+#pragma omp simd
+    for (long j = 0; j < hysteron_count; ++j) {
+        out[3 + j] -= kept_reaction_phi_3[j]*change_Q_C + kept_reaction_phi_4[j]*change_S;
+    }
+    return (pivot_change_p > 0.0) & (pivot_change_Q_C > 0.0) & (pivot_change_S > 0.0);
+}
+
+void piezo_stack_means_start(const double *restrict x,
+                             const double *restrict x_new,
+                             const double *restrict u,
+                             double h,
+                             const piezo_stack_parameters *restrict p_,
+                             double *restrict out)
+{
+    const long hysteron_count = p_->hysteron_count;
+    const double M = p_->M;
+    const double k = p_->k;
+    const double d = p_->d;
+    const double C = p_->C;
+    const double *restrict L = p_->L;
+    const double *restrict rho = p_->rho;
+    const double *restrict i_0 = p_->i_0;
+    const double T_0 = p_->T_0;
+    const double c_0 = p_->c_0;
+    const double lam = p_->lam;
+    const double q = x[0];
+    const double p = x[1];
+    const double Q_C = x[2];
+    const double *restrict phi = x + 3;
+    const double S = x[3 + hysteron_count];
+    const double q_new = x_new[0];
+    const double p_new = x_new[1];
+    const double Q_C_new = x_new[2];
+    const double *restrict phi_new = x_new + 3;
+    const double S_new = x_new[3 + hysteron_count];
+    const double F_ext = u[0];
+    const double V_in = u[1];
+    const double T_e = u[2];
+    /* reciprocals */
+    const double per_C = 1.0/C;
+    const double per_M = 1.0/M;
+    const double per_c_0 = 1.0/c_0;
+    const double per_h = 1.0/h;
+    /* co-states dU/dx */
+    const double v_mass = p_new*per_M;
+    /* means of exponentials */
+    const double change_T = (S_new - S)*per_c_0;
+    const double phi3_T = phi3(change_T);
+    const double phi2_T = 0.5 + change_T*phi3_T;
+    const double phi1_T = 1.0 + change_T*phi2_T;
+    /* co-states dU/dx */
+    const double T_minus_T_0 = T_0*expm1(S*per_c_0)*phi1_T + T_0*(S_new - S)*per_c_0*phi2_T;
+    const double per_T_minus_T_0 = 1.0/T_minus_T_0;
+    const double T = T_0 + T_minus_T_0;
+    const double per_T = 1.0/T;
+    /* dissipative laws */
+    const double F_damper = d*v_mass;
+    /* numerical losses */
+    const double loss_q = 0.5*(k*power_2(q_new - q));
+    const double loss_p = 0.5*(power_2(p_new - p)*per_M);
+    const double loss_Q_C = 0.5*(power_2(Q_C_new - Q_C)*per_C);
+    /* hysteron: sums over lanes and rows */
+    double sum_i_hysteron = 0.0;
+    double sum_loss_phi = 0.0;
+#pragma omp simd reduction(+:sum_i_hysteron, sum_loss_phi)
+    for (long j = 0; j < hysteron_count; ++j) {
+        const double per_L = 1.0/L[j];
+        const double i_hysteron = phi_new[j]*per_L;
+        const double V_hysteron = pick(fabs(i_hysteron) <= i_0[j], 0.0, rho[j]*per_T_minus_T_0*(i_hysteron - copysign(i_0[j], i_hysteron)));
+        const double loss_phi = 0.5*(power_2(phi_new[j] - phi[j])*per_L);
+        sum_i_hysteron += i_hysteron;
+        sum_loss_phi += loss_phi;
+        out[3 + j] = V_hysteron*i_hysteron;
+        out[4 + hysteron_count + j] = V_hysteron*i_hysteron*per_T;
+    }
+    /* numerical losses */
+    const double heat_numerical = (loss_q + loss_p + loss_Q_C + sum_loss_phi)*per_h;
+    out[0] = v_mass*F_ext;
+    out[1] = sum_i_hysteron*V_in;
+    out[2] = lam*(T_e - T);
+    out[3 + hysteron_count] = F_damper*v_mass;
+    out[4 + hysteron_count + hysteron_count] = F_damper*v_mass*per_T;
+    out[5 + hysteron_count + hysteron_count] = lam*(T_e*per_T - 1.0);
+    out[6 + hysteron_count + hysteron_count] = heat_numerical;
+    out[7 + hysteron_count + hysteron_count] = heat_numerical*per_T;
 }
 
 /* The step of the discrete gradient, of one state or of many side by side. */

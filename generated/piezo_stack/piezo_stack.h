@@ -196,6 +196,25 @@ int piezo_stack_inside(const double *x,
                        const double *u,
                        const piezo_stack_parameters *p_);
 
+/*
+ * The dissipative step: co-states of stores at its end, for a start after a jump.
+ * As piezo_stack_newton_size, piezo_stack_newton and piezo_stack_means; the means end with
+ *     heat [W] and entropy production [W/K] of what the step itself loses.
+ */
+long piezo_stack_newton_size_start(const piezo_stack_parameters *p_);
+int piezo_stack_newton_start(const double *x,
+                             const double *x_new,
+                             const double *u,
+                             double h,
+                             const piezo_stack_parameters *p_,
+                             double *out);
+void piezo_stack_means_start(const double *x,
+                             const double *x_new,
+                             const double *u,
+                             double h,
+                             const piezo_stack_parameters *p_,
+                             double *out);
+
 #ifdef __cplusplus
 }
 #endif

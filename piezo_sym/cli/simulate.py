@@ -39,6 +39,9 @@ def simulate(
     step: Annotated[float | None, typer.Option(help="A fixed step [s] instead of --rtol.")] = None,
     method: Annotated[str | None, typer.Option(help=METHODS)] = None,
     times: Annotated[int, typer.Option(help="Number of samples.")] = 1001,
+    dissipative_start: Annotated[
+        bool, typer.Option("--dissipative-start", help="Damp what rings after a jump of an input.")
+    ] = False,
     out: Annotated[Path | None, typer.Option(help="Result as .nc (NetCDF) or .csv.")] = None,
 ) -> None:
     """Simulate a spec's generated module and print its last values.
@@ -60,6 +63,7 @@ def simulate(
             step=step,
             method=method,
             times=times,
+            dissipative_start=dissipative_start,
         )
     _print(result)
     if out is not None:

@@ -81,7 +81,8 @@ def _values(step: Step) -> Iterator[Expr]:
     yield from (quantity.value for quantity in step.quantities)
     for change in step.changes:
         yield change.free
-    for rows in (step.supplies, step.entropies, step.heats, step.productions):
+    tables = (step.supplies, step.entropies, step.heats, step.productions, step.numerical)
+    for rows in tables:
         for row in rows:
             yield from (row.value, *row.listed)
 
@@ -123,4 +124,5 @@ def _with_values(step: Step, names: Mapping[str, Sym]) -> Step:
         entropies=tuple(map(row, step.entropies)),
         heats=tuple(map(row, step.heats)),
         productions=tuple(map(row, step.productions)),
+        numerical=tuple(map(row, step.numerical)),
     )

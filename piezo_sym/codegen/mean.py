@@ -9,11 +9,13 @@ gradient: its product with ``new - old`` is U(new) - U(old), to round-off.
     exp(a*x + b)        its old value times phi1(a*(new - old)), phi1(d) = (exp(d) - 1)/d
     max(x, 0)           ramp(old, new): no difference of integrals, so nothing cancels
     else                Gauss quadrature, exact to round-off for smooth laws over a step
+
+`lead` is how far the law's last value is above its mean; it too is found without a difference.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 
 from piezo_sym.spec.calculus import add, derivative, div, mul, neg, power
@@ -75,6 +77,27 @@ def mean(law: Expr, old: Mapping[str, Expr], new: Mapping[str, Expr]) -> Expr:
         case Pow(base, exponent) if _is_monomial(exponent) and is_affine(base, old.keys()):
             return _monomial(replace(base, old), replace(base, new), exponent.numerator)
     return _quadrature(law, old, new)
+
+
+def lead(law: Expr, letter: str, old: Expr, new: Expr) -> Expr:
+    """Return ``(E(new) - mean of E)/(new - old)``, the mean of s E'(old + s*(new - old)).
+
+    Where E' >= 0 every term of it is >= 0, so that rounding cannot change its sign.
+
+    Parameters
+    ----------
+    law : a smooth law E.
+    letter, old, new : its variable, and what that is before and after.
+    """
+    slope = derivative(law, letter)
+    if letter not in names(slope):
+        return mul(HALF, slope)
+    moved = add(new, neg(old))
+    terms = []
+    for share, weight in _nodes():
+        there = add(old, mul(share, moved))
+        terms.append(mul(mul(weight, share), replace(slope, {letter: there})))
+    return add(*terms)
 
 
 def mean_excess(
@@ -185,9 +208,14 @@ def _monomial(old: Expr, new: Expr, n: int) -> Expr:
 
 def _quadrature(law: Expr, old: Mapping[str, Expr], new: Mapping[str, Expr]) -> Expr:
     terms = []
+    for share, weight in _nodes():
+        at = {n: add(old[n], mul(share, add(new[n], neg(old[n])))) for n in old}
+        terms.append(mul(weight, replace(law, at)))
+    return add(*terms)
+
+
+def _nodes() -> Iterator[tuple[Num, Num]]:
+    """Yield the nodes and weights of Gauss's rule on [0, 1]."""
     for node, weight in GAUSS:
         for sign in (-1, 1):
-            share = Num((1 + sign * node) / 2)
-            at = {n: add(old[n], mul(share, add(new[n], neg(old[n])))) for n in old}
-            terms.append(mul(Num(weight / 2), replace(law, at)))
-    return add(*terms)
+            yield Num((1 + sign * node) / 2), Num(weight / 2)

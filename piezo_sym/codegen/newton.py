@@ -9,6 +9,9 @@ Each lane has a row of its own, ``pivot*d + B y = gap``, solved for ``d = free -
 put into the shared rows (a Schur complement).  Their unknowns y are the changes of the shared
 states, and one border unknown for each sum over lanes through which lanes act on each other;
 `eliminate` solves them as they stand, term by term.  A step costs O(r).
+
+A dissipative step, for a start after a jump, takes the co-states of stores at its end: it is not
+of second order, but it damps what is much faster than h.  `loss` says where the energy goes.
 """
 
 from __future__ import annotations
@@ -20,13 +23,13 @@ from piezo_sym.codegen.economy import economical
 from piezo_sym.codegen.eliminate import Equations, eliminate
 from piezo_sym.codegen.functions import exchanges_of, ports_of, rates_of
 from piezo_sym.codegen.jacobian import jacobian_of
+from piezo_sym.codegen.loss import is_lossy, with_loss
 from piezo_sym.codegen.program import Entry, Field, Row
 from piezo_sym.codegen.quantities import Quantities
 from piezo_sym.codegen.step import Change, Step
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.calculus import add, div, mul, neg
 from piezo_sym.spec.expressions import ONE, Expr, Sym
-from piezo_sym.spec.names import fresh
 from piezo_sym.spec.tables import lane_parameters
 
 
@@ -39,8 +42,24 @@ def step_of(iphs: IPHS, odd: frozenset[str]) -> Step:
     odd : elements whose dissipative laws are proved odd; across kinks they are averaged.
     """
     q = Quantities(iphs, odd)
+    return _step(iphs, q, q.name("h"), rates_of(iphs, q), ())
+
+
+def start_of(iphs: IPHS) -> Step | None:
+    """Return the dissipative step of a system; None without a store, or a body to heat."""
+    if not is_lossy(iphs):
+        return None
+    q = Quantities(iphs, frozenset(), late=True)
+    h = q.name("h")
+    rates, *numerical = with_loss(q, rates_of(iphs, q), Sym(h))
+    return _step(iphs, q, h, rates, tuple(numerical))
+
+
+def _step(
+    iphs: IPHS, q: Quantities, h: str, rates: tuple[Row, ...], numerical: tuple[Row, ...]
+) -> Step:
+    """Return a step of size h with these rates."""
     states = tuple(Field(q.after[port.state], "", "", placed.bank) for placed, port in q.stores)
-    rates = rates_of(iphs, q)
     slots = iphs.system.processes
     heats = tuple(Row(slot, heat) for slot, heat in zip(slots, q.heats, strict=True))
     produced = zip(slots, q.outputs, q.forces, iphs.system.heats, strict=True)
@@ -51,11 +70,11 @@ def step_of(iphs: IPHS, odd: frozenset[str]) -> Step:
     entropies = tuple(Row(Slot(body), rate) for body, rate in exchanges_of(q))
     lanes = {**lane_parameters(iphs.model), **_banks(q)}
     jacobian = jacobian_of(rates, states, lanes, q)
-    equations = _Equations(q, states, rates, jacobian.entries)
+    equations = _Equations(q, h, states, rates, jacobian.entries)
     pivots, changes = equations.solved()
     return economical(
         Step(
-            h=equations.h,
+            h=h,
             after=tuple(state.name for state in states),
             quantities=tuple(q.defined),
             pivots=pivots,
@@ -65,6 +84,7 @@ def step_of(iphs: IPHS, odd: frozenset[str]) -> Step:
             heats=heats,
             productions=productions,
             taken=frozenset(q.taken),
+            numerical=numerical,
         ),
         lanes,
     )
@@ -87,12 +107,12 @@ class _Equations:
     def __init__(
         self,
         q: Quantities,
+        h: str,
         states: tuple[Field, ...],
         rates: tuple[Row, ...],
         entries: tuple[Entry, ...],
     ) -> None:
-        self.q, self.states, self.rates, self.entries = q, states, rates, entries
-        self.h = self._name("h")
+        self.q, self.h, self.states, self.rates, self.entries = q, h, states, rates, entries
         self.shared = tuple(n for n, state in enumerate(states) if not state.bank)
         self.borders: dict[tuple[int, Expr], int] = {}
         self.gaps = tuple(self._gap(n) for n in range(len(states)))
@@ -101,11 +121,6 @@ class _Equations:
             for outer in entry.outer:
                 key = (entry.col, outer.right)
                 self.borders.setdefault(key, len(self.shared) + len(self.borders))
-
-    def _name(self, base: str) -> str:
-        name = fresh(base, self.q.taken)
-        self.q.taken.add(name)
-        return name
 
     def _gap(self, n: int) -> Expr:
         """Return the residual of state n."""
@@ -118,7 +133,7 @@ class _Equations:
         """Return the pivots, and the change of each state."""
         names = [f"change_{self.q.stores[n][1].state}" for n in self.shared]
         names += [f"border_{n + 1}" for n in range(len(self.borders))]
-        equations = Equations([self._name(name) for name in names])
+        equations = Equations([self.q.name(name) for name in names])
         for n in range(len(names)):
             equations.add((n, n), ONE)
         for n, state in enumerate(self.shared):

@@ -52,9 +52,12 @@ class Quantities:
     iphs : the system.
     odd : for a step, the dissipative elements whose laws are odd; co-states are then means over the
         step, and laws with kinks too.  None for the quantities at a point.
+    late : for a step, co-states of stores are those at its end; temperatures are still means.
     """
 
-    def __init__(self, iphs: IPHS, odd: frozenset[str] | None = None) -> None:
+    def __init__(
+        self, iphs: IPHS, odd: frozenset[str] | None = None, *, late: bool = False
+    ) -> None:
         self.system = iphs.system
         self.circuit = iphs.circuit
         self.stores = tuple(self.circuit.of(Storage, Body))
@@ -64,7 +67,9 @@ class Quantities:
         self.taken |= {str(symbol.name) for symbol, _ in (*iphs.slopes, *iphs.shares)}
         self.defined: list[Quantity] = []
         self.odd = odd or frozenset()
-        self.after = {} if odd is None else {p.state: self._after(p) for _, p in self.stores}
+        self.late = late
+        stores = self.stores if odd is not None else ()
+        self.after = {port.state: self.name(f"{port.state}_new") for _, port in stores}
         self._sums: dict[LaneSum, Sym] = {}
         self._functions: dict[Expr, Sym] = {}
         self._costates()
@@ -72,11 +77,15 @@ class Quantities:
         self._loops(iphs)
         self.forces, self.outputs, self.heats = self._processes()
 
-    def define(self, base: str, value: Expr, bank: str | None, note: str) -> Sym:
-        """Add a definition under a fresh name, and return the name."""
+    def name(self, base: str) -> str:
+        """Return a fresh name, and take it."""
         name = fresh(base, self.taken)
         self.taken.add(name)
-        return self.defined_as(name, value, bank, note)
+        return name
+
+    def define(self, base: str, value: Expr, bank: str | None, note: str) -> Sym:
+        """Add a definition under a fresh name, and return the name."""
+        return self.defined_as(self.name(base), value, bank, note)
 
     def defined_as(self, name: str, value: Expr, bank: str | None, note: str) -> Sym:
         """Add a definition under a name that is taken for it, and return the name."""
@@ -153,10 +162,12 @@ class Quantities:
             yield mul(coefficient(own), value)
 
     def _costates(self) -> None:
-        note = "mean co-states" if self.after else "co-states dU/dx"
+        note = "mean co-states" if self.after and not self.late else "co-states dU/dx"
         for placed, port in self.stores:
             law = rename(port.law, {port.letter: port.state})
-            if self.after:
+            if self.late and isinstance(port, Storage):
+                law = rename(law, self.after)
+            elif self.after:
                 law = self._functions_named(mean(law, *self._ends(port.state)), port)
             self.defined_as(costate_name(port), law, placed.bank, note)
 
@@ -177,11 +188,6 @@ class Quantities:
             value = Call(function, (change,))
             named = self.define(f"{function}_{name}", value, None, note)
             self._functions[value] = self._functions[Call(function, (arg,))] = named
-
-    def _after(self, port: Storage | Body) -> str:
-        name = fresh(f"{port.state}_new", self.taken)
-        self.taken.add(name)
-        return name
 
     def _ends(self, state: str) -> tuple[dict[str, Expr], dict[str, Expr]]:
         """Return what a state is before and after a step."""

@@ -41,6 +41,7 @@ class Step:
     supplies, entropies : power and entropy rate that ports put in, a row a port and an exchange.
     heats, productions : heat and entropy production of each process, a bank's one a lane.
     taken : every name in use.
+    numerical : of a dissipative step, heat and entropy production of its numerical loss.
     """
 
     h: str
@@ -53,3 +54,4 @@ class Step:
     heats: tuple[Row, ...]
     productions: tuple[Row, ...]
     taken: frozenset[str]
+    numerical: tuple[Row, ...] = ()

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from piezo_sym.errors import RunError
+from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.discrete import METHOD, adaptive, fixed
 from piezo_sym.run.guard import NAME, crossing, depth, domain_error
 from piezo_sym.run.integrate import Batch, Tolerance, batches
@@ -45,18 +45,29 @@ def compiled_run(
     samples: FloatArray,
     rtol: float,
     step: float | None,
+    *,
+    starts: bool = False,
 ) -> tuple[Trajectory, dict[str, object]]:
     """Return a run with a fixed step, or with a tolerance where `step` is None.
 
+    Parameters
+    ----------
+    starts : whether the first step after a jump of the inputs is dissipative.
+
     Raises
     ------
+    UsageError : it shall be, but the model has no store to damp, or no body to take the loss.
     RunError : the state leaves the domain, or no step can go on; says when, and with which values.
     """
+    if starts and not engine.starts:
+        what = f"model '{engine.module.NAME}' has no thermal_mass to take a loss, or no storage"
+        remedy = "leave it out, or add a thermal_mass"
+        raise UsageError(what, "simulate.dissipative_start", "False", remedy)
     check_inputs(system, x, samples)
     rtol = max(rtol, LEAST_RTOL)
     try:
         if step is None:
-            runs = adaptive([system], engine, x[None], samples, rtol)
+            runs = adaptive([system], engine, x[None], samples, rtol, starts=starts)
             trajectory = inside(system, runs.trajectory(0))
             accuracy: dict[str, object] = {
                 "rtol": rtol,
@@ -64,7 +75,8 @@ def compiled_run(
                 "balances": FINER,
             }
         else:
-            trajectory = fixed([system], engine, x[None], samples, step).trajectory(0)
+            runs = fixed([system], engine, x[None], samples, step, starts=starts)
+            trajectory = runs.trajectory(0)
             accuracy = {"step": step}
     except RunError as stopped:
         raise cause(system, x, samples, stopped) from stopped

@@ -94,7 +94,17 @@ def variables(system: System, trajectory: Trajectory) -> Iterator[Named]:
     yield from spread(
         system, module.PROCESSES, produced, "produced_", ("J/K", "entropy produced by")
     )
+    if trajectory.numerical is not None:
+        yield from numerical(trajectory.numerical)
     yield "energy_residual", (("time",), residual, described("J", "U - U(0) - energy put in"))
+
+
+def numerical(rows: FloatArray) -> Iterator[Named]:
+    """Yield heat and entropy production of dissipative starts."""
+    about = "by dissipative starts since t = 0"
+    yield "heat_numerical", (("time",), rows[0], described("J", f"heat released {about}"))
+    text = f"entropy produced {about}"
+    yield "produced_numerical", (("time",), rows[1], described("J/K", text))
 
 
 def spread(

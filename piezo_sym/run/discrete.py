@@ -3,7 +3,8 @@
 Input: systems that differ in parameters, their engine, their states at t = 0 and the sample times.
 Output: `Runs`.  With a step, one run of each.  With a tolerance, two runs side by side on one mesh,
 the second with half its steps, each with a state of its own, so that its balances stay exact.
-States are extrapolated from both; ledger and balances are those of the finer run.
+States are extrapolated from both; ledger and balances are those of the finer run.  If asked to,
+the first step after a jump of the inputs is made of four dissipative quarters, in each of the runs.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from typing import TYPE_CHECKING, TypeAlias, final
 import numpy as np
 
 from piezo_sym.errors import RunError
-from piezo_sym.run.engine.march import Batch, steps_at
+from piezo_sym.run.engine.march import Batch, Way, steps_at
 from piezo_sym.run.ledger import Trajectory
 from piezo_sym.run.mesh import Block, blocks, inputs_at
 from piezo_sym.run.scales import shared
@@ -62,17 +63,19 @@ class Runs:
         """Return run k; raise its error if it stopped."""
         if error := self.errors[k]:
             raise error
-        batch, member = self.batch, self.batch.members[k]
+        batch, member, sums = self.batch, self.batch.members[k], self.batch.sums[k].T
+        rows = batch.rows
         balanced = batch.fine if self.extrapolated else batch.states
         return Trajectory(
             start=self.start[k],
             states=batch.states[k].T,
             inputs=inputs_at(self.systems[k], self.times),
-            integrals=batch.sums[k].T[: batch.rows.booked],
+            integrals=sums[: rows.booked],
             steps=member.steps,
             evaluations=member.model.iterations,
             balanced=balanced[k].T,
             halvings=member.model.halvings,
+            numerical=sums[-rows.numerical :] if rows.numerical else None,
         )
 
 
@@ -83,6 +86,8 @@ def fixed(
     times: FloatArray,
     step: float,
     watch: Watch | None = None,
+    *,
+    starts: bool = False,
 ) -> Runs:
     """Return runs with steps of at most `step`; they end at samples and at breaks of inputs.
 
@@ -91,11 +96,12 @@ def fixed(
     systems : with equal inputs and sizes.
     x : their states (systems, n) at t = 0.
     watch : told the time reached, now and then.
+    starts : whether the first step after a jump of the inputs is dissipative.
     """
-    run = _Run(systems, engine, x, times)
+    run = _Run(systems, engine, x, times, starts)
     size = max(1, CHUNK // x.shape[1])
     for block in blocks(systems[0], times, step, lambda: size):
-        done = run.batch.run("march", block.lengths, [block.middles()], 0, block.samples)
+        done = run.through(run.batch, "march", block, range(1))
         run.note(block, done)
         if not run.goes_on(block, watch):
             break
@@ -109,6 +115,8 @@ def adaptive(
     times: FloatArray,
     rtol: float,
     watch: Watch | None = None,
+    *,
+    starts: bool = False,
 ) -> Runs:
     """Return runs on a mesh that holds the error of each interval below rtol times a scale.
 
@@ -118,22 +126,23 @@ def adaptive(
     """
     first = systems[0]
     longest = min(first.inputs.max_step, times[-1] / FEWEST_INTERVALS)
-    run = _Run(systems, engine, x, times)
+    run = _Run(systems, engine, x, times, starts)
     batch = run.batch
-    batch.scale[:] = LOOSER * rtol * _scale(systems, engine, x, times, longest)
+    batch.scale[:] = LOOSER * rtol * _scale(run, engine, longest)
     for block in blocks(first, times, longest, lambda: _block_size(batch)):
-        run.note(block, _through(batch, block))
+        run.note(block, _through(run, block))
         if not run.goes_on(block, watch):
             break
     return run.runs(extrapolated=True)
 
 
-def _through(batch: Batch, block: Block) -> list[int]:
+def _through(run: _Run, block: Block) -> list[int]:
     """Take members through a block, and return how many of its intervals each has done.
 
     Where a level is missing, members stop; what is left is then cut anew, for inputs are sampled
     at the middles of all steps that a level may take.
     """
+    batch = run.batch
     done = [0] * len(batch)
     while True:
         left = [n for n, member in zip(done, batch.members, strict=True) if not member.failed]
@@ -142,9 +151,8 @@ def _through(batch: Batch, block: Block) -> list[int]:
         first = min(left)
         part = block.part(first, first + _block_size(batch))
         levels = range(max(0, min(batch.levels) - BELOW), max(batch.levels) + ABOVE + 1)
-        u = [part.middles(steps_at(level)) for level in levels]
         before = [n - first for n in done]
-        found = batch.run("adapt", part.lengths, u, levels[0], part.samples, before)
+        found = run.through(batch, "adapt", part, levels, before)
         done = [first + n for n in found]
 
 
@@ -153,14 +161,30 @@ class _Run:
     """A batch on its way, and the errors of members that stopped."""
 
     def __init__(
-        self, systems: Sequence[System], engine: Engine, x: FloatArray, times: FloatArray
+        self,
+        systems: Sequence[System],
+        engine: Engine,
+        x: FloatArray,
+        times: FloatArray,
+        starts: bool,
     ) -> None:
-        self.systems, self.start, self.times = systems, x, times
-        self.batch = Batch(engine, [system.parameters for system in systems], x, times.size)
+        self.systems, self.start, self.times, self.starts = systems, x, times, starts
+        parameters = [system.parameters for system in systems]
+        self.batch = Batch(engine, parameters, x, times.size, starts=starts)
+        self.jumps = systems[0].inputs.jumps if starts else frozenset()
         self.errors: list[RunError | None] = [None] * len(systems)
         if times[0] == 0:
             self.batch.states[:, 0] = self.batch.fine[:, 0] = x
             self.batch.sums[:, 0] = 0.0
+
+    def through(
+        self, batch: Batch, name: Way, block: Block, levels: range, done: Sequence[int] = ()
+    ) -> list[int]:
+        """Take a batch through a block, and return how many intervals each member has done."""
+        u = [block.middles(steps_at(level)) for level in levels]
+        starts = levels if block.starts[0] in self.jumps else ()
+        first = [block.quarters(steps_at(level)) for level in starts]
+        return batch.run(name, block.lengths, u, levels[0], block.samples, done, first)
 
     def note(self, block: Block, done: Sequence[int]) -> None:
         """Note why members did not come through a block."""
@@ -191,18 +215,13 @@ def _block_size(batch: Batch) -> int:
     return max(1, CHUNK // (max(batch.rows.n, 1) * steps_at(max(levels) + ABOVE)))
 
 
-def _scale(
-    systems: Sequence[System],
-    engine: Engine,
-    x: FloatArray,
-    times: FloatArray,
-    longest: float,
-) -> FloatArray:
+def _scale(run: _Run, engine: Engine, longest: float) -> FloatArray:
     """Return the scale of each state (systems, n): its largest magnitude in a coarse run."""
-    batch = Batch(engine, [system.parameters for system in systems], x, 0)
+    systems, x = run.systems, run.start
+    batch = Batch(engine, [system.parameters for system in systems], x, 0, starts=run.starts)
     size = max(1, CHUNK // x.shape[1])
-    for block in blocks(systems[0], times, longest, lambda: size):
-        batch.run("survey", block.lengths, [block.middles()], 0, block.samples)
+    for block in blocks(systems[0], run.times, longest, lambda: size):
+        run.through(batch, "survey", block, range(1))
     return np.array(
         [shared(system, scale) for system, scale in zip(systems, batch.scale, strict=True)]
     )

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 FUNCTION_STEPS = 500  # a function of t says nothing about itself: so many steps at least
 CLOSE = 1e-12  # of the duration: breaks nearer than this are one
+LEAST_JUMP = 1e-6  # of an input's size nearby: a smaller difference is a corner's round-off
 
 
 @final
@@ -126,9 +127,27 @@ class Inputs:
         return Segment(first[0], stop, low, nextafter(last[0], 0.0), base, varying)
 
     @cached_property
+    def jumps(self) -> frozenset[float]:
+        """Starts of the segments before which an input jumps; 0, for a run starts anywhere."""
+        pairs = pairwise(self.segments)
+        return frozenset({0.0, *(later.start for first, later in pairs if jump(first, later))})
+
+    @cached_property
     def max_step(self) -> float:
         """Longest step [s] that resolves every input."""
         return min((signal.max_step(self.duration) for signal in self.signals), default=inf)
+
+
+def jump(first: Segment, later: Segment) -> bool:
+    """Return whether an input jumps between two segments, one after the other."""
+    before, after = first.over(_places(first)), later.over(_places(later))
+    size = np.maximum(np.abs(before).max(axis=1), np.abs(after).max(axis=1))
+    return bool(np.any(np.abs(after[:, 0] - before[:, -1]) > LEAST_JUMP * size))
+
+
+def _places(segment: Segment) -> FloatArray:
+    """Return a few times that show how large the inputs of a segment are, its ends among them."""
+    return np.linspace(segment.start, segment.stop, 5)
 
 
 def read_inputs(

@@ -42,6 +42,7 @@ class Trajectory:
     evaluations: int
     balanced: FloatArray | None = None  # (n, nt): states whose balances are exact, if others
     halvings: int = 0
+    numerical: FloatArray | None = None  # (2, nt): heat and entropy that dissipative starts produce
 
 
 def record(

@@ -53,6 +53,12 @@ class Block:
         times = self.starts[:, None] + self.lengths[:, None] * places
         return np.ascontiguousarray(self.segment.over(times.ravel()).T)
 
+    def quarters(self, steps: int = 1) -> FloatArray:
+        """Return the inputs at the middles of the quarters of the first of equal steps, (4, m)."""
+        places = (np.arange(4) + 0.5) / (4 * steps)
+        times = self.starts[0] + self.lengths[0] * places
+        return np.ascontiguousarray(self.segment.over(times).T)
+
 
 def blocks(
     system: System, times: FloatArray, longest: float, size: Callable[[], int]

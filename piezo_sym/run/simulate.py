@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from piezo_sym.errors import UsageError
+from piezo_sym.errors import UsageError, quote
 from piezo_sym.run.checks import number, positive
 from piezo_sym.run.compiled import compiled_run
 from piezo_sym.run.dataset import to_dataset
@@ -53,6 +53,7 @@ def simulate(
     initial: Mapping[str, LaneValue] | None = None,
     method: str | None = None,
     times: int | ArrayLike | None = None,
+    dissipative_start: bool = False,
 ) -> xarray.Dataset:
     """Run a generated module from t = 0 and return all its quantities over time.
 
@@ -91,6 +92,14 @@ def simulate(
         LSODA. Left out, a module without C beside it runs by LSODA; and so does one whose C cannot
         be compiled here, with one `EngineWarning`.
     times : the samples: a number of even ones (1001 when left out), or increasing times [s].
+    dissipative_start : for discrete_gradient. The first step after t = 0, and after each jump of
+        an input, is made of four quarters that damp whatever is much faster than they are: a
+        longer step otherwise rings after a jump, for a long time. What the quarters lose on the
+        way is heat of the first thermal_mass, `heat_numerical` and `produced_numerical`; both
+        balances stay exact. It pays where steps are long: 2 ms after a jump to 100 V on
+        piezo_stack the error falls from 1.1e-2 to 1.3e-4 with steps of 0.2 ms, from 2.5e-4 to
+        3.8e-5 with 0.1 ms; with 5 us, less than the fastest time constant, it grows from 7e-7 to
+        4e-6.
 
     Returns
     -------
@@ -114,6 +123,7 @@ def simulate(
     checked(module)
     named, bound = checked_method(method), read_rtol(rtol)
     refuse_step(step, named, rtol)
+    named = start_method(dissipative_start, named)
     end = positive(duration, "simulate.duration")
     samples = read_times(times, end)
     values = read_parameters(module, parameters)
@@ -122,7 +132,9 @@ def simulate(
     check_start(system, x)
     way = way_of(module, named, step)
     if way.engine:
-        trajectory, work = compiled_run(system, way.engine, x, samples, bound, step)
+        trajectory, work = compiled_run(
+            system, way.engine, x, samples, bound, step, starts=dissipative_start
+        )
     else:
         trajectory, work = solver_run(system, way.method, x, samples, bound)
     return to_dataset(system, samples, trajectory, {**work, "engine": way.note})
@@ -167,3 +179,14 @@ def refuse_step(step: object, method: str | None, rtol: object) -> None:
     if rtol is not None:
         what = "step and rtol are both given"
         raise UsageError(what, "simulate.step", "one of them", "leave out rtol for a fixed step")
+
+
+def start_method(dissipative_start: object, method: str | None) -> str | None:
+    """Return the method to run; raise `UsageError` if it has no dissipative start, but shall."""
+    where = "simulate.dissipative_start"
+    if not isinstance(dissipative_start, bool):
+        raise UsageError(f"{quote(dissipative_start)} is no truth value", where, "True or False")
+    if dissipative_start and method not in (None, METHOD):
+        what = f"method {method} has no dissipative start"
+        raise UsageError(what, where, "False", f"leave it out, or method='{METHOD}'")
+    return METHOD if dissipative_start else method

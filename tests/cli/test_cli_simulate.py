@@ -242,3 +242,15 @@ def test_a_long_run_stops_within_a_second_of_ctrl_c(words, tmp_path):
         out, err = process.communicate(timeout=60)
     assert time.monotonic() - begun < 2.0  # one, and what two busy cores make of it
     assert (process.returncode, out, err.strip("\n")) == (130, "", "piezo-sym: stopped")
+
+
+def test_a_dissipative_start_is_asked_for_in_a_word(call):
+    given = (*SHORT, "--input", "V_in=100", "--step", "1e-4")
+    answer = call(*given, "--dissipative-start")
+    assert (answer.code, answer.err) == (0, "")
+    assert "heat_numerical" in answer.out
+    assert "numerical" not in call(*given).out
+    refused = call(*given[:-2], "--dissipative-start", "--method", "BDF")
+    assert refused.code == 2
+    assert "method BDF has no dissipative start" in refused.err
+    assert len(refused.err.splitlines()) == 1

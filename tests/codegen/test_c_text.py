@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from piezo_sym import Model, derive, load
-from piezo_sym.codegen import c_header, c_source, c_step, lower, step_of
+from piezo_sym.codegen import c_header, c_source, c_step, lower, start_of, step_of
 from piezo_sym.codegen.c_names import KEPT
 from piezo_sym.errors import SpecError
 from piezo_sym.spec.names import check_symbol
@@ -47,7 +47,8 @@ def written(model, folder):
     """Write a model's C files, the step among their functions, and return their common name."""
     iphs = derive(model)
     program = lower(iphs, "verdict")
-    step, declared = c_step(program, step_of(iphs, frozenset(iphs.model.elements)))
+    steps = step_of(iphs, frozenset(iphs.model.elements)), start_of(iphs)
+    step, declared = c_step(program, *steps)
     (folder / f"{model.name}.h").write_text(c_header(program, declared), encoding="utf-8")
     (folder / f"{model.name}.c").write_text(c_source(program, step), encoding="utf-8")
     return model.name

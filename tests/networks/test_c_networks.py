@@ -20,10 +20,13 @@ from strategy import networks
 from test_specs import points
 
 from piezo_sym import derive, load
-from piezo_sym.codegen import c_header, c_source, c_step, lower, numpy_module, step_of
+from piezo_sym.codegen import c_header, c_source, c_step, lower, numpy_module, start_of, step_of
 from piezo_sym.errors import PiezoError
 from piezo_sym.modules import load_module
+from piezo_sym.run.discrete import fixed
 from piezo_sym.run.engine.engine import OFFERED, engine_of
+from piezo_sym.run.inputs import read_inputs
+from piezo_sym.run.system import System
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import banks
 
@@ -44,7 +47,7 @@ def cache(tmp_path_factory):
 def twins(iphs):
     """Return a module, and the same with its functions compiled."""
     program = lower(iphs, "verdict")
-    step, declared = c_step(program, step_of(iphs, frozenset()))
+    step, declared = c_step(program, step_of(iphs, frozenset()), start_of(iphs))
     texts = {
         ".py": numpy_module(program),
         ".h": c_header(program, declared),
@@ -56,7 +59,9 @@ def twins(iphs):
         module = load_module(Path(folder) / f"{program.name}.py")
         engine = engine_of(module)
     compiled = {name: getattr(engine, name) for name in OFFERED}
-    return module, SimpleNamespace(**{**vars(module), **compiled})
+    return module, SimpleNamespace(
+        **{**vars(module), **compiled}, engine=engine, starts=engine.starts
+    )
 
 
 def check_twins(first, second, x, u):
@@ -82,6 +87,30 @@ def check(spec, iphs, seed):
         check_against_tableau(compiled, spec, x, u)
         check_entropy(compiled, spec, x, u)
     check_batch(compiled, places)
+    check_start(module, compiled, places[0])
+
+
+def check_start(module, compiled, place):
+    """Check both balances of a run that begins with dissipative quarters, from any state."""
+    if not compiled.starts:
+        return
+    (x, u), h = place, 0.01
+    p = module.Parameters()
+    inputs = dict(zip((record.name for record in module.INPUTS), map(float, u), strict=True))
+    system = System(module, p, read_inputs(module, inputs, 3 * h))
+    times = np.array([0.0, h, 3 * h])
+    runs = fixed([system], compiled.engine, x[None], times, h, starts=True)
+    if runs.errors[0]:
+        return
+    rows, sums, states = runs.batch.rows, runs.batch.sums[0], runs.batch.states[0].T
+    energy, entropy = (f(states, p) - f(x, p) for f in (module.energy, module.entropy))
+    powers = sums[:, : rows.ports]
+    size = np.abs(module.energy(states, p)).max() + np.abs(powers).max(initial=0.0)
+    parts = np.delete(sums[:, rows.ports + rows.processes :], -2, axis=1)
+    assert np.abs(energy - powers.sum(axis=1)).max() <= 1e-12 * size
+    bound = 1e-12 * (np.abs(module.entropy(states, p)).max() + np.abs(parts).max(initial=0.0))
+    assert np.abs(entropy - parts.sum(axis=1)).max() <= bound + 1e-15
+    assert np.all(np.diff(sums[:, -2:], axis=0) >= 0)
 
 
 def explore(number):

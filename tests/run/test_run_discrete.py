@@ -89,10 +89,10 @@ def test_runs_that_start_next_to_the_reference_temperature_finish(above):
 
 
 def test_a_jump_of_an_input_lands_on_a_step():
-    found = run(inputs={"V_in": step(0.0, 100.0, 0.0313)}, rtol=1e-6)
+    found = run(inputs={"V_in": step(0.0313, 0.0, 100.0)}, rtol=1e-6)
     slow = simulate(
         "piezo_stack",
-        inputs={"V_in": step(0.0, 100.0, 0.0313)},
+        inputs={"V_in": step(0.0313, 0.0, 100.0)},
         duration=0.1,
         rtol=1e-9,
         method="LSODA",

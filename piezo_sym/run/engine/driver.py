@@ -1,6 +1,7 @@
 """The C file that is compiled: a module, loops over the columns of a batch, and runs of steps.
 
-Input: a model's name.  Output: text.  A column is one state; columns lie one after another.
+Input: a model's name, and whether it has a dissipative step.  Output: text.  A column is one state;
+columns lie one after another.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ const char {model}_compiler[] = MAKER;
 """
 
 
-def driver(model: str) -> str:
+def driver(model: str, *, starts: bool) -> str:
     """Return the text of the file to compile."""
     at = "x + column*n, u + column*m, p, out + column*rows"
     parts = [HEAD.format(model=model), MAKER.format(model=model)]
@@ -55,14 +56,15 @@ def driver(model: str) -> str:
     for name in SCALARS:
         call = f"out[column*rows] = {model}_{name}(x + column*n, p);"
         parts.append(_loop(model, name, call, "(void)u; (void)m;"))
-    parts.append(f"\n#define MODEL(name) {model}_##name\n{stepper()}")
+    parts.append(f"\n#define MODEL(name) {model}_##name\n#define STARTS {int(starts)}\n")
+    parts += [source("kinds.c"), source("stepper.c")]
     return "".join(parts)
 
 
 @cache
-def stepper() -> str:
-    """Return the text that runs steps, the same for every model."""
-    return Path(__file__).with_name("stepper.c").read_text(encoding="utf-8")
+def source(name: str) -> str:
+    """Return a text that runs steps, the same for every model."""
+    return Path(__file__).with_name(name).read_text(encoding="utf-8")
 
 
 def _loop(model: str, name: str, call: str, idle: str) -> str:

@@ -181,6 +181,11 @@ class Engine:
         """The number of heat exchanges, whose entropy the ledger of a run books last."""
         return ctypes.c_long.in_dll(self.library, f"{self.module.NAME}_exchanges").value
 
+    @property
+    def starts(self) -> bool:
+        """Whether the model has a dissipative step: it has stores, and a body to heat."""
+        return bool(ctypes.c_long.in_dll(self.library, f"{self.module.NAME}_starts").value)
+
     def rows(self, records: Sequence[Record], p: Any) -> int:
         """Return the number of rows that records take, banks spread."""
         return sum(lanes(p, record.bank) if record.bank else 1 for record in records)

@@ -43,7 +43,8 @@ class Sources:
     def files(self) -> dict[str, str]:
         """Return what to compile, by file name."""
         texts = {f"{self.name}.h": self.header, f"{self.name}.c": self.source}
-        text = driver(self.name)
+        starts = f" {self.name}_newton_start(" in self.header
+        text = driver(self.name, starts=starts)
         if self.wide:
             text += wide_text(self.name, self.header, self.source)
         return {**texts, "driver.c": text}

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
 #: Members of more states are computed one by one: then the lanes of their banks fill the vectors.
 MOST_STATES = 32
-MODES = {"survey": 0, "march": 1, "adapt": 2}
+Way = Literal["survey", "march", "adapt"]
+MODES: dict[Way, int] = {"survey": 0, "march": 1, "adapt": 2}
 POINTER, LONG, DOUBLE = ctypes.c_void_p, ctypes.c_long, ctypes.c_double
 
 
@@ -33,7 +34,7 @@ class Model(ctypes.Structure):
         ("p", POINTER),
         *((name, LONG) for name in ("n", "rows", "ports", "processes", "inputs")),
         ("space", POINTER),
-        *((name, LONG) for name in ("iterations", "halvings")),
+        *((name, LONG) for name in ("iterations", "halvings", "start")),
     ]
 
 
@@ -64,7 +65,7 @@ class Intervals(ctypes.Structure):
 
     _fields_ = [
         *((name, LONG) for name in ("intervals", "lowest", "highest")),
-        *((name, POINTER) for name in ("h", "u", "sample")),
+        *((name, POINTER) for name in ("h", "u", "sample", "first")),
     ]
 
 
@@ -72,14 +73,15 @@ class Intervals(ctypes.Structure):
 class Rows:
     """The sizes of a run: states n, inputs, ports, processes, and rows of the ledger in C."""
 
-    def __init__(self, engine: Engine, p: Any) -> None:
+    def __init__(self, engine: Engine, p: Any, *, starts: bool) -> None:
         module = engine.module
         self.n = engine.rows(module.STATES, p)
         self.inputs = len(module.INPUTS)
         self.ports = len(module.OUTPUTS)
         self.processes = engine.rows(module.PROCESSES, p)
         self.booked = self.ports + 2 * self.processes  # supplied, heat, produced
-        self.ledger = self.booked + engine.exchanges
+        self.numerical = 2 if starts else 0  # heat and production of the loss, last
+        self.ledger = self.booked + engine.exchanges + self.numerical
 
 
 @final
@@ -92,6 +94,7 @@ class Batch:
     parameters : of each member.
     x : the states (members, n) to start from.
     samples : the number of samples.
+    starts : whether steps after jumps are dissipative, and the ledger has rows for their loss.
 
     Attributes
     ----------
@@ -105,9 +108,15 @@ class Batch:
     """
 
     def __init__(
-        self, engine: Engine, parameters: Sequence[Any], x: FloatArray, samples: int
+        self,
+        engine: Engine,
+        parameters: Sequence[Any],
+        x: FloatArray,
+        samples: int,
+        *,
+        starts: bool = False,
     ) -> None:
-        rows = self.rows = Rows(engine, parameters[0])
+        rows = self.rows = Rows(engine, parameters[0], starts=starts)
         size, n, ledger = len(parameters), rows.n, rows.ledger
         self._library, self._name = engine.library, engine.module.NAME
         self._structures = [engine.structure(p) for p in parameters]
@@ -134,12 +143,13 @@ class Batch:
 
     def run(
         self,
-        name: Literal["survey", "march", "adapt"],
+        name: Way,
         lengths: FloatArray,
         u: Sequence[FloatArray],
         lowest: int,
         samples: NDArray[np.int_],
         done: Sequence[int] = (),
+        first: Sequence[FloatArray] = (),
     ) -> list[int]:
         """Go through intervals, and return how many of them each member has done.
 
@@ -151,12 +161,13 @@ class Batch:
         u : inputs at the middles of steps (k*steps, inputs), for each level from the lowest on.
         lowest : the lowest level.
         samples : the sample after each interval (k,), -1 for none.
+        first : after a jump, inputs of the quarters of the first step (4, inputs), likewise.
         done : how many of these intervals each member has done before; none when left out.
         """
-        pointers = (POINTER * len(u))(*(level.ctypes.data for level in u))
+        held = _pointers(u), _pointers(first) if first else None
         highest = lowest + len(u) - 1
         block = Intervals(lengths.size, lowest, highest, at(lengths), None, at(samples))
-        block.u = ctypes.cast(pointers, POINTER)
+        block.u, block.first = (ctypes.cast(p, POINTER) if p else None for p in held)
         for k, member in enumerate(self.members):
             member.done = done[k] if done else 0
         arguments = (self.members, LONG(len(self.members)), ctypes.byref(block))
@@ -168,7 +179,7 @@ class Batch:
 
     def _side_by_side(self, engine: Engine) -> tuple[Any, FloatArray]:
         """Return the function that runs members side by side, or None, and its room."""
-        few = len(self.members) < 2 or self.rows.n > MOST_STATES
+        few = len(self.members) < 2 or self.rows.n > MOST_STATES or self.rows.numerical > 0
         library = None if few else engine.side_by_side()
         if library is None:
             return None, np.empty(0)
@@ -200,6 +211,11 @@ class Batch:
         function = getattr(self._library, f"{self._name}_{name}")
         function.restype = LONG if name == "room" else None
         return function
+
+
+def _pointers(arrays: Sequence[FloatArray]) -> Any:
+    """Return an array of the addresses of arrays, which the caller keeps."""
+    return (POINTER * len(arrays))(*(array.ctypes.data for array in arrays))
 
 
 def steps_at(level: int) -> int:

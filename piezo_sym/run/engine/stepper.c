@@ -13,12 +13,16 @@ enum { MOST_ITERATIONS = 14, MOST_HALVINGS = 40, MOST_SHARES = 60 };
 /* An interval whose error is below this share of the tolerance tells the next to take fewer steps. */
 #define MUCH_TOO_FINE 0.05
 
-/* A model with its sizes, and room for one step: arrays of n, of newton_size and of rows numbers. */
+/*
+ * A model with its sizes, and room for one step: arrays of n, of change_size and of rows numbers.
+ * If a run has dissipative starts, the last two rows are heat and entropy production of their loss.
+ */
 typedef struct {
     const MODEL(parameters) *p;
     long n, rows, ports, processes, inputs;
     double *space;
     long iterations, halvings;
+    long start; /* whether the steps taken now are dissipative */
 } MODEL(model);
 
 /* A state on its way: x[n], its last change and the one before, and the ledger (or none). */
@@ -32,12 +36,12 @@ typedef struct {
 long MODEL(room)(const MODEL(model) *m);
 long MODEL(room)(const MODEL(model) *m)
 {
-    return 2 * m->n + MODEL(newton_size)(m->p) + m->rows;
+    return 2 * m->n + MODEL(change_size)(m->p) + m->rows;
 }
 
 static double *MODEL(means_of)(const MODEL(model) *m)
 {
-    return m->space + 2 * m->n + MODEL(newton_size)(m->p);
+    return m->space + 2 * m->n + MODEL(change_size)(m->p);
 }
 
 /* Add h times the means of a step to the ledger, with compensation for what rounding loses. */
@@ -66,7 +70,7 @@ static int MODEL(root)(MODEL(model) *m, const double *restrict x, double *restri
     for (int iteration = 0; iteration < MOST_ITERATIONS; ++iteration) {
         double worst = 0.0, share = 1.0;
         ++m->iterations;
-        if (!MODEL(newton)(x, y, u, h, m->p, change))
+        if (!MODEL(change)(m->p, m->start, x, y, u, h, change))
             return 0;
         for (long i = 0; i < m->n; ++i) {
             const double after = y[i] - change[i];
@@ -91,12 +95,17 @@ static int MODEL(root)(MODEL(model) *m, const double *restrict x, double *restri
     return 0;
 }
 
-/* Whether the step from x to y is one of nature's: no process takes entropy. */
-static int MODEL(accepted)(const MODEL(model) *m, const double *x, const double *y, const double *u)
+/* Whether the step from x to y is one of nature's: neither a process nor its loss takes entropy. */
+static int MODEL(accepted)(const MODEL(model) *m, const double *x, const double *y, const double *u,
+                           double h)
 {
     double *means = MODEL(means_of)(m);
     double total = 0.0, least = 0.0;
-    MODEL(means)(x, y, u, m->p, means);
+    MODEL(rates)(m->p, m->start, x, y, u, h, means);
+    if (m->start) {
+        total = fabs(means[m->rows - 1]);
+        least = fmin(means[m->rows - 1], 0.0);
+    }
     for (long k = 0; k < m->rows; ++k)
         if (!(fabs(means[k]) < 1e300))
             return 0;
@@ -126,7 +135,7 @@ static int MODEL(step)(MODEL(model) *m, MODEL(path) *path, const double *u, doub
         if (trial == 1) /* not from a prediction */
             memcpy(y, path->x, (size_t)m->n * sizeof *y);
         found = MODEL(inside)(y, u, m->p) && MODEL(root)(m, path->x, y, u, h) &&
-                MODEL(accepted)(m, path->x, y, u);
+                MODEL(accepted)(m, path->x, y, u, h);
     }
     if (!found) {
         double *before = m->space + m->n;
@@ -155,10 +164,35 @@ static int MODEL(step)(MODEL(model) *m, MODEL(path) *path, const double *u, doub
     return 1;
 }
 
-/* Takes equal steps, the inputs at their middles one after another; 0 if one has no solution. */
-static int MODEL(across)(MODEL(model) *m, MODEL(path) *path, const double *u, double h, long steps)
+/*
+ * A start after a jump: one step over h as four dissipative quarters, the inputs of each in u[4].
+ * A quarter that has no such step is an ordinary one, halved if need be: where an energy is not
+ * convex, a dissipative step takes entropy however short it is.
+ */
+static int MODEL(quarters)(MODEL(model) *m, MODEL(path) *path, const double *u, double h)
 {
-    for (long k = 0; k < steps; ++k)
+    double *loss = MODEL(means_of)(m) + m->rows - 2;
+    int found = 1;
+    for (int k = 0; k < 4 && found; ++k) {
+        m->start = 1;
+        found = MODEL(step)(m, path, u + k * m->inputs, 0.25 * h, MOST_HALVINGS);
+        m->start = 0;
+        loss[0] = loss[1] = 0.0; /* ordinary steps write nothing there */
+        found = found || MODEL(step)(m, path, u + k * m->inputs, 0.25 * h, 0);
+    }
+    return found;
+}
+
+/*
+ * Takes equal steps, the inputs at their middles one after another; 0 if one has no solution.  If
+ * there are inputs `first`, the first step is a start, and they are those of its quarters.
+ */
+static int MODEL(across)(MODEL(model) *m, MODEL(path) *path, const double *u, double h, long steps,
+                         const double *first)
+{
+    if (first && !MODEL(quarters)(m, path, first, h))
+        return 0;
+    for (long k = first ? 1 : 0; k < steps; ++k)
         if (!MODEL(step)(m, path, u + k * m->inputs, h, 0))
             return 0;
     return 1;
@@ -181,14 +215,22 @@ typedef struct {
 /*
  * Intervals that members go through: of lengths h[k]; u[level - lowest] holds, for levels lowest to
  * highest, the inputs at the middles of all steps of all intervals.  Results after interval k go to
- * row sample[k], if it is not negative.
+ * row sample[k], if it is not negative.  If inputs jump before interval 0, and starts are asked for,
+ * first[level - lowest] holds those of the quarters of its first step.
  */
 typedef struct {
     long intervals, lowest, highest;
     const double *h;
     const double *const *u;
     const long *sample;
+    const double *const *first;
 } MODEL(block);
+
+/* The inputs of the quarters of an interval's first step, or none. */
+static const double *MODEL(first)(const MODEL(block) *b, long interval, long level)
+{
+    return b->first && interval == 0 ? b->first[level - b->lowest] : NULL;
+}
 
 /* How many steps a level has: 1, 2, 3, 4, 6, 8, 12 ...; from 1 on, level + 2 has twice as many. */
 static long MODEL(steps_at)(long level)
@@ -203,7 +245,8 @@ void MODEL(survey)(MODEL(member) *members, long count, const MODEL(block) *b)
     for (MODEL(member) *s = members; s < members + count; ++s) {
         for (; s->done < b->intervals && !s->failed; ++s->done) {
             const double *x = s->trial.x, *u = b->u[0] + s->done * s->model.inputs;
-            s->failed = !MODEL(step)(&s->model, &s->trial, u, b->h[s->done], 0);
+            const double *first = MODEL(first)(b, s->done, b->lowest);
+            s->failed = !MODEL(across)(&s->model, &s->trial, u, b->h[s->done], 1, first);
             for (long i = 0; i < s->model.n; ++i)
                 s->tolerance[i] = fabs(x[i]) > s->tolerance[i] ? fabs(x[i]) : s->tolerance[i];
         }
@@ -219,8 +262,9 @@ void MODEL(march)(MODEL(member) *members, long count, const MODEL(block) *b)
         const MODEL(model) *m = &s->model;
         for (; s->done < b->intervals; ++s->done, ++s->steps) {
             const double *u = b->u[0] + s->done * m->inputs;
+            const double *first = MODEL(first)(b, s->done, b->lowest);
             const long row = b->sample[s->done];
-            if (s->failed || !MODEL(step)(&s->model, &s->fine, u, b->h[s->done], 0)) {
+            if (s->failed || !MODEL(across)(&s->model, &s->fine, u, b->h[s->done], 1, first)) {
                 s->failed = 1;
                 break;
             }
@@ -258,12 +302,14 @@ static double MODEL(try)(MODEL(member) *s, const MODEL(block) *b, long finer)
     const long steps = MODEL(steps_at)(s->level), inputs = s->model.inputs;
     const double *at = b->u[s->level - b->lowest] + inputs * steps * s->done;
     const double *twice = b->u[finer - b->lowest] + inputs * 2 * steps * s->done;
+    const double *first = MODEL(first)(b, s->done, s->level);
+    const double *soon = MODEL(first)(b, s->done, finer);
     const double length = b->h[s->done] / (double)steps;
     double worst = 0.0;
     memcpy(s->trial.x, s->fine.x, (size_t)s->model.n * sizeof(double));
     s->steps += 3 * steps;
-    if (!MODEL(across)(&s->model, &s->trial, at, length, steps) ||
-        !MODEL(across)(&s->model, &s->fine, twice, 0.5 * length, 2 * steps))
+    if (!MODEL(across)(&s->model, &s->trial, at, length, steps, first) ||
+        !MODEL(across)(&s->model, &s->fine, twice, 0.5 * length, 2 * steps, soon))
         return -1.0;
     for (long i = 0; i < s->model.n; ++i) {
         const double ratio = fabs(s->fine.x[i] - s->trial.x[i]) / (3.0 * s->tolerance[i]);
@@ -272,7 +318,7 @@ static double MODEL(try)(MODEL(member) *s, const MODEL(block) *b, long finer)
     if (!(worst <= 1.0))
         return worst;
     s->steps += steps;
-    return MODEL(across)(&s->model, &s->coarse, at, length, steps) ? worst : -1.0;
+    return MODEL(across)(&s->model, &s->coarse, at, length, steps, first) ? worst : -1.0;
 }
 
 /* Writes the state extrapolated from both paths, the finer one and its ledger. */
