@@ -11,6 +11,7 @@ from typing import Annotated, Any
 
 import typer
 
+from piezo_sym.cli.bench import bench
 from piezo_sym.cli.generate import generate
 from piezo_sym.cli.new import new
 from piezo_sym.cli.reproduce import reproduce
@@ -33,7 +34,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-for command in (new, verify, generate, show, simulate, reproduce, schema):
+for command in (new, verify, generate, show, simulate, reproduce, schema, bench):
     app.command()(command)
 
 

@@ -57,8 +57,8 @@ def simulate(
         result = run(
             spec,
             duration=duration,
-            inputs=dict(_pairs(inputs or (), "--input", _signal)),
-            parameters=dict(_pairs(parameters or (), "--set", _values)),
+            inputs=dict(pairs(inputs or (), "--input", signal)),
+            parameters=dict(pairs(parameters or (), "--set", _values)),
             rtol=rtol,
             step=step,
             method=method,
@@ -70,9 +70,10 @@ def simulate(
         _write(result, out)
 
 
-def _pairs(
+def pairs(
     texts: Iterable[str], option: str, read: Callable[[str, str], Any]
 ) -> Iterable[tuple[str, Any]]:
+    """Yield the name and value of each ``NAME=VALUE``, read by `read` from text and place."""
     seen: set[str] = set()
     for given in texts:
         name, equals, value = given.partition("=")
@@ -85,7 +86,7 @@ def _pairs(
         yield name, read(value.strip(), f"{option} {name}")
 
 
-def _signal(text: str, where: str) -> Any:
+def signal(text: str, where: str) -> Any:
     """Return a number, or a signal such as ``sine(100, 100)``; nothing is evaluated."""
     call = CALL.fullmatch(text)
     if call is None:

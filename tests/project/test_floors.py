@@ -30,9 +30,10 @@ PROVING = (
     {"build"},
     {"modules"},
     {"api"},
+    {"bench"},
     *TOP,
 )
-RUNNING = (GROUND, {"run"}, {"analysis"}, {"api"}, *TOP)
+RUNNING = (GROUND, {"run"}, {"analysis"}, {"api"}, {"bench"}, *TOP)
 SYMBOLIC = {"sympy", "pydantic", "pint", "z3", "tomli_w", "typer", "rich"}
 
 

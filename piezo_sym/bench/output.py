@@ -1,0 +1,82 @@
+"""A report as text: cells of a table, Markdown, JSON.
+
+Input: a `Report`.  Output: text.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from piezo_sym.bench.machine import Machine
+    from piezo_sym.bench.rows import Report, Row, Spread
+
+COLUMNS = ("group", "compared with", "time", "error", "ours", "time", "error", "ratio", "quartiles")
+UNITS = ((1.0, "s"), (1e-3, "ms"), (1e-6, "us"), (1e-9, "ns"))
+
+
+def cells(row: Row) -> tuple[str, ...]:
+    """Return a row's cells, in the order of `COLUMNS`."""
+    return (
+        row.group,
+        row.other or "-",
+        duration(row.other_time),
+        error(row.other_error),
+        row.ours,
+        duration(row.ours_time),
+        error(row.ours_error),
+        f"{row.ratio.median:.3g}" if row.ratio else "-",
+        f"{row.ratio.low:.3g} - {row.ratio.high:.3g}" if row.ratio else "-",
+    )
+
+
+def duration(spread: Spread | None) -> str:
+    """Return a median time in the unit that fits it."""
+    if spread is None:
+        return "-"
+    size, unit = next((pair for pair in UNITS if spread.median >= pair[0]), UNITS[-1])
+    return f"{spread.median / size:.3g} {unit}"
+
+
+def error(value: float | None) -> str:
+    """Return an error in one digit, for more would mean nothing."""
+    return "-" if value is None else f"{value:.0e}"
+
+
+def about(machine: Machine) -> str:
+    """Return where it was measured, in one line."""
+    versions = ", ".join(f"{name} {number}" for name, number in machine.versions)
+    return (
+        f"{machine.processor}, {machine.cores} cores, {machine.system}; {machine.compiler}; "
+        f"Python {machine.python}; {versions}; {machine.date}"
+    )
+
+
+def notes(report: Report) -> tuple[str, ...]:
+    """Return what errors are, tolerances, and what was left out, one line each."""
+    measures = {row.group: row.measure for row in report.rows if row.measure}
+    lines = [f"errors of {group}: {measure}" for group, measure in measures.items()]
+    lines += [
+        f"{row.group}, {row.other or row.ours}: {row.note}" for row in report.rows if row.note
+    ]
+    return (*lines, *(f"left out: {line}" for line in report.left_out))
+
+
+def markdown(report: Report) -> str:
+    """Return a report as a Markdown document."""
+    head = f"# Benchmark of {report.model}\n\n{about(report.machine)}\n\n"
+    explained = (
+        "Medians of interleaved repetitions in one process; the ratio is the other's time over "
+        "ours, round by round, with its quartiles.\n\n"
+    )
+    lines = ["| " + " | ".join(COLUMNS) + " |", "|" + "---|" * len(COLUMNS)]
+    lines += ["| " + " | ".join(cells(row)) + " |" for row in report.rows]
+    listed = "".join(f"- {line}\n" for line in notes(report))
+    return f"{head}{explained}" + "\n".join(lines) + f"\n\n{listed}"
+
+
+def as_json(report: Report) -> str:
+    """Return a report as JSON: its dataclasses, field by field; seconds, and null for nothing."""
+    return json.dumps(asdict(report), indent=1) + "\n"

@@ -1,0 +1,140 @@
+"""One model, driven, as every competitor gets it: explicit rates in SymPy, numbers in them.
+
+Input: a `Model` and its inputs.  Output: a `Problem`
+
+    dx/dt = f(t, x),  x(0) given,      z = x/scale for solvers with one tolerance for all states
+
+with banks written out, parameters and inputs put in.  Nothing in it is tied to any model.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import pi
+from typing import TYPE_CHECKING, Any, final
+
+import numpy as np
+import sympy as sp
+
+from piezo_sym.bench.case_p import case_p
+from piezo_sym.derivation import derive
+from piezo_sym.errors import UsageError, quote
+from piezo_sym.modules import module_of
+from piezo_sym.run.inputs import read_inputs
+from piezo_sym.run.module import lanes
+from piezo_sym.run.parameters import read_initial, read_parameters
+from piezo_sym.run.signals import Constant, Signal, Sine
+from piezo_sym.run.system import System
+
+if TYPE_CHECKING:
+    from piezo_sym.run.checks import FloatArray
+    from piezo_sym.run.inputs import InputValue
+    from piezo_sym.run.module import GeneratedModule
+    from piezo_sym.spec.model import Model
+
+TIME = sp.Symbol("t", real=True)
+
+
+@final
+@dataclass(frozen=True)
+class Problem:
+    """A model with its inputs and the length of a run.
+
+    Attributes
+    ----------
+    model, module : the spec, and its generated module.
+    inputs, duration : what drives it, and for how long [s].
+    counts : sizes of banks other than the spec's, as parameters of the module.
+    states, rates : symbols of x, and dx/dt as expressions of `TIME` and x alone.
+    start, scale : x(0) (n,), and by what the error of each state is measured (n,).
+    """
+
+    model: Model
+    module: GeneratedModule
+    inputs: Mapping[str, InputValue]
+    duration: float
+    counts: Mapping[str, int]
+    states: tuple[sp.Symbol, ...]
+    rates: tuple[sp.Expr, ...]
+    start: FloatArray
+    scale: FloatArray
+
+    @cached_property
+    def system(self) -> System:
+        """The module with its parameters and inputs, as a run takes it."""
+        values = read_parameters(self.module, self.counts)
+        return System(self.module, values, read_inputs(self.module, self.inputs, self.duration))
+
+    @cached_property
+    def scaled(self) -> tuple[sp.Expr, ...]:
+        """The rates of z = x/scale as expressions of z, whose symbols are `states` as well."""
+        pairs = zip(self.states, self.scale, strict=True)
+        change = {state: sp.Float(size) * state for state, size in pairs}
+        rates = zip(self.rates, self.scale, strict=True)
+        return tuple(rate.xreplace(change) / sp.Float(size) for rate, size in rates)
+
+    def error(self, x: FloatArray, exact: FloatArray) -> float:
+        """Return the largest error of a state in units of its scale; infinite where not finite."""
+        worst = float(np.max(np.abs(np.asarray(x) - exact) / self.scale))
+        return worst if np.isfinite(worst) else np.inf
+
+    def over(self, duration: float) -> Problem:
+        """Return the same problem over another length of time."""
+        return replace(self, duration=duration)
+
+
+def problem_of(
+    model: Model,
+    inputs: Mapping[str, InputValue],
+    duration: float,
+    sizes: Mapping[str, int] | None = None,
+) -> Problem:
+    """Return a model as a problem, its scale 1 wherever no other is known.
+
+    Parameters
+    ----------
+    inputs : those left out keep the spec's defaults; the paper's actuator, given none, is driven
+        as in its case P.
+    sizes : of banks, where not the spec's.
+
+    Raises
+    ------
+    UsageError
+        If an input is neither a constant nor a sine.
+    """
+    driven = case_p(model.sha256, inputs)
+    given = driven.inputs if driven else inputs
+    counts = {f"{bank}_count": size for bank, size in (sizes or {}).items()}
+    module: Any = module_of(model)
+    values = read_parameters(module, counts)
+    signals = read_inputs(module, given, duration)
+    start = read_initial(module, values, signals.segments[0].at(0.0), None)
+    banks = {bank: lanes(values, bank) for bank in module.BANKS}
+    names = [record.name for record in module.INPUTS]
+    states, rates = explicit(model, dict(zip(names, signals.signals, strict=True)), banks)
+    scale = driven.scale(values.hysteron_count) if driven else np.ones(start.size)
+    return Problem(model, module, given, duration, counts, states, rates, start, scale)
+
+
+def explicit(
+    model: Model, signals: Mapping[str, Signal], sizes: Mapping[str, int]
+) -> tuple[tuple[sp.Symbol, ...], tuple[sp.Expr, ...]]:
+    """Return the states and their rates, with the numbers of parameters and inputs put in."""
+    iphs = derive(model).expand(sizes)
+    known = {iphs.symbols[n]: sp.Float(p.si) for n, p in iphs.model.parameters.items()}
+    known |= {iphs.symbols[n]: as_expression(s, n) for n, s in signals.items()}
+    return tuple(iphs.x), tuple(rate.xreplace(known) for rate in iphs.rhs)
+
+
+def as_expression(signal: Signal, name: str) -> sp.Expr:
+    """Return a signal as an expression of `TIME`; peers are given no other kinds."""
+    match signal:
+        case Constant(value):
+            return sp.Float(value)
+        case Sine(amplitude, frequency, offset, phase):
+            angle = sp.Float(2 * pi * frequency) * TIME + sp.Float(phase)
+            return sp.Float(amplitude) * sp.sin(angle) + sp.Float(offset)
+    what = f"input {quote(name)} is neither"
+    raise UsageError(what, "bench", "a number or sine(amplitude, frequency)")
