@@ -200,12 +200,10 @@ def test_no_compiler_is_one_line_and_a_good_run(call, tmp_path):
 
 
 @pytest.mark.usefixtures("no_compiler")
-def test_drawing_without_a_compiler_is_one_line(call, tmp_path, monkeypatch):
-    monkeypatch.setenv("MPLBACKEND", "agg")
-    answer = call("reproduce", "--out", tmp_path / "figures")
-    assert answer.code == 0
-    assert len(answer.err.splitlines()) == 1
-    assert "runs by LSODA in NumPy" in answer.err
+def test_drawing_without_a_compiler_is_refused_before_anything_is_written(refused, tmp_path):
+    said = refused("reproduce", "--out", tmp_path / "figures")
+    assert said.startswith("engine: no C compiler is found; install gcc")
+    assert not (tmp_path / "figures").exists()
 
 
 @pytest.mark.usefixtures("no_compiler")
