@@ -101,7 +101,7 @@ def fixed(
     run = _Run(systems, engine, x, times, starts)
     size = max(1, CHUNK // x.shape[1])
     for block in blocks(systems[0], times, step, lambda: size):
-        done = run.through(run.batch, "march", block, range(1))
+        done = run.through("march", block, range(1))
         run.note(block, done)
         if not run.goes_on(block, watch):
             break
@@ -128,7 +128,7 @@ def adaptive(
     longest = min(first.inputs.max_step, times[-1] / FEWEST_INTERVALS)
     run = _Run(systems, engine, x, times, starts)
     batch = run.batch
-    batch.scale[:] = LOOSER * rtol * _scale(run, engine, longest)
+    batch.scale[:] = LOOSER * rtol * _scale(run, longest)
     for block in blocks(first, times, longest, lambda: _block_size(batch)):
         run.note(block, _through(run, block))
         if not run.goes_on(block, watch):
@@ -152,7 +152,7 @@ def _through(run: _Run, block: Block) -> list[int]:
         part = block.part(first, first + _block_size(batch))
         levels = range(max(0, min(batch.levels) - BELOW), max(batch.levels) + ABOVE + 1)
         before = [n - first for n in done]
-        found = run.through(batch, "adapt", part, levels, before)
+        found = run.through("adapt", part, levels, before)
         done = [first + n for n in found]
 
 
@@ -178,13 +178,13 @@ class _Run:
             self.batch.sums[:, 0] = 0.0
 
     def through(
-        self, batch: Batch, name: Way, block: Block, levels: range, done: Sequence[int] = ()
+        self, name: Way, block: Block, levels: range, done: Sequence[int] = ()
     ) -> list[int]:
-        """Take a batch through a block, and return how many intervals each member has done."""
-        u = [block.middles(steps_at(level)) for level in levels]
+        """Take the batch through a block, and return how many intervals each member has done."""
+        u = block.middles([steps_at(level) for level in levels])
         starts = levels if block.starts[0] in self.jumps else ()
         first = [block.quarters(steps_at(level)) for level in starts]
-        return batch.run(name, block.lengths, u, levels[0], block.samples, done, first)
+        return self.batch.run(name, block.lengths, u, levels[0], block.samples, done, first)
 
     def note(self, block: Block, done: Sequence[int]) -> None:
         """Note why members did not come through a block."""
@@ -215,16 +215,14 @@ def _block_size(batch: Batch) -> int:
     return max(1, CHUNK // (max(batch.rows.n, 1) * steps_at(max(levels) + ABOVE)))
 
 
-def _scale(run: _Run, engine: Engine, longest: float) -> FloatArray:
+def _scale(run: _Run, longest: float) -> FloatArray:
     """Return the scale of each state (systems, n): its largest magnitude in a coarse run."""
-    systems, x = run.systems, run.start
-    batch = Batch(engine, [system.parameters for system in systems], x, 0, starts=run.starts)
-    size = max(1, CHUNK // x.shape[1])
-    for block in blocks(systems[0], run.times, longest, lambda: size):
-        run.through(batch, "survey", block, range(1))
-    return np.array(
-        [shared(system, scale) for system, scale in zip(systems, batch.scale, strict=True)]
-    )
+    size = max(1, CHUNK // run.start.shape[1])
+    for block in blocks(run.systems[0], run.times, longest, lambda: size):
+        run.through("survey", block, range(1))
+    run.batch.rewind()
+    pairs = zip(run.systems, run.batch.scale, strict=True)
+    return np.array([shared(system, scale) for system, scale in pairs])
 
 
 def _stuck(system: System, t: float, x: FloatArray) -> RunError:

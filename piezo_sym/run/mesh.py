@@ -7,7 +7,7 @@ inputs.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, final
 
@@ -47,11 +47,18 @@ class Block:
         here = slice(first, stop)
         return Block(self.segment, self.starts[here], self.lengths[here], self.samples[here])
 
-    def middles(self, steps: int = 1) -> FloatArray:
-        """Return the inputs at the middles of equal steps of each interval, (k*steps, m)."""
-        places = (np.arange(steps) + 0.5) / steps
-        times = self.starts[:, None] + self.lengths[:, None] * places
-        return np.ascontiguousarray(self.segment.over(times.ravel()).T)
+    def middles(self, steps: Sequence[int] = (1,)) -> list[FloatArray]:
+        """Return the inputs at the middles of equal steps of each interval, (k*steps, m).
+
+        For each number of steps; signals are asked once for all of them.
+        """
+        places = np.concatenate([(np.arange(number) + 0.5) / number for number in steps])
+        times = self.starts + self.lengths * places[:, None]
+        u = self.segment.over(times)  # (m, places, k)
+        ends = np.cumsum(steps)
+        parts = zip(ends - steps, ends, strict=True)
+        size = len(self)
+        return [np.ascontiguousarray(u[:, a:b].T).reshape(size * (b - a), len(u)) for a, b in parts]
 
     def quarters(self, steps: int = 1) -> FloatArray:
         """Return the inputs at the middles of the quarters of the first of equal steps, (4, m)."""

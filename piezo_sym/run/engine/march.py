@@ -177,6 +177,14 @@ class Batch:
             self._wide(*arguments, ctypes.c_int(MODES[name]), at(self._vectors))
         return [member.done for member in self.members]
 
+    def rewind(self) -> None:
+        """Forget a survey, but for its `scale`."""
+        self._others[1] = self.x
+        for member in self.members:
+            member.trial.h = member.trial.h_prior = 0.0
+            member.steps = member.failed = 0
+            member.model.iterations = member.model.halvings = 0
+
     def _side_by_side(self, engine: Engine) -> tuple[Any, FloatArray]:
         """Return the function that runs members side by side, or None, and its room."""
         few = len(self.members) < 2 or self.rows.n > MOST_STATES or self.rows.numerical > 0
