@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from piezo_sym.run import chirp, ramp, samples, samples_from_csv, sine, step, triangle
     from piezo_sym.spec.load import load
     from piezo_sym.spec.model import Model
+    from piezo_sym.sweeps import sweep
 
 _HOME = {
     "Model": "spec.model",
@@ -43,6 +44,7 @@ _HOME = {
     "simulate": "api",
     "sine": "run",
     "step": "run",
+    "sweep": "sweeps",
     "triangle": "run",
     "verify": "proofs",
 }
@@ -62,6 +64,7 @@ __all__ = [
     "simulate",
     "sine",
     "step",
+    "sweep",
     "triangle",
     "verify",
 ]

@@ -110,16 +110,7 @@ def simulate(
         trajectory, work = discrete(system, engine, x, samples, bound, step)
         return to_dataset(system, samples, trajectory, work)
     chosen = "LSODA" if chosen == METHOD else chosen
-    scale, spent = magnitudes(system, x)
-    tolerance = Tolerance(chosen, bound, bound * ATOL_FACTOR * scale)
-    trajectory = record(system, x, batches(system, x, samples, tolerance), samples)
-    work = {
-        "method": chosen,
-        "rtol": bound,
-        "accepted_steps": trajectory.steps,
-        "rhs_evaluations": trajectory.evaluations,
-        "scale_evaluations": spent,
-    }
+    trajectory, work = by_scipy(system, x, samples, chosen, bound)
     return to_dataset(system, samples, trajectory, work)
 
 
@@ -172,3 +163,20 @@ def discrete(
         "halvings": trajectory.halvings,
     }
     return trajectory, {"method": METHOD, **accuracy, **work}
+
+
+def by_scipy(
+    system: System, x: FloatArray, samples: FloatArray, method: str, rtol: float
+) -> tuple[Trajectory, dict[str, object]]:
+    """Return a run of one of SciPy's methods, and what it took."""
+    scale, spent = magnitudes(system, x)
+    tolerance = Tolerance(method, rtol, rtol * ATOL_FACTOR * scale)
+    trajectory = record(system, x, batches(system, x, samples, tolerance), samples)
+    work = {
+        "method": method,
+        "rtol": rtol,
+        "accepted_steps": trajectory.steps,
+        "rhs_evaluations": trajectory.evaluations,
+        "scale_evaluations": spent,
+    }
+    return trajectory, work

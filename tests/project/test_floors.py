@@ -3,8 +3,8 @@
 The floors, two towers on one ground:
 
     errors < spec < algebra < network < iphs < derivation < {proofs, codegen} < build < modules
-        < api < cli
-    errors < run < {analysis, api} < cli
+        < {sweeps, api} < cli
+    errors < run < {sweeps, analysis, api} < cli
 """
 
 from graphlib import CycleError, TopologicalSorter
@@ -29,10 +29,10 @@ PROVING = (
     {"proofs", "codegen"},
     {"build"},
     {"modules"},
-    {"api"},
+    {"sweeps", "api"},
     *TOP,
 )
-RUNNING = (GROUND, {"run"}, {"analysis", "api"}, *TOP)
+RUNNING = (GROUND, {"run"}, {"sweeps", "analysis", "api"}, *TOP)
 SYMBOLIC = {"sympy", "pydantic", "pint", "z3", "tomli_w", "typer", "rich"}
 
 
