@@ -65,7 +65,7 @@ class Frame:
             if name in used or name not in ("time", *self.banks)
         }
         made = {name: (one.dims, pandas.Index(one.values), one.attrs) for name, one in own.items()}
-        return xarray.Dataset(data, {**made, **coords}, self.attrs)
+        return xarray.Dataset(data, {**coords, **made}, self.attrs)
 
     @property
     def banks(self) -> tuple[str, ...]:

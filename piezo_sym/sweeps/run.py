@@ -89,7 +89,7 @@ def run_box(plan: Plan, module: GeneratedModule, box: Box, watch: Watch) -> Resu
         group = group_at(plan, module, engine, points[some])
         found, made = group_result(plan, group, engine, points[some], watch)
         parts.append({name: widened(one, plan.largest_banks) for name, one in found.items()})
-        coords |= made
+        coords |= {name: one for name, one in made.items() if name not in plan.largest_banks}
         errors += group.errors
     return Result(box, tuple(errors), joined(parts, points, plan), coords)
 

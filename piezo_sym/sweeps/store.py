@@ -67,9 +67,9 @@ def create(path: Path, plan: Plan, frame: Frame, marks: dict[str, object]) -> No
     folder = Path(tempfile.mkdtemp(dir=path.parent, prefix=f".{path.name}-"))
     try:
         errors = np.full(plan.shape, NOT_RUN, dtype=object)
-        everything = {name: variable for name, variable in frame.coords.items() if variable}
         data = {**frame.inputs, "error": (frame.dims, errors, ERROR_ATTRS)}
-        empty = frame.dataset(data, {}).assign_coords(everything).assign_attrs(marks)
+        sizes = {n: of for n, of in frame.coords.items() if n in coordinates_needed(plan, frame)}
+        empty = frame.dataset(data, {}).assign_coords(sizes).assign_attrs(marks)
         empty.to_zarr(
             folder / "new",
             mode="w",
@@ -80,6 +80,13 @@ def create(path: Path, plan: Plan, frame: Frame, marks: dict[str, object]) -> No
         (folder / "new").rename(path)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
+
+
+def coordinates_needed(plan: Plan, frame: Frame) -> set[str]:
+    """Return the coordinates that results will have; a function brings most of its own."""
+    if callable(plan.reduce):
+        return set(plan.largest_banks)
+    return {*frame.banks, *(() if plan.reduce else ("time",))}
 
 
 def box_in_order(plan: Plan) -> tuple[int, ...]:
