@@ -117,7 +117,7 @@ def read_points(
     if not isinstance(given, list | tuple | range):
         given = np.asarray(given)
     if isinstance(given, np.ndarray) and (given.ndim == 0 or given.dtype.kind not in "iufO"):
-        raise UsageError(f"{quote(given[()])} is no list of values", where, EXPECTED)
+        raise UsageError(f"{quote(given.tolist())} is no list of values", where, EXPECTED)
     if not len(given):
         raise UsageError("there are no values", where, "one value at least")
     return labels, given

@@ -13,8 +13,9 @@ import numpy as np
 from piezo_sym.errors import UsageError
 from piezo_sym.run.dataset import coordinates, described, model_attrs
 from piezo_sym.run.mesh import inputs_at
+from piezo_sym.run.parameters import read_parameters
 from piezo_sym.run.system import System
-from piezo_sym.sweeps.group import base_at_point, inputs_at_point
+from piezo_sym.sweeps.group import inputs_at_point
 from piezo_sym.sweeps.quantities import Quantity, layout
 from piezo_sym.sweeps.reduce import weights
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     import xarray
+    from numpy.typing import NDArray
 
     from piezo_sym.run.module import GeneratedModule
     from piezo_sym.sweeps.plan import Plan
@@ -112,12 +114,14 @@ def index(values: Any) -> Any:
 
 def widest(plan: Plan, module: GeneratedModule) -> System:
     """Return a system whose banks have the most lanes that the sweep gives them."""
-    point = np.zeros(len(plan.axes), dtype=int)
-    for n, target in plan.swept():
-        if target.is_size:
-            point[n] = int(np.argmax(np.array(target.values)))
-    base = base_at_point(plan, module, point)
-    return System(module, base, inputs_at_point(plan, module, point))
+    sizes = {f"{bank}_count": size for bank, size in plan.largest_banks.items()}
+    base = read_parameters(module, {**plan.parameters, **sizes})
+    return System(module, base, inputs_at_point(plan, module, first_point(plan)))
+
+
+def first_point(plan: Plan) -> NDArray[np.intp]:
+    """Return the first point of the grid."""
+    return np.zeros(len(plan.axes), dtype=np.intp)
 
 
 def inputs_of(
@@ -134,7 +138,7 @@ def inputs_of(
         n = swept[record.name]
         waves = []
         for k in range(plan.axes[n].size):
-            point = np.zeros(len(plan.axes), dtype=int)
+            point = first_point(plan)
             point[n] = k
             here = System(module, system.parameters, inputs_at_point(plan, module, point))
             waves.append(reduced(plan, inputs_at(here, plan.samples)[row]))

@@ -119,7 +119,7 @@ def read_values(
     if isinstance(given, np.ndarray) and given.ndim == 1 and given.dtype.kind in "iuf":
         wrong = np.flatnonzero(~np.isfinite(given))
         for n in wrong[:1]:
-            number(given[n], f"{where}[{n}]")
+            number(given[n].item(), f"{where}[{n}]")
         return given.astype(float)
     if all(is_number(value) for value in given):
         return np.array([number(value, f"{where}[{n}]") for n, value in enumerate(given)])
