@@ -162,6 +162,12 @@ class Plan:
             for target in axis.targets:
                 yield n, target
 
+    def names(self) -> Iterator[str]:
+        """Yield the names of the swept dimensions and their coordinates."""
+        for axis in self.axes:
+            yield axis.dim
+            yield from (name for name, _ in axis.coordinates())
+
     @cached_property
     def largest_banks(self) -> dict[str, int]:
         """The largest size of each bank whose size is swept."""

@@ -52,7 +52,7 @@ def bar(total: int) -> Iterator[Told]:
     from rich.console import Console
     from rich.progress import Progress
 
-    shown = Progress(console=Console(stderr=True), transient=True)
+    shown = Progress(console=Console(stderr=True))
     task, begun = shown.add_task("sweep", total=total), time.monotonic()
 
     def told(done: int) -> None:
@@ -63,4 +63,5 @@ def bar(total: int) -> Iterator[Told]:
     try:
         yield told
     finally:
-        shown.stop()
+        if shown.live.is_started:
+            shown.stop()

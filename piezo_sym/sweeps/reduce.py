@@ -6,7 +6,7 @@ makes of the Dataset of one run, or of many runs over the dimension `member`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -66,7 +66,7 @@ def run_by_run(
         parts = [blank if one is None else one for one in all_runs]
         return xarray.concat(parts, MEMBER, join="exact", compat="override", coords="minimal")
     except (ValueError, TypeError) as cause:
-        what = "the function gives other names or sizes for one run than for another"
+        what = "the function gives other names or other sizes for one run than for another"
         raise UsageError(what, WHERE, "the same for every run") from cause
 
 
@@ -88,6 +88,10 @@ def named(value: object) -> xarray.Dataset:
     import xarray
 
     if isinstance(value, xarray.Dataset):
+        for name, variable in value.data_vars.items():
+            if variable.dtype.kind not in "fiub":
+                what = f"the function gives '{name}' of type {variable.dtype}"
+                raise UsageError(what, WHERE, "real numbers")
         return value.drop_vars([n for n in value.coords if n not in value.dims])
     if isinstance(value, xarray.DataArray):
         return named(value.to_dataset(name=value.name or "reduced"))
@@ -111,16 +115,21 @@ def number_of(value: Any) -> float:
     return float(value)
 
 
+def refuse_names(names: Iterable[str], taken: Iterable[str]) -> None:
+    """Raise `UsageError` if a function's result has the name of something else."""
+    both = sorted(set(names) & set(taken))
+    if both:
+        what = f"the function gives '{both[0]}', which the sweep has, too"
+        raise UsageError(what, WHERE, "a name of its own")
+
+
 def as_quantities(made: xarray.Dataset) -> tuple[Quantities, dict[str, Quantity]]:
     """Return a function's results, and the coordinates of their own dimensions."""
     found = {}
     for name, variable in made.data_vars.items():
         dims = tuple(str(dim) for dim in variable.dims if dim != MEMBER)
-        values = variable.transpose(MEMBER, *dims).values
-        if values.dtype.kind not in "fiub":
-            what = f"the function gives '{name}' of type {values.dtype}"
-            raise UsageError(what, WHERE, "real numbers")
-        found[str(name)] = Quantity(dims, values.astype(float), dict(variable.attrs))
+        values = variable.transpose(MEMBER, *dims).values.astype(float)
+        found[str(name)] = Quantity(dims, values, dict(variable.attrs))
     coords = {
         str(name): Quantity((str(name),), one.values, dict(one.attrs))
         for name, one in made.coords.items()

@@ -34,6 +34,7 @@ from piezo_sym.sweeps.reduce import (
     all_at_once,
     as_quantities,
     over_time,
+    refuse_names,
     run_by_run,
     weights,
 )
@@ -145,7 +146,10 @@ def group_result(
     waves = {n: Quantity(*of) for n, of in inputs(known, names, u, size)}
     runs = dataset(plan, group, {**found, **waves}, points)
     made = (run_by_run if plan.each else all_at_once)(plan.reduce, runs, group.errors)
-    return as_quantities(made) if made is not None else ({}, {})
+    if made is None:
+        return {}, {}
+    refuse_names(map(str, made.variables), (*plan.names(), "error"))
+    return as_quantities(made)
 
 
 def inputs(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 
+from piezo_sym.errors import UsageError
 from piezo_sym.sweeps.frame import ERROR_ATTRS
 
 if TYPE_CHECKING:
@@ -40,6 +41,13 @@ class Sink(ABC):
         """Return all results."""
 
 
+def refuse_other_sizes(name: str, known: tuple[int, ...], one: Quantity) -> None:
+    """Raise `UsageError` if a function gives a quantity another shape than for runs before."""
+    if one.values.shape[1:] != known:
+        what = f"the function gives '{name}' other sizes for one run than for another"
+        raise UsageError(what, "sweep.reduce", "the same for every run")
+
+
 @final
 class Memory(Sink):
     """Keeps results in arrays over the grid."""
@@ -65,6 +73,7 @@ class Memory(Sink):
             if name not in self._arrays:
                 self._about[name] = one
                 self._arrays[name] = self._room((*self._plan.shape, *one.values.shape[1:]))
+            refuse_other_sizes(name, self._about[name].values.shape[1:], one)
             self._arrays[name][region] = self._plan.arranged(result.box, one.values)
 
     def _room(self, shape: tuple[int, ...]) -> NDArray[Any]:

@@ -6,7 +6,6 @@ written, last of all: until then it says "not run".
 
 from __future__ import annotations
 
-import shutil
 import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, final
@@ -17,7 +16,7 @@ from piezo_sym.errors import FileError, UsageError
 from piezo_sym.files import path_text
 from piezo_sym.sweeps.fingerprint import fingerprint
 from piezo_sym.sweeps.frame import ERROR_ATTRS, NOT_RUN
-from piezo_sym.sweeps.sinks import Sink
+from piezo_sym.sweeps.sinks import Sink, refuse_other_sizes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -48,9 +47,9 @@ def store_at(path: Path, plan: Plan, frame: Frame, spec_sha256: str) -> tuple[Pl
         remedy = "run `pip install 'piezo_sym[store]'`"
         raise UsageError("zarr is not installed", "sweep.store", remedy=remedy) from error
     mark = fingerprint(plan, spec_sha256)
+    if not path.exists():
+        create(path, plan, frame, {MARK: mark, BOX: plan.most})
     try:
-        if not path.exists():
-            create(path, plan, frame, {MARK: mark, BOX: plan.most})
         group = zarr.open_group(path, mode="r+", zarr_format=3)
     except UNREADABLE as cause:
         raise FileError("is no store of a sweep", path_text(path), remedy=FRESH) from cause
@@ -63,23 +62,22 @@ def store_at(path: Path, plan: Plan, frame: Frame, spec_sha256: str) -> tuple[Pl
 
 def create(path: Path, plan: Plan, frame: Frame, marks: dict[str, object]) -> None:
     """Make a store in which nothing has run; it appears at its path when it is whole."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    folder = Path(tempfile.mkdtemp(dir=path.parent, prefix=f".{path.name}-"))
+    errors = np.full(plan.shape, NOT_RUN, dtype=object)
+    data = {**frame.inputs, "error": (frame.dims, errors, ERROR_ATTRS)}
+    needed = coordinates_needed(plan, frame)
+    sizes = {name: of for name, of in frame.coords.items() if name in needed}
+    empty = frame.dataset(data, {}).assign_coords(sizes).assign_attrs(marks)
+    # a chunk that is not there has not run
+    encoding = {"error": {"chunks": box_in_order(plan), "fill_value": NOT_RUN}}
     try:
-        errors = np.full(plan.shape, NOT_RUN, dtype=object)
-        data = {**frame.inputs, "error": (frame.dims, errors, ERROR_ATTRS)}
-        sizes = {n: of for n, of in frame.coords.items() if n in coordinates_needed(plan, frame)}
-        empty = frame.dataset(data, {}).assign_coords(sizes).assign_attrs(marks)
-        empty.to_zarr(
-            folder / "new",
-            mode="w",
-            zarr_format=3,
-            consolidated=False,
-            encoding={"error": {"chunks": box_in_order(plan)}},
-        )
-        (folder / "new").rename(path)
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.name}-") as folder:
+            new = Path(folder) / "new"
+            empty.to_zarr(new, mode="w", zarr_format=3, consolidated=False, encoding=encoding)
+            new.rename(path)
+    except OSError as cause:
+        what = f"cannot be written: {cause.strerror}"
+        raise FileError(what, path_text(path), remedy="check the path") from cause
 
 
 def coordinates_needed(plan: Plan, frame: Frame) -> set[str]:
@@ -122,7 +120,9 @@ class Store(Sink):
                 if name not in self._group:
                     self._add(name, one, own=name in result.coords)
             for name, one in result.quantities.items():
-                self._group[name][region] = self._plan.arranged(result.box, one.values)
+                array = self._group[name]
+                refuse_other_sizes(name, array.shape[len(region) :], one)
+                array[region] = self._plan.arranged(result.box, one.values)
             errors = np.array(result.errors, dtype=object)
             self._group["error"][region] = self._plan.arranged(result.box, errors)
         except OSError as cause:
