@@ -60,14 +60,25 @@ def run_by_run(
             errors[k] = f"{WHERE}: the function fails: {type(cause).__name__}: {cause}"
     if not made:
         return None
+    refuse_other_names(*made.values())
     try:
         all_runs = [made.get(k) for k in range(len(errors))]
         blank = xarray.full_like(next(iter(made.values())).astype(float), np.nan)
         parts = [blank if one is None else one for one in all_runs]
         return xarray.concat(parts, MEMBER, join="exact", compat="override", coords="minimal")
     except (ValueError, TypeError) as cause:
-        what = "the function gives other names or other sizes for one run than for another"
+        what = "the function gives other sizes for one run than for another"
         raise UsageError(what, WHERE, "the same for every run") from cause
+
+
+def refuse_other_names(first: Iterable[Any], *others: Iterable[Any]) -> None:
+    """Raise `UsageError` if a function gives other names for some runs than for others."""
+    for other in others:
+        if set(other) != set(first):
+            given = (
+                f"{listing(map(str, first))} for one run, {listing(map(str, other))} for another"
+            )
+            raise UsageError(f"the function gives {given}", WHERE, "the same for every run")
 
 
 def all_at_once(

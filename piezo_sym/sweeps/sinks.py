@@ -12,6 +12,7 @@ import numpy as np
 
 from piezo_sym.errors import UsageError
 from piezo_sym.sweeps.frame import ERROR_ATTRS
+from piezo_sym.sweeps.reduce import refuse_other_names
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -69,6 +70,8 @@ class Memory(Sink):
         errors = np.array(result.errors, dtype=object)
         self._errors[region] = self._plan.arranged(result.box, errors)
         self._own = result.coords or self._own
+        if self._arrays and result.quantities:
+            refuse_other_names(self._arrays, result.quantities)
         for name, one in result.quantities.items():
             if name not in self._arrays:
                 self._about[name] = one

@@ -19,7 +19,7 @@ from piezo_sym.errors import UsageError, quote
 from piezo_sym.modules import module_of
 from piezo_sym.run.checks import whole
 from piezo_sym.sweeps.frame import frame_of
-from piezo_sym.sweeps.pool import SENT_AT_ONCE, processors, results, sender, threads_for
+from piezo_sym.sweeps.pool import SENT_AT_ONCE, Submit, processors, results, sender, threads_for
 from piezo_sym.sweeps.progress import progress_of
 from piezo_sym.sweeps.read import Asked, read_plan
 from piezo_sym.sweeps.sinks import Memory
@@ -129,16 +129,21 @@ def sweep(
             submit, at_once = stack.enter_context(threads_for(plan, module, count))
         else:
             submit, at_once = sender(plan, module, loaded(model), executor), SENT_AT_ONCE
-        told = stack.enter_context(progress_of(progress, plan.size))
-        boxes = list(sink.missing())
-        done = plan.size - sum(map(len, boxes))
-        for result in stack.enter_context(closing(results(submit, boxes, at_once))):
-            sink.take(result)
-            done += len(result.box)
-            told(done)
+        run_missing(sink, submit, at_once, progress, plan.size)
     found = sink.dataset()
     warn(found, plan)
     return found
+
+
+def run_missing(sink: Sink, submit: Submit, at_once: int, progress: object, total: int) -> None:
+    """Run what a sink misses, and hand it the results as they come."""
+    boxes = list(sink.missing())
+    done = total - sum(map(len, boxes))
+    with progress_of(progress, total) as told, closing(results(submit, boxes, at_once)) as found:
+        for result in found:
+            sink.take(result)
+            done += len(result.box)
+            told(done)
 
 
 def refuse_executor(executor: object, threads: object) -> None:

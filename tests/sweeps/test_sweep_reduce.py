@@ -153,15 +153,22 @@ WRONG = [
     (lambda run: {3: run.q[-1]}, "run", "the function gives"),
     (lambda run: {"L": run.q[-1]}, "run", "gives 'L', which the sweep has, too"),
     (lambda run: run.q[: int(run.L * 1e4)], "run", "other sizes for one run than for another"),
+    (
+        lambda run: {f"q{int(run.L > 1.5e-3)}": run.q[-1]},
+        "run",
+        "for another; expected the same for every run",
+    ),
     (lambda runs: runs.q.mean(), "chunk", "keep the dimension 'member'"),
     (lambda run: xarray.DataArray("a"), "run", "of type <U1; expected real numbers"),  # noqa: ARG005
 ]
 
 
 @pytest.mark.parametrize(("function", "by", "message"), WRONG, ids=[m for *_, m in WRONG])
-def test_what_is_of_no_use_is_refused_in_one_line(function, by, message):
+@pytest.mark.parametrize("threads", [1, 2])
+def test_what_is_of_no_use_is_refused_in_one_line(function, by, message, threads):
+    over = {"L": [1e-3, 2e-3, 1e-3, 2e-3]}  # in boxes of two runs, and of one
     with pytest.raises(UsageError) as raised:
-        sweep("piezo_stack", over={"L": [1e-3, 2e-3]}, **BASE, reduce=function, reduce_by=by)
+        sweep("piezo_stack", over=over, **BASE, reduce=function, reduce_by=by, threads=threads)
     assert message in str(raised.value)
     assert "\n" not in str(raised.value)
 
