@@ -25,14 +25,16 @@ from piezo_sym.run.scales import magnitudes
 from piezo_sym.run.system import System
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     import xarray
     from numpy.typing import ArrayLike
 
     from piezo_sym.run.checks import FloatArray
+    from piezo_sym.run.discrete import Watch
     from piezo_sym.run.engine import Engine
     from piezo_sym.run.inputs import InputValue
+    from piezo_sym.run.integrate import Batch
     from piezo_sym.run.ledger import Trajectory
     from piezo_sym.run.module import GeneratedModule
     from piezo_sym.run.parameters import LaneValue
@@ -166,12 +168,18 @@ def discrete(
 
 
 def by_scipy(
-    system: System, x: FloatArray, samples: FloatArray, method: str, rtol: float
+    system: System,
+    x: FloatArray,
+    samples: FloatArray,
+    method: str,
+    rtol: float,
+    watch: Watch | None = None,
 ) -> tuple[Trajectory, dict[str, object]]:
-    """Return a run of one of SciPy's methods, and what it took."""
+    """Return a run of one of SciPy's methods, and what it took; `watch` as in `discrete`."""
     scale, spent = magnitudes(system, x)
     tolerance = Tolerance(method, rtol, rtol * ATOL_FACTOR * scale)
-    trajectory = record(system, x, batches(system, x, samples, tolerance), samples)
+    found = watched(batches(system, x, samples, tolerance), watch)
+    trajectory = record(system, x, found, samples)
     work = {
         "method": method,
         "rtol": rtol,
@@ -180,3 +188,11 @@ def by_scipy(
         "scale_evaluations": spent,
     }
     return trajectory, work
+
+
+def watched(found: Iterable[Batch], watch: Watch | None) -> Iterator[Batch]:
+    """Yield batches, and tell the time that each begins from."""
+    for batch in found:
+        if watch and batch.stretches:
+            watch(batch.stretches[0].start)
+        yield batch

@@ -30,8 +30,9 @@ Reduction: TypeAlias = Literal["last", "mean"] | Callable[[Any], object]
 #: Runs that go through C in one call, at most; numbers that they leave there.
 MOST_TOGETHER = 64
 MOST_NUMBERS = 8_000_000
-#: Boxes hold so many runs where only reductions are kept.
+#: Boxes hold up to so many runs where only reductions are kept, if so many boxes remain.
 MOST_REDUCED = 512
+ENOUGH_BOXES = 256
 
 
 @final

@@ -12,6 +12,7 @@ from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from functools import lru_cache
+from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -54,7 +55,9 @@ def threads_for(plan: Plan, module: GeneratedModule, count: int) -> Iterator[tup
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-def sender(plan: Plan, module: GeneratedModule, model: Model, executor: Executor) -> Submit:
+def sender(
+    plan: Plan, module: GeneratedModule, model: str | Path | Model, executor: Executor
+) -> Submit:
     """Return a way to run boxes by a user's executor; threads need nothing sent.
 
     Raises
@@ -63,7 +66,9 @@ def sender(plan: Plan, module: GeneratedModule, model: Model, executor: Executor
     """
     if isinstance(executor, ThreadPoolExecutor):
         return lambda box: executor.submit(run_box, plan, module, box, ignore)
-    sent = packed(plan, model)
+    from piezo_sym.spec.load import load
+
+    sent = packed(plan, load(model) if isinstance(model, str | Path) else model)
     return lambda box: executor.submit(run_sent, sent, box)
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from math import prod
 from typing import TYPE_CHECKING, Any, final
 
 from piezo_sym.errors import PiezoError, UsageError, listing, quote
@@ -20,7 +21,7 @@ from piezo_sym.run.module import lanes
 from piezo_sym.run.parameters import own_initial, read_initial, read_parameters, read_times
 from piezo_sym.run.simulate import read_rtol, refuse_step
 from piezo_sym.sweeps.axes import read_axes
-from piezo_sym.sweeps.plan import MOST_NUMBERS, MOST_REDUCED, MOST_TOGETHER, Plan
+from piezo_sym.sweeps.plan import ENOUGH_BOXES, MOST_NUMBERS, MOST_REDUCED, MOST_TOGETHER, Plan
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -75,7 +76,7 @@ def read_plan(module: GeneratedModule, asked: Asked) -> Plan:
         step = None if asked.step is None else float(asked.step)
         numbers = samples.size * row_numbers(module, base, axes)
         together = max(1, min(MOST_TOGETHER, MOST_NUMBERS // numbers))
-        most = MOST_REDUCED if asked.reduce is not None else together
+        most = together if asked.reduce is None else box_of_reduced(axes, together)
         kept = (method, rtol, step, asked.reduce, asked.reduce_by == "run")
         return Plan(axes, inputs.signals, end, *given, samples, *kept, together, most)  # type: ignore[arg-type]
 
@@ -127,6 +128,12 @@ def refuse_reduction(asked: Asked) -> None:
     if asked.reduce_by not in WAYS:
         what = f"{quote(asked.reduce_by)} is not known"
         raise UsageError(what, "sweep.reduce_by", listing(map(repr, WAYS)))
+
+
+def box_of_reduced(axes: tuple[Axis, ...], together: int) -> int:
+    """Return how many runs make a box where little is kept of each: many boxes, if it can be."""
+    size = prod(axis.size for axis in axes)
+    return max(together, min(MOST_REDUCED, size // ENOUGH_BOXES))
 
 
 def row_numbers(module: GeneratedModule, base: Any, axes: tuple[Axis, ...]) -> int:

@@ -227,11 +227,11 @@ def one_by_one(plan: Plan, group: Group, watch: Watch) -> dict[str, NDArray[Any]
     """Return every quantity of a group run by SciPy."""
     parts, good = [], []
     for k, system in enumerate(group.systems):
-        watch(0.0)
         if group.errors[k]:
             continue
+        accuracy = (plan.method, plan.rtol, watch)
         try:
-            run, _ = by_scipy(system, group.start[k], plan.samples, plan.method, plan.rtol)
+            run, _ = by_scipy(system, group.start[k], plan.samples, *accuracy)
         except PiezoError as error:
             group.errors[k] = str(error)
         else:

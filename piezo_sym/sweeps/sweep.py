@@ -123,12 +123,12 @@ def sweep(
         over, inputs, duration, rtol, step, parameters, initial, method, times, reduce, reduce_by
     )
     plan = read_plan(module, asked)
-    plan, sink = sink_of(plan, module, store, 1 if executor else count)
+    plan, sink = sink_of(plan, module, store, count)
     with ExitStack() as stack:
         if executor is None:
             submit, at_once = stack.enter_context(threads_for(plan, module, count))
         else:
-            submit, at_once = sender(plan, module, loaded(model), executor), SENT_AT_ONCE
+            submit, at_once = sender(plan, module, model, executor), SENT_AT_ONCE
         run_missing(sink, submit, at_once, progress, plan.size)
     found = sink.dataset()
     warn(found, plan)
@@ -157,20 +157,13 @@ def refuse_executor(executor: object, threads: object) -> None:
         raise UsageError(f"{quote(executor)} has no 'submit'", "sweep.executor", expected)
 
 
-def loaded(model: str | Path | Model) -> Model:
-    """Return a model that another process can be sent."""
-    from piezo_sym.spec.load import load
-
-    return load(model) if isinstance(model, str | Path) else model
-
-
 def sink_of(
     plan: Plan, module: GeneratedModule, store: str | Path | None, threads: int
 ) -> tuple[Plan, Sink]:
     """Return where results go, and the plan with the boxes that it keeps."""
     frame = frame_of(plan, module)
+    plan = plan.with_most(max(1, min(plan.most, -(-plan.size // (2 * threads)))))
     if store is None:
-        plan = plan.with_most(max(1, min(plan.most, -(-plan.size // (2 * threads)))))
         return plan, Memory(plan, frame)
     from piezo_sym.sweeps.store import store_at
 

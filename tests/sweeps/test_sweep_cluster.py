@@ -2,6 +2,7 @@
 
 import os
 import signal
+import time
 
 import numpy as np
 import xarray
@@ -15,13 +16,19 @@ BASE = {"over": OVER, "duration": 0.02, "times": 3}
 def test_a_killed_worker_loses_nothing(tmp_path):
     from distributed import Client, LocalCluster
 
-    killed = []
+    killed, after = [], []
     height = 2.0
 
     def at_a_third(done, total):
-        if done >= total / 3 and not killed:
+        if killed:
+            after.append(done)
+        elif done >= total / 3:
             killed.append(next(iter(client.run(os.getpid).values())))
             os.kill(killed[0], signal.SIGKILL)
+
+    def slow(runs):
+        time.sleep(0.2)
+        return runs[["q", "phi"]] * height
 
     options = {"n_workers": 2, "threads_per_worker": 1, "processes": True}
     quiet = {"dashboard_address": None, "silence_logs": 50, "local_directory": str(tmp_path)}
@@ -30,11 +37,12 @@ def test_a_killed_worker_loses_nothing(tmp_path):
             "piezo_stack",
             **BASE,
             executor=client.get_executor(),
-            reduce=lambda run: run[["q", "phi"]] * height,
+            reduce=slow,
             reduce_by="chunk",
             progress=at_a_third,
         )
         assert len(killed) == 1
+        assert len(after) > 3
     expected = sweep("piezo_stack", **BASE)
     assert (found.error == "").all()
     xarray.testing.assert_equal(found[["q", "phi"]], expected[["q", "phi"]] * height)

@@ -159,15 +159,18 @@ LONG = """
 import numpy as np
 from piezo_sym import sine, sweep
 sweep("piezo_stack", over={{"L": np.linspace(5e-4, 5e-3, 3000)}}, inputs={{"V_in": sine(100, 100)}},
-      duration={duration}, times=11, store={store!r},
+      duration={duration}, times=11, store={store!r}, method={method!r},
       progress=lambda *done: print(*done, flush=True))
 """
 
 
-@pytest.mark.parametrize("duration", [0.1, 10.0])
-def test_control_c_stops_within_seconds_and_leaves_the_store(tmp_path, duration):
+@pytest.mark.parametrize(
+    ("duration", "method"),
+    [(0.1, "discrete_gradient"), (10.0, "discrete_gradient"), (10.0, "LSODA")],
+)
+def test_control_c_stops_within_seconds_and_leaves_the_store(tmp_path, duration, method):
     path = tmp_path / "runs.zarr"
-    code = LONG.format(duration=duration, store=str(path))
+    code = LONG.format(duration=duration, store=str(path), method=method)
     pipe = subprocess.PIPE
     with subprocess.Popen(
         [sys.executable, "-c", code], cwd=ROOT, stdout=pipe, stderr=pipe, text=True
