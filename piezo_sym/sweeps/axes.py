@@ -7,7 +7,7 @@ key is a name, or a tuple of names whose values go together (a zip: one dimensio
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias, final
 
 import numpy as np
@@ -47,6 +47,12 @@ class Axis:
     def divides(self) -> bool:
         """Whether runs at different points cannot go through C together."""
         return any(target.divides for target in self.targets)
+
+    def part(self, points: slice) -> Axis:
+        """Return some points of the axis."""
+        targets = tuple(target.part(points) for target in self.targets)
+        labels = None if self.labels is None else self.labels[points]
+        return Axis(self.dim, points.stop - points.start, targets, labels)
 
     def coordinates(self) -> Iterator[tuple[str, Attributed]]:
         """Yield the name of each coordinate along this axis, its values and attributes.
@@ -100,7 +106,7 @@ def read_axis(module: GeneratedModule, key: object, given: object, duration: flo
     labels, points = read_points(given, f"{WHERE}.{name}")
     columns = [points] if not isinstance(key, tuple) else unzipped(points, words, name)
     targets = tuple(
-        replace(target, values=read_values(target, column, f"{WHERE}.{word}", duration))
+        target.along(read_values(target, column, f"{WHERE}.{word}", duration))
         for target, column, word in zip(found, columns, words, strict=True)
     )
     dim = "_".join(target.coordinate for target in targets)

@@ -7,7 +7,7 @@ a box holds as many equal ones as it can.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import prod
@@ -68,6 +68,7 @@ class Plan:
     samples : the sample times (nt,) [s].
     method, rtol, step : of each run; the step is None where rtol counts.
     reduce, each : the reduction, and whether its function takes one run or many.
+    largest_banks : the largest size of each bank whose size is swept.
     together : runs in one call of C, at most.
     most : runs in a box, at most.
     """
@@ -83,6 +84,7 @@ class Plan:
     step: float | None
     reduce: Reduction | None
     each: bool
+    largest_banks: Mapping[str, int]
     together: int
     most: int
 
@@ -169,8 +171,15 @@ class Plan:
             yield axis.dim
             yield from (name for name, _ in axis.coordinates())
 
-    @cached_property
-    def largest_banks(self) -> dict[str, int]:
-        """The largest size of each bank whose size is swept."""
-        sizes = [target for _, target in self.swept() if target.is_size]
-        return {str(t.bank): max(int(v) for v in t.values) for t in sizes}  # type: ignore[arg-type]
+    def part(self, box: Box) -> tuple[Plan, Box]:
+        """Return the plan of a box alone, and that box in it: all that its task has to know."""
+        cut = zip(self.axes, self.region(box), strict=True)
+        axes = tuple(axis.part(points) for axis, points in cut)
+        alone = replace(self, axes=axes, most=len(box))
+        return alone, Box(box.number, (0,) * len(box.shape), box.shape)
+
+
+def largest_banks(axes: Iterable[Axis]) -> dict[str, int]:
+    """Return the largest size of each bank whose size is swept."""
+    sizes = [target for axis in axes for target in axis.targets if target.is_size]
+    return {str(t.bank): max(int(v) for v in t.values) for t in sizes}  # type: ignore[arg-type]

@@ -11,10 +11,10 @@ import pickle
 from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
-from functools import lru_cache
+from dataclasses import replace
 from pathlib import Path
 from threading import Event
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from piezo_sym.errors import RunError, UsageError, one_line
 from piezo_sym.modules import module_of
@@ -68,18 +68,18 @@ def sender(
         return lambda box: executor.submit(run_box, plan, module, box, ignore)
     from piezo_sym.spec.load import load
 
-    sent = packed(plan, load(model) if isinstance(model, str | Path) else model)
-    return lambda box: executor.submit(run_sent, sent, box)
+    ready = load(model) if isinstance(model, str | Path) else model
+    return lambda box: executor.submit(run_sent, packed(plan, ready, box), box)
 
 
-def packed(plan: Plan, model: Model) -> bytes:
-    """Return a plan and its model as bytes for another process; functions by value if possible."""
+def packed(plan: Plan, model: Model, box: Box) -> bytes:
+    """Return what a box needs as bytes for another process; functions by value if possible."""
     try:
         import cloudpickle as way
     except ImportError:
         way = pickle
     try:
-        return bytes(way.dumps((plan, model)))
+        return bytes(way.dumps((*plan.part(box), model)))
     except Exception as cause:  # pickling runs the code of a user's objects
         what = f"a function or value cannot be sent to another process: {one_line(str(cause))}"
         remedy = "define functions in a module of their own, or `pip install cloudpickle`"
@@ -87,16 +87,9 @@ def packed(plan: Plan, model: Model) -> bytes:
 
 
 def run_sent(sent: bytes, box: Box) -> Result:
-    """Run a box in another process."""
-    plan, module = unpacked(sent)
-    return run_box(plan, module, box, ignore)
-
-
-@lru_cache(maxsize=2)
-def unpacked(sent: bytes) -> tuple[Plan, Any]:
-    """Return a plan and its module, loaded or generated here."""
-    plan, model = pickle.loads(sent)
-    return plan, module_of(model)
+    """Run a box in another process, with the module loaded or generated there."""
+    plan, alone, model = pickle.loads(sent)
+    return replace(run_box(plan, module_of(model), alone, ignore), box=box)
 
 
 def ignore(_: float) -> None:

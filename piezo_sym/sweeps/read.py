@@ -21,7 +21,14 @@ from piezo_sym.run.module import lanes
 from piezo_sym.run.parameters import own_initial, read_initial, read_parameters, read_times
 from piezo_sym.run.simulate import read_rtol, refuse_step
 from piezo_sym.sweeps.axes import read_axes
-from piezo_sym.sweeps.plan import ENOUGH_BOXES, MOST_NUMBERS, MOST_REDUCED, MOST_TOGETHER, Plan
+from piezo_sym.sweeps.plan import (
+    ENOUGH_BOXES,
+    MOST_NUMBERS,
+    MOST_REDUCED,
+    MOST_TOGETHER,
+    Plan,
+    largest_banks,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -77,7 +84,7 @@ def read_plan(module: GeneratedModule, asked: Asked) -> Plan:
         numbers = samples.size * row_numbers(module, base, axes)
         together = max(1, min(MOST_TOGETHER, MOST_NUMBERS // numbers))
         most = together if asked.reduce is None else box_of_reduced(axes, together)
-        kept = (method, rtol, step, asked.reduce, asked.reduce_by == "run")
+        kept = (method, rtol, step, asked.reduce, asked.reduce_by == "run", largest_banks(axes))
         return Plan(axes, inputs.signals, end, *given, samples, *kept, together, most)  # type: ignore[arg-type]
 
 
@@ -138,9 +145,7 @@ def box_of_reduced(axes: tuple[Axis, ...], together: int) -> int:
 
 def row_numbers(module: GeneratedModule, base: Any, axes: tuple[Axis, ...]) -> int:
     """Return how many numbers a run leaves at each sample, about, at the largest sizes."""
-    sizes = {bank: lanes(base, bank) for bank in module.BANKS}
-    for target in (t for axis in axes for t in axis.targets if t.is_size):
-        sizes[str(target.bank)] = max(int(v) for v in target.values)  # type: ignore[arg-type]
+    sizes = {bank: lanes(base, bank) for bank in module.BANKS} | largest_banks(axes)
     count: dict[str | None, int] = {None: 1}
     count.update(sizes)
     states: int = sum(count[record.bank] for record in module.STATES)

@@ -9,7 +9,7 @@ A plain name is enough where only one thing has it; else "parameters.x", "inputs
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, final
 
 import numpy as np
@@ -44,6 +44,7 @@ class Target:
     bank : the bank that it belongs to, or whose size it is, if any.
     is_size : whether it is the number of lanes of a bank.
     values : one a point: an array of numbers, or numbers, tuples of one a lane, and signals.
+    texts : what stands for each value on a coordinate, where not all are numbers.
     """
 
     kind: Kind
@@ -53,6 +54,7 @@ class Target:
     bank: str | None
     is_size: bool = False
     values: FloatArray | tuple[Value, ...] = ()
+    texts: tuple[str, ...] = ()
 
     @property
     def coordinate(self) -> str:
@@ -64,13 +66,19 @@ class Target:
         """Whether runs with different values cannot go through C together."""
         return self.is_size or self.kind == "inputs"
 
+    def along(self, values: FloatArray | tuple[Value, ...]) -> Target:
+        """Return it with values, one a point."""
+        numbers = isinstance(values, np.ndarray) or all(map(is_number, values))
+        texts = () if numbers else distinct([label(value) for value in values])
+        return replace(self, values=values, texts=tuple(texts))
+
+    def part(self, points: slice) -> Target:
+        """Return it with the values at some points."""
+        return replace(self, values=self.values[points], texts=self.texts[points])
+
     def labels(self) -> Any:
         """Return its values as numbers (points,), or as one text each."""
-        if isinstance(self.values, np.ndarray):
-            return self.values
-        if all(is_number(value) for value in self.values):
-            return np.array(self.values)
-        return distinct([label(value) for value in self.values])
+        return self.texts or np.asarray(self.values)
 
 
 def find(module: GeneratedModule, word: object, where: str) -> Target:

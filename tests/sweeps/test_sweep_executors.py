@@ -72,6 +72,19 @@ def test_functions_go_to_processes_by_value(processes):
     xarray.testing.assert_identical(found, sweep("piezo_stack", **options))
 
 
+def test_a_process_sees_what_a_thread_sees(processes):
+    options = {
+        "over": {"V_in": [lambda t: t, lambda t: 2 * t], "hysteron_count": [1, 3], "L": [1e-3] * 5},
+        "reduce": lambda run: (
+            run[["phi"]].isel(time=-1).assign(one=float(str(run.over_V_in.values)[0]))
+        ),  # of "0: <lambda>", "1: <lambda>"
+        "duration": 1e-3,
+    }
+    found = sweep("piezo_stack", **options, executor=processes)
+    xarray.testing.assert_identical(found, sweep("piezo_stack", **options))
+    assert found.one.values[:, 0, 0].tolist() == [0.0, 1.0]
+
+
 def test_what_cannot_be_sent_is_one_line(processes):
     lock = threading.Lock()
     with pytest.raises(UsageError) as raised:
