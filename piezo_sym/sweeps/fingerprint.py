@@ -65,6 +65,6 @@ def of_callable(value: object) -> Iterator[bytes]:
         yield from parts((dict(held), *more))
         return
     yield from parts(code)
-    yield from parts(getattr(value, "__defaults__", None))
+    yield from parts((getattr(value, "__defaults__", None), getattr(value, "__kwdefaults__", None)))
     for cell in getattr(value, "__closure__", None) or ():
         yield from parts(cell.cell_contents)

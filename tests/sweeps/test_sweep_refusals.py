@@ -1,13 +1,15 @@
 """What a sweep refuses, in one line, before anything runs; and runs that fail."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray
 
 from piezo_sym import ramp, simulate, sine, sweep
 from piezo_sym.errors import FileError, RunError, UsageError
-from piezo_sym.sweeps import SweepWarning
+from piezo_sym.sweeps import SweepWarning, run
 from piezo_sym.sweeps.targets import Target, find
 
 NAN, INF = float("nan"), float("inf")
@@ -140,11 +142,30 @@ def test_a_run_that_stops_does_not_stop_others(reduce):
     assert "cannot go on from t =" in found.error.values[1]
     assert np.isnan(found.q.values[[1, 3]]).all()
     options["parameters"] = {**parameters, "T_0": 298.0}
-    run = simulate("piezo_stack", method="discrete_gradient", **options)
+    alone = simulate("piezo_stack", method="discrete_gradient", **options)
     if reduce is None:
-        np.testing.assert_array_equal(found.q.values[4], run.q.values)
+        np.testing.assert_array_equal(found.q.values[4], alone.q.values)
     else:
         assert np.isfinite(found.q.values[[0, 2, 4]]).all()
+
+
+def test_runs_that_stop_together_are_run_again_alone(monkeypatch):
+    """A run that needs too fine a mesh stops those that share its call of C."""
+    real = run.stepped
+
+    def stopped(plan, systems, engine, x, watch):
+        found = real(plan, systems, engine, x, watch)
+        if len(systems) == 1:
+            return found
+        for name in ("states", "fine", "sums"):
+            getattr(found.batch, name)[:] = np.nan
+        return replace(found, errors=[RunError("stopped by another")] * len(systems))
+
+    options = {"inputs": {"V_in": sine(100, 100)}, "duration": 0.01, "times": 5, "threads": 1}
+    over = {"L": [1e-3, 2e-3, 3e-3, 4e-3]}
+    expected = sweep("piezo_stack", over=over, **options)
+    monkeypatch.setattr(run, "stepped", stopped)
+    xarray.testing.assert_identical(sweep("piezo_stack", over=over, **options), expected)
 
 
 @pytest.mark.parametrize("reduce", [None, "last", lambda run: run[["q"]]])

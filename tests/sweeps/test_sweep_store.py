@@ -150,6 +150,8 @@ def test_functions_differ_by_code_and_by_what_they_hold():
     assert not same(line(2), line(3))
     assert not same(lambda t: t + 1, lambda t: t + 2)
     assert not same(lambda t: t.x, lambda t: t.y)
+    assert not same(lambda t, a=1: a * t, lambda t, a=2: a * t)
+    assert not same(lambda t, *, a=1: a * t, lambda t, *, a=2: a * t)
     assert same(samples([0, 1], [0, 2]), samples([0, 1], [0, 2]))
     assert not same(samples([0, 1], [0, 2]), samples([0, 1], [0, 3]))
     assert not same(1.0, 1)
