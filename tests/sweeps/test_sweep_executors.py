@@ -169,7 +169,9 @@ def test_a_bar_is_shown_where_it_is_wanted(capsys, monkeypatch):
 
 
 LONG = """
+import signal
 import numpy as np
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a job in the background ignores it
 from piezo_sym import sine, sweep
 sweep("piezo_stack", over={{"L": np.linspace(5e-4, 5e-3, 3000)}}, inputs={{"V_in": sine(100, 100)}},
       duration={duration}, times=11, store={store!r}, method={method!r},
@@ -196,7 +198,10 @@ def test_control_c_stops_within_seconds_and_leaves_the_store(tmp_path, duration,
             time.sleep(0.5)
         process.send_signal(signal.SIGINT)
         begun = time.monotonic()
-        _, errors = process.communicate(timeout=60)
+        try:
+            _, errors = process.communicate(timeout=60)
+        finally:
+            process.kill()
         took = time.monotonic() - begun
     assert "KeyboardInterrupt" in errors.splitlines()[-1]
     assert took < 6  # a second or two, on a busy machine
