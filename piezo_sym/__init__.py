@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from piezo_sym.run import chirp, ramp, samples, samples_from_csv, sine, step, triangle
     from piezo_sym.spec.load import load
     from piezo_sym.spec.model import Model
+    from piezo_sym.sweeps import sweep
 
 _HOME = {
     "Model": "spec.model",
@@ -54,6 +55,7 @@ _HOME = {
     "sine": "run",
     "steady_branches": "api",
     "step": "run",
+    "sweep": "sweeps",
     "triangle": "run",
     "verify": "proofs",
 }
@@ -77,6 +79,7 @@ __all__ = [
     "sine",
     "steady_branches",
     "step",
+    "sweep",
     "triangle",
     "verify",
 ]

@@ -26,13 +26,15 @@ from piezo_sym.run.scales import magnitudes
 from piezo_sym.run.system import System
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     import xarray
     from numpy.typing import ArrayLike
 
     from piezo_sym.run.checks import FloatArray
+    from piezo_sym.run.discrete import Watch
     from piezo_sym.run.inputs import InputValue
+    from piezo_sym.run.integrate import Batch
     from piezo_sym.run.ledger import Trajectory
     from piezo_sym.run.module import GeneratedModule
     from piezo_sym.run.parameters import LaneValue
@@ -136,17 +138,23 @@ def simulate(
             system, way.engine, x, samples, bound, step, starts=dissipative_start
         )
     else:
-        trajectory, work = solver_run(system, way.method, x, samples, bound)
+        trajectory, work = by_scipy(system, x, samples, way.method, bound)
     return to_dataset(system, samples, trajectory, {**work, "engine": way.note})
 
 
-def solver_run(
-    system: System, method: str, x: FloatArray, samples: FloatArray, rtol: float
+def by_scipy(
+    system: System,
+    x: FloatArray,
+    samples: FloatArray,
+    method: str,
+    rtol: float,
+    watch: Watch | None = None,
 ) -> tuple[Trajectory, dict[str, object]]:
-    """Return a run of one of SciPy's solvers, and what it took."""
+    """Return a run of one of SciPy's methods, and what it took; `watch` is told the time."""
     scale, spent = magnitudes(system, x)
     tolerance = Tolerance(method, rtol, rtol * ATOL_FACTOR * scale)
-    trajectory = record(system, x, batches(system, x, samples, tolerance), samples)
+    found = watched(batches(system, x, samples, tolerance), watch)
+    trajectory = record(system, x, found, samples)
     work = {
         "method": method,
         "rtol": rtol,
@@ -155,6 +163,14 @@ def solver_run(
         "scale_evaluations": spent,
     }
     return trajectory, work
+
+
+def watched(found: Iterable[Batch], watch: Watch | None) -> Iterator[Batch]:
+    """Yield batches, and tell the time that each begins from."""
+    for batch in found:
+        if watch and batch.stretches:
+            watch(batch.stretches[0].start)
+        yield batch
 
 
 def read_rtol(rtol: object) -> float:

@@ -3,8 +3,8 @@
 The floors, two towers on one ground:
 
     errors < spec < algebra < network < iphs < derivation < {proofs, codegen} < build < modules
-        < api < cli
-    errors < run < analysis < api < cli
+        < {sweeps, api} < bench < cli
+    errors < run < {sweeps, analysis} < api < bench < cli
 """
 
 from graphlib import CycleError, TopologicalSorter
@@ -29,11 +29,11 @@ PROVING = (
     {"proofs", "codegen"},
     {"build"},
     {"modules"},
-    {"api"},
+    {"sweeps", "api"},
     {"bench"},
     *TOP,
 )
-RUNNING = (GROUND, {"run"}, {"analysis"}, {"api"}, {"bench"}, *TOP)
+RUNNING = (GROUND, {"run"}, {"sweeps", "analysis"}, {"api"}, {"bench"}, *TOP)
 SYMBOLIC = {"sympy", "pydantic", "pint", "z3", "tomli_w", "typer", "rich"}
 
 

@@ -49,6 +49,13 @@ def test_a_run_loads_nothing_of_the_derivation(tmp_path):
     assert found.isdisjoint(HEAVY)
 
 
+def test_a_sweep_loads_nothing_of_the_derivation(tmp_path):
+    code = "import piezo_sym; piezo_sym.sweep('piezo_stack', over={'L': [1e-3]}, duration=1e-4)"
+    found = loaded(code, tmp_path)
+    assert "xarray" in found
+    assert found.isdisjoint({*HEAVY, "zarr", "distributed", "rich"})
+
+
 def test_the_command_loads_no_sympy_before_it_is_needed(tmp_path):
     found = loaded("from piezo_sym.cli import run; run(['--version'])", tmp_path)
     assert found.isdisjoint({"sympy", "z3", "xarray", "matplotlib"})

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from piezo_sym.run.checks import FloatArray
     from piezo_sym.run.module import GeneratedModule
 
-REMEMBERED = 8
+#: Structures kept: of the runs that go through C together, which are asked for again and again.
+REMEMBERED = 256
 
 
 @final

@@ -1,0 +1,9 @@
+"""Sweeps: one model run over a grid of parameters, inputs and initial values, on all cores.
+
+Input: a model and what to sweep.  Output: an `xarray.Dataset` with the swept dimensions, in memory
+or in a Zarr store that an interrupted sweep takes up again.
+"""
+
+from piezo_sym.sweeps.sweep import SweepWarning, sweep
+
+__all__ = ["SweepWarning", "sweep"]

@@ -1,0 +1,170 @@
+"""The axes of a sweep: a dimension for each key of `over`.
+
+Input: a generated module, a user's mapping `over`, the length of a run.  Output: `Axis` records.  A
+key is a name, or a tuple of names whose values go together (a zip: one dimension, `L_T_e`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypeAlias, final
+
+import numpy as np
+
+from piezo_sym.errors import UsageError, listing, quote
+from piezo_sym.run.checks import is_number, number
+from piezo_sym.sweeps.targets import Target, find, read_values
+
+if TYPE_CHECKING:
+    from piezo_sym.run.module import GeneratedModule
+
+WHERE = "sweep.over"
+EXPECTED = "a list or array of values, or a mapping of labels to values"
+
+Attributed: TypeAlias = tuple[Any, dict[str, str]]
+
+
+@final
+@dataclass(frozen=True)
+class Axis:
+    """A dimension of a sweep.
+
+    Attributes
+    ----------
+    dim : its name.
+    size : the number of its points.
+    targets : what changes along it.
+    labels : of its points, if the user gave them: numbers or texts.
+    """
+
+    dim: str
+    size: int
+    targets: tuple[Target, ...]
+    labels: tuple[float | str, ...] | None
+
+    @property
+    def divides(self) -> bool:
+        """Whether runs at different points cannot go through C together."""
+        return any(target.divides for target in self.targets)
+
+    def part(self, points: slice) -> Axis:
+        """Return some points of the axis."""
+        targets = tuple(target.part(points) for target in self.targets)
+        labels = None if self.labels is None else self.labels[points]
+        return Axis(self.dim, points.stop - points.start, targets, labels)
+
+    def coordinates(self) -> Iterator[tuple[str, Attributed]]:
+        """Yield the name of each coordinate along this axis, its values and attributes.
+
+        The user's labels are the index of the dimension; where it is named like the only target,
+        they stand for that target's values.
+        """
+        if self.labels is not None:
+            unit = {"long_name": f"labels of {listing(t.name for t in self.targets)}"}
+            yield self.dim, (self.labels, unit)
+        for target in self.targets:
+            if self.labels is None or target.coordinate != self.dim:
+                values = target.labels()
+                attrs = {"units": target.unit} if isinstance(values, np.ndarray) else {}
+                yield target.coordinate, (values, {**attrs, "long_name": target.doc})
+
+
+def read_axes(
+    module: GeneratedModule, over: object, duration: float, lanes: Mapping[str, int]
+) -> tuple[Axis, ...]:
+    """Return the axes of a sweep, in the order given.
+
+    Parameters
+    ----------
+    lanes : the size of each bank, where it is not swept.
+
+    Raises
+    ------
+    UsageError : a name is unknown, ambiguous or swept twice, or a value is not usable.
+    """
+    if not isinstance(over, Mapping) or not over:
+        what = f"{quote(over)} sweeps nothing" if over in ({}, None) else f"{quote(over)} is no map"
+        raise UsageError(what, WHERE, "a mapping of names to lists of values")
+    axes = tuple(read_axis(module, key, value, duration) for key, value in over.items())
+    seen: set[tuple[str, str]] = set()
+    for target in (target for axis in axes for target in axis.targets):
+        if (target.kind, target.name) in seen:
+            raise UsageError(f"'{target.name}' is swept twice", WHERE, remedy="name it once")
+        seen.add((target.kind, target.name))
+    refuse_lists(axes, lanes)
+    return axes
+
+
+def read_axis(module: GeneratedModule, key: object, given: object, duration: float) -> Axis:
+    """Return the axis of one key."""
+    words = key if isinstance(key, tuple) else (key,)
+    if not words:
+        raise UsageError("a key names nothing", WHERE, "a name, or a tuple of names")
+    found = [find(module, word, WHERE) for word in words]
+    name = ", ".join(map(str, words))
+    labels, points = read_points(given, f"{WHERE}.{name}")
+    columns = [points] if not isinstance(key, tuple) else unzipped(points, words, name)
+    targets = tuple(
+        target.along(read_values(target, column, f"{WHERE}.{word}", duration))
+        for target, column, word in zip(found, columns, words, strict=True)
+    )
+    dim = "_".join(target.coordinate for target in targets)
+    return Axis(dim, len(points), targets, labels)
+
+
+def read_points(
+    given: object, where: str
+) -> tuple[tuple[float | str, ...] | None, Sequence[object] | np.ndarray[Any, Any]]:
+    """Return labels, if a user gave them, and values, at least one."""
+    labels: tuple[float | str, ...] | None = None
+    if isinstance(given, Mapping):
+        labels, given = read_labels(tuple(given), where), list(given.values())
+    if not isinstance(given, list | tuple | range):
+        given = np.asarray(given)
+    if isinstance(given, np.ndarray) and (given.ndim == 0 or given.dtype.kind not in "iufO"):
+        raise UsageError(f"{quote(given.tolist())} is no list of values", where, EXPECTED)
+    if not len(given):
+        raise UsageError("there are no values", where, "one value at least")
+    return labels, given
+
+
+def read_labels(keys: tuple[object, ...], where: str) -> tuple[float | str, ...]:
+    """Return a user's labels: numbers, or texts."""
+    if all(isinstance(key, str) for key in keys):
+        return tuple(str(key) for key in keys)
+    wrong = next((key for key in keys if not is_number(key)), None)
+    if wrong is not None:
+        raise UsageError(f"label {quote(wrong)} is mixed with others", where, "numbers, or texts")
+    return tuple(number(key, f"{where} (label)") for key in keys)
+
+
+def unzipped(
+    points: Sequence[object] | np.ndarray[Any, Any], words: tuple[object, ...], name: str
+) -> list[Any]:
+    """Return the values of each name of a zip; each point has one a name."""
+    if isinstance(points, np.ndarray) and points.ndim == 2 and points.shape[1] == len(words):
+        return list(points.T)
+    for n, point in enumerate(points):
+        if not isinstance(point, tuple | list | np.ndarray) or len(point) != len(words):
+            expected = f"a tuple of {len(words)} values, one each for {name}"
+            raise UsageError(f"{quote(point)} is no point", f"{WHERE}.{name}[{n}]", expected)
+    return [[point[n] for point in points] for n in range(len(words))]  # type: ignore[index]
+
+
+def refuse_lists(axes: tuple[Axis, ...], lanes: Mapping[str, int]) -> None:
+    """Raise `UsageError` where one value a lane meets another number of lanes.
+
+    A size that is swept along another axis than the lists meets all their lengths.
+    """
+    sizes = {t.bank: (axis, t) for axis in axes for t in axis.targets if t.is_size}
+    for axis in axes:
+        for target in (t for t in axis.targets if t.bank and not t.is_size):
+            other, size = sizes.get(target.bank, (None, None))
+            for n, value in enumerate(target.values):
+                met = size.values if size else (lanes[str(target.bank)],)
+                met = (met[n],) if size and other is axis else met
+                if isinstance(value, tuple) and any(len(value) != count for count in met):
+                    what = f"{len(value)} values for {listing(map(str, met), 4)} lanes"
+                    remedy = f"zip both: ('{target.name}', '{size.name}')" if size else ""
+                    raise UsageError(what, f"{WHERE}.{target.name}[{n}]", "one a lane", remedy)

@@ -1,0 +1,160 @@
+"""Runs with equal inputs and sizes: their systems and where they start.
+
+Input: a `Plan`, its module, points of the grid.  Output: a `Group`.  What a run is refused for at
+t = 0 is its error, in the words of a single run.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, final
+
+import numpy as np
+
+from piezo_sym.errors import PiezoError, RunError
+from piezo_sym.run.engine.members import Members
+from piezo_sym.run.guard import check_start
+from piezo_sym.run.inputs import Inputs
+from piezo_sym.run.module import rows
+from piezo_sym.run.parameters import own_initial, read_parameters
+from piezo_sym.run.signals import Constant, Signal
+from piezo_sym.run.system import System
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from piezo_sym.run.checks import FloatArray
+    from piezo_sym.run.engine import Engine
+    from piezo_sym.run.module import GeneratedModule
+    from piezo_sym.sweeps.plan import Plan
+    from piezo_sym.sweeps.targets import Target, Value
+
+
+@final
+@dataclass(frozen=True)
+class Group:
+    """Some runs.
+
+    Attributes
+    ----------
+    systems : of each run, with equal inputs and sizes.
+    start : states (runs, n) at t = 0.
+    errors : of each run, why it cannot start, or "".
+    """
+
+    systems: Sequence[System]
+    start: FloatArray
+    errors: list[str]
+
+
+def group_at(
+    plan: Plan, module: GeneratedModule, engine: Engine | None, points: NDArray[np.intp]
+) -> Group:
+    """Return the runs at points (runs, axes) that differ along no axis that divides them."""
+    inputs = inputs_at_point(plan, module, points[0])
+    base = base_at_point(plan, module, points[0])
+    columns = {
+        target.name: along(target, points[:, n])
+        for n, target in plan.swept()
+        if target.kind == "parameters" and not target.is_size
+    }
+    if columns:
+        values = zip(*columns.values(), strict=True)
+        changes = (dict(zip(columns, one, strict=True)) for one in values)
+        parameters = [replace(base, **change) for change in changes]
+    else:
+        parameters = [base] * len(points)
+    systems = [System(module, p, inputs) for p in parameters]
+    start, errors = starts(plan, systems, points)
+    check_starts(systems, engine, start, errors)
+    return Group(systems, start, errors)
+
+
+def along(target: Target, points: NDArray[np.intp]) -> list[Value]:
+    """Return a target's values at points of its axis."""
+    if isinstance(target.values, np.ndarray):
+        found: list[Value] = target.values[points].tolist()
+        return found
+    return [target.values[n] for n in points]
+
+
+def inputs_at_point(plan: Plan, module: GeneratedModule, point: NDArray[np.intp]) -> Inputs:
+    """Return the inputs of the runs at a point."""
+    names = [record.name for record in module.INPUTS]
+    signals = list(plan.signals)
+    for n, target in plan.swept():
+        if target.kind == "inputs":
+            value = target.values[point[n]]
+            signal = value if isinstance(value, Signal) else Constant(float(value))
+            signals[names.index(target.name)] = signal
+    return Inputs(tuple(signals), plan.duration)
+
+
+def base_at_point(plan: Plan, module: GeneratedModule, point: NDArray[np.intp]) -> Any:
+    """Return the parameters of the runs at a point, before those that are swept."""
+    sizes = {t.name: int(t.values[point[n]]) for n, t in plan.swept() if t.is_size}
+    return read_parameters(module, {**plan.parameters, **sizes})
+
+
+def starts(
+    plan: Plan, systems: Sequence[System], points: NDArray[np.intp]
+) -> tuple[FloatArray, list[str]]:
+    """Return the states (runs, n) at t = 0, nan where there is none, and the errors."""
+    first = systems[0]
+    module, u = first.module, first.inputs.segments[0].at(0.0)
+    own: dict[int, FloatArray | str] = {}
+    for system in systems:
+        if id(system.parameters) not in own:
+            own[id(system.parameters)] = started(module, system.parameters, u)
+    found = [own[id(system.parameters)] for system in systems]
+    parts = dict(zip((r.name for r in module.STATES), first.rows(module.STATES), strict=True))
+    size = rows(module.STATES, first.parameters)[-1].stop if module.STATES else 0
+    start = np.array([np.full(size, np.nan) if isinstance(x, str) else x for x in found])
+    for name, value in plan.initial.items():
+        start[:, parts[name]] = value
+    for n, target in plan.swept():
+        if target.kind == "initial":
+            for k, one in enumerate(along(target, points[:, n])):
+                start[k, parts[target.name]] = one
+    return start, [x if isinstance(x, str) else "" for x in found]
+
+
+def started(module: GeneratedModule, parameters: Any, u: FloatArray) -> FloatArray | str:
+    """Return the module's state (n,) at t = 0, or why it has none."""
+    try:
+        return own_initial(module, parameters, u)
+    except RunError as error:
+        return str(error)
+
+
+def check_starts(
+    systems: Sequence[System], engine: Engine | None, start: FloatArray, errors: list[str]
+) -> None:
+    """Fill in the errors of runs whose start is outside the domain; C says which to look at."""
+    fine = inside(systems, engine, start) if engine else np.zeros(len(systems), dtype=bool)
+    for k in np.flatnonzero(~fine).tolist():
+        if not errors[k]:
+            try:
+                check_start(systems[k], start[k])
+            except PiezoError as error:
+                errors[k] = str(error)
+
+
+def inside(
+    systems: Sequence[System], engine: Engine, start: FloatArray
+) -> np.ndarray[Any, np.dtype[np.bool_]]:
+    """Return whether each run starts inside the domain with a finite rate."""
+    module, first = systems[0].module, systems[0].inputs.segments[0]
+    u = np.ascontiguousarray(first.at(first.start)[None])
+    call = Members(engine, [system.parameters for system in systems])
+    x = np.ascontiguousarray(start[:, None])
+    margins = call("margins", x, len(module.DOMAIN), u)[:, 0]
+    strict = np.array([condition.strict for condition in module.DOMAIN], dtype=bool)
+    rates = call("rhs", x, start.shape[1], u)[:, 0]
+    held = np.where(strict, margins > 0, margins >= 0)
+    good: np.ndarray[Any, np.dtype[np.bool_]] = np.all(held, axis=1) & np.isfinite(rates).all(
+        axis=1
+    )
+    return good

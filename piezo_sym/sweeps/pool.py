@@ -1,0 +1,131 @@
+"""Boxes run side by side: in threads, or by any executor of `concurrent.futures`.
+
+Input: boxes, and a function that runs one or that sends it away.  Output: results in the order in
+which they come.  Few are on their way at once, so that results do not pile up.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+from collections.abc import Callable, Generator, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, ThreadPoolExecutor, wait
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from threading import Event
+from typing import TYPE_CHECKING, TypeAlias
+
+from piezo_sym.errors import RunError, UsageError, one_line
+from piezo_sym.modules import module_of
+from piezo_sym.sweeps.plan import Box
+from piezo_sym.sweeps.run import Result, run_box
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+    from piezo_sym.run.module import GeneratedModule
+    from piezo_sym.spec.model import Model
+    from piezo_sym.sweeps.plan import Plan
+
+Submit: TypeAlias = Callable[[Box], "Future[Result]"]
+
+#: Tasks given to somebody else's executor at once: it may have many workers.
+SENT_AT_ONCE = 256
+
+
+class Stopped(Exception):
+    """The sweep was stopped: ends the work of its threads, and is seen by nobody."""
+
+
+@contextmanager
+def threads_for(plan: Plan, module: GeneratedModule, count: int) -> Iterator[tuple[Submit, int]]:
+    """Give a way to run boxes in threads of our own; they end with the context, soon."""
+    stop = Event()
+
+    def watch(_: float) -> None:
+        if stop.is_set():
+            raise Stopped
+
+    pool = ThreadPoolExecutor(count, "sweep")
+    try:
+        yield lambda box: pool.submit(run_box, plan, module, box, watch), 2 * count
+    finally:
+        stop.set()
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+def sender(
+    plan: Plan, module: GeneratedModule, model: str | Path | Model, executor: Executor
+) -> Submit:
+    """Return a way to run boxes by a user's executor; threads need nothing sent.
+
+    Raises
+    ------
+    UsageError : what a task needs cannot be sent to another process.
+    """
+    if isinstance(executor, ThreadPoolExecutor):
+        return lambda box: executor.submit(run_box, plan, module, box, ignore)
+    from piezo_sym.spec.load import load
+
+    ready = load(model) if isinstance(model, str | Path) else model
+    return lambda box: executor.submit(run_sent, packed(plan, ready, box), box)
+
+
+def packed(plan: Plan, model: Model, box: Box) -> bytes:
+    """Return what a box needs as bytes for another process; functions by value if possible."""
+    try:
+        import cloudpickle as way
+    except ImportError:
+        way = pickle
+    try:
+        return bytes(way.dumps((*plan.part(box), model)))
+    except Exception as cause:  # pickling runs the code of a user's objects
+        what = f"a function or value cannot be sent to another process: {one_line(str(cause))}"
+        remedy = "define functions in a module of their own, or `pip install cloudpickle`"
+        raise UsageError(what, "sweep.executor", remedy=remedy) from cause
+
+
+def run_sent(sent: bytes, box: Box) -> Result:
+    """Run a box in another process, with the module loaded or generated there."""
+    plan, alone, model = pickle.loads(sent)
+    return replace(run_box(plan, module_of(model), alone, ignore), box=box)
+
+
+def ignore(_: float) -> None:
+    """Let a run go on."""
+
+
+def results(submit: Submit, boxes: Iterable[Box], at_once: int) -> Generator[Result, None, None]:
+    """Yield results as they come; what is not begun when the caller stops is cancelled.
+
+    Raises
+    ------
+    RunError : a process of the executor died.
+    """
+    pending: set[Future[Result]] = set()
+    try:
+        for box in boxes:
+            pending.add(submit(box))
+            if len(pending) >= at_once:
+                done, pending = wait(pending, return_when=FIRST_COMPLETED)
+                while done:  # none is held while the next is waited for
+                    yield done.pop().result()
+        while pending:
+            done, pending = wait(pending, return_when=FIRST_COMPLETED)
+            while done:
+                yield done.pop().result()
+    except BrokenExecutor as cause:
+        what = f"a process of the executor died: {one_line(str(cause))}"
+        remedy = "with store=..., start again: what is done is kept"
+        raise RunError(what, "sweep.executor", remedy=remedy) from cause
+    finally:
+        for future in pending:
+            future.cancel()
+
+
+def processors() -> int:
+    """Return how many processors this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

@@ -1,0 +1,67 @@
+"""How far a sweep is: a bar on a terminal, or a user's function.
+
+Input: what a user said of `progress`.  Output: a function told how many runs are done.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TypeAlias
+
+from piezo_sym.errors import UsageError, quote
+
+Told: TypeAlias = Callable[[int], object]
+SECOND = 1.0
+
+
+@contextmanager
+def progress_of(wanted: object, total: int) -> Iterator[Told]:
+    """Give a function to be told how many runs are done.
+
+    Parameters
+    ----------
+    wanted : True or False; None for a bar on a terminal; or a function of (done, total).
+    total : the number of runs.
+
+    Raises
+    ------
+    UsageError : `wanted` is nothing of these.
+    """
+    if callable(wanted):
+        tell: Callable[[int, int], object] = wanted
+        yield lambda done: tell(done, total)
+        return
+    if wanted is not None and not isinstance(wanted, bool):
+        expected = "True, False, None or a function of (done, total)"
+        raise UsageError(f"{quote(wanted)} shows no progress", "sweep.progress", expected)
+    if wanted is None:
+        wanted = sys.stderr.isatty()
+    if wanted:
+        with bar(total) as told:
+            yield told
+    else:
+        yield lambda done: None  # noqa: ARG005
+
+
+@contextmanager
+def bar(total: int) -> Iterator[Told]:
+    """Give a bar on the terminal, which appears after a second."""
+    from rich.console import Console
+    from rich.progress import Progress
+
+    shown = Progress(console=Console(stderr=True))
+    task, begun = shown.add_task("sweep", total=total), time.monotonic()
+
+    def told(done: int) -> None:
+        if time.monotonic() - begun > SECOND:
+            shown.start()  # once: later calls change nothing
+        shown.update(task, completed=done)
+
+    try:
+        yield told
+    finally:
+        if shown.live.is_started:
+            shown.stop()

@@ -1,0 +1,150 @@
+"""What a user asked of a sweep, checked before anything runs.
+
+Input: the arguments of `sweep`.  Output: a `Plan`, or an error of one line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from math import prod
+from typing import TYPE_CHECKING, Any, final
+
+from piezo_sym.errors import PiezoError, UsageError, listing, quote
+from piezo_sym.run.checks import positive
+from piezo_sym.run.inputs import read_inputs
+from piezo_sym.run.method import checked_method, way_of
+from piezo_sym.run.module import lanes
+from piezo_sym.run.parameters import own_initial, read_initial, read_parameters, read_times
+from piezo_sym.run.simulate import read_rtol, refuse_step
+from piezo_sym.sweeps.axes import read_axes
+from piezo_sym.sweeps.plan import (
+    ENOUGH_BOXES,
+    MOST_NUMBERS,
+    MOST_REDUCED,
+    MOST_TOGETHER,
+    Plan,
+    largest_banks,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from piezo_sym.run.checks import FloatArray
+    from piezo_sym.run.module import GeneratedModule
+    from piezo_sym.sweeps.axes import Axis
+
+WAYS = ("run", "chunk")
+REDUCTIONS = ("last", "mean")
+
+
+@final
+@dataclass(frozen=True)
+class Asked:
+    """The arguments of `sweep` that say what runs."""
+
+    over: object
+    inputs: Mapping[str, Any] | None
+    duration: float
+    rtol: float | None
+    step: float | None
+    parameters: Mapping[str, Any] | None
+    initial: Mapping[str, Any] | None
+    method: str | None
+    times: int | ArrayLike | None
+    reduce: object
+    reduce_by: object
+
+
+def read_plan(module: GeneratedModule, asked: Asked) -> Plan:
+    """Return what a sweep runs; without a compiler, its method is LSODA.
+
+    Raises
+    ------
+    UsageError : an argument is unknown, of the wrong kind, or not finite.
+    """
+    with named_sweep():
+        named, rtol = checked_method(asked.method), read_rtol(asked.rtol)
+        refuse_step(asked.step, named, asked.rtol)
+        end = positive(asked.duration, "sweep.duration")
+        samples = read_times(asked.times, end)
+        inputs = read_inputs(module, asked.inputs, end)
+        base = read_parameters(module, asked.parameters)
+        axes = read_axes(module, asked.over, end, {b: lanes(base, b) for b in module.BANKS})
+        refuse_twice(axes, asked)
+        given = (dict(asked.parameters or {}), dict(asked.initial or {}))
+        refuse_sizes(module, axes, *given, inputs.segments[0].at(0.0))
+        refuse_reduction(asked)
+        method = way_of(module, named, asked.step).method
+        step = None if asked.step is None else float(asked.step)
+        numbers = samples.size * row_numbers(module, base, axes)
+        together = max(1, min(MOST_TOGETHER, MOST_NUMBERS // numbers))
+        most = together if asked.reduce is None else box_of_reduced(axes, together)
+        kept = (method, rtol, step, asked.reduce, asked.reduce_by == "run", largest_banks(axes))
+        return Plan(axes, inputs.signals, end, *given, samples, *kept, together, most)  # type: ignore[arg-type]
+
+
+@contextmanager
+def named_sweep() -> Iterator[None]:
+    """Let errors of shared checks name the function that was called."""
+    try:
+        yield
+    except PiezoError as error:
+        error.where = error.where.replace("simulate.", "sweep.", 1)
+        raise
+
+
+def refuse_twice(axes: tuple[Axis, ...], asked: Asked) -> None:
+    """Raise `UsageError` where a quantity is swept and also given one value."""
+    for axis in axes:
+        for target in axis.targets:
+            if target.name in (getattr(asked, target.kind) or {}):
+                what = f"'{target.name}' is swept and also given in '{target.kind}'"
+                raise UsageError(what, "sweep.over", remedy="give it once")
+
+
+def refuse_sizes(
+    module: GeneratedModule,
+    axes: tuple[Axis, ...],
+    parameters: Mapping[str, Any],
+    initial: Mapping[str, Any],
+    u: FloatArray,
+) -> None:
+    """Raise what lists of one number a lane are refused for, at every size of their bank."""
+    sizes = {t.name: t.values for axis in axes for t in axis.targets if t.is_size}
+    one: list[dict[str, Any]] = [{name: n} for name, v in sizes.items() for n in dict.fromkeys(v)]
+    for change in one or [{}]:
+        found = read_parameters(module, {**parameters, **change})
+        try:
+            own_initial(module, found, u)
+        except PiezoError:  # a swept value may be what makes it right
+            continue
+        read_initial(module, found, u, initial)
+
+
+def refuse_reduction(asked: Asked) -> None:
+    """Raise `UsageError` if nothing can be reduced that way."""
+    reduce = asked.reduce
+    if not (reduce is None or reduce in REDUCTIONS or callable(reduce)):
+        expected = f"{listing(map(repr, REDUCTIONS))}, or a function of a Dataset"
+        raise UsageError(f"{quote(reduce)} is no reduction", "sweep.reduce", expected)
+    if asked.reduce_by not in WAYS:
+        what = f"{quote(asked.reduce_by)} is not known"
+        raise UsageError(what, "sweep.reduce_by", listing(map(repr, WAYS)))
+
+
+def box_of_reduced(axes: tuple[Axis, ...], together: int) -> int:
+    """Return how many runs make a box where little is kept of each: many boxes, if it can be."""
+    size = prod(axis.size for axis in axes)
+    return max(together, min(MOST_REDUCED, size // ENOUGH_BOXES))
+
+
+def row_numbers(module: GeneratedModule, base: Any, axes: tuple[Axis, ...]) -> int:
+    """Return how many numbers a run leaves at each sample, about, at the largest sizes."""
+    sizes = {bank: lanes(base, bank) for bank in module.BANKS} | largest_banks(axes)
+    count: dict[str | None, int] = {None: 1}
+    count.update(sizes)
+    states: int = sum(count[record.bank] for record in module.STATES)
+    processes: int = sum(count[record.bank] for record in module.PROCESSES)
+    return 4 * states + 4 * processes + 4 * len(module.OUTPUTS) + 8

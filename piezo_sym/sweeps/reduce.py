@@ -1,0 +1,149 @@
+"""Reductions: what is kept of runs, so that a sweep need not keep trajectories.
+
+Input: the quantities of a group's runs.  Output: quantities without time, or what a user's function
+makes of the Dataset of one run, or of many runs over the dimension `member`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from piezo_sym.errors import UsageError, listing, quote
+from piezo_sym.run.checks import FloatArray, is_number
+from piezo_sym.sweeps.quantities import Quantities, Quantity
+
+if TYPE_CHECKING:
+    import xarray
+
+MEMBER = "member"
+WHERE = "sweep.reduce"
+KINDS = "a Dataset, a DataArray, a number, or a mapping of names to DataArrays and numbers"
+
+
+def weights(samples: FloatArray) -> FloatArray:
+    """Return the weights (nt,) of the mean over time: the integral by trapezoids, over its span."""
+    if samples.size == 1:
+        return np.ones(1)
+    halves = np.diff(samples) / 2
+    total: FloatArray = np.append(halves, 0.0) + np.append(0.0, halves)
+    mean: FloatArray = total / (samples[-1] - samples[0])
+    return mean
+
+
+def over_time(found: Quantities, weight: FloatArray) -> Quantities:
+    """Return quantities (runs, time, ...) summed over time with weights (nt,)."""
+    return {
+        name: Quantity(one.dims[1:], np.einsum("kt...,t->k...", one.values, weight), one.attrs)
+        for name, one in found.items()
+    }
+
+
+def run_by_run(
+    function: Callable[[Any], object], runs: xarray.Dataset, errors: list[str]
+) -> xarray.Dataset | None:
+    """Return what a function makes of each run, over `member`; None if no run is left.
+
+    A run on which the function fails gets that as its error.
+    """
+    import xarray
+
+    made: dict[int, xarray.Dataset] = {}
+    for k in (k for k, error in enumerate(errors) if not error):
+        try:
+            made[k] = named(function(runs.isel({MEMBER: k})))
+        except UsageError:
+            raise
+        except Exception as cause:  # the user's own code: it may raise anything
+            errors[k] = f"{WHERE}: the function fails: {type(cause).__name__}: {cause}"
+    if not made:
+        return None
+    refuse_other_names(*made.values())
+    try:
+        all_runs = [made.get(k) for k in range(len(errors))]
+        blank = xarray.full_like(next(iter(made.values())).astype(float), np.nan)
+        parts = [blank if one is None else one for one in all_runs]
+        return xarray.concat(parts, MEMBER, join="exact", compat="override", coords="minimal")
+    except (ValueError, TypeError) as cause:
+        what = "the function gives other sizes for one run than for another"
+        raise UsageError(what, WHERE, "the same for every run") from cause
+
+
+def refuse_other_names(first: Iterable[Any], *others: Iterable[Any]) -> None:
+    """Raise `UsageError` if a function gives other names for some runs than for others."""
+    for other in others:
+        if set(other) != set(first):
+            given = (
+                f"{listing(map(str, first))} for one run, {listing(map(str, other))} for another"
+            )
+            raise UsageError(f"the function gives {given}", WHERE, "the same for every run")
+
+
+def all_at_once(
+    function: Callable[[Any], object], runs: xarray.Dataset, errors: list[str]
+) -> xarray.Dataset:
+    """Return what a function makes of many runs over `member`."""
+    made = named(function(runs))
+    for name, variable in made.data_vars.items():
+        if variable.sizes.get(MEMBER) != len(errors):
+            what = f"the function gives '{name}' over {listing(map(str, variable.dims))}"
+            remedy = f"keep the dimension '{MEMBER}', or leave out reduce_by"
+            raise UsageError(what, WHERE, f"one value a '{MEMBER}'", remedy)
+    return made
+
+
+def named(value: object) -> xarray.Dataset:
+    """Return a function's result as a Dataset; raise `UsageError` if it is of no use."""
+    import xarray
+
+    if isinstance(value, xarray.Dataset):
+        for name, variable in value.data_vars.items():
+            if variable.dtype.kind not in "fiub":
+                what = f"the function gives '{name}' of type {variable.dtype}"
+                raise UsageError(what, WHERE, "real numbers")
+        return value.drop_vars([n for n in value.coords if n not in value.dims])
+    if isinstance(value, xarray.DataArray):
+        return named(value.to_dataset(name=value.name or "reduced"))
+    if is_number(value):
+        return xarray.Dataset({"reduced": number_of(value)})
+    usable = isinstance(value, Mapping) and all(
+        isinstance(name, str) and (isinstance(one, xarray.DataArray) or is_number(one))
+        for name, one in value.items()
+    )
+    if not usable:
+        raise UsageError(f"the function gives {quote(value)}", WHERE, KINDS)
+    parts = {
+        name: one.reset_coords(drop=True) if isinstance(one, xarray.DataArray) else number_of(one)
+        for name, one in value.items()  # type: ignore[attr-defined]  # a mapping, see above
+    }
+    return named(xarray.Dataset(parts))
+
+
+def number_of(value: Any) -> float:
+    """Return a number, which need not be finite."""
+    return float(value)
+
+
+def refuse_names(names: Iterable[str], taken: Iterable[str]) -> None:
+    """Raise `UsageError` if a function's result has the name of something else."""
+    both = sorted(set(names) & set(taken))
+    if both:
+        what = f"the function gives '{both[0]}', which the sweep has, too"
+        raise UsageError(what, WHERE, "a name of its own")
+
+
+def as_quantities(made: xarray.Dataset) -> tuple[Quantities, dict[str, Quantity]]:
+    """Return a function's results, and the coordinates of their own dimensions."""
+    found = {}
+    for name, variable in made.data_vars.items():
+        dims = tuple(str(dim) for dim in variable.dims if dim != MEMBER)
+        values = variable.transpose(MEMBER, *dims).values.astype(float)
+        found[str(name)] = Quantity(dims, values, dict(variable.attrs))
+    coords = {
+        str(name): Quantity((str(name),), one.values, dict(one.attrs))
+        for name, one in made.coords.items()
+        if name != MEMBER
+    }
+    return found, coords

@@ -1,0 +1,179 @@
+"""`sweep`: many runs of a model in one call; the table of contents of this stage.
+
+Input: a model, the quantities to sweep and their values, and what a single run takes.  Output: one
+`xarray.Dataset` over the swept dimensions.
+
+    read_plan -> Plan -> boxes -> run_box, side by side -> Sink -> Dataset
+"""
+
+from __future__ import annotations
+
+import warnings
+from contextlib import ExitStack, closing
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from piezo_sym.errors import UsageError, quote
+from piezo_sym.modules import module_of
+from piezo_sym.run.checks import whole
+from piezo_sym.sweeps.frame import frame_of
+from piezo_sym.sweeps.pool import SENT_AT_ONCE, Submit, processors, results, sender, threads_for
+from piezo_sym.sweeps.progress import progress_of
+from piezo_sym.sweeps.read import Asked, read_plan
+from piezo_sym.sweeps.sinks import Memory
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from concurrent.futures import Executor
+
+    import xarray
+    from numpy.typing import ArrayLike
+
+    from piezo_sym.run.inputs import InputValue
+    from piezo_sym.run.module import GeneratedModule
+    from piezo_sym.run.parameters import LaneValue
+    from piezo_sym.spec.model import Model
+    from piezo_sym.sweeps.plan import Plan, Reduction
+    from piezo_sym.sweeps.sinks import Sink
+
+
+class SweepWarning(UserWarning):
+    """Some runs of a sweep failed; the Dataset says which and why."""
+
+
+def sweep(
+    model: str | Path | Model,
+    *,
+    over: Mapping[Any, Any],
+    inputs: Mapping[str, InputValue] | None = None,
+    duration: float,
+    rtol: float | None = None,
+    step: float | None = None,
+    parameters: Mapping[str, LaneValue] | None = None,
+    initial: Mapping[str, LaneValue] | None = None,
+    method: str | None = None,
+    times: int | ArrayLike | None = None,
+    reduce: Reduction | None = None,
+    reduce_by: Literal["run", "chunk"] = "run",
+    executor: Executor | None = None,
+    threads: int | None = None,
+    store: str | Path | None = None,
+    progress: object = None,
+) -> xarray.Dataset:
+    """Run a model over a grid of parameters, sizes, inputs and initial values.
+
+    Runs that share inputs and sizes go through C together, boxes of them side by side. A run that
+    fails is nan, `error` says why, and the others stand.
+
+    Parameters
+    ----------
+    model : the name of a shipped spec, the path of a spec file, or a `Model`.
+    over : name -> list or array of values; a dimension each, their product is run. Names are
+        those of parameters, `<bank>_count`, inputs and states (their values at t = 0); where two
+        things share one, write "parameters.x", "inputs.x" or "initial.x". Values are what
+        `simulate` takes, SI units. A mapping of labels (numbers or texts) to values gives the
+        dimension these labels. A tuple of names -> a list of tuples, or an array (points, names):
+        values that go together, one dimension "L_T_e", with coordinates L and T_e along it.
+    inputs, duration, rtol, step, parameters, initial, times : of all runs, as for `simulate`.
+    method : as for `simulate`; discrete_gradient when left out, and without a compiler LSODA.
+    reduce : "last", the values at the last sample; "mean", the mean over time (by trapezoids); or a
+        function of a run's Dataset (as of `simulate`, swept values as coordinates; that of an
+        input or of another name in use is `over_<name>`) that gives a Dataset, a DataArray, a
+        number, or a mapping of names to these. Trajectories are then not kept.
+    reduce_by : "run", the function takes one run; "chunk", it takes many at once, over the
+        dimension `member`, which its results keep: faster by far.
+    executor : any `concurrent.futures.Executor`, such as `client.get_executor()` of Dask, instead
+        of threads. Functions given to other processes are best sent with cloudpickle installed.
+    threads : their number; as many as processors when left out.
+    store : the path of a Zarr store (`pip install piezo_sym[store]`), written box by box. The same
+        call goes on where it was stopped; another one is refused.
+    progress : whether to show a bar, or a function of (done, total); None: a bar on a terminal.
+
+    Returns
+    -------
+    xarray.Dataset
+        All that `simulate` gives, over (swept dimensions, `time`, [bank]); inputs only along what
+        sweeps them, and then named `u_<input>`. A swept state's dimension is `initial_<state>`.
+        Banks of fewer lanes than the largest are filled with nan. `error`: "" where a run is good.
+
+    Raises
+    ------
+    UsageError : an argument is wrong; before anything runs.
+    FileError : the store cannot be used.
+    RunError : a process of the executor died.
+
+    Warns
+    -----
+    SweepWarning : runs failed.
+
+    Examples
+    --------
+    >>> from piezo_sym import sine, sweep
+    >>> drive = {f: sine(100, f) for f in (50.0, 100.0)}
+    >>> found = sweep("piezo_stack", over={"V_in": drive, "L": [5e-4, 1e-3, 5e-3]}, duration=0.02)
+    >>> dict(found.q.sizes)
+    {'V_in': 2, 'L': 3, 'time': 1001}
+    """
+    count = processors() if threads is None else whole(threads, "sweep.threads", 1)
+    refuse_executor(executor, threads)
+    module: Any = module_of(model)
+    asked = Asked(
+        over, inputs, duration, rtol, step, parameters, initial, method, times, reduce, reduce_by
+    )
+    plan = read_plan(module, asked)
+    plan, sink = sink_of(plan, module, store, count)
+    with ExitStack() as stack:
+        if executor is None:
+            submit, at_once = stack.enter_context(threads_for(plan, module, count))
+        else:
+            submit, at_once = sender(plan, module, model, executor), SENT_AT_ONCE
+        run_missing(sink, submit, at_once, progress, plan.size)
+    found = sink.dataset()
+    warn(found, plan)
+    return found
+
+
+def run_missing(sink: Sink, submit: Submit, at_once: int, progress: object, total: int) -> None:
+    """Run what a sink misses, and hand it the results as they come."""
+    boxes = list(sink.missing())
+    done = total - sum(map(len, boxes))
+    with progress_of(progress, total) as told, closing(results(submit, boxes, at_once)) as found:
+        for result in found:
+            sink.take(result)
+            done += len(result.box)
+            told(done)
+
+
+def refuse_executor(executor: object, threads: object) -> None:
+    """Raise `UsageError` if nothing can be submitted to an executor."""
+    if executor is None:
+        return
+    if threads is not None:
+        raise UsageError("executor and threads are both given", "sweep.threads", "one of them")
+    if not callable(getattr(executor, "submit", None)):
+        expected = "an executor of concurrent.futures"
+        raise UsageError(f"{quote(executor)} has no 'submit'", "sweep.executor", expected)
+
+
+def sink_of(
+    plan: Plan, module: GeneratedModule, store: str | Path | None, threads: int
+) -> tuple[Plan, Sink]:
+    """Return where results go, and the plan with the boxes that it keeps."""
+    frame = frame_of(plan, module)
+    plan = plan.with_most(max(1, min(plan.most, -(-plan.size // (2 * threads)))))
+    if store is None:
+        return plan, Memory(plan, frame)
+    from piezo_sym.sweeps.store import store_at
+
+    return store_at(Path(store), plan, frame, module.SPEC_SHA256)
+
+
+def warn(found: xarray.Dataset, plan: Plan) -> None:
+    """Say in one line that runs failed."""
+    errors = found["error"].values.ravel()
+    failed = np.flatnonzero(errors != "")
+    if failed.size:
+        many = f"{failed.size} of {plan.size} runs failed, see 'error'; the first: "
+        warnings.warn(f"{many}{errors[failed[0]]}", SweepWarning, stacklevel=3)

@@ -1,0 +1,198 @@
+"""A store: what is in memory is in it, and a sweep goes on where it was stopped."""
+
+import sys
+
+import numpy as np
+import pytest
+import xarray
+
+from piezo_sym import samples, sine, step, sweep
+from piezo_sym.errors import FileError, UsageError
+from piezo_sym.sweeps import SweepWarning
+from piezo_sym.sweeps.fingerprint import parts
+
+OVER = {"L": np.linspace(1e-3, 2e-3, 70), "V_in": {50.0: sine(100, 50), 100.0: sine(100, 100)}}
+BASE = {"over": OVER, "duration": 1e-3, "times": 3, "threads": 1}
+BOXES = 4  # 70 runs that go together are cut in two, for each of two inputs
+
+
+class Interrupted(Exception):
+    pass
+
+
+def stop_at(runs):
+    def told(done, _):
+        if done >= runs:
+            raise Interrupted
+
+    return told
+
+
+def plain(dataset):
+    return dataset.load().drop_attrs()
+
+
+def thirds(run):
+    return run[["q", "phi"]].isel(time=slice(1, None))
+
+
+REDUCTIONS = [None, "last", "mean", thirds]
+
+
+@pytest.mark.parametrize("reduce", REDUCTIONS)
+def test_a_store_holds_what_memory_would(tmp_path, reduce):
+    found = sweep("piezo_stack", **BASE, reduce=reduce, store=tmp_path / "runs.zarr")
+    memory = sweep("piezo_stack", **BASE, reduce=reduce)
+    xarray.testing.assert_identical(plain(found), plain(memory))
+    for name in memory.variables:
+        assert {k: found[name].attrs[k] for k in memory[name].attrs} == memory[name].attrs, name
+    assert memory.attrs.items() <= found.attrs.items()
+
+
+@pytest.mark.parametrize("reduce", [None, "last", thirds])
+def test_a_sweep_goes_on_where_it_was_stopped(tmp_path, reduce, monkeypatch):
+    options = {**BASE, "reduce": reduce, "store": tmp_path / "runs.zarr"}
+    with pytest.raises(Interrupted):
+        sweep("piezo_stack", **options, progress=stop_at(70))
+    with xarray.open_zarr(options["store"], chunks=None, consolidated=False) as half:
+        assert (half.error.values == "").sum() == 70
+        assert (half.error.values == "not run").sum() == 70
+    ran = count_boxes(monkeypatch)
+    found = sweep("piezo_stack", **options)
+    assert sorted(ran) == [2, 3]
+    xarray.testing.assert_identical(
+        plain(found), plain(sweep("piezo_stack", **BASE, reduce=reduce))
+    )
+    ran.clear()
+    sweep("piezo_stack", **options)
+    assert ran == []
+
+
+def count_boxes(monkeypatch):
+    from piezo_sym.sweeps.pool import run_box
+
+    ran = []
+
+    def counted(plan, module, box, watch):
+        ran.append(box.number)
+        return run_box(plan, module, box, watch)
+
+    monkeypatch.setattr("piezo_sym.sweeps.pool.run_box", counted)
+    return ran
+
+
+def test_a_box_half_written_is_run_again(tmp_path, monkeypatch):
+    path = tmp_path / "runs.zarr"
+    sweep("piezo_stack", **BASE, store=path)
+    chunks = sorted(file for file in (path / "error" / "c").rglob("*") if file.is_file())
+    assert len(chunks) == BOXES
+    chunks[0].write_bytes(chunks[0].read_bytes()[:7])
+    chunks[-1].unlink()
+    ran = count_boxes(monkeypatch)
+    found = sweep("piezo_stack", **BASE, store=path)
+    assert sorted(ran) == [0, 3]
+    assert (found.error.values == "").all()
+
+
+def test_what_is_done_does_not_depend_on_who_does_it(tmp_path, monkeypatch):
+    path = tmp_path / "runs.zarr"
+    with pytest.raises(Interrupted):
+        sweep("piezo_stack", **BASE, store=path, progress=stop_at(35))
+    ran = count_boxes(monkeypatch)  # the boxes of the store, not those of three threads
+    found = sweep("piezo_stack", **{**BASE, "threads": 3}, store=path)
+    assert sorted(ran) == [1, 2, 3]
+    xarray.testing.assert_identical(plain(found), plain(sweep("piezo_stack", **BASE)))
+
+
+OTHERS = [
+    {"duration": 2e-3},
+    {"times": 4},
+    {"rtol": 1e-6},
+    {"step": 1e-5},
+    {"parameters": {"d": 401}},
+    {"initial": {"q": 1e-6}},
+    {"inputs": {"F_ext": step(1e-4, 0, 1)}},
+    {"inputs": {"F_ext": lambda t: 2 * t}},
+    {"over": {"L": OVER["L"]}},
+    {"over": {**OVER, "L": OVER["L"] + 1e-9}},
+    {"reduce": "last"},
+    {"reduce": lambda run: run.q[0]},
+    {"method": "LSODA"},
+]
+
+
+@pytest.mark.parametrize("change", OTHERS, ids=[next(iter(change)) for change in OTHERS])
+def test_the_store_of_another_sweep_is_refused_in_one_line(tmp_path, change, monkeypatch):
+    path = tmp_path / "runs.zarr"
+    monkeypatch.setattr(sys.modules["piezo_sym.sweeps.sweep"], "results", nothing)
+    with pytest.warns(SweepWarning, match="140 of 140 runs failed.*not run"):
+        sweep("piezo_stack", **BASE, store=path)
+    with pytest.raises(FileError) as raised:
+        sweep("piezo_stack", **{**BASE, **change}, store=path)
+    text = "runs.zarr': holds another sweep, or none; expected a store of this very sweep"
+    assert text in str(raised.value)
+    assert "\n" not in str(raised.value)
+
+
+def nothing(*_):
+    return (one for one in ())
+
+
+def line(slope):
+    return lambda t: slope * t
+
+
+def test_functions_differ_by_code_and_by_what_they_hold():
+    def same(a, b):
+        return list(parts(a)) == list(parts(b))
+
+    assert same(line(2), line(2))
+    assert not same(line(2), line(3))
+    assert not same(lambda t: t + 1, lambda t: t + 2)
+    assert not same(lambda t: t.x, lambda t: t.y)
+    assert not same(lambda t, a=1: a * t, lambda t, a=2: a * t)
+    assert not same(lambda t, *, a=1: a * t, lambda t, *, a=2: a * t)
+    assert same(samples([0, 1], [0, 2]), samples([0, 1], [0, 2]))
+    assert not same(samples([0, 1], [0, 2]), samples([0, 1], [0, 3]))
+    assert not same(1.0, 1)
+    assert not same(np.array([1.0, 2.0]), np.array([[1.0, 2.0]]))
+    assert not same(("ab", "c"), ("a", "bc"))
+
+
+def test_what_is_no_store_is_refused_and_left_alone(tmp_path):
+    (tmp_path / "file").write_text("mine")
+    (tmp_path / "folder").mkdir()
+    for name in ("file", "folder"):
+        with pytest.raises(FileError, match="is no store of a sweep; choose another path"):
+            sweep("piezo_stack", **BASE, store=tmp_path / name)
+    assert (tmp_path / "file").read_text() == "mine"
+    assert list((tmp_path / "folder").iterdir()) == []
+    xarray.Dataset({"a": 1.0}).to_zarr(tmp_path / "other", consolidated=False)
+    with pytest.raises(FileError, match="holds another sweep, or none"):
+        sweep("piezo_stack", **BASE, store=tmp_path / "other")
+
+
+def test_a_store_without_zarr_says_what_to_install(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "zarr", None)
+    with pytest.raises(UsageError, match=r"zarr is not installed; run `pip install 'piezo_sym"):
+        sweep("piezo_stack", **BASE, store=tmp_path / "runs.zarr")
+
+
+def test_failed_runs_are_kept_with_their_reasons(tmp_path):
+    path = tmp_path / "runs.zarr"
+    over = {"d": [400.0, -1.0], "lam": [1.0, 2.0]}
+    for _ in range(2):  # the second time nothing is run, and the warning is the same
+        with pytest.warns(SweepWarning, match="2 of 4 runs failed"):
+            found = sweep("piezo_stack", over=over, duration=1e-3, times=3, store=path)
+        assert found.error.sel(d=-1.0).values[0].startswith("model 'piezo_stack': start is outside")
+        assert np.isnan(found.q.sel(d=-1.0)).all()
+
+
+def test_nothing_is_left_of_a_store_that_could_not_be_made(tmp_path, monkeypatch):
+    def full(*_, **__):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(xarray.Dataset, "to_zarr", full)
+    with pytest.raises(FileError, match="cannot be written: No space left on device"):
+        sweep("piezo_stack", **BASE, store=tmp_path / "runs.zarr")
+    assert list(tmp_path.iterdir()) == []
