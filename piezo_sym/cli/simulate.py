@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import typer
 
-from piezo_sym.cli.output import console, row, table, warnings_as_lines
+from piezo_sym.cli.output import console, row, table, time_bar, warnings_as_lines
 from piezo_sym.errors import UsageError, listing, nearest, quote
 from piezo_sym.files import path_text, write_bytes
 
@@ -22,23 +22,29 @@ ENDINGS = (".nc", ".csv")
 METHODS = """discrete_gradient (compiled) if left out; or SciPy's RK23, RK45, DOP853, Radau, BDF or
 LSODA."""
 
+InputTexts: TypeAlias = Annotated[
+    list[str] | None,
+    typer.Option("--input", "-i", help="NAME=NUMBER or NAME=sine(100,100); SI; repeat."),
+]
+ParameterTexts: TypeAlias = Annotated[
+    list[str] | None, typer.Option("--set", "-p", help="PARAMETER=NUMBER; SI; repeat.")
+]
+
 
 def simulate(
     spec: Annotated[str, typer.Argument(metavar="SPEC", help="Path or shipped name.")],
     duration: Annotated[float, typer.Option(help="Length of the run [s].")],
-    inputs: Annotated[
-        list[str] | None,
-        typer.Option("--input", "-i", help="NAME=NUMBER or NAME=sine(100,100); SI; repeat."),
-    ] = None,
-    parameters: Annotated[
-        list[str] | None, typer.Option("--set", "-p", help="PARAMETER=NUMBER; SI; repeat.")
-    ] = None,
+    inputs: InputTexts = None,
+    parameters: ParameterTexts = None,
     rtol: Annotated[
         float | None, typer.Option(help="Relative tolerance; 1e-5 if left out.")
     ] = None,
     step: Annotated[float | None, typer.Option(help="A fixed step [s] instead of --rtol.")] = None,
     method: Annotated[str | None, typer.Option(help=METHODS)] = None,
-    times: Annotated[int, typer.Option(help="Number of samples.")] = 1001,
+    times: Annotated[int | None, typer.Option(help="Number of samples; 1001 if left out.")] = None,
+    every: Annotated[
+        int | None, typer.Option(help="With --step: a sample every so many steps.")
+    ] = None,
     dissipative_start: Annotated[
         bool, typer.Option("--dissipative-start", help="Damp what rings after a jump of an input.")
     ] = False,
@@ -53,7 +59,7 @@ def simulate(
 
     if out is not None and out.suffix not in ENDINGS:
         raise UsageError(f"{path_text(out)} has no known ending", "--out", listing(ENDINGS))
-    with warnings_as_lines():
+    with warnings_as_lines(), time_bar(duration) as told:
         result = run(
             spec,
             duration=duration,
@@ -63,6 +69,8 @@ def simulate(
             step=step,
             method=method,
             times=times,
+            every=every,
+            progress=told,
             dissipative_start=dissipative_start,
         )
     _print(result)

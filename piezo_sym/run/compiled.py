@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from piezo_sym.run.checks import FloatArray
+    from piezo_sym.run.discrete import Watch
     from piezo_sym.run.engine import Engine
     from piezo_sym.run.inputs import Segment
     from piezo_sym.run.ledger import Trajectory
@@ -45,6 +46,7 @@ def compiled_run(
     samples: FloatArray,
     rtol: float,
     step: float | None,
+    watch: Watch | None = None,
     *,
     starts: bool = False,
 ) -> tuple[Trajectory, dict[str, object]]:
@@ -52,6 +54,7 @@ def compiled_run(
 
     Parameters
     ----------
+    watch : told the time reached, now and then.
     starts : whether the first step after a jump of the inputs is dissipative.
 
     Raises
@@ -67,7 +70,7 @@ def compiled_run(
     rtol = max(rtol, LEAST_RTOL)
     try:
         if step is None:
-            runs = adaptive([system], engine, x[None], samples, rtol, starts=starts)
+            runs = adaptive([system], engine, x[None], samples, rtol, watch, starts=starts)
             trajectory = inside(system, runs.trajectory(0))
             accuracy: dict[str, object] = {
                 "rtol": rtol,
@@ -75,7 +78,7 @@ def compiled_run(
                 "balances": FINER,
             }
         else:
-            runs = fixed([system], engine, x[None], samples, step, starts=starts)
+            runs = fixed([system], engine, x[None], samples, step, watch, starts=starts)
             trajectory = runs.trajectory(0)
             accuracy = {"step": step}
     except RunError as stopped:

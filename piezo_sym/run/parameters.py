@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
     LaneValue: TypeAlias = float | Sequence[float] | FloatArray
 
+#: Of the duration: a sample nearer to the end than this is the end.
+CLOSE = 1e-12
 SAMPLES = 1001
 
 
@@ -123,3 +125,19 @@ def read_times(given: object, duration: float) -> FloatArray:
         span = f"times span {times[0]:g} s to {times[-1]:g} s" if times.size else "no times"
         raise UsageError(span, where, f"times within 0 s to {duration:g} s")
     return times
+
+
+def read_every(every: object, times: object, step: float | None, duration: float) -> FloatArray:
+    """Return the times (nt,) of samples every so many steps, and the end [s].
+
+    Raises
+    ------
+    UsageError : `every` is no whole number, times are given too, or there is no fixed step.
+    """
+    where = "simulate.every"
+    if step is None or times is not None:
+        what = "times are given too" if step else "there is no fixed step"
+        raise UsageError(what, where, "step, and no times", "leave out every, or give step alone")
+    apart = whole(every, where, 1) * step
+    even = apart * np.arange(int(duration / apart * (1 - CLOSE)) + 1)
+    return np.append(even, duration)

@@ -21,12 +21,12 @@ from piezo_sym.run.integrate import Tolerance, batches
 from piezo_sym.run.ledger import record
 from piezo_sym.run.method import checked_method, way_of
 from piezo_sym.run.module import checked
-from piezo_sym.run.parameters import read_initial, read_parameters, read_times
+from piezo_sym.run.parameters import read_every, read_initial, read_parameters, read_times
 from piezo_sym.run.scales import magnitudes
 from piezo_sym.run.system import System
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
     import xarray
     from numpy.typing import ArrayLike
@@ -55,7 +55,9 @@ def simulate(
     initial: Mapping[str, LaneValue] | None = None,
     method: str | None = None,
     times: int | ArrayLike | None = None,
+    every: int | None = None,
     dissipative_start: bool = False,
+    progress: Callable[[float], object] | None = None,
 ) -> xarray.Dataset:
     """Run a generated module from t = 0 and return all its quantities over time.
 
@@ -94,6 +96,8 @@ def simulate(
         LSODA. Left out, a module without C beside it runs by LSODA; and so does one whose C cannot
         be compiled here, with one `EngineWarning`.
     times : the samples: a number of even ones (1001 when left out), or increasing times [s].
+    every : with `step`, instead of `times`: a sample every so many steps, and at the end.
+    progress : told the time [s] reached, now and then.
     dissipative_start : for discrete_gradient. The first step after t = 0, and after each jump of
         an input, is made of four quarters that damp whatever is much faster than they are: a
         longer step otherwise rings after a jump, for a long time. What the quarters lose on the
@@ -127,7 +131,7 @@ def simulate(
     refuse_step(step, named, rtol)
     named = start_method(dissipative_start, named)
     end = positive(duration, "simulate.duration")
-    samples = read_times(times, end)
+    samples = read_every(every, times, step, end) if every else read_times(times, end)
     values = read_parameters(module, parameters)
     system = System(module, values, read_inputs(module, inputs, end))
     x = read_initial(module, values, system.inputs.segments[0].at(0.0), initial)
@@ -135,10 +139,10 @@ def simulate(
     way = way_of(module, named, step)
     if way.engine:
         trajectory, work = compiled_run(
-            system, way.engine, x, samples, bound, step, starts=dissipative_start
+            system, way.engine, x, samples, bound, step, progress, starts=dissipative_start
         )
     else:
-        trajectory, work = by_scipy(system, x, samples, way.method, bound)
+        trajectory, work = by_scipy(system, x, samples, way.method, bound, progress)
     return to_dataset(system, samples, trajectory, {**work, "engine": way.note})
 
 

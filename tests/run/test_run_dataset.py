@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 import xarray
 
+from piezo_sym import simulate as simulate_shipped
+from piezo_sym.errors import UsageError
 from piezo_sym.run import simulate, sine
 
 NAMES = {
@@ -92,6 +94,8 @@ SCRIPT = """
 import sys
 sys.path[:0] = sys.argv[1:]
 import hand_written
+from piezo_sym import simulate as simulate_shipped
+from piezo_sym.errors import UsageError
 from piezo_sym.run import simulate, sine
 light = {"scipy.integrate", "xarray"} & set(sys.modules)
 simulate(hand_written, inputs={"V_in": sine(100, 100)}, duration=1e-3)
@@ -105,3 +109,28 @@ def test_a_run_leaves_the_symbolic_libraries_alone():
     command = [sys.executable, "-W", "error", "-c", SCRIPT, str(here), str(here.parents[1])]
     run = subprocess.run(command, capture_output=True, text=True, check=False)
     assert run.stdout.strip() == "[] [] True", run.stderr
+
+
+def test_samples_every_so_many_steps():
+    run = simulate_shipped("piezo_stack", duration=1e-4, step=1e-6, every=30)
+    assert run.time.values == pytest.approx([0, 3e-5, 6e-5, 9e-5, 1e-4], abs=1e-18)
+    assert run.attrs["accepted_steps"] == 100
+    run = simulate_shipped("piezo_stack", duration=9e-5, step=1e-6, every=30)
+    assert run.time.values == pytest.approx([0, 3e-5, 6e-5, 9e-5], abs=1e-18)
+
+
+@pytest.mark.parametrize(
+    "options", [{"every": 3}, {"every": 3, "step": 1e-6, "times": 5}, {"every": 0.5, "step": 1e-6}]
+)
+def test_every_needs_a_step_alone(options):
+    with pytest.raises(UsageError, match=r"simulate\.every"):
+        simulate_shipped("piezo_stack", duration=1e-4, **options)
+
+
+@pytest.mark.parametrize("how", [{"rtol": 1e-5}, {"step": 1e-6}, {"method": "LSODA"}])
+def test_progress_is_told_the_time(how):
+    told = []
+    simulate_shipped("piezo_stack", duration=0.5, times=3, progress=told.append, **how)
+    assert told == sorted(told)
+    assert 0 <= told[-1] <= 0.5
+    assert told[-1] > 0 or "method" in how
