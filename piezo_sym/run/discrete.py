@@ -28,12 +28,12 @@ if TYPE_CHECKING:
 
 METHOD = "discrete_gradient"
 #: Numbers of state that are stepped in one call: memory stays small, and a run can be stopped.
-CHUNK = 200_000
+CHUNK = 50_000
 #: Intervals that a tolerance starts from, at least; into how many steps one may be divided.
 FEWEST_INTERVALS = 32
 MOST_LEVEL = 36
 #: Levels whose inputs are sampled below and above the present one.
-BELOW, ABOVE = 2, 3
+BELOW, ABOVE = 1, 2
 #: The finer run may be so much less accurate than the states extrapolated from it.
 LOOSER = 5.0
 

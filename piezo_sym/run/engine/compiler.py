@@ -23,9 +23,11 @@ from piezo_sym.errors import EngineError, one_line
 #: No contraction: a product and a sum are rounded apart, as in NumPy.  Measured, fused ones are no
 #: faster here: loops over lanes wait for divisions and memory.
 COMMON = ("-std=c99", "-fPIC", "-shared", "-ffp-contract=off")
+#: Functions of one library call each other directly: nobody replaces them.
+DIRECT = "-fno-semantic-interposition"
 #: Flags, best first; the next are tried where a compiler refuses some.
 FLAGS: tuple[tuple[str, ...], ...] = (
-    ("-O3", "-march=native", "-fopenmp-simd", "-fno-math-errno", *COMMON),
+    ("-O3", "-march=native", "-fopenmp-simd", "-fno-math-errno", DIRECT, *COMMON),
     ("-O3", "-fopenmp-simd", "-fno-math-errno", *COMMON),
     ("-O2", *COMMON),
 )
