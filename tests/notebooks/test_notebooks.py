@@ -58,6 +58,10 @@ def test_a_notebook_has_outputs_and_no_path_or_time_of_a_machine(path):
             assert not re.search(r"/(home|root|tmp|work|Users|usr)/|0x[0-9a-f]{8}", text)
 
 
+def test_there_is_a_notebook_to_look_at():
+    assert NOTEBOOKS
+
+
 @pytest.fixture
 def folder(tmp_path):
     """Return a folder with the script and room for notebooks."""
