@@ -69,6 +69,12 @@ def folder(tmp_path):
     return tmp_path
 
 
+def succeed(folder, *words):
+    """Run the planted script, which has to succeed."""
+    code, said = execute(*words, script=folder / EXECUTE.name)
+    assert code == 0, said
+
+
 def plant(folder, *sources):
     cells = [nbformat.v4.new_code_cell(source) for source in sources]
     path = folder / "01-planted.ipynb"
@@ -79,16 +85,15 @@ def plant(folder, *sources):
 def test_a_notebook_is_written_the_same_twice_and_then_checks(folder):
     picture = "import matplotlib.pyplot as plt\nplt.plot([1, 2]);"
     path = plant(folder, "print('one')\nprint('two')", "1 + 1", picture)
-    script = folder / EXECUTE.name
-    assert execute(script=script) == (0, "")
+    succeed(folder)
     text = path.read_text(encoding="utf-8")
-    assert execute(script=script) == (0, "")
+    succeed(folder)
     assert path.read_text(encoding="utf-8") == text
     printed, result, shown = (cell["outputs"][0] for cell in json.loads(text)["cells"])
     assert printed["text"] == ["one\n", "two\n"]
     assert result["data"] == {"text/plain": ["2"]}
     assert "image/png" in shown["data"]
-    assert execute("--check", "01", script=script) == (0, "")
+    succeed(folder, "--check", "01")
 
 
 @pytest.mark.parametrize(
@@ -99,11 +104,10 @@ def test_a_notebook_is_written_the_same_twice_and_then_checks(folder):
 def test_a_changed_output_is_seen(folder, old, new, seen):
     source = "import matplotlib.pyplot as plt\nplt.plot([1, 2])\nprint('tw' + 'o')"
     path = plant(folder, source)
-    script = folder / EXECUTE.name
-    assert execute(script=script) == (0, "")
+    succeed(folder)
     text = path.read_text(encoding="utf-8")
     path.write_text(text.replace(f'"{old}', f'"{new}'), encoding="utf-8")
-    code, said = execute("--check", script=script)
+    code, said = execute("--check", script=folder / EXECUTE.name)
     assert code == 1
     assert seen in said
     assert "python notebooks/execute.py 01-planted" in said
