@@ -1,7 +1,7 @@
 """Calls of C for every column of a batch: one after another, or as many at once as a vector holds.
 
 Input: a function of a library, arrays (rows, columns) as NumPy has them, parameters in C.  Output:
-rows (rows, columns).
+rows (rows, columns), put into an array.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from piezo_sym.run.checks import FloatArray
 
 
-def one_by_one(function: Any, x: FloatArray, u: FloatArray, p: Any, rows: int) -> FloatArray:
-    """Return a function's rows, columns taken from x and put back in turn.
+def one_by_one(function: Any, x: FloatArray, u: FloatArray, p: Any, out: FloatArray) -> None:
+    """Compute a function's rows, columns taken from x and put back in turn.
 
     Parameters
     ----------
@@ -26,19 +26,19 @@ def one_by_one(function: Any, x: FloatArray, u: FloatArray, p: Any, rows: int) -
     x : states (n, columns).
     u : inputs (inputs, columns), or (inputs,) for all columns.
     p : the structure of the parameters.
-    rows : that the function gives.
+    out : where rows go, (rows, columns).
     """
     states, inputs = np.ascontiguousarray(x.T), np.ascontiguousarray(u.T)
-    out = np.empty((states.shape[0], rows))
-    sizes = (*states.shape, inputs.shape[1] if inputs.ndim == 2 else 0, rows)
-    function(at(states), at(inputs), ctypes.byref(p), at(out), *map(LONG, sizes))
-    return out.T
+    found = np.empty(out.shape[::-1])
+    sizes = (*states.shape, inputs.shape[1] if inputs.ndim == 2 else 0, out.shape[0])
+    function(at(states), at(inputs), ctypes.byref(p), at(found), *map(LONG, sizes))
+    out[:] = found.T
 
 
 def at_once(
-    function: Any, tile: int, x: FloatArray, u: FloatArray, p: Any, rows: int
-) -> FloatArray:
-    """Return what `one_by_one` does, of a function that takes vectors.
+    function: Any, tile: int, x: FloatArray, u: FloatArray, p: Any, out: FloatArray
+) -> None:
+    """Compute what `one_by_one` does, by a function that takes vectors; `out` is C-contiguous.
 
     Parameters
     ----------
@@ -46,8 +46,7 @@ def at_once(
     """
     n, count = x.shape
     states, inputs = np.ascontiguousarray(x), np.ascontiguousarray(u)
-    out = np.empty((rows, count))
-    sizes = (LONG * 3)(n, inputs.shape[0], rows)
+    sizes = (LONG * 3)(n, inputs.shape[0], out.shape[0])
     space = np.empty(tile * (sum(sizes) + 1))
     skipped = -space.ctypes.data % (8 * tile) // 8  # vectors have to be aligned
     own = ctypes.c_int(inputs.ndim == 2)
@@ -55,4 +54,3 @@ def at_once(
         *(at(states), at(inputs), ctypes.byref(p), at(out)),
         *(LONG(count), sizes, own, at(space[skipped:])),
     )
-    return out

@@ -141,9 +141,17 @@ class Engine:
         function(at(u), ctypes.byref(structure.value), at(out))
         return out
 
-    def rhs(self, x: ArrayLike, u: ArrayLike, p: Any, /) -> FloatArray:
-        """Return dx/dt, shape (n, *batch)."""
-        return self._called("rhs", x, u, p, self.rows(self.module.STATES, p))
+    def rhs(
+        self, x: ArrayLike, u: ArrayLike, p: Any, /, out: FloatArray | None = None
+    ) -> FloatArray:
+        """Return dx/dt, shape (n, *batch).
+
+        Parameters
+        ----------
+        out : a C-contiguous array of that shape to put it in, apart from x and u: new memory for
+            many states costs as much as their rates.
+        """
+        return self._called("rhs", x, u, p, self.rows(self.module.STATES, p), out)
 
     def jacobian(self, x: ArrayLike, u: ArrayLike, p: Any, /) -> FloatArray:
         """Return the derivative of `rhs` by the state, shape (n, n, *batch)."""
@@ -207,22 +215,28 @@ class Engine:
         return array
 
     def _called(
-        self, name: str, x: ArrayLike, u: ArrayLike | None, p: Any, rows: int
+        self,
+        name: str,
+        x: ArrayLike,
+        u: ArrayLike | None,
+        p: Any,
+        rows: int,
+        out: FloatArray | None = None,
     ) -> FloatArray:
         """Return a function's rows for every column of a batch, shape (rows, *batch)."""
         states = self._array(x, self.rows(self.module.STATES, p), "states")
         batch, structure = states.shape[1:], self.structure(p)  # it keeps its lanes' arrays alive
-        columns = states.reshape(states.shape[0], int(np.prod(batch, dtype=int)))
-        given = columns, self._inputs(u, batch), structure.value, rows
-        vectors = self._rates(columns.shape[1]) if name in WIDE else None
+        width = int(np.prod(batch, dtype=int))
+        columns = states.reshape(states.shape[0], width)
+        found = _place(out, (rows, *batch))
+        given = columns, self._inputs(u, batch), structure.value, found.reshape(rows, width)
+        vectors = self._rates(width) if name in WIDE else None
         if vectors:
             tile = ctypes.c_long.in_dll(vectors, f"{self.module.NAME}_tile").value
-            out = at_once(getattr(vectors, f"{self.module.NAME}_{name}_wide"), tile, *given)
+            at_once(getattr(vectors, f"{self.module.NAME}_{name}_wide"), tile, *given)
         else:
-            out = one_by_one(
-                getattr(self.library, f"{self.module.NAME}_{name}_columns"), *given
-            )
-        return out.reshape(rows, *batch)
+            one_by_one(getattr(self.library, f"{self.module.NAME}_{name}_columns"), *given)
+        return found
 
     def _rates(self, columns: int) -> ctypes.CDLL | None:
         """Return the library for so many columns at once, if they fill its vectors."""
@@ -237,6 +251,16 @@ class Engine:
         if given.ndim == 1:
             return given
         return np.broadcast_to(given, (size, *batch)).reshape(size, int(np.prod(batch, dtype=int)))
+
+
+def _place(out: FloatArray | None, shape: tuple[int, ...]) -> FloatArray:
+    """Return where results go: `out`, if it is fit for them."""
+    if out is None:
+        return np.empty(shape)
+    if out.shape != shape or out.dtype != float or not out.flags.carray:
+        msg = f"out has to be a C-contiguous array of numbers of shape {shape}"
+        raise ValueError(msg)
+    return out
 
 
 #: The functions of a module that a library computes.

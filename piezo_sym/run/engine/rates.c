@@ -3,7 +3,7 @@
  * columns are taken to vectors, computed, and put back, so that a module's text sees one state.
  */
 
-enum { SIDE = 4 }; /* vectors of a tile: so long is the piece of a row that is read at once */
+enum { SIDE = 16 }; /* vectors of a tile at most; so long are pieces of rows: 1 KB, or less */
 
 typedef void MODEL(vectors)(const real *, const real *, const MODEL(parameters) *, real *);
 
@@ -11,8 +11,11 @@ typedef void MODEL(vectors)(const real *, const real *, const MODEL(parameters) 
 static inline void MODEL(gather)(real *to, const double *from, long count, long columns, long side)
 {
     for (long i = 0; i < count; ++i)
-        for (long k = 0; k < side; ++k)
-            memcpy(to + k*count + i, from + i*columns + k*WIDTH, sizeof *to);
+        for (long k = 0; k < side; ++k) {
+            const double *piece = from + i*columns + k*WIDTH;
+            memcpy(to + k*count + i, piece, sizeof *to);
+            __builtin_prefetch(piece + side*WIDTH); /* the next tile's, while this is computed */
+        }
 }
 
 static inline void MODEL(scatter)(double *to, const real *from, long count, long columns, long side)
@@ -34,7 +37,7 @@ static inline __attribute__((always_inline)) void MODEL(tiles)(
     double *out, long columns, const long *sizes, int own, real *space)
 {
     const long n = sizes[0], inputs = sizes[1], rows = sizes[2];
-    const long side = columns < SIDE*WIDTH ? 1 : SIDE, step = side*WIDTH;
+    const long fit = columns/WIDTH, side = fit < SIDE ? fit : SIDE, step = side*WIDTH;
     real *from = space, *given = from + side*n, *to = given + side*inputs;
     for (long k = 0; k < side && !own; ++k)
         for (long i = 0; i < inputs; ++i)
