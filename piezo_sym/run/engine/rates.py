@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 
+from piezo_sym.errors import EngineError
 from piezo_sym.run.engine.driver import PLAIN, SCALARS
 from piezo_sym.run.engine.vector import NUMBER, defined, text_beside, undefined
 
@@ -46,7 +47,7 @@ def rates_text(model: str, source: str) -> str:
 
     Raises
     ------
-    ValueError
+    EngineError
         If the source lacks one of the functions.
     """
     functions = [_wide_function(model, name, source) for name in WIDE]
@@ -66,8 +67,7 @@ def _wide_function(model: str, name: str, source: str) -> str:
     head = rf"^(void|double) {re.escape(model)}_{name}\("
     found = re.search(rf"{head}.*?^}}\n", source, re.DOTALL | re.MULTILINE)
     if not found:
-        msg = f"the module has no function {name}"
-        raise ValueError(msg)
+        raise EngineError(f"the module has no function {name}", model, remedy="generate it again")
     text = re.sub(head, rf"static \1 {model}_wide_{name}(", found[0])
     lines = _without_directives(text.splitlines())
     lanes = [match[1] for line in lines if (match := _POINTER.fullmatch(line))]
