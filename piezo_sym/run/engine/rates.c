@@ -32,7 +32,7 @@ const long MODEL(tile) = SIDE*WIDTH;
  * Rows of a function for each column, of which there are WIDTH or more.  u has a row of columns an
  * input if `own`, else one number an input.  `space` has tile*(n + inputs + rows) numbers.
  */
-static inline __attribute__((always_inline)) void MODEL(tiles)(
+static __attribute__((noinline)) void MODEL(tiles)(
     MODEL(vectors) *function, const double *x, const double *u, const MODEL(parameters) *p,
     double *out, long columns, const long *sizes, int own, real *space)
 {
