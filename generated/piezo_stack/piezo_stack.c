@@ -111,9 +111,10 @@ void piezo_stack_rhs(const double *restrict x,
 #pragma omp simd reduction(+:sum_i_hysteron, heat_hysteron)
     for (long j = 0; j < hysteron_count; ++j) {
         const double i_hysteron = phi[j]/L[j];
-        const double V_hysteron = fabs(i_hysteron) <= i_0[j]
-            ? 0.0
-            : rho[j]/T_minus_T_0*(i_hysteron - copysign(i_0[j], i_hysteron));
+        const double V_hysteron = pick(
+            fabs(i_hysteron) <= i_0[j],
+            0.0,
+            rho[j]/T_minus_T_0*(i_hysteron - copysign(i_0[j], i_hysteron)));
         sum_i_hysteron += i_hysteron;
         heat_hysteron += V_hysteron*i_hysteron;
         out[3 + j] = V_in - V_capacitor - V_hysteron;
@@ -272,9 +273,10 @@ void piezo_stack_heat(const double *restrict x,
 #pragma omp simd
     for (long j = 0; j < hysteron_count; ++j) {
         const double i_hysteron = phi[j]/L[j];
-        const double V_hysteron = fabs(i_hysteron) <= i_0[j]
-            ? 0.0
-            : rho[j]/T_minus_T_0*(i_hysteron - copysign(i_0[j], i_hysteron));
+        const double V_hysteron = pick(
+            fabs(i_hysteron) <= i_0[j],
+            0.0,
+            rho[j]/T_minus_T_0*(i_hysteron - copysign(i_0[j], i_hysteron)));
         out[j] = V_hysteron*i_hysteron;
     }
     /* rows */
@@ -309,9 +311,10 @@ void piezo_stack_entropy_production(const double *restrict x,
 #pragma omp simd
     for (long j = 0; j < hysteron_count; ++j) {
         const double i_hysteron = phi[j]/L[j];
-        const double V_hysteron = fabs(i_hysteron) <= i_0[j]
-            ? 0.0
-            : rho[j]/T_minus_T_0*(i_hysteron - copysign(i_0[j], i_hysteron));
+        const double V_hysteron = pick(
+            fabs(i_hysteron) <= i_0[j],
+            0.0,
+            rho[j]/T_minus_T_0*(i_hysteron - copysign(i_0[j], i_hysteron)));
         out[j] = V_hysteron*i_hysteron/T;
     }
     /* rows */
@@ -367,14 +370,16 @@ void piezo_stack_jacobian(const double *restrict x,
 #pragma omp simd reduction(+:heat_hysteron, dheat_hysteron_dS)
     for (long j = 0; j < hysteron_count; ++j) {
         const double i_hysteron = phi[j]/L[j];
-        const double V_hysteron = fabs(i_hysteron) <= i_0[j]
-            ? 0.0
-            : rho[j]/T_minus_T_0*(i_hysteron - copysign(i_0[j], i_hysteron));
-        const double dV_hysteron_dphi = (fabs(i_hysteron) > i_0[j] ? rho[j]/T_minus_T_0 : 0.0)/L[j];
+        const double V_hysteron = pick(
+            fabs(i_hysteron) <= i_0[j],
+            0.0,
+            rho[j]/T_minus_T_0*(i_hysteron - copysign(i_0[j], i_hysteron)));
+        const double dV_hysteron_dphi = pick(fabs(i_hysteron) > i_0[j], rho[j]/T_minus_T_0, 0.0)/L[j];
         const double dheat_hysteron_dphi = i_hysteron*dV_hysteron_dphi + V_hysteron/L[j];
-        const double dV_hysteron_dS = fabs(i_hysteron) <= i_0[j]
-            ? 0.0
-            : -rho[j]/power_2(T_minus_T_0)*(i_hysteron - copysign(i_0[j], i_hysteron))*dT_minus_T_0_dS;
+        const double dV_hysteron_dS = pick(
+            fabs(i_hysteron) <= i_0[j],
+            0.0,
+            -rho[j]/power_2(T_minus_T_0)*(i_hysteron - copysign(i_0[j], i_hysteron))*dT_minus_T_0_dS);
         heat_hysteron += V_hysteron*i_hysteron;
         dheat_hysteron_dS += i_hysteron*dV_hysteron_dS;
         out[2*n + 3 + j] = 1.0/L[j];
@@ -588,14 +593,20 @@ int piezo_stack_newton_start(const double *restrict x,
     for (long j = 0; j < hysteron_count; ++j) {
         const double per_L = 1.0/L[j];
         const double i_hysteron = phi_new[j]*per_L;
-        const double V_hysteron = pick(fabs(i_hysteron) <= i_0[j], 0.0, rho[j]*per_T_minus_T_0*(i_hysteron - copysign(i_0[j], i_hysteron)));
+        const double V_hysteron = pick(
+            fabs(i_hysteron) <= i_0[j],
+            0.0,
+            rho[j]*per_T_minus_T_0*(i_hysteron - copysign(i_0[j], i_hysteron)));
         const double loss_phi = 0.5*(power_2(phi_new[j] - phi[j])*per_L);
         const double dV_hysteron_dphi_new = pick(fabs(i_hysteron) > i_0[j], rho[j]*per_T_minus_T_0, 0.0)*per_L;
         const double dheat_hysteron_dphi_new = i_hysteron*dV_hysteron_dphi_new
             + V_hysteron*per_L;
         const double dloss_phi_dphi_new = 0.5*(2.0*((phi_new[j] - phi[j])*per_L));
         const double dheat_numerical_dphi_new = dloss_phi_dphi_new*per_h;
-        const double dV_hysteron_dS_new = pick(fabs(i_hysteron) <= i_0[j], 0.0, -rho[j]*per_T_minus_T_0*per_T_minus_T_0*(i_hysteron - copysign(i_0[j], i_hysteron))*dT_minus_T_0_dS_new);
+        const double dV_hysteron_dS_new = pick(
+            fabs(i_hysteron) <= i_0[j],
+            0.0,
+            -rho[j]*per_T_minus_T_0*per_T_minus_T_0*(i_hysteron - copysign(i_0[j], i_hysteron))*dT_minus_T_0_dS_new);
         const double gap_phi = phi_new[j] - phi[j] - h*(V_in - V_capacitor - V_hysteron);
         const double pivot_phi = 1.0 + h*dV_hysteron_dphi_new;
         const double per_pivot_phi = 1.0/pivot_phi;
@@ -724,7 +735,10 @@ void piezo_stack_means_start(const double *restrict x,
     for (long j = 0; j < hysteron_count; ++j) {
         const double per_L = 1.0/L[j];
         const double i_hysteron = phi_new[j]*per_L;
-        const double V_hysteron = pick(fabs(i_hysteron) <= i_0[j], 0.0, rho[j]*per_T_minus_T_0*(i_hysteron - copysign(i_0[j], i_hysteron)));
+        const double V_hysteron = pick(
+            fabs(i_hysteron) <= i_0[j],
+            0.0,
+            rho[j]*per_T_minus_T_0*(i_hysteron - copysign(i_0[j], i_hysteron)));
         const double loss_phi = 0.5*(power_2(phi_new[j] - phi[j])*per_L);
         sum_i_hysteron += i_hysteron;
         sum_loss_phi += loss_phi;

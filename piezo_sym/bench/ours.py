@@ -78,6 +78,13 @@ def rates_of(problem: Problem, module: Any = None) -> Rates:
     return lambda x: source.rhs(x, u, p)
 
 
+def rates_into(problem: Problem, x: FloatArray) -> tuple[Callable[[], FloatArray], FloatArray]:
+    """Return a call of the engine's rates of x (n, columns), and the array where they go."""
+    engine, out = engine_of(problem.module), np.zeros_like(x)
+    u, p = inputs_at_instant(problem), problem.system.parameters
+    return lambda: engine.rhs(x, u, p, out=out), out
+
+
 def rates_in_place(problem: Problem, x: FloatArray) -> tuple[Callable[[], object], FloatArray]:
     """Return a call of the compiled loop over columns of x (n, columns), and where rates go.
 

@@ -15,7 +15,7 @@ import sympy as sp
 
 from piezo_sym.bench.by_hand import hand_of
 from piezo_sym.bench.contest import Contestant, Pair, compared
-from piezo_sym.bench.ours import rates_in_place, rates_of, states, whole
+from piezo_sym.bench.ours import rates_in_place, rates_into, rates_of, states, whole
 from piezo_sym.bench.peers import PEERS, field
 from piezo_sym.bench.peers.peer import INSTANT, at_instant
 from piezo_sym.bench.problem import problem_of
@@ -133,7 +133,8 @@ def _batch(problem: Problem, settings: Settings) -> Part:
         pairs += [Pair(other, compiled) for other in others]
         if hand:
             blocked = hand.c_batch(sample.x, sample.error)
-            pairs += [Pair(blocked, compiled), Pair(blocked, _in_place(problem, sample))]
+            mine = compiled, _into(problem, sample), _in_place(problem, sample)
+            pairs += [Pair(blocked, one) for one in mine]
     except EngineError as error:
         left_out.append(f"batch, generated C: {error}")
     if hand:
@@ -163,6 +164,13 @@ def _others(problem: Problem, sample: Sample) -> tuple[list[Contestant], list[st
 def _at_once(name: str, rates: Rates, sample: Sample) -> Contestant:
     call = partial(rates, sample.x)
     return Contestant(name, call, sample.x.shape[1], sample.error(call()))
+
+
+def _into(problem: Problem, sample: Sample) -> Contestant:
+    call, out = rates_into(problem, sample.x)
+    call()
+    name = "generated C, into an array that is there"
+    return Contestant(name, call, sample.x.shape[1], sample.error(out))
 
 
 def _in_place(problem: Problem, sample: Sample) -> Contestant:

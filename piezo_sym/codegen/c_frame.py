@@ -59,7 +59,7 @@ class Frame:
         fields = (*program.parameters, *whole.states)
         arrays = {field.name: field.bank for field in fields if field.bank}
         self.lanes = {**whole.lane_names()}
-        self.lines = Words(self.names, arrays, self.words["j"], picked=True)
+        self.lines = Words(self.names, arrays, self.words["j"])
         slots = [Slot(field.name, field.bank) for field in program.states]
         self.states = places(slots, "end", whole.taken)
 

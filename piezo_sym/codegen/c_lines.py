@@ -32,17 +32,15 @@ class Words:
     names : what C calls each name of the program.
     arrays : the parameters and states of a bank, and which bank's.
     lane : the lane of a loop.
-    picked : whether choices are calls of ``pick``.
     """
 
     names: Mapping[str, str]
     arrays: Mapping[str, str]
     lane: str
-    picked: bool = False
 
     def style(self, lane: str | None = None) -> Style:
         """Return the spelling of expressions in lane `lane`: in the loop's, if none is given."""
-        return c_style(self.names, self.arrays, lane or self.lane, picked=self.picked)
+        return c_style(self.names, self.arrays, lane or self.lane)
 
     def text(self, value: Expr, lane: str | None = None) -> str:
         """Return an expression as C."""
@@ -59,11 +57,12 @@ def statement(target: str, value: Expr, words: Words, lane: str | None = None) -
     """Return ``target value;``, target with an operator; a long value has a line a term or case."""
     text = words.text(value, lane)
     parts = with_branches(value)
-    split = Add if words.picked else Add | If
-    if len(target) + len(text) + 10 <= WIDTH or not isinstance(parts, split):
+    if len(target) + len(text) + 10 <= WIDTH or not isinstance(parts, Add | If):
         return [f"{target} {text};"]
     style = words.style(lane)
-    lines = list(_cases(parts, style) if isinstance(parts, If) else _terms(parts, style))
+    if isinstance(parts, If):
+        return _pick(target, parts, style)
+    lines = list(_terms(parts, style))
     return [f"{target} {lines[0]}", *(f"    {line}" for line in lines[1:-1]), f"    {lines[-1]};"]
 
 
@@ -75,10 +74,11 @@ def _terms(value: Add, style: Style) -> Iterator[str]:
         yield f"{sign} {enclose(c_piece(size, style), PRODUCT)}"
 
 
-def _cases(value: If, style: Style) -> Iterator[str]:
-    yield write_comparison(value.condition, style)
-    yield f"? {enclose(c_piece(value.then, style), SUM)}"
-    yield f": {enclose(c_piece(value.other, style), SUM)}"
+def _pick(target: str, value: If, style: Style) -> list[str]:
+    """Return a call of ``pick`` with a line an argument."""
+    condition = write_comparison(value.condition, style)
+    then, other = (c_piece(part, style)[0] for part in (value.then, value.other))
+    return [f"{target} pick(", f"    {condition},", f"    {then},", f"    {other});"]
 
 
 def define(quantity: Quantity, words: Words, lane: str | None = None) -> list[str]:

@@ -33,13 +33,20 @@ _CALLED = (
     "copysign expm1 fabs pow phi1 phi2 phi3 ramp ramp_by_new mean_sign mean_sign_by_new "
     + " ".join(f"power_{n}" for n in range(2, 9))
 )
+#: What the engine adds to a module's text where it reads it with vectors for numbers.
+_VECTORS = (
+    "WIDTH SIDE MODEL real bits mask zero nowhere everywhere wide chosen any size_of with_sign "
+    "power_of_two small_expm1 reduced exp_of expm1_of LANE_BY_LANE sqrt_of log_of sin_of cos_of "
+    "tanh_of pow_of whole_power least largest sign_of deadzone_of saturate_of phi3_of share_above "
+    "ramp_of ramp_by_new_of mean_sign_of mean_sign_by_new_of pick deadzone saturate sign"
+)
 _ENDS = (
     *("parameters", "states", "processes", "jacobian", "margins"),
     *("input_count", "output_count", "body_count", "limit_count"),
 )
 
 KEPT = (
-    frozenset(f"{_CPLUSPLUS} {_MACROS} {_CALLED}".split())
+    frozenset(f"{_CPLUSPLUS} {_MACROS} {_CALLED} {_VECTORS}".split())
     | {f"{kind}_{word}" for kind in ("FLT", "DBL", "LDBL") for word in _FLOATS.split()}
     | {f"{word}{end}" for word in ("M_PI", "M_E", "M_SQRT2", "M_LN2") for end in ("l", "f")}
 )

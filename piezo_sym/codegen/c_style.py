@@ -1,7 +1,7 @@
 """How C spells the parts of an expression.
 
 Input: a tree and the C names of what stands in it.  Output: one line of C99.  Small whole powers
-are products, kinks are conditional expressions, and a quotient of numbers stays one: it is rounded
+are products, kinks are calls of ``pick``, and a quotient of numbers stays one: it is rounded
 once, as in NumPy.  The functions that a text calls and <math.h> lacks are in `helpers`.
 """
 
@@ -15,7 +15,6 @@ from piezo_sym.codegen.branches import with_branches
 from piezo_sym.spec.expressions import Expr
 from piezo_sym.spec.text import (
     ATOM,
-    CHOICE,
     PRODUCT,
     SUM,
     UNARY,
@@ -70,10 +69,6 @@ def _call(function: str, args: tuple[Piece, ...]) -> Piece:
     return f"{CALLS.get(function, function)}({', '.join(text for text, _ in args)})", ATOM
 
 
-def _choose(then: Piece, test: str, other: Piece) -> Piece:
-    return f"{test} ? {enclose(then, SUM)} : {enclose(other, SUM)}", CHOICE
-
-
 def _pick(then: Piece, test: str, other: Piece) -> Piece:
     return f"pick({test}, {then[0]}, {other[0]})", ATOM
 
@@ -83,19 +78,17 @@ def _lane_sum(arg: Piece, bank: str) -> Piece:
     raise TypeError(msg)
 
 
-def c_style(
-    names: Mapping[str, str], arrays: Mapping[str, str], index: str, *, picked: bool = False
-) -> Style:
+def c_style(names: Mapping[str, str], arrays: Mapping[str, str], index: str) -> Style:
     """Return the spelling of expressions; `arrays` have a value a lane, picked by `index`.
 
-    A choice is a conditional expression, or else a call of ``pick``: then the text also holds where
-    numbers are vectors of many states.
+    A choice is a call of ``pick``, so that the text also holds where numbers are vectors of many
+    states.
     """
 
     def name(word: str) -> Piece:
         return (f"{names[word]}[{index}]" if word in arrays else names[word]), ATOM
 
-    return Style(c_number, name, _power, _call, _pick if picked else _choose, _lane_sum)
+    return Style(c_number, name, _power, _call, _pick, _lane_sum)
 
 
 def c_piece(node: Expr, style: Style) -> Piece:

@@ -18,9 +18,11 @@ import numpy as np
 
 from piezo_sym.errors import EngineError, FileError
 from piezo_sym.files import path_text, read_text
+from piezo_sym.run.engine.columns import at_once, one_by_one
 from piezo_sym.run.engine.driver import DRIVEN, PLAIN, SCALARS
-from piezo_sym.run.engine.library import Sources, library
+from piezo_sym.run.engine.library import Made, Sources, library
 from piezo_sym.run.engine.march import at
+from piezo_sym.run.engine.rates import WIDE
 from piezo_sym.run.engine.structure import Structure, structure_of
 from piezo_sym.run.module import lanes
 
@@ -29,6 +31,9 @@ if TYPE_CHECKING:
 
     from piezo_sym.run.checks import FloatArray
     from piezo_sym.run.module import GeneratedModule, Record
+
+#: From so many columns on, all vectors of a library are full.
+FEWEST = 16
 
 
 class EngineWarning(UserWarning):
@@ -67,11 +72,11 @@ def _engine(module: GeneratedModule, sources: Sources) -> Engine:
 
 
 @lru_cache(maxsize=64)
-def _side_by_side(module: GeneratedModule, sources: Sources) -> ctypes.CDLL | None:
-    """Return a module's library for members side by side; None, once and for all, without one."""
+def _with_vectors(module: GeneratedModule, sources: Sources) -> ctypes.CDLL | None:
+    """Return a module's library that computes with vectors; None, once and for all, without one."""
     del module  # libraries belong to modules: another one of the same source has its own
     try:
-        return _loaded(replace(sources, wide=True))
+        return _loaded(sources)
     except EngineError:
         return None
 
@@ -121,7 +126,11 @@ class Engine:
 
     def side_by_side(self) -> ctypes.CDLL | None:
         """Return the library that also runs members side by side, if this compiler can make one."""
-        return _side_by_side(self.module, self.sources)  # type: ignore[arg-type]  # as above
+        return self._with_vectors("members")
+
+    def _with_vectors(self, made: Made) -> ctypes.CDLL | None:
+        sources = replace(self.sources, made=made)
+        return _with_vectors(self.module, sources)  # type: ignore[arg-type]  # as above
 
     def initial_state(self, u: ArrayLike, p: Any, /) -> FloatArray:
         """Return the state at t = 0, shape (n,), for the inputs u (inputs,) at t = 0."""
@@ -132,9 +141,17 @@ class Engine:
         function(at(u), ctypes.byref(structure.value), at(out))
         return out
 
-    def rhs(self, x: ArrayLike, u: ArrayLike, p: Any, /) -> FloatArray:
-        """Return dx/dt, shape (n, *batch)."""
-        return self._called("rhs", x, u, p, self.rows(self.module.STATES, p))
+    def rhs(
+        self, x: ArrayLike, u: ArrayLike, p: Any, /, out: FloatArray | None = None
+    ) -> FloatArray:
+        """Return dx/dt, shape (n, *batch).
+
+        Parameters
+        ----------
+        out : a C-contiguous array of that shape to put it in, apart from x and u: new memory for
+            many states costs as much as their rates.
+        """
+        return self._called("rhs", x, u, p, self.rows(self.module.STATES, p), out)
 
     def jacobian(self, x: ArrayLike, u: ArrayLike, p: Any, /) -> FloatArray:
         """Return the derivative of `rhs` by the state, shape (n, n, *batch)."""
@@ -198,41 +215,52 @@ class Engine:
         return array
 
     def _called(
-        self, name: str, x: ArrayLike, u: ArrayLike | None, p: Any, rows: int
+        self,
+        name: str,
+        x: ArrayLike,
+        u: ArrayLike | None,
+        p: Any,
+        rows: int,
+        out: FloatArray | None = None,
     ) -> FloatArray:
         """Return a function's rows for every column of a batch, shape (rows, *batch)."""
         states = self._array(x, self.rows(self.module.STATES, p), "states")
-        batch = states.shape[1:]
-        columns = _columns(states)
-        inputs, step = self._inputs(u, batch)
-        out = np.empty((columns.shape[0], rows))
-        function = getattr(self.library, f"{self.module.NAME}_{name}_columns")
-        sizes = (columns.shape[0], columns.shape[1], step, rows)
-        structure = self.structure(p)  # a name of its own keeps the arrays of its lanes alive
-        function(
-            at(columns),
-            at(inputs),
-            ctypes.byref(structure.value),
-            at(out),
-            *map(ctypes.c_long, sizes),
-        )
-        return out.T.reshape(rows, *batch)
+        batch, structure = states.shape[1:], self.structure(p)  # it keeps its lanes' arrays alive
+        width = int(np.prod(batch, dtype=int))
+        columns = states.reshape(states.shape[0], width)
+        found = _place(out, (rows, *batch))
+        given = columns, self._inputs(u, batch), structure.value, found.reshape(rows, width)
+        vectors = self._rates(width) if name in WIDE else None
+        if vectors:
+            tile = ctypes.c_long.in_dll(vectors, f"{self.module.NAME}_tile").value
+            at_once(getattr(vectors, f"{self.module.NAME}_{name}_wide"), tile, *given)
+        else:
+            one_by_one(getattr(self.library, f"{self.module.NAME}_{name}_columns"), *given)
+        return found
 
-    def _inputs(self, u: ArrayLike | None, batch: tuple[int, ...]) -> tuple[FloatArray, int]:
-        """Return inputs one column after another, and how far columns are apart."""
+    def _rates(self, columns: int) -> ctypes.CDLL | None:
+        """Return the library for so many columns at once, if they fill its vectors."""
+        return self._with_vectors("rates") if columns >= FEWEST else None
+
+    def _inputs(self, u: ArrayLike | None, batch: tuple[int, ...]) -> FloatArray:
+        """Return inputs (inputs, columns), or (inputs,) for all columns."""
         if u is None:
-            return np.empty(0), 0
+            return np.empty(0)
         size = len(self.module.INPUTS)
         given = self._array(u, size, "inputs")
         if given.ndim == 1:
-            return np.ascontiguousarray(given), 0
-        return _columns(np.broadcast_to(given, (size, *batch))), size
+            return given
+        return np.broadcast_to(given, (size, *batch)).reshape(size, int(np.prod(batch, dtype=int)))
 
 
-def _columns(array: FloatArray) -> FloatArray:
-    """Return an array (n, *batch) as columns one after another, (columns, n)."""
-    width = int(np.prod(array.shape[1:], dtype=int))
-    return np.ascontiguousarray(array.reshape(array.shape[0], width).T)
+def _place(out: FloatArray | None, shape: tuple[int, ...]) -> FloatArray:
+    """Return where results go: `out`, if it is fit for them."""
+    if out is None:
+        return np.empty(shape)
+    if out.shape != shape or out.dtype != float or not out.flags.carray:
+        msg = f"out has to be a C-contiguous array of numbers of shape {shape}"
+        raise ValueError(msg)
+    return out
 
 
 #: The functions of a module that a library computes.

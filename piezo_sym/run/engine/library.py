@@ -15,39 +15,45 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from subprocess import TimeoutExpired
-from typing import final
+from typing import Literal, final
 
 from piezo_sym.errors import EngineError
 from piezo_sym.files import path_text
 from piezo_sym.run.engine.compiler import FLAGS, Compiler, build, compilers
 from piezo_sym.run.engine.driver import driver
 from piezo_sym.run.engine.processor import processor
+from piezo_sym.run.engine.rates import rates_text
 from piezo_sym.run.engine.vector import wide_text
 
+#: What a library computes: states and steps one by one; members side by side, too; or functions of
+#: many states alone.
+Made = Literal["single", "members", "rates"]
 ENDINGS = {"win32": ".dll", "darwin": ".dylib"}
 
 
 @final
 @dataclass(frozen=True)
 class Sources:
-    """The texts of one module: its name, ``<name>.h``, ``<name>.c``.
-
-    `wide` asks for a library that also runs members side by side.
-    """
+    """The texts of one module: its name, ``<name>.h``, ``<name>.c``; and what is made of them."""
 
     name: str
     header: str
     source: str
-    wide: bool = False
+    made: Made = "single"
 
     def files(self) -> dict[str, str]:
         """Return what to compile, by file name."""
         texts = {f"{self.name}.h": self.header, f"{self.name}.c": self.source}
+        return {**texts, "driver.c": self._driver()}
+
+    def _driver(self) -> str:
+        if self.made == "rates":
+            return rates_text(self.name, self.source)
         starts = f" {self.name}_newton_start(" in self.header
         text = driver(self.name, starts=starts)
-        if self.wide:
+        if self.made == "members":
             text += wide_text(self.name, self.header, self.source)
-        return {**texts, "driver.c": text}
+        return text
 
 
 def library(sources: Sources, *, again: bool = False) -> Path:

@@ -73,11 +73,12 @@ def wide_source(model: str, header: str, source: str) -> str:
         (r"\bdouble\b", "real"),
     ):
         step = re.sub(pattern, instead, step, flags=re.MULTILINE | re.DOTALL)
-    texts = (_defined(), _record(model, record[1]), step, _undefined(), _loader(model, record[1]))
+    texts = (defined(), _record(model, record[1]), step, undefined(), _loader(model, record[1]))
     return "\n".join(texts)
 
 
-def _defined() -> str:
+def defined() -> str:
+    """Return definitions by which functions of a text take vectors."""
     lines = []
     for name, (function, arity) in CALLS.items():
         words = ["abc"[n] for n in range(arity)]
@@ -89,7 +90,8 @@ def _defined() -> str:
     return "\n".join(f"#undef {line.split('(')[0].split()[1]}\n{line}" for line in lines)
 
 
-def _undefined() -> str:
+def undefined() -> str:
+    """Return the end of those definitions."""
     names = [*CALLS, *(f"power_{n}" for n in range(2, MOST_FACTORS + 1))]
     return "\n".join(f"#undef {name}" for name in names)
 

@@ -1,0 +1,241 @@
+"""Functions of many states at once give what NumPy does, and the functions of vectors are exact."""
+
+import ctypes
+import json
+import re
+from pathlib import Path
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+from piezo_sym import load
+from piezo_sym.codegen.c_names import KEPT
+from piezo_sym.errors import EngineError
+from piezo_sym.modules import module_of
+from piezo_sym.run.engine import engine as engines
+from piezo_sym.run.engine.compiler import FLAGS, build, compilers
+from piezo_sym.run.engine.driver import PLAIN, SCALARS
+from piezo_sym.run.engine.engine import engine_of
+from piezo_sym.run.engine.rates import DRIVEN, WIDE, rates_text
+from piezo_sym.run.engine.vector import text_beside
+from piezo_sym.run.parameters import read_parameters
+from piezo_sym.spec.model import Model
+
+SPECS = sorted((Path(__file__).parents[1] / "networks" / "specs").glob("*.toml"))
+BATCHES = [(), (1,), (7,), (16,), (17,), (1000,), (0,), (3, 11), (1, 5, 50)]
+MOST_ULPS = 2
+
+
+def states(module, batch, seed=0):
+    """Return states and inputs of usual size, bodies warmer than at the start, and parameters."""
+    draw = np.random.default_rng(seed)
+    p = read_parameters(module, None)
+    beside = (-1, *(1,) * len(batch))
+    u = np.array([300.0 if record.unit == "K" else 1.5 for record in module.INPUTS])
+    sizes = np.array(list(state_sizes(module, p))).reshape(beside)
+    x = sizes * draw.uniform(-1, 1, (sizes.size, *batch))
+    x = np.where(sizes < 0, np.abs(x), x)
+    return x, u.reshape(beside) * draw.uniform(0.9, 1.1, (u.size, *batch)), p
+
+
+def state_sizes(module, p):
+    """Yield the size of each row of a state; entropies, which are positive, have a negative one."""
+    capacities = [getattr(p, r.name) for r in module.PARAMETERS if r.unit == "J/K"]
+    for record in module.STATES:
+        size = -0.5 * float(np.min(capacities)) if record.unit == "J/K" else 0.5
+        yield from [size] * (getattr(p, f"{record.bank}_count") if record.bank else 1)
+
+
+def arguments(name, x, u, p):
+    return (x, p) if name in (*PLAIN, *SCALARS) else (x, u, p)
+
+
+def same(found, wanted):
+    assert found.shape == wanted.shape
+    size = np.abs(wanted).max(initial=0.0)
+    assert np.isfinite(size)
+    assert np.allclose(found, wanted, rtol=1e-11, atol=1e-12 * size)
+
+
+@pytest.fixture
+def only_vectors(monkeypatch):
+    """Batches that could fill a vector fail if they are computed one by one."""
+
+    def refuse(function, x, u, p, out):
+        assert x.shape[1] < engines.FEWEST
+        return one_by_one(function, x, u, p, out)
+
+    one_by_one = engines.one_by_one
+    monkeypatch.setattr(engines, "one_by_one", refuse)
+
+
+@pytest.mark.usefixtures("only_vectors")
+@pytest.mark.parametrize("path", ["piezo_stack", *SPECS], ids=lambda path: Path(path).stem)
+def test_many_states_give_what_numpy_does(path):
+    module = module_of(load(path))
+    engine = engine_of(module)
+    for seed, batch in enumerate(BATCHES):
+        x, own, p = states(module, batch, seed)
+        for u in (own, states(module, (), seed)[1]):
+            lifted = u if u.ndim == x.ndim else u.reshape(-1, *(1,) * len(batch))
+            for name in WIDE:
+                found = getattr(engine, name)(*arguments(name, x, u, p))
+                same(found, np.asarray(getattr(module, name)(*arguments(name, x, lifted, p))))
+
+
+@pytest.mark.usefixtures("only_vectors")
+@pytest.mark.parametrize("lanes", [1, 3, 64])
+def test_a_state_has_the_same_rates_wherever_it_stands(lanes):
+    """In any place of a tile, of a strided array, of one that ends within a tile."""
+    module = module_of("piezo_stack")
+    engine = engine_of(module)
+    p = module.Parameters(hysteron_count=lanes)
+    draw = np.random.default_rng(lanes)
+    x = draw.uniform(-1, 1, (4 + lanes, 3001)) * 5e-3
+    x[-1] = draw.uniform(0.01, 0.1, 3001)
+    u = np.array([10.0, 100.0, 300.0])
+    whole = engine.rhs(x, u, p)
+    for first, last, step in [(0, 130, 1), (5, 21, 1), (1, 3001, 2), (2990, 100, -3)]:
+        part = slice(first, last, step)
+        assert np.array_equal(engine.rhs(x[:, part], u, p), whole[:, part])
+
+
+def test_rates_go_where_they_are_wanted():
+    module = module_of("piezo_stack")
+    engine = engine_of(module)
+    for batch in [(), (40,), (4, 10)]:
+        x, u, p = states(module, batch)
+        out = np.full(x.shape, np.nan)
+        assert engine.rhs(x, u, p, out=out) is out
+        same(out, module.rhs(x, u, p))
+    for wrong in (np.empty((3, 4, 10)), np.empty((10, 4, 6)).T, np.empty(x.shape, "f4")):
+        with pytest.raises(ValueError, match="out has to be a C-contiguous array"):
+            engine.rhs(x, u, p, out=wrong)
+
+
+def test_what_is_no_number_stays_in_its_state():
+    module = module_of("piezo_stack")
+    x, u, p = states(module, (100,))
+    x[2, 37] = np.nan
+    found = engine_of(module).rhs(x, u, p)
+    assert np.array_equal(np.isnan(found), np.isnan(module.rhs(x, u, p)))
+    assert np.isnan(found).any(axis=0).nonzero()[0].tolist() == [37]
+
+
+def test_without_vectors_columns_are_computed_one_by_one(monkeypatch):
+    def refuse(sources):
+        raise EngineError("no vectors", sources.name)
+
+    module = module_of("piezo_stack")
+    engine = engine_of(module)
+    x, u, p = states(module, (1000,))
+    engines._with_vectors.cache_clear()
+    monkeypatch.setattr(engines, "_loaded", refuse)
+    same(engine.rhs(x, u, p), module.rhs(x, u, p))
+    engines._with_vectors.cache_clear()
+
+
+def test_a_source_without_the_functions_is_refused():
+    with pytest.raises(EngineError, match="no function rhs"):
+        rates_text("piezo_stack", "int main(void) { return 0; }\n")
+
+
+def test_functions_are_those_of_the_engine():
+    assert {*DRIVEN, *PLAIN, *SCALARS} == {*engines.OFFERED} - {
+        *("initial_state", "jacobian", "margins")
+    }
+
+
+EXACT = """
+#include "wide.h"
+void each(const double *x, double *e, double *m, long count);
+void each(const double *x, double *e, double *m, long count)
+{
+    for (long n = 0; n + WIDTH <= count; n += WIDTH) {
+        real v;
+        memcpy(&v, x + n, sizeof v);
+        const real a = exp_of(v), b = expm1_of(v);
+        memcpy(e + n, &a, sizeof a);
+        memcpy(m + n, &b, sizeof b);
+    }
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def exponentials(tmp_path_factory):
+    """Return a function that gives exp(x) and exp(x) - 1 as vectors compute them."""
+    folder = tmp_path_factory.mktemp("built")
+    (folder / "wide.h").write_text(text_beside("wide.h"))
+    (folder / "each.c").write_text(EXACT)
+    build(next(compilers()), FLAGS[0], folder / "each.c", folder / "each.so")
+    library = ctypes.CDLL(str(folder / "each.so"))
+
+    def call(x):
+        x = np.ascontiguousarray(x)
+        e, m = np.full((2, x.size), np.nan)
+        at = [ctypes.c_void_p(array.ctypes.data) for array in (x, e, m)]
+        library.each(*at, ctypes.c_long(x.size))
+        return e, m
+
+    return call
+
+
+def points():
+    """Return arguments of every size: tiny, around steps of the reduction, and to the ends."""
+    draw = np.random.default_rng(0)
+    tiny = 10.0 ** draw.uniform(-320, 0, 1000)
+    steps = np.log(2) * np.arange(-60, 60, 0.5)[:, None] + draw.uniform(-1e-9, 1e-9, (240, 8))
+    ends = [*np.linspace(-708, 708.9, 800), -0.0, 0.0, 709.0, -708.0, -40.0, 5e-324]
+    x = np.concatenate([tiny, -tiny, draw.uniform(-45, 45, 2000), steps.ravel(), ends])
+    return np.resize(x, x.size - x.size % -8)
+
+
+def ulps(found, exact):
+    """Return errors in units of the last place."""
+    with mp.workdps(40):
+        errors = [abs(mp.mpf(float(a)) - b) for a, b in zip(found, exact, strict=True)]
+        return max(
+            e / mp.mpf(float(np.spacing(abs(float(b))))) for e, b in zip(errors, exact, strict=True)
+        )
+
+
+def test_exponentials_of_vectors_are_exact_to_two_units_of_the_last_place(exponentials):
+    x = points()
+    found = exponentials(x)
+    with mp.workdps(40):
+        exact = [[f(mp.mpf(float(value))) for value in x] for f in (mp.exp, mp.expm1)]
+    for one, other in zip(found, exact, strict=True):
+        assert ulps(one, other) <= MOST_ULPS
+
+
+def test_exponentials_of_vectors_end_as_those_of_numbers_do(exponentials):
+    x = np.array([np.inf, -np.inf, np.nan, 800.0, -800.0, -50.0, 0.0, -0.0])
+    with np.errstate(over="ignore"):
+        assert np.array_equal(exponentials(x)[0], np.exp(x), equal_nan=True)
+        assert np.array_equal(exponentials(x)[1], np.expm1(x), equal_nan=True)
+
+
+def test_no_name_of_a_spec_is_one_of_the_vectors():
+    """A parameter called `zero` is another name in C, so that it hides nothing."""
+    text = re.sub(r"/\*.*?\*/", "", text_beside("wide.h"), flags=re.DOTALL)
+    defined = re.findall(r"static (?:inline|const) \w+ (\w+)", text)
+    defined += re.findall(
+        r"#define (\w+)|(?:LANE_BY_LANE\(|enum \{ )(\w+)|\b(\w+) __attribute__", text
+    )
+    words = {word for found in defined for word in ([found] if isinstance(found, str) else found)}
+    assert {"zero", "wide", "real", "mask", "WIDTH", "sqrt_of", "exp_of", "any"} <= words
+    assert words - {"", "name"} <= KEPT
+
+
+@pytest.mark.usefixtures("only_vectors")
+def test_parameters_may_be_called_like_parts_of_the_vectors():
+    data = load("piezo_stack").model_dump()
+    text = json.dumps(data)
+    for old, new in (("M", "zero"), ("k", "wide"), ("q_l", "real"), ("d", "any"), ("C", "mask")):
+        text = re.sub(rf"(?<![\w]){old}(?![\w/])", new, text)
+    model = Model(**{**json.loads(text), "model": {**data["model"], "name": "crowded"}})
+    module = module_of(model)
+    x, u, p = states(module, (50,))
+    same(engine_of(module).rhs(x, u, p), module.rhs(x, u, p))
