@@ -83,7 +83,7 @@ def run_box(plan: Plan, module: GeneratedModule, box: Box, watch: Watch) -> Resu
     EngineError : there is no compiler here.
     UsageError : the reduction gives something of no use.
     """
-    engine = engine_of(module) if plan.method == METHOD else None
+    engine = engine_for(plan, module)
     points = plan.points(box)
     parts: list[Quantities] = []
     coords: dict[str, Quantity] = {}
@@ -95,6 +95,11 @@ def run_box(plan: Plan, module: GeneratedModule, box: Box, watch: Watch) -> Resu
         coords |= {name: one for name, one in made.items() if name not in plan.largest_banks}
         errors += group.errors
     return Result(box, tuple(errors), joined(parts, points, plan), coords)
+
+
+def engine_for(plan: Plan, module: GeneratedModule) -> Engine | None:
+    """Return the engine that a plan's runs go through, or None if they go by SciPy."""
+    return replace(engine_of(module), wide=plan.side_by_side) if plan.method == METHOD else None
 
 
 def together(plan: Plan, points: NDArray[np.intp]) -> Iterator[slice]:
