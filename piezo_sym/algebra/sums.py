@@ -20,6 +20,7 @@ class LaneSum(sp.Expr):  # type: ignore[misc]
 
     is_commutative = True
     is_real = True
+    is_Function = True  # so that SymPy's LaTeX hands the power of a sum to `_latex`
 
     def __new__(cls, arg: sp.Expr, bank: str | Str) -> LaneSum:
         """Return the sum of `arg` over the lanes of `bank`, as it stands."""

@@ -5,6 +5,7 @@ import pytest
 import sympy as sp
 
 from piezo_sym import derive
+from piezo_sym.algebra.notation import latex
 from piezo_sym.spec.load import parse
 from piezo_sym.spec.source import MODELS
 
@@ -57,6 +58,15 @@ def test_latex_keeps_sums_over_lanes(iphs):
     assert r"\begin{bmatrix}" in text
     assert iphs._repr_latex_().startswith("$")
     assert iphs.J0._repr_latex_().count(r"\cdots") > 0
+
+
+def test_latex_tells_the_square_of_a_sum_from_the_sum_of_squares(iphs):
+    lanes, current = iphs.system.E.lanes, iphs.system.bracket[0, 0]
+    squared, squares = lanes.sum(current, "hysteron") ** 2, lanes.sum(current**2, "hysteron")
+    total = r"\sum_{j=1}^{r} i_{\mathrm{hysteron},j}"
+    assert latex(squared) == rf"\left({total}\right)^{{2}}"
+    assert latex(squares) == total + "^{2}"
+    assert sp.latex(squared).startswith(r"\left(")  # also where SymPy prints, as in notebooks
 
 
 def test_text_of_a_matrix_shows_its_labels(iphs):
