@@ -19,6 +19,7 @@ from piezo_sym.run.engine.march import Batch
 SPECS = Path(__file__).parents[1] / "networks" / "specs"
 SMALL = replace(QUICK, rounds=1, members=11, patience=1e4)  # more than the lanes of any vector
 WAYS = [(peer, way) for peer in PEERS for way in peer.many]
+WAY_NAMES = [f"{peer.package}, {way}" for peer, way in WAYS]
 
 
 @pytest.fixture(scope="module")
@@ -78,14 +79,14 @@ def test_an_engine_says_whether_members_go_side_by_side(family, wide):
     assert (batch._wide is not None) is wide
 
 
-@pytest.mark.parametrize(("peer", "way"), WAYS, ids=str)
+@pytest.mark.parametrize(("peer", "way"), WAYS, ids=WAY_NAMES)
 def test_a_peer_runs_the_family(family, peer, way):
     pytest.importorskip(peer.package)
     assert family.error(peer.many[way](family)(1e-12)) <= 1e-7
     assert family.error(peer.many[way](family)(1e-2)) > 1e-12  # the tolerance counts
 
 
-@pytest.mark.parametrize(("peer", "way"), WAYS, ids=str)
+@pytest.mark.parametrize(("peer", "way"), WAYS, ids=WAY_NAMES)
 def test_a_peer_runs_a_family_without_kinks_whose_starts_differ(peer, way):
     pytest.importorskip(peer.package)
     data = load(SPECS / "a1_two_bodies.toml")
@@ -106,7 +107,7 @@ def test_rows_stand_at_equal_error(problem):
         "single runs in C",
         "sweep(), one thread",
         "sweep(), one thread, one by one",
-        *(f"{peer.package}, {way}" for peer, way in WAYS),
+        *WAY_NAMES,
     }
     assert max(max(row.other_error, row.ours_error) for row in part.rows) <= 1e-6
     assert all(row.ratio.median > 0 for row in part.rows)
