@@ -37,6 +37,8 @@ KNOWN: tuple[tuple[float, tuple[float, ...], float], ...] = (
 )
 SCALE = (2e-3, 5e-3, 5e-4, 6e-3, 5e-2)
 NAME = "piezo_stack"
+#: The parameter that its sweep varies.
+SWEPT = "L"
 
 
 @final

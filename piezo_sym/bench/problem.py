@@ -119,11 +119,17 @@ def problem_of(
 
 
 def explicit(
-    model: Model, signals: Mapping[str, Signal], sizes: Mapping[str, int]
+    model: Model, signals: Mapping[str, Signal], sizes: Mapping[str, int], free: str = ""
 ) -> tuple[tuple[sp.Symbol, ...], tuple[sp.Expr, ...]]:
-    """Return the states and their rates, with the numbers of parameters and inputs put in."""
+    """Return the states and their rates, with the numbers of parameters and inputs put in.
+
+    Parameters
+    ----------
+    free : a parameter that stays what it is, the symbol of its name.
+    """
     iphs = derive(model).expand(sizes)
-    known = {iphs.symbols[n]: sp.Float(p.si) for n, p in iphs.model.parameters.items()}
+    known = {iphs.symbols[n]: sp.Float(p.si) for n, p in iphs.model.parameters.items() if n != free}
+    known |= {iphs.symbols[free]: sp.Symbol(free, real=True)} if free else {}
     known |= {iphs.symbols[n]: as_expression(s, n) for n, s in signals.items()}
     return tuple(iphs.x), tuple(rate.xreplace(known) for rate in iphs.rhs)
 

@@ -21,6 +21,7 @@ class Settings:
     run_target, long_target : the errors that runs are tuned to.
     most : seconds that a run of a peer may take; one that takes longer is left out.
     patience : seconds spent on finding a peer's tolerance.
+    members, sweep_target : runs of a sweep, and the error that all of them are tuned to.
     """
 
     rounds: int = 9
@@ -29,7 +30,9 @@ class Settings:
     long_target: float = 5e-6
     most: float = 20.0
     patience: float = 90.0
+    members: int = 1000
+    sweep_target: float = 1e-5
 
 
 THOROUGH = Settings()
-QUICK = Settings(rounds=3, columns=10_000, most=1.0, patience=5.0)
+QUICK = Settings(rounds=3, columns=10_000, most=1.0, patience=5.0, members=100)

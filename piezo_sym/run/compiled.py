@@ -96,11 +96,7 @@ def check_inputs(system: System, x: FloatArray, samples: FloatArray) -> None:
 
     Conditions on inputs do not depend on the state: that at t = 0, x (n,), stands for all.
     """
-    known = {record.name for record in system.module.INPUTS}
-    conditions = enumerate(condition.text for condition in system.module.DOMAIN)
-    limits = [n for n, text in conditions if depth(system, text) == 1]
-    said = {name for n in limits for name in NAME.findall(system.module.DOMAIN[n].text)} & known
-    rows = {n for n, record in enumerate(system.module.INPUTS) if record.name in said}
+    limits, rows = input_conditions(system)
     for segment in system.inputs.segments if rows else ():
         times = np.array([segment.start])
         if rows & {row for row, _ in segment.varying}:
@@ -109,6 +105,22 @@ def check_inputs(system: System, x: FloatArray, samples: FloatArray) -> None:
         failed = np.any(system.violated(states, segment.over(times))[limits], axis=0)
         if np.any(failed):
             raise left(system, segment, x, times[: np.argmax(failed) + 1])
+
+
+def input_conditions(system: System) -> tuple[list[int], set[int]]:
+    """Return which conditions are on inputs, and the rows of the inputs that they name."""
+    known = {record.name for record in system.module.INPUTS}
+    conditions = enumerate(condition.text for condition in system.module.DOMAIN)
+    limits = [n for n, text in conditions if depth(system, text) == 1]
+    said = {name for n in limits for name in NAME.findall(system.module.DOMAIN[n].text)} & known
+    return limits, {n for n, record in enumerate(system.module.INPUTS) if record.name in said}
+
+
+def inputs_move(system: System) -> bool:
+    """Return whether inputs that conditions name may change: if not, t = 0 tells all of them."""
+    _, rows = input_conditions(system)
+    first, *others = system.inputs.segments
+    return bool(rows) and bool(others or rows & {row for row, _ in first.varying})
 
 
 def left(system: System, segment: Segment, x: FloatArray, times: FloatArray) -> RunError:

@@ -13,8 +13,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias, final
 
-import numpy as np
-
 from piezo_sym.errors import RunError
 from piezo_sym.run.engine.march import Batch, Way, steps_at
 from piezo_sym.run.ledger import Trajectory
@@ -221,8 +219,7 @@ def _scale(run: _Run, longest: float) -> FloatArray:
     for block in blocks(run.systems[0], run.times, longest, lambda: size):
         run.through("survey", block, range(1))
     run.batch.rewind()
-    pairs = zip(run.systems, run.batch.scale, strict=True)
-    return np.array([shared(system, scale) for system, scale in pairs])
+    return shared(run.systems[0], run.batch.scale)
 
 
 def _stuck(system: System, t: float, x: FloatArray) -> RunError:

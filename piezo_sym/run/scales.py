@@ -50,10 +50,10 @@ def magnitudes(system: System, x: FloatArray, most: int = MOST_STEPS) -> tuple[F
 
 
 def shared(system: System, x: FloatArray) -> FloatArray:
-    """Return the magnitudes of x (n,), lanes of a bank at their maximum, none at 0."""
+    """Return the magnitudes of x (*batch, n), lanes of a bank at their maximum, none at 0."""
     scale = np.maximum(np.abs(x), FLOOR)
     for part in system.rows(system.module.STATES):
-        scale[part] = np.max(scale[part])
+        scale[..., part] = np.max(scale[..., part], axis=-1, keepdims=True)
     return scale
 
 

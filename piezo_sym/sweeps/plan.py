@@ -71,6 +71,7 @@ class Plan:
     largest_banks : the largest size of each bank whose size is swept.
     together : runs in one call of C, at most.
     most : runs in a box, at most.
+    side_by_side : whether runs in one call of C go in the lanes of vectors, or one by one.
     """
 
     axes: tuple[Axis, ...]
@@ -87,6 +88,7 @@ class Plan:
     largest_banks: Mapping[str, int]
     together: int
     most: int
+    side_by_side: bool = True
 
     def with_most(self, most: int) -> Plan:
         """Return the same sweep in boxes of other sizes."""

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, final
 import numpy as np
 
 from piezo_sym.errors import PiezoError, RunError
-from piezo_sym.run.compiled import cause, check_inputs
+from piezo_sym.run.compiled import cause, check_inputs, inputs_move
 from piezo_sym.run.dataset import coordinates
 from piezo_sym.run.discrete import METHOD, Runs, adaptive, fixed
 from piezo_sym.run.engine.engine import engine_of
@@ -83,7 +83,7 @@ def run_box(plan: Plan, module: GeneratedModule, box: Box, watch: Watch) -> Resu
     EngineError : there is no compiler here.
     UsageError : the reduction gives something of no use.
     """
-    engine = engine_of(module) if plan.method == METHOD else None
+    engine = engine_for(plan, module)
     points = plan.points(box)
     parts: list[Quantities] = []
     coords: dict[str, Quantity] = {}
@@ -95,6 +95,11 @@ def run_box(plan: Plan, module: GeneratedModule, box: Box, watch: Watch) -> Resu
         coords |= {name: one for name, one in made.items() if name not in plan.largest_banks}
         errors += group.errors
     return Result(box, tuple(errors), joined(parts, points, plan), coords)
+
+
+def engine_for(plan: Plan, module: GeneratedModule) -> Engine | None:
+    """Return the engine that a plan's runs go through, or None if they go by SciPy."""
+    return replace(engine_of(module), wide=plan.side_by_side) if plan.method == METHOD else None
 
 
 def together(plan: Plan, points: NDArray[np.intp]) -> Iterator[slice]:
@@ -184,7 +189,7 @@ def march(plan: Plan, systems: list[Any], engine: Engine, x: FloatArray, watch: 
 
     Runs whose inputs leave the domain stop there, as those of `simulate` do.
     """
-    outside = [input_error(*one, plan.samples) for one in zip(systems, x, strict=True)]
+    outside = input_errors(systems, x, plan.samples)
     runs = stepped(plan, systems, engine, x, watch)
     errors, batch = [old or new for old, new in zip(outside, runs.errors, strict=True)], runs.batch
     for k in (k for k, error in enumerate(runs.errors) if error and not outside[k]):
@@ -194,6 +199,15 @@ def march(plan: Plan, systems: list[Any], engine: Engine, x: FloatArray, watch: 
         for name in ("states", "fine", "sums"):
             getattr(batch, name)[k] = getattr(alone.batch, name)[0]
     return replace(runs, errors=errors)
+
+
+def input_errors(
+    systems: list[System], x: FloatArray, samples: FloatArray
+) -> list[RunError | None]:
+    """Return the errors of inputs that leave the domain after t = 0, where starts are checked."""
+    if not inputs_move(systems[0]):
+        return [None] * len(systems)
+    return [input_error(*one, samples) for one in zip(systems, x, strict=True)]
 
 
 def input_error(system: System, x: FloatArray, samples: FloatArray) -> RunError | None:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray
 
-from piezo_sym import ramp, simulate, sine, sweep
+from piezo_sym import ramp, simulate, sine, step, sweep
 from piezo_sym.errors import FileError, RunError, UsageError
 from piezo_sym.sweeps import SweepWarning, run
 from piezo_sym.sweeps.targets import Target, find
@@ -126,6 +126,20 @@ def test_a_start_outside_the_domain_fails_its_runs_alone():
     for name in set(found.data_vars) - {"error", "V_in", "F_ext", "T_e"}:
         assert np.isnan(found[name].sel(d=-1.0)).all(), name
         assert np.isfinite(found[name].sel(d=400.0)).all(), name
+
+
+OUTSIDE = [298.15, sine(2.0, 100.0, 298.15), step(0.005, 310.0, 298.15)]
+
+
+@pytest.mark.parametrize("outside", OUTSIDE, ids=["constant", "sine", "step"])
+def test_an_input_leaves_the_domain_of_one_run_and_not_of_another(outside):
+    options = {"inputs": {"T_e": outside}, "duration": 0.01, "times": 3}
+    options["initial"] = {"S": 0.5}  # warm enough to start for every T_0
+    with pytest.warns(SweepWarning, match="1 of 2 runs failed"):
+        found = sweep("piezo_stack", over={"T_0": [290.0, 299.0]}, **options)
+    assert found.error.values[0] == ""
+    assert found.error.values[1] == reason(**options, parameters={"T_0": 299.0})
+    assert "'T_e > T_0'" in found.error.values[1]
 
 
 @pytest.mark.parametrize("reduce", [None, "last", "mean", lambda run: run[["q"]]])

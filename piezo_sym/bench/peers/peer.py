@@ -6,8 +6,8 @@ know of a problem's expressions.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeAlias, final
 
 import sympy as sp
@@ -15,6 +15,7 @@ import sympy as sp
 from piezo_sym.bench.problem import TIME
 
 if TYPE_CHECKING:
+    from piezo_sym.bench.family import Family
     from piezo_sym.bench.problem import Problem
     from piezo_sym.run.checks import FloatArray
 
@@ -37,6 +38,8 @@ class Peer:
     solver : problem -> function from a tolerance to the state x (n,) at the end of the run.
     rates : problem -> function from states x (n, columns) to their rates at `INSTANT`, or nothing.
     jumps : whether laws that jump on purpose can be run.
+    many : names of ways to run a family, and each as a function from a tolerance to the states
+        (members, n) at the end, compiled once for all members.
     """
 
     name: str
@@ -44,6 +47,7 @@ class Peer:
     solver: Callable[[Problem], Solver]
     rates: Callable[[Problem], Rates] | None = None
     jumps: bool = True
+    many: Mapping[str, Callable[[Family], Solver]] = field(default_factory=dict)
 
 
 def at_instant(problem: Problem) -> tuple[sp.Expr, ...]:

@@ -116,17 +116,22 @@ def _sources(module: GeneratedModule) -> Sources:
 class Engine:
     """The functions of a generated module, compiled; arguments and results as in the module.
 
-    x is (n, *batch); u is (inputs,) or (inputs, *batch); p is the module's `Parameters`.
+    x is (n, *batch); u is (inputs,) or (inputs, *batch); p is the module's `Parameters`.  `wide`
+    says whether members of a run may go side by side.
     """
 
     module: GeneratedModule
     library: ctypes.CDLL
     structure: Callable[[Any], Structure]
     sources: Sources
+    wide: bool = True
 
     def side_by_side(self) -> ctypes.CDLL | None:
-        """Return the library that also runs members side by side, if this compiler can make one."""
-        return self._with_vectors("members")
+        """Return the library that also runs members side by side, if this compiler can make one.
+
+        None also if `wide` says that members are to go one by one.
+        """
+        return self._with_vectors("members") if self.wide else None
 
     def _with_vectors(self, made: Made) -> ctypes.CDLL | None:
         sources = replace(self.sources, made=made)
