@@ -131,7 +131,7 @@ def simulate(
     refuse_step(step, named, rtol)
     named = start_method(dissipative_start, named)
     end = positive(duration, "simulate.duration")
-    samples = read_every(every, times, step, end) if every else read_times(times, end)
+    samples = read_every(every, times, step, end) if every is not None else read_times(times, end)
     values = read_parameters(module, parameters)
     system = System(module, values, read_inputs(module, inputs, end))
     x = read_initial(module, values, system.inputs.segments[0].at(0.0), initial)

@@ -112,7 +112,8 @@ class Stepper:
 
         Parameters
         ----------
-        u : one number an input, in the spec's order, SI units.
+        u : one number an input, in the spec's order, SI units. Conditions of the domain on inputs
+            alone, such as T_e > T_0, are the caller's to keep: they are looked at when it is made.
 
         Returns
         -------
@@ -125,6 +126,8 @@ class Stepper:
         RunError : no step stays in the domain; the state is that before the step.
         """
         try:
+            if len(u) != len(self._names):
+                raise TypeError
             self._u[:] = u
         except (ValueError, TypeError) as error:
             expected = f"one number each for {', '.join(self._names)}"

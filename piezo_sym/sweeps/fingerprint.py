@@ -1,7 +1,7 @@
 """The fingerprint of a sweep: two sweeps have one exactly if they ask for the same runs.
 
 Input: a `Plan` and the hash of its spec.  Output: SHA-256 as text.  Functions count by name, code
-and what they hold, so that one that was edited is another.
+and what they hold, are bound to or find by name, so that one that was edited is another.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
-from types import CodeType
+from types import CodeType, ModuleType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,40 +31,57 @@ def fingerprint(plan: Plan, spec_sha256: str) -> str:
     return found.hexdigest()
 
 
-def parts(value: object) -> Iterator[bytes]:
-    """Yield what a value consists of."""
+def parts(value: object, met: dict[int, object] | None = None) -> Iterator[bytes]:
+    """Yield what a value consists of; an object that was met before counts no more."""
+    met = {} if met is None else met
     yield type(value).__name__.encode()
     if isinstance(value, float | int | str | bytes | None):
         yield (value.hex() if isinstance(value, float) else repr(value)).encode()
-    elif isinstance(value, np.ndarray | np.generic):
+        return
+    if isinstance(value, np.ndarray | np.generic):
         array = np.asarray(value)
         yield f"{array.dtype.str}{array.shape}".encode()
         yield array.tobytes() if array.dtype.kind != "O" else repr(array.tolist()).encode()
-    elif isinstance(value, Mapping):
-        for key in sorted(value, key=repr):
-            yield from parts((key, value[key]))
-    elif isinstance(value, tuple | list | frozenset):
-        for item in sorted(value, key=repr) if isinstance(value, frozenset) else value:
-            yield from parts(item)
-    elif is_dataclass(value):
-        for field in fields(value):
-            yield from parts(getattr(value, field.name))
-    elif isinstance(value, CodeType):
-        yield from parts((value.co_code, value.co_names, value.co_consts))
-    else:
-        yield from of_callable(value)
-
-
-def of_callable(value: object) -> Iterator[bytes]:
-    """Yield what a function, or another object of a user's, consists of."""
-    yield str(getattr(value, "__qualname__", "")).encode()
-    code = getattr(value, "__code__", None)
-    if code is None:
-        held = getattr(value, "__dict__", None) or {}
-        more = [getattr(value, name, None) for name in ("func", "args", "keywords")]
-        yield from parts((dict(held), *more))
         return
-    yield from parts(code)
-    yield from parts((getattr(value, "__defaults__", None), getattr(value, "__kwdefaults__", None)))
-    for cell in getattr(value, "__closure__", None) or ():
-        yield from parts(cell.cell_contents)
+    if id(value) in met:
+        return
+    met[id(value)] = value  # kept, so that no other object gets its id meanwhile
+    for part in held(value):
+        yield from parts(part, met)
+
+
+def held(value: object) -> Iterator[object]:
+    """Yield what a container, a record, or an object of a user's holds."""
+    if isinstance(value, Mapping):
+        for key in sorted(value, key=repr):
+            yield from (key, value[key])
+    elif isinstance(value, frozenset):
+        yield from sorted(value, key=repr)
+    elif isinstance(value, tuple | list):
+        yield from value
+    elif is_dataclass(value):
+        yield from (getattr(value, field.name) for field in fields(value))
+    elif isinstance(value, CodeType):
+        yield from (value.co_code, value.co_names, value.co_consts)
+    elif not isinstance(value, ModuleType):
+        yield from held_by_callable(value)
+
+
+def held_by_callable(value: object) -> Iterator[object]:
+    """Yield what a function, or another object of a user's, consists of.
+
+    Of a function: its code, what it is bound to, closes over and finds by name.
+    """
+    yield str(getattr(value, "__qualname__", ""))
+    code = getattr(value, "__code__", None)
+    if not isinstance(code, CodeType):
+        yield dict(getattr(value, "__dict__", None) or {})
+        yield from (getattr(value, name, None) for name in ("func", "args", "keywords"))
+        return
+    yield from (code, getattr(value, "__self__", None))
+    yield from (getattr(value, "__defaults__", None), getattr(value, "__kwdefaults__", None))
+    yield from (cell.cell_contents for cell in getattr(value, "__closure__", None) or ())
+    known = getattr(value, "__globals__", {})
+    for one in (known[name] for name in code.co_names if name in known):
+        own = getattr(one, "__module__", None) in (None, getattr(value, "__module__", None))
+        yield one if own else f"{one.__module__}.{getattr(one, '__qualname__', '')}"

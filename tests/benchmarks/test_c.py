@@ -18,7 +18,7 @@ HERE = Path(__file__).parent
 FOLDER = HERE.parents[1] / "generated" / "piezo_stack"
 MODULE = load_module(FOLDER / "piezo_stack.py")
 SIZES = (2, 64, 1024)
-MOST = 1.25
+MOST = 1.8  # far above what is measured alone: the suite runs on all cores at once
 LANE_CALLS = 4_000_000  # lanes computed in one measurement
 
 

@@ -111,8 +111,11 @@ def crowded(words):
     return Model(**data)
 
 
-@pytest.mark.parametrize("compiler", COMPILERS)
-@pytest.mark.parametrize("standard", ["c99", "gnu99", "c11", "gnu17"])
+@pytest.mark.parametrize(
+    ("compiler", "standard"),
+    [(name, "c99") for name in COMPILERS]
+    + [(next(iter(COMPILERS)), standard) for standard in ("gnu99", "gnu17")],
+)
 def test_words_of_c_and_of_its_headers_are_names_like_others(compiler, standard, tmp_path):
     words = list(symbols())
     assert {"I", "M_PI", "EOF", "INFINITY", "NAN", "complex", "template", "errno", "pow"} <= {

@@ -77,7 +77,10 @@ def test_the_refutation_is_what_verify_says(folder, capsys):
 
 def test_set_up_is_one_line_each():
     lines = [line for block in blocks("sh") for line in block.splitlines() if ".venv &&" in line]
-    assert [line.split()[-1] for line in lines] == ["reproduce", "pytest"]
+    assert [line.rsplit(" && ", 1)[1].split(" ")[0] for line in lines] == [
+        ".venv/bin/piezo-sym",
+        ".venv/bin/pytest",
+    ]
 
 
 def test_the_whole_is_under_two_screens():

@@ -47,7 +47,7 @@ def test_parameters_and_starts_are_those_given():
     assert actuator.x[0] == 1e-3
 
 
-@pytest.mark.parametrize("u", [[0.0, 50.0], [0.0, 50.0, 298.15, 1.0], "abc"])
+@pytest.mark.parametrize("u", [[0.0, 50.0], [0.0, 50.0, 298.15, 1.0], "abc", 50.0, [50.0]])
 def test_wrong_inputs_are_refused(u):
     with pytest.raises(UsageError, match="one number each for F_ext, V_in, T_e"):
         Stepper("piezo_stack", step=H).step(u)

@@ -196,3 +196,35 @@ def test_nothing_is_left_of_a_store_that_could_not_be_made(tmp_path, monkeypatch
     with pytest.raises(FileError, match="cannot be written: No space left on device"):
         sweep("piezo_stack", **BASE, store=tmp_path / "runs.zarr")
     assert list(tmp_path.iterdir()) == []
+
+
+class Amplitude:
+    """What a method is bound to."""
+
+    def __init__(self, size):
+        self.size = size
+
+    def wave(self, t):
+        return self.size * t
+
+
+FACTOR = 1.0
+
+
+def scaled(t):
+    return FACTOR * t
+
+
+def test_methods_of_other_objects_are_other_functions(monkeypatch):
+    assert list(parts(Amplitude(1.0).wave)) == list(parts(Amplitude(1.0).wave))
+    assert list(parts(Amplitude(1.0).wave)) != list(parts(Amplitude(2.0).wave))
+    before = list(parts(scaled))
+    monkeypatch.setitem(globals(), "FACTOR", 2.0)
+    assert list(parts(scaled)) != before
+
+
+def test_a_function_may_call_itself():
+    def rest(t):
+        return rest(t - 1) if t > 1 else 0.0
+
+    assert list(parts(rest)) == list(parts(rest))
