@@ -1,0 +1,119 @@
+"""Runs keep no memory: a hundred thousand calls in C, and hundreds of whole runs, leave none.
+
+Memory is what the operating system counts; sixteen bytes a call would be seen.
+"""
+
+import ctypes
+import gc
+import math
+import os
+import sys
+from pathlib import Path
+from resource import RUSAGE_SELF, getrusage
+
+import pytest
+
+from piezo_sym import simulate, sine
+from piezo_sym.modules import module_of
+from piezo_sym.run.engine.engine import engine_of
+from piezo_sym.run.stepper import Stepper
+
+CALLS, ROUNDS = 100_000, 4
+#: What a round may take for good [bytes]: less than 4 a call of a run in C.
+MOST = 400_000
+STATM = Path("/proc/self/statm")
+U = (0.0, 50.0, 298.15)
+
+
+def memory():
+    """Return the memory in use [bytes]; where only its peak is known, that."""
+    gc.collect()
+    if STATM.exists():
+        return int(STATM.read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    return getrusage(RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
+
+
+def grown(call, times):
+    """Return by how much memory grows when something is done so many times: the least of rounds.
+
+    A heap grows in steps until it has found its size; what leaks, leaks in every round.
+    """
+    least = math.inf
+    for _ in range(ROUNDS):
+        before = memory()
+        for _ in range(times):
+            call()
+        least = min(least, memory() - before)
+    return least
+
+
+class Repeated:
+    """A function of a library that is called once, and then as often again as it is told."""
+
+    def __init__(self, function, times, counted):
+        vars(self).update(function=function, times=times, counted=counted)
+
+    def __getattr__(self, name):
+        return getattr(self.function, name)
+
+    def __setattr__(self, name, value):
+        setattr(self.function, name, value)
+
+    def __call__(self, *args):
+        self.function(*args)
+        member = args[0][0]
+        done = member.done
+
+        def again():
+            member.done = 0
+            self.function(*args)
+
+        self.counted.append(grown(again, self.times))
+        member.done = done
+
+
+def test_a_leak_of_sixteen_bytes_is_seen():
+    allocate = ctypes.CDLL(None).malloc
+    allocate.restype, allocate.argtypes = ctypes.c_void_p, (ctypes.c_size_t,)
+    kept = []
+    assert grown(lambda: kept.append(allocate(16)), CALLS) > 2 * MOST
+
+
+@pytest.mark.parametrize(
+    ("name", "times", "accuracy"),
+    [("march", CALLS, {"step": 1e-6}), ("adapt", CALLS // 50, {"rtol": 1e-3})],
+)
+def test_runs_in_c(monkeypatch, name, times, accuracy):
+    """The call that a run makes is made again, on the same arrays: each goes on from the last."""
+    library, counted = engine_of(module_of("piezo_stack")).library, []
+    function = getattr(library, f"piezo_stack_{name}")
+    monkeypatch.setattr(library, f"piezo_stack_{name}", Repeated(function, times, counted))
+    options = {"duration": 2e-6, "times": 2, "method": "discrete_gradient"}
+    simulate("piezo_stack", inputs={"V_in": 50.0}, **options, **accuracy)
+    assert counted
+    assert max(counted) < MOST
+
+
+def test_steps():
+    actuator = Stepper(module_of("piezo_stack"), step=1e-6)
+    assert grown(lambda: actuator.step(U), CALLS) < MOST
+
+
+def test_steppers():
+    """Each has parameters of its own, so that nothing that is remembered can be taken."""
+    values = iter(range(10**6))
+
+    def made():
+        step = 1e-6 * (1 + next(values) * 1e-6)
+        parameters = {"L": [1e-3, 2e-3 * (1 + step)], "hysteron_count": 2}
+        Stepper(module_of("piezo_stack"), step=step, parameters=parameters).step(U)
+
+    assert grown(made, 1000) < MOST
+
+
+def test_whole_runs():
+    def run():
+        options = {"method": "discrete_gradient", "duration": 1e-4, "times": 5}
+        simulate("piezo_stack", inputs={"V_in": sine(100, 100)}, rtol=1e-5, **options)
+
+    assert grown(run, 100) < MOST
