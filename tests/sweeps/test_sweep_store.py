@@ -101,7 +101,8 @@ def test_what_is_done_does_not_depend_on_who_does_it(tmp_path, monkeypatch):
     ran = count_boxes(monkeypatch)  # the boxes of the store, not those of three threads
     found = sweep("piezo_stack", **{**BASE, "threads": 3}, store=path)
     assert sorted(ran) == [1, 2, 3]
-    xarray.testing.assert_identical(plain(found), plain(sweep("piezo_stack", **BASE)))
+    alone = sweep("piezo_stack", **BASE)  # in other boxes, whose last bits differ
+    xarray.testing.assert_allclose(plain(found), plain(alone), rtol=1e-9, atol=1e-11)
 
 
 OTHERS = [
