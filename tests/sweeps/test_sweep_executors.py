@@ -26,6 +26,11 @@ OVER = {"V_in": {50.0: sine(100, 50), 100.0: sine(100, 100)}, "L": np.linspace(1
 BASE = {"over": OVER, "duration": 2e-3, "times": 5}
 
 
+def assert_same(found, wanted):
+    """Check that sweeps agree: cut into other boxes, their last bits may differ."""
+    xarray.testing.assert_allclose(found, wanted, rtol=1e-9, atol=1e-11)
+
+
 @pytest.fixture(scope="module")
 def alone():
     return sweep("piezo_stack", **BASE, threads=1)
@@ -40,25 +45,25 @@ def processes():
 
 def test_any_number_of_threads_gives_the_same(alone):
     for threads in (2, 5):
-        xarray.testing.assert_identical(sweep("piezo_stack", **BASE, threads=threads), alone)
+        assert_same(sweep("piezo_stack", **BASE, threads=threads), alone)
 
 
 def test_a_thread_pool_of_ones_own(alone):
     with ThreadPoolExecutor(2) as pool:
         found = sweep("piezo_stack", **BASE, executor=pool)
-        xarray.testing.assert_identical(found, alone)
+        assert_same(found, alone)
         assert pool.submit(int).result() == 0  # it is still the user's
 
 
 def test_processes_give_the_same(alone, processes):
-    xarray.testing.assert_identical(sweep("piezo_stack", **BASE, executor=processes), alone)
+    assert_same(sweep("piezo_stack", **BASE, executor=processes), alone)
 
 
 def test_a_model_in_a_process_need_not_be_a_file(processes):
     model = load(SPECS / "a2_oscillator.toml")
     options = {"over": {"d": [0.2, 0.4]}, "duration": 1.0, "times": 3}
     found = sweep(model, **options, executor=processes)
-    xarray.testing.assert_identical(found, sweep(model, **options))
+    assert_same(found, sweep(model, **options))
 
 
 def test_functions_go_to_processes_by_value(processes):
@@ -70,7 +75,7 @@ def test_functions_go_to_processes_by_value(processes):
         "duration": 2e-3,
     }
     found = sweep("piezo_stack", **options, executor=processes)
-    xarray.testing.assert_identical(found, sweep("piezo_stack", **options))
+    assert_same(found, sweep("piezo_stack", **options))
 
 
 def test_a_process_sees_what_a_thread_sees(processes):
@@ -82,7 +87,7 @@ def test_a_process_sees_what_a_thread_sees(processes):
         "duration": 1e-3,
     }
     found = sweep("piezo_stack", **options, executor=processes)
-    xarray.testing.assert_identical(found, sweep("piezo_stack", **options))
+    assert_same(found, sweep("piezo_stack", **options))
     assert found.one.values[:, 0, 0].tolist() == [0.0, 1.0]
 
 

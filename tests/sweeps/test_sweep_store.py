@@ -16,6 +16,11 @@ BASE = {"over": OVER, "duration": 1e-3, "times": 3, "threads": 1}
 BOXES = 4  # 70 runs that go together are cut in two, for each of two inputs
 
 
+def assert_same(found, wanted):
+    """Check that sweeps agree: cut into other boxes, their last bits may differ."""
+    xarray.testing.assert_allclose(found, wanted, rtol=1e-9, atol=1e-11)
+
+
 class Interrupted(Exception):
     pass
 
@@ -43,7 +48,7 @@ REDUCTIONS = [None, "last", "mean", thirds]
 def test_a_store_holds_what_memory_would(tmp_path, reduce):
     found = sweep("piezo_stack", **BASE, reduce=reduce, store=tmp_path / "runs.zarr")
     memory = sweep("piezo_stack", **BASE, reduce=reduce)
-    xarray.testing.assert_identical(plain(found), plain(memory))
+    assert_same(plain(found), plain(memory))
     for name in memory.variables:
         assert {k: found[name].attrs[k] for k in memory[name].attrs} == memory[name].attrs, name
     assert memory.attrs.items() <= found.attrs.items()
@@ -60,9 +65,7 @@ def test_a_sweep_goes_on_where_it_was_stopped(tmp_path, reduce, monkeypatch):
     ran = count_boxes(monkeypatch)
     found = sweep("piezo_stack", **options)
     assert sorted(ran) == [2, 3]
-    xarray.testing.assert_identical(
-        plain(found), plain(sweep("piezo_stack", **BASE, reduce=reduce))
-    )
+    assert_same(plain(found), plain(sweep("piezo_stack", **BASE, reduce=reduce)))
     ran.clear()
     sweep("piezo_stack", **options)
     assert ran == []
