@@ -141,7 +141,7 @@ def looks(system: System, segment: Segment, samples: FloatArray, most: float) ->
 
 
 def extrapolated(system: System) -> str:
-    """Return which quantities of a run with a tolerance are extrapolated from its two runs."""
+    """Return which quantities of a run with a tolerance are extrapolated from its three runs."""
     states = ", ".join(record.name for record in system.module.STATES)
     return f"{states}; and y_*, T_*, energy, entropy, which are computed from them"
 
