@@ -46,6 +46,7 @@ RTOL = 1e-6
 STEPS, MOST_STEPS = 256, 1 << 16  # a period
 SAMPLES = 400  # of the orbit returned
 ORBIT_RTOL = 1e-8
+OPEN, MOST_OPEN = 100.0, 0.1  # times the accuracy, of the sizes: what repeats no better is none
 HOTTEST = 20.0  # times the temperature at the start: how far is looked, if nothing is said
 MARGIN = 1e-6  # of a multiplier over 1: the accuracy of its difference quotient
 MOST_MOVES = 12
@@ -99,6 +100,7 @@ def periodic_steady_state(
     ----------
     module : a generated module; `piezo_sym.periodic_steady_state` also takes a model, name, path.
     inputs : as for `simulate`; they repeat with `frequency` [Hz], at t = 0 as at 1/frequency.
+        Of several inputs, it is the greatest frequency that they have in common.
     parameters, initial : as for `simulate`.
     temperatures : where to look [K]: least and greatest, of the body at t = 0; when left out, from
         the module's own start (lower if the body cools there) to 20 times that.
@@ -106,7 +108,8 @@ def periodic_steady_state(
 
     Raises
     ------
-    UsageError : an argument is wrong, an input does not repeat, or there is not one body.
+    UsageError : an argument is wrong, an input does not repeat, or moves too fast for the period,
+        or there is not one body.
     RunError : no steady state lies in the range; the message says which way the body drifts.
     """
     strobe, f = _read(module, inputs, frequency, parameters, initial)
@@ -227,7 +230,19 @@ def _state(strobe: Stroboscope, frequency: float, zero: Settled, rtol: float) ->
             what = f"rtol {rtol:g} asks for more than {MOST_STEPS} steps a period"
             raise RunError(what, f"model '{strobe.module.NAME}'", remedy="give a larger rtol")
         x = closed(strobe, frequency, x, slope)
-    return _described(strobe, frequency, x, slope)
+    found = _described(strobe, frequency, x, slope)
+    _refuse_open(strobe, found, rtol)
+    return found
+
+
+def _refuse_open(strobe: Stroboscope, found: SteadyState, rtol: float) -> None:
+    """Raise `RunError` if a period with steps that adapt does not repeat: the fixed ones misled."""
+    allowed = min(MOST_OPEN, OPEN * max(rtol, ORBIT_RTOL))
+    if found.residual > allowed * max(1.0, found.multiplier):
+        what = f"the state found at {found.temperature:.6g} K does not repeat: it is off by "
+        what += f"{found.residual:.1g} of its size after a period"
+        where = f"model '{strobe.module.NAME}' at {found.frequency:g} Hz"
+        raise RunError(what, where, remedy="simulate until it settles")
 
 
 def _moved(strobe: Stroboscope, frequency: float, x: FloatArray, before: FloatArray) -> float:
