@@ -253,8 +253,9 @@ def test_a_long_run_ends_there():
         assert float(run[name][-1]) == pytest.approx(found.initial[name], abs=1e-4 * size)
 
 
-def test_another_solver_finds_the_same_orbit(at_50):
-    state = at_50[0]
+@pytest.mark.parametrize("which", [0, 2], ids=["cool", "hot"])
+def test_another_solver_finds_the_same_orbit(at_50, which):
+    state = at_50[which]
     drive = {"inputs": {"V_in": sine(100, 50)}, "initial": state.initial, "duration": 0.02}
     run = simulate("piezo_stack", **drive, times=[0.02], rtol=1e-9, method="LSODA")
     for name in ("q", "p", "Q_C", "phi", "S"):
