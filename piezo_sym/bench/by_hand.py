@@ -22,7 +22,7 @@ from piezo_sym.bench.contest import Contestant
 from piezo_sym.bench.ours import inputs_at_instant
 from piezo_sym.errors import EngineError
 from piezo_sym.run.engine.compiler import FLAGS, build, compilers
-from piezo_sym.run.engine.structure import structure_of
+from piezo_sym.run.engine.structure import Layout
 from piezo_sym.spec.load import load
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ class Hand:
     ) -> tuple[Callable[[Any], object], FloatArray]:
         """Return a call of a C function with a last argument, and where its rates go."""
         generated: Any = self.problem.module
-        structure = structure_of(generated)(generated.Parameters(hysteron_count=lanes))
+        structure = Layout(generated)(generated.Parameters(hysteron_count=lanes))
         u, out = inputs_at_instant(self.problem), np.empty_like(x)
 
         def call(last: Any) -> object:

@@ -1,7 +1,7 @@
 """Runs of the discrete gradient in C: both balances to round-off, order two, extrapolated to six.
 
 Input: systems that differ in parameters, their engine, their states at t = 0 and the sample times.
-Output: `Runs`.  With a step, one run of each.  With a tolerance, three runs side by side on one mesh,
+Output: `Runs`.  With a step, one run of each.  With a tolerance, three runs side by side on a mesh,
 its halves and its quarters, each with a state of its own, so that its balances stay exact.  States
 are extrapolated from the three; ledger and balances are those of the finest run.  If asked to, the
 first step after a jump of the inputs is made of four dissipative quarters, in each of the runs.
@@ -119,8 +119,8 @@ def adaptive(
     """Return runs on a mesh that holds the error of each interval below rtol times a scale.
 
     A coarse run gives the scale of each state, its largest magnitude.  The three then go from
-    interval to interval; how finely one is divided is decided by a trial from the finest state, with
-    a quarter of its steps.  Parameters as for `fixed`.
+    interval to interval; how finely one is divided is decided by a trial from the finest state,
+    with a quarter of its steps.  Parameters as for `fixed`.
     """
     first = systems[0]
     longest = min(first.inputs.max_step, times[-1] / FEWEST_INTERVALS)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, final
 
 from piezo_sym.errors import PiezoError, UsageError, listing, quote
 from piezo_sym.run.checks import positive
+from piezo_sym.run.discrete import METHOD
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.method import checked_method, way_of
 from piezo_sym.run.module import lanes
@@ -21,6 +22,7 @@ from piezo_sym.run.simulate import read_rtol, refuse_step
 from piezo_sym.sweeps.axes import read_axes
 from piezo_sym.sweeps.plan import (
     ENOUGH_BOXES,
+    MOST_BY_SCIPY,
     MOST_NUMBERS,
     MOST_REDUCED,
     MOST_TOGETHER,
@@ -79,7 +81,8 @@ def read_plan(module: GeneratedModule, asked: Asked) -> Plan:
         method = way_of(module, named, asked.step).method
         step = None if asked.step is None else float(asked.step)
         numbers = samples.size * row_numbers(module, base, axes)
-        together = max(1, min(MOST_TOGETHER, MOST_NUMBERS // numbers))
+        many = MOST_TOGETHER if method == METHOD else MOST_BY_SCIPY
+        together = max(1, min(many, MOST_NUMBERS // numbers))
         most = together if asked.reduce is None else box_of_reduced(axes, together)
         kept = (method, rtol, step, asked.reduce, asked.reduce_by == "run", largest_banks(axes))
         return Plan(axes, inputs.signals, end, *given, samples, *kept, together, most)  # type: ignore[arg-type]

@@ -11,9 +11,9 @@ from piezo_sym.errors import FileError, UsageError
 from piezo_sym.sweeps import SweepWarning
 from piezo_sym.sweeps.fingerprint import parts
 
-OVER = {"L": np.linspace(1e-3, 2e-3, 70), "V_in": {50.0: sine(100, 50), 100.0: sine(100, 100)}}
+OVER = {"L": np.linspace(1e-3, 2e-3, 140), "V_in": {50.0: sine(100, 50), 100.0: sine(100, 100)}}
 BASE = {"over": OVER, "duration": 1e-3, "times": 3, "threads": 1}
-BOXES = 4  # 70 runs that go together are cut in two, for each of two inputs
+BOXES = 4  # 140 runs that go together are cut in two, for each of two inputs
 
 
 def assert_same(found, wanted):
@@ -58,10 +58,10 @@ def test_a_store_holds_what_memory_would(tmp_path, reduce):
 def test_a_sweep_goes_on_where_it_was_stopped(tmp_path, reduce, monkeypatch):
     options = {**BASE, "reduce": reduce, "store": tmp_path / "runs.zarr"}
     with pytest.raises(Interrupted):
-        sweep("piezo_stack", **options, progress=stop_at(70))
+        sweep("piezo_stack", **options, progress=stop_at(140))
     with xarray.open_zarr(options["store"], chunks=None, consolidated=False) as half:
-        assert (half.error.values == "").sum() == 70
-        assert (half.error.values == "not run").sum() == 70
+        assert (half.error.values == "").sum() == 140
+        assert (half.error.values == "not run").sum() == 140
     ran = count_boxes(monkeypatch)
     found = sweep("piezo_stack", **options)
     assert sorted(ran) == [2, 3]
@@ -129,7 +129,7 @@ OTHERS = [
 def test_the_store_of_another_sweep_is_refused_in_one_line(tmp_path, change, monkeypatch):
     path = tmp_path / "runs.zarr"
     monkeypatch.setattr(sys.modules["piezo_sym.sweeps.sweep"], "results", nothing)
-    with pytest.warns(SweepWarning, match="140 of 140 runs failed.*not run"):
+    with pytest.warns(SweepWarning, match="280 of 280 runs failed.*not run"):
         sweep("piezo_stack", **BASE, store=path)
     with pytest.raises(FileError) as raised:
         sweep("piezo_stack", **{**BASE, **change}, store=path)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ctypes
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -23,7 +23,7 @@ from piezo_sym.run.engine.driver import DRIVEN, PLAIN, SCALARS
 from piezo_sym.run.engine.library import Made, Sources, library
 from piezo_sym.run.engine.march import at
 from piezo_sym.run.engine.rates import WIDE
-from piezo_sym.run.engine.structure import Structure, structure_of
+from piezo_sym.run.engine.structure import Layout
 from piezo_sym.run.module import lanes
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ def engine_of(module: GeneratedModule) -> Engine:
 
 @lru_cache(maxsize=64)
 def _engine(module: GeneratedModule, sources: Sources) -> Engine:
-    return Engine(module, _loaded(sources), structure_of(module), sources)
+    return Engine(module, _loaded(sources), Layout(module), sources)
 
 
 @lru_cache(maxsize=64)
@@ -122,7 +122,7 @@ class Engine:
 
     module: GeneratedModule
     library: ctypes.CDLL
-    structure: Callable[[Any], Structure]
+    structure: Layout
     sources: Sources
     wide: bool = True
 

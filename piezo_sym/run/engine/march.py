@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any, Literal, final
 
 import numpy as np
 
+from piezo_sym.run.engine.structure import addresses, record_of
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -27,6 +29,7 @@ MOST_STATES = 32
 #: and, with a tolerance, on the paths that only tell or mend an error.
 EXACT, SLACK = 1e-6, 1e-3 / 1e-9
 Way = Literal["survey", "march", "adapt"]
+PATHS = ("fine", "middle", "coarse", "trial")
 MODES: dict[Way, int] = {"survey": 0, "march": 1, "adapt": 2}
 POINTER, LONG, DOUBLE = ctypes.c_void_p, ctypes.c_long, ctypes.c_double
 
@@ -58,7 +61,7 @@ class Member(ctypes.Structure):
 
     _fields_ = [
         ("model", Model),
-        *((name, Path) for name in ("fine", "middle", "coarse", "trial")),
+        *((name, Path) for name in PATHS),
         *((name, POINTER) for name in ("kept", "tolerance", "out_x", "out_fine", "out_sums")),
         *((name, LONG) for name in ("level", "done", "steps", "failed")),
     ]
@@ -123,17 +126,19 @@ class Batch:
         rows = self.rows = Rows(engine, parameters[0], starts=starts)
         size, n, ledger = len(parameters), rows.n, rows.ledger
         self._engine, self._library, self._name = engine, engine.library, engine.module.NAME
-        self._structures = [engine.structure(p) for p in parameters]
+        self._structures = engine.structure.many(parameters)
         self.x, self.scale = x.copy(), np.abs(x)
         self.states, self.fine = np.full((2, size, samples, n), np.nan)
         self.sums = np.full((size, samples, ledger), np.nan)
         self._others = np.stack([x, x, x])  # of the middle, the coarse and the trial path
-        first = self._model(0, None)
-        self._space = np.zeros((size, self._function("room")(ctypes.byref(first))))
-        self._changes = np.zeros((size, 4, 2, max(n, 1)))
+        self.members = (Member * size)()
+        self._records: Any = np.frombuffer(memoryview(self.members), record_of(Member))
+        self._records["model"] = self._models()
+        self._space = np.zeros((size, self._function("room")(ctypes.byref(self.members[0].model))))
+        self._changes = np.zeros((4, 2, size, max(n, 1)))
         self.ledgers = np.zeros((size, 2, ledger))
         self._kept = np.zeros((size, n + 2 * ledger))
-        self.members = (Member * size)(*map(self._member, range(size)))
+        self._connect()
 
     def __len__(self) -> int:
         """Return the number of members."""
@@ -142,7 +147,8 @@ class Batch:
     @property
     def levels(self) -> list[int]:
         """How finely each member divides its next interval: `steps_at` says how often."""
-        return [member.level for member in self.members if not member.failed]
+        found: list[int] = self._records["level"][self._records["failed"] == 0].tolist()
+        return found
 
     def run(
         self,
@@ -171,8 +177,7 @@ class Batch:
         highest = lowest + len(u) - 1
         block = Intervals(lengths.size, lowest, highest, at(lengths), None, at(samples))
         block.u, block.first = (ctypes.cast(p, POINTER) if p else None for p in held)
-        for k, member in enumerate(self.members):
-            member.done = done[k] if done else 0
+        self._records["done"] = done if done else 0
         arguments = (self.members, LONG(len(self.members)), ctypes.byref(block))
         vectors = self._vectors_for(name)
         if vectors is None:
@@ -180,20 +185,20 @@ class Batch:
         else:
             function, space = vectors
             function(*arguments, ctypes.c_int(MODES[name]), at(space))
-        return [member.done for member in self.members]
+        reached: list[int] = self._records["done"].tolist()
+        return reached
 
     def allow(self, rtol: float) -> None:
         """Let paths without a ledger leave a small share of rtol in each step."""
-        for member in self.members:
-            member.model.slack = max(EXACT, SLACK * rtol)
+        self._records["model"]["slack"] = max(EXACT, SLACK * rtol)
 
     def rewind(self) -> None:
         """Forget a survey, but for its `scale`."""
         self._others[2] = self.x
-        for member in self.members:
-            member.trial.h = member.trial.h_prior = 0.0
-            member.steps = member.failed = 0
-            member.model.iterations = member.model.halvings = 0
+        records = self._records
+        records["trial"]["h"] = records["trial"]["h_prior"] = 0.0
+        records["steps"] = records["failed"] = 0
+        records["model"]["iterations"] = records["model"]["halvings"] = 0
 
     def _vectors_for(self, name: Way) -> tuple[Any, FloatArray] | None:
         """Return the function that takes paths side by side, and its room; None if one by one.
@@ -218,19 +223,30 @@ class Batch:
         function.restype = None
         return function, numbers[skipped : skipped + room]
 
-    def _member(self, k: int) -> Member:
-        changes, ledger = self._changes[k], self.ledgers[k]
-        states = (self.x[k], *self._others[:, k])
-        paths = [Path(at(x), at(c[0]), at(c[1])) for x, c in zip(states, changes, strict=True)]
-        paths[0].sums, paths[0].lost = at(ledger[0]), at(ledger[1])
-        out = (self.states[k], self.fine[k], self.sums[k])
-        model = self._model(k, at(self._space[k]))
-        return Member(model, *paths, at(self._kept[k]), at(self.scale[k]), *map(at, out))
+    def _models(self) -> NDArray[np.void]:
+        """Return the models of the members, without their space."""
+        rows, found = self.rows, np.zeros(len(self), record_of(Model))
+        found["p"] = self._structures.addresses
+        for name in ("n", "ports", "processes", "inputs"):
+            found[name] = getattr(rows, name)
+        found["rows"], found["slack"] = rows.ledger, EXACT
+        return found
 
-    def _model(self, k: int, space: ctypes.c_void_p | None) -> Model:
-        r, structure = self.rows, self._structures[k].value
-        sizes = (r.n, r.ledger, r.ports, r.processes, r.inputs)
-        return Model(ctypes.addressof(structure), *sizes, space, slack=EXACT)
+    def _connect(self) -> None:
+        """Tell the members where their arrays lie."""
+        records = self._records
+        records["model"]["space"] = addresses(self._space)
+        states = (self.x, *self._others)
+        for path, x, (last, prior) in zip(PATHS, states, self._changes, strict=True):
+            records[path]["x"] = addresses(x)
+            records[path]["last"], records[path]["prior"] = addresses(last), addresses(prior)
+        ledgers = records["fine"]
+        ledgers["sums"], ledgers["lost"] = addresses(self.ledgers), addresses(self.ledgers[:, 1])
+        for name, array in (
+            *(("kept", self._kept), ("tolerance", self.scale)),
+            *(("out_x", self.states), ("out_fine", self.fine), ("out_sums", self.sums)),
+        ):
+            records[name] = addresses(array)
 
     def _function(self, name: str) -> Any:
         function = getattr(self._library, f"{self._name}_{name}")

@@ -6,7 +6,6 @@ bare call of C, for arrays lie there as C wants them.
 
 from __future__ import annotations
 
-import ctypes
 from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
@@ -32,8 +31,8 @@ class Members:
 
     def __init__(self, engine: Engine, parameters: Sequence[Any]) -> None:
         self._engine = engine
-        self._kept = [engine.structure(p) for p in parameters]  # with the arrays of their lanes
-        self._places = [POINTER(ctypes.addressof(one.value)) for one in self._kept]
+        self._kept = engine.structure.many(parameters)
+        self._places = [POINTER(place) for place in self._kept.addresses.tolist()]
 
     def __call__(
         self, name: str, x: FloatArray, rows: int, u: FloatArray | None = None

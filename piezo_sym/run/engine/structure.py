@@ -1,13 +1,14 @@
 """The parameters of a module as the C structure of its header.
 
-Input: a module's `Parameters`.  Output: a `Structure`: numbers, then a pointer for each parameter
-of a bank to one number a lane, in the order of the spec, then the sizes of banks.
+Input: a module's `Parameters`, of one run or of many.  Output: a `Structure`, or `Structures` one
+after another: numbers, then a pointer for each parameter of a bank to one number a lane, in the
+order of the spec, then the sizes of banks.
 """
 
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, final
@@ -17,10 +18,12 @@ import numpy as np
 from piezo_sym.run.module import lanes
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from piezo_sym.run.checks import FloatArray
     from piezo_sym.run.module import GeneratedModule
 
-#: Structures kept: of the runs that go through C together, which are asked for again and again.
+#: Structures kept: of the runs that go through C alone, which are asked for again and again.
 REMEMBERED = 256
 
 
@@ -33,39 +36,95 @@ class Structure:
     arrays: tuple[FloatArray, ...]
 
 
-def structure_of(module: GeneratedModule) -> Callable[[Any], Structure]:
-    """Return the function from a module's `Parameters` to its C structure."""
-    fields: list[tuple[str, Any]] = [
-        (f"field_{n}", ctypes.c_void_p if record.bank else ctypes.c_double)
-        for n, record in enumerate(module.PARAMETERS)
-    ]
-    fields += [(f"count_{n}", ctypes.c_long) for n, _ in enumerate(module.BANKS)]
-    kind = type(
-        "Parameters", (ctypes.Structure,), {"_fields_": fields or [("none", ctypes.c_char)]}
-    )
+@final
+@dataclass(frozen=True, eq=False)
+class Structures:
+    """C structures of many runs, their addresses, and what their pointers point into."""
 
-    def made(p: Any) -> Structure:
+    addresses: NDArray[np.uintp]
+    kept: tuple[NDArray[Any], ...]
+
+
+@final
+class Layout:
+    """How a module's `Parameters` lie in C; called, it gives the structure of one run."""
+
+    def __init__(self, module: GeneratedModule) -> None:
+        self._module = module
+        fields: list[tuple[str, Any]] = [
+            (f"field_{n}", ctypes.c_void_p if record.bank else ctypes.c_double)
+            for n, record in enumerate(module.PARAMETERS)
+        ]
+        fields += [(f"count_{n}", ctypes.c_long) for n, _ in enumerate(module.BANKS)]
+        none = [("none", ctypes.c_char)]
+        self._kind = type("Parameters", (ctypes.Structure,), {"_fields_": fields or none})
+        self._record = record_of(self._kind)
+        self._remembered = lru_cache(maxsize=REMEMBERED)(self._made)
+
+    def __call__(self, p: Any) -> Structure:
+        """Return the structure of one run."""
+        try:
+            return self._remembered(p)
+        except TypeError:  # a list among the values cannot be a key
+            return self._made(p)
+
+    def _made(self, p: Any) -> Structure:
         values: list[float | int] = []
         arrays: list[FloatArray] = []
-        for record in module.PARAMETERS:
+        for record in self._module.PARAMETERS:
             value = getattr(p, record.name)
             if record.bank:
                 arrays.append(_spread(value, lanes(p, record.bank)))
                 values.append(arrays[-1].ctypes.data)
             else:
                 values.append(float(value))
-        values += [lanes(p, bank) for bank in module.BANKS]
-        return Structure(kind(*values), tuple(arrays))
+        values += [lanes(p, bank) for bank in self._module.BANKS]
+        return Structure(self._kind(*values), tuple(arrays))
 
-    remembered = lru_cache(maxsize=REMEMBERED)(made)
+    def many(self, parameters: Sequence[Any]) -> Structures:
+        """Return the structures of runs whose banks have equal sizes."""
+        records = np.zeros(len(parameters), self._record)
+        kept: list[NDArray[Any]] = [records]
+        for n, record in enumerate(self._module.PARAMETERS):
+            values = [getattr(p, record.name) for p in parameters]
+            if record.bank:
+                kept.append(_rows(values, lanes(parameters[0], record.bank)))
+                records[f"field_{n}"] = addresses(kept[-1])
+            else:
+                records[f"field_{n}"] = values
+        for n, bank in enumerate(self._module.BANKS):
+            records[f"count_{n}"] = lanes(parameters[0], bank)
+        return Structures(addresses(records), tuple(kept))
 
-    def structure(p: Any) -> Structure:
-        try:
-            return remembered(p)
-        except TypeError:  # a list among the values cannot be a key
-            return made(p)
 
-    return structure
+def record_of(kind: Any) -> np.dtype[np.void]:
+    """Return a C structure's layout for NumPy: arrays of it are filled a column at a time."""
+    plain = {ctypes.c_void_p: np.uintp, ctypes.c_double: np.float64, ctypes.c_long: np.dtype("l")}
+    names = [name for name, _ in kind._fields_]
+    formats: list[Any] = [
+        plain[of] if of in plain else record_of(of) if hasattr(of, "_fields_") else np.dtype(of)
+        for _, of in kind._fields_
+    ]
+    offsets = [getattr(kind, name).offset for name in names]
+    parts = {"names": names, "formats": formats, "offsets": offsets}
+    return np.dtype({**parts, "itemsize": ctypes.sizeof(kind)})  # type: ignore[call-overload,no-any-return]
+
+
+def addresses(array: NDArray[Any]) -> NDArray[np.uintp]:
+    """Return the address of each part of an array along its first axis."""
+    first, apart = array.ctypes.data, array.strides[0]
+    return (first + apart * np.arange(len(array))).astype(np.uintp)
+
+
+def _rows(values: Sequence[Any], count: int) -> FloatArray:
+    """Return one number a lane, a row each; a value is a number or one a lane."""
+    try:
+        array = np.array(values, dtype=float)  # all of them numbers, or all one a lane
+    except ValueError:
+        return np.array([_spread(value, count) for value in values])
+    if array.ndim == 1:
+        array = array[:, None]
+    return np.ascontiguousarray(np.broadcast_to(array, (len(values), count)))
 
 
 def _spread(value: Any, count: int) -> FloatArray:
