@@ -97,7 +97,7 @@ def fixed(
     starts : whether the first step after a jump of the inputs is dissipative.
     """
     run = _Run(systems, engine, x, times, starts)
-    size = max(1, CHUNK // x.shape[1])
+    size = CHUNK // max(1, x.shape[1])
     for block in blocks(systems[0], times, step, lambda: size):
         done = run.through("march", block, range(1))
         run.note(block, done)
@@ -216,7 +216,7 @@ def _block_size(batch: Batch) -> int:
 
 def _scale(run: _Run, longest: float) -> FloatArray:
     """Return the scale of each state (systems, n): its largest magnitude in a coarse run."""
-    size = max(1, CHUNK // run.start.shape[1])
+    size = CHUNK // max(1, run.start.shape[1])
     for block in blocks(run.systems[0], run.times, longest, lambda: size):
         run.through("survey", block, range(1))
     run.batch.rewind()

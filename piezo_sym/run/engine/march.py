@@ -41,7 +41,7 @@ class Model(ctypes.Structure):
         ("p", POINTER),
         *((name, LONG) for name in ("n", "rows", "ports", "processes", "inputs")),
         ("space", POINTER),
-        *((name, LONG) for name in ("iterations", "halvings", "start")),
+        *((name, LONG) for name in ("iterations", "halvings", "begun", "start")),
         ("slack", DOUBLE),
     ]
 
@@ -174,8 +174,9 @@ class Batch:
         done : how many of these intervals each member has done before; none when left out.
         """
         held = _pointers(u), _pointers(first) if first else None
+        rows = np.ascontiguousarray(samples, dtype="l")  # as C has them
         highest = lowest + len(u) - 1
-        block = Intervals(lengths.size, lowest, highest, at(lengths), None, at(samples))
+        block = Intervals(lengths.size, lowest, highest, at(lengths), None, at(rows))
         block.u, block.first = (ctypes.cast(p, POINTER) if p else None for p in held)
         self._records["done"] = done if done else 0
         arguments = (self.members, LONG(len(self.members)), ctypes.byref(block))

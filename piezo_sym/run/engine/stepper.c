@@ -10,6 +10,8 @@ extern const long MODEL(exchanges);
 const long MODEL(exchanges) = MODEL(exchange_count);
 
 enum { MOST_ITERATIONS = 14, MOST_HALVINGS = 40, MOST_SHARES = 60 };
+/* A step may be halved so often in all: a run that creeps towards an edge ends, and can be stopped. */
+enum { MOST_PARTS = 1 << 16 };
 /* An interval whose error is below this share of the tolerance tells the next to take fewer steps. */
 #define MUCH_TOO_FINE 0.05
 /* What Newton's method may leave, in 1e-9 of a step: 1e-15 of it, where balances have to close. */
@@ -28,6 +30,7 @@ typedef struct {
     long n, rows, ports, processes, inputs;
     double *space;
     long iterations, halvings;
+    long begun;   /* the halvings there were before the step at hand */
     long start;   /* whether the steps taken now are dissipative */
     double slack; /* what Newton's method may leave on paths without a ledger, in 1e-9 of a step */
 } MODEL(model);
@@ -43,12 +46,30 @@ typedef struct {
 long MODEL(room)(const MODEL(model) *m);
 long MODEL(room)(const MODEL(model) *m)
 {
-    return 2 * m->n + MODEL(change_size)(m->p) + m->rows;
+    return 2 * m->n + MODEL(change_size)(m->p) + 3 * m->rows;
 }
 
 static double *MODEL(means_of)(const MODEL(model) *m)
 {
     return m->space + 2 * m->n + MODEL(change_size)(m->p);
+}
+
+/* Remember a path before its step is halved, or go back to it: the state and the ledger. */
+static void MODEL(save)(MODEL(model) *m, const MODEL(path) *path)
+{
+    double *ledger = MODEL(means_of)(m) + m->rows;
+    memcpy(m->space + m->n, path->x, (size_t)m->n * sizeof(double));
+    for (long k = 0; path->sums && k < m->rows; ++k)
+        ledger[k] = path->sums[k], ledger[m->rows + k] = path->lost[k];
+}
+
+static void MODEL(restore)(const MODEL(model) *m, MODEL(path) *path)
+{
+    const double *ledger = MODEL(means_of)(m) + m->rows;
+    memcpy(path->x, m->space + m->n, (size_t)m->n * sizeof(double));
+    for (long k = 0; path->sums && k < m->rows; ++k)
+        path->sums[k] = ledger[k], path->lost[k] = ledger[m->rows + k];
+    path->h = path->h_prior = 0.0;
 }
 
 /* Add h times the means of a step to the ledger, with compensation for what rounding loses. */
@@ -137,7 +158,7 @@ static void MODEL(predict)(const MODEL(model) *m, const MODEL(path) *path, doubl
         y[i] = path->x[i] + by_last * path->last[i] - by_prior * path->prior[i];
 }
 
-/* One step over h, halved where it has to be; 0, and the state as before, if that does not help. */
+/* One step over h, halved where it has to be; 0, and the path as before, if that does not help. */
 static int MODEL(step)(MODEL(model) *m, MODEL(path) *path, const double *u, double h, int depth)
 {
     double *restrict y = m->space;
@@ -151,16 +172,17 @@ static int MODEL(step)(MODEL(model) *m, MODEL(path) *path, const double *u, doub
                 MODEL(accepted)(m, path->x, y, u, h);
     }
     if (!found) {
-        double *before = m->space + m->n;
-        if (depth == MOST_HALVINGS)
+        if (depth == 0) {
+            m->begun = m->halvings;
+            MODEL(save)(m, path);
+        }
+        if (depth == MOST_HALVINGS || m->halvings - m->begun > MOST_PARTS)
             return 0;
         ++m->halvings;
-        if (depth == 0)
-            memcpy(before, path->x, (size_t)m->n * sizeof *before);
         found = MODEL(step)(m, path, u, 0.5 * h, depth + 1) &&
                 MODEL(step)(m, path, u, 0.5 * h, depth + 1);
         if (!found && depth == 0)
-            memcpy(path->x, before, (size_t)m->n * sizeof *before);
+            MODEL(restore)(m, path);
         return found;
     }
     if (path->sums)
@@ -259,10 +281,11 @@ void MODEL(survey)(MODEL(member) *members, long count, const MODEL(block) *b)
             const double *x = s->trial.x, *u = b->u[0] + s->done * s->model.inputs;
             const double *first = MODEL(first)(b, s->done, b->lowest);
             s->failed = !MODEL(across)(&s->model, &s->trial, u, b->h[s->done], 1, first);
+            if (s->failed)
+                break;
             for (long i = 0; i < s->model.n; ++i)
                 s->tolerance[i] = fabs(x[i]) > s->tolerance[i] ? fabs(x[i]) : s->tolerance[i];
         }
-        s->done -= s->failed;
     }
 }
 
