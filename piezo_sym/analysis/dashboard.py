@@ -30,8 +30,8 @@ ACROSS = 3  # panels in a row
 WIDTH, HEIGHT = 3.2, 2.1  # of a panel, inches
 MOST_NAMES = 6  # in a legend
 MOST_LANES = 8  # drawn one by one; more are drawn as the range they fill
-LEDGER = ("energy_residual", "energy", "entropy")
-PREFIXES = ("y_", "T_", "supplied_", "heat_", "produced_")
+LEDGER = ("energy_residual", "entropy_residual", "energy", "entropy")
+SUMS = ("supplied_", "heat_", "produced_", "entropy_exchanged_")
 
 
 def plot(run: xarray.Dataset) -> Figure:
@@ -93,7 +93,7 @@ def _by_unit(run: xarray.Dataset) -> dict[str, list[str]]:
     found: dict[str, list[str]] = {}
     for name in map(str, run.data_vars):
         doubled = name.startswith("y_") and run[name].attrs.get("units") == "K"  # a body's T
-        if name in LEDGER or name.startswith(PREFIXES[2:]) or doubled:
+        if name in LEDGER or name.startswith(SUMS) or doubled:
             continue
         found.setdefault(str(run[name].attrs.get("units", "1")), []).append(name)
     return found

@@ -23,13 +23,16 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.discrete import Watch
+    from piezo_sym.run.discrete import Runs, Watch
     from piezo_sym.run.engine import Engine
     from piezo_sym.run.inputs import Segment
     from piezo_sym.run.ledger import Trajectory
     from piezo_sym.run.system import System
 
-FINER = "those of the finer run, exact: supplied_*, heat_*, produced_*, energy_residual"
+FINER = (
+    "those of the finer run, exact: supplied_*, heat_*, produced_*, entropy_exchanged_*, "
+    "energy_residual, entropy_residual"
+)
 #: How a run that stopped is looked at again: to find the cause, not to take its place.
 LOOK_RTOL, LOOK_ATOL = 1e-8, 1e-11
 MOST_STEPS = 20_000
@@ -71,7 +74,7 @@ def compiled_run(
     try:
         if step is None:
             runs = adaptive([system], engine, x[None], samples, rtol, watch, starts=starts)
-            trajectory = inside(system, runs.trajectory(0))
+            trajectory = inside(system, booked(runs))
             accuracy: dict[str, object] = {
                 "rtol": rtol,
                 "extrapolated": extrapolated(system),
@@ -79,7 +82,7 @@ def compiled_run(
             }
         else:
             runs = fixed([system], engine, x[None], samples, step, watch, starts=starts)
-            trajectory = runs.trajectory(0)
+            trajectory = booked(runs)
             accuracy = {"step": step}
     except RunError as stopped:
         raise cause(system, x, samples, stopped) from stopped
@@ -89,6 +92,14 @@ def compiled_run(
         "halvings": trajectory.halvings,
     }
     return trajectory, {"method": METHOD, **accuracy, **work}
+
+
+def booked(runs: Runs) -> Trajectory:
+    """Return the trajectory of a single run, with the entropy that heat exchanges brought."""
+    trajectory, rows = runs.trajectory(0), runs.batch.rows
+    sums = runs.batch.sums[0].T[: rows.ledger - rows.numerical]
+    balanced = trajectory.balanced if runs.extrapolated else None
+    return replace(trajectory, integrals=sums, balanced=balanced)
 
 
 def check_inputs(system: System, x: FloatArray, samples: FloatArray) -> None:

@@ -97,6 +97,14 @@ def rows(records: Sequence[Record], parameters: Any) -> tuple[slice, ...]:
     return tuple(found)
 
 
+def exchanges(module: GeneratedModule) -> list[int]:
+    """Return which outputs belong to heat exchanges with the surroundings, such as ambients.
+
+    Their output is the temperature of a body; no other port has one.
+    """
+    return [n for n, record in enumerate(module.OUTPUTS) if record.unit == "K"]
+
+
 def row_name(records: Sequence[Record], parameters: Any, row: int) -> str:
     """Return the name of one row, for a message: `q`, or `phi[2]` for the second lane."""
     for record, part in zip(records, rows(records, parameters), strict=True):

@@ -4,6 +4,7 @@ Input: a generated module, and what the user wrote for inputs, parameters, initi
 Output: an `xarray.Dataset`.
 
     dx/dt = rhs(x, u(t), p)    U(t) - U(0) = sum over ports of int_0^t y u dt
+                               S(t) - S(0) = entropy produced + entropy exchanged
 """
 
 from __future__ import annotations
@@ -112,8 +113,10 @@ def simulate(
     xarray.Dataset
         Over `time` (nt,), and for banks (nt, lanes): states, inputs, `y_<port>`, `T_<body>`,
         `energy`, `entropy`; integrals since t = 0 `supplied_<port>`, `heat_<element>` [J] and
-        `produced_<element>` [J/K]; `energy_residual` = U - U(0) - energy put in: round-off with
-        the discrete gradient, the error of solver and quadrature with SciPy's. At a jump, inputs
+        `produced_<element>` [J/K], and `entropy_exchanged_<port>` [J/K], which the surroundings
+        bring (of an ambient: lam (T_e/T - 1)); `energy_residual` = U - U(0) - energy put in, and
+        `entropy_residual` = S - S(0) - entropy produced - entropy exchanged: round-off with the
+        discrete gradient, the error of solver and quadrature with SciPy's. At a jump, inputs
         have their value after it, but at the end of the run their value before it. Attributes:
         units, model, parameters; `method`, `rtol` or `step`, `engine` (its compiler, or why there
         is none), the work (`accepted_steps`, `newton_iterations`, `halvings`; for SciPy

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, final
 import numpy as np
 
 from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.discrete import METHOD
 from piezo_sym.run.signals import Signal
 from piezo_sym.sweeps.axes import Axis
 
@@ -93,6 +94,11 @@ class Plan:
     def with_most(self, most: int) -> Plan:
         """Return the same sweep in boxes of other sizes."""
         return replace(self, most=most)
+
+    @property
+    def extrapolated(self) -> bool:
+        """Whether states are extrapolated from two runs."""
+        return self.method == METHOD and self.step is None
 
     @property
     def shape(self) -> tuple[int, ...]:

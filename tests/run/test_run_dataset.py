@@ -18,6 +18,7 @@ NAMES = {
     **dict.fromkeys(["Q_C"], "C"),
     **dict.fromkeys(["phi"], "Wb"),
     **dict.fromkeys(["S", "entropy", "produced_hysteron", "produced_damper"], "J/K"),
+    **dict.fromkeys(["entropy_exchanged_ambient", "entropy_residual"], "J/K"),
     **dict.fromkeys(["F_ext"], "N"),
     **dict.fromkeys(["V_in"], "V"),
     **dict.fromkeys(["T_e", "y_ambient", "T_body"], "K"),
@@ -60,6 +61,20 @@ def test_values_are_the_modules_at_the_samples(ds, piezo):
     residual = ds.energy - ds.energy[0] - supplied
     assert ds.energy_residual.values == pytest.approx(residual.values, abs=1e-12)
     assert float(ds.energy_residual[0]) == 0
+
+
+LEDGER = ("supplied_", "heat_", "produced_", "entropy_exchanged_", "energy_res", "entropy_res")
+
+
+@pytest.mark.parametrize(
+    ("how", "finer"), [({"rtol": 1e-5}, True), ({"step": 1e-5}, False), ({"method": "BDF"}, False)]
+)
+def test_what_is_of_the_finer_run_says_so(how, finer):
+    run = simulate_shipped("piezo_stack", duration=1e-4, times=2, **how)
+    for name, variable in run.data_vars.items():
+        said = variable.attrs["long_name"].endswith("; of the finer run")
+        assert said == (finer and name.startswith(LEDGER)), name
+    assert ("balances" in run.attrs) == finer
 
 
 def test_attributes(ds):

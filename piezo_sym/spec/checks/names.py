@@ -13,12 +13,12 @@ from piezo_sym.spec.tables import Tables, banks, bodies, states
 from piezo_sym.spec.units import parse_unit
 
 #: Variables that every result has; see `run`.
-RESULTS = frozenset({"time", "energy", "entropy", "energy_residual"})
+RESULTS = frozenset({"time", "energy", "entropy", "energy_residual", "entropy_residual"})
 LARGEST = Fraction(10) ** 300
 SMALLEST = 1 / LARGEST
 #: What generated modules import.
 IMPORTS = frozenset({"numpy", "typing", "dataclasses"})
-PREFIXES = ("y_", "supplied_", "heat_", "produced_")
+PREFIXES = ("y_", "supplied_", "heat_", "produced_", "entropy_exchanged_")
 
 
 def check_names(spec: Tables) -> None:
@@ -108,7 +108,7 @@ def _check_kept(spec: Tables, symbols: list[tuple[str, str]]) -> None:
         base, _, lane = symbol.rpartition("_")
         if base in lanes and re.fullmatch(r"j|\d+", lane):
             use = f"a lane of {lanes[base]}"
-        if symbol.startswith(PREFIXES) and symbol.split("_", 1)[1] in spec.elements:
+        if any(symbol == f"{prefix}{name}" for prefix in PREFIXES for name in spec.elements):
             use = "a variable of every result"
         if use:
             raise SpecError(f"symbol {quote(symbol)} is {use}", where, remedy="rename it")
