@@ -105,6 +105,15 @@ def exchanges(module: GeneratedModule) -> list[int]:
     return [n for n, record in enumerate(module.OUTPUTS) if record.unit == "K"]
 
 
+def row_names(records: Sequence[Record], parameters: Any) -> list[str]:
+    """Return the names of all rows of an array that spreads banks: q, phi_1, phi_2, S."""
+    found = []
+    for record in records:
+        size = lanes(parameters, record.bank) if record.bank else 0
+        found += [f"{record.name}_{n + 1}" for n in range(size)] or [record.name]
+    return found
+
+
 def row_name(records: Sequence[Record], parameters: Any, row: int) -> str:
     """Return the name of one row, for a message: `q`, or `phi[2]` for the second lane."""
     for record, part in zip(records, rows(records, parameters), strict=True):
