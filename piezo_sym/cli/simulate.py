@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import typer
 
-from piezo_sym.cli.output import console, row, table, time_bar, warnings_as_lines
+from piezo_sym.cli.output import console, row, table, warnings_as_lines
 from piezo_sym.errors import UsageError, listing, nearest, quote
 from piezo_sym.files import path_text, write_bytes
 
@@ -56,6 +56,7 @@ def simulate(
     after), triangle(amplitude, frequency), chirp(amplitude, f_start, f_stop, duration).
     """
     from piezo_sym.api import simulate as run
+    from piezo_sym.sweeps.progress import time_bar
 
     if out is not None and out.suffix not in ENDINGS:
         raise UsageError(f"{path_text(out)} has no known ending", "--out", listing(ENDINGS))

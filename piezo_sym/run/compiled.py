@@ -36,6 +36,8 @@ FINER = (
 #: How a run that stopped is looked at again: to find the cause, not to take its place.
 LOOK_RTOL, LOOK_ATOL = 1e-8, 1e-11
 MOST_STEPS = 20_000
+#: Of a step: one that is shorter by less is rounded, not cut.
+SAME = 1e-6
 #: No finer mesh is asked for: the round-off of its steps would be all that is left to measure.
 LEAST_RTOL = 1e-11
 #: Inputs are looked at so often in each of the longest steps they allow, with so many numbers.
@@ -83,7 +85,7 @@ def compiled_run(
         else:
             runs = fixed([system], engine, x[None], samples, step, watch, starts=starts)
             trajectory = booked(runs)
-            accuracy = {"step": step}
+            accuracy = {"step": step, "shortest_step": shortest_step(system, samples, step)}
     except RunError as stopped:
         raise cause(system, x, samples, stopped) from stopped
     work = {
@@ -92,6 +94,20 @@ def compiled_run(
         "halvings": trajectory.halvings,
     }
     return trajectory, {"method": METHOD, **accuracy, **work}
+
+
+def shortest_step(system: System, samples: FloatArray, step: float) -> float:
+    """Return the shortest step [s] of a run with a fixed one, but for halvings.
+
+    Steps end at samples and at breaks of inputs; those between two of them are equal.
+    """
+    segments = system.inputs.segments
+    inner = samples[(samples > 0) & (samples < segments[-1].stop)]
+    edges = [segment.start for segment in segments] + [segments[-1].stop]
+    widths = np.diff(np.union1d(inner, edges))
+    rounding = 4 * np.finfo(float).eps * edges[-1] / step
+    taken = float(np.min(widths / np.maximum(1, np.ceil(widths / step - rounding))))
+    return step if taken > step * (1 - SAME) else taken
 
 
 def booked(runs: Runs) -> Trajectory:

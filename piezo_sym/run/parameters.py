@@ -108,6 +108,21 @@ def own_initial(module: GeneratedModule, parameters: Any, u: FloatArray) -> Floa
         raise RunError(what, f"model '{module.NAME}'", remedy="check the parameters") from cause
 
 
+def sample_times(times: object, every: object, step: float | None, duration: float) -> FloatArray:
+    """Return the times (nt,) of the samples [s], from what a user said of `times` and `every`.
+
+    Raises
+    ------
+    UsageError : neither says when; see `read_times` and `read_every`.
+    """
+    if every is not None:
+        return read_every(every, times, step, duration)
+    if times is None and step is not None:
+        steps = int(np.ceil(duration / step * (1 - CLOSE)))
+        return read_every(-(-steps // (SAMPLES - 1)), None, step, duration)
+    return read_times(times, duration)
+
+
 def read_times(given: object, duration: float) -> FloatArray:
     """Return the times (nt,) of the samples [s]: even ones, or those a user gave.
 

@@ -22,7 +22,7 @@ from piezo_sym.run.integrate import Tolerance, batches
 from piezo_sym.run.ledger import record
 from piezo_sym.run.method import checked_method, way_of
 from piezo_sym.run.module import checked
-from piezo_sym.run.parameters import read_every, read_initial, read_parameters, read_times
+from piezo_sym.run.parameters import read_initial, read_parameters, sample_times
 from piezo_sym.run.scales import magnitudes
 from piezo_sym.run.system import System
 
@@ -87,8 +87,10 @@ def simulate(
     duration : length of the run [s].
     rtol : relative tolerance, 1e-13 to 0.1; 1e-5 when left out. The discrete gradient takes less
         than 1e-11 as 1e-11, for below that it would measure its own round-off.
-    step : a fixed step [s] instead of rtol, for the discrete gradient alone; steps end at samples
-        and breaks of inputs, so that some are shorter.
+    step : a fixed step [s] instead of rtol, for the discrete gradient alone. Steps end at samples,
+        at breaks of inputs and at the end of the run: where the step does not divide what lies
+        between two of these, steps there are equal and shorter, the attribute `shortest_step` the
+        shortest.
     parameters : name -> number, for a bank's parameter also a list of one number a lane; and
         `<bank>_count` -> number of lanes. SI units.
     initial : state -> number, for a bank's state also a list of one number a lane. SI units.
@@ -96,9 +98,11 @@ def simulate(
     method : discrete_gradient when left out, or one of SciPy's: RK23, RK45, DOP853, Radau, BDF,
         LSODA. Left out, a module without C beside it runs by LSODA; and so does one whose C cannot
         be compiled here, with one `EngineWarning`.
-    times : the samples: a number of even ones (1001 when left out), or increasing times [s].
+    times : the samples: a number of even ones, or increasing times [s]. When left out, 1001 even
+        ones; with `step`, as many ends of steps, equally far apart, as 1001 allow, and the end.
     every : with `step`, instead of `times`: a sample every so many steps, and at the end.
-    progress : told the time [s] reached, now and then.
+    progress : a function, told the time [s] reached, now and then; `piezo_sym.simulate` also takes
+        True, for a bar.
     dissipative_start : for discrete_gradient. The first step after t = 0, and after each jump of
         an input, is made of four quarters that damp whatever is much faster than they are: a
         longer step otherwise rings after a jump, for a long time. What the quarters lose on the
@@ -118,9 +122,9 @@ def simulate(
         `entropy_residual` = S - S(0) - entropy produced - entropy exchanged: round-off with the
         discrete gradient, the error of solver and quadrature with SciPy's. At a jump, inputs
         have their value after it, but at the end of the run their value before it. Attributes:
-        units, model, parameters; `method`, `rtol` or `step`, `engine` (its compiler, or why there
-        is none), the work (`accepted_steps`, `newton_iterations`, `halvings`; for SciPy
-        `rhs_evaluations`), and which quantities are `extrapolated`.
+        units, model, parameters; `method`, `rtol`, or `step` and `shortest_step`, `engine` (its
+        compiler, or why there is none), the work (`accepted_steps`, `newton_iterations`,
+        `halvings`; for SciPy `rhs_evaluations`), and which quantities are `extrapolated`.
 
     Raises
     ------
@@ -134,7 +138,8 @@ def simulate(
     refuse_step(step, named, rtol)
     named = start_method(dissipative_start, named)
     end = positive(duration, "simulate.duration")
-    samples = read_every(every, times, step, end) if every is not None else read_times(times, end)
+    refuse_progress(progress)
+    samples = sample_times(times, every, step, end)
     values = read_parameters(module, parameters)
     system = System(module, values, read_inputs(module, inputs, end))
     x = read_initial(module, values, system.inputs.segments[0].at(0.0), initial)
@@ -202,6 +207,13 @@ def refuse_step(step: object, method: str | None, rtol: object) -> None:
     if rtol is not None:
         what = "step and rtol are both given"
         raise UsageError(what, "simulate.step", "one of them", "leave out rtol for a fixed step")
+
+
+def refuse_progress(progress: object) -> None:
+    """Raise `UsageError` if nothing can be told to what a user gave as `progress`."""
+    if progress is not None and not callable(progress):
+        expected = "a function of the time in s, or None"
+        raise UsageError(f"{quote(progress)} shows no progress", "simulate.progress", expected)
 
 
 def start_method(dissipative_start: object, method: str | None) -> str | None:

@@ -16,7 +16,7 @@ from piezo_sym.run.checks import positive
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.method import checked_method, way_of
 from piezo_sym.run.module import lanes
-from piezo_sym.run.parameters import own_initial, read_initial, read_parameters, read_times
+from piezo_sym.run.parameters import own_initial, read_initial, read_parameters, sample_times
 from piezo_sym.run.simulate import read_rtol, refuse_step
 from piezo_sym.sweeps.axes import read_axes
 from piezo_sym.sweeps.plan import (
@@ -55,6 +55,7 @@ class Asked:
     times: int | ArrayLike | None
     reduce: object
     reduce_by: object
+    every: int | None = None
 
 
 def read_plan(module: GeneratedModule, asked: Asked) -> Plan:
@@ -68,7 +69,7 @@ def read_plan(module: GeneratedModule, asked: Asked) -> Plan:
         named, rtol = checked_method(asked.method), read_rtol(asked.rtol)
         refuse_step(asked.step, named, asked.rtol)
         end = positive(asked.duration, "sweep.duration")
-        samples = read_times(asked.times, end)
+        samples = sample_times(asked.times, asked.every, asked.step, end)
         inputs = read_inputs(module, asked.inputs, end)
         base = read_parameters(module, asked.parameters)
         axes = read_axes(module, asked.over, end, {b: lanes(base, b) for b in module.BANKS})
