@@ -10,7 +10,7 @@ import typer
 from rich.text import Text
 
 from piezo_sym.cli.output import about, console, row, table
-from piezo_sym.cli.simulate import pairs, signal
+from piezo_sym.cli.words import pairs, signal
 from piezo_sym.files import write_text
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ Duration = Annotated[
 ]
 Inputs = Annotated[
     list[str] | None,
-    typer.Option("--input", "-i", help="NAME=NUMBER or NAME=sine(100,100); SI; repeat."),
+    typer.Option("--input", "-i", help="NAME=NUMBER, NAME=sine(100,100) or NAME=@FILE.csv; SI."),
 ]
 AsJson = Annotated[Path | None, typer.Option(metavar="FILE", help="Report as JSON.")]
 AsMarkdown = Annotated[Path | None, typer.Option(metavar="FILE", help="Report as Markdown.")]

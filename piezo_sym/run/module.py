@@ -105,6 +105,12 @@ def exchanges(module: GeneratedModule) -> list[int]:
     return [n for n, record in enumerate(module.OUTPUTS) if record.unit == "K"]
 
 
+def others(module: GeneratedModule, kind: str) -> dict[str, str]:
+    """Return names that are no `kind` ("parameters", "initial", "inputs"), and which they are."""
+    kinds = {"parameters": module.PARAMETERS, "initial": module.STATES, "inputs": module.INPUTS}
+    return {r.name: name for name, records in kinds.items() if name != kind for r in records}
+
+
 def row_names(records: Sequence[Record], parameters: Any) -> list[str]:
     """Return the names of all rows of an array that spreads banks: q, phi_1, phi_2, S."""
     found = []

@@ -22,7 +22,7 @@ from piezo_sym.run.checks import (
     vector,
     whole,
 )
-from piezo_sym.run.module import lanes, rows
+from piezo_sym.run.module import lanes, others, rows
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -46,7 +46,8 @@ def read_parameters(module: GeneratedModule, given: Mapping[str, LaneValue] | No
     default = module.Parameters()
     counts = {f"{bank}_count": bank for bank in module.BANKS}
     banks = {record.name: record.bank for record in module.PARAMETERS}
-    values = known_keys(given, (*banks, *counts), "simulate.parameters")
+    places = others(module, "parameters")
+    values = known_keys(given, (*banks, *counts), "simulate.parameters", places)
     sizes = {
         bank: whole(values.get(name, lanes(default, bank)), f"simulate.parameters.{name}", 1)
         for name, bank in counts.items()
@@ -88,7 +89,8 @@ def read_initial(
     UsageError : a name is unknown, a value is not finite, or a list does not fit its bank.
     RunError : the module cannot compute its own initial state.
     """
-    values = known_keys(given, [record.name for record in module.STATES], "simulate.initial")
+    names, places = [record.name for record in module.STATES], others(module, "initial")
+    values = known_keys(given, names, "simulate.initial", places)
     x = own_initial(module, parameters, u)
     for record, part in zip(module.STATES, rows(module.STATES, parameters), strict=True):
         if record.name in values:
