@@ -30,7 +30,7 @@ from piezo_sym.analysis.balance import (
     solved,
     zeros,
 )
-from piezo_sym.analysis.stroboscope import Stroboscope, stroboscope
+from piezo_sym.analysis.stroboscope import Stroboscope, moves, stroboscope
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.checks import number, positive, vector
 
@@ -49,6 +49,8 @@ ORBIT_RTOL = 1e-8
 HOTTEST = 20.0  # times the temperature at the start: how far is looked, if nothing is said
 MARGIN = 1e-6  # of a multiplier over 1: the accuracy of its difference quotient
 MOST_MOVES = 12
+STILL = "no input moves, and no state of rest is found"
+SIMULATE = "run simulate() until it rests, or give an input that repeats with the frequency"
 
 
 @final
@@ -98,7 +100,8 @@ def periodic_steady_state(
     Parameters
     ----------
     module : a generated module; `piezo_sym.periodic_steady_state` also takes a model, name, path.
-    inputs : as for `simulate`; they repeat with `frequency` [Hz], at t = 0 as at 1/frequency.
+    inputs : as for `simulate`; they repeat with `frequency` [Hz], at t = 0 as at 1/frequency. If
+        none moves, what is looked for is a state of rest; a run may be the better way to it.
     parameters, initial : as for `simulate`.
     temperatures : where to look [K]: least and greatest, of the body at t = 0; when left out, from
         the module's own start (lower if the body cools there) to 20 times that.
@@ -111,7 +114,13 @@ def periodic_steady_state(
     """
     strobe, f = _read(module, inputs, frequency, parameters, initial)
     accuracy = _accuracy(rtol)
-    first = _first(strobe, f, _known(strobe, f, temperatures))
+    known = _known(strobe, f, temperatures)
+    try:
+        first = _first(strobe, f, known)
+    except RunError as error:
+        if moves(strobe, f):
+            raise
+        raise RunError(f"{STILL}: {error.what}", error.where, remedy=SIMULATE) from error
     return _state(strobe, f, first, accuracy)
 
 
@@ -134,6 +143,8 @@ def periodic_steady_states(
     strobe, f = _read(module, inputs, frequency, parameters, initial)
     accuracy = _accuracy(rtol)
     found = zeros(strobe, f, _known(strobe, f, temperatures))
+    if not found and not moves(strobe, f):
+        warnings.warn(f"{STILL}; {SIMULATE}", SteadyWarning, stacklevel=2)
     return tuple(_state(strobe, f, zero, accuracy) for zero in found)
 
 

@@ -201,7 +201,7 @@ def refuse_unperiodic(
     """Raise `UsageError` if an input is not the same one period later."""
     period = 1 / frequency
     read_inputs(module, inputs, period)
-    for name, value in inputs.items():
+    for name, value in (inputs or {}).items():
         where = f"periodic_steady_state.inputs.{name}"
         signal = as_signal(value, where)
         times = PROBES * period
@@ -213,3 +213,10 @@ def refuse_unperiodic(
             what = f"{quote(name)} does not repeat after {period:g} s"
             remedy = "give the frequency that the inputs have in common"
             raise UsageError(what, where, f"an input of {frequency:g} Hz, or a number", remedy)
+
+
+def moves(strobe: Stroboscope, frequency: float) -> bool:
+    """Return whether any input moves in a period."""
+    period = 1 / frequency
+    signals = read_inputs(strobe.module, strobe.inputs(frequency), period).signals
+    return any(bool(np.ptp(np.asarray(signal(PROBES * period)))) for signal in signals)
