@@ -72,6 +72,7 @@ class Plan:
     largest_banks : the largest size of each bank whose size is swept.
     together : runs in one call of C, at most.
     most : runs in a box, at most.
+    engine : what runs them, in words, as an attribute of `simulate` says.
     side_by_side : whether runs in one call of C go in the lanes of vectors, or one by one.
     """
 
@@ -89,6 +90,7 @@ class Plan:
     largest_banks: Mapping[str, int]
     together: int
     most: int
+    engine: str = ""
     side_by_side: bool = True
 
     def with_most(self, most: int) -> Plan:

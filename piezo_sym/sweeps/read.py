@@ -77,13 +77,14 @@ def read_plan(module: GeneratedModule, asked: Asked) -> Plan:
         given = (dict(asked.parameters or {}), dict(asked.initial or {}))
         refuse_sizes(module, axes, *given, inputs.segments[0].at(0.0))
         refuse_reduction(asked)
-        method = way_of(module, named, asked.step).method
+        way = way_of(module, named, asked.step)
         step = None if asked.step is None else float(asked.step)
         numbers = samples.size * row_numbers(module, base, axes)
         together = max(1, min(MOST_TOGETHER, MOST_NUMBERS // numbers))
         most = together if asked.reduce is None else box_of_reduced(axes, together)
-        kept = (method, rtol, step, asked.reduce, asked.reduce_by == "run", largest_banks(axes))
-        return Plan(axes, inputs.signals, end, *given, samples, *kept, together, most)  # type: ignore[arg-type]
+        how = (way.method, rtol, step, asked.reduce, asked.reduce_by == "run", largest_banks(axes))
+        sizes = (together, most, way.note)
+        return Plan(axes, inputs.signals, end, *given, samples, *how, *sizes)  # type: ignore[arg-type]
 
 
 @contextmanager
