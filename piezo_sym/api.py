@@ -55,7 +55,8 @@ def simulate(
     method : discrete_gradient when left out, or one of SciPy's.
     times : the samples: a number of even ones, or increasing times [s].
     every : with `step`, instead of `times`: a sample every so many steps, and at the end.
-    dissipative_start : whether the first step after each jump of an input is damped.
+    dissipative_start : whether the first step after each jump of an input is damped, which reduces
+        the states' error after it where steps are long.
     progress : True for a bar; or a function, told the time [s] reached.
 
         More on each: `help(piezo_sym.run.simulate)`.
