@@ -67,9 +67,9 @@ def plot(run: xarray.Dataset) -> Figure:
         _small_legend(axes)
     for axes in grid[len(panels) :]:
         axes.remove()
-    for axes in grid[max(0, len(panels) - ACROSS) : len(panels)]:
-        axes.set_xlabel("time [s]", fontsize=LABEL)
+    for axes in grid[max(0, len(panels) - ACROSS) : len(panels)]:  # the lowest of each column
         axes.tick_params(labelbottom=True)
+    figure.supxlabel("time [s]", fontsize=LABEL)
     figure.suptitle(str(run.attrs.get("model", "run")), fontsize=LABEL + 1)
     return figure
 

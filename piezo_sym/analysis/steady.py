@@ -28,11 +28,13 @@ from piezo_sym.analysis.balance import (
     grid,
     scan,
     solved,
+    temperature_range,
     zeros,
 )
-from piezo_sym.analysis.stroboscope import Stroboscope, moves, stroboscope
+from piezo_sym.analysis.repeating import moves
+from piezo_sym.analysis.stroboscope import Stroboscope, stroboscope
 from piezo_sym.errors import RunError, UsageError
-from piezo_sym.run.checks import number, positive, vector
+from piezo_sym.run.checks import number, positive
 
 if TYPE_CHECKING:
     import xarray
@@ -46,7 +48,7 @@ RTOL = 1e-6
 STEPS, MOST_STEPS = 256, 1 << 16  # a period
 SAMPLES = 400  # of the orbit returned
 ORBIT_RTOL = 1e-8
-HOTTEST = 20.0  # times the temperature at the start: how far is looked, if nothing is said
+OPEN, MOST_OPEN = 100.0, 0.1  # times the accuracy, of the sizes: what repeats no better is none
 MARGIN = 1e-6  # of a multiplier over 1: the accuracy of its difference quotient
 MOST_MOVES = 12
 STILL = "no input moves, and no state of rest is found"
@@ -100,8 +102,9 @@ def periodic_steady_state(
     Parameters
     ----------
     module : a generated module; `piezo_sym.periodic_steady_state` also takes a model, name, path.
-    inputs : as for `simulate`; they repeat with `frequency` [Hz], at t = 0 as at 1/frequency. If
-        none moves, what is looked for is a state of rest; a run may be the better way to it.
+    inputs : as for `simulate`; they repeat with `frequency` [Hz], at t = 0 as at 1/frequency.
+        Of several inputs, it is the greatest frequency that they have in common. If none moves,
+        what is looked for is a state of rest; a run may be the better way to it.
     parameters, initial : as for `simulate`.
     temperatures : where to look [K]: least and greatest, of the body at t = 0; when left out, from
         the module's own start (lower if the body cools there) to 20 times that.
@@ -109,7 +112,8 @@ def periodic_steady_state(
 
     Raises
     ------
-    UsageError : an argument is wrong, an input does not repeat, or there is not one body.
+    UsageError : an argument is wrong, an input does not repeat, or moves too fast for the period,
+        or there is not one body.
     RunError : no steady state lies in the range; the message says which way the body drifts.
     """
     strobe, f = _read(module, inputs, frequency, parameters, initial)
@@ -118,7 +122,7 @@ def periodic_steady_state(
     try:
         first = _first(strobe, f, known)
     except RunError as error:
-        if moves(strobe, f):
+        if moves(strobe.module, inputs, f):
             raise
         raise RunError(f"{STILL}: {error.what}", error.where, remedy=SIMULATE) from error
     return _state(strobe, f, first, accuracy)
@@ -143,7 +147,7 @@ def periodic_steady_states(
     strobe, f = _read(module, inputs, frequency, parameters, initial)
     accuracy = _accuracy(rtol)
     found = zeros(strobe, f, _known(strobe, f, temperatures))
-    if not found and not moves(strobe, f):
+    if not found and not moves(strobe.module, inputs, f):
         warnings.warn(f"{STILL}; {SIMULATE}", SteadyWarning, stacklevel=2)
     return tuple(_state(strobe, f, zero, accuracy) for zero in found)
 
@@ -165,22 +169,6 @@ def _accuracy(rtol: object) -> float:
         what = f"{value:g} is out of range"
         raise UsageError(what, "periodic_steady_state.rtol", "1e-9 to 0.01")
     return value
-
-
-def temperature_range(
-    strobe: Stroboscope, frequency: float, given: tuple[float, float] | None
-) -> tuple[float, float]:
-    """Return where to look for steady states: what a user gave, or from the start on."""
-    if given is None:
-        T = strobe.temperature(strobe.start(frequency))
-        own = strobe.temperature(replace(strobe, initial={}).start(frequency))
-        return min(T, own), HOTTEST * own
-    where = "periodic_steady_state.temperatures"
-    ends = vector(list(given), where)
-    if ends.size != 2 or not 0 < ends[0] < ends[1]:
-        what = f"{list(given)} is no range"
-        raise UsageError(what, where, "the least and the greatest temperature in K")
-    return float(ends[0]), float(ends[1])
 
 
 def _known(
@@ -238,7 +226,19 @@ def _state(strobe: Stroboscope, frequency: float, zero: Settled, rtol: float) ->
             what = f"rtol {rtol:g} asks for more than {MOST_STEPS} steps a period"
             raise RunError(what, f"model '{strobe.module.NAME}'", remedy="give a larger rtol")
         x = closed(strobe, frequency, x, slope)
-    return _described(strobe, frequency, x, slope)
+    found = _described(strobe, frequency, x, slope)
+    _refuse_open(strobe, found, rtol)
+    return found
+
+
+def _refuse_open(strobe: Stroboscope, found: SteadyState, rtol: float) -> None:
+    """Raise `RunError` if a period with steps that adapt does not repeat: the fixed ones misled."""
+    allowed = min(MOST_OPEN, OPEN * max(rtol, ORBIT_RTOL))
+    if found.residual > allowed * max(1.0, found.multiplier):
+        what = f"the state found at {found.temperature:.6g} K does not repeat: it is off by "
+        what += f"{found.residual:.1g} of its size after a period"
+        where = f"model '{strobe.module.NAME}' at {found.frequency:g} Hz"
+        raise RunError(what, where, remedy="simulate until it settles")
 
 
 def _moved(strobe: Stroboscope, frequency: float, x: FloatArray, before: FloatArray) -> float:

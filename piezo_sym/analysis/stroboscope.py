@@ -18,15 +18,15 @@ from typing import TYPE_CHECKING, Any, TypeAlias, final
 
 import numpy as np
 
-from piezo_sym.errors import RunError, UsageError, quote
+from piezo_sym.analysis.repeating import refuse_unperiodic, steps_needed
+from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run import simulate
 from piezo_sym.run.checks import known_keys
 from piezo_sym.run.discrete import METHOD
 from piezo_sym.run.engine import compiled
-from piezo_sym.run.inputs import as_signal, read_inputs
+from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.module import checked, rows
 from piezo_sym.run.parameters import read_initial, read_parameters
-from piezo_sym.run.samples import Samples
 
 if TYPE_CHECKING:
     import xarray
@@ -42,8 +42,6 @@ LOOKS = 16  # times in a period at which sizes and the mean temperature are take
 FLOOR = 1e-15  # so that no size is 0
 GENTLE = 1.01  # a difference quotient may change the temperature by so much
 FINE = 1e-9  # rtol where nothing can compile
-CLOSE = 1e-6  # of an input's range: what repeats
-PROBES = np.sort(np.r_[0.0, np.modf(np.arange(1, 64) * 0.6180339887498949)[0]])  # of a period
 
 
 @final
@@ -177,7 +175,7 @@ def stroboscope(
     initial: Mapping[str, LaneValue] | None,
     steps: int,
 ) -> Stroboscope:
-    """Return the stroboscope of a module, checked at one frequency.
+    """Return the stroboscope of a module, checked at one frequency; more steps if inputs need them.
 
     Raises
     ------
@@ -187,36 +185,11 @@ def stroboscope(
     bodies = [record.name for record in checked(module).BODIES]
     if len(bodies) != 1:
         what = f"model '{module.NAME}' has {len(bodies)} bodies"
-        raise UsageError(what, "periodic_steady_state.model", "a model with one body")
+        remedy = "simulate until it settles"
+        raise UsageError(what, "periodic_steady_state.model", "a model with one body", remedy)
     refuse_unperiodic(module, inputs(frequency), frequency)
+    steps = steps_needed(inputs(frequency), frequency, steps)
     known_keys(initial, [record.name for record in module.STATES], "periodic_steady_state.initial")
     strobe = Stroboscope(module, inputs, parameters or {}, initial or {}, steps)
     strobe.look(strobe.start(frequency), frequency)
     return strobe
-
-
-def refuse_unperiodic(
-    module: GeneratedModule, inputs: Mapping[str, InputValue], frequency: float
-) -> None:
-    """Raise `UsageError` if an input is not the same one period later."""
-    period = 1 / frequency
-    read_inputs(module, inputs, period)
-    for name, value in (inputs or {}).items():
-        where = f"periodic_steady_state.inputs.{name}"
-        signal = as_signal(value, where)
-        times = PROBES * period
-        if isinstance(signal, Samples):  # those of one period alone repeat by meaning
-            times = times[times + period <= signal.times[-1]]
-        now = np.asarray(signal(times))
-        largest = np.max(np.abs(now), initial=0.0)
-        if np.any(np.abs(now - signal(times + period)) > CLOSE * largest):
-            what = f"{quote(name)} does not repeat after {period:g} s"
-            remedy = "give the frequency that the inputs have in common"
-            raise UsageError(what, where, f"an input of {frequency:g} Hz, or a number", remedy)
-
-
-def moves(strobe: Stroboscope, frequency: float) -> bool:
-    """Return whether any input moves in a period."""
-    period = 1 / frequency
-    signals = read_inputs(strobe.module, strobe.inputs(frequency), period).signals
-    return any(bool(np.ptp(np.asarray(signal(PROBES * period)))) for signal in signals)

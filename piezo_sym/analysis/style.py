@@ -71,6 +71,7 @@ def save(figure: Figure, data: xarray.Dataset, folder: Path, name: str) -> tuple
 def _content(figure: Figure, data: xarray.Dataset, ending: str) -> bytes:
     if ending == ".csv":
         frame = data.to_dataframe().reset_index().dropna(how="all", subset=list(data.data_vars))
+        frame.columns = [_with_unit(data, str(name)) for name in frame.columns]
         return bytes(frame.to_csv(index=False, float_format="%.10g").encode())
     from matplotlib import rc_context
 
@@ -79,3 +80,9 @@ def _content(figure: Figure, data: xarray.Dataset, ending: str) -> bytes:
     with rc_context({"svg.hashsalt": "piezo_sym"}):
         figure.savefig(stream, format=ending[1:], metadata=metadata)
     return stream.getvalue()
+
+
+def _with_unit(data: xarray.Dataset, name: str) -> str:
+    """Return the head of a column: its name, and its unit if it has one."""
+    unit = data[name].attrs.get("units", "1")
+    return name if unit == "1" else f"{name} [{unit}]"

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 #: Tolerances, loosest first, and the parts of each that are tried above the first good one.
 LADDER = tuple(float(f"1e-{n}") for n in range(2, 14))
-PARTS = (0.2, 0.5)
+PARTS = (0.15, 0.2, 0.3, 0.5, 0.7)
 
 
 @final

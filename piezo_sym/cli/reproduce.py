@@ -21,7 +21,8 @@ def reproduce(
     """Draw Figures 2 to 6 of the paper, each as PNG, SVG and CSV.
 
     2: the operator w_T. 3: hysteresis at 25, 30, 35, 40 degC. 4: steady temperature over frequency
-    and inductance, with its jumps. 5: step response. 6: hysteresis at 10, 50, 100, 200 Hz.
+    and inductance, with its jumps. 5: step response. 6: hysteresis at 10, 50, 100, 200 Hz. Loops
+    are those of the tenth period after a start in thermal equilibrium; notebook 4 says why.
 
     The module is the committed one of piezo_stack; it is compared with its spec first. A C compiler
     is needed.

@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from piezo_sym.run.ledger import Trajectory
     from piezo_sym.run.system import System
 
-FINER = (
-    "those of the finer run, exact: supplied_*, heat_*, produced_*, entropy_exchanged_*, "
+FINEST = (
+    "those of the finest run, exact: supplied_*, heat_*, produced_*, entropy_exchanged_*, "
     "energy_residual, entropy_residual"
 )
 #: How a run that stopped is looked at again: to find the cause, not to take its place.
@@ -80,7 +80,7 @@ def compiled_run(
             accuracy: dict[str, object] = {
                 "rtol": rtol,
                 "extrapolated": extrapolated(system),
-                "balances": FINER,
+                "balances": FINEST,
             }
         else:
             runs = fixed([system], engine, x[None], samples, step, watch, starts=starts)
@@ -168,21 +168,21 @@ def looks(system: System, segment: Segment, samples: FloatArray, most: float) ->
 
 
 def extrapolated(system: System) -> str:
-    """Return which quantities of a run with a tolerance are extrapolated from its two runs."""
+    """Return which quantities of a run with a tolerance are extrapolated from its three runs."""
     states = ", ".join(record.name for record in system.module.STATES)
     return f"{states}; and y_*, T_*, energy, entropy, which are computed from them"
 
 
 def inside(system: System, trajectory: Trajectory) -> Trajectory:
-    """Return a trajectory with the finer run's state where the extrapolated one is no state.
+    """Return a trajectory with the finest run's state where the extrapolated one is no state.
 
     A state may come so near to the edge of the domain that the extrapolation crosses it.
     """
-    x, u, finer = trajectory.states, trajectory.inputs, trajectory.balanced
+    x, u, finest = trajectory.states, trajectory.inputs, trajectory.balanced
     outside = np.any(system.violated(x, u), axis=0) | ~np.all(system.finite(x, u), axis=0)
-    if finer is None or not np.any(outside):
+    if finest is None or not np.any(outside):
         return trajectory
-    return replace(trajectory, states=np.where(outside, finer, x))
+    return replace(trajectory, states=np.where(outside, finest, x))
 
 
 def cause(system: System, x: FloatArray, samples: FloatArray, stopped: RunError) -> RunError:

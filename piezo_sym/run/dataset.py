@@ -30,7 +30,7 @@ Variable: TypeAlias = tuple[tuple[str, ...], "NDArray[Any] | pandas.Index[Any]",
 Named: TypeAlias = tuple[str, Variable]
 
 #: What the ledger says where states are extrapolated from two runs.
-FINER = "; of the finer run"
+FINEST = "; of the finest run"
 ENERGY_LEFT = "U - U(0) - energy put in"
 ENTROPY_LEFT = "S - S(0) - entropy produced - entropy exchanged"
 
@@ -95,7 +95,7 @@ def ledger(system: System, trajectory: Trajectory) -> Iterator[Named]:
     """Yield what the ports and processes did since t = 0, and what the two balances leave over."""
     module, p, start = system.module, system.parameters, trajectory.start
     x = trajectory.states if trajectory.balanced is None else trajectory.balanced
-    note = "" if trajectory.balanced is None else FINER
+    note = "" if trajectory.balanced is None else FINEST
     supplied, heat, produced, exchanged = integrals(system, trajectory)
     made = np.sum(produced, axis=0) + np.sum(exchanged, axis=0)
     brought = [module.OUTPUTS[n] for n in exchanges(module)]

@@ -1,10 +1,10 @@
-"""Runs of the discrete gradient in C: both balances to round-off, order two, extrapolated to four.
+"""Runs of the discrete gradient in C: both balances to round-off, order two, extrapolated to six.
 
 Input: systems that differ in parameters, their engine, their states at t = 0 and the sample times.
-Output: `Runs`.  With a step, one run of each.  With a tolerance, two runs side by side on one mesh,
-the second with half its steps, each with a state of its own, so that its balances stay exact.
-States are extrapolated from both; ledger and balances are those of the finer run.  If asked to,
-the first step after a jump of the inputs is made of four dissipative quarters, in each of the runs.
+Output: `Runs`.  With a step, one run of each.  With a tolerance, three runs side by side on one mesh,
+its halves and its quarters, each with a state of its own, so that its balances stay exact.  States
+are extrapolated from the three; ledger and balances are those of the finest run.  If asked to, the
+first step after a jump of the inputs is made of four dissipative quarters, in each of the runs.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ CHUNK = 50_000
 FEWEST_INTERVALS = 32
 MOST_LEVEL = 36
 #: Levels whose inputs are sampled below and above the present one.
-BELOW, ABOVE = 1, 2
-#: The finer run may be so much less accurate than the states extrapolated from it.
+BELOW, ABOVE = 1, 4
+#: The finest run may be so much less accurate than the states extrapolated from it.
 LOOSER = 5.0
 
 Watch: TypeAlias = Callable[[float], object]
@@ -118,14 +118,15 @@ def adaptive(
 ) -> Runs:
     """Return runs on a mesh that holds the error of each interval below rtol times a scale.
 
-    A coarse run gives the scale of each state, its largest magnitude.  The pair then goes from
-    interval to interval; how finely one is divided is decided by a trial from the finer state, with
-    half its steps.  Parameters as for `fixed`.
+    A coarse run gives the scale of each state, its largest magnitude.  The three then go from
+    interval to interval; how finely one is divided is decided by a trial from the finest state, with
+    a quarter of its steps.  Parameters as for `fixed`.
     """
     first = systems[0]
     longest = min(first.inputs.max_step, times[-1] / FEWEST_INTERVALS)
     run = _Run(systems, engine, x, times, starts)
     batch = run.batch
+    batch.allow(rtol)
     batch.scale[:] = LOOSER * rtol * _scale(run, longest)
     for block in blocks(first, times, longest, lambda: _block_size(batch)):
         run.note(block, _through(run, block))

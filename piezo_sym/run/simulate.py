@@ -63,11 +63,11 @@ def simulate(
     """Run a generated module from t = 0 and return all its quantities over time.
 
     The method is the discrete gradient, compiled, unless another is named. Both its balances close
-    to round-off at every step. With `rtol` there are two runs, one with steps of half the length;
-    what an interval adds to the error of the finer run's states is held below 5 rtol of the largest
-    magnitude of each state (of a bank: of any lane) in a coarse first run. The states given are
-    extrapolated from both runs, which mostly makes them far better than rtol; the ledger is the
-    finer run's. With `step` there is one run, and its error falls with the square of the step.
+    to round-off at every step. With `rtol` there are three runs, with steps, halves and quarters;
+    what an interval adds to the error of the finest run's states is held below 5 rtol of the
+    largest magnitude of each state (of a bank: of any lane) in a coarse first run. The states given
+    are extrapolated from all, which mostly makes them far better than rtol; the ledger is the
+    finest run's. With `step` there is one run, and its error falls with the square of the step.
 
     SciPy's methods hold the error of each step below rtol*|x| + atol. atol is rtol*1e-3 times the
     scale of the state, which is the largest magnitude that the state (for a bank: any of its

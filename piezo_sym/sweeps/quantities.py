@@ -60,8 +60,8 @@ def layout(
     """
     n, m, k = row_counts(system)
     states, inputs, integrals = (np.full((size, 1), np.nan) for size in (n, m, k))
-    finer = states if extrapolated else None
-    nothing = Trajectory(np.full(n, np.nan), states, inputs, integrals, 0, 0, finer)
+    finest = states if extrapolated else None
+    nothing = Trajectory(np.full(n, np.nan), states, inputs, integrals, 0, 0, finest)
     with np.errstate(all="ignore"):
         return {name: (dims, attrs) for name, (dims, _, attrs) in variables(system, nothing)}
 

@@ -57,6 +57,15 @@ def test_every_quantity_has_its_panel():
     ]
 
 
+def test_time_is_named_once_and_its_numbers_stand_under_every_column():
+    figure = plot(actuator())
+    assert figure.get_supxlabel() == "time [s]"
+    assert {axes.get_xlabel() for axes in figure.axes} == {""}
+    figure.draw_without_rendering()
+    numbered = [any(t.get_visible() for t in axes.get_xticklabels()) for axes in figure.axes]
+    assert numbered == [False] * 11 + [True] * 3
+
+
 def test_curves_are_the_run():
     run = actuator()
     figure = plot(run)

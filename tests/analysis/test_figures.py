@@ -60,13 +60,15 @@ def test_every_curve_is_in_the_legend(drawn):
     assert len(texts) == len(set(texts)) == len(figure.values)
 
 
-def test_curves_differ_in_colour_and_where_they_overlap_in_dashes(drawn):
+def test_curves_differ_in_colour_and_without_it_in_dashes_or_marks(drawn):
     figure, _, picture = drawn
     (axes,) = picture.axes
     named = [line for line in axes.lines if not line.get_label().startswith("_")]
     assert len({line.get_color() for line in named}) == len(figure.values)
     if figure in QUICK:
         assert len({str(line._dash_pattern) for line in named}) >= 3
+    else:
+        assert len({line.get_marker() for line in named}) == len(figure.values)
 
 
 def test_the_legend_and_texts_cover_no_curve(drawn):

@@ -96,6 +96,56 @@ def test_any_input_that_repeats(heater, wave, mean_square):
     assert found.temperature == pytest.approx(T_E + mean_square / (R * LAM), rel=2e-5)
 
 
+@pytest.mark.parametrize("turns", [2, 100, 512, 1024])
+def test_a_drive_of_many_turns_a_period_is_not_overlooked(heater, turns):
+    """256 steps, 512 too, would look at a sine of 512 turns at its zeros alone."""
+    drive = {"V": sine(V, turns * 1.0)}
+    found = steady.periodic_steady_state(heater, inputs=drive, frequency=1.0, rtol=1e-5)
+    assert found.temperature == pytest.approx(T_E + V**2 / (2 * R * LAM), rel=1e-5)
+    assert found.residual < 1e-4
+
+
+def test_a_drive_that_moves_too_fast_is_refused(heater):
+    with pytest.raises(UsageError, match=r"'V' needs more than 16384 steps in 1 s; .* in common"):
+        steady.periodic_steady_state(heater, inputs={"V": sine(V, 5000)}, frequency=1.0)
+
+
+def test_a_state_that_does_not_repeat_is_refused(heater, monkeypatch):
+    """As it was before the steps looked at the inputs: an overlooked drive found at the end."""
+    monkeypatch.setattr(
+        "piezo_sym.analysis.stroboscope.steps_needed", lambda _inputs, _f, steps: steps
+    )
+    with pytest.raises(RunError, match=r"does not repeat: it is off by .* after a period"):
+        steady.periodic_steady_state(heater, inputs={"V": sine(V, 512)}, frequency=1.0)
+
+
+def test_two_inputs_repeat_with_the_frequency_they_have_in_common():
+    """50 Hz and 75 Hz: a period of 25 Hz, which another solver follows back to its start."""
+    drive = {"V_in": sine(60, 50), "F_ext": sine(200, 75)}
+    found = periodic_steady_state("piezo_stack", inputs=drive, frequency=25)
+    heat = 2.0 * (found.temperature - 298.15) / 25
+    assert found.loss == pytest.approx(heat, rel=1e-5)
+    run = simulate(
+        "piezo_stack",
+        inputs=drive,
+        initial=found.initial,
+        duration=1 / 25,
+        times=[1 / 25],
+        rtol=1e-9,
+        method="LSODA",
+    )
+    for name in ("q", "p", "Q_C", "phi", "S"):
+        size = float(np.abs(found.orbit[name]).max())
+        assert np.abs(run[name].values[-1] - found.initial[name]).max() < 3e-6 * size
+
+
+@pytest.mark.parametrize(("other", "frequency"), [(75, 50), (50 * 2**0.5, 50), (75, 75)])
+def test_inputs_that_do_not_repeat_together_are_refused(other, frequency):
+    drive = {"V_in": sine(60, 50), "F_ext": sine(200, other)}
+    with pytest.raises(UsageError, match=r"does not repeat after .* have in common"):
+        periodic_steady_state("piezo_stack", inputs=drive, frequency=frequency)
+
+
 def test_heat_that_no_one_takes_away_has_no_steady_state(module):
     alone = "\n".join(line for line in HEATER.splitlines() if not line.startswith("air"))
     alone = alone.replace('T_e = { unit = "K", default = 290.0 }\n', "").replace(', "T_e > 0"', "")
@@ -203,8 +253,9 @@ def test_a_long_run_ends_there():
         assert float(run[name][-1]) == pytest.approx(found.initial[name], abs=1e-4 * size)
 
 
-def test_another_solver_finds_the_same_orbit(at_50):
-    state = at_50[0]
+@pytest.mark.parametrize("which", [0, 2], ids=["cool", "hot"])
+def test_another_solver_finds_the_same_orbit(at_50, which):
+    state = at_50[which]
     drive = {"inputs": {"V_in": sine(100, 50)}, "initial": state.initial, "duration": 0.02}
     run = simulate("piezo_stack", **drive, times=[0.02], rtol=1e-9, method="LSODA")
     for name in ("q", "p", "Q_C", "phi", "S"):
@@ -319,7 +370,9 @@ def test_without_a_compiler_another_solver_finds_the_same(heater, monkeypatch):
 @pytest.mark.parametrize(("spec", "bodies"), [("a1_two_bodies", 2)])
 def test_a_model_without_exactly_one_body_is_refused(spec, bodies):
     model = load(f"tests/networks/specs/{spec}.toml")
-    with pytest.raises(UsageError, match=f"has {bodies} bodies; expected a model with one body"):
+    with pytest.raises(
+        UsageError, match=f"has {bodies} bodies; expected a model with one body; simulate"
+    ):
         periodic_steady_state(model, inputs={}, frequency=1.0)
 
 

@@ -74,9 +74,9 @@ def test_every_way_to_sweep_computes_the_same(family, ways):
 @pytest.mark.parametrize("wide", [True, False])
 def test_an_engine_says_whether_members_go_side_by_side(family, wide):
     engine = replace(engine_of(family.problem.module), wide=wide)
-    assert (engine.side_by_side() is not None) is wide
+    assert (engine.side_by_side(2) is not None) is wide
     batch = Batch(engine, [system.parameters for system in family.systems], family.starts, 1)
-    assert (batch._wide is not None) is wide
+    assert (batch._vectors_for("adapt") is not None) is wide
 
 
 @pytest.mark.parametrize(("peer", "way"), WAYS, ids=WAY_NAMES)

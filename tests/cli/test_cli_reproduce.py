@@ -21,7 +21,9 @@ def folder(tmp_path_factory):
 def columns(path, over):
     """Rows of numbers by the value in one column, as a dict of arrays; empty cells are nan."""
     with path.open(newline="") as file:
-        rows = list(csv.DictReader(file))
+        head, *body = csv.reader(file)
+    names = [name.partition(" [")[0] for name in head]
+    rows = [dict(zip(names, line, strict=True)) for line in body]
     found = {}
     for value in dict.fromkeys(row[over] for row in rows):
         own = [row for row in rows if row[over] == value]
@@ -46,6 +48,24 @@ def steady(folder):
 def test_fifteen_files_are_written(folder):
     names = {f"{name}.{ending}" for name in NAMES for ending in ("csv", "png", "svg")}
     assert {path.name for path in folder.iterdir()} == names
+
+
+@pytest.mark.parametrize(
+    ("name", "head"),
+    [
+        ("figure_2", "T [degC],i [A],w_T [V]"),
+        ("figure_3", "T_e [degC],time [s],V_in [V],q [m],T_body [K]"),
+        (
+            "figure_4",
+            "L [mH],point,curve,frequency [Hz],temperature [K],coldest [K],hottest [K],"
+            "stable,jumps_to [K]",
+        ),
+        ("figure_5", "T_e [degC],time [s],V_in [V],q [m],T_body [K]"),
+        ("figure_6", "frequency [Hz],turn,V_in [V],q [m],T_body [K]"),
+    ],
+)
+def test_a_table_says_in_which_units_it_is(folder, name, head):
+    assert (folder / f"{name}.csv").read_text(encoding="utf-8").splitlines()[0] == head
 
 
 @pytest.mark.parametrize("name", NAMES)

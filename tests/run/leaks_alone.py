@@ -15,6 +15,7 @@ import pytest
 
 from piezo_sym import simulate, sine
 from piezo_sym.modules import module_of
+from piezo_sym.run.engine import march
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.stepper import Stepper
 
@@ -81,11 +82,17 @@ def test_a_leak_of_sixteen_bytes_is_seen():
 
 @pytest.mark.parametrize(
     ("name", "times", "accuracy"),
-    [("march", CALLS, {"step": 1e-6}), ("adapt", CALLS // 50, {"rtol": 1e-3})],
+    [
+        ("march", CALLS, {"step": 1e-6}),
+        ("adapt", CALLS // 50, {"rtol": 1e-3}),
+        ("run_wide", CALLS // 50, {"rtol": 1e-3}),
+    ],
 )
 def test_runs_in_c(monkeypatch, name, times, accuracy):
     """The call that a run makes is made again, on the same arrays: each goes on from the last."""
-    library, counted = engine_of(module_of("piezo_stack")).library, []
+    engine, counted = engine_of(module_of("piezo_stack")), []
+    library = engine.side_by_side(1) if name == "run_wide" else engine.library
+    monkeypatch.setattr(march, "MOST_STATES", 32 if name == "run_wide" else 0)
     function = getattr(library, f"piezo_stack_{name}")
     monkeypatch.setattr(library, f"piezo_stack_{name}", Repeated(function, times, counted))
     options = {"duration": 2e-6, "times": 2, "method": "discrete_gradient"}

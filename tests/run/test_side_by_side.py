@@ -62,7 +62,7 @@ def test_lanes_compute_what_members_alone_do(monkeypatch, path, how):
     for name in ("states", "sums"):
         assert close(getattr(alone.batch, name), getattr(together.batch, name))
     lanes = [member.model.iterations for member in together.batch.members]
-    assert together.batch._wide is not None
+    assert together.batch._vectors_for("adapt") is not None
     assert min(lanes) > 0
 
 

@@ -8,6 +8,8 @@ What section 4 claims, and what the model with Table 1 gives (tests/analysis/tes
 =========  =====================================  ================================================
 figure     claim                                  found
 =========  =====================================  ================================================
+2          w_T is a dead zone, steeper where it   holds: 5, 1.43, 0.83, 0.59 ohm outside of it at
+           is colder                              25, 30, 35, 40 degC
 3          the slope of the loop changes with     holds: 15.7, 16.4, 16.9, 17.3 um/V at 25, 30, 35,
            T_e                                    40 degC (100 Hz, tenth period)
 4          the static temperature rises with f,   holds up to a fold at 71.4, 69.4, 67.3, 57.5 Hz
@@ -30,6 +32,7 @@ figure     claim                                  found
 1, 3, 6    the model has hysteresis               only with rate: width and area go to zero with f
                                                   (0.23, 0.061, 0.020 mm at 10, 3, 1 Hz),
                                                   where piezoelectric ceramics keep theirs
+3 to 6     in accordance with reported results    not compared: the paper quotes no number of them
 Table 1    values within standard ranges          a = 10 C/m moves the tip 2 mm at 100 V and couples
                                                   a^2/(a^2 + k C) = 0.98 of the energy; measured
                                                   stacks move 0.1 mm or less, and couple about half

@@ -41,7 +41,7 @@ def draw(data: xarray.Dataset) -> Figure:
 def summary(data: xarray.Dataset) -> str:
     """Return the slopes of the loops, for a log."""
     slopes = [measured(data.sel(T_e=celsius)).slope * 1e6 for celsius in data.T_e.values]
-    return "slope of the loops [um/V]: " + ", ".join(f"{s:.3f}" for s in slopes)
+    return "slope of the loops, tenth period [um/V]: " + ", ".join(f"{s:.3f}" for s in slopes)
 
 
 FIGURE_3 = PaperFigure(

@@ -17,7 +17,7 @@ the Curie temperature of soft PZT (420 to 620 K) the piezoelectric effect is gon
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -39,6 +39,8 @@ FREQUENCIES = (10.0, 1000.0)  # Hz
 HOTTEST = 1e4  # K: where curves end
 SENSIBLE = 400.0  # K: above, the printed law means nothing
 LEAST, MOST = 1.0, 1e4  # of the axis [K]
+MARKS = ("o", "s", "^", "D")  # dashes are taken: they say what is stable
+APART = 0.3  # marks on a line, as a part of the diagonal
 
 
 def curve(module: GeneratedModule, millihenry: float) -> xarray.Dataset:
@@ -66,13 +68,16 @@ def draw(data: xarray.Dataset) -> Figure:
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.axhspan(SENSIBLE - T_E, MOST, color="0.9", linewidth=0, zorder=0)
-    for millihenry, colour in zip(data.L.values, COLOURS, strict=False):
+    for n, (millihenry, colour) in enumerate(zip(data.L.values, COLOURS, strict=False)):
         one = data.sel(L=millihenry).dropna("point", subset=["frequency"])
+        look = {"color": colour, "marker": MARKS[n], "markersize": 3}
+        apart = (APART * (n + 0.5) / len(MARKS), APART)  # first mark, and distance of the next
         label = f"{millihenry:g} mH"
         for number in np.unique(one["curve"].values):
-            _draw_curve(axes, one.isel(point=one["curve"].values == number), colour, label)
+            part = one.isel(point=one["curve"].values == number)
+            _draw_curve(axes, part, label, {**look, "markevery": apart})
             label = "_again"
-        _draw_jumps(axes, one, colour)
+        _draw_jumps(axes, one, look)
     text = f"over {SENSIBLE:.0f} K: outside\nthe laws' range"
     axes.text(11, 130, text, fontsize=SMALL - 1, color="0.25", va="bottom")
     axes.set_xlim(*FREQUENCIES)
@@ -82,24 +87,24 @@ def draw(data: xarray.Dataset) -> Figure:
     return figure
 
 
-def _draw_curve(axes: Axes, curve: xarray.Dataset, colour: str, label: str) -> None:
+def _draw_curve(axes: Axes, curve: xarray.Dataset, label: str, look: dict[str, Any]) -> None:
     """Draw one curve: solid where stable, dotted where not; a fold belongs to both."""
     frequency, rise = curve.frequency.values, curve.temperature.values - T_E
     fold = np.isfinite(curve.jumps_to.values) | np.isinf(curve.jumps_to.values)
     stable = curve.stable.values > 0
     solid, dotted = (np.where(kind | fold, rise, np.nan) for kind in (stable, ~stable))
-    axes.plot(frequency, solid, color=colour, linewidth=1.2, label=label)
-    axes.plot(frequency, dotted, ":", color=colour, linewidth=0.8)
+    axes.plot(frequency, solid, linewidth=1.2, label=label, **look)
+    axes.plot(frequency, dotted, ":", color=look["color"], linewidth=0.8)
 
 
-def _draw_jumps(axes: Axes, one: xarray.Dataset, colour: str) -> None:
+def _draw_jumps(axes: Axes, one: xarray.Dataset, look: dict[str, Any]) -> None:
     """Draw an arrow from each fold to where the temperature goes."""
     for n in np.flatnonzero(~np.isnan(one.jumps_to.values)):
         f, start = float(one.frequency[n]), float(one.temperature[n]) - T_E
         end = min(float(one.jumps_to[n]) - T_E, MOST)
-        style = {"arrowstyle": "->", "color": colour, "linewidth": 0.8, "linestyle": "--"}
+        style = {"arrowstyle": "->", "color": look["color"], "linewidth": 0.8, "linestyle": "--"}
         axes.annotate("", (f, end), (f, start), arrowprops={**style, "shrinkA": 0, "shrinkB": 0})
-        axes.plot(f, start, "o", color=colour, markersize=2.5)
+        axes.plot(f, start, linestyle="", **look)
 
 
 def summary(data: xarray.Dataset) -> str:

@@ -41,7 +41,7 @@ def draw(data: xarray.Dataset) -> Figure:
         label = f"{frequency:.0f} Hz"
         axes.plot(one.V_in, one.q * 1e3, linestyle=dash, color=colour, linewidth=1.1, label=label)
     name_axes(axes, "voltage $V_{\\mathrm{in}}$ [V]", "displacement $q$ [mm]")
-    axes.set_ylim(-2.3, 2.9)
+    axes.set_ylim(-2.3, 3.1)
     legend(axes, "$f$", loc="upper center", ncols=4, handlelength=2, columnspacing=1)
     return figure
 
@@ -51,7 +51,7 @@ def summary(data: xarray.Dataset) -> str:
     found = [measured(data.sel(frequency=f)) for f in data.frequency.values]
     widths = ", ".join(f"{one.width * 1e3:.3f}" for one in found)
     slopes = ", ".join(f"{one.slope * 1e6:.2f}" for one in found)
-    return f"width of the loops at 0 V [mm]: {widths}; slope [um/V]: {slopes}"
+    return f"width of the loops at 0 V, tenth period [mm]: {widths}; slope [um/V]: {slopes}"
 
 
 FIGURE_6 = PaperFigure(

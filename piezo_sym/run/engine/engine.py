@@ -122,12 +122,12 @@ class Engine:
     sources: Sources
     wide: bool = True
 
-    def side_by_side(self) -> ctypes.CDLL | None:
-        """Return the library that also runs members side by side, if this compiler can make one.
+    def side_by_side(self, members: int) -> ctypes.CDLL | None:
+        """Return the library that runs paths of so many members side by side, if it can be made.
 
-        None also if `wide` says that members are to go one by one.
+        None also if `wide` says that paths are to go one by one.
         """
-        return self._with_vectors("members") if self.wide else None
+        return self._with_vectors("pair" if members == 1 else "members") if self.wide else None
 
     def _with_vectors(self, made: Made) -> ctypes.CDLL | None:
         sources = replace(self.sources, made=made)

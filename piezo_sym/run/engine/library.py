@@ -27,9 +27,9 @@ from piezo_sym.run.engine.processor import processor
 from piezo_sym.run.engine.rates import rates_text
 from piezo_sym.run.engine.vector import wide_text
 
-#: What a library computes: states and steps one by one; members side by side, too; or functions of
-#: many states alone.
-Made = Literal["single", "members", "rates"]
+#: What a library computes: states and steps one by one; also the paths of one member side by side
+#: ("pair"), or many members ("members"); or functions of many states alone.
+Made = Literal["single", "pair", "members", "rates"]
 ENDINGS = {"win32": ".dll", "darwin": ".dylib"}
 
 
@@ -61,7 +61,8 @@ class Sources:
             return rates_text(self.name, self.source)
         starts = f" {self.name}_newton_start(" in self.header
         text = driver(self.name, starts=starts)
-        if self.made == "members":
+        if self.made != "single":
+            text += "#define PAIR 1\n" if self.made == "pair" else ""
             text += wide_text(self.name, self.header, self.source)
         return text
 

@@ -8,6 +8,7 @@ them.
 from __future__ import annotations
 
 import ctypes
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, final
 
 import numpy as np
@@ -22,6 +23,9 @@ if TYPE_CHECKING:
 
 #: Members of more states are computed one by one: then the lanes of their banks fill the vectors.
 MOST_STATES = 32
+#: What Newton's method may leave of a step's change, in 1e-9 of it: where balances have to close,
+#: and, with a tolerance, on the paths that only tell or mend an error.
+EXACT, SLACK = 1e-6, 1e-3 / 1e-9
 Way = Literal["survey", "march", "adapt"]
 MODES: dict[Way, int] = {"survey": 0, "march": 1, "adapt": 2}
 POINTER, LONG, DOUBLE = ctypes.c_void_p, ctypes.c_long, ctypes.c_double
@@ -35,6 +39,7 @@ class Model(ctypes.Structure):
         *((name, LONG) for name in ("n", "rows", "ports", "processes", "inputs")),
         ("space", POINTER),
         *((name, LONG) for name in ("iterations", "halvings", "start")),
+        ("slack", DOUBLE),
     ]
 
 
@@ -53,10 +58,9 @@ class Member(ctypes.Structure):
 
     _fields_ = [
         ("model", Model),
-        *((name, Path) for name in ("fine", "coarse", "trial")),
+        *((name, Path) for name in ("fine", "middle", "coarse", "trial")),
         *((name, POINTER) for name in ("kept", "tolerance", "out_x", "out_fine", "out_sums")),
         *((name, LONG) for name in ("level", "done", "steps", "failed")),
-        ("worst", DOUBLE),
     ]
 
 
@@ -118,19 +122,18 @@ class Batch:
     ) -> None:
         rows = self.rows = Rows(engine, parameters[0], starts=starts)
         size, n, ledger = len(parameters), rows.n, rows.ledger
-        self._library, self._name = engine.library, engine.module.NAME
+        self._engine, self._library, self._name = engine, engine.library, engine.module.NAME
         self._structures = [engine.structure(p) for p in parameters]
         self.x, self.scale = x.copy(), np.abs(x)
         self.states, self.fine = np.full((2, size, samples, n), np.nan)
         self.sums = np.full((size, samples, ledger), np.nan)
-        self._others = np.stack([x, x])  # of the coarse and the trial path
+        self._others = np.stack([x, x, x])  # of the middle, the coarse and the trial path
         first = self._model(0, None)
         self._space = np.zeros((size, self._function("room")(ctypes.byref(first))))
-        self._changes = np.zeros((size, 3, 2, max(n, 1)))
+        self._changes = np.zeros((size, 4, 2, max(n, 1)))
         self.ledgers = np.zeros((size, 2, ledger))
         self._kept = np.zeros((size, n + 2 * ledger))
         self.members = (Member * size)(*map(self._member, range(size)))
-        self._wide, self._vectors = self._side_by_side(engine)
 
     def __len__(self) -> int:
         """Return the number of members."""
@@ -171,26 +174,40 @@ class Batch:
         for k, member in enumerate(self.members):
             member.done = done[k] if done else 0
         arguments = (self.members, LONG(len(self.members)), ctypes.byref(block))
-        if self._wide is None:
+        vectors = self._vectors_for(name)
+        if vectors is None:
             self._function(name)(*arguments)
         else:
-            self._wide(*arguments, ctypes.c_int(MODES[name]), at(self._vectors))
+            function, space = vectors
+            function(*arguments, ctypes.c_int(MODES[name]), at(space))
         return [member.done for member in self.members]
+
+    def allow(self, rtol: float) -> None:
+        """Let paths without a ledger leave a small share of rtol in each step."""
+        for member in self.members:
+            member.model.slack = max(EXACT, SLACK * rtol)
 
     def rewind(self) -> None:
         """Forget a survey, but for its `scale`."""
-        self._others[1] = self.x
+        self._others[2] = self.x
         for member in self.members:
             member.trial.h = member.trial.h_prior = 0.0
             member.steps = member.failed = 0
             member.model.iterations = member.model.halvings = 0
 
-    def _side_by_side(self, engine: Engine) -> tuple[Any, FloatArray]:
-        """Return the function that runs members side by side, or None, and its room."""
-        few = len(self.members) < 2 or self.rows.n > MOST_STATES or self.rows.numerical > 0
-        library = None if few else engine.side_by_side()
+    def _vectors_for(self, name: Way) -> tuple[Any, FloatArray] | None:
+        """Return the function that takes paths side by side, and its room; None if one by one.
+
+        One member alone has several paths only where there is a tolerance.
+        """
+        alone = len(self.members) == 1 and name != "adapt"
+        return None if alone or self.rows.n > MOST_STATES or self.rows.numerical else self._vectors
+
+    @cached_property
+    def _vectors(self) -> tuple[Any, FloatArray] | None:
+        library = self._engine.side_by_side(len(self.members))
         if library is None:
-            return None, np.empty(0)
+            return None
         width = LONG.in_dll(library, f"{self._name}_width").value
         size = getattr(library, f"{self._name}_wide_size")
         size.restype = LONG
@@ -203,7 +220,7 @@ class Batch:
 
     def _member(self, k: int) -> Member:
         changes, ledger = self._changes[k], self.ledgers[k]
-        states = (self.x[k], self._others[0, k], self._others[1, k])
+        states = (self.x[k], *self._others[:, k])
         paths = [Path(at(x), at(c[0]), at(c[1])) for x, c in zip(states, changes, strict=True)]
         paths[0].sums, paths[0].lost = at(ledger[0]), at(ledger[1])
         out = (self.states[k], self.fine[k], self.sums[k])
@@ -213,7 +230,7 @@ class Batch:
     def _model(self, k: int, space: ctypes.c_void_p | None) -> Model:
         r, structure = self.rows, self._structures[k].value
         sizes = (r.n, r.ledger, r.ports, r.processes, r.inputs)
-        return Model(ctypes.addressof(structure), *sizes, space)
+        return Model(ctypes.addressof(structure), *sizes, space, slack=EXACT)
 
     def _function(self, name: str) -> Any:
         function = getattr(self._library, f"{self._name}_{name}")

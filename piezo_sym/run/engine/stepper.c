@@ -12,6 +12,12 @@ const long MODEL(exchanges) = MODEL(exchange_count);
 enum { MOST_ITERATIONS = 14, MOST_HALVINGS = 40, MOST_SHARES = 60 };
 /* An interval whose error is below this share of the tolerance tells the next to take fewer steps. */
 #define MUCH_TOO_FINE 0.05
+/* What Newton's method may leave, in 1e-9 of a step: 1e-15 of it, where balances have to close. */
+#define EXACT 1e-6
+/* No state moves by less than 1e9 times this. */
+#define LEAST_SIZE 1e-200
+/* The error of one step is, to second order, this many times the one of its four quarters, and once. */
+#define FINEST 15.0
 
 /*
  * A model with its sizes, and room for one step: arrays of n, of change_size and of rows numbers.
@@ -22,7 +28,8 @@ typedef struct {
     long n, rows, ports, processes, inputs;
     double *space;
     long iterations, halvings;
-    long start; /* whether the steps taken now are dissipative */
+    long start;   /* whether the steps taken now are dissipative */
+    double slack; /* what Newton's method may leave on paths without a ledger, in 1e-9 of a step */
 } MODEL(model);
 
 /* A state on its way: x[n], its last change and the one before, and the ledger (or none). */
@@ -60,25 +67,28 @@ static void MODEL(book)(const MODEL(model) *m, const MODEL(path) *path, double h
 /*
  * Newton's method for the state y after a step; whether it converged inside the domain.  A change is
  * measured in 1e-9 of the step's.  It stops when the last one was less, or, since its error falls
- * quadratically, when the next one would be 1e-15 of the step's.
+ * quadratically, when the next one would be `enough`.
  */
 static int MODEL(root)(MODEL(model) *m, const double *restrict x, double *restrict y,
-                       const double *u, double h)
+                       const double *u, double h, double enough)
 {
     double *restrict change = m->space + 2 * m->n;
     double before = 0.0;
     for (int iteration = 0; iteration < MOST_ITERATIONS; ++iteration) {
-        double worst = 0.0, share = 1.0;
+        double most = 0.0, per = 1.0, share = 1.0; /* the worst change is most / per */
         ++m->iterations;
         if (!MODEL(change)(m->p, m->start, x, y, u, h, change))
             return 0;
         for (long i = 0; i < m->n; ++i) {
             const double after = y[i] - change[i];
-            const double size = 1e-9 * fabs(after - x[i]) + 1e-15 * fabs(x[i]) + 1e-300;
-            const double ratio = fabs(change[i]) / size;
-            worst = ratio <= worst ? worst : ratio; /* and if it is no number */
+            const double size = 1e-9 * fabs(after - x[i]) + 1e-15 * fabs(x[i]) + LEAST_SIZE;
+            const double changed = fabs(change[i]);
+            const int less = changed * per <= most * size; /* not so if it is no number */
+            most = less ? most : changed;
+            per = less ? per : size;
             y[i] = after;
         }
+        const double worst = most / per;
         if (!(worst < 1e300))
             return 0;
         for (int k = 0; !MODEL(inside)(y, u, m->p); ++k) { /* back towards where it came from */
@@ -88,7 +98,7 @@ static int MODEL(root)(MODEL(model) *m, const double *restrict x, double *restri
             for (long i = 0; i < m->n; ++i)
                 y[i] += share * change[i];
         }
-        if (share == 1.0 && (worst <= 1.0 || worst * (worst / before) * (worst / before) <= 1e-6))
+        if (share == 1.0 && (worst <= 1.0 || worst * (worst / before) * (worst / before) <= enough))
             return 1;
         before = share == 1.0 ? worst : 0.0;
     }
@@ -116,25 +126,28 @@ static int MODEL(accepted)(const MODEL(model) *m, const double *x, const double 
     return least >= -1e-14 * total;
 }
 
-/* Where Newton's method begins: on the parabola through the last steps, if they were alike. */
+/* Where Newton's method begins: on the parabola through the states before, or the line. */
 static void MODEL(predict)(const MODEL(model) *m, const MODEL(path) *path, double h, double *y)
 {
-    const double line = path->h > 0.0 ? h / path->h : 0.0;
-    const double bend = path->h == h && path->h_prior == h ? 1.0 : 0.0;
+    const double per_h = path->h > 0.0 ? 1.0 / path->h : 0.0;
+    const double per_prior = path->h_prior > 0.0 ? 1.0 / path->h_prior : 0.0;
+    const double bend = per_prior > 0.0 ? h * (h + path->h) / (path->h + path->h_prior) : 0.0;
+    const double by_last = (h + bend) * per_h, by_prior = bend * per_prior;
     for (long i = 0; i < m->n; ++i)
-        y[i] = path->x[i] + line * path->last[i] + bend * (path->last[i] - path->prior[i]);
+        y[i] = path->x[i] + by_last * path->last[i] - by_prior * path->prior[i];
 }
 
 /* One step over h, halved where it has to be; 0, and the state as before, if that does not help. */
 static int MODEL(step)(MODEL(model) *m, MODEL(path) *path, const double *u, double h, int depth)
 {
     double *restrict y = m->space;
+    const double enough = path->sums ? EXACT : m->slack;
     int found = 0;
     MODEL(predict)(m, path, h, y);
     for (int trial = path->h > 0.0 ? 0 : 1; trial < 2 && !found; ++trial) {
         if (trial == 1) /* not from a prediction */
             memcpy(y, path->x, (size_t)m->n * sizeof *y);
-        found = MODEL(inside)(y, u, m->p) && MODEL(root)(m, path->x, y, u, h) &&
+        found = MODEL(inside)(y, u, m->p) && MODEL(root)(m, path->x, y, u, h, enough) &&
                 MODEL(accepted)(m, path->x, y, u, h);
     }
     if (!found) {
@@ -199,17 +212,16 @@ static int MODEL(across)(MODEL(model) *m, MODEL(path) *path, const double *u, do
 }
 
 /*
- * A run among others: three paths through one mesh, `fine`, `coarse` with half its steps, and
- * `trial`, which takes such steps from the fine one; arrays for its results at samples, a row each.
+ * A run among others: paths through one mesh, `fine`, `middle` with half its steps, `coarse` with a
+ * quarter, and `trial`, as coarse but from the fine one; arrays for results at samples, a row each.
  */
 typedef struct {
     MODEL(model) model;
-    MODEL(path) fine, coarse, trial;
+    MODEL(path) fine, middle, coarse, trial;
     double *kept;      /* of n and of 2 rows: state and ledger of the fine path before an interval */
     double *tolerance; /* of n: for the error of an interval */
     double *out_x, *out_fine, *out_sums;
     long level, done, steps, failed;
-    double worst; /* of the interval at hand, in wide.c */
 } MODEL(member);
 
 /*
@@ -276,6 +288,13 @@ void MODEL(march)(MODEL(member) *members, long count, const MODEL(block) *b)
     }
 }
 
+/* The level with twice the steps of a level. */
+static long MODEL(twice)(long level)
+{
+    return level ? level + 2 : 1;
+}
+
+/* Remember where the fine path is: its state and its ledger. */
 static void MODEL(keep)(const MODEL(member) *s)
 {
     const size_t n = (size_t)s->model.n, rows = (size_t)s->model.rows;
@@ -290,65 +309,71 @@ static void MODEL(back)(MODEL(member) *s)
     memcpy(s->fine.x, s->kept, n * sizeof(double));
     memcpy(s->fine.sums, s->kept + n, rows * sizeof(double));
     memcpy(s->fine.lost, s->kept + n + rows, rows * sizeof(double));
-    s->fine.h = 0.0;
+    s->fine.h = s->fine.h_prior = 0.0;
+}
+
+/* A path's steps over the interval at hand, as many as a level has. */
+static int MODEL(along)(MODEL(member) *s, MODEL(path) *path, const MODEL(block) *b, long level)
+{
+    const long steps = MODEL(steps_at)(level);
+    const double *u = b->u[level - b->lowest] + s->model.inputs * steps * s->done;
+    const double h = b->h[s->done] / (double)steps;
+    s->steps += steps;
+    return MODEL(across)(&s->model, path, u, h, steps, MODEL(first)(b, s->done, level));
 }
 
 /*
- * One interval: as many steps, and half steps, as its level says.  Returns how far steps and half
- * steps from the finer state end apart, in three times the tolerance; negative if there is no step.
+ * One interval: as many steps as its level says, and twice and four times as many.  Returns how far
+ * steps and quarter steps from the finest state end apart, in FINEST times the tolerance; negative if
+ * there is no step.
  */
-static double MODEL(try)(MODEL(member) *s, const MODEL(block) *b, long finer)
+static double MODEL(try)(MODEL(member) *s, const MODEL(block) *b)
 {
-    const long steps = MODEL(steps_at)(s->level), inputs = s->model.inputs;
-    const double *at = b->u[s->level - b->lowest] + inputs * steps * s->done;
-    const double *twice = b->u[finer - b->lowest] + inputs * 2 * steps * s->done;
-    const double *first = MODEL(first)(b, s->done, s->level);
-    const double *soon = MODEL(first)(b, s->done, finer);
-    const double length = b->h[s->done] / (double)steps;
+    const long level = s->level, half = MODEL(twice)(level), quarter = MODEL(twice)(half);
     double worst = 0.0;
     memcpy(s->trial.x, s->fine.x, (size_t)s->model.n * sizeof(double));
-    s->steps += 3 * steps;
-    if (!MODEL(across)(&s->model, &s->trial, at, length, steps, first) ||
-        !MODEL(across)(&s->model, &s->fine, twice, 0.5 * length, 2 * steps, soon))
+    if (!MODEL(along)(s, &s->trial, b, level) || !MODEL(along)(s, &s->fine, b, quarter))
         return -1.0;
     for (long i = 0; i < s->model.n; ++i) {
-        const double ratio = fabs(s->fine.x[i] - s->trial.x[i]) / (3.0 * s->tolerance[i]);
+        const double ratio = fabs(s->fine.x[i] - s->trial.x[i]) / (FINEST * s->tolerance[i]);
         worst = ratio <= worst ? worst : ratio;
     }
     if (!(worst <= 1.0))
         return worst;
-    s->steps += steps;
-    return MODEL(across)(&s->model, &s->coarse, at, length, steps, first) ? worst : -1.0;
+    if (!MODEL(along)(s, &s->coarse, b, level) || !MODEL(along)(s, &s->middle, b, half))
+        return -1.0;
+    return worst;
 }
 
-/* Writes the state extrapolated from both paths, the finer one and its ledger. */
+/* Writes the state extrapolated from the three paths, the finest one and its ledger. */
 static void MODEL(write)(const MODEL(member) *s, long row)
 {
     const long n = s->model.n, rows = s->model.rows;
     double *restrict best = s->out_x + row * n;
-    const double *fine = s->fine.x, *coarse = s->coarse.x;
-    for (long i = 0; i < n; ++i)
-        best[i] = fine[i] + (fine[i] - coarse[i]) / 3.0;
+    const double *fine = s->fine.x, *middle = s->middle.x, *coarse = s->coarse.x;
+    for (long i = 0; i < n; ++i) {
+        const double first = (middle[i] - coarse[i]) / 3.0, then = (fine[i] - middle[i]) / 3.0;
+        best[i] = fine[i] + then + (fine[i] - middle[i] + then - first) / 15.0;
+    }
     memcpy(s->out_fine + row * n, fine, (size_t)n * sizeof(double));
     memcpy(s->out_sums + row * rows, s->fine.sums, (size_t)rows * sizeof(double));
 }
 
 /*
- * Runs a mesh and its halves side by side, each with a state and a balance of its own.  How finely an
- * interval is divided is chosen on the way, so that steps and half steps from the finer state end
- * within three times the tolerance of each other.  A member stops before an interval that needs a
- * level that is not there, and for good where a step has no solution.
+ * Runs a mesh, its halves and its quarters side by side, each with a state of its own.  How finely an
+ * interval is divided is chosen on the way, so that steps and quarter steps from the finest state
+ * end within FINEST times the tolerance of each other.  A member stops before an interval that needs
+ * a level that is not there, and for good where a step has no solution.
  */
 void MODEL(adapt)(MODEL(member) *members, long count, const MODEL(block) *b);
 void MODEL(adapt)(MODEL(member) *members, long count, const MODEL(block) *b)
 {
     for (MODEL(member) *s = members; s < members + count; ++s) {
         while (s->done < b->intervals && !s->failed) {
-            const long finer = s->level ? s->level + 2 : 1;
-            if (s->level < b->lowest || finer > b->highest)
+            if (s->level < b->lowest || MODEL(twice)(MODEL(twice)(s->level)) > b->highest)
                 break;
             MODEL(keep)(s);
-            const double worst = MODEL(try)(s, b, finer);
+            const double worst = MODEL(try)(s, b);
             if (worst < 0.0) {
                 MODEL(back)(s);
                 s->failed = 1;

@@ -8,9 +8,11 @@ holds for vectors as it stands; here its numbers get the vector's type, its func
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import final
 
 #: The line that opens the part of a source that holds for vectors too.
 OPENING = "/* The step of the discrete gradient, of one state or of many side by side. */"
@@ -62,6 +64,9 @@ def wide_source(model: str, header: str, source: str) -> str:
     if not opening or not record:
         msg = "the module has no step"
         raise ValueError(msg)
+    fields, counts = _fields(record[1])
+    step, reciprocals = _reciprocals(step, fields)
+    fields += reciprocals
     for pattern, instead in (
         (r"^#pragma(?:[^\n]*\\\n)*[^\n]*\n", ""),
         (rf"^long {name}_newton_size\(.*?^}}\n", ""),
@@ -73,8 +78,8 @@ def wide_source(model: str, header: str, source: str) -> str:
         (r"\bdouble\b", "real"),
     ):
         step = re.sub(pattern, instead, step, flags=re.MULTILINE | re.DOTALL)
-    texts = (defined(), _record(model, record[1]), step, undefined(), _loader(model, record[1]))
-    return "\n".join(texts)
+    words, loader = _record(model, fields, counts), _loader(model, fields, counts)
+    return "\n".join((defined(), words, step, undefined(), loader))
 
 
 def defined() -> str:
@@ -96,46 +101,84 @@ def undefined() -> str:
     return "\n".join(f"#undef {name}" for name in names)
 
 
-def _fields(record: str) -> Iterator[tuple[str, str]]:
-    """Yield the kind and the name of each parameter: "number", "bank:<bank>" or "count"."""
+@final
+@dataclass(frozen=True)
+class _Field:
+    """A field of the parameters for vectors.
+
+    Attributes
+    ----------
+    bank : the bank of which it has a number a lane; "" for a plain number.
+    value : what it is of the parameters `p` of one state, of lane j if it has lanes.
+    """
+
+    name: str
+    bank: str
+    value: str
+
+
+def _fields(record: str) -> tuple[list[_Field], list[str]]:
+    """Return the parameters, and the counts of banks, of a record in C."""
+    fields, counts = [], []
     for line in record.splitlines():
         found = re.match(
             r"\s*(double |const double \*|long )(\w+);(?:.*one a lane of (\w+))?", line
         )
-        if found:
-            kind = {"double ": "number", "long ": "count"}.get(found[1], f"bank:{found[3]}")
-            yield kind, found[2]
+        if found and found[1] == "long ":
+            counts.append(found[2])
+        elif found:
+            bank = found[3] or ""
+            fields.append(_Field(found[2], bank, f"p->{found[2]}{'[j]' if bank else ''}"))
+    return fields, counts
 
 
-def _record(model: str, record: str) -> str:
-    lines = []
-    for kind, name in _fields(record):
-        word = {"number": "real ", "count": "long "}.get(kind, "real *")
-        lines.append(f"    {word}{name};")
+def _reciprocals(step: str, fields: Sequence[_Field]) -> tuple[str, list[_Field]]:
+    """Return a step that takes reciprocals of parameters from its record, and those fields.
+
+    They are the same in every step, and divisions of vectors take long.
+    """
+    known = {field.name: field for field in fields}
+    found: dict[str, _Field] = {}
+    pointer = re.search(r"_parameters \*restrict (\w+)", step)
+    record = pointer[1] if pointer else "p"
+
+    def taken(match: re.Match[str]) -> str:
+        of = known.get(match[2])
+        if not of or bool(match[3]) != bool(of.bank):
+            return match[0]
+        field = _Field(f"per_{of.name}_", of.bank, f"1.0/{of.value}")
+        found[field.name] = field
+        return f"{match[1]} {record}->{field.name}{match[3] or ''};"
+
+    text = re.sub(r"^( *const double \w+ =) 1\.0/(\w+)(\[j\])?;$", taken, step, flags=re.MULTILINE)
+    return text, list(found.values())
+
+
+def _record(model: str, fields: Sequence[_Field], counts: Sequence[str]) -> str:
+    lines = [f"    long {name};" for name in counts]
+    lines += [f"    real {'*' if field.bank else ''}{field.name};" for field in fields]
     return "\n".join(["typedef struct {", *lines, f"}} {model}_wide_parameters;"])
 
 
-def _loader(model: str, record: str) -> str:
+def _loader(model: str, fields: Sequence[_Field], counts: Sequence[str]) -> str:
     """Return functions that give parameters of banks their room, and put in those of one state."""
-    room, placed, loaded = ["0"], [], []
-    for kind, name in _fields(record):
-        if kind == "number":
-            loaded.append(f"    w->{name}[lane] = p->{name};")
-        elif kind == "count":
-            placed.append(f"    w->{name} = p->{name};")
-        else:
-            count = f"p->{kind.removeprefix('bank:')}_count"
-            placed += [f"    w->{name} = space;", f"    space += {count};"]
-            loaded += [
-                f"    for (long j = 0; j < {count}; ++j)",
-                f"        w->{name}[j][lane] = p->{name}[j];",
-            ]
-            room.append(count)
+    placed, loaded = [f"    w->{name} = p->{name};" for name in counts], []
+    for field in fields:
+        if not field.bank:
+            loaded.append(f"    w->{field.name}[lane] = {field.value};")
+            continue
+        count = f"p->{field.bank}_count"
+        placed += [f"    w->{field.name} = space;", f"    space += {count};"]
+        loaded += [
+            f"    for (long j = 0; j < {count}; ++j)",
+            f"        w->{field.name}[j][lane] = {field.value};",
+        ]
+    room = " + ".join(["0", *(f"p->{field.bank}_count" for field in fields if field.bank)])
     p, w = f"const {model}_parameters *p", f"{model}_wide_parameters *w"
     return "\n".join(
         [
             f"static long {model}_wide_room({p})",
-            *("{", f"    (void)p;\n    return {' + '.join(room)};", "}"),
+            *("{", f"    (void)p;\n    return {room};", "}"),
             f"static void {model}_wide_place({w}, {p}, real *space)",
             *("{", "    (void)w;\n    (void)p;\n    (void)space;", *placed, "}"),
             f"static void {model}_wide_load({w}, {p}, int lane)",

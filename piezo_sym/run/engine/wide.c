@@ -1,59 +1,70 @@
 /*
- * Members side by side: each lane of a vector takes the steps of one member, and goes on with the next
- * member when it is done.  What stepper.c does for one, with masks: a lane whose step does not
+ * Members side by side: each lane of a vector takes steps of one member, and goes on with the next
+ * member when that is done.  What stepper.c does for one, with masks: a lane whose step does not
  * converge, or is not accepted, is left to stepper.c, which halves it.
  */
 
-enum { FINE, COARSE, TRIAL, PATHS };
 enum { SURVEY, MARCH, ADAPT };
+/*
+ * Surveys and marches give each member a lane.  A mesh gives it two, a track each, that end an interval
+ * together: the first takes the fine path, four steps a step; the other the trial and the coarse
+ * path, one each, and the middle one, two.  SLOTS: how many paths a lane may have.
+ */
+enum { FIRST, SECOND };
+enum { SLOTS = 3 };
 
 /* One lane: its member (or none), the path it is on, the steps left of it, and the next one. */
 typedef struct {
     MODEL(member) *s;
-    int path;
+    int track, slot;
     long left;
     const double *u;
     double h;
 } MODEL(lane);
 
-/* What all lanes compute with: states and last changes of each path, and room for one step. */
+/* Where a path of each lane is: state, last changes, their steps. */
+typedef struct {
+    real *x, *last, *prior, since, before;
+} MODEL(wide_path);
+
+/* What all lanes compute with: their paths, ledgers, what is kept of an interval, room for one step. */
 typedef struct {
     MODEL(wide_parameters) p;
     MODEL(lane) lane[WIDTH];
     long n, rows, ports, processes, inputs;
-    real *x[PATHS], *last[PATHS], *prior[PATHS], since[PATHS], before[PATHS];
-    real *from, *y, *u, *change, *means, *sums, *lost;
-    int mode;
+    MODEL(wide_path) path[SLOTS];
+    real *sums, *lost, *kept[SLOTS], *kept_sums, *kept_lost;
+    real *from, *y, *u, *change, *means;
+    int mode, tracks;
     const MODEL(block) *b;
 } MODEL(wide);
 
 extern const long MODEL(width);
 const long MODEL(width) = WIDTH;
 
-static long MODEL(wide_places)(MODEL(wide) *w, const MODEL(model) *m, real *space)
-{
-    real *at = space;
-    w->n = m->n, w->rows = m->rows, w->ports = m->ports, w->processes = m->processes;
-    w->inputs = m->inputs;
-    MODEL(wide_place)(&w->p, m->p, at);
-    at += MODEL(wide_room)(m->p);
-    for (int k = 0; k < PATHS; ++k) {
-        w->x[k] = at, w->last[k] = at + m->n, w->prior[k] = at + 2 * m->n;
-        at += 3 * m->n;
-        w->since[k] = w->before[k] = zero;
-    }
-    w->from = at, w->y = w->from + m->n, w->u = w->y + m->n, w->change = w->u + m->inputs;
-    w->means = w->change + MODEL(newton_size)(m->p);
-    w->sums = w->means + m->rows, w->lost = w->sums + m->rows;
-    return w->lost + m->rows - space;
-}
-
-/* How many vectors `space` of the functions below has to hold. */
+/* How many vectors `space` of run_wide has to hold. */
 long MODEL(wide_size)(const MODEL(model) *m);
 long MODEL(wide_size)(const MODEL(model) *m)
 {
-    MODEL(wide) w;
-    return MODEL(wide_places)(&w, m, 0);
+    const long paths = SLOTS * 4 * m->n, step = 2 * m->n + m->inputs + MODEL(newton_size)(m->p);
+    return MODEL(wide_room)(m->p) + paths + step + 5 * m->rows;
+}
+
+static void MODEL(wide_places)(MODEL(wide) *w, const MODEL(model) *m, real *space)
+{
+    const long n = w->n = m->n, rows = w->rows = m->rows;
+    real *at = space + MODEL(wide_room)(m->p);
+    w->ports = m->ports, w->processes = m->processes, w->inputs = m->inputs;
+    MODEL(wide_place)(&w->p, m->p, space);
+    for (int k = 0; k < SLOTS; ++k, at += 4 * n) {
+        MODEL(wide_path) *path = &w->path[k];
+        path->x = at, path->last = at + n, path->prior = at + 2 * n, w->kept[k] = at + 3 * n;
+        path->since = path->before = zero;
+    }
+    w->from = at, w->y = w->from + n, w->u = w->y + n, w->change = w->u + m->inputs;
+    w->means = w->change + MODEL(newton_size)(m->p);
+    w->sums = w->means + rows, w->lost = w->sums + rows;
+    w->kept_sums = w->lost + rows, w->kept_lost = w->kept_sums + rows;
 }
 
 static void MODEL(put)(real *to, const double *from, long n, int lane)
@@ -68,129 +79,164 @@ static void MODEL(take)(const real *from, double *to, long n, int lane)
         to[i] = from[i][lane];
 }
 
-static MODEL(path) *MODEL(path_of)(MODEL(member) *s, int path)
+/* Copy the numbers of some lanes. */
+static void MODEL(copy)(mask where, const real *from, real *to, long n)
 {
-    return path == FINE ? &s->fine : path == COARSE ? &s->coarse : &s->trial;
+    for (long i = 0; i < n; ++i)
+        to[i] = chosen(where, from[i], to[i]);
 }
 
-static void MODEL(put_path)(MODEL(wide) *w, int lane, int path)
+static MODEL(path) *MODEL(path_of)(const MODEL(wide) *w, int k, int slot)
 {
-    const MODEL(path) *of = MODEL(path_of)(w->lane[lane].s, path);
-    MODEL(put)(w->x[path], of->x, w->n, lane);
-    MODEL(put)(w->last[path], of->last, w->n, lane);
-    MODEL(put)(w->prior[path], of->prior, w->n, lane);
-    w->since[path][lane] = of->h;
-    w->before[path][lane] = of->h_prior;
-    if (path == FINE) {
-        MODEL(put)(w->sums, of->sums, w->rows, lane);
-        MODEL(put)(w->lost, of->lost, w->rows, lane);
+    MODEL(member) *s = w->lane[k].s;
+    MODEL(path) *const seconds[SLOTS] = {&s->trial, &s->coarse, &s->middle};
+    if (w->mode == SURVEY || w->lane[k].track == SECOND)
+        return seconds[slot];
+    return &s->fine;
+}
+
+static int MODEL(slots_of)(const MODEL(wide) *w, int k)
+{
+    return w->lane[k].track == SECOND ? SLOTS : 1;
+}
+
+/* Whether a lane books what its steps supply, heat and produce. */
+static int MODEL(books)(const MODEL(wide) *w, int k)
+{
+    return w->mode != SURVEY && w->lane[k].track == FIRST;
+}
+
+static void MODEL(put_path)(MODEL(wide) *w, int k, int slot)
+{
+    const MODEL(path) *of = MODEL(path_of)(w, k, slot);
+    MODEL(wide_path) *to = &w->path[slot];
+    MODEL(put)(to->x, of->x, w->n, k);
+    MODEL(put)(to->last, of->last, w->n, k);
+    MODEL(put)(to->prior, of->prior, w->n, k);
+    to->since[k] = of->h;
+    to->before[k] = of->h_prior;
+    if (MODEL(books)(w, k)) {
+        MODEL(put)(w->sums, of->sums, w->rows, k);
+        MODEL(put)(w->lost, of->lost, w->rows, k);
     }
 }
 
-static void MODEL(take_path)(const MODEL(wide) *w, int lane, int path)
+static void MODEL(take_path)(const MODEL(wide) *w, int k, int slot)
 {
-    MODEL(path) *of = MODEL(path_of)(w->lane[lane].s, path);
-    MODEL(take)(w->x[path], of->x, w->n, lane);
-    MODEL(take)(w->last[path], of->last, w->n, lane);
-    MODEL(take)(w->prior[path], of->prior, w->n, lane);
-    of->h = w->since[path][lane];
-    of->h_prior = w->before[path][lane];
-    if (path == FINE) {
-        MODEL(take)(w->sums, of->sums, w->rows, lane);
-        MODEL(take)(w->lost, of->lost, w->rows, lane);
+    MODEL(path) *of = MODEL(path_of)(w, k, slot);
+    const MODEL(wide_path) *from = &w->path[slot];
+    MODEL(take)(from->x, of->x, w->n, k);
+    MODEL(take)(from->last, of->last, w->n, k);
+    MODEL(take)(from->prior, of->prior, w->n, k);
+    of->h = from->since[k];
+    of->h_prior = from->before[k];
+    if (MODEL(books)(w, k)) {
+        MODEL(take)(w->sums, of->sums, w->rows, k);
+        MODEL(take)(w->lost, of->lost, w->rows, k);
     }
+}
+
+/* Remember where an interval of lanes k and k + 1 begins: states and ledger. */
+static void MODEL(keep_wide)(MODEL(wide) *w, int k)
+{
+    mask where = nowhere;
+    where[k] = where[k + 1] = -1;
+    for (int slot = 0; slot < SLOTS; ++slot)
+        MODEL(copy)(where, w->path[slot].x, w->kept[slot], w->n);
+    MODEL(copy)(where, w->sums, w->kept_sums, w->rows);
+    MODEL(copy)(where, w->lost, w->kept_lost, w->rows);
+}
+
+static void MODEL(undo)(MODEL(wide) *w, int k)
+{
+    mask where = nowhere;
+    where[k] = where[k + 1] = -1;
+    for (int slot = 0; slot < SLOTS; ++slot) {
+        MODEL(wide_path) *path = &w->path[slot];
+        MODEL(copy)(where, w->kept[slot], path->x, w->n);
+        path->since = chosen(where, zero, path->since);
+        path->before = chosen(where, zero, path->before);
+    }
+    MODEL(copy)(where, w->kept_sums, w->sums, w->rows);
+    MODEL(copy)(where, w->kept_lost, w->lost, w->rows);
 }
 
 /* Where and how a lane's next path goes: its steps, their length, their inputs. */
-static void MODEL(go)(MODEL(wide) *w, MODEL(lane) *lane, int path)
+static void MODEL(go)(MODEL(wide) *w, MODEL(lane) *lane, int slot)
 {
     const MODEL(member) *s = lane->s;
-    const long level = w->mode == ADAPT ? s->level : 0;
-    const long finer = level ? level + 2 : 1;
-    const long at = path == FINE && w->mode == ADAPT ? finer : level;
-    lane->path = path;
+    const long level = w->mode == ADAPT ? s->level : 0, half = MODEL(twice)(level);
+    const long seconds[SLOTS] = {level, level, half};
+    const int fine = w->mode == ADAPT && lane->track == FIRST;
+    const long at = fine ? MODEL(twice)(half) : seconds[slot];
+    lane->slot = slot;
     lane->left = MODEL(steps_at)(at);
     lane->h = w->b->h[s->done] / (double)lane->left;
     lane->u = w->b->u[at - w->b->lowest] + w->inputs * lane->left * s->done;
 }
 
-/* Begin the next interval of a lane's member; 0 if there is none. */
+/* Begin the next interval of the member of lane k, the first of its lanes; 0 if there is none. */
 static int MODEL(begin)(MODEL(wide) *w, int k)
 {
-    MODEL(lane) *lane = &w->lane[k];
-    MODEL(member) *s = lane->s;
-    const size_t n = (size_t)w->n, rows = (size_t)w->rows;
+    const MODEL(member) *s = w->lane[k].s;
     if (s->failed || s->done >= w->b->intervals)
         return 0;
-    if (w->mode != ADAPT) {
-        MODEL(go)(w, lane, w->mode == SURVEY ? TRIAL : FINE);
+    MODEL(go)(w, &w->lane[k], 0);
+    if (w->mode != ADAPT)
         return 1;
-    }
-    if (s->level < w->b->lowest || (s->level ? s->level + 2 : 1) > w->b->highest)
+    if (s->level < w->b->lowest || MODEL(twice)(MODEL(twice)(s->level)) > w->b->highest)
         return 0;
-    MODEL(take)(w->x[FINE], s->kept, w->n, k);
-    MODEL(take)(w->sums, s->kept + n, w->rows, k);
-    MODEL(take)(w->lost, s->kept + n + rows, w->rows, k);
-    MODEL(put)(w->x[TRIAL], s->kept, w->n, k);
-    MODEL(go)(w, lane, TRIAL);
+    MODEL(keep_wide)(w, k);
+    for (long i = 0; i < w->n; ++i)
+        w->path[0].x[i][k + 1] = w->path[0].x[i][k];
+    MODEL(go)(w, &w->lane[k + 1], 0);
     return 1;
 }
 
-/* The fine path of a lane goes back to where its interval began. */
-static void MODEL(undo)(MODEL(wide) *w, int k)
-{
-    const double *kept = w->lane[k].s->kept;
-    MODEL(put)(w->x[FINE], kept, w->n, k);
-    MODEL(put)(w->sums, kept + w->n, w->rows, k);
-    MODEL(put)(w->lost, kept + w->n + w->rows, w->rows, k);
-    w->since[FINE][k] = 0.0;
-}
-
-/* How far steps and half steps of a lane are apart, in three times the tolerance. */
+/* How far steps and quarter steps from the finest state are apart, in FINEST times the tolerance. */
 static double MODEL(apart)(const MODEL(wide) *w, int k)
 {
+    const real *x = w->path[0].x;
     const double *tolerance = w->lane[k].s->tolerance;
     double worst = 0.0;
     for (long i = 0; i < w->n; ++i) {
-        const double ratio = fabs(w->x[FINE][i][k] - w->x[TRIAL][i][k]) / (3.0 * tolerance[i]);
+        const double ratio = fabs(x[i][k] - x[i][k + 1]) / (FINEST * tolerance[i]);
         worst = ratio <= worst ? worst : ratio;
     }
     return worst;
 }
 
-/* The last step of a lane's path is done: what comes next; 0 if its member is done here. */
+/* Write what a member has become at a sample. */
+static void MODEL(write_wide)(MODEL(wide) *w, int k, long row)
+{
+    const MODEL(member) *s = w->lane[k].s;
+    MODEL(take)(w->sums, w->mode == MARCH ? s->out_sums + row * w->rows : s->fine.sums, w->rows, k);
+    MODEL(take)(w->path[0].x, w->mode == MARCH ? s->out_x + row * w->n : s->fine.x, w->n, k);
+    if (w->mode == MARCH)
+        return;
+    MODEL(take)(w->path[1].x, s->coarse.x, w->n, k + 1);
+    MODEL(take)(w->path[2].x, s->middle.x, w->n, k + 1);
+    MODEL(write)(s, row);
+}
+
+/* The lanes of a member have ended an interval: what comes next; 0 if the member is done here. */
 static int MODEL(next)(MODEL(wide) *w, int k)
 {
-    MODEL(lane) *lane = &w->lane[k];
-    MODEL(member) *s = lane->s;
+    MODEL(member) *s = w->lane[k].s;
     const long row = w->b->sample[s->done];
-    if (w->mode == SURVEY) {
-        for (long i = 0; i < w->n; ++i)
-            s->tolerance[i] = fmax(s->tolerance[i], fabs(w->x[TRIAL][i][k]));
-    } else if (w->mode == MARCH && row >= 0) {
-        MODEL(take)(w->x[FINE], s->out_x + row * w->n, w->n, k);
-        MODEL(take)(w->sums, s->out_sums + row * w->rows, w->rows, k);
-    } else if (w->mode == ADAPT && lane->path == TRIAL) {
-        MODEL(go)(w, lane, FINE);
-        return 1;
-    } else if (w->mode == ADAPT && lane->path == FINE) {
-        s->worst = MODEL(apart)(w, k);
-        if (s->worst <= 1.0) {
-            MODEL(go)(w, lane, COARSE);
-            return 1;
-        }
+    const double worst = w->mode == ADAPT ? MODEL(apart)(w, k) : 0.0;
+    if (!(worst <= 1.0)) {
         MODEL(undo)(w, k);
         ++s->level;
         return MODEL(begin)(w, k);
-    } else if (w->mode == ADAPT) {
-        if (row >= 0) {
-            MODEL(take_path)(w, k, FINE);
-            MODEL(take)(w->x[COARSE], s->coarse.x, w->n, k);
-            MODEL(write)(s, row);
-        }
-        if (s->worst < MUCH_TOO_FINE && s->level > 0)
-            --s->level;
     }
+    if (w->mode == SURVEY)
+        for (long i = 0; i < w->n; ++i)
+            s->tolerance[i] = fmax(s->tolerance[i], fabs(w->path[0].x[i][k]));
+    else if (row >= 0)
+        MODEL(write_wide)(w, k, row);
+    if (w->mode == ADAPT && worst < MUCH_TOO_FINE && s->level > 0)
+        --s->level;
     ++s->done;
     return MODEL(begin)(w, k);
 }
@@ -198,22 +244,25 @@ static int MODEL(next)(MODEL(wide) *w, int k)
 /* The state before each lane's step, and the prediction of that after it. */
 static void MODEL(predictions)(MODEL(wide) *w, const mask *on, real h)
 {
-    for (int k = 0; k < PATHS; ++k) {
+    for (int k = 0; k < SLOTS; ++k) {
+        const MODEL(wide_path) *path = &w->path[k];
         if (!any(on[k]))
             continue;
-        const real line = chosen(w->since[k] > 0.0, h / w->since[k], zero);
-        const mask alike = (w->since[k] == h) & (w->before[k] == h);
+        const real per_h = chosen(path->since > 0.0, 1.0 / path->since, zero);
+        const real per_prior = chosen(path->before > 0.0, 1.0 / path->before, zero);
+        const real slope = h * (h + path->since) / (path->since + path->before);
+        const real bend = chosen(path->before > 0.0, slope, zero);
+        const real by_last = (h + bend) * per_h, by_prior = bend * per_prior;
         for (long i = 0; i < w->n; ++i) {
-            const real x = w->x[k][i], last = w->last[k][i];
-            const real bend = chosen(alike, last - w->prior[k][i], zero);
-            w->from[i] = chosen(on[k], x, w->from[i]);
-            w->y[i] = chosen(on[k], x + line * last + bend, w->y[i]);
+            const real y = path->x[i] + by_last * path->last[i] - by_prior * path->prior[i];
+            w->from[i] = chosen(on[k], path->x[i], w->from[i]);
+            w->y[i] = chosen(on[k], y, w->y[i]);
         }
     }
 }
 
 /* Newton's method in all lanes of `going`; returns those in which it converged in the domain. */
-static mask MODEL(roots)(MODEL(wide) *w, mask going, real h)
+static mask MODEL(roots)(MODEL(wide) *w, mask going, real h, real enough)
 {
     mask found = nowhere;
     real before = zero;
@@ -221,21 +270,24 @@ static mask MODEL(roots)(MODEL(wide) *w, mask going, real h)
     for (long i = 0; i < w->n; ++i)
         w->y[i] = chosen(in, w->y[i], w->from[i]);
     for (int iteration = 0; iteration < MOST_ITERATIONS && any(going); ++iteration) {
-        real worst = zero;
+        real most = zero, per = wide(1.0); /* the worst change is most / per */
         const mask solved = MODEL(wide_newton)(w->from, w->y, w->u, h, &w->p, w->change);
         for (long i = 0; i < w->n; ++i) {
             const real x = w->from[i], after = w->y[i] - w->change[i];
-            const real size = 1e-9 * size_of(after - x) + 1e-15 * size_of(x) + 1e-300;
-            const real ratio = size_of(w->change[i]) / size;
-            worst = chosen(ratio <= worst, worst, ratio);
+            const real change = size_of(w->change[i]);
+            const real size = 1e-9 * size_of(after - x) + 1e-15 * size_of(x) + LEAST_SIZE;
+            const mask less = change * per <= most * size;
+            most = chosen(less, most, change);
+            per = chosen(less, per, size);
             w->y[i] = chosen(going, after, w->y[i]);
         }
+        const real worst = most / per;
         const real rate = worst / before;
         going &= solved & (worst < 1e300) & MODEL(wide_inside)(w->y, w->u, &w->p);
         for (int k = 0; k < WIDTH; ++k)
             if (w->lane[k].s)
                 ++w->lane[k].s->model.iterations;
-        const mask last = going & ((worst <= 1.0) | (worst * rate * rate <= 1e-6));
+        const mask last = going & ((worst <= 1.0) | (worst * rate * rate <= enough));
         found |= last;
         going &= ~last;
         before = worst;
@@ -258,21 +310,21 @@ static mask MODEL(natural)(MODEL(wide) *w)
     return good & (low >= -1e-14 * total);
 }
 
-/* Take the steps of the lanes in `good`: states, changes, and on the fine path the ledger. */
-static void MODEL(commit)(MODEL(wide) *w, const mask *on, mask good, real h)
+/* Take the steps of the lanes in `good`: states, changes, and the ledger of those that book. */
+static void MODEL(commit)(MODEL(wide) *w, const mask *on, mask good, mask booked, real h)
 {
-    const mask booked = good & on[FINE];
-    for (int k = 0; k < PATHS; ++k) {
+    for (int k = 0; k < SLOTS; ++k) {
         const mask here = good & on[k];
+        MODEL(wide_path) *path = &w->path[k];
         if (!any(here))
             continue;
         for (long i = 0; i < w->n; ++i) {
-            w->prior[k][i] = chosen(here, w->last[k][i], w->prior[k][i]);
-            w->last[k][i] = chosen(here, w->y[i] - w->from[i], w->last[k][i]);
-            w->x[k][i] = chosen(here, w->y[i], w->x[k][i]);
+            path->prior[i] = chosen(here, path->last[i], path->prior[i]);
+            path->last[i] = chosen(here, w->y[i] - w->from[i], path->last[i]);
+            path->x[i] = chosen(here, w->y[i], path->x[i]);
         }
-        w->before[k] = chosen(here, w->since[k], w->before[k]);
-        w->since[k] = chosen(here, h, w->since[k]);
+        path->before = chosen(here, path->since, path->before);
+        path->since = chosen(here, h, path->since);
     }
     for (long k = 0; any(booked) && k < w->rows; ++k) {
         const real part = h * w->means[k] - w->lost[k], total = w->sums[k] + part;
@@ -285,75 +337,98 @@ static void MODEL(commit)(MODEL(wide) *w, const mask *on, mask good, real h)
 static int MODEL(alone)(MODEL(wide) *w, int k)
 {
     MODEL(lane) *lane = &w->lane[k];
-    MODEL(take_path)(w, k, lane->path);
-    if (MODEL(step)(&lane->s->model, MODEL(path_of)(lane->s, lane->path), lane->u, lane->h, 0)) {
-        MODEL(put_path)(w, k, lane->path);
-        return 1;
-    }
-    if (w->mode == ADAPT)
-        MODEL(undo)(w, k);
-    lane->s->failed = 1;
-    return 0;
+    MODEL(take_path)(w, k, lane->slot);
+    if (!MODEL(step)(&lane->s->model, MODEL(path_of)(w, k, lane->slot), lane->u, lane->h, 0))
+        return 0;
+    MODEL(put_path)(w, k, lane->slot);
+    return 1;
 }
 
-/* A lane leaves its member, which keeps all, and goes on with the next that has something to do. */
+/* A member's lanes leave it, which keeps all, and go on with the next that has something to do. */
 static void MODEL(refill)(MODEL(wide) *w, int k, MODEL(member) **next, const MODEL(member) *end)
 {
-    MODEL(lane) *lane = &w->lane[k];
-    if (lane->s)
-        for (int path = 0; path < PATHS; ++path)
-            MODEL(take_path)(w, k, path);
-    for (lane->s = 0; *next < end;) {
-        lane->s = (*next)++;
-        MODEL(wide_load)(&w->p, lane->s->model.p, k);
-        for (int path = 0; path < PATHS; ++path)
-            MODEL(put_path)(w, k, path);
-        if (MODEL(begin)(w, k))
-            return;
-        lane->s = 0;
+    for (int lane = k; w->lane[k].s && lane < k + w->tracks; ++lane)
+        for (int slot = 0; slot < MODEL(slots_of)(w, lane); ++slot)
+            MODEL(take_path)(w, lane, slot);
+    for (w->lane[k].s = 0; !w->lane[k].s && *next < end;) {
+        MODEL(member) *s = (*next)++;
+        for (int lane = k; lane < k + w->tracks; ++lane) {
+            w->lane[lane].s = s;
+            MODEL(wide_load)(&w->p, s->model.p, lane);
+            for (int slot = 0; slot < MODEL(slots_of)(w, lane); ++slot)
+                MODEL(put_path)(w, lane, slot);
+        }
+        if (!MODEL(begin)(w, k))
+            w->lane[k].s = 0;
     }
+    w->lane[k + w->tracks - 1].s = w->lane[k].s;
+}
+
+/* A lane has made its step, or makes it alone; 0 if there is none. */
+static int MODEL(moved)(MODEL(wide) *w, int k, mask good)
+{
+    MODEL(lane) *lane = &w->lane[k];
+    const int found = good[k] || MODEL(alone)(w, k);
+    ++lane->s->steps;
+    lane->u += w->inputs;
+    --lane->left;
+    return found;
+}
+
+/* The lanes of a member have made a step each, or not: go on; 0 if the member is done here. */
+static int MODEL(all_moved)(MODEL(wide) *w, int k, mask good)
+{
+    const int last = k + w->tracks - 1;
+    if (!MODEL(moved)(w, k, good) || (last > k && !MODEL(moved)(w, last, good))) {
+        w->lane[k].s->failed = 1;
+        if (w->mode == ADAPT)
+            MODEL(undo)(w, k);
+        return 0;
+    }
+    if (w->lane[k].left == 0)
+        return MODEL(next)(w, k);
+    if (w->lane[last].left == 0)
+        MODEL(go)(w, &w->lane[last], w->lane[last].slot + 1);
+    return 1;
 }
 
 /* As survey, march or adapt of stepper.c, with lanes of vectors; `space` has wide_size vectors. */
 void MODEL(run_wide)(MODEL(member) *members, long count, const MODEL(block) *b, int mode, real *space);
 void MODEL(run_wide)(MODEL(member) *members, long count, const MODEL(block) *b, int mode, real *space)
 {
-    MODEL(wide) w = {.mode = mode, .b = b};
+    MODEL(wide) w = {.mode = mode, .tracks = mode == ADAPT ? 2 : 1, .b = b};
     MODEL(member) *next = members;
     MODEL(wide_places)(&w, &members->model, space);
-    for (int k = 0; k < WIDTH; ++k)
+    for (int k = 0; k < WIDTH; ++k) {
+        w.lane[k].track = k % w.tracks == 0 ? FIRST : SECOND;
         MODEL(wide_load)(&w.p, members->model.p, k); /* so that idle lanes compute with numbers */
-    for (int k = 0; k < WIDTH; ++k)
+    }
+    for (int k = 0; k < WIDTH; k += w.tracks)
         MODEL(refill)(&w, k, &next, members + count);
     for (;;) {
-        mask on[PATHS] = {nowhere, nowhere, nowhere}, going;
-        real h = wide(1.0);
+        mask on[SLOTS] = {nowhere, nowhere, nowhere}, books = nowhere, going;
+        real h = wide(1.0), enough = wide(EXACT);
         for (int k = 0; k < WIDTH; ++k) {
             if (!w.lane[k].s)
                 continue;
-            on[w.lane[k].path][k] = -1;
+            on[w.lane[k].slot][k] = -1;
+            if (MODEL(books)(&w, k))
+                books[k] = -1;
+            else
+                enough[k] = w.lane[k].s->model.slack;
             h[k] = w.lane[k].h;
             for (long i = 0; i < w.inputs; ++i)
                 w.u[i][k] = w.lane[k].u[i];
         }
-        going = on[FINE] | on[COARSE] | on[TRIAL];
+        going = on[0] | on[1] | on[2];
         if (!any(going))
             return;
         MODEL(predictions)(&w, on, h);
-        mask good = MODEL(roots)(&w, going, h);
+        mask good = MODEL(roots)(&w, going, h, enough);
         good &= MODEL(natural)(&w);
-        MODEL(commit)(&w, on, good, h);
-        for (int k = 0; k < WIDTH; ++k) {
-            MODEL(lane) *lane = &w.lane[k];
-            if (!lane->s)
-                continue;
-            int busy = good[k] || MODEL(alone)(&w, k);
-            ++lane->s->steps;
-            lane->u += w.inputs;
-            if (busy && --lane->left == 0)
-                busy = MODEL(next)(&w, k);
-            if (!busy)
+        MODEL(commit)(&w, on, good, good & books, h);
+        for (int k = 0; k < WIDTH; k += w.tracks)
+            if (w.lane[k].s && !MODEL(all_moved)(&w, k, good))
                 MODEL(refill)(&w, k, &next, members + count);
-        }
     }
 }

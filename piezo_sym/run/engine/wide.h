@@ -5,7 +5,9 @@
 #include <math.h>
 #include <string.h>
 
-#if defined(__AVX512F__)
+#if defined(PAIR) /* one member alone: two lanes, for its tracks */
+enum { WIDTH = 2 };
+#elif defined(__AVX512F__)
 enum { WIDTH = 8 };
 #elif defined(__AVX__)
 enum { WIDTH = 4 };

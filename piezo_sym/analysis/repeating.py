@@ -1,0 +1,89 @@
+"""Inputs of a model that is looked at once a period: do they repeat, and how fine must steps be.
+
+Input: the inputs of a module by name, their frequency.  Output: a refusal of what does not repeat;
+the number of steps a period between which every input is nearly a straight line.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from piezo_sym.errors import UsageError, quote
+from piezo_sym.run.inputs import as_signal, read_inputs
+from piezo_sym.run.samples import Samples
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from piezo_sym.run.inputs import InputValue
+    from piezo_sym.run.module import GeneratedModule
+    from piezo_sym.run.signals import Signal
+
+CLOSE = 1e-6  # of an input's size: what repeats
+GOLDEN = 0.6180339887498949
+PROBES = np.sort(np.r_[0.0, np.modf(np.arange(1, 64) * GOLDEN)[0]])  # of a period
+STRAIGHT = 0.01  # of an input's range: mean distance from straight lines between steps
+MOST_NEEDED = 1 << 14  # steps a period: a sine with 1300 turns in it
+
+
+def refuse_unperiodic(
+    module: GeneratedModule, inputs: Mapping[str, InputValue], frequency: float
+) -> None:
+    """Raise `UsageError` if an input is not the same one period later."""
+    period = 1 / frequency
+    read_inputs(module, inputs, period)
+    for name, value in (inputs or {}).items():
+        where = f"periodic_steady_state.inputs.{name}"
+        signal = as_signal(value, where)
+        times = PROBES * period
+        if isinstance(signal, Samples):  # those of one period alone repeat by meaning
+            times = times[times + period <= signal.times[-1]]
+        now = np.asarray(signal(times))
+        largest = np.max(np.abs(now), initial=0.0)
+        if np.any(np.abs(now - signal(times + period)) > CLOSE * largest):
+            what = f"{quote(name)} does not repeat after {period:g} s"
+            remedy = "give the frequency that the inputs have in common"
+            raise UsageError(what, where, f"an input of {frequency:g} Hz, or a number", remedy)
+
+
+def moves(
+    module: GeneratedModule, inputs: Mapping[str, InputValue] | None, frequency: float
+) -> bool:
+    """Return whether any input moves in a period."""
+    period = 1 / frequency
+    signals = read_inputs(module, inputs, period).signals
+    return any(bool(np.ptp(np.asarray(signal(PROBES * period)))) for signal in signals)
+
+
+def steps_needed(inputs: Mapping[str, InputValue], frequency: float, steps: int) -> int:
+    """Return `steps` a period, doubled until every input is nearly straight between them.
+
+    With 256 steps a period an input of 512 turns a period is 0 at each of them: a run would not
+    see it, and neither would one with twice as many steps.
+
+    Raises
+    ------
+    UsageError : an input moves too fast for the period.
+    """
+    for name, value in (inputs or {}).items():
+        where = f"periodic_steady_state.inputs.{name}"
+        signal = as_signal(value, where)
+        while _bend(signal, 1 / frequency, steps) > STRAIGHT:
+            steps *= 2
+            if steps > MOST_NEEDED:
+                what = f"{quote(name)} needs more than {MOST_NEEDED} steps in {1 / frequency:g} s"
+                remedy = "give the greatest frequency that the inputs have in common"
+                raise UsageError(what, where, "an input that moves less in a period", remedy)
+    return steps
+
+
+def _bend(signal: Signal, period: float, steps: int) -> float:
+    """Return how far an input is from straight lines between steps, as a part of its range."""
+    times = np.linspace(0.0, period, steps + 1)
+    ends = np.asarray(signal(times))
+    between = np.asarray(signal(times[:-1] + GOLDEN * period / steps))
+    straight = (1 - GOLDEN) * ends[:-1] + GOLDEN * ends[1:]
+    span = float(np.ptp(np.concatenate([ends, between])))
+    return float(np.mean(np.abs(between - straight))) / span if span else 0.0
