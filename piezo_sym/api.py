@@ -6,28 +6,60 @@ what that returns for the module.
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from piezo_sym.analysis import branches, steady
 from piezo_sym.modules import module_of
 from piezo_sym.run import simulate as run
 from piezo_sym.run.stepper import Stepper as Steps
+from piezo_sym.sweeps.progress import watch_of
 
 if TYPE_CHECKING:
-    import xarray
+    from collections.abc import Callable, Mapping
+    from pathlib import Path
 
+    import xarray
+    from numpy.typing import ArrayLike
+
+    from piezo_sym.analysis.stroboscope import Driven
+    from piezo_sym.run.inputs import InputValue
+    from piezo_sym.run.parameters import LaneValue
     from piezo_sym.spec.model import Model
 
 
-def simulate(model: str | Path | Model, **options: Any) -> xarray.Dataset:
+def simulate(
+    model: str | Path | Model,
+    *,
+    inputs: Mapping[str, InputValue] | None = None,
+    duration: float,
+    rtol: float | None = None,
+    step: float | None = None,
+    parameters: Mapping[str, LaneValue] | None = None,
+    initial: Mapping[str, LaneValue] | None = None,
+    method: str | None = None,
+    times: int | ArrayLike | None = None,
+    every: int | None = None,
+    dissipative_start: bool = False,
+    progress: bool | Callable[[float], object] | None = None,
+) -> xarray.Dataset:
     """Run a model and return all its quantities over time.
 
     Parameters
     ----------
     model : the name of a shipped spec, the path of a spec file, or a `Model`.
-    **options : inputs, duration, rtol or step, parameters, initial, method, times,
-        dissipative_start: see `piezo_sym.run.simulate`.
+    inputs : name -> number, (t, values), function of t [s], or signal; SI units.
+    duration : length of the run [s].
+    rtol : relative tolerance; 1e-5 when left out.
+    step : a fixed step [s] instead of rtol.
+    parameters, initial : name -> number, or for a bank a list of one number a lane; SI units.
+    method : discrete_gradient when left out, or one of SciPy's.
+    times : the samples: a number of even ones, or increasing times [s].
+    every : with `step`, instead of `times`: a sample every so many steps, and at the end.
+    dissipative_start : whether the first step after each jump of an input is damped, which reduces
+        the states' error after it where steps are long.
+    progress : True for a bar; or a function, told the time [s] reached.
+
+        More on each: `help(piezo_sym.run.simulate)`.
 
     Returns
     -------
@@ -43,10 +75,31 @@ def simulate(model: str | Path | Model, **options: Any) -> xarray.Dataset:
     DriftError
         If the generated module is not of this spec.
     """
-    return run(module_of(model), **options)
+    with watch_of(progress, duration) as watch:
+        return run(
+            module_of(model),
+            inputs=inputs,
+            duration=duration,
+            rtol=rtol,
+            step=step,
+            parameters=parameters,
+            initial=initial,
+            method=method,
+            times=times,
+            every=every,
+            dissipative_start=dissipative_start,
+            progress=watch,
+        )
 
 
-def Stepper(model: str | Path | Model, **options: Any) -> Steps:
+def Stepper(
+    model: str | Path | Model,
+    *,
+    step: float,
+    parameters: Mapping[str, LaneValue] | None = None,
+    initial: Mapping[str, LaneValue] | None = None,
+    inputs: Mapping[str, float] | None = None,
+) -> Steps:
     """Return a model that goes step by step, with inputs that the caller decides.
 
     A PI controller of the actuator's position (q is the first state), 0.1 mm within 1 s:
@@ -64,57 +117,108 @@ def Stepper(model: str | Path | Model, **options: Any) -> Steps:
     Parameters
     ----------
     model : the name of a shipped spec, the path of a spec file, or a `Model`.
-    **options : step, parameters, initial, inputs: see `piezo_sym.run.stepper.Stepper`.
+    step : length of a step [s]; the step is halved inside where it has to be.
+    parameters, initial, inputs : as for `simulate`; `inputs` are those at t = 0, numbers only.
 
     Returns
     -------
     Stepper
-        With ``.step(u) -> y``, ``.x`` and ``.time``.
+        With ``.step(u) -> y``, ``.x``, ``.time``, ``.ledger``, ``.reset()``, and the names
+        ``.states``, ``.inputs``, ``.outputs``; see `piezo_sym.run.stepper.Stepper`.
 
     Raises
     ------
     UsageError, EngineError, RunError
         If an option is wrong, there is no compiler, or the start is outside the domain.
     """
-    return Steps(module_of(model), **options)
+    return Steps(module_of(model), step=step, parameters=parameters, initial=initial, inputs=inputs)
 
 
-def periodic_steady_state(model: str | Path | Model, **options: Any) -> steady.SteadyState:
+def periodic_steady_state(
+    model: str | Path | Model,
+    *,
+    inputs: Mapping[str, InputValue],
+    frequency: float,
+    parameters: Mapping[str, LaneValue] | None = None,
+    initial: Mapping[str, LaneValue] | None = None,
+    temperatures: tuple[float, float] | None = None,
+    rtol: float = steady.RTOL,
+) -> steady.SteadyState:
     """Return the periodic steady state that a driven model settles in.
 
     Parameters
     ----------
     model : the name of a shipped spec, the path of a spec file, or a `Model`, with one body.
-    **options : inputs, frequency, parameters, initial, temperatures, rtol: see
-        `piezo_sym.analysis.steady.periodic_steady_state`.
+    inputs : as for `simulate`; they repeat with `frequency` [Hz], and one of them moves.
+    parameters, initial : as for `simulate`.
+    temperatures : where to look [K], least and greatest; from the start to 20 times it when left
+        out.
+    rtol : accuracy of the states at t = 0, as a part of their sizes.
 
     Raises
     ------
     UsageError, RunError
         If an option is wrong, or there is no steady state in the range.
     """
-    return steady.periodic_steady_state(module_of(model), **options)
+    return steady.periodic_steady_state(
+        module_of(model),
+        inputs=inputs,
+        frequency=frequency,
+        parameters=parameters,
+        initial=initial,
+        temperatures=temperatures,
+        rtol=rtol,
+    )
 
 
 def periodic_steady_states(
-    model: str | Path | Model, **options: Any
+    model: str | Path | Model,
+    *,
+    inputs: Mapping[str, InputValue],
+    frequency: float,
+    parameters: Mapping[str, LaneValue] | None = None,
+    initial: Mapping[str, LaneValue] | None = None,
+    temperatures: tuple[float, float] | None = None,
+    rtol: float = steady.RTOL,
 ) -> tuple[steady.SteadyState, ...]:
     """Return all periodic steady states of a driven model, stable or not, coldest first.
 
-    Parameters
-    ----------
-    model, **options : as for `periodic_steady_state`.
+    Parameters and errors: as for `periodic_steady_state`.
     """
-    return steady.periodic_steady_states(module_of(model), **options)
+    return steady.periodic_steady_states(
+        module_of(model),
+        inputs=inputs,
+        frequency=frequency,
+        parameters=parameters,
+        initial=initial,
+        temperatures=temperatures,
+        rtol=rtol,
+    )
 
 
-def steady_branches(model: str | Path | Model, **options: Any) -> branches.Branches:
+def steady_branches(
+    model: str | Path | Model,
+    *,
+    inputs: Driven,
+    frequencies: tuple[float, float],
+    parameters: Mapping[str, LaneValue] | None = None,
+    initial: Mapping[str, LaneValue] | None = None,
+    temperatures: tuple[float, float] | None = None,
+) -> branches.Branches:
     """Return the periodic steady states of a model over a range of frequencies, and the jumps.
 
     Parameters
     ----------
     model : the name of a shipped spec, the path of a spec file, or a `Model`, with one body.
-    **options : inputs (a function of the frequency), frequencies, parameters, initial,
-        temperatures: see `piezo_sym.analysis.branches.steady_branches`.
+    inputs : function of the frequency [Hz] to inputs as for `simulate`, which repeat with it.
+    frequencies, temperatures : least and greatest [Hz], [K].
+    parameters, initial : as for `simulate`; see `piezo_sym.analysis.branches.steady_branches`.
     """
-    return branches.steady_branches(module_of(model), **options)
+    return branches.steady_branches(
+        module_of(model),
+        inputs=inputs,
+        frequencies=frequencies,
+        parameters=parameters,
+        initial=initial,
+        temperatures=temperatures,
+    )

@@ -112,6 +112,7 @@ def listing(names: Iterable[str], most: int = 12) -> str:
 
 def nearest(word: str, known: Iterable[str]) -> str:
     """Return "did you mean 'x'?" for the known name nearest to `word`, or the known names."""
-    names = list(known)
-    match = get_close_matches(word[:MAX_QUOTE], names, n=1, cutoff=0.6)
+    names, short = list(known), word[:MAX_QUOTE]
+    match = [name for name in names if name.lower() == short.lower()]
+    match = match or get_close_matches(short, names, n=1, cutoff=0.6)
     return f"did you mean '{match[0]}'?" if match else f"known: {listing(names)}"

@@ -5,10 +5,13 @@ Input: a path and its text.  Output: the file, or one `FileError`.
 
 from __future__ import annotations
 
+import atexit
 import os
+import shutil
 import tempfile
 from collections.abc import Mapping
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 
 from piezo_sym.errors import FileError, one_line
@@ -91,6 +94,27 @@ def read_text(path: Path) -> str | None:
         return None
     except (OSError, UnicodeDecodeError) as error:
         raise _cannot("read", path, error) from error
+
+
+@cache
+def temporary_folder() -> Path:
+    """Return a folder that lives as long as the process, in place of a cache.
+
+    Raises
+    ------
+    FileError : there is no place for it either.
+    """
+    try:
+        folder, owner = tempfile.mkdtemp(prefix="piezo_sym-"), os.getpid()
+    except OSError as error:
+        raise _cannot("written", Path(tempfile.gettempdir()), error) from error
+
+    def remove() -> None:
+        if os.getpid() == owner:  # not when a child of the process ends
+            shutil.rmtree(folder, ignore_errors=True)
+
+    atexit.register(remove)
+    return Path(folder)
 
 
 def path_text(path: str | Path) -> str:

@@ -10,7 +10,6 @@ from __future__ import annotations
 import hashlib
 import importlib.util
 import sys
-import tempfile
 from collections.abc import Iterator
 from contextlib import suppress
 from functools import cache, lru_cache
@@ -19,7 +18,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 from piezo_sym.errors import DriftError, FileError
-from piezo_sym.files import path_text, read_text, write_bytes, write_together
+from piezo_sym.files import path_text, read_text, temporary_folder, write_together
 from piezo_sym.spec.source import data, find, read, shipped
 from piezo_sym.spec.write import spec_hash
 from piezo_sym.version import VERSION
@@ -113,11 +112,10 @@ def _cached(model: Model) -> ModuleType:
     try:
         write_together({path.parent / name: text for name, text in files.items()})
         return load_module(path)
-    except FileError:  # a read-only cache: the module lives as long as the process
-        with tempfile.TemporaryDirectory(prefix="piezo_sym-") as temporary:
-            path = Path(temporary) / f"{model.name}.py"
-            write_bytes(path, files[path.name])
-            return load_module(path)
+    except FileError:  # a read-only cache: the module and its C live as long as the process
+        other = temporary_folder() / path.parent.name
+        write_together({other / name: text for name, text in files.items()})
+        return load_module(other / path.name)
 
 
 @cache

@@ -17,14 +17,15 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, TypeAlias, final
 
 import numpy as np
 
 from piezo_sym.analysis.stroboscope import FLOOR
-from piezo_sym.errors import RunError
+from piezo_sym.errors import RunError, UsageError
+from piezo_sym.run.checks import vector
 
 if TYPE_CHECKING:
     from piezo_sym.analysis.stroboscope import Period, Stroboscope
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
 
     Rows: TypeAlias = np.ndarray[tuple[int], np.dtype[np.bool_]]
 
+HOTTEST = 20.0  # times the temperature at the start: how far is looked, if nothing is said
 NUDGE = 1e-4  # of a state's size: the difference that a derivative is taken over
 TOLERANCE = 1e-8  # of a state's size: what repeats
 MOST_LOOKS = 40
@@ -172,6 +174,22 @@ def scan(
         else:
             near, slope = found.x, found.slope
             yield found
+
+
+def temperature_range(
+    strobe: Stroboscope, frequency: float, given: tuple[float, float] | None
+) -> tuple[float, float]:
+    """Return where to look for steady states: what a user gave, or from the start on."""
+    if given is None:
+        T = strobe.temperature(strobe.start(frequency))
+        own = strobe.temperature(replace(strobe, initial={}).start(frequency))
+        return min(T, own), HOTTEST * own
+    where = "periodic_steady_state.temperatures"
+    ends = vector(list(given), where)
+    if ends.size != 2 or not 0 < ends[0] < ends[1]:
+        what = f"{list(given)} is no range"
+        raise UsageError(what, where, "the least and the greatest temperature in K")
+    return float(ends[0]), float(ends[1])
 
 
 def grid(low: float, high: float, points: int = POINTS) -> list[float]:

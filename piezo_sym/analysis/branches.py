@@ -19,9 +19,8 @@ from typing import TYPE_CHECKING, final
 
 import numpy as np
 
-from piezo_sym.analysis.balance import grid, scan, settled, zeros
+from piezo_sym.analysis.balance import grid, scan, settled, temperature_range, zeros
 from piezo_sym.analysis.curves import Point, folds, traced, with_folds
-from piezo_sym.analysis.steady import temperature_range
 from piezo_sym.analysis.stroboscope import Stroboscope, stroboscope
 from piezo_sym.errors import UsageError
 from piezo_sym.run.checks import positive

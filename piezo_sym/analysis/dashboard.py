@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from piezo_sym.analysis.style import COLOURS, LABEL, SMALL, dress
-from piezo_sym.errors import UsageError, quote
+from piezo_sym.errors import UsageError, listing, one_line, quote
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -30,8 +30,8 @@ ACROSS = 3  # panels in a row
 WIDTH, HEIGHT = 3.2, 2.1  # of a panel, inches
 MOST_NAMES = 6  # in a legend
 MOST_LANES = 8  # drawn one by one; more are drawn as the range they fill
-LEDGER = ("energy_residual", "energy", "entropy")
-PREFIXES = ("y_", "T_", "supplied_", "heat_", "produced_")
+LEDGER = ("energy_residual", "entropy_residual", "energy", "entropy")
+SUMS = ("supplied_", "heat_", "produced_", "entropy_exchanged_")
 
 
 def plot(run: xarray.Dataset) -> Figure:
@@ -39,7 +39,8 @@ def plot(run: xarray.Dataset) -> Figure:
 
     Parameters
     ----------
-    run : what `simulate` returns; with a single sample, points are drawn.
+    run : what `simulate` returns, or one run of what `sweep` returns: ``runs.isel(L=0)``; with a
+        single sample, points are drawn.
 
     Returns
     -------
@@ -48,13 +49,11 @@ def plot(run: xarray.Dataset) -> Figure:
 
     Raises
     ------
-    UsageError : this is no run.
+    UsageError : this is no run, or more than one.
     """
     from matplotlib.figure import Figure
 
-    if "energy_residual" not in getattr(run, "data_vars", ()) or "time" not in run.dims:
-        what = f"{quote(type(run).__name__)} is no run"
-        raise UsageError(what, "plot.run", "a Dataset that simulate() returned")
+    refuse_others(run)
     panels = list(_panels(run))
     rows = -(-len(panels) // ACROSS)
     figure = Figure(figsize=(ACROSS * WIDTH, rows * HEIGHT + 0.3), dpi=120, layout="constrained")
@@ -75,6 +74,25 @@ def plot(run: xarray.Dataset) -> Figure:
     return figure
 
 
+def refuse_others(run: xarray.Dataset) -> None:
+    """Raise `UsageError` if this is not one run over time."""
+    where, expected = "plot.run", "a Dataset that simulate() returned"
+    if "energy_residual" not in getattr(run, "data_vars", ()):
+        raise UsageError(f"{quote(type(run).__name__)} is no run", where, expected)
+    more = [str(dim) for dim in run["energy_residual"].dims if dim != "time"]
+    if more:
+        what = f"this is a sweep over {listing(more)}"
+        remedy = f"select one of its runs: plot(runs.isel({', '.join(f'{n}=0' for n in more)}))"
+        raise UsageError(what, where, "one run", remedy)
+    if "time" not in run["energy_residual"].dims:
+        remedy = "a sweep keeps its runs over time if 'reduce' is left out"
+        raise UsageError("this run has no time", where, expected, remedy)
+    error = str(run["error"].values) if "error" in run else ""
+    if error:
+        what = f"this run failed: {one_line(error)}"
+        raise UsageError(what, where, "a run that came through", "select another one")
+
+
 def _panels(run: xarray.Dataset) -> Iterator[Panel]:
     """Yield the label of each panel, and what draws it."""
     for unit, names in _by_unit(run).items():
@@ -93,7 +111,7 @@ def _by_unit(run: xarray.Dataset) -> dict[str, list[str]]:
     found: dict[str, list[str]] = {}
     for name in map(str, run.data_vars):
         doubled = name.startswith("y_") and run[name].attrs.get("units") == "K"  # a body's T
-        if name in LEDGER or name.startswith(PREFIXES[2:]) or doubled:
+        if "time" not in run[name].dims or name in LEDGER or name.startswith(SUMS) or doubled:
             continue
         found.setdefault(str(run[name].attrs.get("units", "1")), []).append(name)
     return found

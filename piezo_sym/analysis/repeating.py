@@ -34,7 +34,7 @@ def refuse_unperiodic(
     """Raise `UsageError` if an input is not the same one period later."""
     period = 1 / frequency
     read_inputs(module, inputs, period)
-    for name, value in inputs.items():
+    for name, value in (inputs or {}).items():
         where = f"periodic_steady_state.inputs.{name}"
         signal = as_signal(value, where)
         times = PROBES * period
@@ -48,6 +48,15 @@ def refuse_unperiodic(
             raise UsageError(what, where, f"an input of {frequency:g} Hz, or a number", remedy)
 
 
+def moves(
+    module: GeneratedModule, inputs: Mapping[str, InputValue] | None, frequency: float
+) -> bool:
+    """Return whether any input moves in a period."""
+    period = 1 / frequency
+    signals = read_inputs(module, inputs, period).signals
+    return any(bool(np.ptp(np.asarray(signal(PROBES * period)))) for signal in signals)
+
+
 def steps_needed(inputs: Mapping[str, InputValue], frequency: float, steps: int) -> int:
     """Return `steps` a period, doubled until every input is nearly straight between them.
 
@@ -58,7 +67,7 @@ def steps_needed(inputs: Mapping[str, InputValue], frequency: float, steps: int)
     ------
     UsageError : an input moves too fast for the period.
     """
-    for name, value in inputs.items():
+    for name, value in (inputs or {}).items():
         where = f"periodic_steady_state.inputs.{name}"
         signal = as_signal(value, where)
         while _bend(signal, 1 / frequency, steps) > STRAIGHT:

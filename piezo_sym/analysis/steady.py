@@ -28,11 +28,13 @@ from piezo_sym.analysis.balance import (
     grid,
     scan,
     solved,
+    temperature_range,
     zeros,
 )
+from piezo_sym.analysis.repeating import moves
 from piezo_sym.analysis.stroboscope import Stroboscope, stroboscope
 from piezo_sym.errors import RunError, UsageError
-from piezo_sym.run.checks import number, positive, vector
+from piezo_sym.run.checks import number, positive
 
 if TYPE_CHECKING:
     import xarray
@@ -47,9 +49,10 @@ STEPS, MOST_STEPS = 256, 1 << 16  # a period
 SAMPLES = 400  # of the orbit returned
 ORBIT_RTOL = 1e-8
 OPEN, MOST_OPEN = 100.0, 0.1  # times the accuracy, of the sizes: what repeats no better is none
-HOTTEST = 20.0  # times the temperature at the start: how far is looked, if nothing is said
 MARGIN = 1e-6  # of a multiplier over 1: the accuracy of its difference quotient
 MOST_MOVES = 12
+STILL = "no input moves, and no state of rest is found"
+SIMULATE = "run simulate() until it rests, or give an input that repeats with the frequency"
 
 
 @final
@@ -100,7 +103,8 @@ def periodic_steady_state(
     ----------
     module : a generated module; `piezo_sym.periodic_steady_state` also takes a model, name, path.
     inputs : as for `simulate`; they repeat with `frequency` [Hz], at t = 0 as at 1/frequency.
-        Of several inputs, it is the greatest frequency that they have in common.
+        Of several inputs, it is the greatest frequency that they have in common. If none moves,
+        what is looked for is a state of rest; a run may be the better way to it.
     parameters, initial : as for `simulate`.
     temperatures : where to look [K]: least and greatest, of the body at t = 0; when left out, from
         the module's own start (lower if the body cools there) to 20 times that.
@@ -114,7 +118,13 @@ def periodic_steady_state(
     """
     strobe, f = _read(module, inputs, frequency, parameters, initial)
     accuracy = _accuracy(rtol)
-    first = _first(strobe, f, _known(strobe, f, temperatures))
+    known = _known(strobe, f, temperatures)
+    try:
+        first = _first(strobe, f, known)
+    except RunError as error:
+        if moves(strobe.module, inputs, f):
+            raise
+        raise RunError(f"{STILL}: {error.what}", error.where, remedy=SIMULATE) from error
     return _state(strobe, f, first, accuracy)
 
 
@@ -137,6 +147,8 @@ def periodic_steady_states(
     strobe, f = _read(module, inputs, frequency, parameters, initial)
     accuracy = _accuracy(rtol)
     found = zeros(strobe, f, _known(strobe, f, temperatures))
+    if not found and not moves(strobe.module, inputs, f):
+        warnings.warn(f"{STILL}; {SIMULATE}", SteadyWarning, stacklevel=2)
     return tuple(_state(strobe, f, zero, accuracy) for zero in found)
 
 
@@ -157,22 +169,6 @@ def _accuracy(rtol: object) -> float:
         what = f"{value:g} is out of range"
         raise UsageError(what, "periodic_steady_state.rtol", "1e-9 to 0.01")
     return value
-
-
-def temperature_range(
-    strobe: Stroboscope, frequency: float, given: tuple[float, float] | None
-) -> tuple[float, float]:
-    """Return where to look for steady states: what a user gave, or from the start on."""
-    if given is None:
-        T = strobe.temperature(strobe.start(frequency))
-        own = strobe.temperature(replace(strobe, initial={}).start(frequency))
-        return min(T, own), HOTTEST * own
-    where = "periodic_steady_state.temperatures"
-    ends = vector(list(given), where)
-    if ends.size != 2 or not 0 < ends[0] < ends[1]:
-        what = f"{list(given)} is no range"
-        raise UsageError(what, where, "the least and the greatest temperature in K")
-    return float(ends[0]), float(ends[1])
 
 
 def _known(

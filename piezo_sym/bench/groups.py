@@ -2,7 +2,7 @@
 
     group    what is compared                                            in
     rhs      one state's rates: lambdified, hand-written, generated      rates
-    batch    rates of many states, also by the peers                     rates
+    batch    rates at many states in one call, also by the peers         rates
     run      a short run at equal error                                  runs
     long     a run a hundred times as long                               runs
     making   derivation, proofs, files; small banks and large            making

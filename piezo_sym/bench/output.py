@@ -13,6 +13,10 @@ if TYPE_CHECKING:
     from piezo_sym.bench.machine import Machine
     from piezo_sym.bench.rows import Report, Row, Spread
 
+BATCHES = (
+    "the time of a batch is that of one call, shared among its states; below about 1000 of them "
+    "the call itself, some microseconds, is most of it, and ratios are smaller than these"
+)
 COLUMNS = ("group", "compared with", "time", "error", "ours", "time", "error", "ratio", "quartiles")
 UNITS = ((1.0, "s"), (1e-3, "ms"), (1e-6, "us"), (1e-9, "ns"))
 
@@ -61,6 +65,8 @@ def notes(report: Report) -> tuple[str, ...]:
     lines += [
         f"{row.group}, {row.other or row.ours}: {row.note}" for row in report.rows if row.note
     ]
+    if any(row.group.startswith("batch of") for row in report.rows):
+        lines.append(BATCHES)
     return (*lines, *(f"left out: {line}" for line in report.left_out))
 
 

@@ -139,7 +139,8 @@ def _batch(problem: Problem, settings: Settings) -> Part:
         left_out.append(f"batch, generated C: {error}")
     if hand:
         pairs.append(Pair(_at_once("hand-written NumPy", hand.numpy, sample), numpy))
-    rows = compared(f"batch, {problem.start.size} states", pairs, settings.rounds, MEASURE)
+    group = f"batch of {settings.columns}, {problem.start.size} states each"
+    rows = compared(group, pairs, settings.rounds, MEASURE)
     return Part(rows, tuple(left_out))
 
 

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import sys
-import time
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeVar
@@ -13,15 +12,13 @@ from typing import Any, TypeVar
 import typer
 from rich import box
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 from rich.table import Table
 from rich.text import Text
 
 from piezo_sym.errors import PiezoError, one_line
 
 ItemT = TypeVar("ItemT")
-#: A bar appears after so many seconds.
-SECOND = 1.0
 STYLES = {"PROVED": "green", "REFUTED": "bold red", "OPEN": "yellow"}
 
 
@@ -86,28 +83,3 @@ def table(title: str, *columns: str) -> Table:
     for column in columns:
         made.add_column(column)
     return made
-
-
-@contextmanager
-def time_bar(duration: float) -> Iterator[Callable[[float], None]]:
-    """Give a function to be told the time reached [s]: a bar on a terminal, after a second."""
-    bar = Progress(
-        TextColumn("simulated"),
-        BarColumn(),
-        TextColumn("{task.completed:.4g} s of {task.total:.4g} s"),
-        TimeRemainingColumn(),
-        console=Console(stderr=True),
-        transient=True,
-        disable=not sys.stderr.isatty(),
-    )
-    task, begun = bar.add_task("simulated", total=duration), time.monotonic()
-
-    def told(reached: float) -> None:
-        if time.monotonic() - begun > SECOND:
-            bar.start()
-        bar.update(task, completed=reached)
-
-    try:
-        yield told
-    finally:
-        bar.stop()

@@ -91,8 +91,15 @@ def increasing(times: FloatArray, where: str) -> FloatArray:
     return times
 
 
-def known_keys(given: object, known: Iterable[str], where: str) -> dict[str, object]:
-    """Return a user's mapping of names as a dict, or name the first key that nothing answers to."""
+def known_keys(
+    given: object, known: Iterable[str], where: str, others: Mapping[str, str] | None = None
+) -> dict[str, object]:
+    """Return a user's mapping of names as a dict, or name the first key that nothing answers to.
+
+    Parameters
+    ----------
+    others : names that belong elsewhere, and where.
+    """
     if given is None:
         return {}
     if not isinstance(given, Mapping):
@@ -102,5 +109,7 @@ def known_keys(given: object, known: Iterable[str], where: str) -> dict[str, obj
     for name in given:
         if name not in names:
             what = f"unknown name {quote(name)}"
-            raise UsageError(what, where, remedy=nearest(str(name), names))
+            place = (others or {}).get(name)
+            remedy = f"give it in '{place}'" if place else nearest(str(name), names)
+            raise UsageError(what, where, remedy=remedy)
     return dict(given)

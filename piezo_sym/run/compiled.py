@@ -23,16 +23,21 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.discrete import Watch
+    from piezo_sym.run.discrete import Runs, Watch
     from piezo_sym.run.engine import Engine
     from piezo_sym.run.inputs import Segment
     from piezo_sym.run.ledger import Trajectory
     from piezo_sym.run.system import System
 
-FINER = "those of the finer run, exact: supplied_*, heat_*, produced_*, energy_residual"
+FINEST = (
+    "those of the finest run, exact: supplied_*, heat_*, produced_*, entropy_exchanged_*, "
+    "energy_residual, entropy_residual"
+)
 #: How a run that stopped is looked at again: to find the cause, not to take its place.
 LOOK_RTOL, LOOK_ATOL = 1e-8, 1e-11
 MOST_STEPS = 20_000
+#: Of a step: one that is shorter by less is rounded, not cut.
+SAME = 1e-6
 #: No finer mesh is asked for: the round-off of its steps would be all that is left to measure.
 LEAST_RTOL = 1e-11
 #: Inputs are looked at so often in each of the longest steps they allow, with so many numbers.
@@ -71,16 +76,16 @@ def compiled_run(
     try:
         if step is None:
             runs = adaptive([system], engine, x[None], samples, rtol, watch, starts=starts)
-            trajectory = inside(system, runs.trajectory(0))
+            trajectory = inside(system, booked(runs))
             accuracy: dict[str, object] = {
                 "rtol": rtol,
                 "extrapolated": extrapolated(system),
-                "balances": FINER,
+                "balances": FINEST,
             }
         else:
             runs = fixed([system], engine, x[None], samples, step, watch, starts=starts)
-            trajectory = runs.trajectory(0)
-            accuracy = {"step": step}
+            trajectory = booked(runs)
+            accuracy = {"step": step, "shortest_step": shortest_step(system, samples, step)}
     except RunError as stopped:
         raise cause(system, x, samples, stopped) from stopped
     work = {
@@ -89,6 +94,28 @@ def compiled_run(
         "halvings": trajectory.halvings,
     }
     return trajectory, {"method": METHOD, **accuracy, **work}
+
+
+def shortest_step(system: System, samples: FloatArray, step: float) -> float:
+    """Return the shortest step [s] of a run with a fixed one, but for halvings.
+
+    Steps end at samples and at breaks of inputs; those between two of them are equal.
+    """
+    segments = system.inputs.segments
+    inner = samples[(samples > 0) & (samples < segments[-1].stop)]
+    edges = [segment.start for segment in segments] + [segments[-1].stop]
+    widths = np.diff(np.union1d(inner, edges))
+    rounding = 4 * np.finfo(float).eps * edges[-1] / step
+    taken = float(np.min(widths / np.maximum(1, np.ceil(widths / step - rounding))))
+    return step if taken > step * (1 - SAME) else taken
+
+
+def booked(runs: Runs) -> Trajectory:
+    """Return the trajectory of a single run, with the entropy that heat exchanges brought."""
+    trajectory, rows = runs.trajectory(0), runs.batch.rows
+    sums = runs.batch.sums[0].T[: rows.ledger - rows.numerical]
+    balanced = trajectory.balanced if runs.extrapolated else None
+    return replace(trajectory, integrals=sums, balanced=balanced)
 
 
 def check_inputs(system: System, x: FloatArray, samples: FloatArray) -> None:
@@ -147,15 +174,15 @@ def extrapolated(system: System) -> str:
 
 
 def inside(system: System, trajectory: Trajectory) -> Trajectory:
-    """Return a trajectory with the finer run's state where the extrapolated one is no state.
+    """Return a trajectory with the finest run's state where the extrapolated one is no state.
 
     A state may come so near to the edge of the domain that the extrapolation crosses it.
     """
-    x, u, finer = trajectory.states, trajectory.inputs, trajectory.balanced
+    x, u, finest = trajectory.states, trajectory.inputs, trajectory.balanced
     outside = np.any(system.violated(x, u), axis=0) | ~np.all(system.finite(x, u), axis=0)
-    if finer is None or not np.any(outside):
+    if finest is None or not np.any(outside):
         return trajectory
-    return replace(trajectory, states=np.where(outside, finer, x))
+    return replace(trajectory, states=np.where(outside, finest, x))
 
 
 def cause(system: System, x: FloatArray, samples: FloatArray, stopped: RunError) -> RunError:

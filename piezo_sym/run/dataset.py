@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from piezo_sym.errors import UsageError
-from piezo_sym.run.module import lanes
+from piezo_sym.errors import UsageError, quote
+from piezo_sym.run.module import exchanges, lanes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -28,6 +28,11 @@ if TYPE_CHECKING:
 
 Variable: TypeAlias = tuple[tuple[str, ...], "NDArray[Any] | pandas.Index[Any]", dict[str, Any]]
 Named: TypeAlias = tuple[str, Variable]
+
+#: What the ledger says where states are extrapolated from two runs.
+FINEST = "; of the finest run"
+ENERGY_LEFT = "U - U(0) - energy put in"
+ENTROPY_LEFT = "S - S(0) - entropy produced - entropy exchanged"
 
 
 def to_dataset(
@@ -76,32 +81,54 @@ def variables(system: System, trajectory: Trajectory) -> Iterator[Named]:
     """Yield every variable of the Dataset, in order."""
     module, p = system.module, system.parameters
     x, u = trajectory.states, trajectory.inputs
-    ports = len(module.OUTPUTS)
-    supplied, processes = trajectory.integrals[:ports], trajectory.integrals[ports:]
-    heat, produced = np.split(processes, 2)
-    energy = module.energy(x, p)
-    balanced = x if trajectory.balanced is None else trajectory.balanced
-    gained = module.energy(balanced, p) - module.energy(trajectory.start, p)
-    residual = gained - np.sum(supplied, axis=0)
+    energy, entropy = module.energy(x, p), module.entropy(x, p)
     yield from spread(system, module.STATES, x)
     yield from spread(system, module.INPUTS, u)
     yield from spread(system, module.OUTPUTS, module.outputs(x, u, p), "y_")
     yield from spread(system, module.BODIES, module.temperatures(x, p), "T_")
     yield "energy", (("time",), energy, described("J", "energy U"))
-    yield "entropy", (("time",), module.entropy(x, p), described("J/K", "entropy S"))
-    yield from spread(system, module.OUTPUTS, supplied, "supplied_", ("J", "energy put in by"))
-    yield from spread(system, module.PROCESSES, heat, "heat_", ("J", "heat released by"))
+    yield "entropy", (("time",), entropy, described("J/K", "entropy S"))
+    yield from ledger(system, trajectory)
+
+
+def ledger(system: System, trajectory: Trajectory) -> Iterator[Named]:
+    """Yield what the ports and processes did since t = 0, and what the two balances leave over."""
+    module, p, start = system.module, system.parameters, trajectory.start
+    x = trajectory.states if trajectory.balanced is None else trajectory.balanced
+    note = "" if trajectory.balanced is None else FINEST
+    supplied, heat, produced, exchanged = integrals(system, trajectory)
+    made = np.sum(produced, axis=0) + np.sum(exchanged, axis=0)
+    brought = [module.OUTPUTS[n] for n in exchanges(module)]
     yield from spread(
-        system, module.PROCESSES, produced, "produced_", ("J/K", "entropy produced by")
+        system, module.OUTPUTS, supplied, "supplied_", ("J", "energy put in by {}", note)
+    )
+    yield from spread(system, module.PROCESSES, heat, "heat_", ("J", "heat released by {}", note))
+    yield from spread(
+        system, module.PROCESSES, produced, "produced_", ("J/K", "entropy produced by {}", note)
+    )
+    yield from spread(
+        system, brought, exchanged, "entropy_exchanged_", ("J/K", "entropy brought by {}", note)
     )
     if trajectory.numerical is not None:
-        yield from numerical(trajectory.numerical)
-    yield "energy_residual", (("time",), residual, described("J", "U - U(0) - energy put in"))
+        yield from numerical(trajectory.numerical, note)
+        made = made + trajectory.numerical[1]
+    energy = module.energy(x, p) - module.energy(start, p) - np.sum(supplied, axis=0)
+    entropy = module.entropy(x, p) - module.entropy(start, p) - made
+    yield "energy_residual", (("time",), energy, described("J", f"{ENERGY_LEFT}{note}"))
+    yield "entropy_residual", (("time",), entropy, described("J/K", f"{ENTROPY_LEFT}{note}"))
 
 
-def numerical(rows: FloatArray) -> Iterator[Named]:
+def integrals(system: System, trajectory: Trajectory) -> list[FloatArray]:
+    """Return what was supplied, released as heat, produced and exchanged, rows (., nt) each."""
+    module = system.module
+    processes = system.rows(module.PROCESSES)
+    ports, size = len(module.OUTPUTS), processes[-1].stop if processes else 0
+    return np.split(trajectory.integrals, np.cumsum([ports, size, size]))
+
+
+def numerical(rows: FloatArray, note: str) -> Iterator[Named]:
     """Yield heat and entropy production of dissipative starts."""
-    about = "by dissipative starts since t = 0"
+    about = f"by dissipative starts since t = 0{note}"
     yield "heat_numerical", (("time",), rows[0], described("J", f"heat released {about}"))
     text = f"entropy produced {about}"
     yield "produced_numerical", (("time",), rows[1], described("J/K", text))
@@ -112,13 +139,14 @@ def spread(
     records: Sequence[Record],
     values: FloatArray,
     prefix: str = "",
-    integral: tuple[str, str] | None = None,
+    integral: tuple[str, str, str] | None = None,
 ) -> Iterator[Named]:
-    """Yield the rows of `values` (rows, nt) by record; `integral`: its unit and text."""
+    """Yield the rows of `values` (rows, nt) by record; `integral`: its unit, text and note."""
     for record, part in zip(records, system.rows(records), strict=True):
         attrs = described(record.unit, record.doc or record.name)
         if integral:
-            attrs = described(integral[0], f"{integral[1]} '{record.name}' since t = 0")
+            unit, text, note = integral
+            attrs = described(unit, f"{text.format(quote(record.name))} since t = 0{note}")
         dims = ("time", record.bank) if record.bank else ("time",)
         yield (
             f"{prefix}{record.name}",

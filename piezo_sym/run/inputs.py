@@ -17,6 +17,7 @@ import numpy as np
 
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.run.checks import FloatArray, is_number, known_keys, number
+from piezo_sym.run.module import others
 from piezo_sym.run.samples import Samples, read_samples
 from piezo_sym.run.signals import Constant, Signal, inside
 
@@ -161,7 +162,7 @@ def read_inputs(
     """
     names = [record.name for record in module.INPUTS]
     defaults = dict(zip(names, module.INPUT_DEFAULTS, strict=True))
-    values = defaults | known_keys(given, names, "simulate.inputs")
+    values = defaults | known_keys(given, names, "simulate.inputs", others(module, "inputs"))
     signals = [read_signal(values[name], f"simulate.inputs.{name}", duration) for name in names]
     return Inputs(tuple(signals), duration)
 

@@ -1,9 +1,10 @@
-"""The ledger of a run: power supplied, heat and entropy production, integrated along the steps.
+"""The ledger of a run: power supplied, heat and entropy, integrated along the steps.
 
 Input: batches of accepted steps.  Output: a `Trajectory`: states, inputs and the integrals
 
     supplied_port(t) = int_0^t y u dt
     heat_k(t) = int_0^t W_k z_k dt        produced_k(t) = int_0^t W_k z_k/T dt
+    entropy_exchanged_a(t) = int_0^t lam (T_e - T)/T dt
 
 at the sample times, by Gauss-Legendre quadrature on the interpolants between any two stops.
 Batches pass through one at a time, so memory grows with the samples, not with the steps.
@@ -17,6 +18,7 @@ from typing import TYPE_CHECKING, final
 import numpy as np
 
 from piezo_sym.run.guard import crossing, domain_error, rate_error
+from piezo_sym.run.module import exchanges
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -37,7 +39,8 @@ class Trajectory:
     start: FloatArray  # (n,): the state at t = 0
     states: FloatArray  # (n, nt)
     inputs: FloatArray  # (m, nt)
-    integrals: FloatArray  # (ports + 2 processes, nt): supplied, heat, produced
+    #: (ports + 2 processes + exchanges, nt): supplied, heat, produced, exchanged
+    integrals: FloatArray
     steps: int
     evaluations: int
     balanced: FloatArray | None = None  # (n, nt): states whose balances are exact, if others
@@ -75,7 +78,8 @@ def row_counts(system: System) -> tuple[int, int, int]:
     module = system.module
     states = system.rows(module.STATES)[-1].stop
     processes = sum(part.stop - part.start for part in system.rows(module.PROCESSES))
-    return states, len(module.INPUTS), len(module.OUTPUTS) + 2 * processes
+    ports, exchanging = len(module.OUTPUTS), len(exchanges(module))
+    return states, len(module.INPUTS), ports + 2 * processes + exchanging
 
 
 def looked_at(system: System, batch: Batch) -> tuple[FloatArray, FloatArray]:
@@ -111,7 +115,7 @@ def point(stretch: Stretch, segment: Segment, t: float) -> tuple[FloatArray, Flo
 
 
 def increments(system: System, batch: Batch) -> FloatArray:
-    """Return the integrals between one stop and the next, (ports + 2 processes, k)."""
+    """Return the integrals between one stop and the next, (integrals, k)."""
     nodes, weights = np.polynomial.legendre.leggauss(NODES)
     states, times, lengths = [], [], []
     for stretch in batch.stretches:

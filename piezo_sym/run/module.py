@@ -97,6 +97,29 @@ def rows(records: Sequence[Record], parameters: Any) -> tuple[slice, ...]:
     return tuple(found)
 
 
+def exchanges(module: GeneratedModule) -> list[int]:
+    """Return which outputs belong to heat exchanges with the surroundings, such as ambients.
+
+    Their output is the temperature of a body; no other port has one.
+    """
+    return [n for n, record in enumerate(module.OUTPUTS) if record.unit == "K"]
+
+
+def others(module: GeneratedModule, kind: str) -> dict[str, str]:
+    """Return names that are no `kind` ("parameters", "initial", "inputs"), and which they are."""
+    kinds = {"parameters": module.PARAMETERS, "initial": module.STATES, "inputs": module.INPUTS}
+    return {r.name: name for name, records in kinds.items() if name != kind for r in records}
+
+
+def row_names(records: Sequence[Record], parameters: Any) -> list[str]:
+    """Return the names of all rows of an array that spreads banks: q, phi_1, phi_2, S."""
+    found = []
+    for record in records:
+        size = lanes(parameters, record.bank) if record.bank else 0
+        found += [f"{record.name}_{n + 1}" for n in range(size)] or [record.name]
+    return found
+
+
 def row_name(records: Sequence[Record], parameters: Any, row: int) -> str:
     """Return the name of one row, for a message: `q`, or `phi[2]` for the second lane."""
     for record, part in zip(records, rows(records, parameters), strict=True):

@@ -22,7 +22,7 @@ from piezo_sym.run.checks import (
     vector,
     whole,
 )
-from piezo_sym.run.module import lanes, rows
+from piezo_sym.run.module import lanes, others, rows
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -46,7 +46,8 @@ def read_parameters(module: GeneratedModule, given: Mapping[str, LaneValue] | No
     default = module.Parameters()
     counts = {f"{bank}_count": bank for bank in module.BANKS}
     banks = {record.name: record.bank for record in module.PARAMETERS}
-    values = known_keys(given, (*banks, *counts), "simulate.parameters")
+    places = others(module, "parameters")
+    values = known_keys(given, (*banks, *counts), "simulate.parameters", places)
     sizes = {
         bank: whole(values.get(name, lanes(default, bank)), f"simulate.parameters.{name}", 1)
         for name, bank in counts.items()
@@ -88,7 +89,8 @@ def read_initial(
     UsageError : a name is unknown, a value is not finite, or a list does not fit its bank.
     RunError : the module cannot compute its own initial state.
     """
-    values = known_keys(given, [record.name for record in module.STATES], "simulate.initial")
+    names, places = [record.name for record in module.STATES], others(module, "initial")
+    values = known_keys(given, names, "simulate.initial", places)
     x = own_initial(module, parameters, u)
     for record, part in zip(module.STATES, rows(module.STATES, parameters), strict=True):
         if record.name in values:
@@ -106,6 +108,21 @@ def own_initial(module: GeneratedModule, parameters: Any, u: FloatArray) -> Floa
     except ArithmeticError as cause:
         what = f"the initial state cannot be computed: {cause}"
         raise RunError(what, f"model '{module.NAME}'", remedy="check the parameters") from cause
+
+
+def sample_times(times: object, every: object, step: float | None, duration: float) -> FloatArray:
+    """Return the times (nt,) of the samples [s], from what a user said of `times` and `every`.
+
+    Raises
+    ------
+    UsageError : neither says when; see `read_times` and `read_every`.
+    """
+    if every is not None:
+        return read_every(every, times, step, duration)
+    if times is None and step is not None:
+        steps = int(np.ceil(duration / step * (1 - CLOSE)))
+        return read_every(-(-steps // (SAMPLES - 1)), None, step, duration)
+    return read_times(times, duration)
 
 
 def read_times(given: object, duration: float) -> FloatArray:

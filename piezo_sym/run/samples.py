@@ -100,16 +100,27 @@ def samples_from_csv(
     FileError : the file cannot be read, or a cell is not a finite number.
     UsageError : no column has that header, or the times do not increase.
     """
-    lines = text_lines(Path(path))
-    delimiter = max(DELIMITERS, key=lines[0].count)
-    header, *body = csv.reader(lines, delimiter=delimiter, skipinitialspace=True)
-    names = [name.strip() for name in header]
+    names, body = table(path)
     t = position(names, names[0] if time_column is None else time_column, f"{path}.time_column")
     x = position(names, other_column(names, t, path) if column is None else column, str(path))
     cells = [(line, row) for line, row in enumerate(body, start=2) if row]
     times = [cell(row, t, f"{path}, line {line}") for line, row in cells]
     values = [cell(row, x, f"{path}, line {line}") for line, row in cells]
     return read_samples(times, values, str(path))
+
+
+def column_names(path: str | PathLike[str]) -> list[str]:
+    """Return the headers of a delimited text file; raise `FileError` if it cannot be read."""
+    names, _ = table(path)
+    return names
+
+
+def table(path: str | PathLike[str]) -> tuple[list[str], list[list[str]]]:
+    """Return the headers of a delimited text file and its rows; raise `FileError` otherwise."""
+    lines = text_lines(Path(path))
+    delimiter = max(DELIMITERS, key=lines[0].count)
+    header, *body = csv.reader(lines, delimiter=delimiter, skipinitialspace=True)
+    return [name.strip() for name in header], body
 
 
 def text_lines(path: Path) -> list[str]:

@@ -4,6 +4,7 @@ Input: a generated module, and what the user wrote for inputs, parameters, initi
 Output: an `xarray.Dataset`.
 
     dx/dt = rhs(x, u(t), p)    U(t) - U(0) = sum over ports of int_0^t y u dt
+                               S(t) - S(0) = entropy produced + entropy exchanged
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from piezo_sym.run.integrate import Tolerance, batches
 from piezo_sym.run.ledger import record
 from piezo_sym.run.method import checked_method, way_of
 from piezo_sym.run.module import checked
-from piezo_sym.run.parameters import read_every, read_initial, read_parameters, read_times
+from piezo_sym.run.parameters import read_initial, read_parameters, sample_times
 from piezo_sym.run.scales import magnitudes
 from piezo_sym.run.system import System
 
@@ -62,11 +63,11 @@ def simulate(
     """Run a generated module from t = 0 and return all its quantities over time.
 
     The method is the discrete gradient, compiled, unless another is named. Both its balances close
-    to round-off at every step. With `rtol` there are two runs, one with steps of half the length;
-    what an interval adds to the error of the finer run's states is held below 5 rtol of the largest
-    magnitude of each state (of a bank: of any lane) in a coarse first run. The states given are
-    extrapolated from both runs, which mostly makes them far better than rtol; the ledger is the
-    finer run's. With `step` there is one run, and its error falls with the square of the step.
+    to round-off at every step. With `rtol` there are three runs, with steps, halves and quarters;
+    what an interval adds to the error of the finest run's states is held below 5 rtol of the
+    largest magnitude of each state (of a bank: of any lane) in a coarse first run. The states given
+    are extrapolated from all, which mostly makes them far better than rtol; the ledger is the
+    finest run's. With `step` there is one run, and its error falls with the square of the step.
 
     SciPy's methods hold the error of each step below rtol*|x| + atol. atol is rtol*1e-3 times the
     scale of the state, which is the largest magnitude that the state (for a bank: any of its
@@ -86,8 +87,10 @@ def simulate(
     duration : length of the run [s].
     rtol : relative tolerance, 1e-13 to 0.1; 1e-5 when left out. The discrete gradient takes less
         than 1e-11 as 1e-11, for below that it would measure its own round-off.
-    step : a fixed step [s] instead of rtol, for the discrete gradient alone; steps end at samples
-        and breaks of inputs, so that some are shorter.
+    step : a fixed step [s] instead of rtol, for the discrete gradient alone. Steps end at samples,
+        at breaks of inputs and at the end of the run: where the step does not divide what lies
+        between two of these, steps there are equal and shorter, the attribute `shortest_step` the
+        shortest.
     parameters : name -> number, for a bank's parameter also a list of one number a lane; and
         `<bank>_count` -> number of lanes. SI units.
     initial : state -> number, for a bank's state also a list of one number a lane. SI units.
@@ -95,29 +98,34 @@ def simulate(
     method : discrete_gradient when left out, or one of SciPy's: RK23, RK45, DOP853, Radau, BDF,
         LSODA. Left out, a module without C beside it runs by LSODA; and so does one whose C cannot
         be compiled here, with one `EngineWarning`.
-    times : the samples: a number of even ones (1001 when left out), or increasing times [s].
+    times : the samples: a number of even ones, or increasing times [s]. When left out, 1001 even
+        ones; with `step`, as many ends of steps, equally far apart, as 1001 allow, and the end.
     every : with `step`, instead of `times`: a sample every so many steps, and at the end.
-    progress : told the time [s] reached, now and then.
-    dissipative_start : for discrete_gradient. The first step after t = 0, and after each jump of
-        an input, is made of four quarters that damp whatever is much faster than they are: a
-        longer step otherwise rings after a jump, for a long time. What the quarters lose on the
-        way is heat of the first thermal_mass, `heat_numerical` and `produced_numerical`; both
-        balances stay exact. It pays where steps are long: 2 ms after a jump to 100 V on
-        piezo_stack the error falls from 1.1e-2 to 1.3e-4 with steps of 0.2 ms, from 2.5e-4 to
-        3.8e-5 with 0.1 ms; with 5 us, less than the fastest time constant, it grows from 7e-7 to
-        4e-6.
+    progress : a function, told the time [s] reached, now and then; `piezo_sym.simulate` also takes
+        True, for a bar.
+    dissipative_start : for discrete_gradient. It reduces the error that a jump of an input leaves
+        in the states where a step is much longer than the fastest time constant: they ring from
+        step to step, for a long time. The first step after t = 0, and after each jump, is made of
+        four quarters that damp what is much faster than they are. What they lose on the way is
+        heat of the first thermal_mass, `heat_numerical` and `produced_numerical`; both balances
+        stay exact. On piezo_stack, the largest error of any state 2 ms after V_in jumps to 100 V,
+        each as a part of the state's size under load (2 mm for q), falls from 1.1e-2 to 1.3e-4 with
+        steps of 0.2 ms, from 2.8e-4 to 3.8e-5 with 0.1 ms. With 5 us, less than the fastest time
+        constant of 9 us, nothing rings and it grows, from 7e-7 to 4e-6.
 
     Returns
     -------
     xarray.Dataset
         Over `time` (nt,), and for banks (nt, lanes): states, inputs, `y_<port>`, `T_<body>`,
         `energy`, `entropy`; integrals since t = 0 `supplied_<port>`, `heat_<element>` [J] and
-        `produced_<element>` [J/K]; `energy_residual` = U - U(0) - energy put in: round-off with
-        the discrete gradient, the error of solver and quadrature with SciPy's. At a jump, inputs
+        `produced_<element>` [J/K], and `entropy_exchanged_<port>` [J/K], which the surroundings
+        bring (of an ambient: lam (T_e/T - 1)); `energy_residual` = U - U(0) - energy put in, and
+        `entropy_residual` = S - S(0) - entropy produced - entropy exchanged: round-off with the
+        discrete gradient, the error of solver and quadrature with SciPy's. At a jump, inputs
         have their value after it, but at the end of the run their value before it. Attributes:
-        units, model, parameters; `method`, `rtol` or `step`, `engine` (its compiler, or why there
-        is none), the work (`accepted_steps`, `newton_iterations`, `halvings`; for SciPy
-        `rhs_evaluations`), and which quantities are `extrapolated`.
+        units, model, parameters; `method`, `rtol`, or `step` and `shortest_step`, `engine` (its
+        compiler, or why there is none), the work (`accepted_steps`, `newton_iterations`,
+        `halvings`; for SciPy `rhs_evaluations`), and which quantities are `extrapolated`.
 
     Raises
     ------
@@ -131,7 +139,8 @@ def simulate(
     refuse_step(step, named, rtol)
     named = start_method(dissipative_start, named)
     end = positive(duration, "simulate.duration")
-    samples = read_every(every, times, step, end) if every is not None else read_times(times, end)
+    refuse_progress(progress)
+    samples = sample_times(times, every, step, end)
     values = read_parameters(module, parameters)
     system = System(module, values, read_inputs(module, inputs, end))
     x = read_initial(module, values, system.inputs.segments[0].at(0.0), initial)
@@ -199,6 +208,13 @@ def refuse_step(step: object, method: str | None, rtol: object) -> None:
     if rtol is not None:
         what = "step and rtol are both given"
         raise UsageError(what, "simulate.step", "one of them", "leave out rtol for a fixed step")
+
+
+def refuse_progress(progress: object) -> None:
+    """Raise `UsageError` if nothing can be told to what a user gave as `progress`."""
+    if progress is not None and not callable(progress):
+        expected = "a function of the time in s, or None"
+        raise UsageError(f"{quote(progress)} shows no progress", "simulate.progress", expected)
 
 
 def start_method(dissipative_start: object, method: str | None) -> str | None:

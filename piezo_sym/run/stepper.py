@@ -1,30 +1,37 @@
 """One step at a time, with inputs that the caller decides: closed loops, hardware in the loop.
 
 Input: a generated module, a step, parameters and initial values.  Output: a `Stepper`, whose
-`step(u)` takes one step of the discrete gradient in C and returns the outputs y.
+`step(u)` takes one step of the discrete gradient in C and returns the outputs y.  What happens in
+each step costs no more than a call of C; the names, the ledger and errors are made when asked for.
 """
 
 from __future__ import annotations
 
 import ctypes
+import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 
-from piezo_sym.errors import RunError, UsageError
-from piezo_sym.run.checks import positive
+from piezo_sym.errors import PiezoError, RunError, UsageError, listing, quote
+from piezo_sym.run.checks import number, positive, vector
+from piezo_sym.run.compiled import input_conditions
+from piezo_sym.run.dataset import ledger
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.engine.march import Batch, Model, Path, at
-from piezo_sym.run.guard import check_start
+from piezo_sym.run.guard import check_start, domain_error
 from piezo_sym.run.inputs import read_inputs
-from piezo_sym.run.module import checked
+from piezo_sym.run.ledger import Trajectory
+from piezo_sym.run.module import checked, row_names
 from piezo_sym.run.parameters import read_initial, read_parameters
 from piezo_sym.run.system import System
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
 
     from piezo_sym.run.checks import FloatArray
+    from piezo_sym.run.engine import Engine
     from piezo_sym.run.module import GeneratedModule
     from piezo_sym.run.parameters import LaneValue
 
@@ -41,16 +48,57 @@ class Tick(ctypes.Structure):
     ]
 
 
+def numbers_of(array: FloatArray) -> memoryview[Any]:
+    """Return an array (n,) as Python's own numbers, whose reading costs less than NumPy's."""
+    return memoryview(array.data)
+
+
+@final
+class Limits:
+    """The conditions of the domain on inputs alone, looked at where an input that they name moves.
+
+    Steps look at those on states themselves.  x (n,) and u (m,) are looked at where they lie.
+    """
+
+    def __init__(self, system: System, engine: Engine, x: FloatArray, u: FloatArray) -> None:
+        conditions, rows = input_conditions(system)
+        self._found = np.zeros(len(system.module.DOMAIN))
+        self._strict = [(n, system.module.DOMAIN[n].strict) for n in conditions]
+        self._rows, self._held = sorted(rows), [math.nan] * len(rows)
+        self._u, self._margins = numbers_of(u), numbers_of(self._found)
+        self._structure = engine.structure(system.parameters)
+        self._call: Any = getattr(engine.library, f"{system.module.NAME}_margins")
+        self._at = (at(x), at(u), ctypes.byref(self._structure.value), at(self._found))
+
+    def hold(self) -> bool:
+        """Return whether the inputs lie in the domain; a margin of nan does not."""
+        u = self._u
+        now = [u[row] for row in self._rows]
+        if now == self._held:
+            return True
+        self._call(*self._at)
+        found = self._margins
+        for n, strict in self._strict:
+            if not (found[n] > 0 or (found[n] == 0 and not strict)):
+                return False
+        self._held = now
+        return True
+
+
 @final
 class Stepper:
     """A model that goes step by step, its inputs given anew for each step.
 
     >>> from piezo_sym import Stepper
     >>> actuator = Stepper("piezo_stack", step=2e-5)
+    >>> actuator.inputs, actuator.outputs
+    (('F_ext', 'V_in', 'T_e'), ('load', 'supply', 'ambient'))
     >>> for _ in range(1000):
     ...     v, i, T = actuator.step([0.0, 50.0, 298.15])  # y of the ports; u = F_ext, V_in, T_e
     >>> print(f"q = {actuator.x[0] * 1e6:.0f} um, T = {T:.2f} K at t = {actuator.time:.2f} s")
     q = 1007 um, T = 298.20 K at t = 0.02 s
+    >>> print(f"{actuator.ledger['supplied_supply']:.3f} J put in by the supply")
+    0.519 J put in by the supply
 
     Parameters
     ----------
@@ -60,8 +108,10 @@ class Stepper:
 
     Attributes
     ----------
+    states, inputs, outputs : the names of the entries of x, u and y, in order; lanes `phi_1`, ...
     x : the state (n,), a copy, banks spread.
     time : the time [s] after the steps taken.
+    ledger : what ports and processes did since t = 0, by the names of `simulate`'s Dataset.
 
     Raises
     ------
@@ -83,18 +133,22 @@ class Stepper:
         self._h = positive(step, "Stepper.step")
         engine = engine_of(module)
         values = read_parameters(module, parameters)
-        system = System(module, values, read_inputs(module, inputs, self._h))
+        system = self._system = System(module, values, read_inputs(module, inputs, self._h))
         x = read_initial(module, values, system.inputs.segments[0].at(0.0), initial)
         check_start(system, x)
+        self.states = tuple(row_names(module.STATES, values))
+        self.inputs = tuple(record.name for record in module.INPUTS)
+        self.outputs = tuple(record.name for record in module.OUTPUTS)
+        self._start, self._taken = x, 0
         self._batch = Batch(engine, [values], x[None], 0)
+        self._booked = self._batch.ledgers[0].reshape(-1)
+        self._sums, self._before = numbers_of(self._booked), numbers_of(self._booked.copy())
+        self._u, self._y = np.zeros(len(self.inputs)), np.zeros(len(self.outputs))
+        self._limits = Limits(system, engine, self._batch.x[0], self._u)
         member = self._batch.members[0]
-        member.fine.sums = None  # nobody asks for the ledger
-        self._u, self._y = np.zeros(len(module.INPUTS)), np.zeros(len(module.OUTPUTS))
         self._all = Tick(member.model, member.fine, at(self._u), at(self._y), self._h)
         self._tick: Any = getattr(engine.library, f"{module.NAME}_tick")
         self._at = ctypes.byref(self._all)
-        self._names = [record.name for record in module.INPUTS]
-        self._taken = 0
 
     @property
     def x(self) -> FloatArray:
@@ -107,33 +161,93 @@ class Stepper:
         """The time [s]."""
         return self._taken * self._h
 
+    @property
+    def ledger(self) -> dict[str, Any]:
+        """The ledger since t = 0: numbers, or for a bank one a lane (lanes,).
+
+        `supplied_<port>`, `heat_<element>` [J], `produced_<element>` [J/K],
+        `entropy_exchanged_<port>` [J/K]; `energy_residual` [J] and `entropy_residual` [J/K] are
+        what is left over of the two balances: round-off.
+        """
+        x, u = self._batch.x[0][:, None], self._u[:, None]
+        sums = self._batch.ledgers[0, 0][:, None]
+        past = Trajectory(self._start, x, u, sums, self._taken, 0)
+        rows = {name: values[0] for name, (_, values, _) in ledger(self._system, past)}
+        return {name: row.copy() if row.ndim else float(row) for name, row in rows.items()}
+
     def step(self, u: Sequence[float] | FloatArray) -> FloatArray:
         """Take one step with the inputs u held, and return the outputs y after it.
 
         Parameters
         ----------
-        u : one number an input, in the spec's order, SI units. Conditions of the domain on inputs
-            alone, such as T_e > T_0, are the caller's to keep: they are looked at when it is made.
+        u : one number an input, in the order of `inputs`, SI units.
 
         Returns
         -------
         numpy.ndarray
-            y, one a port (shared with the next call: copy what you keep).
+            y, in the order of `outputs` (shared with the next call: copy what you keep).
 
         Raises
         ------
-        UsageError : there are more or fewer numbers than inputs.
-        RunError : no step stays in the domain; the state is that before the step.
+        UsageError : there are more or fewer numbers than inputs, or one is not finite.
+        RunError : inputs leave the domain, or no step stays in it. State, time and ledger are those
+            before the step.
         """
         try:
-            if len(u) != len(self._names):
+            if len(u) != len(self.inputs) or isinstance(u, str):
                 raise TypeError
             self._u[:] = u
         except (ValueError, TypeError) as error:
-            expected = f"one number each for {', '.join(self._names)}"
-            raise UsageError("these are no inputs", "Stepper.step", expected) from error
-        if not self._tick(self._at):
-            what = f"no step stays in the domain at t = {self.time:.6g} s"
-            raise RunError(what, "Stepper.step", remedy="look at the inputs, or take shorter steps")
+            raise self._no_inputs(u) from error
+        self._before[:] = self._sums
+        if not self._limits.hold() or not self._tick(self._at):
+            self._undo()
+            raise self._refusal(u)
         self._taken += 1
         return self._y
+
+    def reset(self, x: Sequence[float] | FloatArray | None = None) -> None:
+        """Go back to t = 0, with an empty ledger.
+
+        Parameters
+        ----------
+        x : the state to start from (n,), in the order of `states`; that at first when left out.
+
+        Raises
+        ------
+        UsageError : this is no state.
+        RunError : it is outside the domain.
+        """
+        if x is not None:
+            start = vector(x, "Stepper.reset")
+            if start.size != len(self.states):
+                expected = f"one number each for {listing(self.states)}"
+                raise UsageError(f"{start.size} numbers are no state", "Stepper.reset", expected)
+            check_start(self._system, start)
+            self._start = start
+        self._batch.x[0] = self._start
+        self._booked[:] = 0.0
+        self._all.path.h = self._all.path.h_prior = 0.0
+        self._taken = 0
+
+    def _undo(self) -> None:
+        """Forget what halves of a step have booked; C itself puts the state back."""
+        self._sums[:] = self._before
+        self._all.path.h = self._all.path.h_prior = 0.0
+
+    def _no_inputs(self, u: object) -> UsageError:
+        """Return the error of something that is not one number an input."""
+        if isinstance(u, Sequence) and not isinstance(u, str) and len(u) == len(self.inputs):
+            for name, value in zip(self.inputs, u, strict=True):
+                number(value, f"Stepper.step: input {quote(name)}")
+        expected = f"one number each for {', '.join(self.inputs)}"
+        return UsageError("these are no inputs", "Stepper.step", expected)
+
+    def _refusal(self, u: Sequence[float] | FloatArray) -> PiezoError:
+        """Return why there is no step with inputs of the right number."""
+        for name, value in zip(self.inputs, u, strict=True):
+            number(value, f"Stepper.step: input {quote(name)}")
+        if not self._limits.hold():
+            return domain_error(self._system, self.time, self._batch.x[0], self._u)
+        what = f"no step stays in the domain at t = {self.time:.6g} s"
+        return RunError(what, "Stepper.step", remedy="look at the inputs, or take shorter steps")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 
-from piezo_sym.run.module import rows
+from piezo_sym.run.module import exchanges, rows
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -61,8 +61,13 @@ class System:
             return np.isfinite(self.module.rhs(x, u, self.parameters))
 
     def rates(self, x: FloatArray, u: FloatArray) -> FloatArray:
-        """Return supply, heat and entropy production, (ports + 2 processes, *batch)."""
-        m, p = self.module, self.parameters
+        """Return what the ledger books, (ports + 2 processes + exchanges, *batch).
+
+        Supply, heat, entropy production; and the entropy that each heat exchange brings, which is
+        its power over the temperature of the body.
+        """
+        m, p, exchanging = self.module, self.parameters, exchanges(self.module)
         with np.errstate(all="ignore"):
-            parts = (m.supply(x, u, p), m.heat(x, u, p), m.entropy_production(x, u, p))
-            return np.concatenate(parts)
+            supply = m.supply(x, u, p)
+            brought = supply[exchanging] / m.outputs(x, u, p)[exchanging]
+            return np.concatenate([supply, m.heat(x, u, p), m.entropy_production(x, u, p), brought])

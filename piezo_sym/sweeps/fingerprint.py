@@ -17,8 +17,8 @@ import numpy as np
 if TYPE_CHECKING:
     from piezo_sym.sweeps.plan import Plan
 
-#: How boxes are cut, and how runs go through C, says nothing about what runs.
-LEFT_OUT = ("most", "together", "side_by_side")
+#: How boxes are cut, and who runs them, says nothing about what runs.
+LEFT_OUT = ("most", "together", "engine", "side_by_side")
 
 
 def fingerprint(plan: Plan, spec_sha256: str) -> str:

@@ -83,7 +83,7 @@ def frame_of(plan: Plan, module: GeneratedModule) -> Frame:
     UsageError : two quantities would have one name.
     """
     system = widest(plan, module)
-    known = layout(system)
+    known = layout(system, extrapolated=plan.extrapolated)
     inputs = dict(inputs_of(plan, module, system, known))
     results = [name for name in known if name not in {r.name for r in module.INPUTS}]
     coords: dict[str, Variable] = dict(coordinates(system, plan.samples))
@@ -160,7 +160,8 @@ def attrs_of(plan: Plan, system: System) -> dict[str, Any]:
     accuracy = {"rtol": plan.rtol} if plan.step is None else {"step": plan.step}
     kept = plan.reduce if isinstance(plan.reduce, str) else ""
     reduction = {"reduction": kept} if kept else {}
-    return {**attrs, "method": plan.method, **accuracy, **reduction, "duration": plan.duration}
+    done = {"method": plan.method, **accuracy, **reduction, "duration": plan.duration}
+    return {**attrs, **done, "engine": plan.engine}
 
 
 ERROR_ATTRS = described("1", "why a run failed; empty where it did not") | {"missing": NOT_RUN}

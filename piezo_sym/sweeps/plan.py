@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, final
 import numpy as np
 
 from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.discrete import METHOD
 from piezo_sym.run.signals import Signal
 from piezo_sym.sweeps.axes import Axis
 
@@ -72,6 +73,7 @@ class Plan:
     largest_banks : the largest size of each bank whose size is swept.
     together : runs in one call of C, at most.
     most : runs in a box, at most.
+    engine : what runs them, in words, as an attribute of `simulate` says.
     side_by_side : whether runs in one call of C go in the lanes of vectors, or one by one.
     """
 
@@ -89,11 +91,17 @@ class Plan:
     largest_banks: Mapping[str, int]
     together: int
     most: int
+    engine: str = ""
     side_by_side: bool = True
 
     def with_most(self, most: int) -> Plan:
         """Return the same sweep in boxes of other sizes."""
         return replace(self, most=most)
+
+    @property
+    def extrapolated(self) -> bool:
+        """Whether states are extrapolated from two runs."""
+        return self.method == METHOD and self.step is None
 
     @property
     def shape(self) -> tuple[int, ...]:

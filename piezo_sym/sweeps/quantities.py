@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any, TypeAlias, final
 
 import numpy as np
@@ -16,6 +15,7 @@ import numpy as np
 from piezo_sym.run.dataset import variables
 from piezo_sym.run.engine.members import Members
 from piezo_sym.run.ledger import Trajectory, row_counts
+from piezo_sym.run.module import exchanges
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -49,11 +49,19 @@ class Quantity:
 Quantities: TypeAlias = dict[str, Quantity]
 
 
-def layout(system: System) -> dict[str, tuple[tuple[str, ...], dict[str, Any]]]:
-    """Return dimensions and attributes of every quantity of a run, inputs among them, in order."""
+def layout(
+    system: System, *, extrapolated: bool
+) -> dict[str, tuple[tuple[str, ...], dict[str, Any]]]:
+    """Return dimensions and attributes of every quantity of a run, inputs among them, in order.
+
+    Parameters
+    ----------
+    extrapolated : whether states are extrapolated, so that the ledger is that of other ones.
+    """
     n, m, k = row_counts(system)
     states, inputs, integrals = (np.full((size, 1), np.nan) for size in (n, m, k))
-    nothing = Trajectory(np.full(n, np.nan), states, inputs, integrals, 0, 0)
+    finest = states if extrapolated else None
+    nothing = Trajectory(np.full(n, np.nan), states, inputs, integrals, 0, 0, finest)
     with np.errstate(all="ignore"):
         return {name: (dims, attrs) for name, (dims, _, attrs) in variables(system, nothing)}
 
@@ -87,22 +95,25 @@ def quantities(
     x = np.ascontiguousarray(batch.states[:, kept])
     balanced = np.ascontiguousarray(batch.fine[:, kept]) if runs.extrapolated else x
     sums = batch.sums[:, kept]
-    ports, processes = batch.rows.ports, batch.rows.processes
-    ends = (0, ports, ports + processes, ports + 2 * processes)
-    supplied, heat, produced = (sums[..., a:b] for a, b in pairwise(ends))
-    energy = call("energy", x, 1)[..., 0]
-    fine = call("energy", balanced, 1)[..., 0] if runs.extrapolated else energy
-    first = call("energy", np.ascontiguousarray(runs.start[:, None]), 1)[..., 0]
+    ports, processes, exchanging = batch.rows.ports, batch.rows.processes, exchanges(module)
+    ends = np.cumsum([ports, processes, processes, len(exchanging)])
+    supplied, heat, produced, exchanged, _ = np.split(sums, ends, axis=2)
+    first = np.ascontiguousarray(runs.start[:, None])
     yield from spread(system, module.STATES, x)
     yield from spread(system, module.OUTPUTS, call("outputs", x, ports, u), "y_")
     bodies = call("temperatures", x, len(module.BODIES))
     yield from spread(system, module.BODIES, bodies, "T_")
-    yield "energy", energy
-    yield "entropy", call("entropy", x, 1)[..., 0]
+    for name in ("energy", "entropy"):
+        yield name, call(name, x, 1)[..., 0]
     yield from spread(system, module.OUTPUTS, supplied, "supplied_")
     yield from spread(system, module.PROCESSES, heat, "heat_")
     yield from spread(system, module.PROCESSES, produced, "produced_")
-    yield "energy_residual", fine - first - np.sum(supplied, axis=2)
+    brought = [module.OUTPUTS[n] for n in exchanging]
+    yield from spread(system, brought, exchanged, "entropy_exchanged_")
+    made = np.sum(produced, axis=2) + np.sum(exchanged, axis=2)
+    for name, booked in (("energy", np.sum(supplied, axis=2)), ("entropy", made)):
+        gained = call(name, balanced, 1)[..., 0] - call(name, first, 1)[..., 0]
+        yield f"{name}_residual", gained - booked
 
 
 def spread(

@@ -17,7 +17,7 @@ from piezo_sym.run.discrete import METHOD
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.method import checked_method, way_of
 from piezo_sym.run.module import lanes
-from piezo_sym.run.parameters import own_initial, read_initial, read_parameters, read_times
+from piezo_sym.run.parameters import own_initial, read_initial, read_parameters, sample_times
 from piezo_sym.run.simulate import read_rtol, refuse_step
 from piezo_sym.sweeps.axes import read_axes
 from piezo_sym.sweeps.plan import (
@@ -57,6 +57,7 @@ class Asked:
     times: int | ArrayLike | None
     reduce: object
     reduce_by: object
+    every: int | None = None
 
 
 def read_plan(module: GeneratedModule, asked: Asked) -> Plan:
@@ -70,7 +71,7 @@ def read_plan(module: GeneratedModule, asked: Asked) -> Plan:
         named, rtol = checked_method(asked.method), read_rtol(asked.rtol)
         refuse_step(asked.step, named, asked.rtol)
         end = positive(asked.duration, "sweep.duration")
-        samples = read_times(asked.times, end)
+        samples = sample_times(asked.times, asked.every, asked.step, end)
         inputs = read_inputs(module, asked.inputs, end)
         base = read_parameters(module, asked.parameters)
         axes = read_axes(module, asked.over, end, {b: lanes(base, b) for b in module.BANKS})
@@ -78,14 +79,15 @@ def read_plan(module: GeneratedModule, asked: Asked) -> Plan:
         given = (dict(asked.parameters or {}), dict(asked.initial or {}))
         refuse_sizes(module, axes, *given, inputs.segments[0].at(0.0))
         refuse_reduction(asked)
-        method = way_of(module, named, asked.step).method
+        way = way_of(module, named, asked.step)
         step = None if asked.step is None else float(asked.step)
         numbers = samples.size * row_numbers(module, base, axes)
         many = MOST_TOGETHER if method == METHOD else MOST_BY_SCIPY
         together = max(1, min(many, MOST_NUMBERS // numbers))
         most = together if asked.reduce is None else box_of_reduced(axes, together)
-        kept = (method, rtol, step, asked.reduce, asked.reduce_by == "run", largest_banks(axes))
-        return Plan(axes, inputs.signals, end, *given, samples, *kept, together, most)  # type: ignore[arg-type]
+        how = (way.method, rtol, step, asked.reduce, asked.reduce_by == "run", largest_banks(axes))
+        sizes = (together, most, way.note)
+        return Plan(axes, inputs.signals, end, *given, samples, *how, *sizes)  # type: ignore[arg-type]
 
 
 @contextmanager

@@ -140,7 +140,7 @@ def group_result(
     arrays = in_c(plan, group, engine, u, kept, watch) if engine else one_by_one(plan, group, watch)
     if not engine:
         arrays = {name: values[:, kept] for name, values in arrays.items()}
-    known = layout(system)
+    known = layout(system, extrapolated=plan.extrapolated)
     found = {n: Quantity(d, arrays[n], a) for n, (d, a) in known.items() if n in arrays}
     if plan.reduce is None:
         return found, {}
@@ -241,7 +241,7 @@ def spread_out(
     times = plan.samples[kept].size
     names = {record.name for record in system.module.INPUTS}
     whole = {}
-    for name, (dims, _) in layout(system).items():
+    for name, (dims, _) in layout(system, extrapolated=plan.extrapolated).items():
         if name not in names:
             sizes = (times, *(lanes(system.parameters, bank) for bank in dims[1:]))
             whole[name] = np.full((len(failed), *sizes), np.nan)
@@ -283,7 +283,8 @@ def dataset(
         for name, (values, attrs) in axis.coordinates():
             label = f"over_{name}" if name in found or name in coords else name
             coords[label] = (MEMBER, np.asarray(values)[points[:, n]], attrs)
-    order: Iterable[str] = [name for name in layout(system) if name in found]
+    known = layout(system, extrapolated=plan.extrapolated)
+    order: Iterable[str] = [name for name in known if name in found]
     data = {n: ((MEMBER, *found[n].dims), found[n].values, found[n].attrs) for n in order}
     module = system.module
     attrs = {"model": module.NAME, "spec_sha256": module.SPEC_SHA256}

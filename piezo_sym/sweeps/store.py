@@ -7,15 +7,17 @@ written, last of all: until then it says "not run".
 from __future__ import annotations
 
 import tempfile
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 
-from piezo_sym.errors import FileError, UsageError
+from piezo_sym.errors import FileError, UsageError, listing
 from piezo_sym.files import path_text
 from piezo_sym.sweeps.fingerprint import fingerprint
 from piezo_sym.sweeps.frame import ERROR_ATTRS, NOT_RUN
+from piezo_sym.sweeps.reduce import refuse_other_names
 from piezo_sym.sweeps.sinks import Sink, refuse_other_sizes
 
 if TYPE_CHECKING:
@@ -28,7 +30,7 @@ if TYPE_CHECKING:
     from piezo_sym.sweeps.quantities import Quantity
     from piezo_sym.sweeps.run import Result
 
-MARK, BOX = "sweep_fingerprint", "sweep_box"
+MARK, BOX, RESULTS = "sweep_fingerprint", "sweep_box", "sweep_results"
 FRESH = "choose another path, or delete it"
 UNREADABLE = (OSError, ValueError, KeyError, RuntimeError)
 
@@ -50,14 +52,36 @@ def store_at(path: Path, plan: Plan, frame: Frame, spec_sha256: str) -> tuple[Pl
     if not path.exists():
         create(path, plan, frame, {MARK: mark, BOX: plan.most})
     try:
-        group = zarr.open_group(path, mode="r+", zarr_format=3)
+        group = zarr.open_group(path, mode="r+", zarr_format=3, use_consolidated=False)
     except UNREADABLE as cause:
         raise FileError("is no store of a sweep", path_text(path), remedy=FRESH) from cause
-    if group.attrs.get(MARK) != mark:
-        what = "holds another sweep, or none"
+    if MARK not in group.attrs:
+        raise FileError("is no store of a sweep", path_text(path), remedy=FRESH)
+    if group.attrs[MARK] != mark:
+        what = f"holds another sweep: {difference(group, frame)}"
         raise FileError(what, path_text(path), "a store of this very sweep", FRESH)
     plan = plan.with_most(int(str(group.attrs[BOX])))
     return plan, Store(path, group, plan, frame)
+
+
+def difference(group: Any, frame: Frame) -> str:
+    """Return in what the sweep in a store differs from this one, as far as it can be told."""
+    other = [name for name, value in frame.attrs.items() if not same(group.attrs.get(name), value)]
+    other += [name for name in group.attrs if name not in {*frame.attrs, MARK, BOX, RESULTS}]
+    swept = group["error"].metadata.dimension_names or ()
+    other += sorted(set(swept) ^ set(frame.dims))
+    for name, (dims, values, _) in frame.coords.items():
+        if name in group and set(dims) <= set(frame.dims):
+            other += [] if same(group[name][...], np.asarray(values)) else [name]
+    names = [name for name in dict.fromkeys(other) if name != "engine"]
+    if not names:
+        return "its inputs, samples, initial values or functions are others"
+    return f"others are {listing(name.removeprefix('parameter_') for name in names)}"
+
+
+def same(one: Any, other: Any) -> bool:
+    """Return whether two values are equal, arrays entry by entry."""
+    return bool(np.array_equal(np.asarray(one), np.asarray(other)))
 
 
 def create(path: Path, plan: Plan, frame: Frame, marks: dict[str, object]) -> None:
@@ -93,6 +117,18 @@ def box_in_order(plan: Plan) -> tuple[int, ...]:
     return tuple(sizes[n] for n in range(len(plan.axes)))
 
 
+def consolidate(path: Path) -> None:
+    """Write what arrays there are in one place, where others who open a store look for it.
+
+    zarr warns that its format 3 does not speak of that yet; xarray warns where it is missing.
+    """
+    import zarr
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        zarr.consolidate_metadata(path, zarr_format=3)
+
+
 @final
 class Store(Sink):
     """Writes results into arrays over the grid, a chunk of each a box."""
@@ -114,17 +150,23 @@ class Store(Sink):
 
     def take(self, result: Result) -> None:
         """Write a result; its errors last."""
-        region = self._plan.region(result.box)
+        region, quantities = self._plan.region(result.box), result.quantities
+        known = self._group.attrs.get(RESULTS)
+        if known is not None and quantities:
+            refuse_other_names(known, quantities)
         try:
-            for name, one in {**result.coords, **result.quantities}.items():
+            for name, one in {**result.coords, **quantities}.items():
                 if name not in self._group:
                     self._add(name, one, own=name in result.coords)
-            for name, one in result.quantities.items():
+            for name, one in quantities.items():
                 array = self._group[name]
                 refuse_other_sizes(name, array.shape[len(region) :], one)
                 array[region] = self._plan.arranged(result.box, one.values)
             errors = np.array(result.errors, dtype=object)
             self._group["error"][region] = self._plan.arranged(result.box, errors)
+            if known is None and quantities:
+                self._group.attrs[RESULTS] = list(quantities)
+                consolidate(self._path)
         except OSError as cause:
             what = f"cannot be written: {cause.strerror}"
             raise FileError(what, path_text(self._path)) from cause
@@ -153,5 +195,6 @@ class Store(Sink):
         """Return the store as a Dataset that is read when its values are asked for."""
         import xarray
 
+        consolidate(self._path)
         found: xarray.Dataset = xarray.open_zarr(self._path, chunks=None, consolidated=False)
         return found

@@ -55,6 +55,7 @@ def sweep(
     initial: Mapping[str, LaneValue] | None = None,
     method: str | None = None,
     times: int | ArrayLike | None = None,
+    every: int | None = None,
     reduce: Reduction | None = None,
     reduce_by: Literal["run", "chunk"] = "run",
     executor: Executor | None = None,
@@ -76,7 +77,8 @@ def sweep(
         `simulate` takes, SI units. A mapping of labels (numbers or texts) to values gives the
         dimension these labels. A tuple of names -> a list of tuples, or an array (points, names):
         values that go together, one dimension "L_T_e", with coordinates L and T_e along it.
-    inputs, duration, rtol, step, parameters, initial, times : of all runs, as for `simulate`.
+    inputs, duration, rtol, step, parameters, initial, times, every : of all runs, as for
+        `simulate`.
     method : as for `simulate`; discrete_gradient when left out, and without a compiler LSODA.
     reduce : "last", the values at the last sample; "mean", the mean over time (by trapezoids); or a
         function of a run's Dataset (as of `simulate`, swept values as coordinates; that of an
@@ -88,7 +90,7 @@ def sweep(
         of threads. Functions given to other processes are best sent with cloudpickle installed.
     threads : their number; as many as processors when left out.
     store : the path of a Zarr store (`pip install piezo_sym[store]`), written box by box. The same
-        call goes on where it was stopped; another one is refused.
+        call goes on where it was stopped; another one is refused. `xarray.open_zarr` opens it.
     progress : whether to show a bar, or a function of (done, total); None: a bar on a terminal.
 
     Returns
@@ -119,9 +121,8 @@ def sweep(
     count = processors() if threads is None else whole(threads, "sweep.threads", 1)
     refuse_executor(executor, threads)
     module: Any = module_of(model)
-    asked = Asked(
-        over, inputs, duration, rtol, step, parameters, initial, method, times, reduce, reduce_by
-    )
+    runs = (inputs, duration, rtol, step, parameters, initial, method, times)
+    asked = Asked(over, *runs, reduce, reduce_by, every)
     plan = read_plan(module, asked)
     plan, sink = sink_of(plan, module, store, count)
     with ExitStack() as stack:

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 import xarray
 
-from piezo_sym import plot, simulate, sine
+from piezo_sym import plot, simulate, sine, sweep
 from piezo_sym.errors import UsageError
+from piezo_sym.sweeps import SweepWarning
 
 SPECS = "tests/networks/specs"
 COLUMNS = """
@@ -124,3 +125,39 @@ def test_it_can_be_saved(tmp_path):
 def test_what_is_no_run_is_refused(thing):
     with pytest.raises(UsageError, match=r"is no run; expected a Dataset that simulate\(\)"):
         plot(thing)
+
+
+@pytest.fixture(scope="module")
+def runs():
+    """Four runs of a sweep; one fails at its start."""
+    over = {"V_in": {100.0: sine(100, 100), 50.0: sine(50, 100)}, "L": [1e-3, -1.0]}
+    with pytest.warns(SweepWarning):
+        return sweep("piezo_stack", over=over, duration=0.005, times=11)
+
+
+def test_one_run_of_a_sweep_is_drawn_like_any_other(runs):
+    drawn = labels(plot(runs.isel(V_in=0, L=0)))
+    alone = labels(plot(actuator(duration=0.005, times=11)))
+    renamed = {"V_in [V]": "u_V_in [V]", "T_e, T_body [K]": "T_body, T_e [K]"}
+    assert sorted(drawn) == sorted(renamed.get(label, label) for label in alone)
+
+
+@pytest.mark.parametrize(
+    ("chosen", "said"),
+    [
+        ({}, r"this is a sweep over V_in, L; .* plot\(runs.isel\(V_in=0, L=0\)\)"),
+        ({"V_in": 0}, r"this is a sweep over L; .* plot\(runs.isel\(L=0\)\)"),
+        ({"V_in": 0, "L": 1}, "this run failed: model 'piezo_stack': start is outside"),
+        ({"V_in": 0, "L": 0, "time": 0}, "this run has no time"),
+    ],
+)
+def test_many_runs_a_failed_one_and_one_without_time_are_refused(runs, chosen, said):
+    with pytest.raises(UsageError, match=said) as error:
+        plot(runs.isel(chosen))
+    assert str(error.value).isprintable()
+
+
+def test_a_reduced_sweep_is_refused():
+    found = sweep("piezo_stack", over={"L": [1e-3]}, duration=0.005, reduce="last").isel(L=0)
+    with pytest.raises(UsageError, match=r"has no time; .* if 'reduce' is left out"):
+        plot(found)

@@ -340,6 +340,19 @@ def test_a_wrong_argument_is_one_line(changed, said):
     assert len(str(error.value).splitlines()) == 1
 
 
+@pytest.mark.filterwarnings("ignore:nothing settles")
+def test_constant_inputs_that_lead_to_no_state_of_rest_say_so():
+    with pytest.raises(RunError, match=r"at 100 Hz: no input moves, and no state of rest .* run s"):
+        periodic_steady_state("piezo_stack", inputs={"V_in": 100.0}, frequency=100.0)
+    with pytest.warns(SteadyWarning, match=r"no input moves, .* run simulate\(\) until it rests"):
+        assert periodic_steady_states("piezo_stack", inputs={"V_in": 100.0}, frequency=100.0) == ()
+
+
+def test_no_inputs_are_the_defaults():
+    found = periodic_steady_state("piezo_stack", inputs=None, frequency=10.0)
+    assert found.temperature == pytest.approx(298.15, rel=1e-12)
+
+
 def test_a_start_outside_the_domain_says_so():
     with pytest.raises(RunError, match="start is outside the domain"):
         periodic_steady_state("piezo_stack", **STACK, parameters={"L": -1.0})

@@ -52,6 +52,12 @@ def test_notes_say_what_errors_are_and_what_is_missing(report):
     )
 
 
+def test_a_batch_is_told_from_few_states(report):
+    batch = replace(ROW, group="batch of 100000, 6 states each")
+    told = [line for line in notes(replace(report, rows=(batch, ALONE))) if "shared among" in line]
+    assert len(told) == 1
+
+
 def test_markdown_is_a_table_with_its_machine(report):
     lines = markdown(report).splitlines()
     table = [line for line in lines if line.startswith("|")]

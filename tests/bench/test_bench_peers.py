@@ -141,7 +141,8 @@ def test_rates_stand_beside_those_written_by_hand(case_p):
 
 def test_batches_stand_beside_those_written_by_hand(case_p):
     part = batch_rows(case_p.over(1e-2), SMALL)
-    assert {row.group for row in part.rows} == {"batch, 6 states", "batch, 68 states"}
+    groups = {f"batch of {SMALL.columns}, {size} states each" for size in (6, 68)}
+    assert {row.group for row in part.rows} == groups
     assert {"hand-written C, in blocks", "hand-written NumPy"} <= {row.other for row in part.rows}
     assert max(max(row.other_error, row.ours_error) for row in part.rows) <= 1e-10
 

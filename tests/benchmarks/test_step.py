@@ -5,7 +5,7 @@ from time import perf_counter
 import numpy as np
 import pytest
 
-from piezo_sym import simulate, sine
+from piezo_sym import Stepper, simulate, sine
 from piezo_sym.modules import module_of
 from piezo_sym.run.discrete import fixed
 from piezo_sym.run.engine.engine import engine_of
@@ -65,3 +65,42 @@ def test_ten_thousand_hysterons_run():
     assert found.produced_hysteron.values[-1].max() > 0
     few = simulate("piezo_stack", parameters=distributed(1000), **options)
     assert float(found.q[-1]) == pytest.approx(float(few.q[-1]), rel=1e-3)
+
+
+MOST_AROUND = 3  # times a bare call of C; measured about 2, and 2.5 where T_e moves
+WARM, MOVING = 298.15, (298.15, 298.16)
+
+
+def time_of_calls(call, calls=2000):
+    """Return the time of a call [s], its least of several trials."""
+    best = np.inf
+    for _ in range(20):
+        start = perf_counter()
+        for _ in range(calls):
+            call()
+        best = min(best, (perf_counter() - start) / calls)
+    return best
+
+
+@pytest.mark.parametrize("moving", [False, True], ids=["T_e held", "T_e moves"])
+def test_a_step_of_a_stepper_costs_little_more_than_a_call_of_c(moving):
+    """A pair of steps, with all checks and the ledger, beside bare calls of the same function."""
+    actuator = Stepper("piezo_stack", step=2e-5)
+    first, second = ([0.0, 50.0, T] for T in (MOVING if moving else (WARM, WARM)))
+    actuator.step(first)
+
+    def checked():
+        actuator.step(first)
+        actuator.step(second)
+
+    def bare():
+        actuator._tick(actuator._at)
+        actuator._tick(actuator._at)
+
+    ratio = np.inf
+    for _ in range(4):  # a busy machine blurs the ratio
+        ratio = min(ratio, time_of_calls(checked) / time_of_calls(bare))
+        if ratio <= MOST_AROUND:
+            break
+    print(f"\nstep of a Stepper: {ratio:.2f} times a bare call")
+    assert ratio <= MOST_AROUND

@@ -1,13 +1,12 @@
 """From a spec to its module: the checkout's, the working folder's, or the user's cache."""
 
-import tempfile
 from pathlib import Path
 
 import numpy as np
 import platformdirs
 import pytest
 
-from piezo_sym import Model, generate, load, simulate
+from piezo_sym import Model, generate, load, modules, simulate
 from piezo_sym.cli import run
 from piezo_sym.errors import DriftError, FileError, SpecError
 from piezo_sym.modules import module_of
@@ -135,10 +134,11 @@ def test_a_damaged_file_in_the_cache_is_made_again(mine, cache):
 
 def test_a_cache_that_cannot_be_written_does_not_matter(mine, tmp_path, monkeypatch):
     (tmp_path / "cache").write_text("a file where the folder should be")
-    (tmp_path / "temporary").mkdir()
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
-    assert module_of(mine).Parameters().M == 4e-3
-    assert files(tmp_path / "temporary") == []
+    monkeypatch.setattr(modules, "temporary_folder", lambda: tmp_path / "temporary")
+    module = module_of(mine)
+    assert module.Parameters().M == 4e-3
+    assert {".py", ".h", ".c"} <= {path.suffix for path in files(tmp_path / "temporary")}
+    assert Path(module.__file__).is_relative_to(tmp_path / "temporary")
 
 
 def test_a_model_edited_in_python_runs_as_edited(spec, cache):

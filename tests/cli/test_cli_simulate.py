@@ -87,6 +87,55 @@ def test_inputs_are_numbers_and_signals(call, tmp_path, words, name, value):
         assert float(result[name][-1]) == pytest.approx(value, rel=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("text", "end"),
+    [
+        ("t,V_in\n0,1\n1,3\n", 1.002),
+        ("time;volts\n0;1\n1;3\n", 1.002),
+        ("t\tF_ext\tV_in\n0\t7\t1\n1\t8\t3\n", 1.002),
+    ],
+    ids=["comma", "another name", "one of two"],
+)
+def test_inputs_come_from_files(call, tmp_path, text, end):
+    (tmp_path / "my drive.csv").write_text(text, encoding="utf-8")
+    words = ("-i", f"V_in=@{tmp_path / 'my drive.csv'}", "--out", tmp_path / "run.nc")
+    assert call(*SHORT, *words).code == 0
+    assert last(tmp_path / "run.nc").V_in.values[-1] == pytest.approx(end)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("t,a,b\n0,1,2\n1,3,4\n", "has no column 'V_in' beside its times; columns: t, a, b"),
+        ("t,V_in\n0,1\n1,x\n", "drive.csv, line 3: 'x' is not a number"),
+        ("t,V_in\n0,1\n1e-6,2\n", "samples span 0 s to 1e-06 s; expected samples that cover"),
+        ("t,V_in\n", "0 times and 0 values; expected as many values as times"),
+        ("", "drive.csv: is empty; expected a header line"),
+        (None, "drive.csv: cannot be read: No such file"),
+    ],
+    ids=["columns", "number", "span", "header", "empty", "missing"],
+)
+def test_a_wrong_file_is_one_line(refused, tmp_path, text, message):
+    path = tmp_path / "drive.csv"
+    if text is not None:
+        path.write_text(text, encoding="utf-8")
+    assert message in refused(*SHORT, "-i", f"V_in=@{path}")
+
+
+def test_initial_values_are_those_given(call, tmp_path):
+    words = ("--initial", "q=1e-4", "--initial", "phi=1e-4,2e-4", "--out", tmp_path / "run.nc")
+    assert call(*SHORT, *words).code == 0
+    run = last(tmp_path / "run.nc")
+    assert run.q.values[0] == 1e-4
+    assert run.phi.values[0].tolist() == [1e-4, 2e-4]
+
+
+def test_a_note_says_which_numbers_are_of_the_finest_run(call):
+    note = "States are extrapolated; sums since t = 0 and residuals are the finest of three runs'."
+    assert note in call(*DRIVEN).out.splitlines()
+    assert "finest" not in call(*DRIVEN, "--step", "1e-5").out
+
+
 def test_a_parameter_of_a_bank_takes_a_number_a_lane(call, tmp_path):
     words = ("-p", "L=1e-3,2e-3", "-i", "V_in=1")
     call(*SHORT, *words, "--out", tmp_path / "run.nc")
@@ -116,6 +165,14 @@ REFUSED = [
     (("-i", "Vin=1"), "simulate.inputs: unknown name 'Vin'; did you mean 'V_in'?"),
     (("-i", "T_e=290"), "model 'piezo_stack': start is outside the domain at t = 0 s"),
     (("-p", "mass=1"), "simulate.parameters: unknown name 'mass'; known: M, k"),
+    (("-i", "V_in=@"), "--input V_in: '@' names no file; expected @FILE.csv"),
+    (("--initial", "q"), "--initial: 'q' has no '='"),
+    (("--initial", "q=far"), "--initial q: 'far' is no number"),
+    (("--initial", "Q=1"), "simulate.initial: unknown name 'Q'; did you mean 'q'?"),
+    (("--initial", "L=1"), "simulate.initial: unknown name 'L'; give it in 'parameters'"),
+    (("-p", "phi=1"), "simulate.parameters: unknown name 'phi'; give it in 'initial'"),
+    (("-p", "V_in=1"), "simulate.parameters: unknown name 'V_in'; give it in 'inputs'"),
+    (("-i", "S=1"), "simulate.inputs: unknown name 'S'; give it in 'initial'"),
     (("-p", "M"), "--set: 'M' has no '='"),
     (("-p", "M=heavy"), "--set M: 'heavy' is no number"),
     (("-p", "d=1,2"), "simulate.parameters.d: '[1, 2]' is a list"),

@@ -1,10 +1,13 @@
 """What is loaded when: the package costs nothing, a run needs no SymPy, a module needs NumPy."""
 
+import importlib
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
+from inspect import signature
 from pathlib import Path
 
 import pytest
@@ -115,3 +118,30 @@ def test_an_unknown_public_name_is_an_attribute_error():
 
     with pytest.raises(AttributeError, match="module 'piezo_sym' has no attribute 'derivee'"):
         piezo_sym.derivee  # noqa: B018
+
+
+@pytest.mark.parametrize(
+    ("name", "home"),
+    [
+        ("simulate", "piezo_sym.run.simulate"),
+        ("Stepper", "piezo_sym.run.stepper"),
+        ("periodic_steady_state", "piezo_sym.analysis.steady"),
+        ("periodic_steady_states", "piezo_sym.analysis.steady"),
+        ("steady_branches", "piezo_sym.analysis.branches"),
+    ],
+)
+def test_public_functions_take_what_their_homes_take(name, home):
+    """All but the first argument, a model there and a module here: names, defaults, types.
+
+    A bar is shown to those who ask for one there, not here.
+    """
+    public = getattr(importlib.import_module("piezo_sym"), name)
+    own = getattr(sys.modules[home], name)
+    (first, *taken), (_, *wanted) = (signature(f).parameters.values() for f in (public, own))
+    assert first.name == "model"
+    bar = [n for n, parameter in enumerate(wanted) if parameter.name == "progress"]
+    for n in bar:
+        wanted[n] = wanted[n].replace(annotation=taken[n].annotation)
+    assert taken == wanted
+    for parameter in taken:
+        assert re.search(rf"\b{parameter.name}\b", public.__doc__) or "as for" in public.__doc__

@@ -26,8 +26,9 @@ STATE, INPUTS = np.array([0.0, 1e-3, 1e-5, 1e-3, -2e-3, 0.05]), np.array([1.0, 5
 
 @pytest.fixture(autouse=True)
 def cache(tmp_path, monkeypatch):
-    """A cache of our own."""
+    """A cache of our own, and nothing said yet."""
     monkeypatch.setattr(platformdirs, "user_cache_dir", lambda name: str(tmp_path / "cache" / name))
+    libraries._warn.cache_clear()
     return tmp_path / "cache" / "piezo_sym" / "compiled"
 
 
@@ -138,16 +139,18 @@ def test_a_compiler_that_writes_no_library_is_one_line(module, alone):
     assert "the compiled module cannot be loaded" in refused(module)
 
 
-@pytest.mark.parametrize("chosen", ["no_such_compiler", "'open", "", "/dev/null"])
+@pytest.mark.parametrize("chosen", ["no_such_compiler", "'open", "/dev/null"])
 def test_a_compiler_that_is_not_there_is_passed_by(module, monkeypatch, chosen):
     monkeypatch.setenv("CC", chosen)
-    assert compiled(module) is not None
+    with pytest.warns(EngineWarning, match="CC names '.*', but it does not run; .* is taken"):
+        assert compiled(module) is not None
 
 
 def test_a_compiler_that_fails_is_passed_by(module, tmp_path, monkeypatch):
     monkeypatch.setenv("CC", str(script(tmp_path / "bad", "echo bad; test $1 = --version")))
     assert next(compilers()).version == "bad\n"
-    assert compiled(module) is not None
+    with pytest.warns(EngineWarning, match="bad', but the compiler failed: exit status 1; .* is"):
+        assert compiled(module) is not None
 
 
 def test_the_chosen_compiler_is_asked_first(tmp_path, monkeypatch):
@@ -167,7 +170,15 @@ def test_flags_that_a_compiler_refuses_are_left_out(module, alone, cache):
 
 def test_a_cache_that_cannot_be_written_is_one_line(module, tmp_path):
     (tmp_path / "cache").write_text("a file where the folder should be")
-    assert "the cache cannot be written (Not a directory); check the path" in refused(module)
+    with pytest.warns(EngineWarning, match=r"cannot be written \(Not a directory\); what"):
+        assert rates(compiled(module), module).shape == STATE.shape
+
+
+@pytest.mark.usefixtures("cache")
+def test_no_folder_at_all_is_one_line(module, tmp_path, monkeypatch):
+    (tmp_path / "cache").write_text("a file where the folder should be")
+    monkeypatch.setattr(libraries, "temporary_folder", lambda: tmp_path / "cache")
+    assert "the cache cannot be written (Not a directory); set " in refused(module)
 
 
 @pytest.mark.parametrize("content", [b"", b"no library", b"\x7fELF"])

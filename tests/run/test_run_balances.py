@@ -45,6 +45,49 @@ def check_entropy(found, t_e, bound):
     made = sum(float(found[name].values[-1].sum()) for name in PRODUCTIONS)
     gained = float(found.entropy[-1] - found.entropy[0])
     assert abs(gained - made - exchanged) <= bound * (made + abs(exchanged))
+    assert found.entropy_exchanged_ambient.values[-1] == pytest.approx(exchanged, rel=bound)
+
+
+def turnover(found):
+    """Return the entropy that was made, and that went in and out, between samples."""
+    names = [n for n in found if n.startswith(("produced_", "entropy_exchanged_"))]
+    parts = [found[n].values.reshape(found.sizes["time"], -1).sum(axis=1) for n in names]
+    return sum(np.abs(np.diff(part)).sum() for part in parts)
+
+
+@pytest.mark.parametrize(
+    "how",
+    [
+        {"rtol": 1e-6},
+        {"step": 1e-5},
+        {"rtol": 1e-6, "dissipative_start": True},
+        {"step": 1e-4, "dissipative_start": True},
+    ],
+    ids=str,
+)
+def test_entropy_is_what_was_made_and_what_came_in(how):
+    inputs = {"V_in": sine(100, 100, phase=1.0), "T_e": sine(20, 50, offset=330)}
+    found = simulate("piezo_stack", inputs=inputs, duration=0.1, **how)
+    scale = turnover(found) + np.abs(found.entropy.values).max()
+    assert scale > 1e-3
+    assert np.abs(found.entropy_residual.values).max() <= 1e-13 * scale
+    assert np.abs(found.entropy_exchanged_ambient.values).max() > 1e-3
+
+
+def test_scipys_entropy_balance_closes_to_its_error():
+    inputs = {"V_in": sine(100, 100)}
+    loose, tight = (
+        simulate("piezo_stack", inputs=inputs, duration=0.02, method="DOP853", rtol=rtol)
+        for rtol in (1e-4, 1e-9)
+    )
+    assert np.abs(tight.entropy_residual).max() <= 1e-7 * turnover(tight)
+    assert np.abs(tight.entropy_residual).max() < np.abs(loose.entropy_residual).max()
+
+
+def test_bodies_in_contact_exchange_nothing_with_others():
+    found = simulate(load(SPECS / "a1_two_bodies.toml"), duration=1.0, times=11)
+    assert not [name for name in found if name.startswith("entropy_exchanged_")]
+    assert np.abs(found.entropy_residual.values).max() <= 1e-14 * float(found.entropy[-1])
 
 
 @pytest.mark.parametrize("h", [1e-5, 1e-6])

@@ -11,6 +11,8 @@ import xarray
 from piezo_sym import simulate as simulate_shipped
 from piezo_sym.errors import UsageError
 from piezo_sym.run import simulate, sine
+from piezo_sym.run import step as signal
+from piezo_sym.sweeps import progress
 
 NAMES = {
     **dict.fromkeys(["q"], "m"),
@@ -18,6 +20,7 @@ NAMES = {
     **dict.fromkeys(["Q_C"], "C"),
     **dict.fromkeys(["phi"], "Wb"),
     **dict.fromkeys(["S", "entropy", "produced_hysteron", "produced_damper"], "J/K"),
+    **dict.fromkeys(["entropy_exchanged_ambient", "entropy_residual"], "J/K"),
     **dict.fromkeys(["F_ext"], "N"),
     **dict.fromkeys(["V_in"], "V"),
     **dict.fromkeys(["T_e", "y_ambient", "T_body"], "K"),
@@ -60,6 +63,20 @@ def test_values_are_the_modules_at_the_samples(ds, piezo):
     residual = ds.energy - ds.energy[0] - supplied
     assert ds.energy_residual.values == pytest.approx(residual.values, abs=1e-12)
     assert float(ds.energy_residual[0]) == 0
+
+
+LEDGER = ("supplied_", "heat_", "produced_", "entropy_exchanged_", "energy_res", "entropy_res")
+
+
+@pytest.mark.parametrize(
+    ("how", "finest"), [({"rtol": 1e-5}, True), ({"step": 1e-5}, False), ({"method": "BDF"}, False)]
+)
+def test_what_is_of_the_finest_run_says_so(how, finest):
+    run = simulate_shipped("piezo_stack", duration=1e-4, times=2, **how)
+    for name, variable in run.data_vars.items():
+        said = variable.attrs["long_name"].endswith("; of the finest run")
+        assert said == (finest and name.startswith(LEDGER)), name
+    assert ("balances" in run.attrs) == finest
 
 
 def test_attributes(ds):
@@ -125,6 +142,65 @@ def test_samples_every_so_many_steps():
 def test_every_needs_a_step_alone(options):
     with pytest.raises(UsageError, match=r"simulate\.every"):
         simulate_shipped("piezo_stack", duration=1e-4, **options)
+
+
+@pytest.mark.parametrize(
+    ("duration", "step", "samples", "apart"),
+    [
+        (1e-4, 1e-6, 101, 1e-6),
+        (1e-3, 1e-6, 1001, 1e-6),
+        (1.001e-3, 1e-6, 502, 2e-6),
+        (0.1, 3e-5, 835, 12e-5),
+        (1e-4, 1e-3, 2, 1e-4),
+    ],
+)
+def test_samples_of_a_fixed_step_are_ends_of_its_steps(duration, step, samples, apart):
+    run = simulate_shipped("piezo_stack", duration=duration, step=step)
+    times = run.time.values
+    assert (times.size, times[0], times[-1]) == (samples, 0, duration)
+    assert np.diff(times)[:-1] == pytest.approx(apart, rel=1e-9)
+    assert run.attrs["accepted_steps"] == int(np.ceil(duration / step - 1e-9))
+
+
+@pytest.mark.parametrize(
+    ("more", "shortest"),
+    [
+        ({}, 1e-5),
+        ({"duration": 1.004e-3}, 4e-6),
+        ({"times": 2}, 1e-5),
+        ({"times": 51}, 1e-5),
+        ({"times": 41}, 2.5e-5 / 3),
+        ({"times": [1e-4, 3.7e-4, 1e-3]}, 1e-5),
+        ({"times": [1e-4, 3.71e-4, 1e-3]}, 271e-6 / 28),
+        ({"times": 2, "inputs": {"V_in": signal(4.2e-4, 0, 1)}}, 1e-5),
+        ({"times": 2, "inputs": {"V_in": signal(4.25e-4, 0, 1)}}, 425e-6 / 43),
+    ],
+)
+def test_a_run_tells_its_shortest_step(more, shortest):
+    run = simulate_shipped("piezo_stack", **{"duration": 1e-3, "step": 1e-5, **more})
+    assert run.attrs["step"] == 1e-5
+    assert run.attrs["shortest_step"] == pytest.approx(shortest, rel=1e-9)
+
+
+def test_progress_is_shown_as_a_bar(capsys, monkeypatch):
+    monkeypatch.setattr(progress, "SECOND", -1.0)
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    simulate_shipped("piezo_stack", duration=1e-3, progress=True)
+    assert "simulated" in capsys.readouterr().err
+    simulate_shipped("piezo_stack", duration=1e-3, progress=False)
+    assert capsys.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("wrong", [1, "yes", 0])
+def test_no_progress_is_refused(wrong):
+    words = rf"simulate.progress: '{wrong}' shows no progress; expected True, False, None or a func"
+    with pytest.raises(UsageError, match=words):
+        simulate_shipped("piezo_stack", duration=1e-3, progress=wrong)
+
+
+def test_a_module_runs_without_a_bar(piezo):
+    with pytest.raises(UsageError, match=r"simulate.progress: 'True' shows no progress"):
+        simulate(piezo, duration=1e-3, progress=True)
 
 
 @pytest.mark.parametrize("how", [{"rtol": 1e-5}, {"step": 1e-6}, {"method": "LSODA"}])

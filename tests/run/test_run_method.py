@@ -5,7 +5,6 @@ import shutil
 import stat
 import subprocess
 import sys
-import tempfile
 import warnings
 from math import log
 from pathlib import Path
@@ -37,6 +36,7 @@ def cache(tmp_path, monkeypatch):
     """A cache of our own, and no memory of what was said before."""
     monkeypatch.setattr(platformdirs, "user_cache_dir", lambda name: str(tmp_path / "cache" / name))
     methods._warn.cache_clear()
+    libraries._warn.cache_clear()
     return tmp_path / "cache" / "piezo_sym" / "compiled"
 
 
@@ -190,31 +190,63 @@ def test_a_compiler_that_does_not_say_what_it_is_is_passed_by(module, alone, mon
     assert "no C compiler is found" in warned(module)
 
 
-def test_a_cache_that_cannot_be_written_is_one_line(module, tmp_path):
+UNWRITTEN = (
+    "the cache cannot be written (Not a directory); what is compiled is kept for this process "
+    f"alone; set {libraries.CACHE} to a folder that can be written"
+)
+
+
+def test_a_cache_that_cannot_be_written_is_one_line(module, tmp_path, cache):
     (tmp_path / "cache").write_text("a file where the folder should be")
-    assert "the cache cannot be written (Not a directory); check the path" in warned(module)
+    with pytest.warns(EngineWarning) as caught:
+        runs = [simulate(module, **SHORT) for _ in range(3)]
+    assert [str(warning.message) for warning in caught] == [f"'{cache}': {UNWRITTEN}"]
+    assert {run.attrs["method"] for run in runs} == {"discrete_gradient"}
 
 
 @pytest.mark.parametrize("error", [OSError(28, "No space left on device"), OSError("strange")])
-def test_a_full_disk_is_one_line(module, monkeypatch, error):
+def test_a_full_disk_is_one_line(module, tmp_path, monkeypatch, error):
     def full(*_, **__):
         raise error
 
     monkeypatch.setattr(Path, "write_text", full)
+    monkeypatch.setattr(libraries, "temporary_folder", lambda: tmp_path / "temporary")
     assert f"the cache cannot be written ({error.strerror or 'OSError'})" in warned(module)
 
 
-def test_a_model_of_a_cache_that_cannot_be_written_runs(tmp_path, monkeypatch, cache):
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+def test_a_model_of_a_cache_that_cannot_be_written_runs(tmp_path, cache):
     (tmp_path / "cache").write_text("a file where the folder should be")
     model = piezo_sym.load(ROOT / "tests" / "networks" / "specs" / "a2_oscillator.toml")
-    with pytest.warns(
-        EngineWarning, match="runs by LSODA .*: its C source was not kept; check that "
-    ) as said:
+    with pytest.warns(EngineWarning, match="the cache cannot be written") as said:
         runs = [piezo_sym.simulate(model, duration=1.0, times=2) for _ in range(2)]
     assert len(said) == 1
-    assert {run.attrs["method"] for run in runs} == {"LSODA"}
+    assert {run.attrs["method"] for run in runs} == {"discrete_gradient"}
     assert cache.parent.parent.is_file()
+
+
+FAILS = 'test "$1" = --version && echo 1 && exit; echo "error: no\tgood" >&2; exit 1'
+
+
+@pytest.mark.parametrize(
+    ("name", "why"), [("missing", "it does not run"), ("bad", "the compiler failed: error: no")]
+)
+def test_a_choice_that_is_passed_by_is_one_line(module, tmp_path, monkeypatch, name, why):
+    """It is not there, or it fails: another compiler is taken, and named."""
+    script(tmp_path / "bad", FAILS)
+    monkeypatch.setenv("CC", str(tmp_path / name))
+    with pytest.warns(EngineWarning) as caught:
+        runs = [simulate(module, **SHORT) for _ in range(2)]
+    (message,) = (str(warning.message) for warning in caught)
+    assert message.startswith(f"CC names '{tmp_path / name}', but {why}")
+    assert message.endswith("cc is taken")
+    assert message.isprintable()
+    assert {run.attrs["method"] for run in runs} == {"discrete_gradient"}
+
+
+@pytest.mark.parametrize("chosen", ["", " ", "cc", "gcc -pipe"])
+def test_a_choice_that_is_taken_says_nothing(module, monkeypatch, chosen):
+    monkeypatch.setenv("CC", chosen)
+    assert simulate(module, **SHORT).attrs["method"] == "discrete_gradient"
 
 
 def test_what_was_mended_is_tried_again(module, alone, monkeypatch):
@@ -248,7 +280,24 @@ def test_a_program_is_told_once(tmp_path):
     }
     words = [sys.executable, "-c", SCRIPT]
     done = subprocess.run(words, env=environment, capture_output=True, text=True, check=True)
-    assert done.stderr.count("EngineWarning: model 'piezo_stack' runs by LSODA") == 1
+    assert done.stderr.count("EngineWarning: ") == 1
+    assert "compiled: the cache cannot be written" in done.stderr.replace("'", "")
+
+
+def test_what_is_kept_for_a_process_goes_with_it(tmp_path):
+    (tmp_path / "file").write_text("")
+    (tmp_path / "temporary").mkdir()
+    environment = {
+        **os.environ,
+        "PYTHONPATH": str(ROOT),
+        "XDG_CACHE_HOME": str(tmp_path / "file"),
+        "TMPDIR": str(tmp_path / "temporary"),
+    }
+    code = f"{SCRIPT}\nimport os; print(os.listdir(os.environ['TMPDIR']))"
+    words = [sys.executable, "-c", code]
+    done = subprocess.run(words, env=environment, capture_output=True, text=True, check=True)
+    assert "piezo_sym-" in done.stdout
+    assert list((tmp_path / "temporary").iterdir()) == []
 
 
 # The edge of the domain

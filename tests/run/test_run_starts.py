@@ -62,7 +62,7 @@ def test_energy_is_exact_and_the_loss_closes_the_entropy_balance(options):
     found = run(inputs=inputs, duration=0.02, times=101, parameters={"lam": 0.0}, **options)
     closes(found)
     assert float(found.heat_numerical[-1]) > 1e-9
-    if "step" in options:  # otherwise S is extrapolated, and the ledger is the finer run's
+    if "step" in options:  # otherwise S is extrapolated, and the ledger is the finest run's
         produced = sum(
             found[n].sum([d for d in found[n].dims if d != "time"])
             for n in found

@@ -1,15 +1,19 @@
 """Step by step: the same states as a run, inputs decided on the way, at the cost of a C call."""
 
 import doctest
+from math import inf, nan
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from piezo_sym import Stepper, simulate
+from piezo_sym import Stepper, simulate, sine
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.stepper import Stepper as Steps
+from piezo_sym.spec.load import parse
 
 H = 1e-5
+SHIPPED = Path(__file__).parents[2] / "piezo_sym" / "models" / "piezo_stack.toml"
 
 
 def test_held_inputs_give_the_states_of_a_run():
@@ -53,15 +57,130 @@ def test_wrong_inputs_are_refused(u):
         Stepper("piezo_stack", step=H).step(u)
 
 
-def test_no_step_out_of_the_domain():
-    actuator = Stepper("piezo_stack", step=1.0)
+@pytest.mark.parametrize("wrong", [nan, inf, None, "x", [1.0]])
+@pytest.mark.parametrize("row", [1, 2])
+def test_an_input_that_is_no_number_is_named(row, wrong):
+    u = [0.0, 50.0, 298.15]
+    u[row] = wrong
+    name = ("F_ext", "V_in", "T_e")[row]
+    actuator = Stepper("piezo_stack", step=H)
+    before = held(actuator)
+    with pytest.raises(UsageError, match=rf"step: input '{name}': .* is not a finite number"):
+        actuator.step(u)
+    assert held(actuator) == before
+
+
+def test_inputs_outside_the_domain_are_refused_and_change_nothing():
+    actuator = Stepper("piezo_stack", step=H)
+    actuator.step([0.0, 50.0, 310.0])
+    before = held(actuator)
+    for wrong in (296.15, 290.0):
+        with pytest.raises(RunError, match=r"at t = 1e-05 s: condition 'T_e > T_0' has margin"):
+            actuator.step([0.0, 50.0, wrong])
+        assert held(actuator) == before
+    actuator.step([0.0, 50.0, 310.0])
+    assert actuator.time == 2 * H
+
+
+def held(actuator):
+    """Return all that a step changes."""
+    ledger = {name: np.ravel(value).tolist() for name, value in actuator.ledger.items()}
+    for residual in ("energy_residual", "entropy_residual"):
+        del ledger[residual]
+    return actuator.x.tolist(), actuator.time, ledger
+
+
+@pytest.fixture(scope="module")
+def frozen():
+    """The actuator where the domain ends above the environment, so that cooling leads out of it."""
+    cold = '"T_e > 0"'
+    text = SHIPPED.read_text(encoding="utf-8").replace('"piezo_stack"', '"frozen"')
+    return parse(text.replace('"T_e > T_0"', cold))
+
+
+def test_a_step_that_fails_changes_nothing(frozen):
+    """Halves of it stay in the domain: what they book is forgotten."""
+    actuator = Stepper(frozen, step=0.07)
 
     def cool():
         for _ in range(1000):
-            actuator.step([0.0, 0.0, 1.0])
+            before.append(held(actuator))
+            actuator.step([0.0, 0.0, 250.0])
 
+    before = []
     with pytest.raises(RunError, match="no step stays in the domain"):
         cool()
+    assert len(before) > 1
+    assert held(actuator) == before[-1]
+    assert actuator.ledger["entropy_exchanged_ambient"] < 0
+    actuator.step([0.0, 0.0, 310.0])
+    assert actuator.ledger["entropy_residual"] == pytest.approx(0, abs=1e-12)
+
+
+def test_its_ledger_is_that_of_a_run():
+    drive = sine(100, 1000)
+    actuator = Stepper("piezo_stack", step=H)
+    for k in range(100):
+        actuator.step([0.0, float(drive((k + 0.5) * H)), 298.15])
+    run = simulate("piezo_stack", inputs={"V_in": drive}, duration=100 * H, step=H, times=2)
+    names = [n for n in run if n.startswith(("supplied_", "heat_", "produced_", "entropy_e"))]
+    assert [*names, "energy_residual", "entropy_residual"] == list(actuator.ledger)
+    for name in names:
+        assert actuator.ledger[name] == pytest.approx(run[name].values[-1], rel=1e-9, abs=1e-18)
+    assert actuator.ledger["heat_hysteron"].shape == (2,)
+    assert abs(actuator.ledger["energy_residual"]) <= 1e-12 * float(run.energy[-1])
+    assert abs(actuator.ledger["entropy_residual"]) <= 1e-14
+
+
+def test_names_are_in_the_order_of_the_numbers():
+    actuator = Stepper("piezo_stack", step=H, parameters={"hysteron_count": 3})
+    assert actuator.states == ("q", "p", "Q_C", "phi_1", "phi_2", "phi_3", "S")
+    assert actuator.inputs == ("F_ext", "V_in", "T_e")
+    assert actuator.outputs == ("load", "supply", "ambient")
+    y = dict(zip(actuator.outputs, actuator.step([0.0, 50.0, 298.15]), strict=True))
+    x = dict(zip(actuator.states, actuator.x, strict=True))
+    assert y["load"] == pytest.approx(x["p"] / 3.5e-3)
+    assert y["supply"] == pytest.approx((x["phi_1"] + x["phi_2"] + x["phi_3"]) / 1e-3)
+
+
+def walked(actuator):
+    """Return the states of some steps."""
+    found = []
+    for k in range(50):
+        actuator.step([0.0, 10.0 * k, 298.15])
+        found.append(actuator.x.tolist())
+    return found
+
+
+def test_a_reset_begins_again():
+    actuator = Stepper("piezo_stack", step=H, initial={"q": 1e-4})
+    first, ledger, last = walked(actuator), actuator.ledger, actuator.x
+    actuator.reset()
+    assert actuator.time == 0
+    assert actuator.x[0] == 1e-4
+    assert not any(np.any(value) for value in actuator.ledger.values())
+    assert walked(actuator) == first
+    assert actuator.ledger["supplied_supply"] == ledger["supplied_supply"]
+    actuator.reset(last)
+    assert actuator.x.tolist() == last.tolist()
+    assert not any(np.any(value) for value in actuator.ledger.values())
+
+
+@pytest.mark.parametrize(
+    ("x", "error", "words"),
+    [
+        ([0.0], UsageError, "1 numbers are no state; expected one number each for q, p"),
+        ([0, 0, 0, 0, 0, nan], UsageError, "Stepper.reset[5]: 'nan' is not a finite number"),
+        ([0, 0, 0, 0, 0, -1.0], RunError, "condition 'T > T_0'"),
+    ],
+)
+def test_a_reset_to_no_state_is_refused(x, error, words):
+    actuator = Stepper("piezo_stack", step=H)
+    before = held(actuator)
+    with pytest.raises(error) as raised:
+        actuator.reset(x)
+    assert words in str(raised.value)
+    assert held(actuator) == before
 
 
 @pytest.mark.parametrize("documented", [Stepper, Steps], ids=["function", "class"])

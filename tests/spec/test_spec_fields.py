@@ -23,7 +23,12 @@ from piezo_sym.spec.source import data
             "did you mean 'stiffness'?",
         ),
         ('voltage = "rho', 'volts = "rho', "elements.hysteron.volts", "did you mean 'voltage'?"),
-        ('S = "c_0*log', 's = "c_0*log', "initial.s", "'s' is no state of this spec; known: q, p"),
+        (
+            'S = "c_0*log',
+            's = "c_0*log',
+            "initial.s",
+            "'s' is no state of this spec; did you mean 'S'?",
+        ),
     ],
 )
 def test_unknown_keys_are_answered_with_the_nearest(old, new, place, answer):
@@ -151,3 +156,29 @@ def test_the_temperature_needs_a_body_in_a_transducer():
 def test_several_faults_are_counted():
     message = refused_edit(("value = 3.5e-3", "value = nan"), ("value = 5e5", "value = inf"))
     assert message.endswith("; 1 more to mend")
+
+
+HINTS = [
+    (
+        ('force = "d*v"', 'force = "d*q"'),
+        "it is the state of 'spring', which other laws cannot use",
+    ),
+    (('"a*T/T_0"', '"a*Q_C/T_0"'), "it is the state of 'capacitor', which other laws cannot use"),
+    (('"T > T_0"', '"Q > 0"'), "states go by their own symbols: Q_C"),
+    (('"T_0*exp(S/c_0)"', '"T_0*exp(s/c_0)"'), "unknown name 's'; did you mean 'S'?"),
+    (('state = "S"', 'state = "S_b"'), "states go by their own symbols: S_b"),
+    (('S = "c_0', 'body = "c_0'), "the state of element 'body' is 'S'"),
+    (('S = "c_0', 'L = "c_0'), "its value is given in [parameters]; states: q, p"),
+    (('S = "c_0', 'T_e = "c_0'), "its value is given in [inputs]; states: q, p"),
+]
+
+
+@pytest.mark.parametrize(("edit", "hint"), HINTS, ids=[edit[1] for edit, _ in HINTS])
+def test_a_state_where_a_letter_belongs_and_the_reverse_is_told_what_to_write(edit, hint):
+    assert refused_edit(edit).endswith(hint) or f"{hint}, " in refused_edit(edit)
+
+
+def test_a_state_in_its_own_law_goes_by_its_letter():
+    renamed = ('state = "q"', 'state = "x"')
+    message = refused_edit(renamed, ('"k"', '"k*exp(x/q_l)"'))
+    assert message.endswith("a law writes the state of its element as its letter, 'q'")

@@ -192,10 +192,12 @@ def test_a_very_long_name_gives_a_short_message():
         ("energy", "a variable of every result"),
         ("entropy", "a variable of every result"),
         ("energy_residual", "a variable of every result"),
+        ("entropy_residual", "a variable of every result"),
         ("y_load", "a variable of every result"),
         ("supplied_supply", "a variable of every result"),
         ("heat_damper", "a variable of every result"),
         ("produced_hysteron", "a variable of every result"),
+        ("entropy_exchanged_ambient", "a variable of every result"),
     ],
 )
 @pytest.mark.parametrize("table", ["inputs", "domain"])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray
 
-from piezo_sym import samples, sine, step, sweep
+from piezo_sym import samples, simulate, sine, step, sweep
 from piezo_sym.errors import FileError, UsageError
 from piezo_sym.sweeps import SweepWarning
 from piezo_sym.sweeps.fingerprint import parts
@@ -108,34 +108,36 @@ def test_what_is_done_does_not_depend_on_who_does_it(tmp_path, monkeypatch):
     xarray.testing.assert_allclose(plain(found), plain(alone), rtol=1e-9, atol=1e-11)
 
 
+UNTOLD = "its inputs, samples, initial values or functions are others"
 OTHERS = [
-    {"duration": 2e-3},
-    {"times": 4},
-    {"rtol": 1e-6},
-    {"step": 1e-5},
-    {"parameters": {"d": 401}},
-    {"initial": {"q": 1e-6}},
-    {"inputs": {"F_ext": step(1e-4, 0, 1)}},
-    {"inputs": {"F_ext": lambda t: 2 * t}},
-    {"over": {"L": OVER["L"]}},
-    {"over": {**OVER, "L": OVER["L"] + 1e-9}},
-    {"reduce": "last"},
-    {"reduce": lambda run: run.q[0]},
-    {"method": "LSODA"},
+    ({"duration": 2e-3}, "others are duration"),
+    ({"times": 4}, UNTOLD),
+    ({"rtol": 1e-6}, "others are rtol"),
+    ({"step": 1e-5}, "others are step, rtol"),
+    ({"parameters": {"d": 401}}, "others are d"),
+    ({"initial": {"q": 1e-6}}, UNTOLD),
+    ({"inputs": {"F_ext": step(1e-4, 0, 1)}}, UNTOLD),
+    ({"inputs": {"F_ext": lambda t: 2 * t}}, UNTOLD),
+    ({"over": {"L": OVER["L"]}}, "others are V_in"),
+    ({"over": {**OVER, "L": OVER["L"] + 1e-9}}, "others are L"),
+    ({"reduce": "last"}, "others are reduction"),
+    ({"reduce": lambda run: run.q[0]}, UNTOLD),
+    ({"method": "LSODA"}, "others are method"),
 ]
 
 
-@pytest.mark.parametrize("change", OTHERS, ids=[next(iter(change)) for change in OTHERS])
-def test_the_store_of_another_sweep_is_refused_in_one_line(tmp_path, change, monkeypatch):
+@pytest.mark.parametrize(("change", "told"), OTHERS, ids=[next(iter(one)) for one, _ in OTHERS])
+def test_the_store_of_another_sweep_is_refused_in_one_line(tmp_path, change, told, monkeypatch):
     path = tmp_path / "runs.zarr"
     monkeypatch.setattr(sys.modules["piezo_sym.sweeps.sweep"], "results", nothing)
     with pytest.warns(SweepWarning, match="280 of 280 runs failed.*not run"):
         sweep("piezo_stack", **BASE, store=path)
     with pytest.raises(FileError) as raised:
         sweep("piezo_stack", **{**BASE, **change}, store=path)
-    text = "runs.zarr': holds another sweep, or none; expected a store of this very sweep"
-    assert text in str(raised.value)
-    assert "\n" not in str(raised.value)
+    said = str(raised.value)
+    rest = "; expected a store of this very sweep; choose another path, or delete it"
+    assert said.endswith(f"runs.zarr': holds another sweep: {told}{rest}")
+    assert "\n" not in said
 
 
 def nothing(*_):
@@ -172,7 +174,7 @@ def test_what_is_no_store_is_refused_and_left_alone(tmp_path):
     assert (tmp_path / "file").read_text() == "mine"
     assert list((tmp_path / "folder").iterdir()) == []
     xarray.Dataset({"a": 1.0}).to_zarr(tmp_path / "other", consolidated=False)
-    with pytest.raises(FileError, match="holds another sweep, or none"):
+    with pytest.raises(FileError, match="is no store of a sweep; choose another path"):
         sweep("piezo_stack", **BASE, store=tmp_path / "other")
 
 
@@ -232,3 +234,60 @@ def test_a_function_may_call_itself():
         return rest(t - 1) if t > 1 else 0.0
 
     assert list(parts(rest)) == list(parts(rest))
+
+
+def test_a_store_opens_without_a_warning_and_after_it_was_taken_up_again(tmp_path):
+    options = {**BASE, "store": tmp_path / "runs.zarr"}
+    with pytest.raises(Interrupted):
+        sweep("piezo_stack", **options, progress=stop_at(70))
+    with xarray.open_zarr(options["store"], chunks=None) as half:
+        assert "q" in half
+    found = sweep("piezo_stack", **options)
+    with xarray.open_zarr(options["store"], chunks=None) as whole:
+        xarray.testing.assert_identical(whole.load(), found.load())
+
+
+def test_a_sweep_names_the_engine_of_its_runs(tmp_path):
+    over = {"L": [1e-3]}
+    for more in ({}, {"store": tmp_path / "runs.zarr"}, {"method": "LSODA"}, {"reduce": "last"}):
+        found = sweep("piezo_stack", over=over, duration=1e-4, times=2, **more)
+        run = simulate("piezo_stack", duration=1e-4, times=2, method=more.get("method"))
+        assert found.attrs["engine"] == run.attrs["engine"]
+
+
+def wavering(run):
+    """Give another name to the runs with a large L."""
+    return {"small" if float(run.L) < 1.5e-3 else "large": run.q[-1]}
+
+
+@pytest.mark.parametrize("stored", [True, False], ids=["store", "memory"])
+def test_a_function_that_names_its_results_otherwise_is_refused(tmp_path, stored):
+    store = {"store": tmp_path / "runs.zarr"} if stored else {}
+    with pytest.raises(UsageError, match="the function gives small for one run, large for anoth"):
+        sweep("piezo_stack", **BASE, reduce=wavering, **store)
+
+
+def test_names_are_compared_with_what_was_stored_before(tmp_path, monkeypatch):
+    options = {**BASE, "reduce": named, "store": tmp_path / "runs.zarr"}
+    with pytest.raises(Interrupted):
+        sweep("piezo_stack", **options, progress=stop_at(35))
+    monkeypatch.setattr(sys.modules["piezo_sym.sweeps.store"], "fingerprint", lambda *_: MARK)
+    monkeypatch.setitem(NAMES, "name", "other")
+    mark(options["store"])
+    with pytest.raises(UsageError, match="the function gives first for one run, other for another"):
+        sweep("piezo_stack", **options)
+
+
+MARK, NAMES = "the same", {"name": "first"}
+
+
+def named(run):
+    return {NAMES["name"]: run.q[-1]}
+
+
+def mark(path):
+    """Make a store believe that it is of this very sweep."""
+    import zarr
+
+    group = zarr.open_group(path, mode="r+", use_consolidated=False)
+    group.attrs["sweep_fingerprint"] = MARK

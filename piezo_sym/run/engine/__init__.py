@@ -4,6 +4,7 @@ Input: a generated module with its .c and .h beside it.  Output: an `Engine` wit
 functions, or one line that says why there is none; runs then use the module's NumPy.
 """
 
-from piezo_sym.run.engine.engine import Engine, EngineWarning, compiled
+from piezo_sym.run.engine.engine import Engine, compiled
+from piezo_sym.run.engine.library import EngineWarning
 
 __all__ = ["Engine", "EngineWarning", "compiled"]

@@ -55,14 +55,25 @@ def compilers() -> Iterator[Compiler]:
                 yield Compiler(command, version)
 
 
+def passed_by(taken: Compiler) -> str:
+    """Return what ``$CC`` says if it is not the compiler that was taken; nothing otherwise."""
+    wanted = os.environ.get("CC", "").strip()
+    return wanted if wanted and _found(_split(wanted)) != taken.command else ""
+
+
 def _commands() -> Iterator[tuple[str, ...]]:
     chosen = _split(os.environ.get("CC", ""))
     for words in (chosen, ("cc",), ("gcc",), ("clang",)):
-        path = shutil.which(words[0]) if words else None
-        if path:
-            yield (path, *words[1:])
+        if command := _found(words):
+            yield command
     if find_spec("ziglang") is not None:
         yield (sys.executable, "-m", "ziglang", "cc")
+
+
+def _found(words: tuple[str, ...]) -> tuple[str, ...]:
+    """Return a command with the path of its program, or nothing if there is none."""
+    path = shutil.which(words[0]) if words else None
+    return (path, *words[1:]) if path else ()
 
 
 def _split(text: str) -> tuple[str, ...]:

@@ -20,7 +20,7 @@ from piezo_sym.errors import EngineError, FileError
 from piezo_sym.files import path_text, read_text
 from piezo_sym.run.engine.columns import at_once, one_by_one
 from piezo_sym.run.engine.driver import DRIVEN, PLAIN, SCALARS
-from piezo_sym.run.engine.library import Made, Sources, library
+from piezo_sym.run.engine.library import EngineWarning, Made, Sources, library
 from piezo_sym.run.engine.march import at
 from piezo_sym.run.engine.rates import WIDE
 from piezo_sym.run.engine.structure import Layout
@@ -34,10 +34,6 @@ if TYPE_CHECKING:
 
 #: From so many columns on, all vectors of a library are full.
 FEWEST = 16
-
-
-class EngineWarning(UserWarning):
-    """There is no compiled engine, and why; runs go on in NumPy."""
 
 
 def compiled(module: GeneratedModule) -> Engine | None:

@@ -11,15 +11,17 @@ import hashlib
 import os
 import sys
 import tempfile
+import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from subprocess import TimeoutExpired
 from typing import Literal, final
 
-from piezo_sym.errors import EngineError
-from piezo_sym.files import path_text
-from piezo_sym.run.engine.compiler import FLAGS, Compiler, build, compilers
+from piezo_sym.errors import EngineError, FileError, one_line
+from piezo_sym.files import path_text, temporary_folder
+from piezo_sym.run.engine.compiler import FLAGS, Compiler, build, compilers, passed_by
 from piezo_sym.run.engine.driver import driver
 from piezo_sym.run.engine.processor import processor
 from piezo_sym.run.engine.rates import rates_text
@@ -29,6 +31,14 @@ from piezo_sym.run.engine.vector import wide_text
 #: ("pair"), or many members ("members"); or functions of many states alone.
 Made = Literal["single", "pair", "members", "rates"]
 ENDINGS = {"win32": ".dll", "darwin": ".dylib"}
+
+
+#: Which variable says where caches are.
+CACHE = {"win32": "LOCALAPPDATA", "darwin": "HOME"}.get(sys.platform, "XDG_CACHE_HOME")
+
+
+class EngineWarning(UserWarning):
+    """There is no compiled engine, or not the one asked for, and why."""
 
 
 @final
@@ -68,23 +78,24 @@ def library(sources: Sources, *, again: bool = False) -> Path:
     Raises
     ------
     EngineError
-        If there is no compiler, none of them can compile it, or the cache cannot be written.
+        If there is no compiler, none of them can compile it, or no folder can be written.
     """
     first: EngineError | None = None
     hung: set[Compiler] = set()
     for compiler, flags in _ways():
         if compiler in hung:
             continue
-        path = cache_folder() / _key(sources, compiler, flags) / f"{sources.name}{_ending()}"
-        if os.path.isfile(path) and not again:  # a folder that cannot be read holds none
-            return path
         try:
-            _build(sources, compiler, flags, path)
+            path = _kept(sources, compiler, flags, again=again)
         except EngineError as error:
             first = first or error
             if isinstance(error.__cause__, TimeoutExpired):  # other flags will not wake it
                 hung.add(compiler)
             continue
+        if wanted := passed_by(compiler):
+            why = first.what if first else "it does not run"
+            taken = one_line(" ".join(compiler.command))
+            _warn(f"CC names {path_text(wanted)}, but {why}; {taken} is taken")
         return path
     if first:
         raise first
@@ -117,8 +128,35 @@ def _key(sources: Sources, compiler: Compiler, flags: tuple[str, ...]) -> str:
     return found.hexdigest()[:32]
 
 
+def _kept(sources: Sources, compiler: Compiler, flags: tuple[str, ...], *, again: bool) -> Path:
+    """Return a compiled library, in the cache or else in a folder of this process alone."""
+    place = Path(_key(sources, compiler, flags)) / f"{sources.name}{_ending()}"
+    path = cache_folder() / place
+    if os.path.isfile(path) and not again:  # a folder that cannot be read holds none
+        return path
+    try:
+        _build(sources, compiler, flags, path)
+    except OSError as error:
+        why = f"the cache cannot be written ({error.strerror or type(error).__name__})"
+        where, remedy = path_text(cache_folder()), f"set {CACHE} to a folder that can be written"
+        try:
+            path = temporary_folder() / place
+            if not os.path.isfile(path) or again:
+                _build(sources, compiler, flags, path)
+        except (OSError, FileError) as both:
+            raise EngineError(why, where, remedy=remedy) from both
+        _warn(f"{where}: {why}; what is compiled is kept for this process alone; {remedy}")
+    return path
+
+
 def _build(sources: Sources, compiler: Compiler, flags: tuple[str, ...], path: Path) -> None:
-    """Compile beside the library's place, then move the result there."""
+    """Compile beside the library's place, then move the result there.
+
+    Raises
+    ------
+    OSError : the place cannot be written.
+    EngineError : the compiler fails.
+    """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(prefix=".build-", dir=path.parent) as temporary:
@@ -128,9 +166,13 @@ def _build(sources: Sources, compiler: Compiler, flags: tuple[str, ...], path: P
             built = folder / path.name
             build(compiler, flags, folder / "driver.c", built)
             built.replace(path)
-    except OSError as error:
+    except OSError:
         if os.path.isfile(path) and sys.platform == "win32":  # another process has it, and uses it
             return
-        why = error.strerror or type(error).__name__
-        what = f"the cache cannot be written ({why})"
-        raise EngineError(what, path_text(path.parent), remedy="check the path") from error
+        raise
+
+
+@cache
+def _warn(text: str) -> None:
+    """Warn in one line, once in a process."""
+    warnings.warn(text, EngineWarning, stacklevel=2)

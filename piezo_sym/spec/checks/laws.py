@@ -54,12 +54,12 @@ def check_laws(spec: Tables) -> None:
     """Parse every law, initial value and condition, and check the names in them."""
     for name, element in spec.elements.items():
         for law in law_fields(name, element):
-            _check_words(law.tree, law.where, law.letters, spec.parameters)
+            _check_words(spec, law.tree, law.where, law.letters, spec.parameters, name)
             _check_body(spec, name, law)
     _check_initial(spec)
     words = [*spec.parameters, *spec.inputs, *states(spec), *temperatures(spec)]
     for condition in conditions(spec):
-        _check_words(condition.tree, condition.where, (), words)
+        _check_words(spec, condition.tree, condition.where, (), words)
         _check_banks(spec, condition)
 
 
@@ -86,7 +86,7 @@ def _check_initial(spec: Tables) -> None:
         where = f"initial.{symbol}"
         if symbol not in known:
             what = f"{quote(symbol)} is no state of this spec"
-            raise SpecError(what, where, remedy=nearest(symbol, known))
+            raise SpecError(what, where, remedy=_meant_state(spec, symbol))
         count = sizes.get(known[symbol])
         if isinstance(start, tuple) and len(start) != count:
             expected = (
@@ -96,15 +96,56 @@ def _check_initial(spec: Tables) -> None:
         for part in start if isinstance(start, tuple) else (start,):
             if isinstance(part, str):
                 tree = parse_law(part, where)
-                _check_words(tree, where, (), [*spec.parameters, *spec.inputs])
+                _check_words(spec, tree, where, (), [*spec.parameters, *spec.inputs])
 
 
-def _check_words(tree: Node, where: str, letters: tuple[str, ...], words: Collection[str]) -> None:
+def _check_words(
+    spec: Tables,
+    tree: Node,
+    where: str,
+    letters: tuple[str, ...],
+    words: Collection[str],
+    element: str = "",
+) -> None:
+    """Refuse names that are neither letters nor words; `element`: whose law it is."""
     for word in names(tree):
         if word in letters or word in words:
             continue
+        remedy = _meant_letter(spec, word, letters, element)
         if word in {"i", "v", "f", "T", *(kind.letter for kind in KINDS.values())}:
             expected = f"the letters {listing(letters)}" if letters else "parameters"
-            raise SpecError(f"{quote(word)} has no meaning here", where, expected)
-        remedy = nearest(word, [*letters, *words])
+            if not element:
+                remedy = _states_of_letter(spec, word, words)
+            raise SpecError(f"{quote(word)} has no meaning here", where, expected, remedy)
+        remedy = remedy or nearest(word, [*letters, *words])
         raise SpecError(f"unknown name {quote(word)}", where, remedy=remedy)
+
+
+def _meant_letter(spec: Tables, word: str, letters: tuple[str, ...], element: str) -> str:
+    """Return what to write for a state's symbol in a law; nothing if the word is no state's."""
+    owner = states(spec).get(word, "")
+    if not owner or not element:
+        return ""
+    letter = spec.elements[owner].letter
+    if owner == element and letter in letters:
+        return f"a law writes the state of its element as its letter, {quote(letter)}"
+    return f"it is the state of {quote(owner)}, which other laws cannot use" * (owner != element)
+
+
+def _states_of_letter(spec: Tables, letter: str, words: Collection[str]) -> str:
+    """Return which states a letter may stand for, outside of laws, where it has no meaning."""
+    found = [s for s, name in states(spec).items() if spec.elements[name].letter == letter]
+    meant = [symbol for symbol in found if symbol in words]
+    return f"states go by their own symbols: {listing(meant)}" if meant else ""
+
+
+def _meant_state(spec: Tables, word: str) -> str:
+    """Return which state was meant: by a letter, an element's name, or a symbol like it."""
+    known = states(spec)
+    if word in spec.parameters or word in spec.inputs:
+        table = "parameters" if word in spec.parameters else "inputs"
+        return f"its value is given in [{table}]; states: {listing(known)}"
+    own = [symbol for symbol, name in known.items() if name == word]
+    if own:
+        return f"the state of element {quote(word)} is {quote(own[0])}"
+    return _states_of_letter(spec, word, known) or nearest(word, known)

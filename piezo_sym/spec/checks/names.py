@@ -13,12 +13,12 @@ from piezo_sym.spec.tables import Tables, banks, bodies, states
 from piezo_sym.spec.units import parse_unit
 
 #: Variables that every result has; see `run`.
-RESULTS = frozenset({"time", "energy", "entropy", "energy_residual"})
+RESULTS = frozenset({"time", "energy", "entropy", "energy_residual", "entropy_residual"})
 LARGEST = Fraction(10) ** 300
 SMALLEST = 1 / LARGEST
 #: What generated modules import.
 IMPORTS = frozenset({"numpy", "typing", "dataclasses"})
-PREFIXES = ("y_", "supplied_", "heat_", "produced_")
+PREFIXES = ("y_", "supplied_", "heat_", "produced_", "entropy_exchanged_")
 
 
 def check_names(spec: Tables) -> None:
@@ -95,7 +95,8 @@ def _check_unique(symbols: list[tuple[str, str]]) -> None:
 
 def _check_kept(spec: Tables, symbols: list[tuple[str, str]]) -> None:
     """Refuse symbols that results, lanes, temperatures or bank sizes are called by."""
-    kept = dict.fromkeys(RESULTS, "a variable of every result")
+    results = {f"{prefix}{name}" for prefix in PREFIXES for name in spec.elements}
+    kept = dict.fromkeys(RESULTS | results, "a variable of every result")
     kept |= {f"{name}_count": f"the size of bank '{name}'" for name in spec.elements}
     kept |= dict.fromkeys(banks(spec), "the dimension of a bank")
     kept |= {f"T_{name}": f"the temperature of '{name}'" for name in bodies(spec)}
@@ -108,7 +109,5 @@ def _check_kept(spec: Tables, symbols: list[tuple[str, str]]) -> None:
         base, _, lane = symbol.rpartition("_")
         if base in lanes and re.fullmatch(r"j|\d+", lane):
             use = f"a lane of {lanes[base]}"
-        if symbol.startswith(PREFIXES) and symbol.split("_", 1)[1] in spec.elements:
-            use = "a variable of every result"
         if use:
             raise SpecError(f"symbol {quote(symbol)} is {use}", where, remedy="rename it")

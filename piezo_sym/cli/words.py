@@ -1,0 +1,87 @@
+"""Words of a command line as values: ``NAME=VALUE``, with numbers, signals or files.
+
+Input: what a user typed.  Output: names and values, or an error that names the option.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+from piezo_sym.errors import UsageError, listing, nearest, quote
+from piezo_sym.files import path_text
+
+CALL = re.compile(r"(?P<name>[a-z]+)\((?P<numbers>[^()]*)\)")
+SIGNALS = ("sine", "step", "ramp", "triangle", "chirp")
+
+
+def pairs(
+    texts: Iterable[str], option: str, read: Callable[[str, str], Any]
+) -> Iterable[tuple[str, Any]]:
+    """Yield the name and value of each ``NAME=VALUE``, read by `read` from text and place."""
+    seen: set[str] = set()
+    for given in texts:
+        name, equals, value = given.partition("=")
+        if not equals:
+            raise UsageError(f"{quote(given)} has no '='", option, "NAME=VALUE")
+        name = name.strip()
+        if name in seen:
+            raise UsageError(f"{quote(name)} is given twice", option, remedy="give it once")
+        seen.add(name)
+        yield name, read(value.strip(), f"{option} {name}")
+
+
+def signal(text: str, where: str) -> Any:
+    """Return a number, a signal such as ``sine(100, 100)``, or samples from ``@drive.csv``.
+
+    Nothing is evaluated.
+    """
+    if text.startswith("@"):
+        return from_file(text[1:], where)
+    call = CALL.fullmatch(text)
+    if call is None:
+        return _number(text, where)
+    if call["name"] not in SIGNALS:
+        what = f"{quote(call['name'])} is no signal"
+        raise UsageError(what, where, remedy=nearest(call["name"], SIGNALS))
+    from piezo_sym import run
+
+    given = [_number(part, where) for part in call["numbers"].split(",")]
+    try:
+        return getattr(run, call["name"])(*given)
+    except TypeError as error:
+        what = f"{call['name']} does not take {len(given)} numbers"
+        raise UsageError(what, where, remedy="see `piezo-sym simulate --help`") from error
+    except UsageError as error:
+        error.where = f"{where}: {error.where}"
+        raise
+
+
+def from_file(path: str, where: str) -> Any:
+    """Return the samples in a delimited text file: its one column, or that named like the input."""
+    from piezo_sym.run.samples import column_names, samples_from_csv
+
+    if not path:
+        raise UsageError("'@' names no file", where, "@FILE.csv")
+    name = where.rpartition(" ")[2]
+    columns = column_names(path)
+    if len(columns) > 2 and name not in columns[1:]:
+        what = f"{path_text(Path(path))} has no column {quote(name)} beside its times"
+        raise UsageError(what, where, remedy=f"columns: {listing(columns)}")
+    return samples_from_csv(path, name if name in columns[1:] else None)
+
+
+def numbers(text: str, where: str) -> float | list[float]:
+    """Return a number, or a list of them for the lanes of a bank."""
+    found = [_number(part, where) for part in text.split(",")]
+    return found[0] if len(found) == 1 else found
+
+
+def _number(text: str, where: str) -> float:
+    try:
+        value = float(text.replace("_", "x"))
+    except ValueError:
+        raise UsageError(f"{quote(text)} is no number", where, "such as 0.5 or 1e-3") from None
+    return int(value) if value.is_integer() and text.strip().isdigit() else value
