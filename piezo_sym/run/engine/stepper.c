@@ -317,6 +317,12 @@ static long MODEL(twice)(long level)
     return level ? level + 2 : 1;
 }
 
+/* Whether a block has the inputs of the three levels that a member's next interval needs. */
+static int MODEL(levels_there)(const MODEL(member) *s, const MODEL(block) *b)
+{
+    return s->level >= b->lowest && MODEL(twice)(MODEL(twice)(s->level)) <= b->highest;
+}
+
 /* Remember where the fine path is: its state and its ledger. */
 static void MODEL(keep)(const MODEL(member) *s)
 {
@@ -393,7 +399,7 @@ void MODEL(adapt)(MODEL(member) *members, long count, const MODEL(block) *b)
 {
     for (MODEL(member) *s = members; s < members + count; ++s) {
         while (s->done < b->intervals && !s->failed) {
-            if (s->level < b->lowest || MODEL(twice)(MODEL(twice)(s->level)) > b->highest)
+            if (!MODEL(levels_there)(s, b))
                 break;
             MODEL(keep)(s);
             const double worst = MODEL(try)(s, b);

@@ -181,11 +181,11 @@ static int MODEL(begin)(MODEL(wide) *w, int k)
     const MODEL(member) *s = w->lane[k].s;
     if (s->failed || s->done >= w->b->intervals)
         return 0;
+    if (w->mode == ADAPT && !MODEL(levels_there)(s, w->b))
+        return 0;
     MODEL(go)(w, &w->lane[k], 0);
     if (w->mode != ADAPT)
         return 1;
-    if (s->level < w->b->lowest || MODEL(twice)(MODEL(twice)(s->level)) > w->b->highest)
-        return 0;
     MODEL(keep_wide)(w, k);
     for (long i = 0; i < w->n; ++i)
         w->path[0].x[i][k + 1] = w->path[0].x[i][k];
