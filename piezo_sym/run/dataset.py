@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 Variable: TypeAlias = tuple[tuple[str, ...], "NDArray[Any] | pandas.Index[Any]", dict[str, Any]]
 Named: TypeAlias = tuple[str, Variable]
 
-#: What the ledger says where states are extrapolated from two runs.
+#: What the ledger says where states are extrapolated from three runs.
 FINEST = "; of the finest run"
 ENERGY_LEFT = "U - U(0) - energy put in"
 ENTROPY_LEFT = "S - S(0) - entropy produced - entropy exchanged"

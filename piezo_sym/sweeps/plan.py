@@ -100,7 +100,7 @@ class Plan:
 
     @property
     def extrapolated(self) -> bool:
-        """Whether states are extrapolated from two runs."""
+        """Whether states are extrapolated from three runs."""
         return self.method == METHOD and self.step is None
 
     @property
