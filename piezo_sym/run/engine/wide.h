@@ -57,8 +57,8 @@ static inline real with_sign(real a, real b)
 /* 2^k for whole k from -1022 to 1023, given as k + 0x1.8p52. */
 static inline real power_of_two(real k)
 {
-    const mask bits = (mask)k - (mask)wide(0x1.8p52) + 1023;
-    return (real)(bits << 52);
+    const mask exponent = (mask)k - (mask)wide(0x1.8p52) + 1023;
+    return (real)(exponent << 52);
 }
 
 /* exp(r) - 1 for |r| <= log(2)/2, by its series. */
