@@ -13,12 +13,17 @@ from typing import TYPE_CHECKING, final
 
 import numpy as np
 
+from piezo_sym.errors import RunError
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from piezo_sym.run.checks import FloatArray
     from piezo_sym.run.inputs import Segment
     from piezo_sym.run.system import System
+
+#: A run of more intervals would take days, and lengths below round-off.
+MOST_INTERVALS = 1e12
 
 
 @final
@@ -76,7 +81,16 @@ def blocks(
     ----------
     longest : no interval is longer [s].
     size : asked before each block: how many intervals it may have.
+
+    Raises
+    ------
+    RunError : there would be more intervals than any run can have.
     """
+    duration = system.inputs.duration
+    if not duration / longest <= MOST_INTERVALS:
+        what = f"a run of {duration:g} s would take steps of {longest:g} s, over 10^12 of them"
+        remedy = "a longer step, a shorter run, or slower inputs"
+        raise RunError(what, f"model '{system.module.NAME}'", remedy=remedy)
     for segment in system.inputs.segments:
         inner = times[(times > segment.start) & (times < segment.stop)]
         edges = np.array([segment.start, *inner, segment.stop])

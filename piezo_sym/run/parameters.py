@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 #: Of the duration: a sample nearer to the end than this is the end.
 CLOSE = 1e-12
 SAMPLES = 1001
+#: A run of more steps would take days, and they would be shorter than round-off.
+MOST_STEPS = 1e12
 
 
 def read_parameters(module: GeneratedModule, given: Mapping[str, LaneValue] | None) -> Any:
@@ -115,8 +117,11 @@ def sample_times(times: object, every: object, step: float | None, duration: flo
 
     Raises
     ------
-    UsageError : neither says when; see `read_times` and `read_every`.
+    UsageError : neither says when; see `read_times` and `read_every`; or the step is too short.
     """
+    if step is not None and not duration / step <= MOST_STEPS:
+        what = f"{step:g} s is too short a step for {duration:g} s: a run of over 10^12 steps"
+        raise UsageError(what, "simulate.step", f"at least {duration / MOST_STEPS:.1g} s")
     if every is not None:
         return read_every(every, times, step, duration)
     if times is None and step is not None:

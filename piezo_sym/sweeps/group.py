@@ -142,19 +142,10 @@ def check_starts(
                 errors[k] = str(error)
 
 
-def inside(
-    systems: Sequence[System], engine: Engine, start: FloatArray
-) -> np.ndarray[Any, np.dtype[np.bool_]]:
+def inside(systems: Sequence[System], engine: Engine, start: FloatArray) -> NDArray[np.bool_]:
     """Return whether each run starts inside the domain with a finite rate."""
-    module, first = systems[0].module, systems[0].inputs.segments[0]
+    first = systems[0].inputs.segments[0]
     u = np.ascontiguousarray(first.at(first.start)[None])
     call = Members(engine, [system.parameters for system in systems])
-    x = np.ascontiguousarray(start[:, None])
-    margins = call("margins", x, len(module.DOMAIN), u)[:, 0]
-    strict = np.array([condition.strict for condition in module.DOMAIN], dtype=bool)
-    rates = call("rhs", x, start.shape[1], u)[:, 0]
-    held = np.where(strict, margins > 0, margins >= 0)
-    good: np.ndarray[Any, np.dtype[np.bool_]] = np.all(held, axis=1) & np.isfinite(rates).all(
-        axis=1
-    )
-    return good
+    found: NDArray[np.bool_] = call.inside(np.ascontiguousarray(start[:, None]), u)[:, 0]
+    return found

@@ -93,7 +93,10 @@ def quantities(
     module = system.module
     call = Members(engine, [one.parameters for one in runs.systems])
     x = np.ascontiguousarray(batch.states[:, kept])
-    balanced = np.ascontiguousarray(batch.fine[:, kept]) if runs.extrapolated else x
+    balanced = x
+    if runs.extrapolated:  # so near to the edge that the extrapolation may cross it
+        balanced = np.ascontiguousarray(batch.fine[:, kept])
+        x = np.where(call.inside(x, u)[..., None], x, balanced)
     sums = batch.sums[:, kept]
     ports, processes, exchanging = batch.rows.ports, batch.rows.processes, exchanges(module)
     ends = np.cumsum([ports, processes, processes, len(exchanging)])

@@ -82,7 +82,7 @@ def read_plan(module: GeneratedModule, asked: Asked) -> Plan:
         way = way_of(module, named, asked.step)
         step = None if asked.step is None else float(asked.step)
         numbers = samples.size * row_numbers(module, base, axes)
-        many = MOST_TOGETHER if method == METHOD else MOST_BY_SCIPY
+        many = MOST_TOGETHER if way.method == METHOD else MOST_BY_SCIPY
         together = max(1, min(many, MOST_NUMBERS // numbers))
         most = together if asked.reduce is None else box_of_reduced(axes, together)
         how = (way.method, rtol, step, asked.reduce, asked.reduce_by == "run", largest_banks(axes))

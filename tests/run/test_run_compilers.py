@@ -61,7 +61,8 @@ def test_the_whole_driver_has_no_warning(module, compiler, tmp_path):
     texts = [Path(module.__file__).with_suffix(ending).read_text() for ending in (".h", ".c")]
     for name, text in Sources(module.NAME, *texts).files().items():
         (tmp_path / name).write_text(text, encoding="utf-8")
-    assert called([*COMPILERS[compiler], *STRICT, "-c", "driver.c"], tmp_path) == ""
+    flags = [*STRICT, "-Wno-unused-function"]  # wide.h has functions for laws of other models
+    assert called([*COMPILERS[compiler], *flags, "-c", "driver.c"], tmp_path) == ""
 
 
 @pytest.mark.usefixtures("cache")

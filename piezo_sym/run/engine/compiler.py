@@ -25,11 +25,13 @@ from piezo_sym.errors import EngineError, one_line
 COMMON = ("-std=c99", "-fPIC", "-shared", "-ffp-contract=off")
 #: Functions of one library call each other directly: nobody replaces them.
 DIRECT = "-fno-semantic-interposition"
+#: Without the vectors of members, which not every compiler knows.
+PLAIN = "-DPLAIN"
 #: Flags, best first; the next are tried where a compiler refuses some.
 FLAGS: tuple[tuple[str, ...], ...] = (
     ("-O3", "-march=native", "-fopenmp-simd", "-fno-math-errno", DIRECT, *COMMON),
     ("-O3", "-fopenmp-simd", "-fno-math-errno", *COMMON),
-    ("-O2", *COMMON),
+    ("-O2", PLAIN, *COMMON),
 )
 #: Bounds on a compiler that hangs: asked for its version, and at work.
 VERSION_SECONDS, MOST_SECONDS = 10.0, 120.0

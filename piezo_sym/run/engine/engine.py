@@ -127,7 +127,10 @@ class Engine:
 
         None also if `wide` says that paths are to go one by one.
         """
-        return self._with_vectors("pair" if members == 1 else "members") if self.wide else None
+        if not self.wide:
+            return None
+        found = self.library if members == 1 else self._with_vectors("members")
+        return found if hasattr(found, f"{self.module.NAME}_run_wide") else None
 
     def _with_vectors(self, made: Made) -> ctypes.CDLL | None:
         sources = replace(self.sources, made=made)

@@ -25,11 +25,11 @@ from piezo_sym.run.engine.compiler import FLAGS, Compiler, build, compilers, pas
 from piezo_sym.run.engine.driver import driver
 from piezo_sym.run.engine.processor import processor
 from piezo_sym.run.engine.rates import rates_text
-from piezo_sym.run.engine.vector import wide_text
+from piezo_sym.run.engine.vector import has_step, wide_text
 
-#: What a library computes: states and steps one by one; also the paths of one member side by side
-#: ("pair"), or many members ("members"); or functions of many states alone.
-Made = Literal["single", "pair", "members", "rates"]
+#: What a library computes: states, steps, and the paths of one run side by side; the same and the
+#: paths of many members; or functions of many states alone.
+Made = Literal["single", "members", "rates"]
 ENDINGS = {"win32": ".dll", "darwin": ".dylib"}
 
 
@@ -61,10 +61,9 @@ class Sources:
             return rates_text(self.name, self.source)
         starts = f" {self.name}_newton_start(" in self.header
         text = driver(self.name, starts=starts)
-        if self.made != "single":
-            text += "#define PAIR 1\n" if self.made == "pair" else ""
-            text += wide_text(self.name, self.header, self.source)
-        return text
+        lanes = "#define PAIR 1\n" if self.made == "single" else ""
+        vectors = wide_text(self.name, self.header, self.source) if has_step(self.source) else ""
+        return "\n".join((text, "#if !defined(PLAIN)", lanes, vectors, "#endif\n"))
 
 
 def library(sources: Sources, *, again: bool = False) -> Path:

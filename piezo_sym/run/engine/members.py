@@ -15,6 +15,8 @@ from piezo_sym.run.engine.march import LONG, POINTER, at
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from numpy.typing import NDArray
+
     from piezo_sym.run.checks import FloatArray
     from piezo_sym.run.engine.engine import Engine
 
@@ -33,6 +35,16 @@ class Members:
         self._engine = engine
         self._kept = engine.structure.many(parameters)
         self._places = [POINTER(place) for place in self._kept.addresses.tolist()]
+
+    def inside(self, x: FloatArray, u: FloatArray) -> NDArray[np.bool_]:
+        """Return which states (runs, k, n) lie in the domain, and have a finite rate, (runs, k)."""
+        domain = self._engine.module.DOMAIN
+        margins = self("margins", x, len(domain), u)
+        strict = np.array([condition.strict for condition in domain], dtype=bool)
+        held = np.where(strict, margins > 0, margins >= 0)
+        finite = np.isfinite(self("rhs", x, x.shape[2], u))
+        good: NDArray[np.bool_] = np.all(held, axis=2) & np.all(finite, axis=2)
+        return good
 
     def __call__(
         self, name: str, x: FloatArray, rows: int, u: FloatArray | None = None

@@ -45,9 +45,14 @@ NUMBER = r"(?:[-+*/ ()]|\d[\d.]*(?:e[-+]?\d+)?|HUGE_VAL)+"
 
 
 def wide_text(model: str, header: str, source: str) -> str:
-    """Return what a driver needs in addition to run members side by side."""
+    """Return what a driver needs in addition to run paths of members side by side."""
     parts = (text_beside("wide.h"), wide_source(model, header, source), text_beside("wide.c"))
     return "\n".join(parts)
+
+
+def has_step(source: str) -> bool:
+    """Return whether the text of a module's .c has a part that holds for vectors."""
+    return OPENING in source
 
 
 def wide_source(model: str, header: str, source: str) -> str:
@@ -151,7 +156,18 @@ def _reciprocals(step: str, fields: Sequence[_Field]) -> tuple[str, list[_Field]
         return f"{match[1]} {record}->{field.name}{match[3] or ''};"
 
     text = re.sub(r"^( *const double \w+ =) 1\.0/(\w+)(\[j\])?;$", taken, step, flags=re.MULTILINE)
-    return text, list(found.values())
+    functions = re.split(r"(?<=^}\n)", text, flags=re.MULTILINE)
+    return "".join(_needed(function, record) for function in functions), list(found.values())
+
+
+def _needed(function: str, record: str) -> str:
+    """Return a function without the parameters that it no longer names."""
+
+    def kept(match: re.Match[str]) -> str:
+        return match[0] if len(re.findall(rf"\b{match[1]}\b", function)) > 2 else ""
+
+    line = rf"^ *const double (?:\*restrict )?(\w+) = {record}->\1;\n"
+    return re.sub(line, kept, function, flags=re.MULTILINE)
 
 
 def _record(model: str, fields: Sequence[_Field], counts: Sequence[str]) -> str:
