@@ -32,9 +32,9 @@ def about(spec: str, *kinds: type[PiezoError]) -> Iterator[None]:
     """
     try:
         yield
-    except kinds or (PiezoError,) as error:
+    except PiezoError as error:
         name = one_line(Path(spec).name)
-        if name not in str(error):
+        if isinstance(error, kinds or PiezoError) and name not in str(error):
             error.where = f"{name}: {error.where}" if error.where else name
         raise
 

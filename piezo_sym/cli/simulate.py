@@ -51,7 +51,9 @@ Every: TypeAlias = Annotated[
 Start: TypeAlias = Annotated[
     bool, typer.Option("--dissipative-start", help="Damp what rings after a jump of an input.")
 ]
-Out: TypeAlias = Annotated[Path | None, typer.Option(help="Result as .nc (NetCDF) or .csv; folders are made.")]
+Out: TypeAlias = Annotated[
+    Path | None, typer.Option(help="Result as .nc (NetCDF) or .csv; makes its folder.")
+]
 
 
 def simulate(
