@@ -146,6 +146,10 @@ def periodic_steady_state(
 ) -> steady.SteadyState:
     """Return the periodic steady state that a driven model settles in.
 
+    >>> from piezo_sym import periodic_steady_state, sine
+    >>> periodic_steady_state("piezo_stack", inputs={"V_in": sine(100, 50)}, frequency=50)
+    SteadyState(354.085 K at 50 Hz, stable)
+
     Parameters
     ----------
     model : the name of a shipped spec, the path of a spec file, or a `Model`, with one body.
@@ -154,6 +158,13 @@ def periodic_steady_state(
     temperatures : where to look [K], least and greatest; from the start to 20 times it when left
         out.
     rtol : accuracy of the states at t = 0, as a part of their sizes.
+
+    Returns
+    -------
+    SteadyState
+        With ``.temperature``, ``.coldest``, ``.hottest`` of the body [K], ``.loss`` a period [J],
+        ``.stable``, ``.multiplier``, ``.residual``, ``.initial`` (as `simulate` takes it) and
+        ``.orbit``, one period as a Dataset; see `piezo_sym.analysis.steady.SteadyState`.
 
     Raises
     ------
@@ -183,7 +194,7 @@ def periodic_steady_states(
 ) -> tuple[steady.SteadyState, ...]:
     """Return all periodic steady states of a driven model, stable or not, coldest first.
 
-    Parameters and errors: as for `periodic_steady_state`.
+    Parameters, errors and what each one holds: as for `periodic_steady_state`.
     """
     return steady.periodic_steady_states(
         module_of(model),
@@ -207,12 +218,29 @@ def steady_branches(
 ) -> branches.Branches:
     """Return the periodic steady states of a model over a range of frequencies, and the jumps.
 
+    >>> from piezo_sym import sine, steady_branches
+    >>> options = {"frequencies": (20, 60), "temperatures": (298.15, 400)}
+    >>> steady_branches("piezo_stack", inputs=lambda f: {"V_in": sine(10, f)}, **options)
+    Branches(curves: 1, points: 14, jumps: none)
+
     Parameters
     ----------
     model : the name of a shipped spec, the path of a spec file, or a `Model`, with one body.
     inputs : function of the frequency [Hz] to inputs as for `simulate`, which repeat with it.
     frequencies, temperatures : least and greatest [Hz], [K].
     parameters, initial : as for `simulate`; see `piezo_sym.analysis.branches.steady_branches`.
+
+    Returns
+    -------
+    Branches
+        With ``.table()``, columns by name (frequency, temperature, stable, jumps_to, ...), a row a
+        point; ``.jumps``, each with ``.frequency`` [Hz], ``.upward``, ``.temperature`` and
+        ``.lands`` [K]; and ``.curves``, tuples of points.
+
+    Raises
+    ------
+    UsageError
+        If an option is wrong, or an input does not repeat with each frequency of the range.
     """
     return branches.steady_branches(
         module_of(model),

@@ -193,6 +193,14 @@ def grid(low: float, high: float, points: int = POINTS) -> list[float]:
     return [low, *(low * (1 + np.geomspace(min(FIRST_RISE, most / 2), most, points))).tolist()]
 
 
+def between(a: Settled, b: Settled) -> str:
+    """Return the temperatures from one state to another in words."""
+    low, high = sorted([a.temperature, b.temperature])
+    if low == high:
+        return f"at {low:.6g} K, where the range ends,"
+    return f"at every temperature between {low:.6g} K and {high:.6g} K"
+
+
 def zeros(strobe: Stroboscope, frequency: float, known: Sequence[Settled]) -> list[Settled]:
     """Return the zeros of the drift between settled states in order of temperature.
 

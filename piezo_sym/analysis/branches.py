@@ -63,10 +63,23 @@ COLUMNS = ("curve", "frequency", "temperature", "coldest", "hottest", "stable", 
 @final
 @dataclass(frozen=True)
 class Branches:
-    """Curves of periodic steady states, each a tuple of points in order, and the jumps."""
+    """Curves of periodic steady states over the frequency, and the jumps.
+
+    Attributes
+    ----------
+    curves : each a tuple of points in order, with `.frequency` [Hz], `.stable` and `.state`.
+    jumps : a `Jump` where a stable part ends: `.frequency` [Hz], `.upward`, `.temperature` and
+        `.lands` [K].
+    """
 
     curves: tuple[tuple[Point, ...], ...]
     jumps: tuple[Jump, ...]
+
+    def __repr__(self) -> str:
+        """Return how many curves and points there are, and where it jumps."""
+        points = sum(len(curve) for curve in self.curves)
+        jumps = ", ".join(f"{jump.frequency:.6g} Hz" for jump in self.jumps) or "none"
+        return f"Branches(curves: {len(self.curves)}, points: {points}, jumps: {jumps})"
 
     def table(self) -> dict[str, FloatArray]:
         """Return columns, a row a point.

@@ -22,15 +22,15 @@ from typing import TYPE_CHECKING, final
 import numpy as np
 
 from piezo_sym.analysis.balance import (
-    NUDGE,
     Settled,
     SteadyWarning,
+    between,
     grid,
     scan,
-    solved,
     temperature_range,
     zeros,
 )
+from piezo_sym.analysis.fixed import closed, whole_slope
 from piezo_sym.analysis.repeating import moves
 from piezo_sym.analysis.stroboscope import Stroboscope, stroboscope
 from piezo_sym.errors import RunError, UsageError
@@ -50,7 +50,6 @@ SAMPLES = 400  # of the orbit returned
 ORBIT_RTOL = 1e-8
 OPEN, MOST_OPEN = 100.0, 0.1  # times the accuracy, of the sizes: what repeats no better is none
 MARGIN = 1e-6  # of a multiplier over 1: the accuracy of its difference quotient
-MOST_MOVES = 12
 STILL = "no input moves, and no state of rest is found"
 SIMULATE = "run simulate() until it rests, or give an input that repeats with the frequency"
 
@@ -82,6 +81,11 @@ class SteadyState:
     stable: bool
     initial: Mapping[str, LaneValue]
     orbit: xarray.Dataset
+
+    def __repr__(self) -> str:
+        """Return where it is, without its orbit."""
+        kind = "stable" if self.stable else "unstable"
+        return f"SteadyState({self.temperature:.6g} K at {self.frequency:g} Hz, {kind})"
 
 
 def periodic_steady_state(
@@ -207,10 +211,13 @@ def _first(strobe: Stroboscope, frequency: float, known: list[Settled]) -> Settl
     found = zeros(strobe, frequency, known)
     side = [zero for zero in found if (zero.temperature > at.temperature) == heats]
     if not side:
-        ends = sorted([at.temperature, known[-1 if heats else 0].temperature])
-        what = f"no periodic steady state: the body {'heats' if heats else 'cools'} at every "
-        what += f"temperature between {ends[0]:.6g} K and {ends[1]:.6g} K at t = 0"
-        remedy = "let an ambient cool the body, or give a wider range as 'temperatures'"
+        last = known[-1 if heats else 0]
+        where = between(at, last) if found else between(known[0], known[-1])
+        what = (
+            f"no periodic steady state: the body {'heats' if heats else 'cools'} {where} at t = 0"
+        )
+        remedy = "let an ambient cool the body, or " if heats else ""
+        remedy += "give a wider range as 'temperatures'"
         raise RunError(what, f"model '{strobe.module.NAME}' at {frequency:g} Hz", remedy=remedy)
     return side[0] if heats else side[-1]
 
@@ -245,32 +252,6 @@ def _moved(strobe: Stroboscope, frequency: float, x: FloatArray, before: FloatAr
     """Return the error of x, of which the steps have been halved: a third of the last move."""
     size = strobe.look(x, frequency).size
     return float(np.max(np.abs(x - before) / size)) / 3
-
-
-def whole_slope(strobe: Stroboscope, frequency: float, x: FloatArray) -> FloatArray:
-    """Return dP/dx (n, n) in units of the states' sizes, by central differences."""
-    size = strobe.look(x, frequency).size
-    columns = []
-    for row in range(x.size):
-        step = np.zeros(x.size)
-        step[row] = NUDGE * size[row]
-        rise = strobe.look(x + step, frequency).end - strobe.look(x - step, frequency).end
-        columns.append(rise / size / (2 * NUDGE))
-    return np.array(columns).T
-
-
-def closed(strobe: Stroboscope, frequency: float, x: FloatArray, slope: FloatArray) -> FloatArray:
-    """Return the fixed point (n,) of a period near x, by Newton's method with one derivative."""
-    matrix = slope - np.eye(x.size)
-    error = np.inf
-    for _ in range(MOST_MOVES):
-        period = strobe.look(x, frequency)
-        move = solved(matrix, (period.end - x) / period.size)
-        if np.max(np.abs(move)) >= error:  # no better: at round-off
-            break
-        error = float(np.max(np.abs(move)))
-        x = x - move * period.size
-    return x
 
 
 def _described(

@@ -1,5 +1,6 @@
 """Branches of steady states over the frequency: their folds and jumps, against single states."""
 
+import doctest
 import itertools
 
 import numpy as np
@@ -93,6 +94,19 @@ def test_the_table_has_a_row_a_point(found):
     )
     assert np.all(table["coldest"] <= table["temperature"])
     assert np.all(table["temperature"] <= table["hottest"])
+
+
+def test_branches_are_short_to_read(found):
+    points = len(found.table()["curve"])
+    jump = f"{found.jumps[0].frequency:.6g} Hz"
+    assert repr(found) == f"Branches(curves: 2, points: {points}, jumps: {jump})"
+
+
+@pytest.mark.parametrize("documented", [steady_branches, periodic_steady_state])
+def test_the_example_of_the_help_gives_what_it_says(documented):
+    (example,) = doctest.DocTestFinder(recurse=False).find(documented, "help", globs={})
+    assert doctest.DocTestRunner().run(example) == (0, len(example.examples))
+    assert len(example.examples) > 1
 
 
 def test_a_drive_without_jumps_has_none():

@@ -320,6 +320,26 @@ STACK = {"inputs": {"V_in": sine(100, 50)}, "frequency": 50}
 
 
 @pytest.mark.parametrize(
+    ("temperatures", "said"),
+    [
+        ((400, 500), "the body cools at every temperature between 400 K and 500 K at t = 0; give"),
+        ((330, 340), "the body heats at every temperature between 330 K and 340 K at t = 0; let"),
+        ((400, 5000), "the body cools at 400 K, where the range ends, at t = 0; give a wider"),
+    ],
+)
+def test_a_range_without_a_steady_state_is_named_as_it_was_asked_for(temperatures, said):
+    """At 50 Hz they are at 354 K, 1236 K (unstable) and 4750 K; a run starts at 298 K."""
+    with pytest.raises(RunError) as error:
+        periodic_steady_state("piezo_stack", **STACK, temperatures=temperatures)
+    assert said in str(error.value)
+
+
+def test_a_steady_state_is_short_to_read(at_50):
+    for state, kind in zip(at_50, ("stable", "unstable", "stable"), strict=True):
+        assert repr(state) == f"SteadyState({state.temperature:.6g} K at 50 Hz, {kind})"
+
+
+@pytest.mark.parametrize(
     ("changed", "said"),
     [
         ({"frequency": 40}, "'V_in' does not repeat after 0.025 s"),
