@@ -25,7 +25,7 @@ from piezo_sym.codegen import (
 )
 from piezo_sym.derivation import derive
 from piezo_sym.errors import DriftError
-from piezo_sym.files import path_text, read_text, write_together
+from piezo_sym.files import path_of, path_text, read_text, write_together
 from piezo_sym.proofs import Report, Verdict, proofs_json, smt2, verify
 from piezo_sym.spec.load import load
 from piezo_sym.spec.model import Model
@@ -110,9 +110,10 @@ def generate(
     FileError
         If a file cannot be written.
     """
+    folder = path_of(out, "generate.out")
     files = render(model, allow_unproved=allow_unproved)
-    write_together({Path(out) / name: text.encode() for name, text in files.items()})
-    return tuple(Path(out) / name for name in files)
+    write_together({folder / name: text.encode() for name, text in files.items()})
+    return tuple(folder / name for name in files)
 
 
 def drift(

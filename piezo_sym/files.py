@@ -14,7 +14,7 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
-from piezo_sym.errors import FileError, one_line
+from piezo_sym.errors import FileError, UsageError, one_line, quote
 
 
 def write_text(path: Path, text: str) -> None:
@@ -115,6 +115,13 @@ def temporary_folder() -> Path:
 
     atexit.register(remove)
     return Path(folder)
+
+
+def path_of(value: object, where: str) -> Path:
+    """Return a path that a user gave; raise `UsageError` if it is none."""
+    if not isinstance(value, str | os.PathLike):
+        raise UsageError(f"{quote(value)} is no path", where, "a path, as text or a Path")
+    return Path(value)
 
 
 def path_text(path: str | Path) -> str:

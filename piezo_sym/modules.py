@@ -17,7 +17,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
 
-from piezo_sym.errors import DriftError, FileError
+from piezo_sym.errors import DriftError, FileError, UsageError, quote
 from piezo_sym.files import path_text, read_text, temporary_folder, write_together
 from piezo_sym.spec.source import data, find, read, shipped
 from piezo_sym.spec.write import spec_hash
@@ -42,8 +42,11 @@ def module_of(spec: str | Path | Model) -> ModuleType:
         If ``generated/`` holds a module of another version of a named spec.
     FileError, SpecError, NetworkError, ProofError
         If the spec cannot be read, derived or proved.
+    UsageError
+        If `spec` is none of these.
     """
     if not isinstance(spec, str | Path):
+        refuse_no_model(spec)
         ready = _ready(spec.name, spec.sha256)
         return ready if ready else _cached(spec)
     path = find(spec)
@@ -63,6 +66,15 @@ def module_of(spec: str | Path | Model) -> ModuleType:
     from piezo_sym.spec.load import load
 
     return _cached(load(spec))
+
+
+def refuse_no_model(spec: object) -> None:
+    """Raise `UsageError` if this is no `Model`; whoever has one has loaded its type."""
+    from piezo_sym.spec.model import Model
+
+    if not isinstance(spec, Model):
+        expected = "the name of a shipped spec, the path of a spec file, or a Model"
+        raise UsageError(f"{quote(spec)} is no model", "model", expected)
 
 
 def _is_of(module: ModuleType, path: Path, content: dict[str, object]) -> bool:

@@ -24,8 +24,8 @@ from typing import TYPE_CHECKING, TypeAlias, final
 import numpy as np
 
 from piezo_sym.analysis.stroboscope import FLOOR
-from piezo_sym.errors import RunError, UsageError
-from piezo_sym.run.checks import vector
+from piezo_sym.errors import RunError
+from piezo_sym.run.checks import span_of
 
 if TYPE_CHECKING:
     from piezo_sym.analysis.stroboscope import Period, Stroboscope
@@ -184,12 +184,7 @@ def temperature_range(
         T = strobe.temperature(strobe.start(frequency))
         own = strobe.temperature(replace(strobe, initial={}).start(frequency))
         return min(T, own), HOTTEST * own
-    where = "periodic_steady_state.temperatures"
-    ends = vector(list(given), where)
-    if ends.size != 2 or not 0 < ends[0] < ends[1]:
-        what = f"{list(given)} is no range"
-        raise UsageError(what, where, "the least and the greatest temperature in K")
-    return float(ends[0]), float(ends[1])
+    return span_of(given, "periodic_steady_state.temperatures", "K")
 
 
 def grid(low: float, high: float, points: int = POINTS) -> list[float]:

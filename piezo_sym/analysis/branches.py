@@ -21,9 +21,10 @@ import numpy as np
 
 from piezo_sym.analysis.balance import grid, scan, settled, temperature_range, zeros
 from piezo_sym.analysis.curves import Point, folds, traced, with_folds
+from piezo_sym.analysis.repeating import refuse_not_following
 from piezo_sym.analysis.stroboscope import Stroboscope, stroboscope
-from piezo_sym.errors import UsageError
-from piezo_sym.run.checks import positive
+from piezo_sym.run.checks import span_of
+from piezo_sym.run.module import checked
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -120,10 +121,8 @@ def steady_branches(
     of 256 steps a period, within about 1e-4 of the rise over the environment; where more is asked
     for, give a point's frequency to `periodic_steady_state`.
     """
-    low, high = (positive(f, "steady_branches.frequencies") for f in frequencies)
-    if low >= high:
-        what = f"{low:g} Hz to {high:g} Hz is no range"
-        raise UsageError(what, "steady_branches.frequencies", "the least, then the greatest")
+    low, high = span_of(frequencies, "steady_branches.frequencies", "Hz")
+    refuse_not_following(checked(module), inputs, low, high)
     strobe = stroboscope(module, inputs, low, parameters, initial, STEPS)
     span = np.log([[low, high], temperature_range(strobe, low, temperatures)])
     curves: list[tuple[Point, ...]] = []

@@ -17,6 +17,7 @@ from piezo_sym.run.samples import Samples
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from piezo_sym.analysis.stroboscope import Driven
     from piezo_sym.run.inputs import InputValue
     from piezo_sym.run.module import GeneratedModule
     from piezo_sym.run.signals import Signal
@@ -26,16 +27,29 @@ GOLDEN = 0.6180339887498949
 PROBES = np.sort(np.r_[0.0, np.modf(np.arange(1, 64) * GOLDEN)[0]])  # of a period
 STRAIGHT = 0.01  # of an input's range: mean distance from straight lines between steps
 MOST_NEEDED = 1 << 14  # steps a period: a sine with 1300 turns in it
+COMMON = "give the frequency that the inputs have in common"
+PROBED = 33  # frequencies of a range, the ends among them
+FOLLOW = "let the inputs follow the frequency"
+DRIVEN = "a function of the frequency in Hz, such as lambda f: {'V_in': sine(100, f)}"
 
 
 def refuse_unperiodic(
-    module: GeneratedModule, inputs: Mapping[str, InputValue], frequency: float
+    module: GeneratedModule,
+    inputs: Mapping[str, InputValue],
+    frequency: float,
+    caller: str = "periodic_steady_state",
+    remedy: str = COMMON,
 ) -> None:
-    """Raise `UsageError` if an input is not the same one period later."""
+    """Raise `UsageError` if an input is not the same one period later.
+
+    Parameters
+    ----------
+    caller, remedy : what the error names as its place, and what to do.
+    """
     period = 1 / frequency
     read_inputs(module, inputs, period)
     for name, value in (inputs or {}).items():
-        where = f"periodic_steady_state.inputs.{name}"
+        where = f"{caller}.inputs.{name}"
         signal = as_signal(value, where)
         times = PROBES * period
         if isinstance(signal, Samples):  # those of one period alone repeat by meaning
@@ -44,8 +58,15 @@ def refuse_unperiodic(
         largest = np.max(np.abs(now), initial=0.0)
         if np.any(np.abs(now - signal(times + period)) > CLOSE * largest):
             what = f"{quote(name)} does not repeat after {period:g} s"
-            remedy = "give the frequency that the inputs have in common"
             raise UsageError(what, where, f"an input of {frequency:g} Hz, or a number", remedy)
+
+
+def refuse_not_following(module: GeneratedModule, inputs: Driven, low: float, high: float) -> None:
+    """Raise `UsageError` if inputs do not repeat with each frequency from `low` to `high` [Hz]."""
+    if not callable(inputs):
+        raise UsageError(f"{quote(inputs)} is no function", "steady_branches.inputs", DRIVEN)
+    for f in np.geomspace(low, high, PROBED).tolist():
+        refuse_unperiodic(module, inputs(f), f, "steady_branches", FOLLOW)
 
 
 def moves(

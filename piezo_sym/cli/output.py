@@ -23,11 +23,16 @@ STYLES = {"PROVED": "green", "REFUTED": "bold red", "OPEN": "yellow"}
 
 
 @contextmanager
-def about(spec: str) -> Iterator[None]:
-    """Name the spec's file in every error from within that does not name it yet."""
+def about(spec: str, *kinds: type[PiezoError]) -> Iterator[None]:
+    """Name the spec's file in every error from within that does not name it yet.
+
+    Parameters
+    ----------
+    kinds : the errors to name it in; all when left out.
+    """
     try:
         yield
-    except PiezoError as error:
+    except kinds or (PiezoError,) as error:
         name = one_line(Path(spec).name)
         if name not in str(error):
             error.where = f"{name}: {error.where}" if error.where else name

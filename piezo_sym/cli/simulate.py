@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import typer
 
-from piezo_sym.cli.output import console, row, table, warnings_as_lines
+from piezo_sym.cli.output import about, console, row, table, warnings_as_lines
 from piezo_sym.cli.words import numbers, pairs, signal
-from piezo_sym.errors import UsageError, listing
+from piezo_sym.errors import NetworkError, ProofError, SpecError, UsageError, listing
 from piezo_sym.files import path_text, write_bytes
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ Every: TypeAlias = Annotated[
 Start: TypeAlias = Annotated[
     bool, typer.Option("--dissipative-start", help="Damp what rings after a jump of an input.")
 ]
-Out: TypeAlias = Annotated[Path | None, typer.Option(help="Result as .nc (NetCDF) or .csv.")]
+Out: TypeAlias = Annotated[Path | None, typer.Option(help="Result as .nc (NetCDF) or .csv; folders are made.")]
 
 
 def simulate(
@@ -80,7 +80,8 @@ def simulate(
 
     if out is not None and out.suffix not in ENDINGS:
         raise UsageError(f"{path_text(out)} has no known ending", "--out", listing(ENDINGS))
-    with warnings_as_lines(), time_bar(duration) as told:
+    of_spec = about(spec, SpecError, NetworkError, ProofError)
+    with warnings_as_lines(), time_bar(duration) as told, of_spec:
         result = run(
             spec,
             duration=duration,

@@ -81,6 +81,15 @@ def vector(value: object, where: str) -> FloatArray:
     return raw.astype(np.float64)
 
 
+def span_of(value: object, where: str, unit: str) -> tuple[float, float]:
+    """Return the least and the greatest of a range above 0; raise `UsageError` otherwise."""
+    ends = vector(value, where) if is_vector(value) else np.zeros(0)
+    if ends.size != 2 or not 0 < ends[0] < ends[1]:
+        expected = f"two numbers above 0 in {unit}, the least and the greatest"
+        raise UsageError(f"{quote(value)} is no range", where, expected)
+    return float(ends[0]), float(ends[1])
+
+
 def increasing(times: FloatArray, where: str) -> FloatArray:
     """Return `times` (n,) when they strictly increase; raise `UsageError` otherwise."""
     late = np.diff(times) <= 0

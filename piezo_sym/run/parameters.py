@@ -117,11 +117,15 @@ def sample_times(times: object, every: object, step: float | None, duration: flo
 
     Raises
     ------
-    UsageError : neither says when; see `read_times` and `read_every`; or the step is too short.
+    UsageError : neither says when; see `read_times` and `read_every`; or the step is too short, or
+        longer than the run.
     """
     if step is not None and not duration / step <= MOST_STEPS:
         what = f"{step:g} s is too short a step for {duration:g} s: a run of over 10^12 steps"
         raise UsageError(what, "simulate.step", f"at least {duration / MOST_STEPS:.1g} s")
+    if step is not None and step > duration * (1 + CLOSE):
+        what = f"{step:g} s is longer than the run"
+        raise UsageError(what, "simulate.step", f"at most {duration:g} s")
     if every is not None:
         return read_every(every, times, step, duration)
     if times is None and step is not None:

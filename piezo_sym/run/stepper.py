@@ -185,7 +185,7 @@ class Stepper:
         Returns
         -------
         numpy.ndarray
-            y, in the order of `outputs` (shared with the next call: copy what you keep).
+            y (ports,), in the order of `outputs`, SI units; an array of the caller's own.
 
         Raises
         ------
@@ -204,7 +204,8 @@ class Stepper:
             self._undo()
             raise self._refusal(u)
         self._taken += 1
-        return self._y
+        y: FloatArray = self._y.copy()
+        return y
 
     def reset(self, x: Sequence[float] | FloatArray | None = None) -> None:
         """Go back to t = 0, with an empty ledger.

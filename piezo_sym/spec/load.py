@@ -26,6 +26,8 @@ def load(spec: str | Path) -> Model:
         If the file cannot be read.
     SpecError
         If it is not a spec; the message names the place.
+    UsageError
+        If `spec` is neither text nor a path.
     """
     path = find(spec)
     return parse(read(path), path.name)

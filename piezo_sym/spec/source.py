@@ -6,12 +6,13 @@ needs the spec's types, so that a run can compare a module with its spec at litt
 
 from __future__ import annotations
 
+import os
 import re
 import tomllib
 from pathlib import Path
 from typing import Any
 
-from piezo_sym.errors import FileError, SpecError, nearest, quote
+from piezo_sym.errors import FileError, SpecError, UsageError, nearest, quote
 from piezo_sym.spec.names import NAME
 
 MAX_BYTES = 500_000
@@ -41,7 +42,11 @@ def find(spec: str | Path) -> Path:
     ------
     FileError
         If a bare name is neither shipped nor a file.
+    UsageError
+        If it is neither text nor a path.
     """
+    if not isinstance(spec, str | os.PathLike):
+        raise UsageError(f"{quote(spec)} is no spec", "load", "a shipped name, or a spec's path")
     text = str(spec)
     if text in shipped():
         return MODELS / f"{text}.toml"

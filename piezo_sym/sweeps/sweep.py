@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import warnings
 from contextlib import ExitStack, closing
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from piezo_sym.errors import UsageError, quote
+from piezo_sym.files import path_of
 from piezo_sym.modules import module_of
 from piezo_sym.run.checks import whole
 from piezo_sym.sweeps.frame import frame_of
@@ -27,6 +27,7 @@ from piezo_sym.sweeps.sinks import Memory
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from concurrent.futures import Executor
+    from pathlib import Path
 
     import xarray
     from numpy.typing import ArrayLike
@@ -176,7 +177,7 @@ def sink_of(
         return plan, Memory(plan, frame)
     from piezo_sym.sweeps.store import store_at
 
-    return store_at(Path(store), plan, frame, module.SPEC_SHA256)
+    return store_at(path_of(store, "sweep.store"), plan, frame, module.SPEC_SHA256)
 
 
 def warn(found: xarray.Dataset, plan: Plan) -> None:

@@ -110,7 +110,39 @@ def test_a_drive_without_jumps_has_none():
     assert curve[-1].state.period.mean == pytest.approx(alone.temperature, abs=1e-3)
 
 
-@pytest.mark.parametrize("frequencies", [(100.0, 50.0), (50.0, 50.0), (0.0, 50.0)])
-def test_no_range_is_refused(frequencies):
-    with pytest.raises(UsageError):
-        steady_branches("piezo_stack", inputs=drive, frequencies=frequencies)
+@pytest.mark.parametrize("own", [50, 10, 200, 6.25])
+def test_inputs_that_do_not_follow_the_frequency_are_refused(own):
+    with pytest.raises(UsageError, match=r"^steady_branches\.inputs\.V_in: .* follow the freq"):
+        steady_branches(
+            "piezo_stack", inputs=lambda _: {"V_in": sine(100, own)}, frequencies=(10, 200)
+        )
+
+
+def test_inputs_that_repeat_at_both_ends_alone_are_refused():
+    with pytest.raises(UsageError, match=r"V_in: 'V_in' does not repeat after"):
+        steady_branches(
+            "piezo_stack", inputs=lambda _: {"V_in": sine(100, 100)}, frequencies=(50, 100)
+        )
+
+
+RANGE = "expected two numbers above 0 in {}, the least and the greatest"
+WRONG = [
+    ({"frequencies": (100.0, 50.0)}, "'(100.0, 50.0)' is no range"),
+    ({"frequencies": (50.0, 50.0)}, RANGE.format("Hz")),
+    ({"frequencies": (0.0, 50.0)}, RANGE.format("Hz")),
+    ({"frequencies": 50}, "steady_branches.frequencies: '50' is no range"),
+    ({"frequencies": (50, "x")}, "steady_branches.frequencies[1]: 'x' is not a finite number"),
+    ({"temperatures": 300}, "temperatures: '300' is no range; " + RANGE.format("K")),
+    ({"temperatures": (300, 300)}, "temperatures: '(300, 300)' is no range"),
+    ({"inputs": {"V_in": 1.0}}, "steady_branches.inputs: '{'V_in': 1.0}' is no function; expected"),
+    ({"inputs": None}, "steady_branches.inputs: 'None' is no function"),
+    ({"inputs": lambda f: f}, "is not a mapping"),
+]
+
+
+@pytest.mark.parametrize(("changed", "said"), WRONG)
+def test_a_wrong_argument_is_one_line(changed, said):
+    with pytest.raises(UsageError) as error:
+        steady_branches("piezo_stack", **{"inputs": drive, "frequencies": (45.0, 50.0), **changed})
+    assert said in str(error.value)
+    assert str(error.value).isprintable()

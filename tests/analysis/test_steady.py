@@ -332,6 +332,7 @@ STACK = {"inputs": {"V_in": sine(100, 50)}, "frequency": 50}
         ({"rtol": 1e-12}, "out of range"),
         ({"temperatures": (400, 300)}, "no range"),
         ({"temperatures": (300,)}, "no range"),
+        ({"temperatures": 300}, "'300' is no range; expected two numbers above 0 in K"),
     ],
 )
 def test_a_wrong_argument_is_one_line(changed, said):

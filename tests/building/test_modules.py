@@ -6,9 +6,20 @@ import numpy as np
 import platformdirs
 import pytest
 
-from piezo_sym import Model, generate, load, modules, simulate
+from piezo_sym import (
+    Model,
+    Stepper,
+    derive,
+    generate,
+    load,
+    modules,
+    periodic_steady_state,
+    simulate,
+    steady_branches,
+    sweep,
+)
 from piezo_sym.cli import run
-from piezo_sym.errors import DriftError, FileError, SpecError
+from piezo_sym.errors import DriftError, FileError, SpecError, UsageError
 from piezo_sym.modules import module_of
 from piezo_sym.run.engine.engine import engine_of
 
@@ -175,3 +186,23 @@ def test_a_spec_whose_name_is_no_name_is_refused_as_a_spec(mine):
     mine.write_text(mine.read_text().replace('"mine"', '"../mine"'))
     with pytest.raises(SpecError, match="is not a name"):
         module_of(mine)
+
+
+@pytest.mark.parametrize("call", [simulate, Stepper, sweep, periodic_steady_state, steady_branches])
+@pytest.mark.parametrize("nothing", [None, 3, ["piezo_stack"], derive(load("piezo_stack"))])
+def test_what_is_no_model_is_refused_by_all_that_run_one(call, nothing):
+    options = {
+        simulate: {"duration": 1.0},
+        Stepper: {"step": 1e-5},
+        sweep: {"over": {"L": [1e-3]}, "duration": 1.0},
+        periodic_steady_state: {"inputs": {}, "frequency": 1.0},
+        steady_branches: {"inputs": lambda _: {}, "frequencies": (1.0, 2.0)},
+    }
+    with pytest.raises(UsageError, match=r"^model: .* is no model; expected the name of") as error:
+        call(nothing, **options[call])
+    assert str(error.value).isprintable()
+
+
+def test_a_folder_that_is_no_path_is_refused():
+    with pytest.raises(UsageError, match=r"^generate\.out: '3' is no path; expected a path"):
+        generate(load("piezo_stack"), out=3)

@@ -195,6 +195,18 @@ def test_a_wrong_run_is_one_line_and_exit_code_2(refused, words, message):
     assert refused(*SHORT, *words).startswith(message)
 
 
+def test_a_fault_of_the_spec_has_its_name_and_one_of_an_option_has_not(refused, spec_file):
+    """`verify` names the same file for the same fault."""
+    path = spec_file('"d >= 0", ', "")
+    said = refused("simulate", path, "--duration", "1e-3", code=1)
+    assert said.startswith("mine.toml: mine.damper: passive is REFUTED")
+    path = spec_file('between = ["in", "gnd"]', 'between = ["elsewhere", "gnd"]')
+    said = refused("simulate", path, "--duration", "1e-3")
+    assert said.startswith("mine.toml: ")
+    assert said == refused("verify", path)
+    assert refused(*SHORT, "--initial", "M=1").startswith("simulate.initial: ")
+
+
 def test_a_module_of_another_spec_is_exit_code_1(refused, spec_file, tmp_path, monkeypatch, call):
     monkeypatch.chdir(tmp_path)
     assert call("generate", spec_file()).code == 0

@@ -54,6 +54,13 @@ def test_the_schema_line_is_that_of_a_new_spec():
     assert first.endswith(f"./{file}")
 
 
+def test_imports_named_in_comments_work():
+    found = re.findall(r"#.*(from piezo_sym\S* import \w+)", blocks("python")[0])
+    assert found
+    for line in found:
+        exec(line, {})
+
+
 def test_the_python_works(folder, monkeypatch):
     monkeypatch.setenv("MPLBACKEND", "agg")
     text, test = blocks("python")

@@ -151,7 +151,7 @@ def test_every_needs_a_step_alone(options):
         (1e-3, 1e-6, 1001, 1e-6),
         (1.001e-3, 1e-6, 502, 2e-6),
         (0.1, 3e-5, 835, 12e-5),
-        (1e-4, 1e-3, 2, 1e-4),
+        (1e-4, 1e-4, 2, 1e-4),
     ],
 )
 def test_samples_of_a_fixed_step_are_ends_of_its_steps(duration, step, samples, apart):

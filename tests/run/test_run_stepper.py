@@ -34,6 +34,16 @@ def test_held_inputs_give_the_states_of_a_run():
     assert np.allclose(y, [run[f"y_{n}"].values[-1] for n in ("load", "supply", "ambient")])
 
 
+def test_outputs_that_are_kept_stay_what_they_were():
+    """Kept in a list, they are those of as many runs, one to each step."""
+    actuator = Stepper("piezo_stack", step=H)
+    kept = [actuator.step([0.0, 50.0, 298.15]) for _ in range(4)]
+    for steps, y in enumerate(kept, 1):
+        again = Stepper("piezo_stack", step=H)
+        values = [again.step([0.0, 50.0, 298.15]).tolist() for _ in range(steps)]
+        assert y.tolist() == values[-1]
+
+
 def test_a_position_controller_reaches_its_target():
     actuator = Stepper("piezo_stack", step=2e-5)
     target, integral, y = 2e-4, 0.0, None

@@ -6,7 +6,7 @@ import time
 import pytest
 from spec_tools import MINIMAL, SHIPPED, check_message, edited_text, refusal
 
-from piezo_sym.errors import FileError, SpecError
+from piezo_sym.errors import FileError, SpecError, UsageError
 from piezo_sym.spec.load import load, parse
 from piezo_sym.spec.source import data, find, read, shipped
 
@@ -66,6 +66,12 @@ def test_a_directory_is_no_spec(tmp_path):
 
 def test_an_empty_path_is_no_spec():
     assert "cannot be read" in str(refusal(load, ""))
+
+
+@pytest.mark.parametrize("nothing", [None, 3, b"piezo_stack", ["piezo_stack"]])
+def test_what_is_no_path_is_refused(nothing):
+    with pytest.raises(UsageError, match=r"^load: .* is no spec; expected a shipped name, or a sp"):
+        load(nothing)
 
 
 def test_an_unreadable_file_is_refused(tmp_path, monkeypatch):

@@ -62,6 +62,7 @@ REFUSED = [
     ({"reduce_by": "all"}, "sweep.reduce_by: 'all' is not known"),
     ({"threads": 0}, "sweep.threads: '0' is not allowed"),
     ({"executor": 3}, "sweep.executor: '3' has no 'submit'"),
+    ({"store": 3}, "sweep.store: '3' is no path; expected a path, as text or a Path"),
     ({"progress": 3}, "sweep.progress: '3' shows no progress"),
 ]
 
