@@ -10,7 +10,7 @@ from piezo_sym.modules import module_of
 from piezo_sym.run.discrete import adaptive, fixed
 from piezo_sym.run.engine import march
 from piezo_sym.run.engine.engine import engine_of
-from piezo_sym.run.engine.vector import CALLS, wide_source
+from piezo_sym.run.engine.vector import CALLS, OPENING, wide_source
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.parameters import read_initial, read_parameters
 from piezo_sym.run.system import System
@@ -103,6 +103,16 @@ def test_every_function_of_a_step_has_its_vector():
 
     known = {*c_means.HELPERS, *c_style._HELPERS, "exp", "log", "sqrt", "sin", "cos", "tanh", "pow"}
     assert known | {"fabs", "copysign", "expm1"} == set(CALLS)
+
+
+def test_long_numbers_in_a_law_are_read_at_once():
+    """A pattern that tries all ways to read a number would not come back."""
+    header = "typedef struct {\n    double m;\n} long_parameters;"
+    number = "1." + "0371" * 10
+    lines = [f"    const double a = {number}*m;", f"    const double b = {number} - 2.0e-05;"]
+    found = wide_source("long", header, "\n".join([OPENING, *lines]))
+    assert f"const real a = {number}*m;" in found
+    assert f"const real b = wide({number} - 2.0e-05);" in found
 
 
 def test_a_source_without_a_step_is_refused():

@@ -96,7 +96,7 @@ static int MODEL(root)(MODEL(model) *m, const double *restrict x, double *restri
     double *restrict change = m->space + 2 * m->n;
     double before = 0.0;
     for (int iteration = 0; iteration < MOST_ITERATIONS; ++iteration) {
-        double most = 0.0, per = 1.0, share = 1.0; /* the worst change is most / per */
+        double most = 0.0, per = 1.0, all = 0.0, share = 1.0; /* the worst change is most / per */
         ++m->iterations;
         if (!MODEL(change)(m->p, m->start, x, y, u, h, change))
             return 0;
@@ -104,12 +104,13 @@ static int MODEL(root)(MODEL(model) *m, const double *restrict x, double *restri
             const double after = y[i] - change[i];
             const double size = 1e-9 * fabs(after - x[i]) + 1e-15 * fabs(x[i]) + LEAST_SIZE;
             const double changed = fabs(change[i]);
-            const int less = changed * per <= most * size; /* not so if it is no number */
+            const int less = changed * per <= most * size;
+            all += changed;
             most = less ? most : changed;
             per = less ? per : size;
             y[i] = after;
         }
-        const double worst = most / per;
+        const double worst = most / per + 0.0 * all; /* no number, if one of them is none */
         if (!(worst < 1e300))
             return 0;
         for (int k = 0; !MODEL(inside)(y, u, m->p); ++k) { /* back towards where it came from */
@@ -338,7 +339,8 @@ static void MODEL(back)(MODEL(member) *s)
     memcpy(s->fine.x, s->kept, n * sizeof(double));
     memcpy(s->fine.sums, s->kept + n, rows * sizeof(double));
     memcpy(s->fine.lost, s->kept + n + rows, rows * sizeof(double));
-    s->fine.h = s->fine.h_prior = 0.0;
+    s->fine.h = s->middle.h = s->coarse.h = s->trial.h = 0.0;
+    s->fine.h_prior = s->middle.h_prior = s->coarse.h_prior = s->trial.h_prior = 0.0;
 }
 
 /* A path's steps over the interval at hand, as many as a level has. */
@@ -365,7 +367,7 @@ static double MODEL(try)(MODEL(member) *s, const MODEL(block) *b)
         return -1.0;
     for (long i = 0; i < s->model.n; ++i) {
         const double ratio = fabs(s->fine.x[i] - s->trial.x[i]) / (FINEST * s->tolerance[i]);
-        worst = ratio <= worst ? worst : ratio;
+        worst = worst != worst || ratio <= worst ? worst : ratio;
     }
     if (!(worst <= 1.0))
         return worst;
@@ -374,15 +376,32 @@ static double MODEL(try)(MODEL(member) *s, const MODEL(block) *b)
     return worst;
 }
 
+/*
+ * How much of the extrapolation counts.  Where the error falls with the step, the finer two of the
+ * paths lie closer by four: all.  Where they are hardly closer, or not at all, the coarser ones have
+ * lost their way, and to draw conclusions from them would do harm: none.
+ */
+static double MODEL(trust)(const MODEL(member) *s)
+{
+    const double *fine = s->fine.x, *middle = s->middle.x, *coarse = s->coarse.x;
+    double apart = 0.0, closer = 0.0;
+    for (long i = 0; i < s->model.n; ++i) {
+        apart = fmax(apart, fabs(middle[i] - coarse[i]) / s->tolerance[i]);
+        closer = fmax(closer, fabs(fine[i] - middle[i]) / s->tolerance[i]);
+    }
+    return closer <= 0.75 * apart ? fmin(1.0, 3.0 - 4.0 * closer / fmax(apart, 1e-300)) : 0.0;
+}
+
 /* Writes the state extrapolated from the three paths, the finest one and its ledger. */
 static void MODEL(write)(const MODEL(member) *s, long row)
 {
     const long n = s->model.n, rows = s->model.rows;
     double *restrict best = s->out_x + row * n;
     const double *fine = s->fine.x, *middle = s->middle.x, *coarse = s->coarse.x;
+    const double trust = MODEL(trust)(s);
     for (long i = 0; i < n; ++i) {
         const double first = (middle[i] - coarse[i]) / 3.0, then = (fine[i] - middle[i]) / 3.0;
-        best[i] = fine[i] + then + (fine[i] - middle[i] + then - first) / 15.0;
+        best[i] = fine[i] + trust * (then + (fine[i] - middle[i] + then - first) / 15.0);
     }
     memcpy(s->out_fine + row * n, fine, (size_t)n * sizeof(double));
     memcpy(s->out_sums + row * rows, s->fine.sums, (size_t)rows * sizeof(double));

@@ -41,7 +41,9 @@ CALLS = {
     "mean_sign_by_new": ("mean_sign_by_new_of", 2),
 }
 MOST_FACTORS = 8
-NUMBER = r"(?:[-+*/ ()]|\d[\d.]*(?:e[-+]?\d+)?|HUGE_VAL)+"
+#: An assignment on one line, and what in its right side is a number.
+ASSIGNED = r"^( *(?:(?:const )?double \w+|\w+\[[^\]\n]*\]|\w+) =) ([^;\n]+);$"
+NUMBER = r"\b\d[\d.]*(?:e[-+]?\d+)?\b\.?|\bHUGE_VAL\b"
 
 
 def wide_text(model: str, header: str, source: str) -> str:
@@ -79,7 +81,7 @@ def wide_source(model: str, header: str, source: str) -> str:
         (rf"^int ({name}_wide_)", r"static mask \1"),
         (rf"^(void) ({name}_wide_)", r"static \1 \2"),
         (r"return 1;", "return everywhere;"),
-        (rf"^( *(?:(?:const )?double \w+|\w+\[[^\n]*\]|\w+) =) ({NUMBER});$", r"\1 wide(\2);"),
+        (ASSIGNED, _numbers_wide),
         (r"\bdouble\b", "real"),
     ):
         step = re.sub(pattern, instead, step, flags=re.MULTILINE | re.DOTALL)
@@ -168,6 +170,12 @@ def _needed(function: str, record: str) -> str:
 
     line = rf"^ *const double (?:\*restrict )?(\w+) = {record}->\1;\n"
     return re.sub(line, kept, function, flags=re.MULTILINE)
+
+
+def _numbers_wide(match: re.Match[str]) -> str:
+    """Return an assignment, its right side a vector if it is made of numbers alone."""
+    left = re.sub(NUMBER, "", match[2])
+    return match[0] if re.search(r"[^-+*/ ().]", left) else f"{match[1]} wide({match[2]});"
 
 
 def _record(model: str, fields: Sequence[_Field], counts: Sequence[str]) -> str:

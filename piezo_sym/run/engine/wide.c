@@ -201,7 +201,7 @@ static double MODEL(apart)(const MODEL(wide) *w, int k)
     double worst = 0.0;
     for (long i = 0; i < w->n; ++i) {
         const double ratio = fabs(x[i][k] - x[i][k + 1]) / (FINEST * tolerance[i]);
-        worst = ratio <= worst ? worst : ratio;
+        worst = worst != worst || ratio <= worst ? worst : ratio;
     }
     return worst;
 }
@@ -270,18 +270,19 @@ static mask MODEL(roots)(MODEL(wide) *w, mask going, real h, real enough)
     for (long i = 0; i < w->n; ++i)
         w->y[i] = chosen(in, w->y[i], w->from[i]);
     for (int iteration = 0; iteration < MOST_ITERATIONS && any(going); ++iteration) {
-        real most = zero, per = wide(1.0); /* the worst change is most / per */
+        real most = zero, per = wide(1.0), all = zero; /* the worst change is most / per */
         const mask solved = MODEL(wide_newton)(w->from, w->y, w->u, h, &w->p, w->change);
         for (long i = 0; i < w->n; ++i) {
             const real x = w->from[i], after = w->y[i] - w->change[i];
             const real change = size_of(w->change[i]);
             const real size = 1e-9 * size_of(after - x) + 1e-15 * size_of(x) + LEAST_SIZE;
             const mask less = change * per <= most * size;
+            all += change;
             most = chosen(less, most, change);
             per = chosen(less, per, size);
             w->y[i] = chosen(going, after, w->y[i]);
         }
-        const real worst = most / per;
+        const real worst = most / per + 0.0 * all; /* no number, if one of them is none */
         const real rate = worst / before;
         going &= solved & (worst < 1e300) & MODEL(wide_inside)(w->y, w->u, &w->p);
         for (int k = 0; k < WIDTH; ++k)
