@@ -13,7 +13,7 @@ from test_rhs import best_times, states_and_inputs
 from piezo_sym.modules import load_module
 from piezo_sym.run.engine.compiler import FLAGS, build, compilers
 from piezo_sym.run.engine.engine import engine_of
-from piezo_sym.run.engine.structure import structure_of
+from piezo_sym.run.engine.structure import Layout
 
 HERE = Path(__file__).parent
 FOLDER = HERE.parents[1] / "generated" / "piezo_stack"
@@ -30,7 +30,7 @@ def by_hand(tmp_path_factory):
     library = ctypes.CDLL(str(path))
 
     def call(x, u, p, out):
-        structure = structure_of(MODULE)(p)
+        structure = Layout(MODULE)(p)
         at = [ctypes.c_void_p(array.ctypes.data) for array in (x, u, out)]
         count = ctypes.c_long(x.shape[1])
         library.batch_by_hand(at[0], at[1], ctypes.byref(structure.value), at[2], count)
