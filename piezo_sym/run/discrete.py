@@ -32,6 +32,8 @@ FEWEST_INTERVALS = 32
 MOST_LEVEL = 36
 #: Levels whose inputs are sampled below and above the present one.
 BELOW, ABOVE = 1, 4
+#: At first, when no level is known.
+ABOVE_AT_FIRST = 10
 #: The finest run may be so much less accurate than the states extrapolated from it.
 LOOSER = 5.0
 
@@ -149,7 +151,8 @@ def _through(run: _Run, block: Block) -> list[int]:
             return done
         first = min(left)
         part = block.part(first, first + _block_size(batch))
-        levels = range(max(0, min(batch.levels) - BELOW), max(batch.levels) + ABOVE + 1)
+        above = ABOVE if batch.members[0].steps else ABOVE_AT_FIRST
+        levels = range(max(0, min(batch.levels) - BELOW), max(batch.levels) + above + 1)
         before = [n - first for n in done]
         found = run.through("adapt", part, levels, before)
         done = [first + n for n in found]

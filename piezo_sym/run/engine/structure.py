@@ -97,6 +97,7 @@ class Layout:
         return Structures(addresses(records), tuple(kept))
 
 
+@lru_cache(maxsize=64)
 def record_of(kind: Any) -> np.dtype[np.void]:
     """Return a C structure's layout for NumPy: arrays of it are filled a column at a time."""
     plain = {ctypes.c_void_p: np.uintp, ctypes.c_double: np.float64, ctypes.c_long: np.dtype("l")}
