@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 #: Tolerances, loosest first, and the parts of each that are tried above the first good one.
 LADDER = tuple(float(f"1e-{n}") for n in range(2, 14))
-PARTS = (0.15, 0.2, 0.3, 0.5, 0.7)
+PARTS = (0.15, 0.2, 0.3, 0.4, 0.5, 0.7)
 
 
 @final
@@ -60,7 +60,7 @@ def tuned(
 ) -> Tuned | str:
     """Return the tolerance to use, or why there is none.
 
-    Decades first, then fifths and halves of the last one that was too loose: the result is the
+    Decades first, then parts of the last one that was too loose: the result is the
     loosest of them below which everything tried is good.
 
     Parameters
