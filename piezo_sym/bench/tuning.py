@@ -17,9 +17,10 @@ from piezo_sym.errors import PiezoError
 if TYPE_CHECKING:
     from piezo_sym.run.checks import FloatArray
 
-#: Tolerances, loosest first, and the parts of each that are tried above the first good one.
+#: Tolerances, loosest first, and the parts of each that are tried above the first good one: six to
+#: a decade, those of the series of preferred numbers E6.
 LADDER = tuple(float(f"1e-{n}") for n in range(2, 14))
-PARTS = (0.15, 0.2, 0.3, 0.4, 0.5, 0.7)
+PARTS = (0.15, 0.22, 0.33, 0.47, 0.68)
 
 
 @final
