@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias, final
 
 from piezo_sym.errors import RunError
-from piezo_sym.run.engine.march import Batch, Way, steps_at
+from piezo_sym.run.engine.march import Batch, Way, coarser, finest, steps_at, twice
 from piezo_sym.run.ledger import Trajectory
 from piezo_sym.run.mesh import Block, blocks, inputs_at
 from piezo_sym.run.scales import shared
@@ -29,11 +29,11 @@ METHOD = "discrete_gradient"
 CHUNK = 50_000
 #: Intervals that a tolerance starts from, at least; into how many steps one may be divided.
 FEWEST_INTERVALS = 32
-MOST_LEVEL = 36
-#: Levels whose inputs are sampled below and above the present one.
-BELOW, ABOVE = 1, 4
-#: At first, when no level is known.
-ABOVE_AT_FIRST = 10
+MOST_LEVEL = 68
+#: At first, when no level is known: how many intervals are tried, and up to which level.
+TRIED, HIGHEST_TRIED = 4, 17
+#: So few levels apart, members get all levels between.
+NEAR = 8
 #: The finest run may be so much less accurate than the states extrapolated from it.
 LOOSER = 5.0
 
@@ -146,13 +146,13 @@ def _through(run: _Run, block: Block) -> list[int]:
     batch = run.batch
     done = [0] * len(batch)
     while True:
+        run.give_up(block, done)
         left = [n for n, member in zip(done, batch.members, strict=True) if not member.failed]
-        if not left or min(left) == len(block) or max(batch.levels) > MOST_LEVEL:
+        if not left or min(left) == len(block):
             return done
         first = min(left)
         part = block.part(first, first + _block_size(batch))
-        above = ABOVE if batch.members[0].steps else ABOVE_AT_FIRST
-        levels = range(max(0, min(batch.levels) - BELOW), max(batch.levels) + above + 1)
+        levels = _levels(batch.levels) if batch.members[0].steps else range(HIGHEST_TRIED + 1)
         before = [n - first for n in done]
         found = run.through("adapt", part, levels, before)
         done = [first + n for n in found]
@@ -180,22 +180,32 @@ class _Run:
             self.batch.sums[:, 0] = 0.0
 
     def through(
-        self, name: Way, block: Block, levels: range, done: Sequence[int] = ()
+        self, name: Way, block: Block, levels: Sequence[int], done: Sequence[int] = ()
     ) -> list[int]:
         """Take the batch through a block, and return how many intervals each member has done."""
-        u = block.middles([steps_at(level) for level in levels])
+        steps = [steps_at(level) for level in levels]
+        u = dict(zip(levels, block.middles(steps), strict=True))
         starts = levels if block.starts[0] in self.jumps else ()
-        first = [block.quarters(steps_at(level)) for level in starts]
-        return self.batch.run(name, block.lengths, u, levels[0], block.samples, done, first)
+        first = {level: block.quarters(steps_at(level)) for level in starts}
+        return self.batch.run(name, block.lengths, u, block.samples, done, first)
+
+    def give_up(self, block: Block, done: Sequence[int]) -> None:
+        """Stop members that would need more steps in an interval than any has."""
+        for k, reached in enumerate(done):
+            member = self.batch.members[k]
+            if not member.failed and member.level > MOST_LEVEL and reached < len(block):
+                t = float(block.starts[reached])
+                self.errors[k] = _too_fine(self.systems[k], t, self.batch.x[k])
+                member.failed = 1
 
     def note(self, block: Block, done: Sequence[int]) -> None:
         """Note why members did not come through a block."""
         for k, reached in enumerate(done):
             if reached < len(block) and self.errors[k] is None:
-                member = self.batch.members[k]
-                t, x = float(block.starts[reached]), self.batch.x[k]
-                self.errors[k] = (_stuck if member.failed else _too_fine)(self.systems[k], t, x)
-                member.failed = 1
+                self.errors[k] = _stuck(
+                    self.systems[k], float(block.starts[reached]), self.batch.x[k]
+                )
+                self.batch.members[k].failed = 1
 
     def goes_on(self, block: Block, watch: Watch | None) -> bool:
         """Tell the time reached; return whether any member goes on."""
@@ -209,12 +219,24 @@ class _Run:
         return Runs(*parts, extrapolated)
 
 
+def _levels(present: Sequence[int]) -> Sequence[int]:
+    """Return the levels whose inputs are sampled: what the present ones and coarser ones need.
+
+    Members that are not far apart go on between.
+    """
+    low, high = min(present), max(present)
+    if low < high < low + NEAR:
+        return range(coarser(low), finest(high) + 1)
+    begun = {*present, *map(coarser, present)}
+    return sorted({level for n in begun for level in (n, twice(n), finest(n))})
+
+
 def _block_size(batch: Batch) -> int:
     """Return how many intervals to hand over at once: few at first, when no level is known."""
     levels = batch.levels
     if not levels or not batch.members[0].steps:
-        return 16
-    return max(1, CHUNK // (max(batch.rows.n, 1) * steps_at(max(levels) + ABOVE)))
+        return TRIED
+    return max(1, CHUNK // (max(batch.rows.n, 1) * steps_at(finest(max(levels)))))
 
 
 def _scale(run: _Run, longest: float) -> FloatArray:

@@ -19,7 +19,8 @@ from piezo_sym.run.checks import number, positive, vector
 from piezo_sym.run.compiled import input_conditions
 from piezo_sym.run.dataset import ledger
 from piezo_sym.run.engine.engine import engine_of
-from piezo_sym.run.engine.march import Batch, Model, Path, at
+from piezo_sym.run.engine.march import Batch
+from piezo_sym.run.engine.records import Model, Path, at
 from piezo_sym.run.guard import check_start, domain_error
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.ledger import Trajectory

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from piezo_sym.run.engine.march import LONG, at
+from piezo_sym.run.engine.records import LONG, at
 
 if TYPE_CHECKING:
     from piezo_sym.run.checks import FloatArray

@@ -30,6 +30,22 @@ void {model}_{name}_columns(
     }}
 }}
 """
+#: One of these loops for many members: columns of x are shared by none, those of u by all.
+MEMBERS = """
+typedef void {model}_loop(
+    const double *x, const double *u, const {model}_parameters *p, double *out,
+    long columns, long n, long m, long rows);
+void {model}_of_members(
+    {model}_loop *loop, const {model}_parameters *const *p, long members,
+    const double *x, const double *u, double *out, long columns, long n, long m, long rows);
+void {model}_of_members(
+    {model}_loop *loop, const {model}_parameters *const *p, long members,
+    const double *x, const double *u, double *out, long columns, long n, long m, long rows)
+{{
+    for (long k = 0; k < members; ++k)
+        loop(x + k*columns*n, u, p[k], out + k*columns*rows, columns, n, m, rows);
+}}
+"""
 #: Who compiled the file, for the attributes of a run.
 MAKER = """
 #if defined(__clang__)
@@ -56,8 +72,9 @@ def driver(model: str, *, starts: bool) -> str:
     for name in SCALARS:
         call = f"out[column*rows] = {model}_{name}(x + column*n, p);"
         parts.append(_loop(model, name, call, "(void)u; (void)m;"))
+    parts.append(MEMBERS.format(model=model))
     parts.append(f"\n#define MODEL(name) {model}_##name\n#define STARTS {int(starts)}\n")
-    parts += [source("kinds.c"), source("stepper.c")]
+    parts += [source(name) for name in ("kinds.c", "stepper.c", "paths.c")]
     return "".join(parts)
 
 

@@ -21,8 +21,8 @@ from piezo_sym.files import path_text, read_text
 from piezo_sym.run.engine.columns import at_once, one_by_one
 from piezo_sym.run.engine.driver import DRIVEN, PLAIN, SCALARS
 from piezo_sym.run.engine.library import EngineWarning, Made, Sources, library
-from piezo_sym.run.engine.march import at
 from piezo_sym.run.engine.rates import WIDE
+from piezo_sym.run.engine.records import at
 from piezo_sym.run.engine.structure import Layout
 from piezo_sym.run.module import lanes
 
@@ -95,16 +95,31 @@ def _sources(module: GeneratedModule) -> Sources:
     texts = []
     for ending in (".h", ".c"):
         file = path.with_name(f"{module.NAME}{ending}")
-        try:
-            text = read_text(file)
-        except FileError as error:
-            raise EngineError(error.what, error.where, remedy=error.remedy) from error
+        text = _text(file)
         if text is None or f"spec sha256 {module.SPEC_SHA256}" not in text:
             what = "is missing" if text is None else "is of another spec than the module"
             raise EngineError(what, path_text(file), remedy="run `piezo-sym generate`")
         texts.append(text)
     header, source = texts
     return Sources(module.NAME, header, source)
+
+
+def _text(file: Path) -> str | None:
+    """Return a file's text, or None without one; it is read again when it changes."""
+    try:
+        status = file.stat()
+    except OSError:
+        return None
+    return _read(file, status.st_mtime_ns, status.st_size)
+
+
+@lru_cache(maxsize=64)
+def _read(file: Path, changed: int, size: int) -> str | None:
+    del changed, size  # they tell one text from another
+    try:
+        return read_text(file)
+    except FileError as error:
+        raise EngineError(error.what, error.where, remedy=error.remedy) from error
 
 
 @final

@@ -1,4 +1,4 @@
-"""Runs of the discrete gradient in C: the records that stepper.c works on, filled from NumPy.
+"""Runs of the discrete gradient in C: batches of members, and what paths.c does with them.
 
 Input: an `Engine`, the parameters and states of some members.  Output: `Batch`, members on their
 way through one mesh, with what they leave at samples.  Arrays live as long as the object that holds
@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING, Any, Literal, final
 
 import numpy as np
 
-from piezo_sym.run.engine.structure import addresses, record_of
+from piezo_sym.run.engine.records import LONG, POINTER, Intervals, Member, at, room_of
+from piezo_sym.run.engine.structure import record_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -29,51 +30,7 @@ MOST_STATES = 32
 #: and, with a tolerance, on the paths that only tell or mend an error.
 EXACT, SLACK = 1e-6, 1e-3 / 1e-9
 Way = Literal["survey", "march", "adapt"]
-PATHS = ("fine", "middle", "coarse", "trial")
 MODES: dict[Way, int] = {"survey": 0, "march": 1, "adapt": 2}
-POINTER, LONG, DOUBLE = ctypes.c_void_p, ctypes.c_long, ctypes.c_double
-
-
-class Model(ctypes.Structure):
-    """MODEL(model): parameters, sizes, and room for one step."""
-
-    _fields_ = [
-        ("p", POINTER),
-        *((name, LONG) for name in ("n", "rows", "ports", "processes", "inputs")),
-        ("space", POINTER),
-        *((name, LONG) for name in ("iterations", "halvings", "begun", "start")),
-        ("slack", DOUBLE),
-    ]
-
-
-class Path(ctypes.Structure):
-    """MODEL(path): a state, its last two changes, and its ledger."""
-
-    _fields_ = [
-        *((name, POINTER) for name in ("x", "last", "prior")),
-        *((name, DOUBLE) for name in ("h", "h_prior")),
-        *((name, POINTER) for name in ("sums", "lost")),
-    ]
-
-
-class Member(ctypes.Structure):
-    """MODEL(member): a run among others."""
-
-    _fields_ = [
-        ("model", Model),
-        *((name, Path) for name in PATHS),
-        *((name, POINTER) for name in ("kept", "tolerance", "out_x", "out_fine", "out_sums")),
-        *((name, LONG) for name in ("level", "done", "steps", "failed")),
-    ]
-
-
-class Intervals(ctypes.Structure):
-    """MODEL(block): the intervals that members go through, and the inputs in them."""
-
-    _fields_ = [
-        *((name, LONG) for name in ("intervals", "lowest", "highest")),
-        *((name, POINTER) for name in ("h", "u", "sample", "first")),
-    ]
 
 
 @final
@@ -127,18 +84,24 @@ class Batch:
         size, n, ledger = len(parameters), rows.n, rows.ledger
         self._engine, self._library, self._name = engine, engine.library, engine.module.NAME
         self._structures = engine.structure.many(parameters)
-        self.x, self.scale = x.copy(), np.abs(x)
-        self.states, self.fine = np.full((2, size, samples, n), np.nan)
-        self.sums = np.full((size, samples, ledger), np.nan)
-        self._others = np.stack([x, x, x])  # of the middle, the coarse and the trial path
         self.members = (Member * size)()
         self._records: Any = np.frombuffer(memoryview(self.members), record_of(Member))
-        self._records["model"] = self._models()
-        self._space = np.zeros((size, self._function("room")(ctypes.byref(self.members[0].model))))
-        self._changes = np.zeros((4, 2, size, max(n, 1)))
-        self.ledgers = np.zeros((size, 2, ledger))
-        self._kept = np.zeros((size, n + 2 * ledger))
-        self._connect()
+        self._fill(self._records["model"])
+        space = self._function("room")(ctypes.byref(self.members[0].model))
+        room = room_of(n, ledger, samples, space)
+        numbers = room.rows(size)
+        room.point(self.members, numbers)
+        self.x, self.scale, self.ledgers = (
+            room.part(numbers, k) for k in ("x", "scale", "ledgers")
+        )
+        self.states, self.fine, self.sums = (
+            room.part(numbers, name) for name in ("states", "fine", "sums")
+        )
+        self._others = room.part(numbers, "others")
+        self._largest = room.part(numbers, "largest")
+        self.x[:], self._others[:] = x, x[:, None]
+        self.scale[:] = self._largest[:] = np.abs(x)
+        self.states[:] = self.fine[:] = self.sums[:] = np.nan
 
     def __len__(self) -> int:
         """Return the number of members."""
@@ -154,11 +117,10 @@ class Batch:
         self,
         name: Way,
         lengths: FloatArray,
-        u: Sequence[FloatArray],
-        lowest: int,
+        u: Mapping[int, FloatArray],
         samples: NDArray[np.int_],
         done: Sequence[int] = (),
-        first: Sequence[FloatArray] = (),
+        first: Mapping[int, FloatArray] | None = None,
     ) -> list[int]:
         """Go through intervals, and return how many of them each member has done.
 
@@ -167,16 +129,15 @@ class Batch:
         name : "march", one step over each; "survey", the same for `scale` alone, from where the run
             began; "adapt", as many steps and half steps as the tolerance asks for.
         lengths : of the intervals, (k,).
-        u : inputs at the middles of steps (k*steps, inputs), for each level from the lowest on.
-        lowest : the lowest level.
+        u : of levels, inputs at the middles of steps (k*steps, inputs).
         samples : the sample after each interval (k,), -1 for none.
-        first : after a jump, inputs of the quarters of the first step (4, inputs), likewise.
+        first : after a jump, of levels, inputs of the quarters of the first step (4, inputs).
         done : how many of these intervals each member has done before; none when left out.
         """
-        held = _pointers(u), _pointers(first) if first else None
+        levels = range(min(u), max(u) + 1)
+        held = _pointers(u, levels), _pointers(first, levels) if first else None
         rows = np.ascontiguousarray(samples, dtype="l")  # as C has them
-        highest = lowest + len(u) - 1
-        block = Intervals(lengths.size, lowest, highest, at(lengths), None, at(rows))
+        block = Intervals(lengths.size, levels[0], levels[-1], at(lengths), None, at(rows))
         block.u, block.first = (ctypes.cast(p, POINTER) if p else None for p in held)
         self._records["done"] = done if done else 0
         arguments = (self.members, LONG(len(self.members)), ctypes.byref(block))
@@ -195,7 +156,8 @@ class Batch:
 
     def rewind(self) -> None:
         """Forget a survey, but for its `scale`."""
-        self._others[2] = self.x
+        self._others[:, -1] = self.x  # the trial's
+        self._largest[:] = np.abs(self.x)
         records = self._records
         records["trial"]["h"] = records["trial"]["h_prior"] = 0.0
         records["steps"] = records["failed"] = 0
@@ -224,30 +186,13 @@ class Batch:
         function.restype = None
         return function, numbers[skipped : skipped + room]
 
-    def _models(self) -> NDArray[np.void]:
-        """Return the models of the members, without their space."""
-        rows, found = self.rows, np.zeros(len(self), record_of(Model))
-        found["p"] = self._structures.addresses
+    def _fill(self, models: Any) -> None:
+        """Fill in the models of the members, without their space."""
+        rows = self.rows
+        models["p"] = self._structures.addresses
         for name in ("n", "ports", "processes", "inputs"):
-            found[name] = getattr(rows, name)
-        found["rows"], found["slack"] = rows.ledger, EXACT
-        return found
-
-    def _connect(self) -> None:
-        """Tell the members where their arrays lie."""
-        records = self._records
-        records["model"]["space"] = addresses(self._space)
-        states = (self.x, *self._others)
-        for path, x, (last, prior) in zip(PATHS, states, self._changes, strict=True):
-            records[path]["x"] = addresses(x)
-            records[path]["last"], records[path]["prior"] = addresses(last), addresses(prior)
-        ledgers = records["fine"]
-        ledgers["sums"], ledgers["lost"] = addresses(self.ledgers), addresses(self.ledgers[:, 1])
-        for name, array in (
-            *(("kept", self._kept), ("tolerance", self.scale)),
-            *(("out_x", self.states), ("out_fine", self.fine), ("out_sums", self.sums)),
-        ):
-            records[name] = addresses(array)
+            models[name] = getattr(rows, name)
+        models["rows"], models["slack"] = rows.ledger, EXACT
 
     def _function(self, name: str) -> Any:
         function = getattr(self._library, f"{self._name}_{name}")
@@ -255,16 +200,27 @@ class Batch:
         return function
 
 
-def _pointers(arrays: Sequence[FloatArray]) -> Any:
-    """Return an array of the addresses of arrays, which the caller keeps."""
-    return (POINTER * len(arrays))(*(array.ctypes.data for array in arrays))
+def _pointers(arrays: Mapping[int, FloatArray], levels: range) -> Any:
+    """Return the addresses of arrays at levels, none where there is none; the caller keeps them."""
+    there = (arrays[level].ctypes.data if level in arrays else None for level in levels)
+    return (POINTER * len(levels))(*there)
+
+
+def coarser(level: int) -> int:
+    """Return the level with half the steps, or the next below."""
+    return level - 4 if level > 6 else max(level - 1, 0) // 2
+
+
+def twice(level: int) -> int:
+    """Return the level with twice the steps."""
+    return level + 4 if level > 2 else 2 * level + 1
+
+
+def finest(level: int) -> int:
+    """Return the level with four times the steps, that of the finest path."""
+    return twice(twice(level))
 
 
 def steps_at(level: int) -> int:
-    """Return how many steps an interval has at a level: 1, 2, 3, 4, 6, 8, 12, ..."""
-    return 1 if level == 0 else (2 + (level + 1) % 2) << ((level - 1) // 2)
-
-
-def at(array: NDArray[Any]) -> ctypes.c_void_p:
-    """Return the address of an array's numbers."""
-    return ctypes.c_void_p(array.ctypes.data)
+    """Return how many steps an interval has at a level: 1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, ..."""
+    return level + 1 if level < 3 else 4 + (level - 3) % 4 << (level - 3) // 4

@@ -1,16 +1,17 @@
 """Functions of a compiled module for many runs, each with parameters of its own.
 
-Input: an `Engine`, states (runs, k, n), parameters.  Output: rows (runs, k, rows).  A run costs a
-bare call of C, for arrays lie there as C wants them.
+Input: an `Engine`, states (runs, k, n), parameters.  Output: rows (runs, k, rows).  C goes from run
+to run, for arrays lie there as it wants them.
 """
 
 from __future__ import annotations
 
+import ctypes
 from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 
-from piezo_sym.run.engine.march import LONG, POINTER, at
+from piezo_sym.run.engine.records import LONG, POINTER, at
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -34,7 +35,6 @@ class Members:
     def __init__(self, engine: Engine, parameters: Sequence[Any]) -> None:
         self._engine = engine
         self._kept = engine.structure.many(parameters)
-        self._places = [POINTER(place) for place in self._kept.addresses.tolist()]
 
     def inside(self, x: FloatArray, u: FloatArray) -> NDArray[np.bool_]:
         """Return which states (runs, k, n) lie in the domain, and have a finite rate, (runs, k)."""
@@ -59,13 +59,14 @@ class Members:
         u : inputs (k, inputs) for all runs, C-contiguous; None for a function without.
         """
         engine = self._engine
-        function = getattr(engine.library, f"{engine.module.NAME}_{name}_columns")
+        library, model = engine.library, engine.module.NAME
+        loop = ctypes.cast(getattr(library, f"{model}_{name}_columns"), POINTER)
+        places = self._kept.addresses
         out = np.empty((*x.shape[:2], rows))
         inputs = np.empty((1, 0)) if u is None else u
-        sizes = (x.shape[1], x.shape[2], inputs.shape[1], rows)
-        longs, u_at = tuple(map(LONG, sizes)), at(inputs)
-        x_at, out_at = x.ctypes.data, out.ctypes.data
-        for k, place in enumerate(self._places):
-            there = (POINTER(x_at + k * x.strides[0]), u_at, place)
-            function(*there, POINTER(out_at + k * out.strides[0]), *longs)
+        sizes = map(LONG, (x.shape[1], x.shape[2], inputs.shape[1], rows))
+        arrays = at(x), at(inputs), at(out)
+        getattr(library, f"{model}_of_members")(
+            loop, at(places), LONG(len(places)), *arrays, *sizes
+        )
         return out

@@ -10,16 +10,22 @@ extern const long MODEL(exchanges);
 const long MODEL(exchanges) = MODEL(exchange_count);
 
 enum { MOST_ITERATIONS = 14, MOST_HALVINGS = 40, MOST_SHARES = 60 };
-/* A step may be halved so often in all: a run that creeps towards an edge ends, and can be stopped. */
+/* A step may be halved so often in all: a run that creeps towards an edge ends, as it has to. */
 enum { MOST_PARTS = 1 << 16 };
-/* An interval whose error is below this share of the tolerance tells the next to take fewer steps. */
-#define MUCH_TOO_FINE 0.05
 /* What Newton's method may leave, in 1e-9 of a step: 1e-15 of it, where balances have to close. */
 #define EXACT 1e-6
 /* No state moves by less than 1e9 times this. */
 #define LEAST_SIZE 1e-200
-/* The error of one step is, to second order, this many times the one of its four quarters, and once. */
-#define FINEST 15.0
+/*
+ * What rounding leaves of a state's change, in parts of its largest magnitude, by iteration.  Newton's
+ * method ends in two or three; where it does not, the noise of what a state follows from is larger
+ * than its own.
+ */
+static double MODEL(noise)(int iteration)
+{
+    const double parts[] = {1e-15, 1e-15, 1e-14, 1e-13, 1e-12};
+    return parts[iteration < 4 ? iteration : 4];
+}
 
 /*
  * A model with its sizes, and room for one step: arrays of n, of change_size and of rows numbers.
@@ -28,7 +34,7 @@ enum { MOST_PARTS = 1 << 16 };
 typedef struct {
     const MODEL(parameters) *p;
     long n, rows, ports, processes, inputs;
-    double *space;
+    double *space, *largest; /* of n: the largest magnitude of each state so far */
     long iterations, halvings;
     long begun;   /* the halvings there were before the step at hand */
     long start;   /* whether the steps taken now are dissipative */
@@ -97,12 +103,14 @@ static int MODEL(root)(MODEL(model) *m, const double *restrict x, double *restri
     double before = 0.0;
     for (int iteration = 0; iteration < MOST_ITERATIONS; ++iteration) {
         double most = 0.0, per = 1.0, all = 0.0, share = 1.0; /* the worst change is most / per */
+        const double noise = MODEL(noise)(iteration);
         ++m->iterations;
         if (!MODEL(change)(m->p, m->start, x, y, u, h, change))
             return 0;
         for (long i = 0; i < m->n; ++i) {
             const double after = y[i] - change[i];
-            const double size = 1e-9 * fabs(after - x[i]) + 1e-15 * fabs(x[i]) + LEAST_SIZE;
+            const double size = 1e-9 * fabs(after - x[i]) + noise * (fabs(x[i]) + m->largest[i])
+                + LEAST_SIZE;
             const double changed = fabs(change[i]);
             const int less = changed * per <= most * size;
             all += changed;
@@ -196,6 +204,7 @@ static int MODEL(step)(MODEL(model) *m, MODEL(path) *path, const double *u, doub
     for (long i = 0; i < m->n; ++i) {
         path->last[i] = y[i] - path->x[i];
         path->x[i] = y[i];
+        m->largest[i] = fabs(y[i]) > m->largest[i] ? fabs(y[i]) : m->largest[i];
     }
     return 1;
 }
@@ -232,211 +241,6 @@ static int MODEL(across)(MODEL(model) *m, MODEL(path) *path, const double *u, do
         if (!MODEL(step)(m, path, u + k * m->inputs, h, 0))
             return 0;
     return 1;
-}
-
-/*
- * A run among others: paths through one mesh, `fine`, `middle` with half its steps, `coarse` with a
- * quarter, and `trial`, as coarse but from the fine one; arrays for results at samples, a row each.
- */
-typedef struct {
-    MODEL(model) model;
-    MODEL(path) fine, middle, coarse, trial;
-    double *kept;      /* of n and of 2 rows: state and ledger of the fine path before an interval */
-    double *tolerance; /* of n: for the error of an interval */
-    double *out_x, *out_fine, *out_sums;
-    long level, done, steps, failed;
-} MODEL(member);
-
-/*
- * Intervals that members go through: of lengths h[k]; u[level - lowest] holds, for levels lowest to
- * highest, the inputs at the middles of all steps of all intervals.  Results after interval k go to
- * row sample[k], if it is not negative.  If inputs jump before interval 0, and starts are asked for,
- * first[level - lowest] holds those of the quarters of its first step.
- */
-typedef struct {
-    long intervals, lowest, highest;
-    const double *h;
-    const double *const *u;
-    const long *sample;
-    const double *const *first;
-} MODEL(block);
-
-/* The inputs of the quarters of an interval's first step, or none. */
-static const double *MODEL(first)(const MODEL(block) *b, long interval, long level)
-{
-    return b->first && interval == 0 ? b->first[level - b->lowest] : NULL;
-}
-
-/* How many steps a level has: 1, 2, 3, 4, 6, 8, 12 ...; from 1 on, level + 2 has twice as many. */
-static long MODEL(steps_at)(long level)
-{
-    return level == 0 ? 1 : (2 + (level + 1) % 2) << ((level - 1) / 2);
-}
-
-/* One step over each interval, on the trial path: tolerance[n] becomes the largest |x[n]| met. */
-void MODEL(survey)(MODEL(member) *members, long count, const MODEL(block) *b);
-void MODEL(survey)(MODEL(member) *members, long count, const MODEL(block) *b)
-{
-    for (MODEL(member) *s = members; s < members + count; ++s) {
-        for (; s->done < b->intervals && !s->failed; ++s->done) {
-            const double *x = s->trial.x, *u = b->u[0] + s->done * s->model.inputs;
-            const double *first = MODEL(first)(b, s->done, b->lowest);
-            s->failed = !MODEL(across)(&s->model, &s->trial, u, b->h[s->done], 1, first);
-            if (s->failed)
-                break;
-            for (long i = 0; i < s->model.n; ++i)
-                s->tolerance[i] = fabs(x[i]) > s->tolerance[i] ? fabs(x[i]) : s->tolerance[i];
-        }
-    }
-}
-
-/* One step over each interval, on the fine path. */
-void MODEL(march)(MODEL(member) *members, long count, const MODEL(block) *b);
-void MODEL(march)(MODEL(member) *members, long count, const MODEL(block) *b)
-{
-    for (MODEL(member) *s = members; s < members + count; ++s) {
-        const MODEL(model) *m = &s->model;
-        for (; s->done < b->intervals; ++s->done, ++s->steps) {
-            const double *u = b->u[0] + s->done * m->inputs;
-            const double *first = MODEL(first)(b, s->done, b->lowest);
-            const long row = b->sample[s->done];
-            if (s->failed || !MODEL(across)(&s->model, &s->fine, u, b->h[s->done], 1, first)) {
-                s->failed = 1;
-                break;
-            }
-            if (row < 0)
-                continue;
-            memcpy(s->out_x + row * m->n, s->fine.x, (size_t)m->n * sizeof(double));
-            memcpy(s->out_sums + row * m->rows, s->fine.sums, (size_t)m->rows * sizeof(double));
-        }
-    }
-}
-
-/* The level with twice the steps of a level. */
-static long MODEL(twice)(long level)
-{
-    return level ? level + 2 : 1;
-}
-
-/* Whether a block has the inputs of the three levels that a member's next interval needs. */
-static int MODEL(levels_there)(const MODEL(member) *s, const MODEL(block) *b)
-{
-    return s->level >= b->lowest && MODEL(twice)(MODEL(twice)(s->level)) <= b->highest;
-}
-
-/* Remember where the fine path is: its state and its ledger. */
-static void MODEL(keep)(const MODEL(member) *s)
-{
-    const size_t n = (size_t)s->model.n, rows = (size_t)s->model.rows;
-    memcpy(s->kept, s->fine.x, n * sizeof(double));
-    memcpy(s->kept + n, s->fine.sums, rows * sizeof(double));
-    memcpy(s->kept + n + rows, s->fine.lost, rows * sizeof(double));
-}
-
-static void MODEL(back)(MODEL(member) *s)
-{
-    const size_t n = (size_t)s->model.n, rows = (size_t)s->model.rows;
-    memcpy(s->fine.x, s->kept, n * sizeof(double));
-    memcpy(s->fine.sums, s->kept + n, rows * sizeof(double));
-    memcpy(s->fine.lost, s->kept + n + rows, rows * sizeof(double));
-    s->fine.h = s->middle.h = s->coarse.h = s->trial.h = 0.0;
-    s->fine.h_prior = s->middle.h_prior = s->coarse.h_prior = s->trial.h_prior = 0.0;
-}
-
-/* A path's steps over the interval at hand, as many as a level has. */
-static int MODEL(along)(MODEL(member) *s, MODEL(path) *path, const MODEL(block) *b, long level)
-{
-    const long steps = MODEL(steps_at)(level);
-    const double *u = b->u[level - b->lowest] + s->model.inputs * steps * s->done;
-    const double h = b->h[s->done] / (double)steps;
-    s->steps += steps;
-    return MODEL(across)(&s->model, path, u, h, steps, MODEL(first)(b, s->done, level));
-}
-
-/*
- * One interval: as many steps as its level says, and twice and four times as many.  Returns how far
- * steps and quarter steps from the finest state end apart, in FINEST times the tolerance; negative if
- * there is no step.
- */
-static double MODEL(try)(MODEL(member) *s, const MODEL(block) *b)
-{
-    const long level = s->level, half = MODEL(twice)(level), quarter = MODEL(twice)(half);
-    double worst = 0.0;
-    memcpy(s->trial.x, s->fine.x, (size_t)s->model.n * sizeof(double));
-    if (!MODEL(along)(s, &s->trial, b, level) || !MODEL(along)(s, &s->fine, b, quarter))
-        return -1.0;
-    for (long i = 0; i < s->model.n; ++i) {
-        const double ratio = fabs(s->fine.x[i] - s->trial.x[i]) / (FINEST * s->tolerance[i]);
-        worst = worst != worst || ratio <= worst ? worst : ratio;
-    }
-    if (!(worst <= 1.0))
-        return worst;
-    if (!MODEL(along)(s, &s->coarse, b, level) || !MODEL(along)(s, &s->middle, b, half))
-        return -1.0;
-    return worst;
-}
-
-/*
- * How much of the extrapolation counts.  Where the error falls with the step, the finer two of the
- * paths lie closer by four: all.  Where they are hardly closer, or not at all, the coarser ones have
- * lost their way, and to draw conclusions from them would do harm: none.
- */
-static double MODEL(trust)(const MODEL(member) *s)
-{
-    const double *fine = s->fine.x, *middle = s->middle.x, *coarse = s->coarse.x;
-    double apart = 0.0, closer = 0.0;
-    for (long i = 0; i < s->model.n; ++i) {
-        apart = fmax(apart, fabs(middle[i] - coarse[i]) / s->tolerance[i]);
-        closer = fmax(closer, fabs(fine[i] - middle[i]) / s->tolerance[i]);
-    }
-    return closer <= 0.75 * apart ? fmin(1.0, 3.0 - 4.0 * closer / fmax(apart, 1e-300)) : 0.0;
-}
-
-/* Writes the state extrapolated from the three paths, the finest one and its ledger. */
-static void MODEL(write)(const MODEL(member) *s, long row)
-{
-    const long n = s->model.n, rows = s->model.rows;
-    double *restrict best = s->out_x + row * n;
-    const double *fine = s->fine.x, *middle = s->middle.x, *coarse = s->coarse.x;
-    const double trust = MODEL(trust)(s);
-    for (long i = 0; i < n; ++i) {
-        const double first = (middle[i] - coarse[i]) / 3.0, then = (fine[i] - middle[i]) / 3.0;
-        best[i] = fine[i] + trust * (then + (fine[i] - middle[i] + then - first) / 15.0);
-    }
-    memcpy(s->out_fine + row * n, fine, (size_t)n * sizeof(double));
-    memcpy(s->out_sums + row * rows, s->fine.sums, (size_t)rows * sizeof(double));
-}
-
-/*
- * Runs a mesh, its halves and its quarters side by side, each with a state of its own.  How finely an
- * interval is divided is chosen on the way, so that steps and quarter steps from the finest state
- * end within FINEST times the tolerance of each other.  A member stops before an interval that needs
- * a level that is not there, and for good where a step has no solution.
- */
-void MODEL(adapt)(MODEL(member) *members, long count, const MODEL(block) *b);
-void MODEL(adapt)(MODEL(member) *members, long count, const MODEL(block) *b)
-{
-    for (MODEL(member) *s = members; s < members + count; ++s) {
-        while (s->done < b->intervals && !s->failed) {
-            if (!MODEL(levels_there)(s, b))
-                break;
-            MODEL(keep)(s);
-            const double worst = MODEL(try)(s, b);
-            if (worst < 0.0) {
-                MODEL(back)(s);
-                s->failed = 1;
-            } else if (!(worst <= 1.0)) {
-                MODEL(back)(s);
-                ++s->level;
-            } else {
-                if (b->sample[s->done] >= 0)
-                    MODEL(write)(s, b->sample[s->done]);
-                if (worst < MUCH_TOO_FINE && s->level > 0)
-                    --s->level;
-                ++s->done;
-            }
-        }
-    }
 }
 
 /* One step at a time, for a caller who decides the inputs: all that a call needs, in one place. */

@@ -11,6 +11,7 @@ import ctypes
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from operator import attrgetter, is_
 from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
@@ -42,7 +43,7 @@ class Structures:
     """C structures of many runs, their addresses, and what their pointers point into."""
 
     addresses: NDArray[np.uintp]
-    kept: tuple[NDArray[Any], ...]
+    kept: tuple[object, ...]
 
 
 @final
@@ -60,6 +61,7 @@ class Layout:
         self._kind = type("Parameters", (ctypes.Structure,), {"_fields_": fields or none})
         self._record = record_of(self._kind)
         self._remembered = lru_cache(maxsize=REMEMBERED)(self._made)
+        self._last: tuple[Sequence[Any], Structures] | None = None
 
     def __call__(self, p: Any) -> Structure:
         """Return the structure of one run."""
@@ -83,10 +85,21 @@ class Layout:
 
     def many(self, parameters: Sequence[Any]) -> Structures:
         """Return the structures of runs whose banks have equal sizes."""
+        if len(parameters) == 1:
+            one = self(parameters[0])
+            return Structures(np.array([ctypes.addressof(one.value)], dtype=np.uintp), (one,))
+        last = self._last  # a group of runs is asked for several times, one after another
+        if last and len(last[0]) == len(parameters) and all(map(is_, last[0], parameters)):
+            return last[1]
+        found = self._together(parameters)
+        self._last = tuple(parameters), found
+        return found
+
+    def _together(self, parameters: Sequence[Any]) -> Structures:
         records = np.zeros(len(parameters), self._record)
         kept: list[NDArray[Any]] = [records]
         for n, record in enumerate(self._module.PARAMETERS):
-            values = [getattr(p, record.name) for p in parameters]
+            values = list(map(attrgetter(record.name), parameters))
             if record.bank:
                 kept.append(_rows(values, lanes(parameters[0], record.bank)))
                 records[f"field_{n}"] = addresses(kept[-1])

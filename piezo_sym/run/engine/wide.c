@@ -1,7 +1,7 @@
 /*
  * Members side by side: each lane of a vector takes steps of one member, and goes on with the next
- * member when that is done.  What stepper.c does for one, with masks: a lane whose step does not
- * converge, or is not accepted, is left to stepper.c, which halves it.
+ * member when that is done.  What stepper.c and paths.c do for one, with masks: a lane whose step
+ * does not converge, or is not accepted, is left to stepper.c, which halves it.
  */
 
 enum { SURVEY, MARCH, ADAPT };
@@ -13,13 +13,12 @@ enum { SURVEY, MARCH, ADAPT };
 enum { FIRST, SECOND };
 enum { SLOTS = 3 };
 
-/* One lane: its member (or none), the path it is on, the steps left of it, and the next one. */
+/* One lane: its member (or none), the path it is on, the steps left of it, the next one's inputs. */
 typedef struct {
     MODEL(member) *s;
     int track, slot;
     long left;
     const double *u;
-    double h;
 } MODEL(lane);
 
 /* Where a path of each lane is: state, last changes, their steps. */
@@ -33,8 +32,10 @@ typedef struct {
     MODEL(lane) lane[WIDTH];
     long n, rows, ports, processes, inputs;
     MODEL(wide_path) path[SLOTS];
+    mask on[SLOTS], books; /* which lanes are on a path, and which book what their steps do */
+    real h, enough;        /* the steps, and what Newton's method may leave of them */
     real *sums, *lost, *kept[SLOTS], *kept_sums, *kept_lost;
-    real *from, *y, *u, *change, *means;
+    real *from, *y, *u, *change, *per, *means, *largest;
     int mode, tracks;
     const MODEL(block) *b;
 } MODEL(wide);
@@ -46,7 +47,7 @@ const long MODEL(width) = WIDTH;
 long MODEL(wide_size)(const MODEL(model) *m);
 long MODEL(wide_size)(const MODEL(model) *m)
 {
-    const long paths = SLOTS * 4 * m->n, step = 2 * m->n + m->inputs + MODEL(newton_size)(m->p);
+    const long paths = SLOTS * 4 * m->n, step = 4 * m->n + m->inputs + MODEL(newton_size)(m->p);
     return MODEL(wide_room)(m->p) + paths + step + 5 * m->rows;
 }
 
@@ -62,7 +63,8 @@ static void MODEL(wide_places)(MODEL(wide) *w, const MODEL(model) *m, real *spac
         path->since = path->before = zero;
     }
     w->from = at, w->y = w->from + n, w->u = w->y + n, w->change = w->u + m->inputs;
-    w->means = w->change + MODEL(newton_size)(m->p);
+    w->per = w->change + MODEL(newton_size)(m->p), w->largest = w->per + n;
+    w->means = w->largest + n;
     w->sums = w->means + rows, w->lost = w->sums + rows;
     w->kept_sums = w->lost + rows, w->kept_lost = w->kept_sums + rows;
 }
@@ -100,12 +102,6 @@ static int MODEL(slots_of)(const MODEL(wide) *w, int k)
     return w->lane[k].track == SECOND ? SLOTS : 1;
 }
 
-/* Whether a lane books what its steps supply, heat and produce. */
-static int MODEL(books)(const MODEL(wide) *w, int k)
-{
-    return w->mode != SURVEY && w->lane[k].track == FIRST;
-}
-
 static void MODEL(put_path)(MODEL(wide) *w, int k, int slot)
 {
     const MODEL(path) *of = MODEL(path_of)(w, k, slot);
@@ -115,7 +111,7 @@ static void MODEL(put_path)(MODEL(wide) *w, int k, int slot)
     MODEL(put)(to->prior, of->prior, w->n, k);
     to->since[k] = of->h;
     to->before[k] = of->h_prior;
-    if (MODEL(books)(w, k)) {
+    if (w->books[k]) {
         MODEL(put)(w->sums, of->sums, w->rows, k);
         MODEL(put)(w->lost, of->lost, w->rows, k);
     }
@@ -130,7 +126,7 @@ static void MODEL(take_path)(const MODEL(wide) *w, int k, int slot)
     MODEL(take)(from->prior, of->prior, w->n, k);
     of->h = from->since[k];
     of->h_prior = from->before[k];
-    if (MODEL(books)(w, k)) {
+    if (w->books[k]) {
         MODEL(take)(w->sums, of->sums, w->rows, k);
         MODEL(take)(w->lost, of->lost, w->rows, k);
     }
@@ -161,18 +157,22 @@ static void MODEL(undo)(MODEL(wide) *w, int k)
     MODEL(copy)(where, w->kept_lost, w->lost, w->rows);
 }
 
-/* Where and how a lane's next path goes: its steps, their length, their inputs. */
-static void MODEL(go)(MODEL(wide) *w, MODEL(lane) *lane, int slot)
+/* Lane k takes the path of a slot next: its steps, their length, their inputs. */
+static void MODEL(go)(MODEL(wide) *w, int k, int slot)
 {
-    const MODEL(member) *s = lane->s;
+    MODEL(lane) *lane = &w->lane[k];
+    MODEL(member) *s = lane->s;
     const long level = w->mode == ADAPT ? s->level : 0, half = MODEL(twice)(level);
     const long seconds[SLOTS] = {level, level, half};
     const int fine = w->mode == ADAPT && lane->track == FIRST;
     const long at = fine ? MODEL(twice)(half) : seconds[slot];
+    w->on[lane->slot][k] = 0;
+    w->on[slot][k] = -1;
     lane->slot = slot;
     lane->left = MODEL(steps_at)(at);
-    lane->h = w->b->h[s->done] / (double)lane->left;
     lane->u = w->b->u[at - w->b->lowest] + w->inputs * lane->left * s->done;
+    w->h[k] = w->b->h[s->done] / (double)lane->left;
+    s->steps += lane->left;
 }
 
 /* Begin the next interval of the member of lane k, the first of its lanes; 0 if there is none. */
@@ -183,13 +183,13 @@ static int MODEL(begin)(MODEL(wide) *w, int k)
         return 0;
     if (w->mode == ADAPT && !MODEL(levels_there)(s, w->b))
         return 0;
-    MODEL(go)(w, &w->lane[k], 0);
+    MODEL(go)(w, k, 0);
     if (w->mode != ADAPT)
         return 1;
     MODEL(keep_wide)(w, k);
     for (long i = 0; i < w->n; ++i)
         w->path[0].x[i][k + 1] = w->path[0].x[i][k];
-    MODEL(go)(w, &w->lane[k + 1], 0);
+    MODEL(go)(w, k + 1, 0);
     return 1;
 }
 
@@ -227,7 +227,7 @@ static int MODEL(next)(MODEL(wide) *w, int k)
     const double worst = w->mode == ADAPT ? MODEL(apart)(w, k) : 0.0;
     if (!(worst <= 1.0)) {
         MODEL(undo)(w, k);
-        ++s->level;
+        s->level = MODEL(raised)(s->level, worst);
         return MODEL(begin)(w, k);
     }
     if (w->mode == SURVEY)
@@ -235,87 +235,108 @@ static int MODEL(next)(MODEL(wide) *w, int k)
             s->tolerance[i] = fmax(s->tolerance[i], fabs(w->path[0].x[i][k]));
     else if (row >= 0)
         MODEL(write_wide)(w, k, row);
-    if (w->mode == ADAPT && worst < MUCH_TOO_FINE && s->level > 0)
-        --s->level;
+    if (w->mode == ADAPT && worst < MUCH_TOO_FINE)
+        s->level = MODEL(coarser)(s->level);
     ++s->done;
     return MODEL(begin)(w, k);
 }
 
-/* The state before each lane's step, and the prediction of that after it. */
-static void MODEL(predictions)(MODEL(wide) *w, const mask *on, real h)
+/* The state before each lane's step, and the prediction of that after it: a parabola's. */
+static void MODEL(predictions)(MODEL(wide) *w)
 {
-    for (int k = 0; k < SLOTS; ++k) {
-        const MODEL(wide_path) *path = &w->path[k];
-        if (!any(on[k]))
-            continue;
-        const real per_h = chosen(path->since > 0.0, 1.0 / path->since, zero);
-        const real per_prior = chosen(path->before > 0.0, 1.0 / path->before, zero);
-        const real slope = h * (h + path->since) / (path->since + path->before);
-        const real bend = chosen(path->before > 0.0, slope, zero);
-        const real by_last = (h + bend) * per_h, by_prior = bend * per_prior;
-        for (long i = 0; i < w->n; ++i) {
-            const real y = path->x[i] + by_last * path->last[i] - by_prior * path->prior[i];
-            w->from[i] = chosen(on[k], path->x[i], w->from[i]);
-            w->y[i] = chosen(on[k], y, w->y[i]);
+    real since = w->path[0].since, before = w->path[0].before;
+    int used[SLOTS] = {1};
+    for (int k = 1; k < SLOTS; ++k) {
+        used[k] = any(w->on[k]);
+        since = chosen(w->on[k], w->path[k].since, since);
+        before = chosen(w->on[k], w->path[k].before, before);
+    }
+    const real slope = chosen(before > 0.0, w->h + since, zero) / (since + before + LEAST_SIZE);
+    const real by_last = chosen(since > 0.0, w->h * (1.0 + slope) / since, zero);
+    const real by_prior = chosen(before > 0.0, w->h * slope / before, zero);
+    for (long i = 0; i < w->n; ++i) {
+        real x = w->path[0].x[i], last = w->path[0].last[i], prior = w->path[0].prior[i];
+        for (int k = 1; k < SLOTS; ++k) {
+            if (!used[k])
+                continue;
+            x = chosen(w->on[k], w->path[k].x[i], x);
+            last = chosen(w->on[k], w->path[k].last[i], last);
+            prior = chosen(w->on[k], w->path[k].prior[i], prior);
         }
+        w->from[i] = x;
+        w->y[i] = x + by_last * last - by_prior * prior;
     }
 }
 
+/*
+ * The changes of an iteration, taken off y in lanes of `going`; returns their sum, each in 1e-9 of
+ * what its state moves in the step.  How much that is, is seen in all iterations but the second,
+ * unless the first one changed more than a tenth of it.
+ */
+static real MODEL(corrected)(MODEL(wide) *w, mask going, int iteration, real before)
+{
+    const int measured = iteration != 1 || any(going & ~(before < 1e8));
+    const double noise = MODEL(noise)(iteration);
+    real sum = zero;
+    for (long i = 0; i < w->n; ++i) {
+        const real x = w->from[i], after = w->y[i] - w->change[i];
+        if (measured)
+            w->per[i] = 1.0 / (1e-9 * size_of(after - x) + noise * (size_of(x) + w->largest[i])
+                                + LEAST_SIZE);
+        sum += size_of(w->change[i]) * w->per[i];
+        w->y[i] = chosen(going, after, w->y[i]);
+    }
+    return sum; /* no number, if one of them is none */
+}
+
 /* Newton's method in all lanes of `going`; returns those in which it converged in the domain. */
-static mask MODEL(roots)(MODEL(wide) *w, mask going, real h, real enough)
+static mask MODEL(roots)(MODEL(wide) *w, mask going)
 {
     mask found = nowhere;
     real before = zero;
     const mask in = MODEL(wide_inside)(w->y, w->u, &w->p);
     for (long i = 0; i < w->n; ++i)
         w->y[i] = chosen(in, w->y[i], w->from[i]);
-    for (int iteration = 0; iteration < MOST_ITERATIONS && any(going); ++iteration) {
-        real most = zero, per = wide(1.0), all = zero; /* the worst change is most / per */
-        const mask solved = MODEL(wide_newton)(w->from, w->y, w->u, h, &w->p, w->change);
-        for (long i = 0; i < w->n; ++i) {
-            const real x = w->from[i], after = w->y[i] - w->change[i];
-            const real change = size_of(w->change[i]);
-            const real size = 1e-9 * size_of(after - x) + 1e-15 * size_of(x) + LEAST_SIZE;
-            const mask less = change * per <= most * size;
-            all += change;
-            most = chosen(less, most, change);
-            per = chosen(less, per, size);
-            w->y[i] = chosen(going, after, w->y[i]);
-        }
-        const real worst = most / per + 0.0 * all; /* no number, if one of them is none */
-        const real rate = worst / before;
-        going &= solved & (worst < 1e300) & MODEL(wide_inside)(w->y, w->u, &w->p);
-        for (int k = 0; k < WIDTH; ++k)
-            if (w->lane[k].s)
-                ++w->lane[k].s->model.iterations;
-        const mask last = going & ((worst <= 1.0) | (worst * rate * rate <= enough));
+    int iteration = 0;
+    for (; iteration < MOST_ITERATIONS && any(going); ++iteration) {
+        const mask solved = MODEL(wide_newton)(w->from, w->y, w->u, w->h, &w->p, w->change);
+        const real left = MODEL(corrected)(w, going, iteration, before), rate = left / before;
+        going &= solved & (left < 1e300) & MODEL(wide_inside)(w->y, w->u, &w->p);
+        const mask last = going & ((left <= 1.0) | (left * rate * rate <= w->enough));
         found |= last;
         going &= ~last;
-        before = worst;
+        before = left;
     }
+    for (int k = 0; k < WIDTH; ++k)
+        if (w->lane[k].s)
+            w->lane[k].s->model.iterations += iteration;
     return found;
 }
 
 /* Whether each lane's step is one of nature's: all finite, and no process takes entropy. */
 static mask MODEL(natural)(MODEL(wide) *w)
 {
-    mask good = everywhere;
-    real total = zero, low = zero;
+    const long produced = w->ports + w->processes, end = produced + w->processes;
+    real all = zero, total = zero, low = zero;
     MODEL(wide_means)(w->from, w->y, w->u, &w->p, w->means);
     for (long k = 0; k < w->rows; ++k)
-        good &= size_of(w->means[k]) < 1e300;
-    for (long k = w->ports + w->processes; k < w->ports + 2 * w->processes; ++k) {
+        all += size_of(w->means[k]);
+    for (long k = produced; k < end; ++k) {
         total += size_of(w->means[k]);
         low = chosen(w->means[k] < low, w->means[k], low);
     }
-    return good & (low >= -1e-14 * total);
+    return (all < 1e300) & (low >= -1e-14 * total);
 }
 
 /* Take the steps of the lanes in `good`: states, changes, and the ledger of those that book. */
-static void MODEL(commit)(MODEL(wide) *w, const mask *on, mask good, mask booked, real h)
+static void MODEL(commit)(MODEL(wide) *w, mask good)
 {
+    for (long i = 0; i < w->n; ++i) {
+        const real size = size_of(w->y[i]);
+        w->largest[i] = chosen(good & (size > w->largest[i]), size, w->largest[i]);
+    }
     for (int k = 0; k < SLOTS; ++k) {
-        const mask here = good & on[k];
+        const mask here = good & w->on[k];
         MODEL(wide_path) *path = &w->path[k];
         if (!any(here))
             continue;
@@ -325,10 +346,11 @@ static void MODEL(commit)(MODEL(wide) *w, const mask *on, mask good, mask booked
             path->x[i] = chosen(here, w->y[i], path->x[i]);
         }
         path->before = chosen(here, path->since, path->before);
-        path->since = chosen(here, h, path->since);
+        path->since = chosen(here, w->h, path->since);
     }
+    const mask booked = good & w->books;
     for (long k = 0; any(booked) && k < w->rows; ++k) {
-        const real part = h * w->means[k] - w->lost[k], total = w->sums[k] + part;
+        const real part = w->h * w->means[k] - w->lost[k], total = w->sums[k] + part;
         w->lost[k] = chosen(booked, (total - w->sums[k]) - part, w->lost[k]);
         w->sums[k] = chosen(booked, total, w->sums[k]);
     }
@@ -339,30 +361,48 @@ static int MODEL(alone)(MODEL(wide) *w, int k)
 {
     MODEL(lane) *lane = &w->lane[k];
     MODEL(take_path)(w, k, lane->slot);
-    if (!MODEL(step)(&lane->s->model, MODEL(path_of)(w, k, lane->slot), lane->u, lane->h, 0))
+    if (!MODEL(step)(&lane->s->model, MODEL(path_of)(w, k, lane->slot), lane->u, w->h[k], 0))
         return 0;
     MODEL(put_path)(w, k, lane->slot);
     return 1;
 }
 
-/* A member's lanes leave it, which keeps all, and go on with the next that has something to do. */
-static void MODEL(refill)(MODEL(wide) *w, int k, MODEL(member) **next, const MODEL(member) *end)
+/* The lanes of a member leave it, which keeps what they have done. */
+static void MODEL(leave)(MODEL(wide) *w, int k)
 {
-    for (int lane = k; w->lane[k].s && lane < k + w->tracks; ++lane)
+    for (int lane = k; lane < k + w->tracks; ++lane) {
         for (int slot = 0; slot < MODEL(slots_of)(w, lane); ++slot)
             MODEL(take_path)(w, lane, slot);
-    for (w->lane[k].s = 0; !w->lane[k].s && *next < end;) {
-        MODEL(member) *s = (*next)++;
-        for (int lane = k; lane < k + w->tracks; ++lane) {
-            w->lane[lane].s = s;
-            MODEL(wide_load)(&w->p, s->model.p, lane);
-            for (int slot = 0; slot < MODEL(slots_of)(w, lane); ++slot)
-                MODEL(put_path)(w, lane, slot);
-        }
-        if (!MODEL(begin)(w, k))
-            w->lane[k].s = 0;
+        if (lane == k)
+            MODEL(take)(w->largest, w->lane[k].s->model.largest, w->n, k);
+        w->on[w->lane[lane].slot][lane] = 0;
+        w->books[lane] = 0;
+        w->lane[lane].s = 0;
     }
-    w->lane[k + w->tracks - 1].s = w->lane[k].s;
+}
+
+/* Lanes take a member, and begin; 0 if it has nothing to do. */
+static int MODEL(enter)(MODEL(wide) *w, int k, MODEL(member) *s)
+{
+    for (int lane = k; lane < k + w->tracks; ++lane) {
+        const int books = w->mode != SURVEY && w->lane[lane].track == FIRST;
+        w->lane[lane].s = s;
+        w->books[lane] = -books;
+        w->enough[lane] = books ? EXACT : s->model.slack;
+        MODEL(wide_load)(&w->p, s->model.p, lane);
+        MODEL(put)(w->largest, s->model.largest, w->n, lane);
+        for (int slot = 0; slot < MODEL(slots_of)(w, lane); ++slot)
+            MODEL(put_path)(w, lane, slot);
+    }
+    return MODEL(begin)(w, k);
+}
+
+/* The lanes that have no member take the next that has something to do. */
+static void MODEL(refill)(MODEL(wide) *w, int k, MODEL(member) **next, const MODEL(member) *end)
+{
+    while (!w->lane[k].s && *next < end)
+        if (!MODEL(enter)(w, k, (*next)++))
+            MODEL(leave)(w, k);
 }
 
 /* A lane has made its step, or makes it alone; 0 if there is none. */
@@ -370,7 +410,6 @@ static int MODEL(moved)(MODEL(wide) *w, int k, mask good)
 {
     MODEL(lane) *lane = &w->lane[k];
     const int found = good[k] || MODEL(alone)(w, k);
-    ++lane->s->steps;
     lane->u += w->inputs;
     --lane->left;
     return found;
@@ -389,17 +428,18 @@ static int MODEL(all_moved)(MODEL(wide) *w, int k, mask good)
     if (w->lane[k].left == 0)
         return MODEL(next)(w, k);
     if (w->lane[last].left == 0)
-        MODEL(go)(w, &w->lane[last], w->lane[last].slot + 1);
+        MODEL(go)(w, last, w->lane[last].slot + 1);
     return 1;
 }
 
-/* As survey, march or adapt of stepper.c, with lanes of vectors; `space` has wide_size vectors. */
+/* As survey, march or adapt of paths.c, with lanes of vectors; `space` has wide_size vectors. */
 void MODEL(run_wide)(MODEL(member) *members, long count, const MODEL(block) *b, int mode, real *space);
 void MODEL(run_wide)(MODEL(member) *members, long count, const MODEL(block) *b, int mode, real *space)
 {
     MODEL(wide) w = {.mode = mode, .tracks = mode == ADAPT ? 2 : 1, .b = b};
     MODEL(member) *next = members;
     MODEL(wide_places)(&w, &members->model, space);
+    w.h = wide(1.0), w.enough = wide(EXACT);
     for (int k = 0; k < WIDTH; ++k) {
         w.lane[k].track = k % w.tracks == 0 ? FIRST : SECOND;
         MODEL(wide_load)(&w.p, members->model.p, k); /* so that idle lanes compute with numbers */
@@ -407,29 +447,20 @@ void MODEL(run_wide)(MODEL(member) *members, long count, const MODEL(block) *b, 
     for (int k = 0; k < WIDTH; k += w.tracks)
         MODEL(refill)(&w, k, &next, members + count);
     for (;;) {
-        mask on[SLOTS] = {nowhere, nowhere, nowhere}, books = nowhere, going;
-        real h = wide(1.0), enough = wide(EXACT);
-        for (int k = 0; k < WIDTH; ++k) {
-            if (!w.lane[k].s)
-                continue;
-            on[w.lane[k].slot][k] = -1;
-            if (MODEL(books)(&w, k))
-                books[k] = -1;
-            else
-                enough[k] = w.lane[k].s->model.slack;
-            h[k] = w.lane[k].h;
-            for (long i = 0; i < w.inputs; ++i)
-                w.u[i][k] = w.lane[k].u[i];
-        }
-        going = on[0] | on[1] | on[2];
+        const mask going = w.on[0] | w.on[1] | w.on[2];
         if (!any(going))
             return;
-        MODEL(predictions)(&w, on, h);
-        mask good = MODEL(roots)(&w, going, h, enough);
-        good &= MODEL(natural)(&w);
-        MODEL(commit)(&w, on, good, good & books, h);
-        for (int k = 0; k < WIDTH; k += w.tracks)
-            if (w.lane[k].s && !MODEL(all_moved)(&w, k, good))
-                MODEL(refill)(&w, k, &next, members + count);
+        for (int k = 0; k < WIDTH; ++k)
+            for (long i = 0; w.lane[k].s && i < w.inputs; ++i)
+                w.u[i][k] = w.lane[k].u[i];
+        MODEL(predictions)(&w);
+        const mask found = MODEL(roots)(&w, going), good = found & MODEL(natural)(&w);
+        MODEL(commit)(&w, good);
+        for (int k = 0; k < WIDTH; k += w.tracks) {
+            if (!w.lane[k].s || MODEL(all_moved)(&w, k, good))
+                continue;
+            MODEL(leave)(&w, k);
+            MODEL(refill)(&w, k, &next, members + count);
+        }
     }
 }

@@ -61,21 +61,15 @@ static inline real power_of_two(real k)
     return (real)(exponent << 52);
 }
 
-/* exp(r) - 1 for |r| <= log(2)/2, by its series. */
+/* exp(r) - 1 for |r| <= log(2)/2, by its series; in pairs of terms, so that few wait for others. */
 static inline real small_expm1(real r)
 {
-    real sum = wide(1.0 / 6227020800.0);
-    sum = sum * r + 1.0 / 479001600.0;
-    sum = sum * r + 1.0 / 39916800.0;
-    sum = sum * r + 1.0 / 3628800.0;
-    sum = sum * r + 1.0 / 362880.0;
-    sum = sum * r + 1.0 / 40320.0;
-    sum = sum * r + 1.0 / 5040.0;
-    sum = sum * r + 1.0 / 720.0;
-    sum = sum * r + 1.0 / 120.0;
-    sum = sum * r + 1.0 / 24.0;
-    sum = sum * r + 1.0 / 6.0;
-    return r + r * r * (0.5 + r * sum);
+    const real r2 = r * r, r4 = r2 * r2, r8 = r4 * r4;
+    const real from_3 = (1.0 / 6.0 + r * (1.0 / 24.0)) + r2 * (1.0 / 120.0 + r * (1.0 / 720.0));
+    const real from_7 = (1.0 / 5040.0 + r * (1.0 / 40320.0))
+        + r2 * (1.0 / 362880.0 + r * (1.0 / 3628800.0));
+    const real from_11 = (1.0 / 39916800.0 + r * (1.0 / 479001600.0)) + r2 * (1.0 / 6227020800.0);
+    return r + r2 * (0.5 + r * (from_3 + r4 * from_7 + r8 * from_11));
 }
 
 /* exp(d) = 2^k (1 + e); returns e, and 2^k in scale; d from -708 to 709. */
