@@ -17,6 +17,7 @@ from piezo_sym.modules import load_module
 from piezo_sym.run.engine import Engine, EngineWarning, compiled, compiler
 from piezo_sym.run.engine import library as libraries
 from piezo_sym.run.engine.compiler import compilers
+from piezo_sym.run.engine.members import Members
 from piezo_sym.run.engine.processor import processor
 
 ROOT = Path(__file__).parents[2]
@@ -89,6 +90,23 @@ def test_what_is_compiled_is_used_again(module, tmp_path, cache, monkeypatch):
     shutil.copytree(FILES, tmp_path / "other")
     assert compiled(load_module(tmp_path / "other" / "piezo_stack.py")) is not None
     assert [path.stat().st_mtime_ns for path in found(cache)] == [before]
+
+
+def test_a_source_that_changes_is_compiled_again(module):
+    file = Path(module.__file__).with_suffix(".c")
+    before = rates(compiled(module), module)
+    file.write_text(file.read_text().replace("out[0] = ", "out[0] = 2.0*"))
+    assert rates(compiled(module), module)[0] == 2 * before[0]
+
+
+def test_runs_have_the_parameters_that_they_are_given(module):
+    """Those of a group are remembered: another group of as many is another."""
+    engine, state = compiled(module), STATE[None, None]
+    for masses in ([3.5e-3, 7e-3], [1e-3, 2e-3], [1e-3, 4e-3]):
+        parameters = [module.Parameters(M=mass) for mass in masses]
+        found = Members(engine, parameters)("rhs", np.repeat(state, 2, 0), 6, INPUTS[None])
+        for row, p in zip(found[:, 0], parameters, strict=True):
+            assert np.array_equal(row, module.rhs(STATE, INPUTS, p))
 
 
 @pytest.mark.parametrize("what", ["source", "flags", "version", "processor"])

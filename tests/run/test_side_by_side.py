@@ -8,7 +8,7 @@ import pytest
 from piezo_sym import load, sine
 from piezo_sym.modules import module_of
 from piezo_sym.run.discrete import adaptive, fixed
-from piezo_sym.run.engine import march
+from piezo_sym.run.engine import march, records
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.engine.vector import CALLS, OPENING, wide_source
 from piezo_sym.run.inputs import read_inputs
@@ -51,6 +51,28 @@ class Members:
 def close(one, other):
     scale = np.nanmax(np.abs(one), axis=(0, 1), keepdims=True)
     return np.allclose(one / (scale + 1e-300), other / (scale + 1e-300), rtol=0, atol=1e-9)
+
+
+#: Networks without inputs, banks or exchanges; with friction; with two banks.
+WATCHED = ("a1_two_bodies", "a2_oscillator", "a10_maxwell_slip", "two_banks_heat_one_body")
+
+
+@pytest.mark.parametrize(
+    "path", [path for path in SPECS if path.stem in WATCHED], ids=lambda p: p.stem
+)
+@pytest.mark.parametrize("how", [{"rtol": 1e-6}, {"step": 1e-5}], ids=["rtol", "step"])
+@pytest.mark.parametrize(("size", "most_states"), [(1, 10**6), (3, 0), (11, 10**6)])
+def test_no_run_leaves_its_arrays(monkeypatch, path, how, size, most_states):
+    """What lies between two arrays of a member is no number: nobody writes there, or reads."""
+    members = Members(load(path), size)
+    usual = members.run(monkeypatch, most_states, **how).batch
+    monkeypatch.setattr(records, "GAP", 3)
+    apart = members.run(monkeypatch, most_states, **how).batch
+    for name in ("states", "fine", "sums", "x", "ledgers"):
+        assert np.array_equal(getattr(usual, name), getattr(apart, name), equal_nan=True), name
+    gaps = apart.x.base.size - usual.x.base.size
+    assert gaps > 3 * size
+    assert np.isnan(apart.x.base).sum() == np.isnan(usual.x.base).sum() + gaps
 
 
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)

@@ -42,7 +42,7 @@ def test_a_killed_worker_loses_nothing(tmp_path):
             progress=at_a_third,
         )
         assert len(killed) == 1
-        assert len(after) > 3
+        assert len(after) > 1  # boxes that end together are told at once
     expected = sweep("piezo_stack", **BASE)
     assert (found.error == "").all()
     xarray.testing.assert_equal(found[["q", "phi"]], expected[["q", "phi"]] * height)

@@ -16,6 +16,12 @@ BASE = {"over": OVER, "duration": 1e-3, "times": 3, "threads": 1}
 BOXES = 4  # 140 runs that go together are cut in two, for each of two inputs
 
 
+@pytest.fixture(autouse=True)
+def small_boxes(monkeypatch):
+    """Cut sweeps into boxes of no more runs than it takes to make four here."""
+    monkeypatch.setattr("piezo_sym.sweeps.read.MOST_TOGETHER", 128)
+
+
 def assert_same(found, wanted):
     """Check that sweeps agree: cut into other boxes, their last bits may differ."""
     xarray.testing.assert_allclose(found, wanted, rtol=1e-9, atol=1e-11)
