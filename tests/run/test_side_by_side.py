@@ -5,8 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from piezo_sym import load, sine
+from piezo_sym import load, sine, sweep
 from piezo_sym.modules import module_of
+from piezo_sym.run import discrete
 from piezo_sym.run.discrete import adaptive, fixed
 from piezo_sym.run.engine import march, records
 from piezo_sym.run.engine.engine import engine_of
@@ -140,3 +141,50 @@ def test_long_numbers_in_a_law_are_read_at_once():
 def test_a_source_without_a_step_is_refused():
     with pytest.raises(ValueError, match="no step"):
         wide_source("piezo_stack", "", "int main(void) { return 0; }")
+
+
+@pytest.mark.parametrize("most_states", [0, 10**6], ids=["one by one", "side by side"])
+@pytest.mark.parametrize(
+    ("name", "duration", "how"),
+    [
+        ("two_banks_heat_one_body", 5000.0, {"rtol": 1e-6}),
+        ("a1_two_bodies", 1000.0, {"rtol": 1e-3}),
+        ("two_banks_heat_one_body", 500.0, {"step": 0.1}),
+    ],
+)
+def test_states_at_rest_are_not_halved_for_their_noise(
+    monkeypatch, most_states, name, duration, how
+):
+    path = next(path for path in SPECS if path.stem == name)
+    members = Members(load(path), 3, duration).run(monkeypatch, most_states, **how).batch.members
+    assert [member.model.halvings for member in members] == [0, 0, 0]
+    assert all(member.model.iterations < 4 * member.steps for member in members)
+
+
+def test_a_step_of_a_module_at_rest_is_one_iteration(monkeypatch):
+    members = Members(load("piezo_stack"), 9, 1e6).run(monkeypatch, 10**6, step=1e3).batch.members
+    assert all(member.model.iterations == member.steps for member in members)
+
+
+@pytest.mark.parametrize("above", [1e-3, 1e-6, 1e-9])
+def test_balances_close_where_newton_overshoots(above):
+    inputs = {"V_in": sine(100, 100), "T_e": 296.15 + above}
+    over = {"L": np.linspace(9e-4, 1.1e-3, 9)}
+    found = sweep("piezo_stack", over=over, inputs=inputs, duration=0.02, times=5, step=1e-3)
+    assert np.abs(found.entropy_residual).max() <= 1e-16
+    assert np.abs(found.energy_residual).max() <= 4 * np.spacing(found.energy.max().item())
+
+
+def test_a_member_that_asks_for_steps_without_end_leaves_the_others_alone(monkeypatch):
+    """An inductance of 1 nH follows in 0.2 ns: more steps an interval than are allowed here."""
+    monkeypatch.setattr(discrete, "MOST_LEVEL", 20)
+    members = Members(load("piezo_stack"), 3, 1e-2, {"V_in": sine(100, 100)})
+    alone = members.run(monkeypatch, 10**6, rtol=1e-6)
+    stiff = read_parameters(members.module, {"L": 1e-9})
+    members.systems[1] = System(members.module, stiff, members.inputs)
+    found = members.run(monkeypatch, 10**6, rtol=1e-6)
+    assert alone.errors == (None, None, None)
+    assert "the tolerance is out of reach" in str(found.errors[1])
+    for k in (0, 2):
+        assert found.errors[k] is None
+        assert close(found.batch.states[k : k + 1], alone.batch.states[k : k + 1])
