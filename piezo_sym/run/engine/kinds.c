@@ -1,6 +1,6 @@
 /*
- * The two kinds of step that a model has: the ordinary one, and a dissipative one for starts after a
- * jump of the inputs.  STARTS is 1 if the model has the second, else 0: then `start` is never set.
+ * The two kinds of step that a model has: the ordinary one, and a dissipative one for starts after
+ * a jump of the inputs.  STARTS is 1 if the model has the second, else 0: then `start` is never set.
  */
 
 extern const long MODEL(starts);

@@ -1,11 +1,11 @@
 /*
- * Runs through intervals: a survey, a march of equal steps, or, with a tolerance, four paths side by
- * side.  Behind stepper.c, whose steps they take; wide.c does the same with lanes of vectors.
+ * Runs through intervals: a survey, a march of equal steps, or, with a tolerance, four paths side
+ * by side.  Behind stepper.c, whose steps they take; wide.c does the same with lanes of vectors.
  */
 
-/* The error of a step is, to second order, this many times the one of its quarters, and once more. */
+/* The error of a step, to second order, is that of its quarters, and this many times more. */
 #define FINEST 15.0
-/* An interval whose error is below this share of the tolerance lets the next take half the steps. */
+/* An interval whose error is below this share of the tolerance: the next takes half the steps. */
 #define MUCH_TOO_FINE 0.05
 
 /*
@@ -15,7 +15,7 @@
 typedef struct {
     MODEL(model) model;
     MODEL(path) fine, middle, coarse, trial;
-    double *kept;      /* of n and of 2 rows: state and ledger of the fine path before an interval */
+    double *kept;      /* of n and of 2 rows: state and ledger of `fine` before an interval */
     double *tolerance; /* of n: for the error of an interval */
     double *out_x, *out_fine, *out_sums;
     long level, done, steps, failed;
@@ -150,8 +150,8 @@ static int MODEL(along)(MODEL(member) *s, MODEL(path) *path, const MODEL(block) 
 
 /*
  * One interval: as many steps as its level says, and twice and four times as many.  Returns how far
- * steps and quarter steps from the finest state end apart, in FINEST times the tolerance; negative if
- * there is no step.
+ * steps and quarter steps from the finest state end apart, in FINEST times the tolerance; negative
+ * if there is no step.
  */
 static double MODEL(try)(MODEL(member) *s, const MODEL(block) *b)
 {
@@ -188,10 +188,10 @@ static double MODEL(trust)(const MODEL(member) *s)
 }
 
 /*
- * What the three paths tell of one state's error: a third of the finer two's distance, `then`, mends
- * order two.  Where the error is even in the step, that of the coarser two, `first`, is four times as
- * large, and what is missing mends order four as well.  Steps that meet kinks or fast modes leave
- * errors that are not: there the missing part tells nothing.
+ * What the three paths tell of one state's error: a third of the finer two's distance, `then`,
+ * mends order two.  Where the error is even in the step, that of the coarser two, `first`, is four
+ * times as large, and what is missing mends order four as well.  Steps that meet kinks or fast modes
+ * leave errors that are not: there the missing part tells nothing.
  */
 static double MODEL(mended)(double first, double then)
 {
@@ -216,10 +216,10 @@ static void MODEL(write)(const MODEL(member) *s, long row)
 }
 
 /*
- * Runs a mesh, its halves and its quarters side by side, each with a state of its own.  How finely an
- * interval is divided is chosen on the way, so that steps and quarter steps from the finest state
- * end within FINEST times the tolerance of each other.  A member stops before an interval that needs
- * a level that is not there, and for good where a step has no solution.
+ * Runs a mesh, its halves and its quarters side by side, each with a state of its own.  How finely
+ * an interval is divided is chosen on the way, so that steps and quarter steps from the finest
+ * state end within FINEST times the tolerance of each other.  A member stops before an interval that
+ * needs a level that is not there, and for good where a step has no solution.
  */
 void MODEL(adapt)(MODEL(member) *members, long count, const MODEL(block) *b);
 void MODEL(adapt)(MODEL(member) *members, long count, const MODEL(block) *b)

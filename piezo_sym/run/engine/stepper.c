@@ -17,9 +17,9 @@ enum { MOST_PARTS = 1 << 16 };
 /* No state moves by less than 1e9 times this. */
 #define LEAST_SIZE 1e-200
 /*
- * What rounding leaves of a state's change, in parts of its largest magnitude, by iteration.  Newton's
- * method ends in two or three; where it does not, the noise of what a state follows from is larger
- * than its own.
+ * What rounding leaves of a state's change, in parts of its largest magnitude, by
+ * iteration.  Newton's method ends in two or three; where it does not, the noise of what a state
+ * follows from is larger than its own.
  */
 static double MODEL(noise)(int iteration)
 {

@@ -6,14 +6,14 @@
 
 enum { SURVEY, MARCH, ADAPT };
 /*
- * Surveys and marches give each member a lane.  A mesh gives it two, a track each, that end an interval
- * together: the first takes the fine path, four steps a step; the other the trial and the coarse
- * path, one each, and the middle one, two.  SLOTS: how many paths a lane may have.
+ * Surveys and marches give each member a lane.  A mesh gives it two, a track each, that end an
+ * interval together: the first takes the fine path, four steps a step; the other the trial and the
+ * coarse path, one each, and the middle one, two.  SLOTS: how many paths a lane may have.
  */
 enum { FIRST, SECOND };
 enum { SLOTS = 3 };
 
-/* One lane: its member (or none), the path it is on, the steps left of it, the next one's inputs. */
+/* A lane: its member (or none), the path it is on, the steps left of it, the next one's inputs. */
 typedef struct {
     MODEL(member) *s;
     int track, slot;
@@ -26,7 +26,7 @@ typedef struct {
     real *x, *last, *prior, since, before;
 } MODEL(wide_path);
 
-/* What all lanes compute with: their paths, ledgers, what is kept of an interval, room for one step. */
+/* What all lanes compute with: paths, ledgers, what is kept of an interval, room for one step. */
 typedef struct {
     MODEL(wide_parameters) p;
     MODEL(lane) lane[WIDTH];
@@ -193,7 +193,7 @@ static int MODEL(begin)(MODEL(wide) *w, int k)
     return 1;
 }
 
-/* How far steps and quarter steps from the finest state are apart, in FINEST times the tolerance. */
+/* How far steps and quarter steps from the finest state are apart, in FINEST tolerances. */
 static double MODEL(apart)(const MODEL(wide) *w, int k)
 {
     const real *x = w->path[0].x;
@@ -433,8 +433,10 @@ static int MODEL(all_moved)(MODEL(wide) *w, int k, mask good)
 }
 
 /* As survey, march or adapt of paths.c, with lanes of vectors; `space` has wide_size vectors. */
-void MODEL(run_wide)(MODEL(member) *members, long count, const MODEL(block) *b, int mode, real *space);
-void MODEL(run_wide)(MODEL(member) *members, long count, const MODEL(block) *b, int mode, real *space)
+void MODEL(run_wide)(MODEL(member) *members, long count, const MODEL(block) *b, int mode,
+                     real *space);
+void MODEL(run_wide)(MODEL(member) *members, long count, const MODEL(block) *b, int mode,
+                     real *space)
 {
     MODEL(wide) w = {.mode = mode, .tracks = mode == ADAPT ? 2 : 1, .b = b};
     MODEL(member) *next = members;
