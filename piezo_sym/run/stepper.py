@@ -8,7 +8,7 @@ each step costs no more than a call of C; the names, the ledger and errors are m
 from __future__ import annotations
 
 import ctypes
-import math
+import struct
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, final
 
@@ -29,10 +29,9 @@ from piezo_sym.run.parameters import read_initial, read_parameters
 from piezo_sym.run.system import System
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.engine import Engine
     from piezo_sym.run.module import GeneratedModule
     from piezo_sym.run.parameters import LaneValue
 
@@ -46,6 +45,8 @@ class Tick(ctypes.Structure):
         ("u", ctypes.c_void_p),
         ("y", ctypes.c_void_p),
         ("h", ctypes.c_double),
+        *((name, ctypes.c_void_p) for name in ("margins", "conditions", "strict")),
+        ("limits", ctypes.c_long),
     ]
 
 
@@ -56,34 +57,19 @@ def numbers_of(array: FloatArray) -> memoryview[Any]:
 
 @final
 class Limits:
-    """The conditions of the domain on inputs alone, looked at where an input that they name moves.
+    """The conditions of the domain on inputs alone, which C looks at before each step."""
 
-    Steps look at those on states themselves.  x (n,) and u (m,) are looked at where they lie.
-    """
-
-    def __init__(self, system: System, engine: Engine, x: FloatArray, u: FloatArray) -> None:
-        conditions, rows = input_conditions(system)
-        self._found = np.zeros(len(system.module.DOMAIN))
-        self._strict = [(n, system.module.DOMAIN[n].strict) for n in conditions]
-        self._rows, self._held = sorted(rows), [math.nan] * len(rows)
-        self._u, self._margins = numbers_of(u), numbers_of(self._found)
-        self._structure = engine.structure(system.parameters)
-        self._call: Any = getattr(engine.library, f"{system.module.NAME}_margins")
-        self._at = (at(x), at(u), ctypes.byref(self._structure.value), at(self._found))
+    def __init__(self, system: System) -> None:
+        conditions, _ = input_conditions(system)
+        domain = system.module.DOMAIN
+        self.conditions = np.array(conditions, dtype="l")
+        self.strict = np.array([domain[n].strict for n in conditions], dtype="l")
+        self.margins = np.zeros(len(domain))
 
     def hold(self) -> bool:
-        """Return whether the inputs lie in the domain; a margin of nan does not."""
-        u = self._u
-        now = [u[row] for row in self._rows]
-        if now == self._held:
-            return True
-        self._call(*self._at)
-        found = self._margins
-        for n, strict in self._strict:
-            if not (found[n] > 0 or (found[n] == 0 and not strict)):
-                return False
-        self._held = now
-        return True
+        """Return whether the last step's inputs lay in the domain; a margin of nan does not."""
+        found = self.margins[self.conditions]
+        return bool(np.all((found > 0) | ((found == 0) & (self.strict == 0))))
 
 
 @final
@@ -143,11 +129,14 @@ class Stepper:
         self._start, self._taken = x, 0
         self._batch = Batch(engine, [values], x[None], 0)
         self._booked = self._batch.ledgers[0].reshape(-1)
-        self._sums, self._before = numbers_of(self._booked), numbers_of(self._booked.copy())
         self._u, self._y = np.zeros(len(self.inputs)), np.zeros(len(self.outputs))
-        self._limits = Limits(system, engine, self._batch.x[0], self._u)
+        self._put, self._buffer = struct.Struct(f"{self._u.size}d").pack_into, numbers_of(self._u)
+        self._copied: Callable[[], FloatArray] = self._y.copy
+        limits = self._limits = Limits(system)
         member = self._batch.members[0]
-        self._all = Tick(member.model, member.fine, at(self._u), at(self._y), self._h)
+        arrays = at(self._u), at(self._y), self._h
+        held = at(limits.margins), at(limits.conditions), at(limits.strict), limits.conditions.size
+        self._all = Tick(member.model, member.fine, *arrays, *held)
         self._tick: Any = getattr(engine.library, f"{module.NAME}_tick")
         self._at = ctypes.byref(self._all)
 
@@ -195,18 +184,14 @@ class Stepper:
             before the step.
         """
         try:
-            if len(u) != len(self.inputs) or isinstance(u, str):
-                raise TypeError
-            self._u[:] = u
-        except (ValueError, TypeError) as error:
+            self._put(self._buffer, 0, *u)
+        except (ValueError, TypeError, OverflowError, struct.error) as error:
             raise self._no_inputs(u) from error
-        self._before[:] = self._sums
-        if not self._limits.hold() or not self._tick(self._at):
-            self._undo()
+        if not self._tick(self._at):
+            self._all.path.h = self._all.path.h_prior = 0.0  # C puts state and ledger back
             raise self._refusal(u)
         self._taken += 1
-        y: FloatArray = self._y.copy()
-        return y
+        return self._copied()
 
     def reset(self, x: Sequence[float] | FloatArray | None = None) -> None:
         """Go back to t = 0, with an empty ledger.
@@ -231,11 +216,6 @@ class Stepper:
         self._booked[:] = 0.0
         self._all.path.h = self._all.path.h_prior = 0.0
         self._taken = 0
-
-    def _undo(self) -> None:
-        """Forget what halves of a step have booked; C itself puts the state back."""
-        self._sums[:] = self._before
-        self._all.path.h = self._all.path.h_prior = 0.0
 
     def _no_inputs(self, u: object) -> UsageError:
         """Return the error of something that is not one number an input."""
