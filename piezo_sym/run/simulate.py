@@ -68,11 +68,12 @@ def simulate(
     largest magnitude of each state (of a bank: of any lane) in a coarse first run. The states given
     are extrapolated from all, which mostly makes them far better than rtol; the ledger is the
     finest run's. With `step` there is one run, and its error falls with the square of the step.
-    What is much faster than the steps, and is set off by a jump, a kink or an initial value, rings
-    from step to step and may escape the tolerance: seen are 1e-4 of the magnitude 1 mK above T_0,
-    2e-3 with friction that sticks (5 tanh(v/1e-3), where rtol = 1e-5), and most of a charge whose
-    time constant is a millionth of the run. Compare with a smaller rtol or step, or with
-    `method="Radau"`; `dissipative_start` damps what a jump sets off.
+    Where a law all but jumps, extrapolation helps little, and the errors of the intervals add up: a
+    mass with 5 N of friction, tanh(v/1e-3), is 2e-3 off with rtol = 1e-5, and 5e-5 with 1e-7. What
+    is much faster than the steps, and is set off by a jump, a kink or an initial value, rings from
+    step to step and may escape the tolerance: seen are 1e-4 of the magnitude 1 mK above T_0, and
+    most of a charge whose time constant is a millionth of the run. Compare with a smaller rtol or
+    step, or with `method="Radau"`; `dissipative_start` damps what a jump sets off.
 
     SciPy's methods hold the error of each step below rtol*|x| + atol. atol is rtol*1e-3 times the
     scale of the state, which is the largest magnitude that the state (for a bank: any of its
