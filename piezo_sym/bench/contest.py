@@ -58,7 +58,8 @@ def per(times: Times, number: int) -> Times:
 def _row(group: str, pair: Pair, times: dict[Contestant, Times], measure: str) -> Row:
     other, ours = pair.other, pair.ours
     ratio: Spread | None = times[other].over(times[ours]) if other else None
-    notes = [c.note for c in (other, ours) if c and c.note]
+    sides = (("its", other), ("our", ours))
+    notes = [f"{whose} {side.note}" for whose, side in sides if side and side.note]
     return Row(
         group=group,
         other=other.name if other else "",

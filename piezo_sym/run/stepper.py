@@ -26,6 +26,7 @@ from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.ledger import Trajectory
 from piezo_sym.run.module import checked, row_names
 from piezo_sym.run.parameters import read_initial, read_parameters
+from piezo_sym.run.signals import Constant
 from piezo_sym.run.system import System
 
 if TYPE_CHECKING:
@@ -120,7 +121,12 @@ class Stepper:
         self._h = positive(step, "Stepper.step")
         engine = engine_of(module)
         values = read_parameters(module, parameters)
-        system = self._system = System(module, values, read_inputs(module, inputs, self._h))
+        known = read_inputs(module, inputs, self._h)
+        for record, signal in zip(module.INPUTS, known.signals, strict=True):
+            if not isinstance(signal, Constant):
+                where, remedy = f"Stepper.inputs.{record.name}", "give the others to step(u)"
+                raise UsageError("this is no number", where, "the input at t = 0", remedy)
+        system = self._system = System(module, values, known)
         x = read_initial(module, values, system.inputs.segments[0].at(0.0), initial)
         check_start(system, x)
         self.states = tuple(row_names(module.STATES, values))

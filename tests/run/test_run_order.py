@@ -3,6 +3,8 @@
 References are SciPy's Radau at 1e-13, and for case P the state that three solvers agree on.
 """
 
+import ctypes
+import re
 from itertools import pairwise
 from pathlib import Path
 
@@ -13,6 +15,10 @@ from piezo_sym import derive, load, simulate, sine
 from piezo_sym.codegen import c_header, c_source, c_step, lower, numpy_module, step_of
 from piezo_sym.modules import load_module, module_of
 from piezo_sym.run import simulate as run
+from piezo_sym.run.discrete import MOST_LEVEL
+from piezo_sym.run.engine.compiler import build, compilers
+from piezo_sym.run.engine.driver import source
+from piezo_sym.run.engine.march import coarser, steps_at, twice
 
 SPECS = Path(__file__).parents[1] / "networks" / "specs"
 CASE_P = {"inputs": {"V_in": sine(100, 100)}, "duration": 0.1}
@@ -121,3 +127,32 @@ def test_the_mean_law_is_what_makes_kinks_cheap(without_means, finer):
     error = error_of_pair(without_means, finer)
     assert rough / 1.5 <= error <= 1.5 * rough
     assert error >= 2 * known
+
+
+#: What C says of levels 0 to MOST_LEVEL, three numbers each.
+ASKED = """
+void asked(long *out)
+{
+    for (long level = 0; level <= %d; ++level, out += 3) {
+        out[0] = ladder_steps_at(level);
+        out[1] = ladder_twice(level);
+        out[2] = ladder_coarser(level);
+    }
+}
+"""
+
+
+def test_both_sides_have_the_same_ladder_of_steps(tmp_path):
+    text, parts = source("paths.c"), ["#define MODEL(name) ladder_##name"]
+    for name in ("steps_at", "twice", "coarser"):
+        parts += re.findall(
+            rf"^static long MODEL\({name}\)\(long level\)$.*?^}}$", text, re.M | re.S
+        )
+    (tmp_path / "ladder.c").write_text("\n".join([*parts, ASKED % MOST_LEVEL]))
+    build(next(compilers()), ("-shared", "-fPIC"), tmp_path / "ladder.c", tmp_path / "ladder.so")
+    found = np.zeros((MOST_LEVEL + 1, 3), dtype="l")
+    ctypes.CDLL(str(tmp_path / "ladder.so")).asked(ctypes.c_void_p(found.ctypes.data))
+    for level, row in enumerate(found.tolist()):
+        assert row == [steps_at(level), twice(level), coarser(level)]
+        assert steps_at(twice(level)) == 2 * steps_at(level)
+        assert steps_at(coarser(level)) <= max(1, steps_at(level) // 2)

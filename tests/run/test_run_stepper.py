@@ -198,3 +198,8 @@ def test_the_examples_of_its_documentation_run_as_they_say(documented):
     examples = doctest.DocTestFinder(recurse=False).find(documented, "Stepper", globs={})
     assert [len(example.examples) > 3 for example in examples] == [True]
     assert doctest.DocTestRunner().run(examples[0]).failed == 0
+
+
+def test_inputs_at_the_start_are_numbers():
+    with pytest.raises(UsageError, match=r"Stepper.inputs.V_in: this is no number.*step\(u\)"):
+        Stepper("piezo_stack", step=H, inputs={"V_in": sine(100, 100)})
