@@ -16,7 +16,7 @@ from piezo_sym.bench.case_p import SWEPT, case_p
 from piezo_sym.bench.ours import states, whole
 from piezo_sym.bench.problem import explicit
 from piezo_sym.errors import RunError
-from piezo_sym.run.discrete import adaptive
+from piezo_sym.run.adaptive import adaptive
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.module import lanes
 from piezo_sym.run.parameters import own_initial, read_parameters

@@ -13,7 +13,8 @@ import numpy as np
 
 from piezo_sym.bench.peers.peer import INSTANT
 from piezo_sym.run import simulate
-from piezo_sym.run.discrete import METHOD, adaptive
+from piezo_sym.run.adaptive import adaptive
+from piezo_sym.run.discrete import METHOD
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.module import GeneratedModule
 

@@ -19,7 +19,8 @@ from piezo_sym.bench.rows import Part
 from piezo_sym.bench.runs import failure, unable
 from piezo_sym.bench.tuning import tuned
 from piezo_sym.errors import EngineError, RunError
-from piezo_sym.run.discrete import METHOD, adaptive
+from piezo_sym.run.adaptive import adaptive
+from piezo_sym.run.discrete import METHOD
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.sweeps.plan import Plan
 from piezo_sym.sweeps.read import Asked, read_plan

@@ -19,7 +19,7 @@ from piezo_sym.spec.text import PRODUCT, SUM, Style, enclose, signed, write_comp
 
 WIDTH = 96
 #: Calls that take one lane at a time: a loop with them is not to be vectorised.
-LIBRARY = re.compile(r"\b(?:exp|expm1|log|sin|cos|tanh|pow)\(")
+LIBRARY = re.compile(r"\b(?:exp|expm1|log|sin|cos|tanh|pow|mean_tanh|mean_tanh_by_new)\(")
 
 
 @final

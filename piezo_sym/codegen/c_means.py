@@ -50,6 +50,30 @@ static double mean_sign_by_new(double a, double b)
 {
     return a * b >= 0.0 ? 0.0 : 2.0 * fabs(a) / ((b - a) * (b - a));
 }""",
+    "mean_tanh": """\
+/*
+ * Mean of tanh(s) for s from a to b.  Its integral is log(cosh(s)), or |s| + log1p(exp(-2|s|)) less
+ * log(2); between close ends it grows by 2 atanh(tanh(middle) tanh(half)).
+ */
+static double mean_tanh(double a, double b)
+{
+    const double half = 0.5 * (b - a), middle = 0.5 * (a + b);
+    if (fabs(half) < 0x1p-27)
+        return tanh(middle);
+    if (fabs(half) <= 2.0 || fabs(middle) <= 2.0)
+        return atanh(tanh(middle) * tanh(half)) / half;
+    const double ends = log1p(exp(-2.0 * fabs(b))) - log1p(exp(-2.0 * fabs(a)));
+    return (fabs(b) - fabs(a) + ends) / (b - a);
+}""",
+    "mean_tanh_by_new": """\
+/* Derivative of mean_tanh by b; by its series where the difference would cancel. */
+static double mean_tanh_by_new(double a, double b)
+{
+    const double half = 0.5 * (b - a), t = tanh(0.5 * (a + b)), slope = 1.0 - t * t;
+    if (fabs(half) < 0x1p-10)
+        return slope * (0.5 - half * (t / 3.0 + half * (1.0 - 3.0 * t * t) / 6.0));
+    return (tanh(b) - mean_tanh(a, b)) / (b - a);
+}""",
 }
 
 

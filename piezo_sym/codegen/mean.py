@@ -8,6 +8,7 @@ gradient: its product with ``new - old`` is U(new) - U(old), to round-off.
     x**n                sum of old**i*new**(n - i)/(n + 1)
     exp(a*x + b)        its old value times phi1(a*(new - old)), phi1(d) = (exp(d) - 1)/d
     max(x, 0)           ramp(old, new): no difference of integrals, so nothing cancels
+    tanh(x)             mean_tanh(old, new): a step may pass its bend as if it were a kink
     else                Gauss quadrature, exact to round-off for smooth laws over a step
 
 `lead` is how far the law's last value is above its mean; it too is found without a difference.
@@ -115,11 +116,11 @@ def mean_excess(
 
 
 def mean_across_kinks(law: Expr, letter: str, old: Expr, new: Expr) -> Expr | None:
-    """Return the mean of a law that is piecewise linear in its letter, or None if it is not.
+    """Return the mean of a law with kinks whose integral is known, or None for other laws.
 
     Parameters
     ----------
-    law : sums of the letter, and of functions with kinks of it, times factors free of it.
+    law : sums of the letter, and of functions with kinks and tanh of it, times factors free of it.
     old, new : the letter's values before and after.
     """
     if letter not in names(law):
@@ -156,7 +157,7 @@ End = Callable[[Expr], Expr]
 
 
 def _mean_of_kink(function: str, args: tuple[Expr, ...], old: End, new: End) -> Expr | None:
-    """Return the mean of a function with kinks, by means of max(x, 0)."""
+    """Return the mean of a function with kinks, most by means of max(x, 0), or of tanh."""
 
     def ramp(arg: Expr) -> Expr:
         return Call("ramp", (old(arg), new(arg)))
@@ -169,6 +170,8 @@ def _mean_of_kink(function: str, args: tuple[Expr, ...], old: End, new: End) -> 
             return add(ramp(z), ramp(neg(z)))
         case "sign":
             return Call("mean_sign", (old(z), new(z)))
+        case "tanh":
+            return Call("mean_tanh", (old(z), new(z)))
         case "max":
             return add(_middle(old(w), new(w)), over)
         case "min":

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from piezo_sym.errors import RunError, UsageError
-from piezo_sym.run.discrete import METHOD, adaptive, fixed
+from piezo_sym.run.adaptive import adaptive
+from piezo_sym.run.discrete import METHOD, fixed
 from piezo_sym.run.guard import NAME, crossing, depth, domain_error
 from piezo_sym.run.integrate import Batch, Tolerance, batches
 from piezo_sym.run.ledger import record

@@ -134,6 +134,11 @@ class Inputs:
         return frozenset({0.0, *(later.start for first, later in pairs if jump(first, later))})
 
     @cached_property
+    def asked(self) -> bool:
+        """Whether a user's function is among them, which takes its time."""
+        return any(isinstance(signal, Function) for signal in self.signals)
+
+    @cached_property
     def max_step(self) -> float:
         """Longest step [s] that resolves every input."""
         return min((signal.max_step(self.duration) for signal in self.signals), default=inf)

@@ -68,12 +68,12 @@ def simulate(
     largest magnitude of each state (of a bank: of any lane) in a coarse first run. The states given
     are extrapolated from all, which mostly makes them far better than rtol; the ledger is the
     finest run's. With `step` there is one run, and its error falls with the square of the step.
-    Where a law all but jumps, extrapolation helps little, and the errors of the intervals add up: a
-    mass with 5 N of friction, tanh(v/1e-3), is 2e-3 off with rtol = 1e-5, and 5e-5 with 1e-7. What
-    is much faster than the steps, and is set off by a jump, a kink or an initial value, rings from
-    step to step and may escape the tolerance: seen are 1e-4 of the magnitude 1 mK above T_0, and
-    most of a charge whose time constant is a millionth of the run. Compare with a smaller rtol or
-    step, or with `method="Radau"`; `dissipative_start` damps what a jump sets off.
+    Steps that end far from what those before let expect tell of a law that all but jumps, and of
+    what is much faster than they are and rings from step to step: intervals are divided, and cut
+    into parts, until the error there is small too. What is left of such events adds up: a mass that
+    slides and sticks, with 5 N of friction, tanh(v/1e-4), is 10 rtol off after twelve reversals. A
+    run that rings throughout takes as many steps as that needs; `dissipative_start` damps what a
+    jump sets off.
 
     SciPy's methods hold the error of each step below rtol*|x| + atol. atol is rtol*1e-3 times the
     scale of the state, which is the largest magnitude that the state (for a bank: any of its
@@ -83,7 +83,7 @@ def simulate(
     Steps end at every jump or corner of an input (samples: while they are at most 1000). With
     rtol, none is longer than an eighth of a period of an input, than the median distance of more
     than 1000 samples, or than 1/500 of the run where an input is a function. A function's own
-    jumps are not known: give a signal, or (t, values).
+    jumps are not known, and have to be searched for: a signal, or (t, values), is faster.
 
     Parameters
     ----------

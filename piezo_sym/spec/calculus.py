@@ -210,7 +210,7 @@ def _slopes(function: str, args: tuple[Expr, ...]) -> tuple[Expr, ...]:
             return (add(Call("phi1", args), neg(Call("phi2", args))),)
         case "phi2":  # (phi1(z) - 1)/z
             return (add(Call("phi2", args), neg(mul(Num(Fraction(2)), Call("phi3", args)))),)
-        case "ramp" | "mean_sign":
+        case "ramp" | "mean_sign" | "mean_tanh":
             return (Call(f"{function}_by_old", args), Call(f"{function}_by_new", args))
     return _slopes_of_two(function, z, args[1])
 

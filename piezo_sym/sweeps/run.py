@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING, Any, TypeAlias, final
 import numpy as np
 
 from piezo_sym.errors import PiezoError, RunError
+from piezo_sym.run.adaptive import adaptive
 from piezo_sym.run.compiled import cause, check_inputs, inputs_move
 from piezo_sym.run.dataset import coordinates
-from piezo_sym.run.discrete import METHOD, Runs, adaptive, fixed
+from piezo_sym.run.discrete import METHOD, Runs, fixed
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.mesh import inputs_at
 from piezo_sym.run.module import lanes

@@ -49,6 +49,15 @@ def mean_sign(a, b):
     return float(np.sign(a)) if a * b > 0 or a == b else (abs(b) - abs(a)) / (b - a)
 
 
+@np.vectorize
+def mean_tanh(a, b):
+    """Return the mean of tanh(s) for s from a to b, by its integral, or nearly so."""
+    if abs(b - a) < 1e-4:
+        return np.tanh((a + b) / 2)
+    ends = [abs(s) + np.log1p(np.exp(-2 * abs(s))) for s in (a, b)]
+    return (ends[1] - ends[0]) / (b - a)
+
+
 CALLS = {
     "exp": np.exp,
     "expm1": np.expm1,
@@ -70,6 +79,8 @@ CALLS = {
     "ramp_by_new": ramp_by_new,
     "mean_sign": mean_sign,
     "mean_sign_by_new": lambda old, new: 0 * (old + new),  # Newton's matrix may be rough
+    "mean_tanh": mean_tanh,
+    "mean_tanh_by_new": lambda old, new: (1 - np.tanh((old + new) / 2) ** 2) / 2,
 }
 
 

@@ -8,7 +8,8 @@ import pytest
 from piezo_sym import load, simulate, sine, step
 from piezo_sym.errors import UsageError
 from piezo_sym.modules import module_of
-from piezo_sym.run.discrete import adaptive, fixed
+from piezo_sym.run.adaptive import adaptive
+from piezo_sym.run.discrete import fixed
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.system import System

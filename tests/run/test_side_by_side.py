@@ -7,8 +7,9 @@ import pytest
 
 from piezo_sym import load, sine, sweep
 from piezo_sym.modules import module_of
-from piezo_sym.run import discrete
-from piezo_sym.run.discrete import adaptive, fixed
+from piezo_sym.run import adaptive as adapting
+from piezo_sym.run.adaptive import adaptive
+from piezo_sym.run.discrete import fixed
 from piezo_sym.run.engine import march, records
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.engine.vector import CALLS, OPENING, wide_source
@@ -176,11 +177,11 @@ def test_balances_close_where_newton_overshoots(above):
 
 
 def test_a_member_that_asks_for_steps_without_end_leaves_the_others_alone(monkeypatch):
-    """An inductance of 1 nH follows in 0.2 ns: more steps an interval than are allowed here."""
-    monkeypatch.setattr(discrete, "MOST_LEVEL", 20)
+    """An inductance of 1 fH follows at once: more cuts of an interval than are allowed here."""
+    monkeypatch.setattr(adapting, "MOST_CUTS", 3)
     members = Members(load("piezo_stack"), 3, 1e-2, {"V_in": sine(100, 100)})
     alone = members.run(monkeypatch, 10**6, rtol=1e-6)
-    stiff = read_parameters(members.module, {"L": 1e-9})
+    stiff = read_parameters(members.module, {"L": 1e-15})
     members.systems[1] = System(members.module, stiff, members.inputs)
     found = members.run(monkeypatch, 10**6, rtol=1e-6)
     assert alone.errors == (None, None, None)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from piezo_sym.modules import module_of
-from piezo_sym.run.discrete import adaptive
+from piezo_sym.run.adaptive import adaptive
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.parameters import read_initial, read_parameters

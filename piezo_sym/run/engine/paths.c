@@ -5,6 +5,8 @@
 
 /* The error of a step, to second order, is that of its quarters, and this many times more. */
 #define FINEST 15.0
+/* A step may end so many tolerances from its prediction, unless shorter ones end much closer. */
+#define STRANGE 5.0
 /* An interval whose error is below this share of the tolerance: the next takes half the steps. */
 #define MUCH_TOO_FINE 0.05
 
@@ -104,7 +106,17 @@ static long MODEL(coarser)(long level)
  */
 static long MODEL(raised)(long level, double worst)
 {
-    return level + (worst < 1.6 ? 1 : worst < 2.3 ? 2 : worst < 3.1 ? 3 : 4);
+    if (worst < 12.0)
+        return level + (worst < 1.6 ? 1 : worst < 2.3 ? 2 : worst < 3.1 ? 3 : 4);
+    return level + (worst < 50.0 ? 6 : 8);
+}
+
+/* The level after one whose error was `worst`: half the steps, up to three times, if that is small. */
+static long MODEL(lowered)(long level, double worst)
+{
+    for (int k = 0; k < 3 && worst < MUCH_TOO_FINE; ++k, worst *= 4.0)
+        level = MODEL(coarser)(level);
+    return level;
 }
 
 static int MODEL(has)(const MODEL(block) *b, long level)
@@ -148,15 +160,38 @@ static int MODEL(along)(MODEL(member) *s, MODEL(path) *path, const MODEL(block) 
     return MODEL(across)(&s->model, path, u, h, steps, MODEL(first)(b, s->done, level));
 }
 
+/* The fine path and the trial one, which begins from its state, are to tell how far they stray. */
+static void MODEL(watch)(MODEL(member) *s)
+{
+    s->fine.tolerance = s->trial.tolerance = s->tolerance;
+    s->fine.surprise = s->trial.surprise = 0.0;
+}
+
 /*
- * One interval: as many steps as its level says, and twice and four times as many.  Returns how far
- * steps and quarter steps from the finest state end apart, in FINEST times the tolerance; negative
- * if there is no step.
+ * What the surprises of steps, `fine`, and of four times as long ones, `coarse`, say of an error, in
+ * parts of what is allowed.  A law that all but jumps within a step leaves an error in proportion
+ * to it.  All paths make the same one where the jump comes soon after an end that they share, and
+ * their distances tell nothing; but none expects it.  The surprise of shorter steps is a quarter
+ * then.  It is a sixteenth at a kink, a 64th where all is smooth: distances tell more there.  Fast
+ * modes that ring surprise all steps alike.
+ */
+static double MODEL(strange)(double fine, double coarse)
+{
+    const double of_a_jump = fmin(1.0, 4.0 * fine / fmax(coarse, 1e-300));
+    return fine * of_a_jump * of_a_jump / STRANGE;
+}
+
+/*
+ * One interval: as many steps as its level says, and twice and four times as many.  Returns its
+ * error in parts of what is allowed: how far steps and quarter steps from the finest state end
+ * apart, in FINEST times the tolerance, or, if that is more, how strange they are.  Negative if
+ * there is no step.
  */
 static double MODEL(try)(MODEL(member) *s, const MODEL(block) *b)
 {
     const long level = s->level, half = MODEL(twice)(level), quarter = MODEL(twice)(half);
     double worst = 0.0;
+    MODEL(watch)(s);
     memcpy(s->trial.x, s->fine.x, (size_t)s->model.n * sizeof(double));
     if (!MODEL(along)(s, &s->trial, b, level) || !MODEL(along)(s, &s->fine, b, quarter))
         return -1.0;
@@ -164,6 +199,8 @@ static double MODEL(try)(MODEL(member) *s, const MODEL(block) *b)
         const double ratio = fabs(s->fine.x[i] - s->trial.x[i]) / (FINEST * s->tolerance[i]);
         worst = worst != worst || ratio <= worst ? worst : ratio;
     }
+    const double strange = MODEL(strange)(s->fine.surprise, s->trial.surprise);
+    worst = strange > worst ? strange : worst; /* which may be no number */
     if (!(worst <= 1.0))
         return worst;
     if (!MODEL(along)(s, &s->coarse, b, level) || !MODEL(along)(s, &s->middle, b, half))
@@ -239,8 +276,7 @@ void MODEL(adapt)(MODEL(member) *members, long count, const MODEL(block) *b)
             } else {
                 if (b->sample[s->done] >= 0)
                     MODEL(write)(s, b->sample[s->done]);
-                if (worst < MUCH_TOO_FINE)
-                    s->level = MODEL(coarser)(s->level);
+                s->level = MODEL(lowered)(s->level, worst);
                 ++s->done;
             }
         }

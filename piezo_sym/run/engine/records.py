@@ -41,12 +41,13 @@ class Model(ctypes.Structure):
 
 
 class Path(ctypes.Structure):
-    """MODEL(path): a state, its last two changes, and its ledger."""
+    """MODEL(path): a state, its last two changes, its ledger, and how far it strays."""
 
     _fields_ = [
         *((name, POINTER) for name in ("x", "last", "prior")),
         *((name, DOUBLE) for name in ("h", "h_prior")),
-        *((name, POINTER) for name in ("sums", "lost")),
+        *((name, POINTER) for name in ("sums", "lost", "tolerance")),
+        ("surprise", DOUBLE),
     ]
 
 

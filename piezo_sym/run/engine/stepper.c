@@ -41,11 +41,16 @@ typedef struct {
     double slack; /* what Newton's method may leave on paths without a ledger, in 1e-9 of a step */
 } MODEL(model);
 
-/* A state on its way: x[n], its last change and the one before, and the ledger (or none). */
+/*
+ * A state on its way: x[n], its last change and the one before, and the ledger (or none).  Where it
+ * has a tolerance[n], `surprise` becomes how far, in these, a step has ended from its prediction.
+ */
 typedef struct {
     double *x, *last, *prior;
     double h, h_prior;
     double *sums, *lost;
+    const double *tolerance;
+    double surprise;
 } MODEL(path);
 
 /* How many numbers `space` of a model has to hold. */
@@ -167,6 +172,19 @@ static void MODEL(predict)(const MODEL(model) *m, const MODEL(path) *path, doubl
         y[i] = path->x[i] + by_last * path->last[i] - by_prior * path->prior[i];
 }
 
+/* Compare the state after a step with what the two steps before have let expect. */
+static void MODEL(compare)(const MODEL(model) *m, MODEL(path) *path, double h, const double *y)
+{
+    double *expected = m->space + 2 * m->n; /* of Newton's changes, which are done with */
+    if (!path->tolerance || !(path->h_prior > 0.0))
+        return;
+    MODEL(predict)(m, path, h, expected);
+    for (long i = 0; i < m->n; ++i) {
+        const double missed = fabs(y[i] - expected[i]) / path->tolerance[i];
+        path->surprise = missed <= path->surprise ? path->surprise : missed;
+    }
+}
+
 /* One step over h, halved where it has to be; 0, and the path as before, if that does not help. */
 static int MODEL(step)(MODEL(model) *m, MODEL(path) *path, const double *u, double h, int depth)
 {
@@ -196,6 +214,7 @@ static int MODEL(step)(MODEL(model) *m, MODEL(path) *path, const double *u, doub
     }
     if (path->sums)
         MODEL(book)(m, path, h);
+    MODEL(compare)(m, path, h, y);
     double *kept = path->prior;
     path->prior = path->last;
     path->last = kept;

@@ -39,6 +39,8 @@ CALLS = {
     "ramp_by_new": ("ramp_by_new_of", 2),
     "mean_sign": ("mean_sign_of", 2),
     "mean_sign_by_new": ("mean_sign_by_new_of", 2),
+    "mean_tanh": ("mean_tanh_of", 2),
+    "mean_tanh_by_new": ("mean_tanh_by_new_of", 2),
 }
 MOST_FACTORS = 8
 #: An assignment on one line, and what in its right side is a number.

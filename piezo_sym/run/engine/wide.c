@@ -36,6 +36,7 @@ typedef struct {
     real h, enough;        /* the steps, and what Newton's method may leave of them */
     real *sums, *lost, *kept[SLOTS], *kept_sums, *kept_lost;
     real *from, *y, *u, *change, *per, *means, *largest;
+    real *expected, *allowed, surprise; /* of the fine paths and the trial ones: see stepper.c */
     int mode, tracks;
     const MODEL(block) *b;
 } MODEL(wide);
@@ -47,7 +48,7 @@ const long MODEL(width) = WIDTH;
 long MODEL(wide_size)(const MODEL(model) *m);
 long MODEL(wide_size)(const MODEL(model) *m)
 {
-    const long paths = SLOTS * 4 * m->n, step = 4 * m->n + m->inputs + MODEL(newton_size)(m->p);
+    const long paths = SLOTS * 4 * m->n, step = 6 * m->n + m->inputs + MODEL(newton_size)(m->p);
     return MODEL(wide_room)(m->p) + paths + step + 5 * m->rows;
 }
 
@@ -64,7 +65,7 @@ static void MODEL(wide_places)(MODEL(wide) *w, const MODEL(model) *m, real *spac
     }
     w->from = at, w->y = w->from + n, w->u = w->y + n, w->change = w->u + m->inputs;
     w->per = w->change + MODEL(newton_size)(m->p), w->largest = w->per + n;
-    w->means = w->largest + n;
+    w->expected = w->largest + n, w->allowed = w->expected + n, w->means = w->allowed + n;
     w->sums = w->means + rows, w->lost = w->sums + rows;
     w->kept_sums = w->lost + rows, w->kept_lost = w->kept_sums + rows;
 }
@@ -111,6 +112,8 @@ static void MODEL(put_path)(MODEL(wide) *w, int k, int slot)
     MODEL(put)(to->prior, of->prior, w->n, k);
     to->since[k] = of->h;
     to->before[k] = of->h_prior;
+    if (slot == 0)
+        w->surprise[k] = of->surprise;
     if (w->books[k]) {
         MODEL(put)(w->sums, of->sums, w->rows, k);
         MODEL(put)(w->lost, of->lost, w->rows, k);
@@ -126,6 +129,8 @@ static void MODEL(take_path)(const MODEL(wide) *w, int k, int slot)
     MODEL(take)(from->prior, of->prior, w->n, k);
     of->h = from->since[k];
     of->h_prior = from->before[k];
+    if (slot == 0)
+        of->surprise = w->surprise[k];
     if (w->books[k]) {
         MODEL(take)(w->sums, of->sums, w->rows, k);
         MODEL(take)(w->lost, of->lost, w->rows, k);
@@ -189,21 +194,23 @@ static int MODEL(begin)(MODEL(wide) *w, int k)
     MODEL(keep_wide)(w, k);
     for (long i = 0; i < w->n; ++i)
         w->path[0].x[i][k + 1] = w->path[0].x[i][k];
+    w->surprise[k] = w->surprise[k + 1] = 0.0;
     MODEL(go)(w, k + 1, 0);
     return 1;
 }
 
-/* How far steps and quarter steps from the finest state are apart, in FINEST tolerances. */
+/* The error of an interval, in parts of what is allowed. */
 static double MODEL(apart)(const MODEL(wide) *w, int k)
 {
     const real *x = w->path[0].x;
     const double *tolerance = w->lane[k].s->tolerance;
+    const double strange = MODEL(strange)(w->surprise[k], w->surprise[k + 1]);
     double worst = 0.0;
     for (long i = 0; i < w->n; ++i) {
         const double ratio = fabs(x[i][k] - x[i][k + 1]) / (FINEST * tolerance[i]);
         worst = worst != worst || ratio <= worst ? worst : ratio;
     }
-    return worst;
+    return strange > worst ? strange : worst;
 }
 
 /* Write what a member has become at a sample. */
@@ -235,8 +242,8 @@ static int MODEL(next)(MODEL(wide) *w, int k)
             s->tolerance[i] = fmax(s->tolerance[i], fabs(w->path[0].x[i][k]));
     else if (row >= 0)
         MODEL(write_wide)(w, k, row);
-    if (w->mode == ADAPT && worst < MUCH_TOO_FINE)
-        s->level = MODEL(coarser)(s->level);
+    if (w->mode == ADAPT)
+        s->level = MODEL(lowered)(s->level, worst);
     ++s->done;
     return MODEL(begin)(w, k);
 }
@@ -264,7 +271,7 @@ static void MODEL(predictions)(MODEL(wide) *w)
             prior = chosen(w->on[k], w->path[k].prior[i], prior);
         }
         w->from[i] = x;
-        w->y[i] = x + by_last * last - by_prior * prior;
+        w->y[i] = w->expected[i] = x + by_last * last - by_prior * prior;
     }
 }
 
@@ -328,6 +335,17 @@ static mask MODEL(natural)(MODEL(wide) *w)
     return (all < 1e300) & (low >= -1e-14 * total);
 }
 
+/* Compare the states after steps of the fine paths and the trial ones with what was expected. */
+static void MODEL(compare_wide)(MODEL(wide) *w, mask good)
+{
+    real worst = w->surprise;
+    for (long i = 0; i < w->n; ++i) {
+        const real missed = size_of(w->y[i] - w->expected[i]) * w->allowed[i];
+        worst = chosen(missed > worst, missed, worst);
+    }
+    w->surprise = chosen(good & w->on[0] & (w->path[0].before > 0.0), worst, w->surprise);
+}
+
 /* Take the steps of the lanes in `good`: states, changes, and the ledger of those that book. */
 static void MODEL(commit)(MODEL(wide) *w, mask good)
 {
@@ -335,6 +353,8 @@ static void MODEL(commit)(MODEL(wide) *w, mask good)
         const real size = size_of(w->y[i]);
         w->largest[i] = chosen(good & (size > w->largest[i]), size, w->largest[i]);
     }
+    if (w->mode == ADAPT)
+        MODEL(compare_wide)(w, good);
     for (int k = 0; k < SLOTS; ++k) {
         const mask here = good & w->on[k];
         MODEL(wide_path) *path = &w->path[k];
@@ -391,9 +411,13 @@ static int MODEL(enter)(MODEL(wide) *w, int k, MODEL(member) *s)
         w->enough[lane] = books ? EXACT : s->model.slack;
         MODEL(wide_load)(&w->p, s->model.p, lane);
         MODEL(put)(w->largest, s->model.largest, w->n, lane);
+        for (long i = 0; w->mode == ADAPT && i < w->n; ++i)
+            w->allowed[i][lane] = 1.0 / s->tolerance[i];
         for (int slot = 0; slot < MODEL(slots_of)(w, lane); ++slot)
             MODEL(put_path)(w, lane, slot);
     }
+    if (w->mode == ADAPT)
+        MODEL(watch)(s);
     return MODEL(begin)(w, k);
 }
 

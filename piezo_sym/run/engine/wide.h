@@ -110,7 +110,14 @@ LANE_BY_LANE(sqrt_of, sqrt)
 LANE_BY_LANE(log_of, log)
 LANE_BY_LANE(sin_of, sin)
 LANE_BY_LANE(cos_of, cos)
-LANE_BY_LANE(tanh_of, tanh)
+LANE_BY_LANE(log1p_of, log1p)
+LANE_BY_LANE(atanh_of, atanh)
+
+static inline real tanh_of(real z)
+{
+    const real e = expm1_of(-2.0 * size_of(z));
+    return with_sign(-e / (e + 2.0), z);
+}
 
 static inline real pow_of(real a, real b)
 {
@@ -197,4 +204,30 @@ static inline real mean_sign_of(real a, real b)
 static inline real mean_sign_by_new_of(real a, real b)
 {
     return chosen(a * b >= 0.0, zero, 2.0 * size_of(a) / ((b - a) * (b - a)));
+}
+
+/* log(cosh(s)) - |s| + log(2) */
+static inline real bend_of(real s)
+{
+    return log1p_of(exp_of(-2.0 * size_of(s)));
+}
+
+/* Mean of tanh(s) for s from a to b, and its derivative by b. */
+static inline real mean_tanh_of(real a, real b)
+{
+    const real half = 0.5 * (b - a), middle = 0.5 * (a + b), t = tanh_of(middle);
+    const mask close = (size_of(half) <= 2.0) | (size_of(middle) <= 2.0);
+    const mask one = size_of(half) < 0x1p-27;
+    const real near = atanh_of(chosen(close, t * tanh_of(half), zero)) / half;
+    if (!any(~close))
+        return chosen(one, t, near);
+    const real far = (size_of(b) - size_of(a) + bend_of(b) - bend_of(a)) / (b - a);
+    return chosen(one, t, chosen(close, near, far));
+}
+
+static inline real mean_tanh_by_new_of(real a, real b)
+{
+    const real half = 0.5 * (b - a), t = tanh_of(0.5 * (a + b)), slope = 1.0 - t * t;
+    const real near = slope * (0.5 - half * (t / 3.0 + half * (1.0 - 3.0 * t * t) / 6.0));
+    return chosen(size_of(half) < 0x1p-10, near, (tanh_of(b) - mean_tanh_of(a, b)) / (b - a));
 }

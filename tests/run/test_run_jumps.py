@@ -1,0 +1,173 @@
+"""What all but jumps, and what is much faster than a run: rtol is kept there too.
+
+References are SciPy's Radau at 1e-10, which shares no step with the engine.
+"""
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from piezo_sym import simulate, sine, step
+from piezo_sym.errors import RunError
+from piezo_sym.modules import module_of
+from piezo_sym.run import adaptive
+from piezo_sym.run.inputs import read_inputs
+from piezo_sym.run.mesh import blocks
+from piezo_sym.run.system import System
+from piezo_sym.spec.load import parse
+
+SPECS = Path(__file__).parents[1] / "networks" / "specs"
+FRICTION = (SPECS / "dry_friction.toml").read_text(encoding="utf-8")
+#: An inductor and two capacitors, the second behind 1 ohm: its charge follows in Rs*Cs.
+CIRCUIT = """
+[model]
+name = "circuit"
+[parameters]
+L = { value = 1e-3, unit = "H" }
+C = { value = 1e-6, unit = "F" }
+R = { value = 5.0, unit = "ohm" }
+Cs = { value = 1e-12, unit = "F" }
+Rs = { value = 1.0, unit = "ohm" }
+T_0 = { value = 300.0, unit = "K" }
+c = { value = 1.0, unit = "J/K" }
+[inputs]
+V = { unit = "V", default = 0.0 }
+[domain]
+assume = ["R >= 0", "Rs > 0"]
+[elements]
+source = { kind = "voltage_source", between = ["in", "gnd"], input = "V" }
+coil = { kind = "inductor", between = ["in", "a"], inductance = "L", state = "phi" }
+wire = { kind = "resistor", between = ["a", "b"], voltage = "R*i", heats = "body" }
+large = { kind = "capacitor", between = ["b", "gnd"], capacitance = "C", state = "Q" }
+lead = { kind = "resistor", between = ["b", "d"], current = "v/Rs", heats = "body" }
+small = { kind = "capacitor", between = ["d", "gnd"], capacitance = "Cs", state = "Qs" }
+body = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }
+"""
+#: A body of 400 K heats a small one, which begins at 350 K.
+BODIES = """
+[model]
+name = "bodies"
+[parameters]
+T_0 = { value = 300.0, unit = "K" }
+c = { value = 2.0, unit = "J/K" }
+c_small = { value = 1e-6, unit = "J/K" }
+between = { value = 0.5, unit = "W/K" }
+lam = { value = 0.1, unit = "W/K" }
+hot = { value = 400.0, unit = "K" }
+warm = { value = 350.0, unit = "K" }
+[inputs]
+T_e = { unit = "K", default = 300.0 }
+[domain]
+assume = ["between >= 0", "lam >= 0", "T_e > 0"]
+[initial]
+S = "c*log(hot/T_0)"
+S_small = "c_small*log(warm/T_0)"
+[elements]
+body = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }
+small = { kind = "thermal_mass", temperature = "T_0*exp(S/c_small)", state = "S_small" }
+joint = { kind = "conduction", between = ["body", "small"], conductance = "between" }
+room = { kind = "ambient", body = "small", conductance = "lam", input = "T_e" }
+"""
+
+
+SLIDES = {
+    "step": {"inputs": {"F": step(0.5, 0, 20)}, "initial": {"q": 0.0}},
+    "sine": {"inputs": {"F": sine(20, 2)}, "initial": {"q": 0.0}},
+    "free": {},
+}
+CHARGE = {"initial": {"Qs": 1e-11}, "inputs": {"V": step(1e-3, 0, 10)}, "duration": 5e-3}
+RTOLS = (1e-3, 1e-5, 1e-7)
+
+
+@cache
+def model_of(text):
+    return parse(text)
+
+
+def error(text, rtol, wanted, **options):
+    """Return the largest error of any state, in rtol of its largest magnitude."""
+    found = simulate(model_of(text), rtol=rtol, times=101, **options)
+    return max(
+        float(np.abs(found[state.name] - wanted[state.name]).max())
+        / float(np.abs(wanted[state.name]).max())
+        / rtol
+        for state in module_of(model_of(text)).STATES
+    )
+
+
+def exact(text, **options):
+    return simulate(model_of(text), method="Radau", rtol=1e-10, times=101, **options)
+
+
+@pytest.mark.parametrize("width", [1e-3, 1e-4])
+@pytest.mark.parametrize("options", SLIDES.values(), ids=SLIDES)
+def test_friction_is_as_good_as_asked_for(options, width):
+    """Each reversal may add a few rtol; before steps told how strange they are, it was 5000."""
+    given = {"duration": 1.5, "parameters": {"w": width}, **options}
+    wanted = exact(FRICTION, **given)
+    for rtol in RTOLS:
+        assert error(FRICTION, rtol, wanted, **given) <= 20
+
+
+def test_a_charge_that_follows_at_once_is_right_from_its_start():
+    wanted = exact(CIRCUIT, **CHARGE)
+    for rtol in RTOLS:
+        assert error(CIRCUIT, rtol, wanted, **CHARGE) <= 20
+
+
+@pytest.mark.parametrize("size", [2e-3, 1e-6, 1e-9])
+def test_a_small_body_follows_at_once(size):
+    options = {"parameters": {"c_small": size}, "duration": 10.0}
+    wanted = exact(BODIES, **options)
+    for rtol in RTOLS:
+        assert error(BODIES, rtol, wanted, **options) <= 20
+
+
+class Asked:
+    """A voltage that jumps without saying when, and counts how often it is asked."""
+
+    def __init__(self):
+        self.times = 0
+
+    def __call__(self, t):
+        self.times += 1
+        return 100.0 if t % 0.0123 < 0.006 else 0.0
+
+
+def test_a_functions_own_jumps_are_found():
+    """The same voltage as samples, whose jumps are known; a jump between samples is 1e-12 s off."""
+    at = [0.006, 0.0123, 0.0183]
+    t = sorted([0.0, 0.02, *at, *(time - 1e-12 for time in at)])
+    samples = (t, [Asked()(time + 1e-13) for time in t])
+    options = {"duration": 0.02, "times": 101, "rtol": 1e-6}
+    function = Asked()
+    found = simulate("piezo_stack", inputs={"V_in": function}, **options)
+    wanted = simulate("piezo_stack", inputs={"V_in": samples}, **options)
+    for name in ("q", "p", "Q_C", "phi", "S"):
+        size = float(np.abs(wanted[name]).max())
+        assert float(np.abs(found[name] - wanted[name]).max()) <= 2e-5 * size
+    assert function.times <= 5 * found.attrs["accepted_steps"]
+
+
+def test_an_interval_in_parts_is_the_same_interval():
+    module = module_of("piezo_stack")
+    inputs = read_inputs(module, {"V_in": sine(100, 100)}, 0.01)
+    system = System(module, module.Parameters(), inputs)
+    (whole,) = blocks(system, np.linspace(0, 0.01, 3), 1e-3, lambda: 100)
+    cut = whole.cut(4, 8)
+    assert len(cut) == len(whole) + 7
+    assert np.allclose(np.cumsum(cut.lengths), cut.starts + cut.lengths, rtol=1e-14)
+    assert cut.lengths.sum() == pytest.approx(0.01, rel=1e-14)
+    assert cut.samples[11] == whole.samples[4] == 1
+    assert np.all(cut.samples[4:11] == -1)
+    assert cut.samples.tolist().count(1) == cut.samples.tolist().count(2) == 1
+    assert cut.whole.tolist() == [0, 1, 2, 3, *[4] * 8, 5, 6, 7, 8, 9]
+
+
+def test_a_run_that_asks_for_cuts_without_end_says_so(monkeypatch):
+    monkeypatch.setattr(adaptive, "MOST_CUTS", 3)
+    with pytest.raises(RunError, match="the tolerance is out of reach") as caught:
+        simulate("piezo_stack", inputs={"V_in": 100.0}, parameters={"L": 1e-12}, duration=1.0)
+    assert "t = 0 s" in str(caught.value)
