@@ -51,7 +51,8 @@ def check_tokens(text: str) -> None:
         match = TOKEN.match(text, position)
         if match is None:
             what = f"has {quote(text[position])} at column {position + 1}"
-            raise RefusedError(what, LANGUAGE)
+            remedy = "write ** for a power" if text[position] == "^" else ""
+            raise RefusedError(what, LANGUAGE, remedy)
         token = match.group()
         depth += (token == "(") - (token == ")")
         prefixes = _prefixes(prefixes, match)

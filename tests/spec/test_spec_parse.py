@@ -105,6 +105,10 @@ def test_refused(text, reason):
     assert reason in refused_law(text)
 
 
+def test_a_power_of_another_language_is_told_how_it_is_written_here():
+    assert "write ** for a power" in refused_law("R*i + R_3*i^3")
+
+
 @pytest.mark.parametrize("text", [text for text in HOSTILE if text.isprintable()])
 def test_refused_inside_a_law(text):
     refused_law(f"d*v + ({text})*2")
