@@ -1,0 +1,157 @@
+"""The edge of the domain: where runs stop, what they say there, and what stays inside."""
+
+from math import log
+
+import numpy as np
+import pytest
+
+import piezo_sym
+from piezo_sym.errors import RunError
+from piezo_sym.modules import module_of
+from piezo_sym.run import ramp, simulate, sine, step
+from piezo_sym.run.compiled import inside
+from piezo_sym.run.inputs import read_inputs
+from piezo_sym.run.ledger import Trajectory
+from piezo_sym.run.system import System
+
+
+@pytest.fixture(scope="module")
+def module():
+    return module_of("piezo_stack")
+
+
+def message(module, **more):
+    with pytest.raises(RunError) as error:
+        simulate(module, **more)
+    text = str(error.value)
+    assert text.isprintable()
+    return text
+
+
+def time_in(text):
+    return float(text.split("t = ")[1].split(" s")[0])
+
+
+WAYS = [{}, {"rtol": 1e-9}, {"step": 1e-3}, {"step": 2e-5}]
+
+
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize(
+    ("T_e", "known"),
+    [
+        (step(0.0021, 298.15, 291.15), 0.0021),
+        (ramp(0.002, 0.006, 298.15, 294.15), 0.004),
+        (lambda t: 298.15 - 2e2 * t, 0.01),
+        (sine(4.0, 10.0, 298.15), 7 / 120),
+    ],
+)
+def test_inputs_that_leave_the_domain(module, way, T_e, known):
+    text = message(module, inputs={"T_e": T_e}, duration=0.1, **way)
+    assert time_in(text) == pytest.approx(known, rel=1e-5)
+    assert "state leaves the domain at t = " in text
+    assert "condition 'T_e > T_0' has margin " in text
+    assert text.endswith("expected T_e > T_0 throughout the run; change input 'T_e'")
+
+
+def test_inputs_that_come_near_the_edge_do_not_stop_a_run(module):
+    run = simulate(module, inputs={"T_e": sine(1.999, 100.0, 298.15)}, duration=0.02)
+    assert 296.15 < run.T_e.min() < 296.16
+
+
+LEAK = """
+[model]
+name = "leak"
+
+[parameters]
+T_0 = { value = 296.15, unit = "K" }
+c = { value = 5.0, unit = "J/K" }
+lam = { value = 2.0, unit = "W/K" }
+T_low = { value = 296.15, unit = "K" }
+
+[inputs]
+T_e = { unit = "K", default = 290.0 }
+
+[domain]
+assume = ["T > T_low", "T_low > 0", "T_e > 0", "lam >= 0"]
+
+[initial]
+S = 0.03
+
+[elements.body]
+kind = "thermal_mass"
+temperature = "T_0*exp(S/c)"
+state = "S"
+
+[elements.ambient]
+kind = "ambient"
+body = "body"
+conductance = "lam"
+input = "T_e"
+"""
+
+
+@pytest.fixture(scope="module")
+def leak(tmp_path_factory):
+    """A body that an ambient cools below what its domain allows."""
+    path = tmp_path_factory.mktemp("leak") / "leak.toml"
+    path.write_text(LEAK)
+    return path
+
+
+@pytest.mark.parametrize("way", [{}, {"rtol": 1e-8}, {"step": 0.5}, {"step": 1e-3}])
+def test_a_state_that_leaves_the_domain_is_said_with_time_and_value(leak, way):
+    """C dT/dt = lam (T_e - T): the time is known in closed form."""
+    with pytest.raises(RunError) as error:
+        piezo_sym.simulate(leak, duration=20.0, **way)
+    text = str(error.value)
+    start = 296.15 * np.exp(0.03 / 5)
+    known = 5 / 2 * log((start - 290) / (296.15 - 290))
+    assert time_in(text) == pytest.approx(known, rel=1e-5)
+    assert "model 'leak': state leaves the domain at t = " in text
+    assert "condition 'T > T_low' has margin " in text
+    assert "(T_body = 296.15 K, T_low = 296.15 K)" in text
+    assert "discrete_gradient cannot go on from t = " in str(error.value.__cause__)
+
+
+def test_a_run_that_ends_before_the_edge_is_not_stopped(leak):
+    start = 296.15 * np.exp(0.03 / 5)
+    known = 5 / 2 * log((start - 290) / (296.15 - 290))
+    run = piezo_sym.simulate(leak, duration=known - 1e-6, rtol=1e-8)
+    assert float(run.T_body[-1]) == pytest.approx(296.15, abs=1e-5)
+    assert np.all(run.T_body > 296.15)
+
+
+def test_a_condition_on_state_and_input_is_looked_at_with_the_state_of_the_time(tmp_path):
+    """T starts 5 K above where T_e ends, and follows it; the start and the end never meet."""
+    limit = 'T_low = { value = 280.0, unit = "K" }\ngap = { value = 3.0, unit = "K" }'
+    text = LEAK.replace('T_low = { value = 296.15, unit = "K" }', limit)
+    path = tmp_path / "gap.toml"
+    path.write_text(
+        text.replace('["T > T_low", ', '["T > T_low", "T - T_e < gap", ').replace("290.0", "297.0")
+    )
+    slide = ramp(10.0, 110.0, 297.0, 292.92)
+    run = piezo_sym.simulate(path, inputs={"T_e": slide}, duration=120.0)
+    assert run.T_body[0] - run.T_e[-1] > 3 > (run.T_body - run.T_e).max()
+    with pytest.raises(RunError, match=r"condition 'T - T_e < gap' has margin .*T_e = 29"):
+        piezo_sym.simulate(path, inputs={"T_e": step(60.0, 297.0, 292.92)}, duration=120.0)
+
+
+def test_samples_lie_in_the_domain_however_near_its_edge(module):
+    """Extrapolation must not carry a state over the edge that both its runs keep away from."""
+    inputs = {"T_e": 296.15 + 1e-9, "V_in": sine(1e-3, 100)}
+    run = simulate(module, inputs=inputs, duration=0.05, initial={"S": 1e-6})
+    assert np.all(run.T_body > 296.15)
+
+
+def test_where_extrapolation_crosses_the_edge_the_finer_run_is_given(piezo):
+    system = System(piezo, piezo.Parameters(), read_inputs(piezo, {}, 1.0))
+    finer = np.tile(piezo.initial_state((0, 0, 298.15), system.parameters)[:, None], 3)
+    states = finer + 1e-6
+    states[-1, 1] = -1e-9  # S < 0 is T < T_0
+    inputs = np.tile(np.array([[0.0], [0.0], [298.15]]), 3)
+    found = inside(
+        system, Trajectory(finer[:, 0], states, inputs, np.zeros((9, 3)), 1, 1, balanced=finer)
+    )
+    assert np.array_equal(found.states[:, 1], finer[:, 1])
+    assert np.array_equal(found.states[:, ::2], states[:, ::2])
+    assert found.balanced is finer
