@@ -6,7 +6,7 @@ t = 0 is its error, in the words of a single run.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
@@ -21,7 +21,7 @@ from piezo_sym.run.signals import Constant, Signal
 from piezo_sym.run.system import System
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -63,13 +63,33 @@ def group_at(
     if columns:
         values = zip(*columns.values(), strict=True)
         changes = (dict(zip(columns, one, strict=True)) for one in values)
-        parameters = [replace(base, **change) for change in changes]
+        parameters = [changed(base, change) for change in changes]
     else:
         parameters = [base] * len(points)
     systems = [System(module, p, inputs) for p in parameters]
-    start, errors = starts(plan, systems, points)
+    start, errors = starts(plan, systems, points, columns.keys())
     check_starts(systems, engine, start, errors)
     return Group(systems, start, errors)
+
+
+def changed(base: Any, change: Mapping[str, Value]) -> Any:
+    """Return parameters with some of their fields changed: `replace`, in a tenth of its time."""
+    found = object.__new__(type(base))
+    vars(found).update(vars(base), **change)
+    return found
+
+
+@final
+class Read:
+    """Parameters that note which of them are read."""
+
+    def __init__(self, parameters: Any) -> None:
+        self.parameters, self.names = parameters, set[str]()
+
+    def __getattr__(self, name: str) -> Any:
+        """Return a parameter."""
+        self.names.add(name)
+        return getattr(self.parameters, name)
 
 
 def along(target: Target, points: NDArray[np.intp]) -> list[Value]:
@@ -99,16 +119,21 @@ def base_at_point(plan: Plan, module: GeneratedModule, point: NDArray[np.intp]) 
 
 
 def starts(
-    plan: Plan, systems: Sequence[System], points: NDArray[np.intp]
+    plan: Plan, systems: Sequence[System], points: NDArray[np.intp], changing: Collection[str]
 ) -> tuple[FloatArray, list[str]]:
-    """Return the states (runs, n) at t = 0, nan where there is none, and the errors."""
+    """Return the states (runs, n) at t = 0, nan where there is none, and the errors.
+
+    Parameters
+    ----------
+    changing : the parameters in which systems differ; often none that a state at t = 0 depends on.
+    """
     first = systems[0]
     module, u = first.module, first.inputs.segments[0].at(0.0)
-    own: dict[int, FloatArray | str] = {}
-    for system in systems:
-        if id(system.parameters) not in own:
-            own[id(system.parameters)] = started(module, system.parameters, u)
-    found = [own[id(system.parameters)] for system in systems]
+    read = Read(first.parameters)
+    own = started(module, read, u)
+    found = [own] * len(systems)
+    if not read.names.isdisjoint(changing):
+        found[1:] = [started(module, system.parameters, u) for system in systems[1:]]
     parts = dict(zip((r.name for r in module.STATES), first.rows(module.STATES), strict=True))
     size = rows(module.STATES, first.parameters)[-1].stop if module.STATES else 0
     start = np.array([np.full(size, np.nan) if isinstance(x, str) else x for x in found])
