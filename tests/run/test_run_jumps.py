@@ -72,6 +72,32 @@ room = { kind = "ambient", body = "small", conductance = "lam", input = "T_e" }
 """
 
 
+#: Two diodes, one each way, that a voltage turns around: beyond their bend a volt is 10^16 times.
+DIODES = """
+[model]
+name = "diodes"
+[parameters]
+R = { value = 1000.0, unit = "ohm" }
+C = { value = 1e-9, unit = "F" }
+I_s = { value = 1e-12, unit = "A" }
+V_T = { value = 0.026, unit = "V" }
+C_2 = { value = 1e-6, unit = "F" }
+T_0 = { value = 300.0, unit = "K" }
+c = { value = 2.0, unit = "J/K" }
+[inputs]
+V = { unit = "V", default = 0.0 }
+[domain]
+assume = ["R > 0", "I_s >= 0", "V_T > 0"]
+[elements]
+source = { kind = "voltage_source", between = ["in", "gnd"], input = "V" }
+series = { kind = "resistor", between = ["in", "a"], current = "v/R", heats = "body" }
+both = { kind = "resistor", between = ["a", "gnd"], current = "I_s*(exp(v/V_T) - exp(-v/V_T))", heats = "body" }
+small = { kind = "capacitor", between = ["a", "gnd"], capacitance = "C", state = "Q" }
+out = { kind = "resistor", between = ["a", "o"], current = "v/R", heats = "body" }
+large = { kind = "capacitor", between = ["o", "gnd"], capacitance = "C_2", state = "Q_2" }
+body = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }
+"""  # noqa: E501
+TURNED = {"inputs": {"V": step(7.143e-4, 5, -5)}, "duration": 2e-3}
 SLIDES = {
     "step": {"inputs": {"F": step(0.5, 0, 20)}, "initial": {"q": 0.0}},
     "sine": {"inputs": {"F": sine(20, 2)}, "initial": {"q": 0.0}},
@@ -115,6 +141,13 @@ def test_a_charge_that_follows_at_once_is_right_from_its_start():
     wanted = exact(CIRCUIT, **CHARGE)
     for rtol in RTOLS:
         assert error(CIRCUIT, rtol, wanted, **CHARGE) <= 20
+
+
+def test_diodes_that_a_long_step_carries_beyond_their_bend_come_back():
+    wanted = exact(DIODES, **TURNED)
+    for rtol in RTOLS:
+        assert error(DIODES, rtol, wanted, **TURNED) <= 20
+    assert simulate(model_of(DIODES), step=1e-5, **TURNED).attrs["halvings"] < 1000
 
 
 @pytest.mark.parametrize("size", [2e-3, 1e-6, 1e-9])

@@ -10,6 +10,11 @@ extern const long MODEL(exchanges);
 const long MODEL(exchanges) = MODEL(exchange_count);
 
 enum { MOST_ITERATIONS = 14, MOST_HALVINGS = 40, MOST_SHARES = 60 };
+/*
+ * So many iterations more after each halving: from beyond the bend of an exponential law Newton's
+ * method comes back by its width each time, however short the step.
+ */
+enum { MORE_ITERATIONS = 8 };
 /* A step may be halved so often in all: a run that creeps towards an edge ends, as it has to. */
 enum { MOST_PARTS = 1 << 16 };
 /* What Newton's method may leave, in 1e-9 of a step: 1e-15 of it, where balances have to close. */
@@ -102,11 +107,11 @@ static void MODEL(book)(const MODEL(model) *m, const MODEL(path) *path, double h
  * quadratically, when the next one would be `enough`.
  */
 static int MODEL(root)(MODEL(model) *m, const double *restrict x, double *restrict y,
-                       const double *u, double h, double enough)
+                       const double *u, double h, double enough, int most_iterations)
 {
     double *restrict change = m->space + 2 * m->n;
     double before = 0.0;
-    for (int iteration = 0; iteration < MOST_ITERATIONS; ++iteration) {
+    for (int iteration = 0; iteration < most_iterations; ++iteration) {
         double most = 0.0, per = 1.0, all = 0.0, share = 1.0; /* the worst change is most / per */
         const double noise = MODEL(noise)(iteration);
         ++m->iterations;
@@ -190,12 +195,13 @@ static int MODEL(step)(MODEL(model) *m, MODEL(path) *path, const double *u, doub
 {
     double *restrict y = m->space;
     const double enough = path->sums ? EXACT : m->slack;
+    const int most = MOST_ITERATIONS + MORE_ITERATIONS * depth;
     int found = 0;
     MODEL(predict)(m, path, h, y);
     for (int trial = path->h > 0.0 ? 0 : 1; trial < 2 && !found; ++trial) {
         if (trial == 1) /* not from a prediction */
             memcpy(y, path->x, (size_t)m->n * sizeof *y);
-        found = MODEL(inside)(y, u, m->p) && MODEL(root)(m, path->x, y, u, h, enough) &&
+        found = MODEL(inside)(y, u, m->p) && MODEL(root)(m, path->x, y, u, h, enough, most) &&
                 MODEL(accepted)(m, path->x, y, u, h);
     }
     if (!found) {
