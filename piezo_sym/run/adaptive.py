@@ -67,6 +67,8 @@ def adaptive(
     batch.allow(rtol)
     batch.scale[:] = LOOSER * rtol * _scale(run, longest)
     for block in blocks(first, times, longest, lambda: _block_size(run)):
+        if block.starts[0] == block.segment.start:
+            batch.forget()
         _Passage(run, block).pass_through()
         if not run.goes_on(block, watch):
             break

@@ -17,6 +17,7 @@ import numpy as np
 
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.run.checks import FloatArray, is_number, known_keys, number
+from piezo_sym.run.jumps import jumps
 from piezo_sym.run.module import others
 from piezo_sym.run.samples import Samples, read_samples
 from piezo_sym.run.signals import Constant, Signal, inside
@@ -58,9 +59,15 @@ class Function(Signal):
             raise UsageError(what, self.where, "a function of the time in s") from cause
         return number(value, f"{self.where}({time:.6g})")
 
-    def breaks(self, duration: float) -> tuple[float, ...]:  # noqa: ARG002
-        """Return no time: a function says nothing about its jumps."""
-        return ()
+    @cached_property
+    def _known(self) -> dict[float, tuple[float, ...]]:
+        return {}
+
+    def breaks(self, duration: float) -> tuple[float, ...]:
+        """Return the times of the jumps that are found by asking."""
+        if duration not in self._known:
+            self._known[duration] = jumps(self.value, duration)
+        return self._known[duration]
 
     def max_step(self, duration: float) -> float:
         """Return a small part of the run."""

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal, final
 
 import numpy as np
 
-from piezo_sym.run.engine.records import LONG, POINTER, Intervals, Member, at, room_of
+from piezo_sym.run.engine.records import LONG, PATHS, POINTER, Intervals, Member, at, room_of
 from piezo_sym.run.engine.structure import record_of
 
 if TYPE_CHECKING:
@@ -154,12 +154,17 @@ class Batch:
         """Let paths without a ledger leave a small share of rtol in each step."""
         self._records["model"]["slack"] = max(EXACT, SLACK * rtol)
 
+    def forget(self) -> None:
+        """Let paths expect nothing of their next step: inputs jump, or have a corner."""
+        for path in PATHS:
+            self._records[path]["h"] = self._records[path]["h_prior"] = 0.0
+
     def rewind(self) -> None:
         """Forget a survey, but for its `scale`."""
         self._others[:, -1] = self.x  # the trial's
         self._largest[:] = np.abs(self.x)
+        self.forget()
         records = self._records
-        records["trial"]["h"] = records["trial"]["h_prior"] = 0.0
         records["steps"] = records["failed"] = 0
         records["model"]["iterations"] = records["model"]["halvings"] = 0
 
