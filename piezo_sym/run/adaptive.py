@@ -9,8 +9,9 @@ many steps is cut into parts.
 
 from __future__ import annotations
 
-from collections import Counter
 from typing import TYPE_CHECKING, final
+
+import numpy as np
 
 from piezo_sym.run.discrete import CHUNK, Run, Runs, stopped
 from piezo_sym.run.engine.march import coarser, finest, steps_at, twice
@@ -19,6 +20,8 @@ from piezo_sym.run.scales import shared
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from numpy.typing import NDArray
 
     from piezo_sym.errors import RunError
     from piezo_sym.run.checks import FloatArray
@@ -62,102 +65,100 @@ def adaptive(
     """
     first = systems[0]
     longest = min(first.inputs.max_step, times[-1] / FEWEST_INTERVALS)
-    run = Run(systems, engine, x, times, starts)
+    run = Run(systems, engine, x, times, starts, watch)
     batch = run.batch
     batch.allow(rtol)
     batch.scale[:] = LOOSER * rtol * _scale(run, longest)
-    for block in blocks(first, times, longest, lambda: _block_size(run)):
+    for block in blocks(first, times, longest, lambda: CHUNK):
         if block.starts[0] == block.segment.start:
             batch.forget()
-        _Passage(run, block).pass_through()
-        if not run.goes_on(block, watch):
+        _Passage(run, block, np.arange(len(batch))).pass_through()
+        if not run.goes_on(block):
             break
     return run.runs(extrapolated=True)
 
 
 @final
 class _Passage:
-    """Members on their way through a block.
+    """Some members on their way through a block.
 
     Attributes
     ----------
-    block : the intervals, some of them in parts.
-    done : how many of them each member has done.
-    cuts : how often each member has had an interval cut, or its parts, by its `whole`.
+    done : how many of its intervals each member has done; all, if it is none of these.
+    cuts : how often each member has had the interval cut whose parts these are, or its parts.
     """
 
-    def __init__(self, run: Run, block: Block) -> None:
-        self.run, self.block = run, block
-        self.done = [0] * len(run.batch)
-        self.cuts: Counter[tuple[int, int]] = Counter()
+    def __init__(
+        self,
+        run: Run,
+        block: Block,
+        members: NDArray[np.intp],
+        cuts: NDArray[np.intp] | None = None,
+    ) -> None:
+        self.run, self.block, self.cuts = run, block, cuts
+        self.done = np.full(len(run.batch), len(block))
+        self.done[members] = 0
 
     def pass_through(self) -> None:
-        """Take all members to the end of the block, but for those that stop.
+        """Take the members to the end of the block, but for those that stop.
 
         Where a level is missing, members wait; what is left is then handed over anew, for inputs
         are sampled at the middles of all steps that a level may take.
         """
         batch = self.run.batch
-        while True:
-            if max(batch.levels, default=0) > MOST_LEVEL:
-                self.cut()
-            members = zip(self.done, batch.members, strict=True)
-            first = min((n for n, s in members if not s.failed), default=len(self.block))
-            if first == len(self.block):
-                self.run.note(self.block, self.done)
-                return
-            part = self.block.part(first, first + _block_size(self.run))
-            levels = _levels(batch.levels) if batch.members[0].steps else range(HIGHEST_TRIED + 1)
-            before = [n - first for n in self.done]
-            found = self.run.through("adapt", part, levels, before)
-            self.done = [first + n for n in found]
+        while (present := np.flatnonzero((self.done < len(self.block)) & ~batch.failed)).size:
+            waiting = present[batch.level[present] > MOST_LEVEL]
+            if waiting.size:
+                self.cut(waiting)
+            else:
+                self.hand_over(present)
+        self.run.note(self.block, self.done.tolist())
 
-    def cut(self) -> None:
-        """Cut the intervals at which members wait because they need more steps than any has."""
-        for n in sorted({*self.done} - {len(self.block)}, reverse=True):
-            for k in self._waiting(n):
-                self._count(k, n)
-            if waiting := self._waiting(n):
-                self.block = self.block.cut(n, PARTS)
-                self.done = [m + PARTS - 1 if m > n else m for m in self.done]
-                for k in waiting:
-                    self.run.batch.members[k].level -= 4 * (PARTS.bit_length() - 1)
+    def hand_over(self, present: NDArray[np.intp]) -> None:
+        """Let members go on in C, with inputs for the levels that they are at, and more."""
+        first, batch = int(self.done[present].min()), self.run.batch
+        known = batch.members[int(present[0])].steps > 0
+        levels = _levels(batch.level[present]) if known else range(HIGHEST_TRIED + 1)
+        size = _block_size(self.run, levels) if known else TRIED
+        self.run.tell(float(self.block.starts[first]))
+        part = self.block.part(first, first + size)
+        found = self.run.through("adapt", part, levels, (self.done - first).tolist())
+        self.done = np.maximum(self.done, first + np.array(found))
 
-    def _waiting(self, n: int) -> list[int]:
-        """Return the members that need more steps in interval n than any has."""
-        members = enumerate(zip(self.done, self.run.batch.members, strict=True))
-        return [k for k, (m, s) in members if m == n and not s.failed and s.level > MOST_LEVEL]
-
-    def _count(self, k: int, n: int) -> None:
-        """Count a cut of interval n for member k, and stop that if there are too many."""
-        run, cut = self.run, (k, int(self.block.whole[n]))
-        self.cuts[cut] += 1
-        if self.cuts[cut] > MOST_CUTS or self.block.lengths[n] < SHORTEST * run.times[-1]:
-            t = float(self.block.starts[n])
-            run.stop(k, _too_fine(run.systems[k], t, run.batch.x[k]))
+    def cut(self, waiting: NDArray[np.intp]) -> None:
+        """Take members through the intervals that they wait at, in parts; others see none of it."""
+        batch = self.run.batch
+        for n in np.unique(self.done[waiting]).tolist():
+            here = waiting[self.done[waiting] == n]
+            cuts = np.zeros(len(batch), np.intp) if self.cuts is None else self.cuts
+            cuts[here] += 1
+            short = self.block.lengths[n] < SHORTEST * self.run.times[-1]
+            for k in here[(cuts[here] > MOST_CUTS) | short].tolist():
+                t = float(self.block.starts[n])
+                self.run.stop(k, _too_fine(self.run.systems[k], t, batch.x[k]))
+            batch.level[here] -= 4 * (PARTS.bit_length() - 1)
+            _Passage(self.run, self.block.part(n, n + 1).cut(PARTS), here, cuts).pass_through()
+            self.done[here] += 1
 
 
-def _levels(present: Sequence[int]) -> Sequence[int]:
+def _levels(present: NDArray[np.intp]) -> Sequence[int]:
     """Return the levels whose inputs are sampled: what the present ones and coarser ones need.
 
     Members that are not far apart go on between.
     """
-    low, high = min(present), max(present)
+    low, high = int(present.min()), int(present.max())
     if low < high < low + NEAR:
         return range(coarser(low), finest(high) + 1)
-    begun = {*present, *map(coarser, present)}
+    begun = {*present.tolist()}
+    begun |= {*map(coarser, begun)}
     return sorted({level for n in begun for level in (n, twice(n), finest(n))})
 
 
-def _block_size(run: Run) -> int:
-    """Return how many intervals to hand over at once: few at first, when no level is known."""
-    batch = run.batch
-    levels = batch.levels
-    if not levels or not batch.members[0].steps:
-        return TRIED
+def _block_size(run: Run, levels: Sequence[int]) -> int:
+    """Return how many intervals to hand over at once, with inputs for some levels."""
     if run.systems[0].inputs.asked:
-        return max(1, ASKED // sum(map(steps_at, _levels(levels))))
-    return max(1, CHUNK // (max(batch.rows.n, 1) * steps_at(finest(max(levels)))))
+        return max(1, ASKED // sum(map(steps_at, levels)))
+    return max(1, CHUNK // (max(run.batch.rows.n, 1) * steps_at(max(levels))))
 
 
 def _scale(run: Run, longest: float) -> FloatArray:
@@ -172,5 +173,7 @@ def _scale(run: Run, longest: float) -> FloatArray:
 def _too_fine(system: System, t: float, x: FloatArray) -> RunError:
     """Return the error of a run whose tolerance asks for steps without end."""
     why = "the tolerance is out of reach there"
-    remedy = "allow a larger rtol; give an input that jumps as a signal or as (t, values)"
+    remedy = "allow a larger rtol, or give a step; dissipative_start damps what a jump sets off"
+    if system.inputs.asked:
+        remedy = f"give an input that jumps as a signal or as (t, values); {remedy}"
     return stopped(system, t, x, why, remedy)

@@ -85,12 +85,12 @@ def fixed(
     watch : told the time reached, now and then.
     starts : whether the first step after a jump of the inputs is dissipative.
     """
-    run = Run(systems, engine, x, times, starts)
+    run = Run(systems, engine, x, times, starts, watch)
     size = CHUNK // max(1, x.shape[1])
     for block in blocks(systems[0], times, step, lambda: size):
         done = run.through("march", block, range(1))
         run.note(block, done)
-        if not run.goes_on(block, watch):
+        if not run.goes_on(block):
             break
     return run.runs(extrapolated=False)
 
@@ -106,8 +106,9 @@ class Run:
         x: FloatArray,
         times: FloatArray,
         starts: bool,
+        watch: Watch | None = None,
     ) -> None:
-        self.systems, self.start, self.times, self.starts = systems, x, times, starts
+        self.systems, self.start, self.times, self.watch = systems, x, times, watch
         parameters = [system.parameters for system in systems]
         self.batch = Batch(engine, parameters, x, times.size, starts=starts)
         self.jumps = systems[0].inputs.jumps if starts else frozenset()
@@ -138,10 +139,14 @@ class Run:
                 t = float(block.starts[reached])
                 self.stop(k, _stuck(self.systems[k], t, self.batch.x[k]))
 
-    def goes_on(self, block: Block, watch: Watch | None) -> bool:
+    def tell(self, t: float) -> None:
+        """Tell the time reached."""
+        if self.watch:
+            self.watch(t)
+
+    def goes_on(self, block: Block) -> bool:
         """Tell the time reached; return whether any member goes on."""
-        if watch:
-            watch(float(block.starts[-1] + block.lengths[-1]))
+        self.tell(float(block.starts[-1] + block.lengths[-1]))
         return not all(self.errors)
 
     def runs(self, *, extrapolated: bool) -> Runs:

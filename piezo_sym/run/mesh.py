@@ -36,14 +36,12 @@ class Block:
     segment : the inputs in it.
     starts, lengths : of each interval [s], (k,).
     samples : of each interval, which sample time is its end; -1 for none.
-    whole : of each interval, a number that it shares with the parts it was cut into.
     """
 
     segment: Segment
     starts: FloatArray
     lengths: FloatArray
     samples: NDArray[np.int_]
-    whole: NDArray[np.int_]
 
     def __len__(self) -> int:
         """Return the number of intervals."""
@@ -52,18 +50,13 @@ class Block:
     def part(self, first: int, stop: int) -> Block:
         """Return some of the intervals."""
         here = slice(first, stop)
-        arrays = (self.starts[here], self.lengths[here], self.samples[here], self.whole[here])
-        return Block(self.segment, *arrays)
+        return Block(self.segment, self.starts[here], self.lengths[here], self.samples[here])
 
-    def cut(self, k: int, parts: int) -> Block:
-        """Return the block with interval k in equal parts."""
-        copies = np.where(np.arange(len(self)) == k, parts, 1)
-        of = np.repeat(np.arange(len(self)), copies)
-        part = np.where(of == k, np.arange(of.size) - k, 0)
-        lengths = self.lengths[of] / copies[of]
-        samples = np.where(part == copies[of] - 1, self.samples[of], -1)
-        starts = self.starts[of] + part * lengths
-        return Block(self.segment, starts, lengths, samples, self.whole[of])
+    def cut(self, parts: int) -> Block:
+        """Return the only interval in equal parts."""
+        lengths = np.repeat(self.lengths / parts, parts)
+        samples = np.where(np.arange(parts) == parts - 1, self.samples, -1)
+        return Block(self.segment, self.starts + np.arange(parts) * lengths, lengths, samples)
 
     def middles(self, steps: Sequence[int] = (1,)) -> list[FloatArray]:
         """Return the inputs at the middles of equal steps of each interval, (k*steps, m).
@@ -123,8 +116,7 @@ def blocks(
             lengths = (widths / counts)[stretch]
             starts = edges[stretch] + local * lengths
             last = local == counts[stretch] - 1
-            ends_at = np.where(last, samples[stretch], -1)
-            yield Block(segment, starts, lengths, ends_at, np.arange(place.size))
+            yield Block(segment, starts, lengths, np.where(last, samples[stretch], -1))
             first += place.size
 
 

@@ -70,10 +70,11 @@ def simulate(
     finest run's. With `step` there is one run, and its error falls with the square of the step.
     Steps that end far from what those before let expect tell of a law that all but jumps, and of
     what is much faster than they are and rings from step to step: intervals are divided, and cut
-    into parts, until the error there is small too. What is left of such events adds up: a mass that
-    slides and sticks, with 5 N of friction, tanh(v/1e-4), is 10 rtol off after twelve reversals. A
-    run that rings throughout takes as many steps as that needs; `dissipative_start` damps what a
-    jump sets off.
+    into parts, until the error there is small too. The errors of intervals add up, where nothing
+    damps them: a mass that slides and sticks, with 5 N of friction, tanh(v/1e-4), is 10 rtol off
+    after twelve reversals, and what oscillates for hundreds of periods of its own is hundreds of
+    rtol off in phase. A run that rings throughout takes as many steps as that needs;
+    `dissipative_start` damps what a jump sets off.
 
     SciPy's methods hold the error of each step below rtol*|x| + atol. atol is rtol*1e-3 times the
     scale of the state, which is the largest magnitude that the state (for a bank: any of its
@@ -82,8 +83,9 @@ def simulate(
 
     Steps end at every jump or corner of an input (samples: while they are at most 1000). With
     rtol, none is longer than an eighth of a period of an input, than the median distance of more
-    than 1000 samples, or than 1/500 of the run where an input is a function. A function's own
-    jumps are not known, and have to be searched for: a signal, or (t, values), is faster.
+    than 1000 samples, or than 1/500 of the run where an input is a function. Jumps of a function
+    are found by asking it 2001 times before the run; a pulse that is shorter than the time between
+    is seen only by chance: give a signal, or (t, values).
 
     Parameters
     ----------

@@ -108,9 +108,15 @@ class Batch:
         return len(self.members)
 
     @property
-    def levels(self) -> list[int]:
-        """How finely each member divides its next interval: `steps_at` says how often."""
-        found: list[int] = self._records["level"][self._records["failed"] == 0].tolist()
+    def level(self) -> NDArray[np.intp]:
+        """How finely each member divides its next interval, to be changed: `steps_at` says it."""
+        found: NDArray[np.intp] = self._records["level"]
+        return found
+
+    @property
+    def failed(self) -> NDArray[np.bool_]:
+        """Whether each member has stopped."""
+        found: NDArray[np.bool_] = self._records["failed"] != 0
         return found
 
     def run(

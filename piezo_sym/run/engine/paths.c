@@ -111,7 +111,7 @@ static long MODEL(raised)(long level, double worst)
     return level + (worst < 50.0 ? 6 : 8);
 }
 
-/* The level after one whose error was `worst`: half the steps, up to three times, if that is small. */
+/* The level after one whose error was `worst`: half the steps, up to thrice, if that is small. */
 static long MODEL(lowered)(long level, double worst)
 {
     for (int k = 0; k < 3 && worst < MUCH_TOO_FINE; ++k, worst *= 4.0)
@@ -168,8 +168,8 @@ static void MODEL(watch)(MODEL(member) *s)
 }
 
 /*
- * What the surprises of steps, `fine`, and of four times as long ones, `coarse`, say of an error, in
- * parts of what is allowed.  A law that all but jumps within a step leaves an error in proportion
+ * What the surprises of steps, `fine`, and of four times as long ones, `coarse`, say of an error,
+ * in parts of what is allowed.  A law that all but jumps within a step leaves an error in proportion
  * to it.  All paths make the same one where the jump comes soon after an end that they share, and
  * their distances tell nothing; but none expects it.  The surprise of shorter steps is a quarter
  * then.  It is a sixteenth at a kink, a 64th where all is smooth: distances tell more there.  Fast
@@ -255,8 +255,9 @@ static void MODEL(write)(const MODEL(member) *s, long row)
 /*
  * Runs a mesh, its halves and its quarters side by side, each with a state of its own.  How finely
  * an interval is divided is chosen on the way, so that steps and quarter steps from the finest
- * state end within FINEST times the tolerance of each other.  A member stops before an interval that
- * needs a level that is not there, and for good where a step has no solution.
+ * state end within FINEST times the tolerance of each other, and none ends where it is strange.  A
+ * member stops before an interval that needs a level that is not there, and for good where a step
+ * has no solution.
  */
 void MODEL(adapt)(MODEL(member) *members, long count, const MODEL(block) *b);
 void MODEL(adapt)(MODEL(member) *members, long count, const MODEL(block) *b)

@@ -186,7 +186,7 @@ static void MODEL(compare)(const MODEL(model) *m, MODEL(path) *path, double h, c
     MODEL(predict)(m, path, h, expected);
     for (long i = 0; i < m->n; ++i) {
         const double missed = fabs(y[i] - expected[i]) / path->tolerance[i];
-        path->surprise = missed <= path->surprise ? path->surprise : missed;
+        path->surprise = missed > path->surprise ? missed : path->surprise;
     }
 }
 

@@ -180,13 +180,17 @@ static void MODEL(go)(MODEL(wide) *w, int k, int slot)
     s->steps += lane->left;
 }
 
+/* Whether a member has a next interval to go through. */
+static int MODEL(goes_on)(const MODEL(wide) *w, const MODEL(member) *s)
+{
+    const int there = !s->failed && s->done < w->b->intervals;
+    return there && (w->mode != ADAPT || MODEL(levels_there)(s, w->b));
+}
+
 /* Begin the next interval of the member of lane k, the first of its lanes; 0 if there is none. */
 static int MODEL(begin)(MODEL(wide) *w, int k)
 {
-    const MODEL(member) *s = w->lane[k].s;
-    if (s->failed || s->done >= w->b->intervals)
-        return 0;
-    if (w->mode == ADAPT && !MODEL(levels_there)(s, w->b))
+    if (!MODEL(goes_on)(w, w->lane[k].s))
         return 0;
     MODEL(go)(w, k, 0);
     if (w->mode != ADAPT)
@@ -401,8 +405,8 @@ static void MODEL(leave)(MODEL(wide) *w, int k)
     }
 }
 
-/* Lanes take a member, and begin; 0 if it has nothing to do. */
-static int MODEL(enter)(MODEL(wide) *w, int k, MODEL(member) *s)
+/* Lanes take a member that goes on, and begin. */
+static void MODEL(enter)(MODEL(wide) *w, int k, MODEL(member) *s)
 {
     for (int lane = k; lane < k + w->tracks; ++lane) {
         const int books = w->mode != SURVEY && w->lane[lane].track == FIRST;
@@ -418,15 +422,15 @@ static int MODEL(enter)(MODEL(wide) *w, int k, MODEL(member) *s)
     }
     if (w->mode == ADAPT)
         MODEL(watch)(s);
-    return MODEL(begin)(w, k);
+    MODEL(begin)(w, k);
 }
 
 /* The lanes that have no member take the next that has something to do. */
 static void MODEL(refill)(MODEL(wide) *w, int k, MODEL(member) **next, const MODEL(member) *end)
 {
-    while (!w->lane[k].s && *next < end)
-        if (!MODEL(enter)(w, k, (*next)++))
-            MODEL(leave)(w, k);
+    for (; !w->lane[k].s && *next < end; ++*next)
+        if (MODEL(goes_on)(w, *next))
+            MODEL(enter)(w, k, *next);
 }
 
 /* A lane has made its step, or makes it alone; 0 if there is none. */
