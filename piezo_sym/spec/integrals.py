@@ -33,7 +33,8 @@ MAX_PARTS = 20_000
 def antiderivative(node: Expr, name: str) -> Expr | None:
     """Return an antiderivative of `node` by `name`, or None where there is none of a simple form.
 
-    Known forms: polynomials, and sums of c*(a*x + b)**n and c*exp(a*x + b), c, a, b free of x.
+    Known forms: polynomials, also as x/(a/(1 + x**2)), and sums of c*(a*x + b)**n and
+    c*exp(a*x + b), c, a, b free of x.
     """
     if name not in names(node):
         return mul(node, Sym(name))
@@ -54,6 +55,8 @@ def antiderivative(node: Expr, name: str) -> Expr | None:
         case Div(left, right) if name not in names(right):
             inner = antiderivative(left, name)
             return None if inner is None else _over(inner, right)
+        case Div(left, Div(top, bottom)) if name not in names(top):  # phi/(L/(1 + phi**2))
+            return antiderivative(div(mul(left, bottom), top), name)
         case Call("exp", (arg,)):
             slope = _slope(arg, name)
             return None if slope is None else _divided(node, slope)
