@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, final
 
 import numpy as np
 
-from piezo_sym.run.discrete import CHUNK, Run, Runs, stopped, stuck
+from piezo_sym.run.discrete import CHUNK, Run, Runs, stopped
 from piezo_sym.run.engine.march import coarser, finest, steps_at, twice
 from piezo_sym.run.mesh import blocks
 from piezo_sym.run.scales import shared
@@ -112,6 +112,7 @@ class _Passage:
                 self.cut(waiting)
             else:
                 self.hand_over(present)
+        self.run.note(self.block, self.done.tolist())
 
     def hand_over(self, present: NDArray[np.intp]) -> None:
         """Let members go on in C, with inputs for the levels that they are at, and more."""
@@ -133,9 +134,8 @@ class _Passage:
             cuts[here] += 1
             short = self.block.lengths[n] < SHORTEST * self.run.times[-1]
             for k in here[(cuts[here] > MOST_CUTS) | short].tolist():
-                why = stuck if batch.stuck[k] else _too_fine
                 t = float(self.block.starts[n])
-                self.run.stop(k, why(self.run.systems[k], t, batch.x[k]))
+                self.run.stop(k, _too_fine(self.run.systems[k], t, batch.x[k]))
             batch.level[here] -= 4 * (PARTS.bit_length() - 1)
             _Passage(self.run, self.block.part(n, n + 1).cut(PARTS), here, cuts).pass_through()
             self.done[here] += 1

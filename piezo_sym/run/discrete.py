@@ -137,7 +137,7 @@ class Run:
         for k, reached in enumerate(done):
             if reached < len(block) and self.errors[k] is None:
                 t = float(block.starts[reached])
-                self.stop(k, stuck(self.systems[k], t, self.batch.x[k]))
+                self.stop(k, _stuck(self.systems[k], t, self.batch.x[k]))
 
     def tell(self, t: float) -> None:
         """Tell the time reached."""
@@ -155,7 +155,7 @@ class Run:
         return Runs(*parts, extrapolated)
 
 
-def stuck(system: System, t: float, x: FloatArray) -> RunError:
+def _stuck(system: System, t: float, x: FloatArray) -> RunError:
     """Return the error of a run that cannot go on: it says when and where."""
     why = "no step stays in the domain, or a law that jumps holds the state there"
     remedy = "look at inputs and state; allow more room in [domain]; tanh(v/w) for sign(v)"

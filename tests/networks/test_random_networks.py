@@ -57,7 +57,7 @@ def test_every_kind_has_a_strategy():
 
 
 def test_networks():
-    check_seen(*explore(150))
+    check_seen(*explore(200))
 
 
 @pytest.mark.long

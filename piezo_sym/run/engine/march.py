@@ -29,8 +29,6 @@ MOST_STATES = 32
 #: What Newton's method may leave of a step's change, in 1e-9 of it: where balances have to close,
 #: and, with a tolerance, on the paths that only tell or mend an error.
 EXACT, SLACK = 1e-6, 1e-3 / 1e-9
-#: How often a step may be halved in all; with a tolerance an interval is divided instead.
-MOST_PARTS, FEWER_PARTS = 1 << 16, 1 << 8
 Way = Literal["survey", "march", "adapt"]
 MODES: dict[Way, int] = {"survey": 0, "march": 1, "adapt": 2}
 
@@ -116,12 +114,6 @@ class Batch:
         return found
 
     @property
-    def stuck(self) -> NDArray[np.bool_]:
-        """Whether steps of each member's next interval have been found to have no solution."""
-        found: NDArray[np.bool_] = self._records["stuck"] != 0
-        return found
-
-    @property
     def failed(self) -> NDArray[np.bool_]:
         """Whether each member has stopped."""
         found: NDArray[np.bool_] = self._records["failed"] != 0
@@ -165,9 +157,8 @@ class Batch:
         return reached
 
     def allow(self, rtol: float) -> None:
-        """Let paths without a ledger leave a small share of rtol, and divide what is hard."""
+        """Let paths without a ledger leave a small share of rtol in each step."""
         self._records["model"]["slack"] = max(EXACT, SLACK * rtol)
-        self._records["model"]["parts"] = FEWER_PARTS
 
     def forget(self) -> None:
         """Let paths expect nothing of their next step: inputs jump, or have a corner."""
@@ -212,7 +203,7 @@ class Batch:
         models["p"] = self._structures.addresses
         for name in ("n", "ports", "processes", "inputs"):
             models[name] = getattr(rows, name)
-        models["rows"], models["slack"], models["parts"] = rows.ledger, EXACT, MOST_PARTS
+        models["rows"], models["slack"] = rows.ledger, EXACT
 
     def _function(self, name: str) -> Any:
         function = getattr(self._library, f"{self._name}_{name}")

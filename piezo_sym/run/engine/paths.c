@@ -21,7 +21,6 @@ typedef struct {
     double *tolerance; /* of n: for the error of an interval */
     double *out_x, *out_fine, *out_sums;
     long level, done, steps, failed;
-    long stuck; /* whether its interval has been tried with steps that have no solution */
 } MODEL(member);
 
 /*
@@ -118,13 +117,6 @@ static long MODEL(lowered)(long level, double worst)
     for (int k = 0; k < 3 && worst < MUCH_TOO_FINE; ++k, worst *= 4.0)
         level = MODEL(coarser)(level);
     return level;
-}
-
-/* An interval whose steps have no solution is to be tried with a quarter of them. */
-static void MODEL(quartered)(MODEL(member) *s)
-{
-    s->stuck = 1;
-    s->level = MODEL(twice)(MODEL(twice)(s->level));
 }
 
 static int MODEL(has)(const MODEL(block) *b, long level)
@@ -264,7 +256,8 @@ static void MODEL(write)(const MODEL(member) *s, long row)
  * Runs a mesh, its halves and its quarters side by side, each with a state of its own.  How finely
  * an interval is divided is chosen on the way, so that steps and quarter steps from the finest
  * state end within FINEST times the tolerance of each other, and none ends where it is strange.  A
- * member waits before an interval that needs a level that is not there.
+ * member stops before an interval that needs a level that is not there, and for good where a step
+ * has no solution.
  */
 void MODEL(adapt)(MODEL(member) *members, long count, const MODEL(block) *b);
 void MODEL(adapt)(MODEL(member) *members, long count, const MODEL(block) *b)
@@ -277,7 +270,7 @@ void MODEL(adapt)(MODEL(member) *members, long count, const MODEL(block) *b)
             const double worst = MODEL(try)(s, b);
             if (worst < 0.0) {
                 MODEL(back)(s);
-                MODEL(quartered)(s);
+                s->failed = 1;
             } else if (!(worst <= 1.0)) {
                 MODEL(back)(s);
                 s->level = MODEL(raised)(s->level, worst);
@@ -285,7 +278,6 @@ void MODEL(adapt)(MODEL(member) *members, long count, const MODEL(block) *b)
                 if (b->sample[s->done] >= 0)
                     MODEL(write)(s, b->sample[s->done]);
                 s->level = MODEL(lowered)(s->level, worst);
-                s->stuck = 0;
                 ++s->done;
             }
         }

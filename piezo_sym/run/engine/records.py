@@ -35,7 +35,7 @@ class Model(ctypes.Structure):
         ("p", POINTER),
         *((name, LONG) for name in ("n", "rows", "ports", "processes", "inputs")),
         *((name, POINTER) for name in ("space", "largest")),
-        *((name, LONG) for name in ("iterations", "halvings", "begun", "parts", "start")),
+        *((name, LONG) for name in ("iterations", "halvings", "begun", "start")),
         ("slack", DOUBLE),
     ]
 
@@ -58,7 +58,7 @@ class Member(ctypes.Structure):
         ("model", Model),
         *((name, Path) for name in PATHS),
         *((name, POINTER) for name in ("kept", "tolerance", "out_x", "out_fine", "out_sums")),
-        *((name, LONG) for name in ("level", "done", "steps", "failed", "stuck")),
+        *((name, LONG) for name in ("level", "done", "steps", "failed")),
     ]
 
 

@@ -15,6 +15,8 @@ enum { MOST_ITERATIONS = 14, MOST_HALVINGS = 40, MOST_SHARES = 60 };
  * method comes back by its width each time, however short the step.
  */
 enum { MORE_ITERATIONS = 8 };
+/* A step may be halved so often in all: a run that creeps towards an edge ends, as it has to. */
+enum { MOST_PARTS = 1 << 16 };
 /* What Newton's method may leave, in 1e-9 of a step: 1e-15 of it, where balances have to close. */
 #define EXACT 1e-6
 /* No state moves by less than 1e9 times this. */
@@ -40,7 +42,6 @@ typedef struct {
     double *space, *largest; /* of n: the largest magnitude of each state so far */
     long iterations, halvings;
     long begun;   /* the halvings there were before the step at hand */
-    long parts;   /* how often it may be halved in all: what creeps towards an edge has to end */
     long start;   /* whether the steps taken now are dissipative */
     double slack; /* what Newton's method may leave on paths without a ledger, in 1e-9 of a step */
 } MODEL(model);
@@ -208,7 +209,7 @@ static int MODEL(step)(MODEL(model) *m, MODEL(path) *path, const double *u, doub
             m->begun = m->halvings;
             MODEL(save)(m, path);
         }
-        if (depth == MOST_HALVINGS || m->halvings - m->begun > m->parts)
+        if (depth == MOST_HALVINGS || m->halvings - m->begun > MOST_PARTS)
             return 0;
         ++m->halvings;
         found = MODEL(step)(m, path, u, 0.5 * h, depth + 1) &&

@@ -249,7 +249,6 @@ static int MODEL(next)(MODEL(wide) *w, int k)
     if (w->mode == ADAPT)
         s->level = MODEL(lowered)(s->level, worst);
     ++s->done;
-    s->stuck = 0;
     return MODEL(begin)(w, k);
 }
 
@@ -449,12 +448,9 @@ static int MODEL(all_moved)(MODEL(wide) *w, int k, mask good)
 {
     const int last = k + w->tracks - 1;
     if (!MODEL(moved)(w, k, good) || (last > k && !MODEL(moved)(w, last, good))) {
-        if (w->mode == ADAPT) {
-            MODEL(undo)(w, k);
-            MODEL(quartered)(w->lane[k].s);
-            return MODEL(begin)(w, k);
-        }
         w->lane[k].s->failed = 1;
+        if (w->mode == ADAPT)
+            MODEL(undo)(w, k);
         return 0;
     }
     if (w->lane[k].left == 0)
