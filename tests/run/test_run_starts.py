@@ -220,3 +220,37 @@ def test_a_model_without_a_store_or_a_body_is_refused(path):
 def test_refusals(options, words):
     with pytest.raises(UsageError, match=words):
         run(**options)
+
+
+ALONE = """
+[model]
+name = "heat_of_starts"
+[parameters]
+k = { value = 2.77, unit = "N/m" }
+l = { value = 1.0, unit = "m" }
+r = { value = 0.5, unit = "m/N**2/s" }
+T_0 = { value = 1.0, unit = "K" }
+c = { value = 1.0, unit = "J/K" }
+[domain]
+assume = ["T_spare > T_0", "T_body > T_0", "r > 0"]
+[initial]
+S_spare = 0.3
+S_body = 0.6
+q_spring = -1.45
+[elements]
+spare = { kind = "thermal_mass", temperature = "T_0*exp(S/c)" }
+body = { kind = "thermal_mass", temperature = "T_0*exp(S/c)" }
+spring = { kind = "spring", between = ["tip", "wall"], stiffness = "k*(1 + q**2/l**2)" }
+slip = { kind = "damper", between = ["tip", "wall"], velocity = "r*f*abs(f)", heats = "body" }
+"""
+
+
+@pytest.mark.parametrize("h", [0.02, 0.01])
+def test_a_state_that_stands_still_again_does_not_end_the_iteration_of_others(tmp_path, h):
+    """A start's loss heats `spare`, which nothing heats later; both steps after it are exact."""
+    (tmp_path / "heat_of_starts.toml").write_text(ALONE)
+    found = run(load(tmp_path / "heat_of_starts.toml"), duration=20 * h, step=h)
+    spare = found.S_spare.values
+    assert spare[1] > spare[0]
+    assert spare[1] == spare[-1]
+    assert np.abs(found.energy_residual).max() <= 1e-14 * found.energy.max()

@@ -19,6 +19,11 @@ enum { MORE_ITERATIONS = 8 };
 enum { MOST_PARTS = 1 << 16 };
 /* What Newton's method may leave, in 1e-9 of a step: 1e-15 of it, where balances have to close. */
 #define EXACT 1e-6
+/*
+ * A step, in 1e-9 of it.  A state that was expected to move, and does not, is off by more; what that
+ * falls to says nothing of how the others converge.
+ */
+#define WHOLE 1e9
 /* No state moves by less than 1e9 times this. */
 #define LEAST_SIZE 1e-200
 /*
@@ -140,7 +145,7 @@ static int MODEL(root)(MODEL(model) *m, const double *restrict x, double *restri
         }
         if (share == 1.0 && (worst <= 1.0 || worst * (worst / before) * (worst / before) <= enough))
             return 1;
-        before = share == 1.0 ? worst : 0.0;
+        before = share == 1.0 ? fmin(worst, WHOLE) : 0.0;
     }
     return 0;
 }
