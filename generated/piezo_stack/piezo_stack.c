@@ -457,19 +457,23 @@ static double phi3(double d)
     return (1.0 + sum)/6.0;
 }
 
-/* Mean of max(s, 0) for s from a to b. */
-static double ramp(double a, double b)
+/* Mean of deadzone(s, w) for s from a to b. */
+static double mean_deadzone(double a, double b, double w)
 {
-    const double top = a > b ? a : b, low = a > b ? b : a;
-    return low >= 0.0 ? 0.5 * (a + b) : top <= 0.0 ? 0.0 : 0.5 * top * (top / (top - low));
+    const double from = a > w ? a - w : a < -w ? a + w : 0.0;
+    const double to = b > w ? b - w : b < -w ? b + w : 0.0;
+    const double way = b == a ? 1.0 : b - a;
+    return 0.5 * (from + to) * (from * to > 0.0 ? 1.0 : (to - from) / way);
 }
 
-/* Derivative of ramp by b. */
-static double ramp_by_new(double a, double b)
+/* Derivative of mean_deadzone by b. */
+static double mean_deadzone_by_new(double a, double b, double w)
 {
-    const double top = a > b ? a : b, low = a > b ? b : a;
-    const double share = top <= 0.0 ? 0.0 : top / (top - low);
-    return low >= 0.0 ? 0.5 : b > a ? share - 0.5 * share * share : 0.5 * share * share;
+    const double from = a > w ? a - w : a < -w ? a + w : 0.0;
+    const double to = b > w ? b - w : b < -w ? b + w : 0.0;
+    const double way = b == a ? 1.0 : b - a;
+    const double mean = 0.5 * (from + to) * ((to - from) / way);
+    return from * to > 0.0 ? 0.5 : (to - mean) / way;
 }
 
 long piezo_stack_newton_size_start(const piezo_stack_parameters *restrict p_)
@@ -869,11 +873,11 @@ int piezo_stack_newton(const double *restrict x,
         const double i_hysteron = 0.5*((phi[j] + phi_new[j])*per_L);
         const double i_hysteron_old = phi[j]*per_L;
         const double i_hysteron_new = phi_new[j]*per_L;
-        const double V_hysteron = rho[j]*per_T_minus_T_0*(ramp(i_hysteron_old - i_0[j], i_hysteron_new - i_0[j]) - ramp(-(i_hysteron_old + i_0[j]), -(i_hysteron_new + i_0[j])));
-        const double dV_hysteron_dphi_new = rho[j]*per_T_minus_T_0*(ramp_by_new(i_hysteron_old - i_0[j], i_hysteron_new - i_0[j]) + ramp_by_new(-(i_hysteron_old + i_0[j]), -(i_hysteron_new + i_0[j])))*per_L;
+        const double V_hysteron = rho[j]*per_T_minus_T_0*mean_deadzone(i_hysteron_old, i_hysteron_new, i_0[j]);
+        const double dV_hysteron_dphi_new = rho[j]*per_T_minus_T_0*mean_deadzone_by_new(i_hysteron_old, i_hysteron_new, i_0[j])*per_L;
         const double dheat_hysteron_dphi_new = i_hysteron*dV_hysteron_dphi_new
             + 0.5*(V_hysteron*per_L);
-        const double dV_hysteron_dS_new = -rho[j]*per_T_minus_T_0*per_T_minus_T_0*(ramp(i_hysteron_old - i_0[j], i_hysteron_new - i_0[j]) - ramp(-(i_hysteron_old + i_0[j]), -(i_hysteron_new + i_0[j])))*dT_minus_T_0_dS_new;
+        const double dV_hysteron_dS_new = -rho[j]*per_T_minus_T_0*per_T_minus_T_0*mean_deadzone(i_hysteron_old, i_hysteron_new, i_0[j])*dT_minus_T_0_dS_new;
         const double gap_phi = phi_new[j] - phi[j] - h*(V_in - V_capacitor - V_hysteron);
         const double pivot_phi = 1.0 + h*dV_hysteron_dphi_new;
         const double per_pivot_phi = 1.0/pivot_phi;
@@ -987,7 +991,7 @@ void piezo_stack_means(const double *restrict x,
         const double i_hysteron = 0.5*((phi[j] + phi_new[j])*per_L);
         const double i_hysteron_old = phi[j]*per_L;
         const double i_hysteron_new = phi_new[j]*per_L;
-        const double V_hysteron = rho[j]*per_T_minus_T_0*(ramp(i_hysteron_old - i_0[j], i_hysteron_new - i_0[j]) - ramp(-(i_hysteron_old + i_0[j]), -(i_hysteron_new + i_0[j])));
+        const double V_hysteron = rho[j]*per_T_minus_T_0*mean_deadzone(i_hysteron_old, i_hysteron_new, i_0[j]);
         sum_i_hysteron += i_hysteron;
         out[3 + j] = V_hysteron*i_hysteron;
         out[4 + hysteron_count + j] = V_hysteron*i_hysteron*per_T;

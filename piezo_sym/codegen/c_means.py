@@ -37,6 +37,34 @@ static double ramp_by_new(double a, double b)
     const double share = top <= 0.0 ? 0.0 : top / (top - low);
     return low >= 0.0 ? 0.5 : b > a ? share - 0.5 * share * share : 0.5 * share * share;
 }""",
+    "mean_deadzone": """\
+/* Mean of deadzone(s, w) for s from a to b. */
+static double mean_deadzone(double a, double b, double w)
+{
+    const double from = a > w ? a - w : a < -w ? a + w : 0.0;
+    const double to = b > w ? b - w : b < -w ? b + w : 0.0;
+    const double way = b == a ? 1.0 : b - a;
+    return 0.5 * (from + to) * (from * to > 0.0 ? 1.0 : (to - from) / way);
+}""",
+    "mean_deadzone_by_new": """\
+/* Derivative of mean_deadzone by b. */
+static double mean_deadzone_by_new(double a, double b, double w)
+{
+    const double from = a > w ? a - w : a < -w ? a + w : 0.0;
+    const double to = b > w ? b - w : b < -w ? b + w : 0.0;
+    const double way = b == a ? 1.0 : b - a;
+    const double mean = 0.5 * (from + to) * ((to - from) / way);
+    return from * to > 0.0 ? 0.5 : (to - mean) / way;
+}""",
+    "mean_deadzone_by_width": """\
+/* Derivative of mean_deadzone by w: how much of the way lies below the zone, less that above. */
+static double mean_deadzone_by_width(double a, double b, double w)
+{
+    const double low = a < b ? a : b, top = a < b ? b : a, way = b == a ? 1.0 : top - low;
+    const double above = low > w ? 1.0 : top > w ? (top - w) / way : 0.0;
+    const double below = top < -w ? 1.0 : low < -w ? (-w - low) / way : 0.0;
+    return below - above;
+}""",
     "mean_sign": """\
 /* Mean of the sign of s for s from a to b. */
 static double mean_sign(double a, double b)

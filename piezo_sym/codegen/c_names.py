@@ -31,7 +31,8 @@ _FLOATS = "DIG EPSILON MANT_DIG MAX MAX_10_EXP MAX_EXP MIN MIN_10_EXP MIN_EXP"
 #: The functions that generated code calls, beside those that laws are written with.
 _CALLED = (
     "copysign expm1 fabs pow phi1 phi2 phi3 ramp ramp_by_new mean_sign mean_sign_by_new "
-    "mean_tanh mean_tanh_by_new " + " ".join(f"power_{n}" for n in range(2, 9))
+    "mean_tanh mean_tanh_by_new mean_deadzone mean_deadzone_by_new mean_deadzone_by_width "
+    + " ".join(f"power_{n}" for n in range(2, 9))
 )
 #: What the engine adds to a module's text where it reads it with vectors for numbers.
 _VECTORS = (
@@ -39,7 +40,8 @@ _VECTORS = (
     "power_of_two small_expm1 reduced exp_of expm1_of LANE_BY_LANE sqrt_of log_of sin_of cos_of "
     "tanh_of pow_of whole_power least largest sign_of deadzone_of saturate_of phi3_of share_above "
     "ramp_of ramp_by_new_of mean_sign_of mean_sign_by_new_of bend_of "
-    "log1p_of atanh_of mean_tanh_of mean_tanh_by_new_of pick deadzone saturate sign"
+    "log1p_of atanh_of mean_tanh_of mean_tanh_by_new_of beyond_of mean_deadzone_of "
+    "mean_deadzone_by_new_of mean_deadzone_by_width_of about_per pick deadzone saturate sign"
 )
 _ENDS = (
     *("parameters", "states", "processes", "jacobian", "margins"),

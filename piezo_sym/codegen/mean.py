@@ -8,6 +8,7 @@ gradient: its product with ``new - old`` is U(new) - U(old), to round-off.
     x**n                sum of old**i*new**(n - i)/(n + 1)
     exp(a*x + b)        its old value times phi1(a*(new - old)), phi1(d) = (exp(d) - 1)/d
     max(x, 0)           ramp(old, new): no difference of integrals, so nothing cancels
+    deadzone(x, w)      mean_deadzone(old, new, w), likewise
     tanh(x)             mean_tanh(old, new): a step may pass its bend as if it were a kink
     else                Gauss quadrature, exact to round-off for smooth laws over a step
 
@@ -157,7 +158,7 @@ End = Callable[[Expr], Expr]
 
 
 def _mean_of_kink(function: str, args: tuple[Expr, ...], old: End, new: End) -> Expr | None:
-    """Return the mean of a function with kinks, most by means of max(x, 0), or of tanh."""
+    """Return the mean of a function with kinks, or of tanh; of some by means of max(x, 0)."""
 
     def ramp(arg: Expr) -> Expr:
         return Call("ramp", (old(arg), new(arg)))
@@ -165,6 +166,9 @@ def _mean_of_kink(function: str, args: tuple[Expr, ...], old: End, new: End) -> 
     z, w = args[0], args[-1]
     middle = _middle(old(z), new(z))
     over, under = ramp(add(z, neg(w))), ramp(neg(add(z, w)))
+    beyond = add(over, neg(under))
+    if old(w) == new(w):
+        beyond = Call("mean_deadzone", (old(z), new(z), w))
     match function:
         case "abs":
             return add(ramp(z), ramp(neg(z)))
@@ -177,9 +181,9 @@ def _mean_of_kink(function: str, args: tuple[Expr, ...], old: End, new: End) -> 
         case "min":
             return add(middle, neg(over))
         case "deadzone":
-            return add(over, neg(under))
+            return beyond
         case "saturate":
-            return add(middle, neg(over), under)
+            return add(middle, neg(beyond))
     return None
 
 

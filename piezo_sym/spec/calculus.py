@@ -210,8 +210,13 @@ def _slopes(function: str, args: tuple[Expr, ...]) -> tuple[Expr, ...]:
             return (add(Call("phi1", args), neg(Call("phi2", args))),)
         case "phi2":  # (phi1(z) - 1)/z
             return (add(Call("phi2", args), neg(mul(Num(Fraction(2)), Call("phi3", args)))),)
-        case "ramp" | "mean_sign" | "mean_tanh":
-            return (Call(f"{function}_by_old", args), Call(f"{function}_by_new", args))
+        case "ramp" | "mean_sign" | "mean_tanh":  # means over a step: its ends may change places
+            by_end = f"{function}_by_new"
+            return (Call(by_end, (args[1], z)), Call(by_end, args))
+        case "mean_deadzone":
+            by_end, w = f"{function}_by_new", args[2]
+            by_old, by_new = Call(by_end, (args[1], z, w)), Call(by_end, args)
+            return (by_old, by_new, Call(f"{function}_by_width", args))
     return _slopes_of_two(function, z, args[1])
 
 

@@ -44,6 +44,21 @@ def ramp_by_new(a, b):
     return b / width - b**2 / (2 * width**2) if b > 0 else a**2 / (2 * width**2)
 
 
+def mean_deadzone(a, b, w):
+    return ramp(a - w, b - w) - ramp(-a - w, -b - w)
+
+
+def mean_deadzone_by_new(a, b, w):
+    return ramp_by_new(a - w, b - w) + ramp_by_new(-a - w, -b - w)
+
+
+@np.vectorize
+def mean_deadzone_by_width(a, b, w):
+    """Return how much of 10^4 points on the way lies below the zone, less that above."""
+    way = a + (np.arange(10_000) + 0.5) / 10_000 * (b - a)
+    return float(np.mean(way < -w) - np.mean(way > w))
+
+
 @np.vectorize
 def mean_sign(a, b):
     return float(np.sign(a)) if a * b > 0 or a == b else (abs(b) - abs(a)) / (b - a)
@@ -77,6 +92,9 @@ CALLS = {
     "phi3": np.vectorize(lambda d: phi(3, d)),
     "ramp": ramp,
     "ramp_by_new": ramp_by_new,
+    "mean_deadzone": mean_deadzone,
+    "mean_deadzone_by_new": mean_deadzone_by_new,
+    "mean_deadzone_by_width": mean_deadzone_by_width,
     "mean_sign": mean_sign,
     "mean_sign_by_new": lambda old, new: 0 * (old + new),  # Newton's matrix may be rough
     "mean_tanh": mean_tanh,

@@ -1,7 +1,5 @@
 """The mean of tanh over a step, in C and in vectors: against 80 digits, and never active."""
 
-import ctypes
-
 import mpmath
 import numpy as np
 import pytest
@@ -9,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from piezo_sym.codegen.c_means import step_helpers
-from piezo_sym.run.engine.compiler import build, compilers
 from piezo_sym.run.engine.vector import text_beside
+from tests.codegen.called import built
 
 ENDS = st.floats(-50, 50) | st.floats(-1e-3, 1e-3) | st.floats(-1e5, 1e5)
 GAPS = st.floats(-1e-2, 1e-2) | st.floats(-1e-9, 1e-9) | st.floats(-30, 30) | st.floats(-1e5, 1e5)
@@ -23,29 +21,19 @@ double mean(double a, double b) { return mean_tanh_of(wide(a), wide(b))[1]; }
 double by_new(double a, double b) { return mean_tanh_by_new_of(wide(a), wide(b))[1]; }
 double plain(double a) { return tanh_of(wide(a))[0]; }
 """
-
-
-def built(folder, *texts):
-    """Return a library of some texts of C, whose functions take and return numbers."""
-    (folder / "tanh.c").write_text("\n".join(texts))
-    build(next(compilers()), ("-shared", "-fPIC"), folder / "tanh.c", folder / "tanh.so")
-    library = ctypes.CDLL(str(folder / "tanh.so"))
-    for name, arguments in (("mean", 2), ("by_new", 2), ("plain", 1)):
-        if hasattr(library, name):
-            function = getattr(library, name)
-            function.restype, function.argtypes = ctypes.c_double, [ctypes.c_double] * arguments
-    return library
+ARITIES = {"mean": 2, "by_new": 2}
 
 
 @pytest.fixture(scope="module")
 def vectors(tmp_path_factory):
-    return built(tmp_path_factory.mktemp("vectors"), text_beside("wide.h"), IN_VECTORS)
+    folder = tmp_path_factory.mktemp("vectors")
+    return built(folder, {**ARITIES, "plain": 1}, text_beside("wide.h"), IN_VECTORS)
 
 
 @pytest.fixture(scope="module")
 def alone(tmp_path_factory):
     texts = ["#include <math.h>", *step_helpers(CALLS), CALLS]
-    return built(tmp_path_factory.mktemp("alone"), *texts)
+    return built(tmp_path_factory.mktemp("alone"), ARITIES, *texts)
 
 
 @pytest.fixture(params=["alone", "vectors"], scope="module")

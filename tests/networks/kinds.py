@@ -16,6 +16,7 @@ LINEAR = (
 KINKED = (
     "{r}*deadzone({z}, {w})",
     "{r}/(T - {low})*deadzone({z}, {w})",
+    "{r}*deadzone({z}, {w}*T/{low})",
     "{r}*saturate({z}, {w})",
     "{r}*{z}*abs({z})",
     "{r}*max({z}, 0) + {s}*min({z}, 0)",
@@ -24,6 +25,7 @@ KINKED = (
 )
 SMOOTH = (
     "{r}*tanh({z}/{w})",
+    "{r}*tanh({z}*{low}/({w}*T))",
     "{r}*{z}**3",
     "{r}*{z} + {s}*{z}**3*T/{low}",
     "{r}*{z}*log(1 + {s}*{z}**2)",

@@ -36,10 +36,10 @@ static inline real chosen(mask where, real a, real b)
 
 static inline int any(mask where)
 {
-    bits found = 0;
-    for (int lane = 0; lane < WIDTH; ++lane)
-        found |= where[lane];
-    return found != 0;
+    typedef signed char few __attribute__((vector_size(WIDTH)));
+    static const char none[WIDTH] = {0};
+    const few found = __builtin_convertvector(where, few);
+    return memcmp(&found, none, WIDTH) != 0;
 }
 
 static inline real size_of(real a)
@@ -52,6 +52,13 @@ static inline real with_sign(real a, real b)
 {
     const mask sign = (mask)wide(-0.0);
     return (real)(((mask)a & ~sign) | ((mask)b & sign));
+}
+
+/* 1/a for a positive number, within an eighth: its bits taken from those of 2^1023 or so. */
+static inline real about_per(real a)
+{
+    const mask turned = nowhere + 0x7fde623822fc16e6;
+    return (real)(turned - (mask)a);
 }
 
 /* 2^k for whole k from -1022 to 1023, given as k + 0x1.8p52. */
@@ -164,7 +171,8 @@ static inline real saturate_of(real z, real w)
 static inline real phi3_of(real d)
 {
     const real size = size_of(d);
-    real near = 1.0 / 6.0 + d * (1.0 / 24.0 + d * (1.0 / 120.0 + d * (1.0 / 720.0 + d / 5040.0)));
+    const real near = 1.0 / 6.0
+        + d * (1.0 / 24.0 + d * (1.0 / 120.0 + d * (1.0 / 720.0 + d * (1.0 / 5040.0))));
     if (!any(size >= 0x1p-10))
         return near;
     real sum = zero;
@@ -193,6 +201,35 @@ static inline real ramp_by_new_of(real a, real b)
     const real top = chosen(a > b, a, b), low = chosen(a > b, b, a);
     const real share = share_above(low, top), half = 0.5 * share * share;
     return chosen(low >= 0.0, wide(0.5), chosen(b > a, share - half, half));
+}
+
+/* How far z lies beyond a zone from -w to w. */
+static inline real beyond_of(real z, real w)
+{
+    const real low = chosen(z < -w, -w, z);
+    return z - chosen(low > w, w, low);
+}
+
+/* Mean of deadzone(s, w) for s from a to b, and its derivatives by b and by w. */
+static inline real mean_deadzone_of(real a, real b, real w)
+{
+    const real from = beyond_of(a, w), to = beyond_of(b, w);
+    const real per_way = 1.0 / chosen(b == a, wide(1.0), b - a);
+    const real share = chosen(from * to > 0.0, wide(1.0), (to - from) * per_way);
+    return 0.5 * (from + to) * share;
+}
+
+static inline real mean_deadzone_by_new_of(real a, real b, real w)
+{
+    const real from = beyond_of(a, w), to = beyond_of(b, w);
+    const real per_way = 1.0 / chosen(b == a, wide(1.0), b - a);
+    return chosen(from * to > 0.0, wide(0.5), (to - mean_deadzone_of(a, b, w)) * per_way);
+}
+
+static inline real mean_deadzone_by_width_of(real a, real b, real w)
+{
+    const real top = chosen(a > b, a, b), low = chosen(a > b, b, a);
+    return share_above(-top - w, -low - w) - share_above(low - w, top - w);
 }
 
 static inline real mean_sign_of(real a, real b)
