@@ -33,6 +33,7 @@ typedef struct {
     long n, rows, ports, processes, inputs;
     MODEL(wide_path) path[SLOTS];
     mask on[SLOTS], books; /* which lanes are on a path, and which book what their steps do */
+    mask tries; /* iterations of Newton's method so far */
     real h, enough;        /* the steps, and what Newton's method may leave of them */
     real *sums, *lost, *kept[SLOTS], *kept_sums, *kept_lost;
     real *from, *y, *u, *change, *per, *means, *largest;
@@ -292,8 +293,8 @@ static real MODEL(corrected)(MODEL(wide) *w, mask going, int iteration, real bef
     for (long i = 0; i < w->n; ++i) {
         const real x = w->from[i], after = w->y[i] - w->change[i];
         if (measured)
-            w->per[i] = 1.0 / (1e-9 * size_of(after - x) + noise * (size_of(x) + w->largest[i])
-                                + LEAST_SIZE);
+            w->per[i] = about_per(1e-9 * size_of(after - x)
+                                  + noise * (size_of(x) + w->largest[i]) + LEAST_SIZE);
         sum += size_of(w->change[i]) * w->per[i];
         w->y[i] = chosen(going, after, w->y[i]);
     }
@@ -308,19 +309,17 @@ static mask MODEL(roots)(MODEL(wide) *w, mask going)
     const mask in = MODEL(wide_inside)(w->y, w->u, &w->p);
     for (long i = 0; i < w->n; ++i)
         w->y[i] = chosen(in, w->y[i], w->from[i]);
-    int iteration = 0;
-    for (; iteration < MOST_ITERATIONS && any(going); ++iteration) {
+    for (int iteration = 0; iteration < MOST_ITERATIONS && any(going); ++iteration) {
         const mask solved = MODEL(wide_newton)(w->from, w->y, w->u, w->h, &w->p, w->change);
-        const real left = MODEL(corrected)(w, going, iteration, before), rate = left / before;
-        going &= solved & (left < 1e300) & MODEL(wide_inside)(w->y, w->u, &w->p);
-        const mask last = going & ((left <= 1.0) | (left * rate * rate <= w->enough));
+        const real left = MODEL(corrected)(w, going, iteration, before);
+        const real cube = left * left * left, room = w->enough * before * before;
+        w->tries -= going;
+        going &= solved & (left >= 0.0) & (left < 1e100) & MODEL(wide_inside)(w->y, w->u, &w->p);
+        const mask last = going & ((left <= 1.0) | (cube <= room));
         found |= last;
         going &= ~last;
-        before = left;
+        before = chosen(left < WHOLE, left, wide(WHOLE));
     }
-    for (int k = 0; k < WIDTH; ++k)
-        if (w->lane[k].s)
-            w->lane[k].s->model.iterations += iteration;
     return found;
 }
 
@@ -400,7 +399,8 @@ static void MODEL(leave)(MODEL(wide) *w, int k)
         if (lane == k)
             MODEL(take)(w->largest, w->lane[k].s->model.largest, w->n, k);
         w->on[w->lane[lane].slot][lane] = 0;
-        w->books[lane] = 0;
+        w->lane[lane].s->model.iterations += w->tries[lane];
+        w->books[lane] = w->tries[lane] = 0;
         w->lane[lane].s = 0;
     }
 }
