@@ -47,9 +47,9 @@ def sweep_rows(problem: Problem, settings: Settings) -> Part:
     if isinstance(best, str):
         return Part(left_out=(f"sweep: {best}",))
     pairs = _own(family, best.tolerance)
-    ours = pairs[0].ours
+    one, two = pairs[0].ours, pairs[-1].ours
     found = [_peer(peer, way, family, settings) for peer in PEERS for way in peer.many]
-    pairs += [Pair(other, ours) for other in found if isinstance(other, Contestant)]
+    pairs += [Pair(o, ours) for o in found if isinstance(o, Contestant) for ours in (one, two)]
     rows = compared("sweep", pairs, settings.rounds, family.line)
     return Part(rows, tuple(f"sweep, {line}" for line in found if isinstance(line, str)))
 
