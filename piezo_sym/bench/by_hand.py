@@ -55,7 +55,7 @@ class Hand:
         calls = LANE_CALLS // (lanes + 10)
         found = [out() for _, out in (hand, made)]
         gap = float(np.max(np.abs(found[1] - found[0]) / np.maximum(np.abs(found[0]), 1.0)))
-        note = f"they differ by {gap:.0e}"
+        note = f"distance to ours {gap:.0e}"
         first = Contestant(f"hand-written C, r = {lanes}", hand[0], calls, note=note)
         return first, Contestant(f"generated C, r = {lanes}", made[0], calls)
 

@@ -55,7 +55,7 @@ def sweep_rows(problem: Problem, settings: Settings) -> Part:
 
 
 def _own(family: Family, rtol: float) -> list[Pair]:
-    """Return what this package does in several ways, the usual one first."""
+    """Return what this package does in several ways: first one thread, last two."""
     many = len(family.values)
 
     def contestant(name: str, solve: Solver) -> Contestant:

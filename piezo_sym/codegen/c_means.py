@@ -38,12 +38,12 @@ static double ramp_by_new(double a, double b)
     return low >= 0.0 ? 0.5 : b > a ? share - 0.5 * share * share : 0.5 * share * share;
 }""",
     "mean_deadzone": """\
-/* Mean of deadzone(s, w) for s from a to b. */
+/* Mean of deadzone(s, w) for s from a to b, w >= 0. */
 static double mean_deadzone(double a, double b, double w)
 {
     const double from = a > w ? a - w : a < -w ? a + w : 0.0;
     const double to = b > w ? b - w : b < -w ? b + w : 0.0;
-    const double way = b == a ? 1.0 : b - a;
+    const double way = fabs(b - a) > 0x1p-1000 ? b - a : 1.0;
     return 0.5 * (from + to) * (from * to > 0.0 ? 1.0 : (to - from) / way);
 }""",
     "mean_deadzone_by_new": """\
@@ -52,15 +52,15 @@ static double mean_deadzone_by_new(double a, double b, double w)
 {
     const double from = a > w ? a - w : a < -w ? a + w : 0.0;
     const double to = b > w ? b - w : b < -w ? b + w : 0.0;
-    const double way = b == a ? 1.0 : b - a;
-    const double mean = 0.5 * (from + to) * ((to - from) / way);
-    return from * to > 0.0 ? 0.5 : (to - mean) / way;
+    const double way = fabs(b - a) > 0x1p-1000 ? b - a : 1.0;
+    return from * to > 0.0 ? 0.5 : (to - mean_deadzone(a, b, w)) / way;
 }""",
     "mean_deadzone_by_width": """\
 /* Derivative of mean_deadzone by w: how much of the way lies below the zone, less that above. */
 static double mean_deadzone_by_width(double a, double b, double w)
 {
-    const double low = a < b ? a : b, top = a < b ? b : a, way = b == a ? 1.0 : top - low;
+    const double low = a < b ? a : b, top = a < b ? b : a;
+    const double way = top - low > 0x1p-1000 ? top - low : 1.0;
     const double above = low > w ? 1.0 : top > w ? (top - w) / way : 0.0;
     const double below = top < -w ? 1.0 : low < -w ? (-w - low) / way : 0.0;
     return below - above;

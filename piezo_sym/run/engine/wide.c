@@ -301,7 +301,10 @@ static real MODEL(corrected)(MODEL(wide) *w, mask going, int iteration, real bef
     return sum; /* no number, if one of them is none */
 }
 
-/* Newton's method in all lanes of `going`; returns those in which it converged in the domain. */
+/*
+ * Newton's method in all lanes of `going`; returns those in which it converged in the domain.  Where
+ * a state is beyond all numbers, what is left is negative, or no number.
+ */
 static mask MODEL(roots)(MODEL(wide) *w, mask going)
 {
     mask found = nowhere;

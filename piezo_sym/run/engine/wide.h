@@ -21,6 +21,8 @@ typedef long bits; /* what a comparison of doubles gives */
 typedef long long bits;
 #endif
 typedef bits mask __attribute__((vector_size(8 * WIDTH), may_alias)); /* 0, or -1: all bits */
+typedef unsigned long long pattern __attribute__((vector_size(8 * WIDTH), may_alias));
+typedef signed char few __attribute__((vector_size(WIDTH))); /* a mask in one number */
 
 static const real zero = {0.0};
 static const mask nowhere = {0};
@@ -36,10 +38,10 @@ static inline real chosen(mask where, real a, real b)
 
 static inline int any(mask where)
 {
-    typedef signed char few __attribute__((vector_size(WIDTH)));
-    static const char none[WIDTH] = {0};
-    const few found = __builtin_convertvector(where, few);
-    return memcmp(&found, none, WIDTH) != 0;
+    const few small = __builtin_convertvector(where, few);
+    unsigned long long found = 0;
+    memcpy(&found, &small, WIDTH);
+    return found != 0;
 }
 
 static inline real size_of(real a)
@@ -54,11 +56,13 @@ static inline real with_sign(real a, real b)
     return (real)(((mask)a & ~sign) | ((mask)b & sign));
 }
 
-/* 1/a for a positive number, within an eighth: its bits taken from those of 2^1023 or so. */
+/*
+ * 1/a for a from 1e-300 to 1e300, within a nineteenth: the bits of a number are nearly its logarithm,
+ * and the constant is nearly twice those of 1.  If a is infinite, it is negative.
+ */
 static inline real about_per(real a)
 {
-    const mask turned = nowhere + 0x7fde623822fc16e6;
-    return (real)(turned - (mask)a);
+    return (real)(0x7fde623822fc16e6ull - (pattern)a);
 }
 
 /* 2^k for whole k from -1022 to 1023, given as k + 0x1.8p52. */
@@ -210,11 +214,17 @@ static inline real beyond_of(real z, real w)
     return z - chosen(low > w, w, low);
 }
 
-/* Mean of deadzone(s, w) for s from a to b, and its derivatives by b and by w. */
+/* How far b is from a, or 1 if that is next to nothing. */
+static inline real way_of(real a, real b)
+{
+    return chosen(size_of(b - a) > 0x1p-1000, b - a, wide(1.0));
+}
+
+/* Mean of deadzone(s, w) for s from a to b, w >= 0, and its derivatives by b and by w. */
 static inline real mean_deadzone_of(real a, real b, real w)
 {
     const real from = beyond_of(a, w), to = beyond_of(b, w);
-    const real per_way = 1.0 / chosen(b == a, wide(1.0), b - a);
+    const real per_way = 1.0 / way_of(a, b);
     const real share = chosen(from * to > 0.0, wide(1.0), (to - from) * per_way);
     return 0.5 * (from + to) * share;
 }
@@ -222,7 +232,7 @@ static inline real mean_deadzone_of(real a, real b, real w)
 static inline real mean_deadzone_by_new_of(real a, real b, real w)
 {
     const real from = beyond_of(a, w), to = beyond_of(b, w);
-    const real per_way = 1.0 / chosen(b == a, wide(1.0), b - a);
+    const real per_way = 1.0 / way_of(a, b);
     return chosen(from * to > 0.0, wide(0.5), (to - mean_deadzone_of(a, b, w)) * per_way);
 }
 
