@@ -71,7 +71,7 @@ def read_plan(module: GeneratedModule, asked: Asked) -> Plan:
         named, rtol = checked_method(asked.method), read_rtol(asked.rtol)
         refuse_step(asked.step, named, asked.rtol)
         end = positive(asked.duration, "sweep.duration")
-        samples = sample_times(asked.times, asked.every, asked.step, end)
+        samples = sample_times(times_of(asked), asked.every, asked.step, end)
         inputs = read_inputs(module, asked.inputs, end)
         base = read_parameters(module, asked.parameters)
         axes = read_axes(module, asked.over, end, {b: lanes(base, b) for b in module.BANKS})
@@ -88,6 +88,15 @@ def read_plan(module: GeneratedModule, asked: Asked) -> Plan:
         how = (way.method, rtol, step, asked.reduce, asked.reduce_by == "run", largest_banks(axes))
         sizes = (together, most, way.note)
         return Plan(axes, inputs.signals, end, *given, samples, *how, *sizes)  # type: ignore[arg-type]
+
+
+def times_of(asked: Asked) -> int | ArrayLike | None:
+    """Return the samples asked for; where only the last is kept, runs with a tolerance have no more.
+
+    Each sample in between would cost an interval of its own.
+    """
+    free = asked.times is None and asked.every is None and asked.step is None
+    return 2 if free and asked.reduce == "last" else asked.times
 
 
 @contextmanager

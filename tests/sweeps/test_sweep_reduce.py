@@ -39,6 +39,24 @@ def test_last_is_the_last_sample():
     assert last.attrs["reduction"] == "last"
 
 
+@pytest.mark.parametrize("how", [{"rtol": 1e-5}, {"step": 3e-5}], ids=str)
+def test_where_the_last_is_kept_no_samples_in_between_are_paid_for(how):
+    options = {"duration": 0.01, "inputs": BASE["inputs"], "over": {"L": [1e-3, 2e-3]}, **how}
+    times = {"times": [0.0, 0.01]} if "rtol" in how else {}
+    last = sweep("piezo_stack", reduce="last", **options)
+    whole = sweep("piezo_stack", **times, **options)
+    for name in ("q", "S", "energy", "energy_residual"):
+        np.testing.assert_array_equal(last[name], whole[name].isel(time=-1), err_msg=name)
+
+
+def test_inputs_that_leave_the_domain_between_its_ends_still_stop_a_run():
+    dip = {"T_e": (np.array([0.0, 0.004, 0.005, 0.006, 0.01]), [298.15, 298.15, 290, 298.15, 298.15])}
+    options = {"over": {"L": [1e-3, 2e-3]}, "duration": 0.01, "reduce": "last"}
+    with pytest.warns(SweepWarning, match="2 of 2 runs failed"):
+        last = sweep("piezo_stack", inputs=dip, **options)
+    assert all("T_e > T_0" in str(error) for error in last.error.values)
+
+
 def test_mean_is_the_integral_over_the_span():
     times = np.array([0.0, 0.001, 0.0015, 0.004, 0.01])
     options = {**BASE, "times": times}
