@@ -457,12 +457,12 @@ static double phi3(double d)
     return (1.0 + sum)/6.0;
 }
 
-/* Mean of deadzone(s, w) for s from a to b. */
+/* Mean of deadzone(s, w) for s from a to b, w >= 0. */
 static double mean_deadzone(double a, double b, double w)
 {
     const double from = a > w ? a - w : a < -w ? a + w : 0.0;
     const double to = b > w ? b - w : b < -w ? b + w : 0.0;
-    const double way = b == a ? 1.0 : b - a;
+    const double way = fabs(b - a) > 0x1p-1000 ? b - a : 1.0;
     return 0.5 * (from + to) * (from * to > 0.0 ? 1.0 : (to - from) / way);
 }
 
@@ -471,9 +471,8 @@ static double mean_deadzone_by_new(double a, double b, double w)
 {
     const double from = a > w ? a - w : a < -w ? a + w : 0.0;
     const double to = b > w ? b - w : b < -w ? b + w : 0.0;
-    const double way = b == a ? 1.0 : b - a;
-    const double mean = 0.5 * (from + to) * ((to - from) / way);
-    return from * to > 0.0 ? 0.5 : (to - mean) / way;
+    const double way = fabs(b - a) > 0x1p-1000 ? b - a : 1.0;
+    return from * to > 0.0 ? 0.5 : (to - mean_deadzone(a, b, w)) / way;
 }
 
 long piezo_stack_newton_size_start(const piezo_stack_parameters *restrict p_)

@@ -91,7 +91,7 @@ def read_plan(module: GeneratedModule, asked: Asked) -> Plan:
 
 
 def times_of(asked: Asked) -> int | ArrayLike | None:
-    """Return the samples asked for; where only the last is kept, runs with a tolerance have no more.
+    """Return the samples asked for; where only the last is kept, the end alone.
 
     Each sample in between would cost an interval of its own.
     """

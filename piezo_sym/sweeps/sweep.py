@@ -79,8 +79,8 @@ def sweep(
         dimension these labels. A tuple of names -> a list of tuples, or an array (points, names):
         values that go together, one dimension "L_T_e", with coordinates L and T_e along it.
     inputs, duration, rtol, step, parameters, initial, times, every : of all runs, as for
-        `simulate`: 1001 samples when `times` is left out, each of which costs steps of its own; with
-        `reduce="last"` and a tolerance the end alone.
+        `simulate`: 1001 samples when `times` is left out, each of which costs steps of its own;
+        with `reduce="last"` and a tolerance the end alone.
     method : as for `simulate`; discrete_gradient when left out, and without a compiler LSODA.
     reduce : "last", the values at the last sample; "mean", the mean over time (by trapezoids); or a
         function of a run's Dataset (as of `simulate`, swept values as coordinates; that of an

@@ -145,7 +145,7 @@ def stages(text):
 
 
 def placed():
-    """Each law at each place; the fast tier has each law at a damper, and at a third of the others."""
+    """Each law at each place; in the fast tier at a damper, and at a third of the others."""
     for n, law in enumerate(LAWS):
         for k, place in enumerate(PLACES):
             marks = [pytest.mark.long] if k and (n + k) % 3 else []

@@ -50,7 +50,7 @@ def test_where_the_last_is_kept_no_samples_in_between_are_paid_for(how):
 
 
 def test_inputs_that_leave_the_domain_between_its_ends_still_stop_a_run():
-    dip = {"T_e": (np.array([0.0, 0.004, 0.005, 0.006, 0.01]), [298.15, 298.15, 290, 298.15, 298.15])}
+    dip = {"T_e": ([0.0, 0.004, 0.005, 0.006, 0.01], [298.15, 298.15, 290.0, 298.15, 298.15])}
     options = {"over": {"L": [1e-3, 2e-3]}, "duration": 0.01, "reduce": "last"}
     with pytest.warns(SweepWarning, match="2 of 2 runs failed"):
         last = sweep("piezo_stack", inputs=dip, **options)
