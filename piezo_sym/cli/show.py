@@ -18,7 +18,7 @@ def show(
     spec: Annotated[str, typer.Argument(metavar="SPEC", help="Path or shipped name.")],
     latex: Annotated[bool, typer.Option("--latex", help="Print LaTeX.")] = False,
 ) -> None:
-    """Show the irreversible port-Hamiltonian system of a spec: U, rates, J0, processes, ports."""
+    """Show the irreversible port-Hamiltonian system of a spec: U, rates, domain, J0, processes."""
     from piezo_sym.derivation import derive
     from piezo_sym.spec.load import load
 
@@ -45,11 +45,22 @@ def _lines(iphs: IPHS) -> Iterator[str]:
     pairs = equations_text(iphs.reading)
     width = max(len(left) for left, _ in pairs)
     yield from (f"  {left.ljust(width)} = {right}" for left, right in pairs)
+    yield from _domain(iphs)
     yield from _matrix("J0, structure matrix", system.J0)
     for k, process in enumerate(system.processes):
         yield from _process(iphs, k, slot_text(process))
     if system.ports:
         yield from _matrix("g, input map", system.g)
+
+
+def _domain(iphs: IPHS) -> Iterator[str]:
+    """Yield the conditions that all proofs rest on; of those that no one wrote, what needs them."""
+    from piezo_sym.spec.tables import condition_text, conditions
+
+    yield "\nDomain"
+    for condition in conditions(iphs.model):
+        needs = "" if condition.where.startswith("domain.") else f"  ({condition.where})"
+        yield f"  {condition_text(condition.tree)}{needs}"
 
 
 def _matrix(title: str, matrix: LaneMatrix) -> Iterator[str]:

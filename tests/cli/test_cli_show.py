@@ -12,6 +12,14 @@ def test_the_text_has_the_equations_and_the_matrices(call):
         assert title in lines
 
 
+def test_the_domain_says_what_needs_a_condition_that_no_one_wrote(call, spec_file):
+    out = call("show", spec_file("deadzone(i, i_0)", "deadzone(i, i_0*(2 - T/T_0))")).out
+    domain = out.split("\nDomain\n")[1].split("\n\n")[0].splitlines()
+    assert domain[:2] == ["  T > T_0", "  T_e > T_0"]
+    assert "  k > 0  (elements.spring)" in domain
+    assert domain[-1] == "  i_0*(2 - T/T_0) >= 0  (elements.hysteron.voltage)"
+
+
 def test_the_latex_is_balanced_mathematics(call):
     answer = call("show", "piezo_stack", "--latex")
     assert (answer.code, answer.err) == (0, "")
