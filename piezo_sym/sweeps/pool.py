@@ -1,7 +1,8 @@
 """Boxes run side by side: in threads, or by any executor of `concurrent.futures`.
 
-Input: boxes, and a function that runs one or that sends it away.  Output: results in the order in
-which they come.  Few are on their way at once, so that results do not pile up.
+Input: boxes, and a function that runs one or that sends it away.  Output: results as they come,
+in the order of the boxes where some come together.  Few are on their way at once, so that results
+do not pile up.
 """
 
 from __future__ import annotations
@@ -103,18 +104,14 @@ def results(submit: Submit, boxes: Iterable[Box], at_once: int) -> Generator[Res
     ------
     RunError : a process of the executor died.
     """
-    pending: set[Future[Result]] = set()
+    pending: list[Future[Result]] = []
     try:
         for box in boxes:
-            pending.add(submit(box))
+            pending.append(submit(box))
             if len(pending) >= at_once:
-                done, pending = wait(pending, return_when=FIRST_COMPLETED)
-                while done:  # none is held while the next is waited for
-                    yield done.pop().result()
+                yield from come(pending)
         while pending:
-            done, pending = wait(pending, return_when=FIRST_COMPLETED)
-            while done:
-                yield done.pop().result()
+            yield from come(pending)
     except BrokenExecutor as cause:
         what = f"a process of the executor died: {one_line(str(cause))}"
         remedy = "with store=..., start again: what is done is kept"
@@ -122,6 +119,15 @@ def results(submit: Submit, boxes: Iterable[Box], at_once: int) -> Generator[Res
     finally:
         for future in pending:
             future.cancel()
+
+
+def come(pending: list[Future[Result]]) -> Generator[Result, None, None]:
+    """Wait, and take from the list what came: those that came together in the order sent."""
+    still = wait(pending, return_when=FIRST_COMPLETED).not_done
+    ready = [one for one in reversed(pending) if one not in still]
+    pending[:] = [one for one in pending if one in still]
+    while ready:  # none is held while the next is waited for
+        yield ready.pop().result()
 
 
 def processors() -> int:

@@ -7,7 +7,7 @@ import subprocess
 import sys
 import threading
 import time
-from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +19,7 @@ from piezo_sym.errors import EngineError, RunError, UsageError
 from piezo_sym.run import method as methods
 from piezo_sym.run.engine import EngineWarning
 from piezo_sym.sweeps import SweepWarning
+from piezo_sym.sweeps.pool import results
 
 ROOT = Path(__file__).parents[2]
 SPECS = ROOT / "tests" / "networks" / "specs"
@@ -46,6 +47,17 @@ def processes():
 def test_any_number_of_threads_gives_the_same(alone):
     for threads in (2, 5):
         assert_same(sweep("piezo_stack", **BASE, threads=threads), alone)
+
+
+@pytest.mark.parametrize("at_once", [1, 2, 7, 100])
+def test_what_comes_together_is_taken_in_the_order_sent(at_once):
+    assert list(results(at_hand, range(50), at_once)) == list(range(50))
+
+
+def at_hand(box):
+    future = Future()
+    future.set_result(box)
+    return future
 
 
 def test_a_thread_pool_of_ones_own(alone):
@@ -182,7 +194,7 @@ import signal
 import numpy as np
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a job in the background ignores it
 from piezo_sym import sine, sweep
-sweep("piezo_stack", over={{"L": np.linspace(5e-4, 5e-3, 3000)}}, inputs={{"V_in": sine(100, 100)}},
+sweep("piezo_stack", over={{"L": np.linspace(5e-4, 5e-3, 30_000)}}, inputs={{"V_in": sine(100, 100)}},
       duration={duration}, times=11, store={store!r}, method={method!r},
       progress=lambda *done: print(*done, flush=True))
 """
