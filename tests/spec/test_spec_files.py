@@ -215,9 +215,9 @@ def many_masses(count):
 
 
 def test_a_thousand_elements_are_loaded_in_time():
-    start = time.perf_counter()
+    start = time.process_time()
     assert len(parse(many_masses(2500)).elements) == 2500
-    assert time.perf_counter() - start < 2
+    assert time.process_time() - start < 2
 
 
 @pytest.mark.parametrize("error", [FileError("x", "y", "z"), SpecError("a\nb\u03bb", "c", "d")])

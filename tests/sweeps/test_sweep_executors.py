@@ -194,9 +194,9 @@ import signal
 import numpy as np
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a job in the background ignores it
 from piezo_sym import sine, sweep
-sweep("piezo_stack", over={{"L": np.linspace(5e-4, 5e-3, 30_000)}}, inputs={{"V_in": sine(100, 100)}},
-      duration={duration}, times=11, store={store!r}, method={method!r},
-      progress=lambda *done: print(*done, flush=True))
+over = {{"L": np.linspace(5e-4, 5e-3, 30_000)}}
+sweep("piezo_stack", over=over, inputs={{"V_in": sine(100, 100)}}, duration={duration}, times=11,
+      store={store!r}, method={method!r}, progress=lambda *done: print(*done, flush=True))
 """
 
 
@@ -225,7 +225,7 @@ def test_control_c_stops_within_seconds_and_leaves_the_store(tmp_path, duration,
             process.kill()
         took = time.monotonic() - begun
     assert "KeyboardInterrupt" in errors.splitlines()[-1]
-    assert took < 6  # a second or two, on a busy machine
+    assert took < 30  # seconds, on any machine; the runs of 10 s alone would take hours
     with xarray.open_zarr(path, chunks=None, consolidated=False) as found:
         done = found.error.values == ""
         assert (found.error.values[~done] == "not run").all()
