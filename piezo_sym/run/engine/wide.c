@@ -10,7 +10,7 @@ enum { SURVEY, MARCH, ADAPT };
  * interval together: the first takes the fine path, four steps a step; the other the trial and the
  * coarse path, one each, and the middle one, two.  SLOTS: how many paths a lane may have.
  */
-enum { FIRST, SECOND };
+enum { FIRST, SECOND, TRACKS };
 enum { SLOTS = 3 };
 
 /* A lane: its member (or none), the path it is on, the steps left of it, the next one's inputs. */
@@ -34,23 +34,46 @@ typedef struct {
     MODEL(wide_path) path[SLOTS];
     mask on[SLOTS], books; /* which lanes are on a path, and which book what their steps do */
     mask tries; /* iterations of Newton's method so far */
+    mask good;             /* which lanes' last steps converged */
     real h, enough;        /* the steps, and what Newton's method may leave of them */
     real *sums, *lost, *kept[SLOTS], *kept_sums, *kept_lost;
     real *from, *y, *u, *change, *per, *means, *largest;
     real *expected, *allowed, surprise; /* of the fine paths and the trial ones: see stepper.c */
-    int mode, tracks;
+    int mode, slots;                    /* how many paths its lanes may have */
     const MODEL(block) *b;
 } MODEL(wide);
+
+/*
+ * The vectors of a run.  If each track has one, a member has the same lane in each: their paths, and
+ * what those need, are alike then.  A single vector has a member's lanes side by side.
+ */
+typedef struct {
+    MODEL(wide) of[TRACKS];
+    int tracks, vectors;
+} MODEL(fleet);
+
+/* Where a track of a member is: a vector and a lane. */
+typedef struct {
+    MODEL(wide) *w;
+    int k;
+} MODEL(seat);
+
+static MODEL(seat) MODEL(seat_of)(MODEL(fleet) *f, int place, int track)
+{
+    if (f->vectors > 1)
+        return (MODEL(seat)){&f->of[track], place};
+    return (MODEL(seat)){&f->of[0], f->tracks * place + track};
+}
 
 extern const long MODEL(width);
 const long MODEL(width) = WIDTH;
 
-/* How many vectors `space` of run_wide has to hold. */
+/* How many vectors `space` of run_wide has to hold: that of each track. */
 long MODEL(wide_size)(const MODEL(model) *m);
 long MODEL(wide_size)(const MODEL(model) *m)
 {
     const long paths = SLOTS * 4 * m->n, step = 6 * m->n + m->inputs + MODEL(newton_size)(m->p);
-    return MODEL(wide_room)(m->p) + paths + step + 5 * m->rows;
+    return TRACKS * (MODEL(wide_room)(m->p) + paths + step + 5 * m->rows);
 }
 
 static void MODEL(wide_places)(MODEL(wide) *w, const MODEL(model) *m, real *space)
@@ -138,29 +161,39 @@ static void MODEL(take_path)(const MODEL(wide) *w, int k, int slot)
     }
 }
 
-/* Remember where an interval of lanes k and k + 1 begins: states and ledger. */
-static void MODEL(keep_wide)(MODEL(wide) *w, int k)
+/* Remember where an interval of a member begins: states and ledger. */
+static void MODEL(keep_wide)(MODEL(fleet) *f, int place)
 {
-    mask where = nowhere;
-    where[k] = where[k + 1] = -1;
-    for (int slot = 0; slot < SLOTS; ++slot)
-        MODEL(copy)(where, w->path[slot].x, w->kept[slot], w->n);
-    MODEL(copy)(where, w->sums, w->kept_sums, w->rows);
-    MODEL(copy)(where, w->lost, w->kept_lost, w->rows);
+    for (int track = 0; track < f->tracks; ++track) {
+        const MODEL(seat) at = MODEL(seat_of)(f, place, track);
+        MODEL(wide) *w = at.w;
+        mask where = nowhere;
+        where[at.k] = -1;
+        for (int slot = 0; slot < MODEL(slots_of)(w, at.k); ++slot)
+            MODEL(copy)(where, w->path[slot].x, w->kept[slot], w->n);
+        if (track == FIRST) {
+            MODEL(copy)(where, w->sums, w->kept_sums, w->rows);
+            MODEL(copy)(where, w->lost, w->kept_lost, w->rows);
+        }
+    }
 }
 
-static void MODEL(undo)(MODEL(wide) *w, int k)
+static void MODEL(undo)(MODEL(fleet) *f, int place)
 {
-    mask where = nowhere;
-    where[k] = where[k + 1] = -1;
-    for (int slot = 0; slot < SLOTS; ++slot) {
-        MODEL(wide_path) *path = &w->path[slot];
-        MODEL(copy)(where, w->kept[slot], path->x, w->n);
-        path->since = chosen(where, zero, path->since);
-        path->before = chosen(where, zero, path->before);
+    for (int track = 0; track < f->tracks; ++track) {
+        const MODEL(seat) at = MODEL(seat_of)(f, place, track);
+        MODEL(wide) *w = at.w;
+        mask where = nowhere;
+        where[at.k] = -1;
+        for (int slot = 0; slot < MODEL(slots_of)(w, at.k); ++slot) {
+            MODEL(copy)(where, w->kept[slot], w->path[slot].x, w->n);
+            w->path[slot].since[at.k] = w->path[slot].before[at.k] = 0.0;
+        }
+        if (track == FIRST) {
+            MODEL(copy)(where, w->kept_sums, w->sums, w->rows);
+            MODEL(copy)(where, w->kept_lost, w->lost, w->rows);
+        }
     }
-    MODEL(copy)(where, w->kept_sums, w->sums, w->rows);
-    MODEL(copy)(where, w->kept_lost, w->lost, w->rows);
 }
 
 /* Lane k takes the path of a slot next: its steps, their length, their inputs. */
@@ -188,69 +221,81 @@ static int MODEL(goes_on)(const MODEL(wide) *w, const MODEL(member) *s)
     return there && (w->mode != ADAPT || MODEL(levels_there)(s, w->b));
 }
 
-/* Begin the next interval of the member of lane k, the first of its lanes; 0 if there is none. */
-static int MODEL(begin)(MODEL(wide) *w, int k)
+/* Begin the next interval of a member; 0 if there is none. */
+static int MODEL(begin)(MODEL(fleet) *f, int place)
 {
-    if (!MODEL(goes_on)(w, w->lane[k].s))
+    const MODEL(seat) first = MODEL(seat_of)(f, place, FIRST);
+    if (!MODEL(goes_on)(first.w, first.w->lane[first.k].s))
         return 0;
-    MODEL(go)(w, k, 0);
-    if (w->mode != ADAPT)
+    MODEL(go)(first.w, first.k, 0);
+    if (f->tracks == 1)
         return 1;
-    MODEL(keep_wide)(w, k);
-    for (long i = 0; i < w->n; ++i)
-        w->path[0].x[i][k + 1] = w->path[0].x[i][k];
-    w->surprise[k] = w->surprise[k + 1] = 0.0;
-    MODEL(go)(w, k + 1, 0);
+    const MODEL(seat) second = MODEL(seat_of)(f, place, SECOND);
+    MODEL(keep_wide)(f, place);
+    for (long i = 0; i < first.w->n; ++i)
+        second.w->path[0].x[i][second.k] = first.w->path[0].x[i][first.k];
+    first.w->surprise[first.k] = second.w->surprise[second.k] = 0.0;
+    MODEL(go)(second.w, second.k, 0);
     return 1;
 }
 
 /* The error of an interval, in parts of what is allowed. */
-static double MODEL(apart)(const MODEL(wide) *w, int k)
+static double MODEL(apart)(MODEL(fleet) *f, int place)
 {
-    const real *x = w->path[0].x;
-    const double *tolerance = w->lane[k].s->tolerance;
-    const double strange = MODEL(strange)(w->surprise[k], w->surprise[k + 1]);
+    const MODEL(seat) first = MODEL(seat_of)(f, place, FIRST);
+    const MODEL(seat) second = MODEL(seat_of)(f, place, SECOND);
+    const real *fine = first.w->path[0].x, *trial = second.w->path[0].x;
+    const double *tolerance = first.w->lane[first.k].s->tolerance;
+    const double strange =
+        MODEL(strange)(first.w->surprise[first.k], second.w->surprise[second.k]);
     double worst = 0.0;
-    for (long i = 0; i < w->n; ++i) {
-        const double ratio = fabs(x[i][k] - x[i][k + 1]) / (FINEST * tolerance[i]);
+    for (long i = 0; i < first.w->n; ++i) {
+        const double ratio =
+            fabs(fine[i][first.k] - trial[i][second.k]) / (FINEST * tolerance[i]);
         worst = worst != worst || ratio <= worst ? worst : ratio;
     }
     return strange > worst ? strange : worst;
 }
 
 /* Write what a member has become at a sample. */
-static void MODEL(write_wide)(MODEL(wide) *w, int k, long row)
+static void MODEL(write_wide)(MODEL(fleet) *f, int place, long row)
 {
-    const MODEL(member) *s = w->lane[k].s;
-    MODEL(take)(w->sums, w->mode == MARCH ? s->out_sums + row * w->rows : s->fine.sums, w->rows, k);
-    MODEL(take)(w->path[0].x, w->mode == MARCH ? s->out_x + row * w->n : s->fine.x, w->n, k);
-    if (w->mode == MARCH)
+    const MODEL(seat) at = MODEL(seat_of)(f, place, FIRST);
+    const MODEL(wide) *w = at.w;
+    const MODEL(member) *s = w->lane[at.k].s;
+    const int march = f->tracks == 1;
+    MODEL(take)(w->sums, march ? s->out_sums + row * w->rows : s->fine.sums, w->rows, at.k);
+    MODEL(take)(w->path[0].x, march ? s->out_x + row * w->n : s->fine.x, w->n, at.k);
+    if (march)
         return;
-    MODEL(take)(w->path[1].x, s->coarse.x, w->n, k + 1);
-    MODEL(take)(w->path[2].x, s->middle.x, w->n, k + 1);
+    const MODEL(seat) other = MODEL(seat_of)(f, place, SECOND);
+    MODEL(take)(other.w->path[1].x, s->coarse.x, w->n, other.k);
+    MODEL(take)(other.w->path[2].x, s->middle.x, w->n, other.k);
     MODEL(write)(s, row);
 }
 
-/* The lanes of a member have ended an interval: what comes next; 0 if the member is done here. */
-static int MODEL(next)(MODEL(wide) *w, int k)
+/* A member has ended an interval: what comes next; 0 if it is done here. */
+static int MODEL(next)(MODEL(fleet) *f, int place)
 {
-    MODEL(member) *s = w->lane[k].s;
+    const MODEL(seat) at = MODEL(seat_of)(f, place, FIRST);
+    const MODEL(wide) *w = at.w;
+    MODEL(member) *s = w->lane[at.k].s;
     const long row = w->b->sample[s->done];
-    const double worst = w->mode == ADAPT ? MODEL(apart)(w, k) : 0.0;
+    const double worst = w->mode == ADAPT ? MODEL(apart)(f, place) : 0.0;
     if (!(worst <= 1.0)) {
-        MODEL(undo)(w, k);
+        MODEL(undo)(f, place);
         s->level = MODEL(raised)(s->level, worst);
-        return MODEL(begin)(w, k);
+        return MODEL(begin)(f, place);
     }
     if (w->mode == SURVEY)
         for (long i = 0; i < w->n; ++i)
-            s->tolerance[i] = fmax(s->tolerance[i], fabs(w->path[0].x[i][k]));
+            s->tolerance[i] = fmax(s->tolerance[i], fabs(w->path[0].x[i][at.k]));
     else if (row >= 0)
-        MODEL(write_wide)(w, k, row);
+        MODEL(write_wide)(f, place, row);
     if (w->mode == ADAPT)
         s->level = MODEL(lowered)(s->level, worst);
     ++s->done;
-    return MODEL(begin)(w, k);
+    return MODEL(begin)(f, place);
 }
 
 /* The state before each lane's step, and the prediction of that after it: a parabola's. */
@@ -258,7 +303,7 @@ static void MODEL(predictions)(MODEL(wide) *w)
 {
     real since = w->path[0].since, before = w->path[0].before;
     int used[SLOTS] = {1};
-    for (int k = 1; k < SLOTS; ++k) {
+    for (int k = 1; k < w->slots; ++k) {
         used[k] = any(w->on[k]);
         since = chosen(w->on[k], w->path[k].since, since);
         before = chosen(w->on[k], w->path[k].before, before);
@@ -268,7 +313,7 @@ static void MODEL(predictions)(MODEL(wide) *w)
     const real by_prior = chosen(before > 0.0, w->h * slope / before, zero);
     for (long i = 0; i < w->n; ++i) {
         real x = w->path[0].x[i], last = w->path[0].last[i], prior = w->path[0].prior[i];
-        for (int k = 1; k < SLOTS; ++k) {
+        for (int k = 1; k < w->slots; ++k) {
             if (!used[k])
                 continue;
             x = chosen(w->on[k], w->path[k].x[i], x);
@@ -361,7 +406,7 @@ static void MODEL(commit)(MODEL(wide) *w, mask good)
     }
     if (w->mode == ADAPT)
         MODEL(compare_wide)(w, good);
-    for (int k = 0; k < SLOTS; ++k) {
+    for (int k = 0; k < w->slots; ++k) {
         const mask here = good & w->on[k];
         MODEL(wide_path) *path = &w->path[k];
         if (!any(here))
@@ -393,73 +438,99 @@ static int MODEL(alone)(MODEL(wide) *w, int k)
     return 1;
 }
 
-/* The lanes of a member leave it, which keeps what they have done. */
-static void MODEL(leave)(MODEL(wide) *w, int k)
+/* The lanes of a member leave it; it keeps what they have done. */
+static void MODEL(leave)(MODEL(fleet) *f, int place)
 {
-    for (int lane = k; lane < k + w->tracks; ++lane) {
-        for (int slot = 0; slot < MODEL(slots_of)(w, lane); ++slot)
-            MODEL(take_path)(w, lane, slot);
-        if (lane == k)
-            MODEL(take)(w->largest, w->lane[k].s->model.largest, w->n, k);
-        w->on[w->lane[lane].slot][lane] = 0;
-        w->lane[lane].s->model.iterations += w->tries[lane];
-        w->books[lane] = w->tries[lane] = 0;
-        w->lane[lane].s = 0;
+    for (int track = 0; track < f->tracks; ++track) {
+        const MODEL(seat) at = MODEL(seat_of)(f, place, track);
+        MODEL(wide) *w = at.w;
+        MODEL(lane) *lane = &w->lane[at.k];
+        for (int slot = 0; slot < MODEL(slots_of)(w, at.k); ++slot)
+            MODEL(take_path)(w, at.k, slot);
+        if (track == FIRST)
+            MODEL(take)(w->largest, lane->s->model.largest, w->n, at.k);
+        w->on[lane->slot][at.k] = 0;
+        lane->s->model.iterations += w->tries[at.k];
+        w->books[at.k] = w->tries[at.k] = 0;
+        lane->s = 0;
     }
 }
 
 /* Lanes take a member that goes on, and begin. */
-static void MODEL(enter)(MODEL(wide) *w, int k, MODEL(member) *s)
+static void MODEL(enter)(MODEL(fleet) *f, int place, MODEL(member) *s)
 {
-    for (int lane = k; lane < k + w->tracks; ++lane) {
-        const int books = w->mode != SURVEY && w->lane[lane].track == FIRST;
-        w->lane[lane].s = s;
-        w->books[lane] = -books;
-        w->enough[lane] = books ? EXACT : s->model.slack;
-        MODEL(wide_load)(&w->p, s->model.p, lane);
-        MODEL(put)(w->largest, s->model.largest, w->n, lane);
+    for (int track = 0; track < f->tracks; ++track) {
+        const MODEL(seat) at = MODEL(seat_of)(f, place, track);
+        MODEL(wide) *w = at.w;
+        const int k = at.k, books = w->mode != SURVEY && track == FIRST;
+        w->lane[k].s = s;
+        w->lane[k].track = track;
+        w->books[k] = -books;
+        w->enough[k] = books ? EXACT : s->model.slack;
+        MODEL(wide_load)(&w->p, s->model.p, k);
+        MODEL(put)(w->largest, s->model.largest, w->n, k);
         for (long i = 0; w->mode == ADAPT && i < w->n; ++i)
-            w->allowed[i][lane] = 1.0 / s->tolerance[i];
-        for (int slot = 0; slot < MODEL(slots_of)(w, lane); ++slot)
-            MODEL(put_path)(w, lane, slot);
+            w->allowed[i][k] = 1.0 / s->tolerance[i];
+        for (int slot = 0; slot < MODEL(slots_of)(w, k); ++slot)
+            MODEL(put_path)(w, k, slot);
     }
-    if (w->mode == ADAPT)
+    if (f->of[0].mode == ADAPT)
         MODEL(watch)(s);
-    MODEL(begin)(w, k);
+    MODEL(begin)(f, place);
 }
 
 /* The lanes that have no member take the next that has something to do. */
-static void MODEL(refill)(MODEL(wide) *w, int k, MODEL(member) **next, const MODEL(member) *end)
+static void MODEL(refill)(MODEL(fleet) *f, int place, MODEL(member) **next,
+                          const MODEL(member) *end)
 {
-    for (; !w->lane[k].s && *next < end; ++*next)
-        if (MODEL(goes_on)(w, *next))
-            MODEL(enter)(w, k, *next);
+    const MODEL(seat) at = MODEL(seat_of)(f, place, FIRST);
+    for (; !at.w->lane[at.k].s && *next < end; ++*next)
+        if (MODEL(goes_on)(at.w, *next))
+            MODEL(enter)(f, place, *next);
 }
 
 /* A lane has made its step, or makes it alone; 0 if there is none. */
-static int MODEL(moved)(MODEL(wide) *w, int k, mask good)
+static int MODEL(moved)(MODEL(wide) *w, int k)
 {
     MODEL(lane) *lane = &w->lane[k];
-    const int found = good[k] || MODEL(alone)(w, k);
+    const int found = w->good[k] || MODEL(alone)(w, k);
     lane->u += w->inputs;
     --lane->left;
     return found;
 }
 
 /* The lanes of a member have made a step each, or not: go on; 0 if the member is done here. */
-static int MODEL(all_moved)(MODEL(wide) *w, int k, mask good)
+static int MODEL(all_moved)(MODEL(fleet) *f, int place)
 {
-    const int last = k + w->tracks - 1;
-    if (!MODEL(moved)(w, k, good) || (last > k && !MODEL(moved)(w, last, good))) {
-        w->lane[k].s->failed = 1;
-        if (w->mode == ADAPT)
-            MODEL(undo)(w, k);
+    const MODEL(seat) first = MODEL(seat_of)(f, place, FIRST);
+    const MODEL(seat) last = MODEL(seat_of)(f, place, f->tracks - 1);
+    MODEL(lane) *lane = &last.w->lane[last.k];
+    if (!MODEL(moved)(first.w, first.k) || (f->tracks > 1 && !MODEL(moved)(last.w, last.k))) {
+        lane->s->failed = 1;
+        if (f->tracks > 1)
+            MODEL(undo)(f, place);
         return 0;
     }
-    if (w->lane[k].left == 0)
-        return MODEL(next)(w, k);
-    if (w->lane[last].left == 0)
-        MODEL(go)(w, last, w->lane[last].slot + 1);
+    if (first.w->lane[first.k].left == 0)
+        return MODEL(next)(f, place);
+    if (lane->left == 0)
+        MODEL(go)(last.w, last.k, lane->slot + 1);
+    return 1;
+}
+
+/* All lanes of a vector make a step, those that it fails are told by `good`; 0 if there are none. */
+static int MODEL(advance)(MODEL(wide) *w)
+{
+    const mask going = w->on[0] | w->on[1] | w->on[2];
+    if (!any(going))
+        return 0;
+    for (int k = 0; k < WIDTH; ++k)
+        for (long i = 0; w->lane[k].s && i < w->inputs; ++i)
+            w->u[i][k] = w->lane[k].u[i];
+    MODEL(predictions)(w);
+    w->good = MODEL(roots)(w, going);
+    w->good &= MODEL(natural)(w);
+    MODEL(commit)(w, w->good);
     return 1;
 }
 
@@ -469,31 +540,33 @@ void MODEL(run_wide)(MODEL(member) *members, long count, const MODEL(block) *b, 
 void MODEL(run_wide)(MODEL(member) *members, long count, const MODEL(block) *b, int mode,
                      real *space)
 {
-    MODEL(wide) w = {.mode = mode, .tracks = mode == ADAPT ? 2 : 1, .b = b};
+    const int tracks = mode == ADAPT ? TRACKS : 1;
+    const int vectors = tracks * count > WIDTH ? tracks : 1, places = WIDTH * vectors / tracks;
+    const long size = MODEL(wide_size)(&members->model) / TRACKS;
+    MODEL(fleet) f = {.tracks = tracks, .vectors = vectors};
     MODEL(member) *next = members;
-    MODEL(wide_places)(&w, &members->model, space);
-    w.h = wide(1.0), w.enough = wide(EXACT);
-    for (int k = 0; k < WIDTH; ++k) {
-        w.lane[k].track = k % w.tracks == 0 ? FIRST : SECOND;
-        MODEL(wide_load)(&w.p, members->model.p, k); /* so that idle lanes compute with numbers */
+    for (int v = 0; v < vectors; ++v) {
+        MODEL(wide) *w = &f.of[v];
+        w->mode = mode, w->b = b, w->slots = mode == ADAPT && v == vectors - 1 ? SLOTS : 1;
+        w->h = wide(1.0), w->enough = wide(EXACT);
+        MODEL(wide_places)(w, &members->model, space + v * size);
+        for (int k = 0; k < WIDTH; ++k) /* so that idle lanes compute with numbers */
+            MODEL(wide_load)(&w->p, members->model.p, k);
     }
-    for (int k = 0; k < WIDTH; k += w.tracks)
-        MODEL(refill)(&w, k, &next, members + count);
+    for (int place = 0; place < places; ++place)
+        MODEL(refill)(&f, place, &next, members + count);
     for (;;) {
-        const mask going = w.on[0] | w.on[1] | w.on[2];
-        if (!any(going))
+        int steps = 0;
+        for (int v = 0; v < vectors; ++v)
+            steps += MODEL(advance)(&f.of[v]);
+        if (!steps)
             return;
-        for (int k = 0; k < WIDTH; ++k)
-            for (long i = 0; w.lane[k].s && i < w.inputs; ++i)
-                w.u[i][k] = w.lane[k].u[i];
-        MODEL(predictions)(&w);
-        const mask found = MODEL(roots)(&w, going), good = found & MODEL(natural)(&w);
-        MODEL(commit)(&w, good);
-        for (int k = 0; k < WIDTH; k += w.tracks) {
-            if (!w.lane[k].s || MODEL(all_moved)(&w, k, good))
+        for (int place = 0; place < places; ++place) {
+            const MODEL(seat) at = MODEL(seat_of)(&f, place, FIRST);
+            if (!at.w->lane[at.k].s || MODEL(all_moved)(&f, place))
                 continue;
-            MODEL(leave)(&w, k);
-            MODEL(refill)(&w, k, &next, members + count);
+            MODEL(leave)(&f, place);
+            MODEL(refill)(&f, place, &next, members + count);
         }
     }
 }
