@@ -522,6 +522,8 @@ int piezo_stack_newton_start(const double *restrict x,
     const double per_T_0 = 1.0/T_0;
     const double per_c_0 = 1.0/c_0;
     const double per_h = 1.0/h;
+    /* before the step */
+    const double expm1_S = expm1(S*per_c_0);
     /* co-states dU/dx */
     const double F_spring = k*(q_new - q_l);
     const double v_mass = p_new*per_M;
@@ -532,7 +534,7 @@ int piezo_stack_newton_start(const double *restrict x,
     const double phi2_T = 0.5 + change_T*phi3_T;
     const double phi1_T = 1.0 + change_T*phi2_T;
     /* co-states dU/dx */
-    const double T_minus_T_0 = T_0*expm1(S*per_c_0)*phi1_T + T_0*(S_new - S)*per_c_0*phi2_T;
+    const double T_minus_T_0 = T_0*expm1_S*phi1_T + T_0*(S_new - S)*per_c_0*phi2_T;
     const double per_T_minus_T_0 = 1.0/T_minus_T_0;
     const double T = T_0 + T_minus_T_0;
     const double per_T = 1.0/T;
@@ -557,7 +559,7 @@ int piezo_stack_newton_start(const double *restrict x,
     const double dheat_numerical_dQ_C_new = dloss_Q_C_dQ_C_new*per_h;
     const double dphi2_T_dS_new = (phi2_T - 2.0*phi3_T)*per_c_0;
     const double dphi1_T_dS_new = (phi1_T - phi2_T)*per_c_0;
-    const double dT_minus_T_0_dS_new = T_0*expm1(S*per_c_0)*dphi1_T_dS_new
+    const double dT_minus_T_0_dS_new = T_0*expm1_S*dphi1_T_dS_new
         + T_0*per_c_0*phi2_T
         + T_0*(S_new - S)*per_c_0*dphi2_T_dS_new;
     const double dalpha_transducer_dS_new = a*per_T_0*dT_minus_T_0_dS_new;
@@ -713,6 +715,8 @@ void piezo_stack_means_start(const double *restrict x,
     const double per_M = 1.0/M;
     const double per_c_0 = 1.0/c_0;
     const double per_h = 1.0/h;
+    /* before the step */
+    const double expm1_S = expm1(S*per_c_0);
     /* co-states dU/dx */
     const double v_mass = p_new*per_M;
     /* means of exponentials */
@@ -721,7 +725,7 @@ void piezo_stack_means_start(const double *restrict x,
     const double phi2_T = 0.5 + change_T*phi3_T;
     const double phi1_T = 1.0 + change_T*phi2_T;
     /* co-states dU/dx */
-    const double T_minus_T_0 = T_0*expm1(S*per_c_0)*phi1_T + T_0*(S_new - S)*per_c_0*phi2_T;
+    const double T_minus_T_0 = T_0*expm1_S*phi1_T + T_0*(S_new - S)*per_c_0*phi2_T;
     const double per_T_minus_T_0 = 1.0/T_minus_T_0;
     const double T = T_0 + T_minus_T_0;
     const double per_T = 1.0/T;
@@ -808,6 +812,8 @@ int piezo_stack_newton(const double *restrict x,
     const double per_M = 1.0/M;
     const double per_T_0 = 1.0/T_0;
     const double per_c_0 = 1.0/c_0;
+    /* before the step */
+    const double expm1_S = expm1(S*per_c_0);
     /* mean co-states */
     const double F_spring = k*(0.5*(q + q_new) - q_l);
     const double v_mass = 0.5*((p + p_new)*per_M);
@@ -818,7 +824,7 @@ int piezo_stack_newton(const double *restrict x,
     const double phi2_T = 0.5 + change_T*phi3_T;
     const double phi1_T = 1.0 + change_T*phi2_T;
     /* co-states dU/dx */
-    const double T_minus_T_0 = T_0*expm1(S*per_c_0)*phi1_T + T_0*(S_new - S)*per_c_0*phi2_T;
+    const double T_minus_T_0 = T_0*expm1_S*phi1_T + T_0*(S_new - S)*per_c_0*phi2_T;
     const double per_T_minus_T_0 = 1.0/T_minus_T_0;
     /* mean co-states */
     const double T = T_0 + T_minus_T_0;
@@ -834,7 +840,7 @@ int piezo_stack_newton(const double *restrict x,
     const double dheat_damper_dp_new = v_mass*dF_damper_dp_new + 0.5*(F_damper*per_M);
     const double dphi2_T_dS_new = (phi2_T - 2.0*phi3_T)*per_c_0;
     const double dphi1_T_dS_new = (phi1_T - phi2_T)*per_c_0;
-    const double dT_minus_T_0_dS_new = T_0*expm1(S*per_c_0)*dphi1_T_dS_new
+    const double dT_minus_T_0_dS_new = T_0*expm1_S*dphi1_T_dS_new
         + T_0*per_c_0*phi2_T
         + T_0*(S_new - S)*per_c_0*dphi2_T_dS_new;
     const double dalpha_transducer_dS_new = a*per_T_0*dT_minus_T_0_dS_new;
@@ -967,6 +973,8 @@ void piezo_stack_means(const double *restrict x,
     /* reciprocals */
     const double per_M = 1.0/M;
     const double per_c_0 = 1.0/c_0;
+    /* before the step */
+    const double expm1_S = expm1(S*per_c_0);
     /* mean co-states */
     const double v_mass = 0.5*((p + p_new)*per_M);
     /* means of exponentials */
@@ -975,7 +983,7 @@ void piezo_stack_means(const double *restrict x,
     const double phi2_T = 0.5 + change_T*phi3_T;
     const double phi1_T = 1.0 + change_T*phi2_T;
     /* co-states dU/dx */
-    const double T_minus_T_0 = T_0*expm1(S*per_c_0)*phi1_T + T_0*(S_new - S)*per_c_0*phi2_T;
+    const double T_minus_T_0 = T_0*expm1_S*phi1_T + T_0*(S_new - S)*per_c_0*phi2_T;
     const double per_T_minus_T_0 = 1.0/T_minus_T_0;
     /* mean co-states */
     const double T = T_0 + T_minus_T_0;

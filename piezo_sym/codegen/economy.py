@@ -1,15 +1,16 @@
 """A step with fewer divisions and calls of functions: what it computes stays the same.
 
-Input: a `Step`.  Output: the same step, with ``per_L = 1/L`` where L divides more than once, and
-phi2 = 1/2 + d*phi3, phi1 = 1 + d*phi2 in place of calls.  A division takes as long as ten products.
-A step may be rounded differently from the rates at a point: its balances close whatever the last
-bit of its co-states is.
+Input: a `Step`.  Output: the same step, with ``per_L = 1/L`` where L divides more than once,
+phi2 = 1/2 + d*phi3, phi1 = 1 + d*phi2 in place of calls, and names for functions of the state
+before the step, which Newton's method does not change: ``expm1_S = expm1(S/c_0)``.  A division
+takes as long as ten products, an exponential as thirty.  A step may be rounded differently from the
+rates at a point: its balances close whatever the last bit of its co-states is.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
@@ -18,34 +19,38 @@ from piezo_sym.codegen.mean import HALF
 from piezo_sym.codegen.program import Quantity, Row
 from piezo_sym.codegen.step import Change, Step
 from piezo_sym.spec.calculus import add, mul
-from piezo_sym.spec.expressions import ONE, Call, Div, Expr, Node, Pow, Sym, rebuild
+from piezo_sym.spec.expressions import ONE, Call, Div, Expr, Node, Pow, Sym, names, rebuild
 from piezo_sym.spec.expressions import children as parts_of
 from piezo_sym.spec.names import fresh
 
 NOTE = "reciprocals"
+#: Of quantities that a caller may compute once a step, in whatever iterations they are used.
+BEFORE = "before the step"
 SQUARE = Fraction(2)
+FUNCTIONS = frozenset({"exp", "expm1", "log", "sqrt", "sin", "cos", "tanh"})
 
 
-def economical(step: Step, lanes: Mapping[str, str]) -> Step:
-    """Return a step with reciprocals and recurrences.
+def economical(step: Step, lanes: Mapping[str, str], still: Collection[str]) -> Step:
+    """Return a step with reciprocals, recurrences, and names for what is known before it.
 
     Parameters
     ----------
     lanes : the bank of each parameter and state that is one a lane.
+    still : parameters, and states before the step.
     """
-    return with_reciprocals(with_recurrences(step), lanes)
+    return with_beginnings(with_reciprocals(with_recurrences(step), lanes), {*still} - {*lanes})
 
 
 def with_recurrences(step: Step) -> Step:
     """Return the step with phi1 and phi2 of a change computed from its phi3."""
-    names = {quantity.value: Sym(quantity.name) for quantity in step.quantities}
+    known = {quantity.value: Sym(quantity.name) for quantity in step.quantities}
 
     def value(node: Expr) -> Expr:
         match node:
             case Call("phi2", (change,)):
-                return add(HALF, mul(change, names[Call("phi3", (change,))]))
+                return add(HALF, mul(change, known[Call("phi3", (change,))]))
             case Call("phi1", (change,)):
-                return add(ONE, mul(change, names[Call("phi2", (change,))]))
+                return add(ONE, mul(change, known[Call("phi2", (change,))]))
         return node
 
     quantities = (replace(quantity, value=value(quantity.value)) for quantity in step.quantities)
@@ -59,17 +64,62 @@ def with_reciprocals(step: Step, lanes: Mapping[str, str]) -> Step:
         counts.update(_divisors(value))
     banks: dict[str, str | None] = {**lanes, **{q.name: q.bank for q in step.quantities}}
     taken = set(step.taken)
-    names: dict[str, Sym] = {}
+    instead: dict[str, Sym] = {}
     for name in sorted(name for name, count in counts.items() if count > 1):
-        names[name] = Sym(fresh(f"per_{name}", taken))
-        taken.add(names[name].name)
-    made = {n: Quantity(names[n].name, Div(ONE, Sym(n)), banks.get(n), NOTE) for n in names}
-    quantities = [made.pop(name) for name in sorted(names) if name not in _defined(step)]
+        instead[name] = Sym(fresh(f"per_{name}", taken))
+        taken.add(instead[name].name)
+    made = {n: Quantity(instead[n].name, Div(ONE, Sym(n)), banks.get(n), NOTE) for n in instead}
+    quantities = [made.pop(name) for name in sorted(instead) if name not in _defined(step)]
     for quantity in step.quantities:
-        quantities.append(replace(quantity, value=_rewritten(quantity.value, names)))
+        quantities.append(replace(quantity, value=_rewritten(quantity.value, instead)))
         if quantity.name in made:
             quantities.append(replace(made.pop(quantity.name), note=quantity.note))
-    return replace(_with_values(step, names), quantities=tuple(quantities), taken=frozenset(taken))
+    step = _with_values(step, lambda value: _rewritten(value, instead))
+    return replace(step, quantities=tuple(quantities), taken=frozenset(taken))
+
+
+def with_beginnings(step: Step, still: Collection[str]) -> Step:
+    """Return the step with names for functions of what is known before it, the same for all lanes.
+
+    Parameters
+    ----------
+    still : parameters and states before the step that are not one a lane.
+    """
+    reciprocals = [q for q in step.quantities if q.note == NOTE]
+    known = frozenset({*still, *(q.name for q in reciprocals if not q.bank)})
+    taken, found = set(step.taken), dict[Expr, Sym]()
+    for value in _values(step):
+        for node in _functions_of(value, known):
+            if node not in found:
+                found[node] = Sym(fresh(_base(node), taken))
+                taken.add(found[node].name)
+
+    def renamed(value: Expr) -> Expr:
+        return found[value] if value in found else rebuild(value, renamed)
+
+    begun = [Quantity(name.name, node, None, BEFORE) for node, name in found.items()]
+    rest = [replace(q, value=renamed(q.value)) for q in step.quantities if q.note != NOTE]
+    step = _with_values(step, renamed)
+    return replace(step, quantities=(*reciprocals, *begun, *rest), taken=frozenset(taken))
+
+
+def _functions_of(node: Node, known: frozenset[str]) -> Iterator[Expr]:
+    """Yield the functions in an expression, and roots, that are made of known names alone."""
+    match node:
+        case Call(function) if function in FUNCTIONS and known.issuperset(names(node)):
+            yield node
+            return
+        case Pow(_, exponent) if exponent.denominator > 1 and known.issuperset(names(node)):
+            yield node
+            return
+    for part in parts_of(node):
+        yield from _functions_of(part, known)
+
+
+def _base(node: Expr) -> str:
+    """Return a name for a function: ``expm1_S``."""
+    function = node.function if isinstance(node, Call) else "power"
+    return "_".join([function, *sorted({*names(node)})[:1]])
 
 
 def _defined(step: Step) -> set[str]:
@@ -98,24 +148,25 @@ def _divisors(node: Node) -> Iterator[str]:
         yield from _divisors(part)
 
 
-def _rewritten(node: Expr, names: Mapping[str, Sym]) -> Expr:
-    """Return an expression with products for quotients by `names`."""
-    found: Any = rebuild(node, lambda part: _rewritten(part, names))
+def _rewritten(node: Expr, instead: Mapping[str, Sym]) -> Expr:
+    """Return an expression with products for quotients by the keys of `instead`."""
+    found: Any = rebuild(node, lambda part: _rewritten(part, instead))
     match found:
-        case Div(top, Sym(name)) if name in names:
-            return mul(top, names[name])
-        case Div(top, Pow(Sym(name), power)) if name in names and power == SQUARE:
-            return mul(mul(top, names[name]), names[name])
+        case Div(top, Sym(name)) if name in instead:
+            return mul(top, instead[name])
+        case Div(top, Pow(Sym(name), power)) if name in instead and power == SQUARE:
+            return mul(mul(top, instead[name]), instead[name])
     return found  # type: ignore[no-any-return]  # rebuild keeps expressions
 
 
-def _with_values(step: Step, names: Mapping[str, Sym]) -> Step:
+def _with_values(step: Step, new: Callable[[Expr], Expr]) -> Step:
+    """Return a step with other values of what is not a quantity."""
+
     def row(row: Row) -> Row:
-        listed = tuple(_rewritten(value, names) for value in row.listed)
-        return replace(row, value=_rewritten(row.value, names), listed=listed)
+        return replace(row, value=new(row.value), listed=tuple(map(new, row.listed)))
 
     def change(change: Change) -> Change:
-        return replace(change, free=_rewritten(change.free, names))
+        return replace(change, free=new(change.free))
 
     return replace(
         step,

@@ -87,6 +87,7 @@ def _step(
             numerical=numerical,
         ),
         lanes,
+        (*iphs.model.parameters, *(port.state for _, port in q.stores)),
     )
 
 

@@ -46,6 +46,10 @@ CALLS = {
     "mean_tanh_by_new": ("mean_tanh_by_new_of", 2),
 }
 MOST_FACTORS = 8
+#: What a step's function computes of the state before the step.
+BEGINNING = r"^ */\* before the step \*/\n(?: *const double [^\n]+;\n)+"
+#: A definition on one line, and its name.
+DEFINED = r"^( *const \w+ (?:\*restrict )?(\w+) = [^;\n]+;)$"
 #: An assignment on one line, and what in its right side is a number.
 ASSIGNED = r"^( *(?:(?:const )?double \w+|\w+\[[^\]\n]*\]|\w+) =) ([^;\n]+);$"
 NUMBER = r"\b\d[\d.]*(?:e[-+]?\d+)?\b\.?|\bHUGE_VAL\b"
@@ -79,10 +83,11 @@ def wide_source(model: str, header: str, source: str) -> str:
     fields, counts = _fields(record[1])
     step, reciprocals = _reciprocals(step, fields)
     fields += reciprocals
+    step, begun = _beginnings(model, step)
     for pattern, instead in (
         (r"^#pragma(?:[^\n]*\\\n)*[^\n]*\n", ""),
         (rf"^long {name}_newton_size\(.*?^}}\n", ""),
-        (rf"\b{name}_(newton|means|inside|parameters)\b", rf"{model}_wide_\1"),
+        (rf"\b{name}_(begin|newton|means|inside|parameters)\b", rf"{model}_wide_\1"),
         (rf"^int ({name}_wide_)", r"static mask \1"),
         (rf"^(void) ({name}_wide_)", r"static \1 \2"),
         (r"return 1;", "return everywhere;"),
@@ -90,7 +95,7 @@ def wide_source(model: str, header: str, source: str) -> str:
         (r"\bdouble\b", "real"),
     ):
         step = re.sub(pattern, instead, step, flags=re.MULTILINE | re.DOTALL)
-    words, loader = _record(model, fields, counts), _loader(model, fields, counts)
+    words, loader = _record(model, fields, counts, begun), _loader(model, fields, counts)
     return "\n".join((defined(), words, step, undefined(), loader))
 
 
@@ -151,8 +156,7 @@ def _reciprocals(step: str, fields: Sequence[_Field]) -> tuple[str, list[_Field]
     """
     known = {field.name: field for field in fields}
     found: dict[str, _Field] = {}
-    pointer = re.search(r"_parameters \*restrict (\w+)", step)
-    record = pointer[1] if pointer else "p"
+    record = _pointer(step)
 
     def taken(match: re.Match[str]) -> str:
         of = known.get(match[2])
@@ -165,6 +169,35 @@ def _reciprocals(step: str, fields: Sequence[_Field]) -> tuple[str, list[_Field]
     text = re.sub(r"^( *const double \w+ =) 1\.0/(\w+)(\[j\])?;$", taken, step, flags=re.MULTILINE)
     functions = re.split(r"(?<=^}\n)", text, flags=re.MULTILINE)
     return "".join(_needed(function, record) for function in functions), list(found.values())
+
+
+def _beginnings(model: str, step: str) -> tuple[str, list[str]]:
+    """Return a step that takes what is known before it from its record, and those fields.
+
+    A function of its own computes them: once a step, not in each iteration.
+    """
+    record, values = _pointer(step), dict[str, str]()
+
+    def taken(block: re.Match[str]) -> str:
+        found = re.findall(r"const double (\w+) = ([^\n]+);", block[0])
+        values.update(found)
+        return "".join(f"    const double {name} = {record}->{name}_;\n" for name, _ in found)
+
+    text = re.sub(BEGINNING, taken, step, flags=re.MULTILINE)
+    body = [f"    {record}->{name}_ = {value};" for name, value in values.items()]
+    lines = {name: line for line, name in re.findall(DEFINED, step, flags=re.MULTILINE)}
+    for name, line in reversed(lines.items()):
+        if name not in values and any(re.search(rf"\b{name}\b", other) for other in body):
+            body.insert(0, line)
+    head = f"void {model}_begin(const double *restrict x, {model}_parameters *restrict {record})"
+    unused = [f"    (void){name};" for name in ("x", record)]
+    return "\n".join([head, "{", *unused, *body, "}\n", text]), [f"{name}_" for name in values]
+
+
+def _pointer(step: str) -> str:
+    """Return what a step's functions call the parameters."""
+    found = re.search(r"_parameters \*restrict (\w+)", step)
+    return found[1] if found else "p"
 
 
 def _needed(function: str, record: str) -> str:
@@ -183,9 +216,12 @@ def _numbers_wide(match: re.Match[str]) -> str:
     return match[0] if re.search(r"[^-+*/ ().]", left) else f"{match[1]} wide({match[2]});"
 
 
-def _record(model: str, fields: Sequence[_Field], counts: Sequence[str]) -> str:
+def _record(
+    model: str, fields: Sequence[_Field], counts: Sequence[str], begun: Sequence[str]
+) -> str:
     lines = [f"    long {name};" for name in counts]
     lines += [f"    real {'*' if field.bank else ''}{field.name};" for field in fields]
+    lines += [f"    real {name};" for name in begun]
     return "\n".join(["typedef struct {", *lines, f"}} {model}_wide_parameters;"])
 
 

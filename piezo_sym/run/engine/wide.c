@@ -528,6 +528,7 @@ static int MODEL(advance)(MODEL(wide) *w)
         for (long i = 0; w->lane[k].s && i < w->inputs; ++i)
             w->u[i][k] = w->lane[k].u[i];
     MODEL(predictions)(w);
+    MODEL(wide_begin)(w->from, &w->p);
     w->good = MODEL(roots)(w, going);
     w->good &= MODEL(natural)(w);
     MODEL(commit)(w, w->good);
