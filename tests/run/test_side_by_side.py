@@ -1,5 +1,6 @@
 """Members in lanes of vectors run as they do one by one, whatever the network."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ from piezo_sym.run.engine.vector import CALLS, OPENING, wide_source
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.parameters import read_initial, read_parameters
 from piezo_sym.run.system import System
+from piezo_sym.spec.load import parse
 
 SPECS = sorted((Path(__file__).parents[1] / "networks" / "specs").glob("*.toml"))
 
@@ -137,6 +139,26 @@ def test_long_numbers_in_a_law_are_read_at_once():
     found = wide_source("long", header, "\n".join([OPENING, *lines]))
     assert f"const real a = {number}*m;" in found
     assert f"const real b = wide({number} - 2.0e-05);" in found
+
+
+def test_functions_of_the_state_before_a_step_are_computed_once():
+    """Newton's iterations, and the means for the ledger, find them in the record."""
+    text = (SPECS[0].parent / "a2_oscillator.toml").read_text()
+    changes = (
+        ('force = "d*v"', 'force = "d*sqrt(1 + a**2)*v"'),
+        ("[domain]", 'a = { value = 0.5, unit = "1" }\n[domain]'),
+    )
+    for before, after in changes:
+        text = text.replace(before, after)
+    members = Members(parse(text))
+    path = Path(members.module.__file__)
+    source = wide_source("oscillator", *(path.with_suffix(e).read_text() for e in (".h", ".c")))
+    functions = dict(re.findall(r"oscillator_wide_(\w+)\(([^}]*)^}", source, re.MULTILINE))
+    for name, value in (("exp_S", "exp(S*per_c)"), ("sqrt_a", "sqrt(1.0 + power_2(a))")):
+        assert f"p_->{name}_ = {value};" in functions["begin"]
+        assert source.count(value) == 1
+        for user in ("newton", "means"):
+            assert f"const real {name} = p_->{name}_;" in functions[user]
 
 
 def test_a_source_without_a_step_is_refused():

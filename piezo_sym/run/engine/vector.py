@@ -57,7 +57,8 @@ NUMBER = r"\b\d[\d.]*(?:e[-+]?\d+)?\b\.?|\bHUGE_VAL\b"
 
 def wide_text(model: str, header: str, source: str) -> str:
     """Return what a driver needs in addition to run paths of members side by side."""
-    parts = (text_beside("wide.h"), wide_source(model, header, source), text_beside("wide.c"))
+    own = wide_source(model, header, source)
+    parts = text_beside("wide.h"), own, text_beside("wide.c"), text_beside("fleet.c")
     return "\n".join(parts)
 
 
@@ -84,6 +85,7 @@ def wide_source(model: str, header: str, source: str) -> str:
     step, reciprocals = _reciprocals(step, fields)
     fields += reciprocals
     step, begun = _beginnings(model, step)
+    step = _needed(step)
     for pattern, instead in (
         (r"^#pragma(?:[^\n]*\\\n)*[^\n]*\n", ""),
         (rf"^long {name}_newton_size\(.*?^}}\n", ""),
@@ -167,8 +169,7 @@ def _reciprocals(step: str, fields: Sequence[_Field]) -> tuple[str, list[_Field]
         return f"{match[1]} {record}->{field.name}{match[3] or ''};"
 
     text = re.sub(r"^( *const double \w+ =) 1\.0/(\w+)(\[j\])?;$", taken, step, flags=re.MULTILINE)
-    functions = re.split(r"(?<=^}\n)", text, flags=re.MULTILINE)
-    return "".join(_needed(function, record) for function in functions), list(found.values())
+    return text, list(found.values())
 
 
 def _beginnings(model: str, step: str) -> tuple[str, list[str]]:
@@ -200,14 +201,17 @@ def _pointer(step: str) -> str:
     return found[1] if found else "p"
 
 
-def _needed(function: str, record: str) -> str:
-    """Return a function without the parameters that it no longer names."""
+def _needed(step: str) -> str:
+    """Return a step whose functions are without the parameters that they no longer name."""
+    line = rf"^ *const double (?:\*restrict )?(\w+) = {_pointer(step)}->\1;\n"
 
-    def kept(match: re.Match[str]) -> str:
-        return match[0] if len(re.findall(rf"\b{match[1]}\b", function)) > 2 else ""
+    def needed(function: str) -> str:
+        def kept(match: re.Match[str]) -> str:
+            return match[0] if len(re.findall(rf"\b{match[1]}\b", function)) > 2 else ""
 
-    line = rf"^ *const double (?:\*restrict )?(\w+) = {record}->\1;\n"
-    return re.sub(line, kept, function, flags=re.MULTILINE)
+        return re.sub(line, kept, function, flags=re.MULTILINE)
+
+    return "".join(map(needed, re.split(r"(?<=^}\n)", step, flags=re.MULTILINE)))
 
 
 def _numbers_wide(match: re.Match[str]) -> str:

@@ -36,6 +36,13 @@ static inline real chosen(mask where, real a, real b)
     return (real)((where & (mask)a) | (~where & (mask)b));
 }
 
+static inline mask lane_of(int k)
+{
+    mask where = nowhere;
+    where[k] = -1;
+    return where;
+}
+
 static inline int any(mask where)
 {
     const few small = __builtin_convertvector(where, few);
