@@ -30,7 +30,7 @@ Reduction: TypeAlias = Literal["last", "mean"] | Callable[[Any], object]
 
 #: Runs that go through C in one call, at most, or one by one through SciPy before they are kept;
 #: numbers that they leave there.
-MOST_TOGETHER, MOST_BY_SCIPY = 256, 32
+MOST_TOGETHER, MOST_BY_SCIPY = 512, 32
 MOST_NUMBERS = 8_000_000
 #: Boxes hold up to so many runs where only reductions are kept, if so many boxes remain.
 MOST_REDUCED = 512
