@@ -146,7 +146,8 @@ def test_functions_of_the_state_before_a_step_are_computed_once():
     text = (SPECS[0].parent / "a2_oscillator.toml").read_text()
     changes = (
         ('force = "d*v"', 'force = "d*sqrt(1 + a**2)*v"'),
-        ("[domain]", 'a = { value = 0.5, unit = "1" }\n[domain]'),
+        ("[domain]", 'a = { value = 0.5, unit = "1" }\nx = { value = 1.0, unit = "1" }\n[domain]'),
+        ('mass = "m"', 'mass = "x*m"'),
     )
     for before, after in changes:
         text = text.replace(before, after)
@@ -155,10 +156,12 @@ def test_functions_of_the_state_before_a_step_are_computed_once():
     source = wide_source("oscillator", *(path.with_suffix(e).read_text() for e in (".h", ".c")))
     functions = dict(re.findall(r"oscillator_wide_(\w+)\(([^}]*)^}", source, re.MULTILINE))
     for name, value in (("exp_S", "exp(S*per_c)"), ("sqrt_a", "sqrt(1.0 + power_2(a))")):
-        assert f"p_->{name}_ = {value};" in functions["begin"]
+        assert f"const real {name} = {value};" in functions["begin"]
+        assert f"p_->{name}_ = {name};" in functions["begin"]
         assert source.count(value) == 1
         for user in ("newton", "means"):
             assert f"const real {name} = p_->{name}_;" in functions[user]
+    assert members.engine.side_by_side(11) is not None  # it compiles, with a parameter called x
 
 
 def test_a_source_without_a_step_is_refused():

@@ -47,7 +47,7 @@ CALLS = {
 }
 MOST_FACTORS = 8
 #: What a step's function computes of the state before the step.
-BEGINNING = r"^ */\* before the step \*/\n(?: *const double [^\n]+;\n)+"
+BEGINNING = r"^ */\* before the step \*/\n(?: *const double [^;]+;\n)+"
 #: A definition on one line, and its name.
 DEFINED = r"^( *const \w+ (?:\*restrict )?(\w+) = [^;\n]+;)$"
 #: An assignment on one line, and what in its right side is a number.
@@ -180,18 +180,21 @@ def _beginnings(model: str, step: str) -> tuple[str, list[str]]:
     record, values = _pointer(step), dict[str, str]()
 
     def taken(block: re.Match[str]) -> str:
-        found = re.findall(r"const double (\w+) = ([^\n]+);", block[0])
-        values.update(found)
-        return "".join(f"    const double {name} = {record}->{name}_;\n" for name, _ in found)
+        found = re.findall(r"^( *const double (\w+) =[^;]+;)$", block[0], re.MULTILINE)
+        values.update((name, line) for line, name in found)
+        return "".join(f"    const double {name} = {record}->{name}_;\n" for _, name in found)
 
     text = re.sub(BEGINNING, taken, step, flags=re.MULTILINE)
-    body = [f"    {record}->{name}_ = {value};" for name, value in values.items()]
+    body = list(values.values())
     lines = {name: line for line, name in re.findall(DEFINED, step, flags=re.MULTILINE)}
     for name, line in reversed(lines.items()):
         if name not in values and any(re.search(rf"\b{name}\b", other) for other in body):
             body.insert(0, line)
-    head = f"void {model}_begin(const double *restrict x, {model}_parameters *restrict {record})"
-    unused = [f"    (void){name};" for name in ("x", record)]
+    body += [f"    {record}->{name}_ = {name};" for name in values]
+    newton = re.search(r"_newton\(const double \*restrict (\w+),", step)
+    x = newton[1] if newton else "x"
+    head = f"void {model}_begin(const double *restrict {x}, {model}_parameters *restrict {record})"
+    unused = [f"    (void){name};" for name in (x, record)]
     return "\n".join([head, "{", *unused, *body, "}\n", text]), [f"{name}_" for name in values]
 
 
