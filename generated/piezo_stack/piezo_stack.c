@@ -608,10 +608,7 @@ int piezo_stack_newton_start(const double *restrict x,
             + V_hysteron*per_L;
         const double dloss_phi_dphi_new = 0.5*(2.0*((phi_new[j] - phi[j])*per_L));
         const double dheat_numerical_dphi_new = dloss_phi_dphi_new*per_h;
-        const double dV_hysteron_dS_new = pick(
-            fabs(i_hysteron) <= i_0[j],
-            0.0,
-            -rho[j]*per_T_minus_T_0*per_T_minus_T_0*(i_hysteron - copysign(i_0[j], i_hysteron))*dT_minus_T_0_dS_new);
+        const double dV_hysteron_dS_new = -V_hysteron*per_T_minus_T_0*dT_minus_T_0_dS_new;
         const double gap_phi = phi_new[j] - phi[j] - h*(V_in - V_capacitor - V_hysteron);
         const double pivot_phi = 1.0 + h*dV_hysteron_dphi_new;
         const double per_pivot_phi = 1.0/pivot_phi;
@@ -882,7 +879,7 @@ int piezo_stack_newton(const double *restrict x,
         const double dV_hysteron_dphi_new = rho[j]*per_T_minus_T_0*mean_deadzone_by_new(i_hysteron_old, i_hysteron_new, i_0[j])*per_L;
         const double dheat_hysteron_dphi_new = i_hysteron*dV_hysteron_dphi_new
             + 0.5*(V_hysteron*per_L);
-        const double dV_hysteron_dS_new = -rho[j]*per_T_minus_T_0*per_T_minus_T_0*mean_deadzone(i_hysteron_old, i_hysteron_new, i_0[j])*dT_minus_T_0_dS_new;
+        const double dV_hysteron_dS_new = -V_hysteron*per_T_minus_T_0*dT_minus_T_0_dS_new;
         const double gap_phi = phi_new[j] - phi[j] - h*(V_in - V_capacitor - V_hysteron);
         const double pivot_phi = 1.0 + h*dV_hysteron_dphi_new;
         const double per_pivot_phi = 1.0/pivot_phi;

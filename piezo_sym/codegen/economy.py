@@ -13,13 +13,26 @@ from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
+from functools import reduce
 from typing import Any
 
 from piezo_sym.codegen.mean import HALF
 from piezo_sym.codegen.program import Quantity, Row
 from piezo_sym.codegen.step import Change, Step
-from piezo_sym.spec.calculus import add, mul
-from piezo_sym.spec.expressions import ONE, Call, Div, Expr, Node, Pow, Sym, names, rebuild
+from piezo_sym.spec.calculus import add, mul, neg
+from piezo_sym.spec.expressions import (
+    ONE,
+    Call,
+    Div,
+    Expr,
+    Mul,
+    Neg,
+    Node,
+    Pow,
+    Sym,
+    names,
+    rebuild,
+)
 from piezo_sym.spec.expressions import children as parts_of
 from piezo_sym.spec.names import fresh
 
@@ -27,6 +40,8 @@ NOTE = "reciprocals"
 #: Of quantities that a caller may compute once a step, in whatever iterations they are used.
 BEFORE = "before the step"
 SQUARE = Fraction(2)
+#: Factors of a product that is worth a name elsewhere.
+FEWEST = 3
 FUNCTIONS = frozenset({"exp", "expm1", "log", "sqrt", "sin", "cos", "tanh"})
 
 
@@ -38,7 +53,8 @@ def economical(step: Step, lanes: Mapping[str, str], still: Collection[str]) -> 
     lanes : the bank of each parameter and state that is one a lane.
     still : parameters, and states before the step.
     """
-    return with_beginnings(with_reciprocals(with_recurrences(step), lanes), {*still} - {*lanes})
+    step = with_products(with_reciprocals(with_recurrences(step), lanes))
+    return with_beginnings(step, {*still} - {*lanes})
 
 
 def with_recurrences(step: Step) -> Step:
@@ -76,6 +92,51 @@ def with_reciprocals(step: Step, lanes: Mapping[str, str]) -> Step:
             quantities.append(replace(made.pop(quantity.name), note=quantity.note))
     step = _with_values(step, lambda value: _rewritten(value, instead))
     return replace(step, quantities=tuple(quantities), taken=frozenset(taken))
+
+
+def with_products(step: Step) -> Step:
+    """Return the step with products that hold the factors of an earlier one written by its name.
+
+    A law that falls with a temperature has such a derivative: ``dV/dS = -V/T*dT/dS``.
+    """
+    products: list[tuple[Quantity, list[Expr]]] = []
+    quantities = []
+    for quantity in step.quantities:
+        sign, factors = _factors(quantity.value)
+        for earlier, parts in reversed(products):
+            rest = [] if earlier.bank not in (None, quantity.bank) else _without(factors, parts)
+            if rest:
+                known: Expr = Sym(earlier.name)
+                value = reduce(mul, rest, known)
+                quantity = replace(quantity, value=neg(value) if sign < 0 else value)
+                break
+        else:
+            if sign > 0 and len(factors) >= FEWEST:
+                products.append((quantity, factors))
+        quantities.append(quantity)
+    return replace(step, quantities=tuple(quantities))
+
+
+def _factors(value: Expr) -> tuple[int, list[Expr]]:
+    """Return the sign of a product, and its factors in order."""
+    match value:
+        case Neg(arg):
+            sign, factors = _factors(arg)
+            return -sign, factors
+        case Mul(left, right):
+            (first, one), (second, other) = _factors(left), _factors(right)
+            return first * second, [*one, *other]
+    return 1, [value]
+
+
+def _without(factors: list[Expr], parts: list[Expr]) -> list[Expr]:
+    """Return the factors that are left when parts are taken away; none if not all are there."""
+    rest = list(factors)
+    for part in parts:
+        if part not in rest:
+            return []
+        rest.remove(part)
+    return rest
 
 
 def with_beginnings(step: Step, still: Collection[str]) -> Step:
