@@ -41,7 +41,13 @@ class Stopped(Exception):
 
 @contextmanager
 def threads_for(plan: Plan, module: GeneratedModule, count: int) -> Iterator[tuple[Submit, int]]:
-    """Give a way to run boxes in threads of our own; they end with the context, soon."""
+    """Give a way to run boxes in threads of our own; they end with the context, soon.
+
+    One thread is the caller's: what a function of the user raises or prints is seen at once.
+    """
+    if count == 1:
+        yield lambda box: at_hand(run_box(plan, module, box, ignore)), 1
+        return
     stop = Event()
 
     def watch(_: float) -> None:
@@ -54,6 +60,13 @@ def threads_for(plan: Plan, module: GeneratedModule, count: int) -> Iterator[tup
     finally:
         stop.set()
         pool.shutdown(wait=True, cancel_futures=True)
+
+
+def at_hand(result: Result) -> Future[Result]:
+    """Return a future that has its result."""
+    future: Future[Result] = Future()
+    future.set_result(result)
+    return future
 
 
 def sender(
@@ -109,9 +122,9 @@ def results(submit: Submit, boxes: Iterable[Box], at_once: int) -> Generator[Res
         for box in boxes:
             pending.append(submit(box))
             if len(pending) >= at_once:
-                yield from come(pending)
+                yield from arrivals(pending)
         while pending:
-            yield from come(pending)
+            yield from arrivals(pending)
     except BrokenExecutor as cause:
         what = f"a process of the executor died: {one_line(str(cause))}"
         remedy = "with store=..., start again: what is done is kept"
@@ -121,7 +134,7 @@ def results(submit: Submit, boxes: Iterable[Box], at_once: int) -> Generator[Res
             future.cancel()
 
 
-def come(pending: list[Future[Result]]) -> Generator[Result, None, None]:
+def arrivals(pending: list[Future[Result]]) -> Generator[Result, None, None]:
     """Wait, and take from the list what came: those that came together in the order sent."""
     still = wait(pending, return_when=FIRST_COMPLETED).not_done
     ready = [one for one in reversed(pending) if one not in still]

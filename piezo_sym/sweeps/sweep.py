@@ -90,7 +90,7 @@ def sweep(
         dimension `member`, which its results keep: faster by far.
     executor : any `concurrent.futures.Executor`, such as `client.get_executor()` of Dask, instead
         of threads. Functions given to other processes are best sent with cloudpickle installed.
-    threads : their number; as many as processors when left out.
+    threads : their number; as many as processors when left out. With 1, all runs in the caller's.
     store : the path of a Zarr store (`pip install piezo_sym[store]`), written box by box. The same
         call goes on where it was stopped; another one is refused. `xarray.open_zarr` opens it.
     progress : whether to show a bar, or a function of (done, total); None: a bar on a terminal.

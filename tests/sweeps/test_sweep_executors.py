@@ -49,6 +49,18 @@ def test_any_number_of_threads_gives_the_same(alone):
         assert_same(sweep("piezo_stack", **BASE, threads=threads), alone)
 
 
+def test_one_thread_is_the_caller_s():
+    """So that a debugger stops in a user's function, and nothing has to be safe in threads."""
+    where = []
+
+    def last(run):
+        where.append(threading.current_thread())
+        return run.q[-1]
+
+    sweep("piezo_stack", **BASE, reduce=last, threads=1)
+    assert where == [threading.current_thread()] * 18
+
+
 @pytest.mark.parametrize("at_once", [1, 2, 7, 100])
 def test_what_comes_together_is_taken_in_the_order_sent(at_once):
     assert list(results(at_hand, range(50), at_once)) == list(range(50))
@@ -196,17 +208,23 @@ signal.signal(signal.SIGINT, signal.default_int_handler)  # a job in the backgro
 from piezo_sym import sine, sweep
 over = {{"L": np.linspace(5e-4, 5e-3, 30_000)}}
 sweep("piezo_stack", over=over, inputs={{"V_in": sine(100, 100)}}, duration={duration}, times=11,
-      store={store!r}, method={method!r}, progress=lambda *done: print(*done, flush=True))
+      store={store!r}, method={method!r}, threads={threads},
+      progress=lambda *done: print(*done, flush=True))
 """
 
 
 @pytest.mark.parametrize(
-    ("duration", "method"),
-    [(0.1, "discrete_gradient"), (10.0, "discrete_gradient"), (10.0, "LSODA")],
+    ("duration", "method", "threads"),
+    [
+        (0.1, "discrete_gradient", 2),
+        (10.0, "discrete_gradient", 2),
+        (10.0, "discrete_gradient", 1),
+        (10.0, "LSODA", 2),
+    ],
 )
-def test_control_c_stops_within_seconds_and_leaves_the_store(tmp_path, duration, method):
+def test_control_c_stops_within_seconds_and_leaves_the_store(tmp_path, duration, method, threads):
     path = tmp_path / "runs.zarr"
-    code = LONG.format(duration=duration, store=str(path), method=method)
+    code = LONG.format(duration=duration, store=str(path), method=method, threads=threads)
     pipe = subprocess.PIPE
     with subprocess.Popen(
         [sys.executable, "-c", code], cwd=ROOT, stdout=pipe, stderr=pipe, text=True
