@@ -116,6 +116,21 @@ def test_a_member_that_stops_leaves_the_others_alone(monkeypatch):
     assert np.array_equal(alone.batch.states[others], runs.batch.states[others])
 
 
+@pytest.mark.parametrize("how", [{"rtol": 1e-4}, {"step": 1e-4}], ids=["rtol", "step"])
+def test_the_number_of_members_changes_nothing(monkeypatch, how):
+    """Few share a vector for both of their tracks; many have one for each."""
+    members = Members("piezo_stack", 19, 0.01, {"V_in": sine(100, 100)})
+    whole = members.run(monkeypatch, 10**6, **how).batch
+    systems, x = members.systems, members.x
+    for size in (2, 3, 4, 5, 8, 9, 16, 17):
+        members.systems, members.x = systems[-size:], x[-size:]
+        found = members.run(monkeypatch, 10**6, **how).batch
+        for one, other in ((found.states, whole.states), (found.sums, whole.sums)):
+            assert np.array_equal(one, other[-size:])
+        counts = [(m.steps, m.model.iterations) for m in found.members]
+        assert counts == [(m.steps, m.model.iterations) for m in whole.members[-size:]]
+
+
 def test_a_lane_whose_step_is_halved_goes_on_with_the_rest(monkeypatch):
     members = Members("piezo_stack", 9, 0.02, {"V_in": sine(100, 100), "T_e": 296.15 + 1e-6})
     alone, together = (members.run(monkeypatch, most, step=5e-4) for most in (0, 10**6))
