@@ -128,8 +128,9 @@ class _Passage:
     def cut(self, waiting: NDArray[np.intp]) -> None:
         """Take members through the intervals that they wait at, in parts; others see none of it."""
         batch = self.run.batch
-        for n in np.unique(self.done[waiting]).tolist():
-            here = waiting[self.done[waiting] == n]
+        at = self.done[waiting]  # as it is now: who has come through one interval waits no more
+        for n in np.unique(at).tolist():
+            here = waiting[at == n]
             cuts = np.zeros(len(batch), np.intp) if self.cuts is None else self.cuts
             cuts[here] += 1
             short = self.block.lengths[n] < SHORTEST * self.run.times[-1]
