@@ -1,10 +1,11 @@
 """A step with fewer divisions and calls of functions: what it computes stays the same.
 
 Input: a `Step`.  Output: the same step, with ``per_L = 1/L`` where L divides more than once,
-phi2 = 1/2 + d*phi3, phi1 = 1 + d*phi2 in place of calls, and names for functions of the state
-before the step, which Newton's method does not change: ``expm1_S = expm1(S/c_0)``.  A division
-takes as long as ten products, an exponential as thirty.  A step may be rounded differently from the
-rates at a point: its balances close whatever the last bit of its co-states is.
+phi2 = 1/2 + d*phi3, phi1 = 1 + d*phi2 in place of calls, products that hold an earlier one written
+by its name, and names for functions of the state before the step, which Newton's method does not
+change: ``expm1_S = expm1(S/c_0)``.  A division takes as long as ten products, an exponential as
+thirty.  A step may be rounded differently from the rates at a point: its balances close whatever
+the last bit of its co-states is.
 """
 
 from __future__ import annotations
@@ -46,7 +47,7 @@ FUNCTIONS = frozenset({"exp", "expm1", "log", "sqrt", "sin", "cos", "tanh"})
 
 
 def economical(step: Step, lanes: Mapping[str, str], still: Collection[str]) -> Step:
-    """Return a step with reciprocals, recurrences, and names for what is known before it.
+    """Return a step with reciprocals, recurrences, products, and what is known before it by name.
 
     Parameters
     ----------
@@ -147,7 +148,8 @@ def with_beginnings(step: Step, still: Collection[str]) -> Step:
     still : parameters and states before the step that are not one a lane.
     """
     reciprocals = [q for q in step.quantities if q.note == NOTE]
-    known = frozenset({*still, *(q.name for q in reciprocals if not q.bank)})
+    still = frozenset(still)
+    known = still.union(q.name for q in reciprocals if still.issuperset(names(q.value)))
     taken, found = set(step.taken), dict[Expr, Sym]()
     for value in _values(step):
         for node in _functions_of(value, known):

@@ -9,7 +9,7 @@ from piezo_sym.codegen.economy import BEFORE, economical, with_products
 from piezo_sym.codegen.program import Quantity
 from piezo_sym.codegen.step import Step
 from piezo_sym.spec.calculus import mul, neg
-from piezo_sym.spec.expressions import Call, Sym, evaluate, names
+from piezo_sym.spec.expressions import Call, Div, Sym, evaluate, names
 
 LETTERS = ("a", "b", "c", "d")
 EMPTY = Step("h", (), (), (), (), (), (), (), (), frozenset())
@@ -70,6 +70,17 @@ def test_functions_of_what_is_known_before_a_step_come_first():
     assert (before.name, before.value, before.note) == ("exp_S", known, BEFORE)
     assert others[0].value == mul(Sym("a"), Sym("exp_S"))
     assert set(names(others[1].value)) == {"S_new", "exp_S"}
+
+
+def test_a_reciprocal_of_what_is_not_known_is_no_part_of_what_is():
+    """An input divides twice here; the function of its reciprocal stays where it is."""
+    given_ = step(Div(Sym("a"), Sym("u")), Call("exp", (Div(Sym("b"), Sym("u")),)))
+    found = economical(given_, {}, ("a", "b"))
+    assert [(q.name, q.note) for q in found.quantities] == [
+        ("per_u", "reciprocals"),
+        ("q0", "test"),
+        ("q1", "test"),
+    ]
 
 
 def test_a_lane_s_function_stays_where_it_is():

@@ -48,8 +48,8 @@ CALLS = {
 MOST_FACTORS = 8
 #: What a step's function computes of the state before the step.
 BEGINNING = r"^ */\* before the step \*/\n(?: *const double [^;]+;\n)+"
-#: A definition on one line, and its name.
-DEFINED = r"^( *const \w+ (?:\*restrict )?(\w+) = [^;\n]+;)$"
+#: A definition, and its name.
+DEFINED = r"^( *const \w+ (?:\*restrict )?(\w+) = [^;]+;)$"
 #: An assignment on one line, and what in its right side is a number.
 ASSIGNED = r"^( *(?:(?:const )?double \w+|\w+\[[^\]\n]*\]|\w+) =) ([^;\n]+);$"
 NUMBER = r"\b\d[\d.]*(?:e[-+]?\d+)?\b\.?|\bHUGE_VAL\b"
