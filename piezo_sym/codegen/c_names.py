@@ -36,6 +36,7 @@ _CALLED = (
 )
 #: What the engine adds to a module's text where it reads it with vectors for numbers.
 _VECTORS = (
+    "PAIR PLAIN "
     "WIDTH SIDE MODEL real bits mask zero nowhere everywhere wide chosen any size_of with_sign "
     "power_of_two small_expm1 reduced exp_of expm1_of LANE_BY_LANE sqrt_of log_of sin_of cos_of "
     "tanh_of pow_of whole_power least largest sign_of deadzone_of saturate_of phi3_of share_above "

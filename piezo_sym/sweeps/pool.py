@@ -43,7 +43,7 @@ class Stopped(Exception):
 def threads_for(plan: Plan, module: GeneratedModule, count: int) -> Iterator[tuple[Submit, int]]:
     """Give a way to run boxes in threads of our own; they end with the context, soon.
 
-    One thread is the caller's: what a function of the user raises or prints is seen at once.
+    One thread is the caller's: a debugger stops in a function of the user's there.
     """
     if count == 1:
         yield lambda box: at_hand(run_box(plan, module, box, ignore)), 1

@@ -227,6 +227,7 @@ def test_no_name_of_a_spec_is_one_of_the_vectors():
     words = {word for found in defined for word in ([found] if isinstance(found, str) else found)}
     assert {"zero", "wide", "real", "mask", "WIDTH", "sqrt_of", "exp_of", "any"} <= words
     assert words - {"", "name"} <= KEPT
+    assert {"PAIR", "PLAIN", "MODEL", "SIDE"} <= KEPT  # macros of the engine
 
 
 @pytest.mark.usefixtures("only_vectors")

@@ -7,7 +7,7 @@ import subprocess
 import sys
 import threading
 import time
-from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +19,7 @@ from piezo_sym.errors import EngineError, RunError, UsageError
 from piezo_sym.run import method as methods
 from piezo_sym.run.engine import EngineWarning
 from piezo_sym.sweeps import SweepWarning
-from piezo_sym.sweeps.pool import results
+from piezo_sym.sweeps.pool import at_hand, results
 
 ROOT = Path(__file__).parents[2]
 SPECS = ROOT / "tests" / "networks" / "specs"
@@ -64,12 +64,6 @@ def test_one_thread_is_the_caller_s():
 @pytest.mark.parametrize("at_once", [1, 2, 7, 100])
 def test_what_comes_together_is_taken_in_the_order_sent(at_once):
     assert list(results(at_hand, range(50), at_once)) == list(range(50))
-
-
-def at_hand(box):
-    future = Future()
-    future.set_result(box)
-    return future
 
 
 def test_a_thread_pool_of_ones_own(alone):
