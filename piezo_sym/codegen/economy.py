@@ -158,7 +158,9 @@ def with_beginnings(step: Step, still: Collection[str]) -> Step:
                 taken.add(found[node].name)
 
     def renamed(value: Expr) -> Expr:
-        return found[value] if value in found else rebuild(value, renamed)
+        if isinstance(value, Call | Pow) and value in found:  # to hash a tree takes long
+            return found[value]
+        return rebuild(value, renamed) if found else value
 
     begun = [Quantity(name.name, node, None, BEFORE) for node, name in found.items()]
     rest = [replace(q, value=renamed(q.value)) for q in step.quantities if q.note != NOTE]

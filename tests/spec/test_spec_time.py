@@ -16,7 +16,7 @@ from piezo_sym.spec.load import load, parse
 from piezo_sym.spec.units import parse_unit
 
 QUICK = 0.1
-LATER = 10.0  # two to five seconds on a quiet machine, at most
+LATER = 30.0  # two to nine seconds on a quiet machine, at most; a hang takes minutes
 
 
 def nest(form, times, inner="v"):
