@@ -1,6 +1,6 @@
 /*
  * Runs through intervals: a survey, a march of equal steps, or, with a tolerance, four paths side
- * by side.  Behind stepper.c, whose steps they take; wide.c does the same with lanes of vectors.
+ * by side.  Behind stepper.c, whose steps they take; fleet.c does the same with lanes of vectors.
  */
 
 /* The error of a step, to second order, is that of its quarters, and this many times more. */
