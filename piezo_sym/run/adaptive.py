@@ -112,7 +112,7 @@ class _Passage:
                 self.cut(waiting)
             else:
                 self.hand_over(present)
-        self.run.note(self.block, self.done.tolist())
+        self.run.note(self.block, self.done)
 
     def hand_over(self, present: NDArray[np.intp]) -> None:
         """Let members go on in C, with inputs for the levels that they are at, and more."""
@@ -122,8 +122,8 @@ class _Passage:
         size = _block_size(self.run, levels) if known else TRIED
         self.run.tell(float(self.block.starts[first]))
         part = self.block.part(first, first + size)
-        found = self.run.through("adapt", part, levels, (self.done - first).tolist())
-        self.done = np.maximum(self.done, first + np.array(found))
+        found = self.run.through("adapt", part, levels, self.done - first)
+        self.done = np.maximum(self.done, first + found)
 
     def cut(self, waiting: NDArray[np.intp]) -> None:
         """Take members through the intervals that they wait at, in parts; others see none of it."""

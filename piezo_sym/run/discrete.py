@@ -11,12 +11,17 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias, final
 
+import numpy as np
+
 from piezo_sym.errors import RunError
 from piezo_sym.run.engine.march import Batch, Way, steps_at
 from piezo_sym.run.ledger import Trajectory
+from piezo_sym.run.many import Systems
 from piezo_sym.run.mesh import Block, blocks, inputs_at
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from piezo_sym.run.checks import FloatArray
     from piezo_sym.run.engine import Engine
     from piezo_sym.run.system import System
@@ -39,7 +44,7 @@ class Runs:
     errors : of each system, its error, or None.
     """
 
-    systems: Sequence[System]
+    systems: Systems
     start: FloatArray
     batch: Batch
     times: FloatArray
@@ -108,18 +113,17 @@ class Run:
         starts: bool,
         watch: Watch | None = None,
     ) -> None:
-        self.systems, self.start, self.times, self.watch = systems, x, times, watch
-        parameters = [system.parameters for system in systems]
-        self.batch = Batch(engine, parameters, x, times.size, starts=starts)
-        self.jumps = systems[0].inputs.jumps if starts else frozenset()
+        self.systems, self.start, self.times, self.watch = Systems.of(systems), x, times, watch
+        self.batch = Batch(engine, self.systems.parameters, x, times.size, starts=starts)
+        self.jumps = self.systems.inputs.jumps if starts else frozenset()
         self.errors: list[RunError | None] = [None] * len(systems)
         if times[0] == 0:
             self.batch.states[:, 0] = self.batch.fine[:, 0] = x
             self.batch.sums[:, 0] = 0.0
 
     def through(
-        self, name: Way, block: Block, levels: Sequence[int], done: Sequence[int] = ()
-    ) -> list[int]:
+        self, name: Way, block: Block, levels: Sequence[int], done: NDArray[np.intp] | int = 0
+    ) -> NDArray[np.intp]:
         """Take the batch through a block, and return how many intervals each member has done."""
         steps = [steps_at(level) for level in levels]
         u = dict(zip(levels, block.middles(steps), strict=True))
@@ -132,11 +136,11 @@ class Run:
         self.errors[k] = error
         self.batch.members[k].failed = 1
 
-    def note(self, block: Block, done: Sequence[int]) -> None:
+    def note(self, block: Block, done: NDArray[np.intp]) -> None:
         """Stop members that did not come through a block, and note why."""
-        for k, reached in enumerate(done):
-            if reached < len(block) and self.errors[k] is None:
-                t = float(block.starts[reached])
+        for k in np.flatnonzero(done < len(block)).tolist():
+            if self.errors[k] is None:
+                t = float(block.starts[done[k]])
                 self.stop(k, _stuck(self.systems[k], t, self.batch.x[k]))
 
     def tell(self, t: float) -> None:

@@ -91,7 +91,7 @@ def quantities(
     """Yield the quantities in no certain order; rows of a bank stay together."""
     system, batch = runs.systems[0], runs.batch
     module = system.module
-    call = Members(engine, [one.parameters for one in runs.systems])
+    call = Members(engine, runs.systems.parameters)
     x = np.ascontiguousarray(batch.states[:, kept])
     balanced = x
     if runs.extrapolated:  # so near to the edge that the extrapolation may cross it

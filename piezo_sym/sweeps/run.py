@@ -47,6 +47,7 @@ if TYPE_CHECKING:
 
     from piezo_sym.run.checks import FloatArray
     from piezo_sym.run.engine import Engine
+    from piezo_sym.run.many import Systems
     from piezo_sym.run.module import GeneratedModule
     from piezo_sym.run.system import System
     from piezo_sym.sweeps.plan import Box, Plan
@@ -176,7 +177,7 @@ def in_c(
     good = [k for k, error in enumerate(group.errors) if not error]
     found: dict[str, NDArray[Any]] = {}
     if good:
-        systems = [group.systems[k] for k in good]
+        systems = group.systems.some(good)
         runs = march(plan, systems, engine, group.start[good], watch)
         for k, error in zip(good, runs.errors, strict=True):
             group.errors[k] = str(error or "")
@@ -185,7 +186,7 @@ def in_c(
     return spread_out(plan, group, found, good, failed, kept)
 
 
-def march(plan: Plan, systems: list[Any], engine: Engine, x: FloatArray, watch: Watch) -> Runs:
+def march(plan: Plan, systems: Systems, engine: Engine, x: FloatArray, watch: Watch) -> Runs:
     """Return runs in C; one that stops may stop others, so those that stop are run again alone.
 
     Runs whose inputs leave the domain stop there, as those of `simulate` do.
@@ -194,7 +195,7 @@ def march(plan: Plan, systems: list[Any], engine: Engine, x: FloatArray, watch: 
     runs = stepped(plan, systems, engine, x, watch)
     errors, batch = [old or new for old, new in zip(outside, runs.errors, strict=True)], runs.batch
     for k in (k for k, error in enumerate(runs.errors) if error and not outside[k]):
-        alone = stepped(plan, [systems[k]], engine, x[k : k + 1], watch)
+        alone = stepped(plan, systems.some([k]), engine, x[k : k + 1], watch)
         stopped = alone.errors[0]
         errors[k] = stopped and cause(systems[k], x[k], plan.samples, stopped)
         for name in ("states", "fine", "sums"):
@@ -202,9 +203,7 @@ def march(plan: Plan, systems: list[Any], engine: Engine, x: FloatArray, watch: 
     return replace(runs, errors=errors)
 
 
-def input_errors(
-    systems: list[System], x: FloatArray, samples: FloatArray
-) -> list[RunError | None]:
+def input_errors(systems: Systems, x: FloatArray, samples: FloatArray) -> list[RunError | None]:
     """Return the errors of inputs that leave the domain after t = 0, where starts are checked."""
     if not inputs_move(systems[0]):
         return [None] * len(systems)
@@ -220,7 +219,7 @@ def input_error(system: System, x: FloatArray, samples: FloatArray) -> RunError 
     return None
 
 
-def stepped(plan: Plan, systems: list[Any], engine: Engine, x: FloatArray, watch: Watch) -> Runs:
+def stepped(plan: Plan, systems: Systems, engine: Engine, x: FloatArray, watch: Watch) -> Runs:
     """Return runs in C, with the plan's step or tolerance."""
     if plan.step is None:
         return adaptive(systems, engine, x, plan.samples, plan.rtol, watch)

@@ -125,9 +125,9 @@ class Batch:
         lengths: FloatArray,
         u: Mapping[int, FloatArray],
         samples: NDArray[np.int_],
-        done: Sequence[int] = (),
+        done: NDArray[np.intp] | int = 0,
         first: Mapping[int, FloatArray] | None = None,
-    ) -> list[int]:
+    ) -> NDArray[np.intp]:
         """Go through intervals, and return how many of them each member has done.
 
         Parameters
@@ -138,14 +138,14 @@ class Batch:
         u : of levels, inputs at the middles of steps (k*steps, inputs).
         samples : the sample after each interval (k,), -1 for none.
         first : after a jump, of levels, inputs of the quarters of the first step (4, inputs).
-        done : how many of these intervals each member has done before; none when left out.
+        done : how many of these intervals each member has done before.
         """
         levels = range(min(u), max(u) + 1)
         held = _pointers(u, levels), _pointers(first, levels) if first else None
         rows = np.ascontiguousarray(samples, dtype="l")  # as C has them
         block = Intervals(lengths.size, levels[0], levels[-1], at(lengths), None, at(rows))
         block.u, block.first = (ctypes.cast(p, POINTER) if p else None for p in held)
-        self._records["done"] = done if done else 0
+        self._records["done"] = done
         arguments = (self.members, LONG(len(self.members)), ctypes.byref(block))
         vectors = self._vectors_for(name)
         if vectors is None:
@@ -153,7 +153,7 @@ class Batch:
         else:
             function, space = vectors
             function(*arguments, ctypes.c_int(MODES[name]), at(space))
-        reached: list[int] = self._records["done"].tolist()
+        reached: NDArray[np.intp] = self._records["done"].astype(np.intp)
         return reached
 
     def allow(self, rtol: float) -> None:

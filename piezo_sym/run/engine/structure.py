@@ -11,11 +11,12 @@ import ctypes
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from operator import attrgetter, is_
 from typing import TYPE_CHECKING, Any, final
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from piezo_sym.run.many import Column, Table
 from piezo_sym.run.module import lanes
 
 if TYPE_CHECKING:
@@ -61,7 +62,7 @@ class Layout:
         self._kind = type("Parameters", (ctypes.Structure,), {"_fields_": fields or none})
         self._record = record_of(self._kind)
         self._remembered = lru_cache(maxsize=REMEMBERED)(self._made)
-        self._last: tuple[Sequence[Any], Structures] | None = None
+        self._tables: WeakKeyDictionary[Table, Structures] = WeakKeyDictionary()
 
     def __call__(self, p: Any) -> Structure:
         """Return the structure of one run."""
@@ -84,29 +85,27 @@ class Layout:
         return Structure(self._kind(*values), tuple(arrays))
 
     def many(self, parameters: Sequence[Any]) -> Structures:
-        """Return the structures of runs whose banks have equal sizes."""
+        """Return the structures of runs whose banks have equal sizes, kept as long as a `Table`."""
         if len(parameters) == 1:
             one = self(parameters[0])
             return Structures(np.array([ctypes.addressof(one.value)], dtype=np.uintp), (one,))
-        last = self._last  # a group of runs is asked for several times, one after another
-        if last and len(last[0]) == len(parameters) and all(map(is_, last[0], parameters)):
-            return last[1]
-        found = self._together(parameters)
-        self._last = tuple(parameters), found
+        table = Table.of(parameters)
+        found = self._tables.get(table)
+        if found is None:
+            found = self._tables[table] = self._together(table)
         return found
 
-    def _together(self, parameters: Sequence[Any]) -> Structures:
-        records = np.zeros(len(parameters), self._record)
-        kept: list[NDArray[Any]] = [records]
+    def _together(self, table: Table) -> Structures:
+        base = self(table.base)
+        records = np.full(len(table), np.frombuffer(memoryview(base.value), self._record))
+        kept: list[object] = [base, records]
         for n, record in enumerate(self._module.PARAMETERS):
-            values = list(map(attrgetter(record.name), parameters))
-            if record.bank:
-                kept.append(_rows(values, lanes(parameters[0], record.bank)))
-                records[f"field_{n}"] = addresses(kept[-1])
-            else:
-                records[f"field_{n}"] = values
-        for n, bank in enumerate(self._module.BANKS):
-            records[f"count_{n}"] = lanes(parameters[0], bank)
+            column = table.columns.get(record.name)
+            if column is not None and record.bank:
+                kept.append(rows := _rows(column, lanes(table.base, record.bank)))
+                records[f"field_{n}"] = addresses(rows)
+            elif column is not None:
+                records[f"field_{n}"] = column
         return Structures(addresses(records), tuple(kept))
 
 
@@ -130,7 +129,7 @@ def addresses(array: NDArray[Any]) -> NDArray[np.uintp]:
     return (first + apart * np.arange(len(array))).astype(np.uintp)
 
 
-def _rows(values: Sequence[Any], count: int) -> FloatArray:
+def _rows(values: Column, count: int) -> FloatArray:
     """Return one number a lane, a row each; a value is a number or one a lane."""
     try:
         array = np.array(values, dtype=float)  # all of them numbers, or all one a lane
