@@ -637,7 +637,7 @@ int piezo_stack_newton_start(const double *restrict x,
     const double gap_Q_C = Q_C_new - Q_C - h*(sum_i_hysteron - alpha_transducer*v_mass);
     const double gap_S = S_new
         - S
-        - h*((heat_hysteron + heat_damper)*per_T + lam*(T_e*per_T - 1.0) + heat_numerical*per_T);
+        - h*((heat_hysteron + heat_damper)*per_T + lam*((T_e - T)*per_T) + heat_numerical*per_T);
     /* Newton's equations, solved */
     const double pivot_change_Q_C = 1.0
         - sum_share_phi_3_3
@@ -756,7 +756,7 @@ void piezo_stack_means_start(const double *restrict x,
     out[2] = lam*(T_e - T);
     out[3 + hysteron_count] = F_damper*v_mass;
     out[4 + hysteron_count + hysteron_count] = F_damper*v_mass*per_T;
-    out[5 + hysteron_count + hysteron_count] = lam*(T_e*per_T - 1.0);
+    out[5 + hysteron_count + hysteron_count] = lam*((T_e - T)*per_T);
     out[6 + hysteron_count + hysteron_count] = heat_numerical;
     out[7 + hysteron_count + hysteron_count] = heat_numerical*per_T;
 }
@@ -905,7 +905,7 @@ int piezo_stack_newton(const double *restrict x,
     const double gap_Q_C = Q_C_new - Q_C - h*(sum_i_hysteron - alpha_transducer*v_mass);
     const double gap_S = S_new
         - S
-        - h*((heat_hysteron + heat_damper)*per_T + lam*(T_e*per_T - 1.0));
+        - h*((heat_hysteron + heat_damper)*per_T + lam*((T_e - T)*per_T));
     /* Newton's equations, solved */
     const double pivot_change_Q_C = 1.0
         - sum_share_phi_3_3
@@ -1005,7 +1005,7 @@ void piezo_stack_means(const double *restrict x,
     out[2] = lam*(T_e - T);
     out[3 + hysteron_count] = F_damper*v_mass;
     out[4 + hysteron_count + hysteron_count] = F_damper*v_mass*per_T;
-    out[5 + hysteron_count + hysteron_count] = lam*(T_e*per_T - 1.0);
+    out[5 + hysteron_count + hysteron_count] = lam*((T_e - T)*per_T);
 }
 
 int piezo_stack_inside(const double *restrict x,

@@ -23,6 +23,7 @@ from piezo_sym.codegen.step import Change, Step
 from piezo_sym.spec.calculus import add, mul, neg
 from piezo_sym.spec.expressions import (
     ONE,
+    Add,
     Call,
     Div,
     Expr,
@@ -214,7 +215,13 @@ def _divisors(node: Node) -> Iterator[str]:
 
 
 def _rewritten(node: Expr, instead: Mapping[str, Sym]) -> Expr:
-    """Return an expression with products for quotients by the keys of `instead`."""
+    """Return an expression with products for quotients by the keys of `instead`.
+
+    A quotient less 1 becomes a difference first: nothing where both are equal, however one rounds.
+    """
+    match node:
+        case Add((Div(top, Sym(name)), less)) if less == neg(ONE) and name in instead:
+            return mul(add(_rewritten(top, instead), neg(Sym(name))), instead[name])
     found: Any = rebuild(node, lambda part: _rewritten(part, instead))
     match found:
         case Div(top, Sym(name)) if name in instead:

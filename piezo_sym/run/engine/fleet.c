@@ -238,7 +238,7 @@ static void MODEL(leave)(const MODEL(fleet) *f, MODEL(place) *at)
             MODEL(take)(w->largest, s->model.largest, w->n, seat->k);
         s->model.iterations += w->tries[seat->k];
         w->on[seat->slot][seat->k] = w->books[seat->k] = w->tries[seat->k] = 0;
-        w->next[seat->k] = NULL;
+        w->next[seat->k] = f->b->u[0];
     }
     at->s = NULL;
 }
@@ -323,8 +323,10 @@ static void MODEL(furnish)(MODEL(fleet) *f, const MODEL(model) *m, real *space)
         MODEL(wide) *w = &f->vector[v];
         MODEL(wide_places)(w, m, space + v * MODEL(wide_numbers)(m));
         w->adapts = f->mode == ADAPT;
-        for (int k = 0; k < WIDTH; ++k) /* so that idle lanes compute with numbers */
+        for (int k = 0; k < WIDTH; ++k) { /* so that idle lanes compute with numbers */
             MODEL(wide_load)(&w->p, m->p, k);
+            w->next[k] = f->b->u[0];
+        }
     }
     for (int n = 0; n < f->places; ++n)
         for (int track = 0; track < f->tracks; ++track) {

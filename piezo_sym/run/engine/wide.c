@@ -15,7 +15,7 @@ typedef struct {
 /* What all lanes compute with: paths, ledgers, what is kept of an interval, room for one step. */
 typedef struct {
     MODEL(wide_parameters) p;
-    const double *next[WIDTH]; /* each lane's inputs of its next step, or none */
+    const double *next[WIDTH]; /* each lane's inputs of its next step, those of an idle one any */
     long n, rows, ports, processes, inputs;
     MODEL(wide_path) path[SLOTS];
     mask on[SLOTS], books; /* which lanes are on a path, and which book what their steps do */
@@ -225,9 +225,8 @@ static int MODEL(advance)(MODEL(wide) *w)
     const mask going = w->on[0] | w->on[1] | w->on[2];
     if (!any(going))
         return 0;
-    for (int k = 0; k < WIDTH; ++k)
-        if (w->next[k])
-            MODEL(put)(w->u, w->next[k], w->inputs, k);
+    for (long i = 0; i < w->inputs; ++i)
+        w->u[i] = gathered(w->next, i);
     MODEL(predictions)(w);
     MODEL(wide_begin)(w->from, &w->p);
     const mask found = MODEL(roots)(w, going);

@@ -43,6 +43,22 @@ static inline mask lane_of(int k)
     return where;
 }
 
+/*
+ * Number i of each lane's row.  As one expression: what is written lane by lane and read as a vector
+ * at once has to wait until it has come to the cache.
+ */
+static inline real gathered(const double *const *row, long i)
+{
+#if defined(PAIR) || !defined(__AVX__)
+    return (real){row[0][i], row[1][i]};
+#elif defined(__AVX512F__)
+    return (real){row[0][i], row[1][i], row[2][i], row[3][i],
+                  row[4][i], row[5][i], row[6][i], row[7][i]};
+#else
+    return (real){row[0][i], row[1][i], row[2][i], row[3][i]};
+#endif
+}
+
 static inline int any(mask where)
 {
     const few small = __builtin_convertvector(where, few);
