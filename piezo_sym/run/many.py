@@ -63,8 +63,8 @@ class Table(Sequence[Any]):
         return changed(self.base, change) if change else self.base
 
     def some(self, runs: Sequence[int]) -> Table:
-        """Return the parameters of some of the runs; all of them are the table itself."""
-        if len(runs) == self.size:
+        """Return the parameters of some of the runs; the table itself for all in their order."""
+        if list(runs) == list(range(self.size)):
             return self
         columns = {
             name: column[list(runs)]

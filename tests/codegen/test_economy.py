@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from piezo_sym.codegen.economy import BEFORE, economical, with_products
 from piezo_sym.codegen.program import Quantity
 from piezo_sym.codegen.step import Step
-from piezo_sym.spec.calculus import mul, neg
-from piezo_sym.spec.expressions import Call, Div, Sym, evaluate, names
+from piezo_sym.spec.calculus import add, mul, neg
+from piezo_sym.spec.expressions import ONE, Call, Div, Mul, Sym, evaluate, names
 
 LETTERS = ("a", "b", "c", "d")
 EMPTY = Step("h", (), (), (), (), (), (), (), (), frozenset())
@@ -87,3 +87,19 @@ def test_a_lane_s_function_stays_where_it_is():
     value = mul(Sym("a"), Call("exp", (Sym("phi"),)))
     given_ = replace(EMPTY, quantities=(Quantity("law", value, "bank", "test"),))
     assert economical(given_, {"phi": "bank"}, ("a", "phi")) == given_
+
+
+def test_a_quotient_less_one_is_nothing_where_both_are_equal():
+    """By a reciprocal, 49/49 - 1 would leave what the rounding of 1/49 does to it."""
+    less = add(Div(Sym("a"), Sym("b")), neg(ONE))
+    found = economical(step(mul(Sym("c"), less), Div(Sym("c"), Sym("b"))), {}, {*LETTERS})
+    by_name = {quantity.name: quantity.value for quantity in found.quantities}
+    difference = add(Sym("a"), neg(Sym("b")))
+    assert by_name["q0"] == Mul(Sym("c"), Mul(difference, Sym("per_b")))
+    known = {"a": 49.0, "b": 49.0, "c": 2.0, "per_b": 1 / 49.0}
+    assert evaluate(by_name["q0"], known) == 0.0
+
+
+def test_a_quotient_less_one_stays_where_nothing_else_is_divided():
+    less = add(Div(Sym("a"), Sym("b")), neg(ONE))
+    assert economical(step(less), {}, {*LETTERS}).quantities[-1].value == less
