@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 
 class Tick(ctypes.Structure):
-    """MODEL(stepper) of stepper.c."""
+    """MODEL(stepper) of tick.c."""
 
     _fields_ = [
         ("model", Model),

@@ -7,7 +7,7 @@ from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from piezo_sym.codegen.c_means import step_helpers
-from piezo_sym.run.engine.vector import text_beside
+from piezo_sym.run.engine.texts import VECTORS, texts
 from tests.codegen.called import built
 
 WIDTHS = st.floats(1e-3, 10) | st.just(0.0) | st.floats(0, 1e-9, allow_subnormal=False)
@@ -34,7 +34,7 @@ def calls(text):
 def in_c(request, tmp_path_factory):
     folder = tmp_path_factory.mktemp("deadzone")
     if request.param == "vectors":
-        return built(folder, ARITIES, text_beside("wide.h"), calls(BESIDE))
+        return built(folder, ARITIES, texts(*VECTORS), calls(BESIDE))
     text = calls(ALONE)
     return built(folder, ARITIES, "#include <math.h>", *step_helpers(text), text)
 

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from piezo_sym.codegen.c_means import step_helpers
-from piezo_sym.run.engine.vector import text_beside
+from piezo_sym.run.engine.texts import VECTORS, texts
 from tests.codegen.called import built
 
 ENDS = st.floats(-50, 50) | st.floats(-1e-3, 1e-3) | st.floats(-1e5, 1e5)
@@ -27,7 +27,7 @@ ARITIES = {"mean": 2, "by_new": 2}
 @pytest.fixture(scope="module")
 def vectors(tmp_path_factory):
     folder = tmp_path_factory.mktemp("vectors")
-    return built(folder, {**ARITIES, "plain": 1}, text_beside("wide.h"), IN_VECTORS)
+    return built(folder, {**ARITIES, "plain": 1}, texts(*VECTORS), IN_VECTORS)
 
 
 @pytest.fixture(scope="module")

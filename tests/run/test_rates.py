@@ -18,7 +18,7 @@ from piezo_sym.run.engine.compiler import FLAGS, build, compilers
 from piezo_sym.run.engine.driver import PLAIN, SCALARS
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.engine.rates import DRIVEN, WIDE, rates_text
-from piezo_sym.run.engine.vector import text_beside
+from piezo_sym.run.engine.texts import VECTORS, texts
 from piezo_sym.run.parameters import read_parameters
 from piezo_sym.spec.model import Model
 
@@ -167,7 +167,7 @@ void each(const double *x, double *e, double *m, long count)
 def exponentials(tmp_path_factory):
     """Return a function that gives exp(x) and exp(x) - 1 as vectors compute them."""
     folder = tmp_path_factory.mktemp("built")
-    (folder / "wide.h").write_text(text_beside("wide.h"))
+    (folder / "wide.h").write_text(texts(*VECTORS))
     (folder / "each.c").write_text(EXACT)
     build(next(compilers()), FLAGS[0], folder / "each.c", folder / "each.so")
     library = ctypes.CDLL(str(folder / "each.so"))
@@ -219,7 +219,7 @@ def test_exponentials_of_vectors_end_as_those_of_numbers_do(exponentials):
 
 def test_no_name_of_a_spec_is_one_of_the_vectors():
     """A parameter called `zero` is another name in C, so that it hides nothing."""
-    text = re.sub(r"/\*.*?\*/", "", text_beside("wide.h"), flags=re.DOTALL)
+    text = re.sub(r"/\*.*?\*/", "", texts(*VECTORS), flags=re.DOTALL)
     defined = re.findall(r"static (?:inline|const) \w+ (\w+)", text)
     defined += re.findall(
         r"#define (\w+)|(?:LANE_BY_LANE\(|enum \{ )(\w+)|\b(\w+) __attribute__", text

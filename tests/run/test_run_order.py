@@ -17,8 +17,8 @@ from piezo_sym.modules import load_module, module_of
 from piezo_sym.run import simulate as run
 from piezo_sym.run.adaptive import MOST_LEVEL
 from piezo_sym.run.engine.compiler import build, compilers
-from piezo_sym.run.engine.driver import source
 from piezo_sym.run.engine.march import coarser, steps_at, twice
+from piezo_sym.run.engine.texts import texts
 
 SPECS = Path(__file__).parents[1] / "networks" / "specs"
 CASE_P = {"inputs": {"V_in": sine(100, 100)}, "duration": 0.1}
@@ -144,7 +144,7 @@ void asked(long *out)
 
 
 def test_both_sides_have_the_same_ladder_of_steps(tmp_path):
-    text, parts = source("paths.c"), ["#define MODEL(name) ladder_##name"]
+    text, parts = texts("paths.c"), ["#define MODEL(name) ladder_##name"]
     for name in ("steps_at", "twice", "coarser"):
         parts += re.findall(
             rf"^static long MODEL\({name}\)\(long level\)$.*?^}}$", text, re.M | re.S

@@ -6,8 +6,7 @@ columns lie one after another.
 
 from __future__ import annotations
 
-from functools import cache
-from pathlib import Path
+from piezo_sym.run.engine.texts import STEPS, texts
 
 #: Functions of (x, u, p) and of (x, p), and those that give one number.
 DRIVEN = ("rhs", "jacobian", "outputs", "supply", "heat", "entropy_production", "margins")
@@ -74,14 +73,7 @@ def driver(model: str, *, starts: bool) -> str:
         parts.append(_loop(model, name, call, "(void)u; (void)m;"))
     parts.append(MEMBERS.format(model=model))
     parts.append(f"\n#define MODEL(name) {model}_##name\n#define STARTS {int(starts)}\n")
-    parts += [source(name) for name in ("kinds.c", "stepper.c", "paths.c")]
-    return "".join(parts)
-
-
-@cache
-def source(name: str) -> str:
-    """Return a text that runs steps, the same for every model."""
-    return Path(__file__).with_name(name).read_text(encoding="utf-8")
+    return "".join([*parts, texts(*STEPS)])
 
 
 def _loop(model: str, name: str, call: str, idle: str) -> str:

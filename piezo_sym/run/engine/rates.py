@@ -10,7 +10,8 @@ import re
 
 from piezo_sym.errors import EngineError
 from piezo_sym.run.engine.driver import PLAIN, SCALARS
-from piezo_sym.run.engine.vector import NUMBER, defined, text_beside, undefined
+from piezo_sym.run.engine.texts import VECTORS, texts
+from piezo_sym.run.engine.vector import NUMBER, defined, undefined
 
 #: Functions of (x, u, p) that are computed so; those of (x, p) come on top.
 DRIVEN = ("rhs", "outputs", "supply", "heat", "entropy_production")
@@ -51,9 +52,9 @@ def rates_text(model: str, source: str) -> str:
         If the source lacks one of the functions.
     """
     functions = [_wide_function(model, name, source) for name in WIDE]
-    head = _HEAD.format(model=model, vectors=text_beside("wide.h"))
+    head = _HEAD.format(model=model, vectors=texts(*VECTORS))
     entries = [_ENTRY.format(model=model, name=name, call=_call(model, name)) for name in WIDE]
-    return "\n".join([head, defined(), *functions, undefined(), text_beside("rates.c"), *entries])
+    return "\n".join([head, defined(), *functions, undefined(), texts("rates.c"), *entries])
 
 
 def _call(model: str, name: str) -> str:

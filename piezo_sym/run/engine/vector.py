@@ -10,13 +10,13 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
-from pathlib import Path
 from typing import final
+
+from piezo_sym.run.engine.texts import LANES, VECTORS, texts
 
 #: The line that opens the part of a source that holds for vectors too.
 OPENING = "/* The step of the discrete gradient, of one state or of many side by side. */"
-#: Functions of a step's text, and those of wide.h that compute them; how many arguments.
+#: Functions of a step's text, and those for vectors that compute them; how many arguments.
 CALLS = {
     "pick": ("chosen", 3),
     "fabs": ("size_of", 1),
@@ -57,9 +57,7 @@ NUMBER = r"\b\d[\d.]*(?:e[-+]?\d+)?\b\.?|\bHUGE_VAL\b"
 
 def wide_text(model: str, header: str, source: str) -> str:
     """Return what a driver needs in addition to run paths of members side by side."""
-    own = wide_source(model, header, source)
-    parts = text_beside("wide.h"), own, text_beside("wide.c"), text_beside("fleet.c")
-    return "\n".join(parts)
+    return "\n".join([texts(*VECTORS), wide_source(model, header, source), texts(*LANES)])
 
 
 def has_step(source: str) -> bool:
@@ -257,9 +255,3 @@ def _loader(model: str, fields: Sequence[_Field], counts: Sequence[str]) -> str:
             *("{", "    (void)w;\n    (void)p;\n    (void)lane;", *loaded, "}\n"),
         ]
     )
-
-
-@cache
-def text_beside(name: str) -> str:
-    """Return the text of a file of this folder."""
-    return Path(__file__).with_name(name).read_text(encoding="utf-8")

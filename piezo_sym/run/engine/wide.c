@@ -1,7 +1,7 @@
 /*
  * Steps side by side: each lane of a vector takes those of one member.  What stepper.c does for one,
  * with masks: which lanes' steps did not converge, or are not accepted, is told.  Behind wide.h and
- * the model's step for vectors; fleet.c says what lanes do.
+ * the model's step for vectors; seats.c and fleet.c say whose the lanes are, and what they do.
  */
 
 /* How many paths a lane may have. */
