@@ -43,7 +43,7 @@ _VECTORS = (
     "ramp_of ramp_by_new_of mean_sign_of mean_sign_by_new_of bend_of "
     "log1p_of atanh_of mean_tanh_of mean_tanh_by_new_of beyond_of mean_deadzone_of "
     "mean_deadzone_by_new_of mean_deadzone_by_width_of way_of about_per lane_of few pattern "
-    "gathered pick deadzone saturate sign"
+    "LANES NUMBER gathered pick deadzone saturate sign"
 )
 _ENDS = (
     *("parameters", "states", "processes", "jacobian", "margins"),

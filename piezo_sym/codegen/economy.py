@@ -1,11 +1,11 @@
 """A step with fewer divisions and calls of functions: what it computes stays the same.
 
-Input: a `Step`.  Output: the same step, with ``per_L = 1/L`` where L divides more than once,
-phi2 = 1/2 + d*phi3, phi1 = 1 + d*phi2 in place of calls, products that hold an earlier one written
-by its name, and names for functions of the state before the step, which Newton's method does not
-change: ``expm1_S = expm1(S/c_0)``.  A division takes as long as ten products, an exponential as
-thirty.  A step may be rounded differently from the rates at a point: its balances close whatever
-the last bit of its co-states is.
+Input: a `Step`.  Output: the same step, with ``per_L = 1/L`` where L divides more than once, and
+``(T_e - T)*per_T`` for ``T_e/T - 1``; phi2 = 1/2 + d*phi3, phi1 = 1 + d*phi2 in place of calls;
+products that hold an earlier one written by its name; and names for functions of the state before
+the step, which Newton's method does not change: ``expm1_S = expm1(S/c_0)``.  A division takes as
+long as ten products, an exponential as thirty.  A step may be rounded differently from the rates at
+a point: its balances close whatever the last bit of its co-states is.
 """
 
 from __future__ import annotations
@@ -217,7 +217,8 @@ def _divisors(node: Node) -> Iterator[str]:
 def _rewritten(node: Expr, instead: Mapping[str, Sym]) -> Expr:
     """Return an expression with products for quotients by the keys of `instead`.
 
-    A quotient less 1 becomes a difference first: nothing where both are equal, however one rounds.
+    ``a/b - 1``, as heat exchanges have it, becomes ``(a - b)*per_b``: 0 where a is b, which
+    ``a*per_b - 1`` need not be.
     """
     match node:
         case Add((Div(top, Sym(name)), less)) if less == neg(ONE) and name in instead:

@@ -16,8 +16,8 @@ import numpy as np
 from piezo_sym.errors import RunError
 from piezo_sym.run.engine.march import Batch, Way, steps_at
 from piezo_sym.run.ledger import Trajectory
-from piezo_sym.run.many import Systems
 from piezo_sym.run.mesh import Block, blocks, inputs_at
+from piezo_sym.run.system import Systems
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -1,19 +1,21 @@
-"""One run's fixed parts: the module, its parameters and inputs, and its functions of x and u alone.
+"""A run's fixed parts: the module, its parameters and inputs, and its functions of x and u alone.
 
-Input: a generated module, `Parameters`, `Inputs`.  Output: `System`.
+Input: a generated module, `Parameters`, `Inputs`.  Output: `System`; of many runs `Systems`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, final
+from typing import TYPE_CHECKING, Any, final, overload
 
 import numpy as np
 
 from piezo_sym.run.module import exchanges, rows
+from piezo_sym.run.parameter_table import Table
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
     from piezo_sym.run.checks import FloatArray
     from piezo_sym.run.inputs import Inputs, Segment
@@ -71,3 +73,45 @@ class System:
             supply = m.supply(x, u, p)
             brought = supply[exchanging] / m.outputs(x, u, p)[exchanging]
             return np.concatenate([supply, m.heat(x, u, p), m.entropy_production(x, u, p), brought])
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Systems(Sequence[System]):
+    """Systems of one module with equal inputs, each made when asked for.
+
+    Attributes
+    ----------
+    module, inputs : of all.
+    parameters : of each.
+    """
+
+    module: GeneratedModule
+    parameters: Table
+    inputs: Inputs
+
+    @staticmethod
+    def of(systems: Sequence[System]) -> Systems:
+        """Return systems with equal inputs as one value."""
+        if isinstance(systems, Systems):
+            return systems
+        first = systems[0]
+        return Systems(first.module, Table.of([one.parameters for one in systems]), first.inputs)
+
+    def __len__(self) -> int:
+        """Return the number of systems."""
+        return len(self.parameters)
+
+    @overload
+    def __getitem__(self, k: int) -> System: ...
+    @overload
+    def __getitem__(self, k: slice) -> Systems: ...
+    def __getitem__(self, k: int | slice) -> System | Systems:
+        """Return one system, or some."""
+        if isinstance(k, slice):
+            return Systems(self.module, self.parameters[k], self.inputs)
+        return System(self.module, self.parameters[k], self.inputs)
+
+    def some(self, runs: Sequence[int]) -> Systems:
+        """Return some of the systems."""
+        return Systems(self.module, self.parameters.some(runs), self.inputs)

@@ -15,10 +15,11 @@ from piezo_sym.errors import PiezoError, RunError
 from piezo_sym.run.engine.members import Members
 from piezo_sym.run.guard import check_start
 from piezo_sym.run.inputs import Inputs
-from piezo_sym.run.many import Column, Systems, Table
 from piezo_sym.run.module import rows
+from piezo_sym.run.parameter_table import Column, Table
 from piezo_sym.run.parameters import own_initial, read_parameters
 from piezo_sym.run.signals import Constant, Signal
+from piezo_sym.run.system import Systems
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -58,7 +59,7 @@ def group_at(
         for n, target in plan.swept()
         if target.kind == "parameters" and not target.is_size
     }
-    systems = Systems(module, inputs, Table(base, len(points), columns))
+    systems = Systems(module, Table(base, len(points), columns), inputs)
     start, errors = starts(plan, systems, points)
     check_starts(systems, engine, start, errors)
     return Group(systems, start, errors)
@@ -105,7 +106,7 @@ def base_at_point(plan: Plan, module: GeneratedModule, point: NDArray[np.intp]) 
 def starts(plan: Plan, systems: Systems, points: NDArray[np.intp]) -> tuple[FloatArray, list[str]]:
     """Return the states (runs, n) at t = 0, nan where there is none, and the errors.
 
-    Often a state at t = 0 depends on no parameter in which systems differ.
+    Where no parameter that differs is read, one state serves all.
     """
     first = systems[0]
     module, u = first.module, first.inputs.segments[0].at(0.0)

@@ -47,9 +47,8 @@ if TYPE_CHECKING:
 
     from piezo_sym.run.checks import FloatArray
     from piezo_sym.run.engine import Engine
-    from piezo_sym.run.many import Systems
     from piezo_sym.run.module import GeneratedModule
-    from piezo_sym.run.system import System
+    from piezo_sym.run.system import System, Systems
     from piezo_sym.sweeps.plan import Box, Plan
 
 Watch: TypeAlias = Callable[[float], object]

@@ -1,12 +1,14 @@
 """The engine: compiled once, whoever asks; without a compiler one line, and NumPy goes on."""
 
 import ctypes
+import gc
 import os
 import shutil
 import stat
 import subprocess
 import sys
 import threading
+import weakref
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +21,8 @@ from piezo_sym.run.engine import library as libraries
 from piezo_sym.run.engine.compiler import compilers
 from piezo_sym.run.engine.members import Members
 from piezo_sym.run.engine.processor import processor
+from piezo_sym.run.engine.structure import Layout
+from piezo_sym.run.parameter_table import Table
 
 ROOT = Path(__file__).parents[2]
 FILES = ROOT / "generated" / "piezo_stack"
@@ -100,13 +104,26 @@ def test_a_source_that_changes_is_compiled_again(module):
 
 
 def test_runs_have_the_parameters_that_they_are_given(module):
-    """Those of a group are remembered: another group of as many is another."""
+    """What C has of a table is kept as long as it: another table of as many runs is another."""
     engine, state = compiled(module), STATE[None, None]
-    for masses in ([3.5e-3, 7e-3], [1e-3, 2e-3], [1e-3, 4e-3]):
-        parameters = [module.Parameters(M=mass) for mass in masses]
-        found = Members(engine, parameters)("rhs", np.repeat(state, 2, 0), 6, INPUTS[None])
-        for row, p in zip(found[:, 0], parameters, strict=True):
+    tables = [
+        Table(module.Parameters(), 2, {"M": np.array(masses)})
+        for masses in ([3.5e-3, 7e-3], [1e-3, 2e-3], [1e-3, 4e-3])
+    ]
+    for table in tables * 2:
+        found = Members(engine, table)("rhs", np.repeat(state, 2, 0), 6, INPUTS[None])
+        for row, p in zip(found[:, 0], table, strict=True):
             assert np.array_equal(row, module.rhs(STATE, INPUTS, p))
+
+
+def test_what_c_has_of_a_table_goes_with_it(module):
+    layout = Layout(module)
+    table = Table(module.Parameters(), 2, {"M": np.array([1e-3, 2e-3])})
+    kept = weakref.ref(layout.many(table))
+    assert layout.many(table) is kept()
+    del table
+    gc.collect()
+    assert kept() is None
 
 
 @pytest.mark.parametrize("what", ["source", "flags", "version", "processor"])

@@ -79,6 +79,26 @@ def test_no_run_leaves_its_arrays(monkeypatch, path, how, size, most_states):
     assert np.isnan(apart.x.base).sum() == np.isnan(usual.x.base).sum() + gaps
 
 
+@pytest.mark.parametrize("how", [{"rtol": 1e-5}, {"step": 1e-5}], ids=["rtol", "step"])
+@pytest.mark.parametrize("size", [1, 3, 11])
+def test_no_run_computes_with_what_lies_beside_its_inputs(monkeypatch, how, size):
+    members = Members("piezo_stack", size, inputs={"V_in": sine(100, 100)})
+    usual = members.run(monkeypatch, 10**6, **how).batch
+    pointers, kept = march._pointers, []
+
+    def among_nan(arrays, levels):
+        room = {"pad_width": [(3, 3), (0, 0)], "constant_values": np.nan}
+        there = {level: np.pad(u, **room) for level, u in arrays.items()}
+        kept.append(there)
+        return pointers({level: u[3:-3] for level, u in there.items()}, levels)
+
+    monkeypatch.setattr(march, "_pointers", among_nan)
+    beside = members.run(monkeypatch, 10**6, **how).batch
+    assert kept
+    for name in ("states", "sums", "x", "ledgers"):
+        assert np.array_equal(getattr(usual, name), getattr(beside, name)), name
+
+
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
 @pytest.mark.parametrize("how", [{"rtol": 1e-6}, {"step": 1e-5}], ids=["rtol", "step"])
 def test_lanes_compute_what_members_alone_do(monkeypatch, path, how):

@@ -129,6 +129,22 @@ def test_a_start_outside_the_domain_fails_its_runs_alone():
         assert np.isfinite(found[name].sel(d=400.0)).all(), name
 
 
+def test_runs_beside_one_that_cannot_start_have_their_own_parameters():
+    inductances = [1e-3, (1e-3, 2e-3), 3e-3, (5e-4, 4e-3)]
+    over = {("L", "d"): list(zip(inductances, [400.0, 300.0, -1.0, 200.0], strict=True))}
+    drive = {"inputs": {"V_in": sine(100, 100)}, "duration": 0.01, "times": 3}
+    with pytest.warns(SweepWarning, match="1 of 4 runs failed"):
+        found = sweep("piezo_stack", over=over, **drive)
+    for k, (lanes, damping) in enumerate(*over.values()):
+        one = {"parameters": {"L": lanes, "d": damping}, **drive}
+        if damping < 0:
+            assert found.error.values[k] == reason(**one)
+            continue
+        alone = simulate("piezo_stack", method="discrete_gradient", **one)
+        for name in ("q", "phi", "S", "heat_hysteron"):
+            assert np.allclose(found[name].values[k], alone[name].values, rtol=1e-13, atol=0), name
+
+
 OUTSIDE = [298.15, sine(2.0, 100.0, 298.15), step(0.005, 310.0, 298.15)]
 
 

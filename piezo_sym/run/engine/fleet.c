@@ -116,6 +116,12 @@ static int MODEL(next)(const MODEL(fleet) *f, MODEL(place) *at)
     return MODEL(begin)(f, at);
 }
 
+/* A lane that has no member computes with some inputs, too. */
+static void MODEL(idle)(const MODEL(fleet) *f, MODEL(wide) *w, int k)
+{
+    w->next[k] = f->b->u[0];
+}
+
 /* A member leaves its place; it keeps what it has done. */
 static void MODEL(leave)(const MODEL(fleet) *f, MODEL(place) *at)
 {
@@ -129,7 +135,7 @@ static void MODEL(leave)(const MODEL(fleet) *f, MODEL(place) *at)
             MODEL(take)(w->largest, s->model.largest, w->n, seat->k);
         s->model.iterations += w->tries[seat->k];
         w->on[seat->slot][seat->k] = w->books[seat->k] = w->tries[seat->k] = 0;
-        w->next[seat->k] = f->b->u[0];
+        MODEL(idle)(f, w, seat->k);
     }
     at->s = NULL;
 }
@@ -216,7 +222,7 @@ static void MODEL(furnish)(MODEL(fleet) *f, const MODEL(model) *m, real *space)
         w->adapts = f->mode == ADAPT;
         for (int k = 0; k < WIDTH; ++k) { /* so that idle lanes compute with numbers */
             MODEL(wide_load)(&w->p, m->p, k);
-            w->next[k] = f->b->u[0];
+            MODEL(idle)(f, w, k);
         }
     }
     for (int n = 0; n < f->places; ++n)

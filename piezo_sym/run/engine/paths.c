@@ -25,9 +25,10 @@ typedef struct {
 
 /*
  * Intervals that members go through: of lengths h[k]; u[level - lowest] holds, for levels lowest to
- * highest, the inputs at the middles of all steps of all intervals, or nothing.  Results after
- * interval k go to row sample[k], if it is not negative.  If inputs jump before interval 0, and
- * starts are asked for, first[level - lowest] holds those of the quarters of its first step.
+ * highest, the inputs at the middles of all steps of all intervals, or nothing; those of the lowest
+ * are there.  Results after interval k go to row sample[k], if it is not negative.  If inputs jump
+ * before interval 0, and starts are asked for, first[level - lowest] holds those of the quarters of
+ * its first step.
  */
 typedef struct {
     long intervals, lowest, highest;

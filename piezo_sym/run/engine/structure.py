@@ -1,6 +1,6 @@
 """The parameters of a module as the C structure of its header.
 
-Input: a module's `Parameters`, of one run or of many.  Output: a `Structure`, or `Structures` one
+Input: a module's `Parameters`, or a `Table` of many.  Output: a `Structure`, or `Structures` one
 after another: numbers, then a pointer for each parameter of a bank to one number a lane, in the
 order of the spec, then the sizes of banks.
 """
@@ -16,8 +16,8 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from piezo_sym.run.many import Column, Table
 from piezo_sym.run.module import lanes
+from piezo_sym.run.parameter_table import Column, Table
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -85,7 +85,10 @@ class Layout:
         return Structure(self._kind(*values), tuple(arrays))
 
     def many(self, parameters: Sequence[Any]) -> Structures:
-        """Return the structures of runs whose banks have equal sizes, kept as long as a `Table`."""
+        """Return the structures of runs whose banks have equal sizes.
+
+        Those of a `Table` are made once, and go with it.
+        """
         if len(parameters) == 1:
             one = self(parameters[0])
             return Structures(np.array([ctypes.addressof(one.value)], dtype=np.uintp), (one,))

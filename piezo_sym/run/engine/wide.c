@@ -15,7 +15,7 @@ typedef struct {
 /* What all lanes compute with: paths, ledgers, what is kept of an interval, room for one step. */
 typedef struct {
     MODEL(wide_parameters) p;
-    const double *next[WIDTH]; /* each lane's inputs of its next step, those of an idle one any */
+    const double *next[WIDTH]; /* each lane's inputs of its next step; of an idle lane, any */
     long n, rows, ports, processes, inputs;
     MODEL(wide_path) path[SLOTS];
     mask on[SLOTS], books; /* which lanes are on a path, and which book what their steps do */

@@ -7,12 +7,16 @@
 
 #if defined(PAIR) /* one member alone: two lanes, for its tracks */
 enum { WIDTH = 2 };
+#define LANES(of) of(0), of(1)
 #elif defined(__AVX512F__)
 enum { WIDTH = 8 };
+#define LANES(of) of(0), of(1), of(2), of(3), of(4), of(5), of(6), of(7)
 #elif defined(__AVX__)
 enum { WIDTH = 4 };
+#define LANES(of) of(0), of(1), of(2), of(3)
 #else
 enum { WIDTH = 2 };
+#define LANES(of) of(0), of(1)
 #endif
 typedef double real __attribute__((vector_size(8 * WIDTH), may_alias));
 #if defined(__SIZEOF_LONG__) && __SIZEOF_LONG__ == 8
@@ -49,14 +53,9 @@ static inline mask lane_of(int k)
  */
 static inline real gathered(const double *const *row, long i)
 {
-#if defined(PAIR) || !defined(__AVX__)
-    return (real){row[0][i], row[1][i]};
-#elif defined(__AVX512F__)
-    return (real){row[0][i], row[1][i], row[2][i], row[3][i],
-                  row[4][i], row[5][i], row[6][i], row[7][i]};
-#else
-    return (real){row[0][i], row[1][i], row[2][i], row[3][i]};
-#endif
+#define NUMBER(lane) row[lane][i]
+    return (real){LANES(NUMBER)};
+#undef NUMBER
 }
 
 static inline int any(mask where)
