@@ -17,6 +17,10 @@ BATCHES = (
     "the time of a batch is that of one call, shared among its states; below about 1000 of them "
     "the call itself, some microseconds, is most of it, and ratios are smaller than these"
 )
+SWEEPS = (
+    "the time of a sweep is that of one of its runs; small sweeps gain less by lanes and threads; "
+    "single runs in C: each a call of its own; one by one: without lanes"
+)
 COLUMNS = ("group", "compared with", "time", "error", "ours", "time", "error", "ratio", "quartiles")
 UNITS = ((1.0, "s"), (1e-3, "ms"), (1e-6, "us"), (1e-9, "ns"))
 
@@ -62,11 +66,12 @@ def notes(report: Report) -> tuple[str, ...]:
     """Return what errors are, tolerances, and what was left out, one line each."""
     measures = {row.group: row.measure for row in report.rows if row.measure}
     lines = [f"errors of {group}: {measure}" for group, measure in measures.items()]
-    lines += [
-        f"{row.group}, {row.other or row.ours}: {row.note}" for row in report.rows if row.note
-    ]
+    told = (f"{row.group}, {row.other or row.ours}: {row.note}" for row in report.rows if row.note)
+    lines += dict.fromkeys(told)
     if any(row.group.startswith("batch of") for row in report.rows):
         lines.append(BATCHES)
+    if any(row.group == "sweep" for row in report.rows):
+        lines.append(SWEEPS)
     return (*lines, *(f"left out: {line}" for line in report.left_out))
 
 

@@ -80,6 +80,8 @@ def tuned(
         if search.spent > patience:
             break
     if good is None:
+        if not search.best < float("inf"):
+            return "fails, or gives no number, at every tolerance tried"
         return f"reaches an error of {search.best:.1e} at best, not {target:.0e}"
     for part in PARTS if loose else ():
         finer = search.tried(part * (loose or 0.0))

@@ -22,7 +22,12 @@ Groups = Annotated[
     list[str] | None,
     typer.Option(metavar="GROUP", help="rhs, batch, run, long, making or sweep; repeat."),
 ]
-Quick = Annotated[bool, typer.Option("--quick", help="Few repetitions, no slow peers.")]
+Quick = Annotated[
+    bool,
+    typer.Option(
+        "--quick", help="Few repetitions, smaller sweeps, no peers that take over 1 s a run."
+    ),
+]
 Repeat = Annotated[int | None, typer.Option(min=1, help="Repetitions of each call.")]
 Duration = Annotated[
     float, typer.Option(help="Length of the short run [s]; the long one takes 100 times it.")

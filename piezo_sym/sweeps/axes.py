@@ -166,5 +166,17 @@ def refuse_lists(axes: tuple[Axis, ...], lanes: Mapping[str, int]) -> None:
                 met = (met[n],) if size and other is axis else met
                 if isinstance(value, tuple) and any(len(value) != count for count in met):
                     what = f"{len(value)} values for {listing(map(str, met), 4)} lanes"
-                    remedy = f"zip both: ('{target.name}', '{size.name}')" if size else ""
+                    apart = size and other is not axis
+                    remedy = f"zip both: ('{target.name}', '{size.name}')" if size and apart else ""
                     raise UsageError(what, f"{WHERE}.{target.name}[{n}]", "one a lane", remedy)
+
+
+def single_numbers(axes: tuple[Axis, ...]) -> dict[str, float]:
+    """Return a number for each swept parameter of a bank, in place of a spec's list.
+
+    It fits the bank at every size, which a list of the spec need not.
+    """
+    targets = [target for axis in axes for target in axis.targets]
+    swept = [t for t in targets if t.kind == "parameters" and t.bank and not t.is_size]
+    firsts = {t.name: t.values[0] for t in swept}
+    return {name: float(np.ravel(value)[0]) for name, value in firsts.items()}  # type: ignore[arg-type]

@@ -19,7 +19,7 @@ from piezo_sym.run.method import checked_method, way_of
 from piezo_sym.run.module import lanes
 from piezo_sym.run.parameters import own_initial, read_initial, read_parameters, sample_times
 from piezo_sym.run.simulate import read_rtol, refuse_step
-from piezo_sym.sweeps.axes import read_axes
+from piezo_sym.sweeps.axes import read_axes, single_numbers
 from piezo_sym.sweeps.plan import (
     ENOUGH_BOXES,
     MOST_BY_SCIPY,
@@ -129,7 +129,7 @@ def refuse_sizes(
     sizes = {t.name: t.values for axis in axes for t in axis.targets if t.is_size}
     one: list[dict[str, Any]] = [{name: n} for name, v in sizes.items() for n in dict.fromkeys(v)]
     for change in one or [{}]:
-        found = read_parameters(module, {**parameters, **change})
+        found = read_parameters(module, {**parameters, **single_numbers(axes), **change})
         try:
             own_initial(module, found, u)
         except PiezoError:  # a swept value may be what makes it right

@@ -6,6 +6,7 @@ written, last of all: until then it says "not run".
 
 from __future__ import annotations
 
+import json
 import tempfile
 import warnings
 from pathlib import Path
@@ -153,7 +154,7 @@ class Store(Sink):
         region, quantities = self._plan.region(result.box), result.quantities
         known = self._group.attrs.get(RESULTS)
         if known is not None and quantities:
-            refuse_other_names(known, quantities)
+            refuse_other_names(json.loads(str(known)), quantities)
         try:
             for name, one in {**result.coords, **quantities}.items():
                 if name not in self._group:
@@ -165,7 +166,7 @@ class Store(Sink):
             errors = np.array(result.errors, dtype=object)
             self._group["error"][region] = self._plan.arranged(result.box, errors)
             if known is None and quantities:
-                self._group.attrs[RESULTS] = list(quantities)
+                self._group.attrs[RESULTS] = json.dumps(list(quantities))
                 consolidate(self._path)
         except OSError as cause:
             what = f"cannot be written: {cause.strerror}"
@@ -192,9 +193,15 @@ class Store(Sink):
             array[...] = one.values
 
     def dataset(self) -> xarray.Dataset:
-        """Return the store as a Dataset that is read when its values are asked for."""
+        """Return the store as a Dataset that is read when its values are asked for.
+
+        It is as one in memory: the store's marks are left out, and errors are plain texts, for not
+        every writer of NetCDF takes those of Zarr.
+        """
         import xarray
 
         consolidate(self._path)
         found: xarray.Dataset = xarray.open_zarr(self._path, chunks=None, consolidated=False)
+        found["error"] = found["error"].astype(object)
+        found.attrs = {k: v for k, v in found.attrs.items() if k not in {MARK, BOX, RESULTS}}
         return found

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from piezo_sym import samples, simulate, sine, step, sweep
+from piezo_sym import samples, simulate, sine, spec, step, sweep
 
 SPECS = Path(__file__).parents[1] / "networks" / "specs"
 TWO_BANKS = str(SPECS / "two_banks_heat_one_body.toml")
@@ -186,3 +186,24 @@ def test_samples_are_those_of_a_single_run():
         run = simulate("piezo_stack", duration=1e-4, **more)
         assert np.array_equal(found.time, run.time)
         assert np.array_equal(found.S[0], run.S)
+
+
+STARTER = str(Path(spec.__file__).with_name("starter.toml"))
+
+
+def test_lists_go_with_their_size_where_the_spec_has_a_list():
+    """The starter has two hysterons, and a list of two widths."""
+    lists = [(2, [1e-3, 5e-3]), (3, [1e-3, 2e-3, 3e-3]), (4, 2e-3)]
+    found = sweep(STARTER, over={("hysteron_count", "i_0"): lists}, **BASE)
+    for k, (count, widths) in enumerate(lists):
+        run = single(STARTER, parameters={"hysteron_count": count, "i_0": widths})
+        member = found.isel(hysteron_count_i_0=k)
+        np.testing.assert_array_equal(member.S.values, run.S.values)
+        np.testing.assert_array_equal(member.phi.values[:, :count], run.phi.values)
+
+
+def test_numbers_meet_every_size_where_the_spec_has_a_list():
+    over = {"hysteron_count": [2, 3], "i_0": [1e-3, 2e-3]}
+    found = sweep(STARTER, over=over, **BASE)
+    run = single(STARTER, parameters={"hysteron_count": 3, "i_0": 2e-3})
+    np.testing.assert_array_equal(found.S.values[1, 1], run.S.values)

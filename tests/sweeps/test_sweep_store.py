@@ -9,6 +9,7 @@ import xarray
 from piezo_sym import samples, simulate, sine, step, sweep
 from piezo_sym.errors import FileError, UsageError
 from piezo_sym.sweeps import SweepWarning
+from piezo_sym.sweeps import store as stores
 from piezo_sym.sweeps.fingerprint import parts
 
 OVER = {"L": np.linspace(1e-3, 2e-3, 140), "V_in": {50.0: sine(100, 50), 100.0: sine(100, 100)}}
@@ -250,6 +251,9 @@ def test_a_store_opens_without_a_warning_and_after_it_was_taken_up_again(tmp_pat
         assert "q" in half
     found = sweep("piezo_stack", **options)
     with xarray.open_zarr(options["store"], chunks=None) as whole:
+        marks = {stores.MARK, stores.BOX, stores.RESULTS}
+        assert {name for name in whole.attrs if name not in found.attrs} == marks
+        whole.attrs = dict(found.attrs)
         xarray.testing.assert_identical(whole.load(), found.load())
 
 
@@ -297,3 +301,19 @@ def mark(path):
 
     group = zarr.open_group(path, mode="r+", use_consolidated=False)
     group.attrs["sweep_fingerprint"] = MARK
+
+
+@pytest.mark.parametrize("values", [[1e-3, 2e-3], {"a": 1e-3, "b": (1e-3, 2e-3)}])
+def test_a_stored_sweep_is_written_to_netcdf_like_one_in_memory(tmp_path, values):
+    how = {"over": {"L": values}, "duration": 1e-3, "times": 3}
+    stored = sweep("piezo_stack", **how, store=tmp_path / "runs")
+    memory = sweep("piezo_stack", **how)
+    assert stored.attrs == memory.attrs
+    stored.to_netcdf(tmp_path / "stored.nc")
+    memory.to_netcdf(tmp_path / "memory.nc")
+    xarray.open_zarr(tmp_path / "runs").to_netcdf(tmp_path / "opened.nc")
+    files = (xarray.open_dataset(tmp_path / f"{name}.nc") for name in ("stored", "memory"))
+    with xarray.open_dataset(tmp_path / "opened.nc") as opened:
+        one, other = files
+        assert one.identical(other)
+        assert opened.equals(other)
