@@ -46,20 +46,37 @@ def read_parameters(module: GeneratedModule, given: Mapping[str, LaneValue] | No
     UsageError : a name is unknown, a value is not finite, or a list does not fit its bank.
     """
     default = module.Parameters()
-    counts = {f"{bank}_count": bank for bank in module.BANKS}
     banks = {record.name: record.bank for record in module.PARAMETERS}
-    places = others(module, "parameters")
-    values = known_keys(given, (*banks, *counts), "simulate.parameters", places)
-    sizes = {
-        bank: whole(values.get(name, lanes(default, bank)), f"simulate.parameters.{name}", 1)
-        for name, bank in counts.items()
-    }
+    values, sizes = _known(module, given), read_sizes(module, given)
     merged = {name: values.get(name, value) for name, value in asdict(default).items()}
     changed: dict[str, Any] = {
         name: lane_value(merged[name], sizes.get(bank or ""), f"simulate.parameters.{name}")
         for name, bank in banks.items()
     }
-    return replace(default, **changed, **{n: sizes[bank] for n, bank in counts.items()})
+    return replace(default, **changed, **{f"{bank}_count": n for bank, n in sizes.items()})
+
+
+def read_sizes(module: GeneratedModule, given: Mapping[str, LaneValue] | None) -> dict[str, int]:
+    """Return the number of lanes of each bank.
+
+    Raises
+    ------
+    UsageError : a name is unknown, or a size is no whole number.
+    """
+    default, values = module.Parameters(), _known(module, given)
+    names = {bank: f"{bank}_count" for bank in module.BANKS}
+    return {
+        bank: whole(values.get(name, lanes(default, bank)), f"simulate.parameters.{name}", 1)
+        for bank, name in names.items()
+    }
+
+
+def _known(module: GeneratedModule, given: Mapping[str, LaneValue] | None) -> dict[str, Any]:
+    """Return what a user gave, if all of it is there."""
+    names = [record.name for record in module.PARAMETERS]
+    counts = [f"{bank}_count" for bank in module.BANKS]
+    places = others(module, "parameters")
+    return dict(known_keys(given, (*names, *counts), "simulate.parameters", places))
 
 
 def lane_value(value: object, size: int | None, where: str) -> float | tuple[float, ...]:

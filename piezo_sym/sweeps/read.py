@@ -17,7 +17,13 @@ from piezo_sym.run.discrete import METHOD
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.method import checked_method, way_of
 from piezo_sym.run.module import lanes
-from piezo_sym.run.parameters import own_initial, read_initial, read_parameters, sample_times
+from piezo_sym.run.parameters import (
+    own_initial,
+    read_initial,
+    read_parameters,
+    read_sizes,
+    sample_times,
+)
 from piezo_sym.run.simulate import read_rtol, refuse_step
 from piezo_sym.sweeps.axes import read_axes, single_numbers
 from piezo_sym.sweeps.plan import (
@@ -73,8 +79,8 @@ def read_plan(module: GeneratedModule, asked: Asked) -> Plan:
         end = positive(asked.duration, "sweep.duration")
         samples = sample_times(times_of(asked), asked.every, asked.step, end)
         inputs = read_inputs(module, asked.inputs, end)
-        base = read_parameters(module, asked.parameters)
-        axes = read_axes(module, asked.over, end, {b: lanes(base, b) for b in module.BANKS})
+        axes = read_axes(module, asked.over, end, read_sizes(module, asked.parameters))
+        base = read_parameters(module, {**(asked.parameters or {}), **single_numbers(axes)})
         refuse_twice(axes, asked)
         given = (dict(asked.parameters or {}), dict(asked.initial or {}))
         refuse_sizes(module, axes, *given, inputs.segments[0].at(0.0))

@@ -207,3 +207,10 @@ def test_numbers_meet_every_size_where_the_spec_has_a_list():
     found = sweep(STARTER, over=over, **BASE)
     run = single(STARTER, parameters={"hysteron_count": 3, "i_0": 2e-3})
     np.testing.assert_array_equal(found.S.values[1, 1], run.S.values)
+
+
+def test_lists_of_another_size_than_the_specs_go_with_a_size_that_is_given():
+    how = {"parameters": {"hysteron_count": 3}}
+    found = sweep(STARTER, over={"i_0": [[1e-3, 2e-3, 3e-3], 2e-3]}, **how, **BASE)
+    run = single(STARTER, parameters={"hysteron_count": 3, "i_0": [1e-3, 2e-3, 3e-3]})
+    np.testing.assert_array_equal(found.phi.values[0], run.phi.values)
