@@ -166,8 +166,9 @@ def refuse_lists(axes: tuple[Axis, ...], lanes: Mapping[str, int]) -> None:
                 met = (met[n],) if size and other is axis else met
                 if isinstance(value, tuple) and any(len(value) != count for count in met):
                     what = f"{len(value)} values for {listing(map(str, met), 4)} lanes"
-                    apart = size and other is not axis
-                    remedy = f"zip both: ('{target.name}', '{size.name}')" if size and apart else ""
+                    remedy = ""
+                    if size and other is not axis:
+                        remedy = f"zip both: ('{target.name}', '{size.name}')"
                     raise UsageError(what, f"{WHERE}.{target.name}[{n}]", "one a lane", remedy)
 
 

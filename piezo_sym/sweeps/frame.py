@@ -15,7 +15,6 @@ from piezo_sym.run.dataset import coordinates, described, model_attrs
 from piezo_sym.run.mesh import inputs_at
 from piezo_sym.run.parameters import read_parameters
 from piezo_sym.run.system import System
-from piezo_sym.sweeps.axes import single_numbers
 from piezo_sym.sweeps.group import inputs_at_point
 from piezo_sym.sweeps.quantities import Quantity, layout
 from piezo_sym.sweeps.reduce import weights
@@ -116,7 +115,7 @@ def index(values: Any) -> Any:
 def widest(plan: Plan, module: GeneratedModule) -> System:
     """Return a system whose banks have the most lanes that the sweep gives them."""
     sizes = {f"{bank}_count": size for bank, size in plan.largest_banks.items()}
-    base = read_parameters(module, {**plan.parameters, **single_numbers(plan.axes), **sizes})
+    base = read_parameters(module, {**plan.parameters, **sizes})
     return System(module, base, inputs_at_point(plan, module, first_point(plan)))
 
 

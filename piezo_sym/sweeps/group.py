@@ -20,7 +20,6 @@ from piezo_sym.run.parameter_table import Column, Table
 from piezo_sym.run.parameters import own_initial, read_parameters
 from piezo_sym.run.signals import Constant, Signal
 from piezo_sym.run.system import Systems
-from piezo_sym.sweeps.axes import single_numbers
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -101,7 +100,7 @@ def inputs_at_point(plan: Plan, module: GeneratedModule, point: NDArray[np.intp]
 def base_at_point(plan: Plan, module: GeneratedModule, point: NDArray[np.intp]) -> Any:
     """Return the parameters of the runs at a point, before those that are swept."""
     sizes = {t.name: int(t.values[point[n]]) for n, t in plan.swept() if t.is_size}
-    return read_parameters(module, {**plan.parameters, **single_numbers(plan.axes), **sizes})
+    return read_parameters(module, {**plan.parameters, **sizes})
 
 
 def starts(plan: Plan, systems: Systems, points: NDArray[np.intp]) -> tuple[FloatArray, list[str]]:

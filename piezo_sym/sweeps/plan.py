@@ -66,7 +66,8 @@ class Plan:
     ----------
     axes : in the user's order.
     signals : of each input, where it is not swept.
-    parameters, initial : as the user gave them, without those swept.
+    parameters, initial : as the user gave them, without those swept; but one number for each
+        swept parameter of a bank, for a spec's list need not fit the sizes.
     samples : the sample times (nt,) [s].
     method, rtol, step : of each run; the step is None where rtol counts.
     reduce, each : the reduction, and whether its function takes one run or many.

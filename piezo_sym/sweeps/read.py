@@ -80,9 +80,9 @@ def read_plan(module: GeneratedModule, asked: Asked) -> Plan:
         samples = sample_times(times_of(asked), asked.every, asked.step, end)
         inputs = read_inputs(module, asked.inputs, end)
         axes = read_axes(module, asked.over, end, read_sizes(module, asked.parameters))
-        base = read_parameters(module, {**(asked.parameters or {}), **single_numbers(axes)})
         refuse_twice(axes, asked)
-        given = (dict(asked.parameters or {}), dict(asked.initial or {}))
+        given = ({**(asked.parameters or {}), **single_numbers(axes)}, dict(asked.initial or {}))
+        base = read_parameters(module, given[0])
         refuse_sizes(module, axes, *given, inputs.segments[0].at(0.0))
         refuse_reduction(asked)
         way = way_of(module, named, asked.step)
@@ -135,7 +135,7 @@ def refuse_sizes(
     sizes = {t.name: t.values for axis in axes for t in axis.targets if t.is_size}
     one: list[dict[str, Any]] = [{name: n} for name, v in sizes.items() for n in dict.fromkeys(v)]
     for change in one or [{}]:
-        found = read_parameters(module, {**parameters, **single_numbers(axes), **change})
+        found = read_parameters(module, {**parameters, **change})
         try:
             own_initial(module, found, u)
         except PiezoError:  # a swept value may be what makes it right

@@ -195,8 +195,7 @@ class Store(Sink):
     def dataset(self) -> xarray.Dataset:
         """Return the store as a Dataset that is read when its values are asked for.
 
-        It is as one in memory: the store's marks are left out, and errors are plain texts, for not
-        every writer of NetCDF takes those of Zarr.
+        It is as one in memory: without the store's marks, and with errors as Python has texts.
         """
         import xarray
 
