@@ -65,7 +65,7 @@ def holds_surely(condition: Cmp, values: Mapping[str, Interval]) -> bool | None:
         Where one of its sides has no real value.
     """
     try:
-        left, right = enclose(condition.left, values), enclose(condition.right, values)
+        left, right = interval_of(condition.left, values), interval_of(condition.right, values)
     except UndecidedError:
         return None
     if condition.op in {"<", "<="}:
@@ -75,7 +75,7 @@ def holds_surely(condition: Cmp, values: Mapping[str, Interval]) -> bool | None:
     return True if left[0] >= right[1] else False if left[1] < right[0] else None
 
 
-def enclose(node: Expr, values: Mapping[str, Interval]) -> Interval:
+def interval_of(node: Expr, values: Mapping[str, Interval]) -> Interval:
     """Return an interval that contains the value of `node`.
 
     Raises
@@ -91,23 +91,23 @@ def enclose(node: Expr, values: Mapping[str, Interval]) -> Interval:
         case Sym(name):
             return values[name]
         case Neg(arg):
-            low, high = enclose(arg, values)
+            low, high = interval_of(arg, values)
             return -high, -low
         case Add(terms):
-            lows, highs = zip(*(enclose(term, values) for term in terms), strict=True)
+            lows, highs = zip(*(interval_of(term, values) for term in terms), strict=True)
             return _short(sum(lows, Fraction(0)), sum(highs, Fraction(0)))
         case Mul(left, right):
-            return _product(enclose(left, values), enclose(right, values))
+            return _product(interval_of(left, values), interval_of(right, values))
         case Div(left, right):
-            return _product(enclose(left, values), _inverse(enclose(right, values)))
+            return _product(interval_of(left, values), _inverse(interval_of(right, values)))
         case Pow(base, exponent):
-            return _power(enclose(base, values), exponent)
+            return _power(interval_of(base, values), exponent)
         case Call(function, args):
             return _call(function, args, values)
         case If(then, condition, other):
             chosen = holds_surely(condition, values)
             if chosen is not None:
-                return enclose(then if chosen else other, values)
+                return interval_of(then if chosen else other, values)
             return _either(then, other, values)
         case LaneSum():
             msg = "a sum over lanes has no value outside a program"
@@ -117,7 +117,7 @@ def enclose(node: Expr, values: Mapping[str, Interval]) -> Interval:
 def _either(then: Expr, other: Expr, values: Mapping[str, Interval]) -> Interval:
     """Return what contains both branches of a choice that is not certain."""
     try:
-        parts = enclose(then, values), enclose(other, values)
+        parts = interval_of(then, values), interval_of(other, values)
     except (ArithmeticError, ValueError) as cause:  # of a branch that is perhaps not taken
         raise UndecidedError from cause
     return min(parts[0][0], parts[1][0]), max(parts[0][1], parts[1][1])
@@ -126,16 +126,16 @@ def _either(then: Expr, other: Expr, values: Mapping[str, Interval]) -> Interval
 def _call(function: str, args: tuple[Expr, ...], values: Mapping[str, Interval]) -> Interval:
     match function, args:
         case "abs", (z,):
-            return enclose(Call("max", (z, Neg(z))), values)
+            return interval_of(Call("max", (z, Neg(z))), values)
         case "sign", (z,):
             other = If(Neg(ONE), Cmp("<", z, ZERO), ZERO)
-            return enclose(If(ONE, Cmp(">", z, ZERO), other), values)
+            return interval_of(If(ONE, Cmp(">", z, ZERO), other), values)
         case "deadzone", (z, w):
             above = Call("max", (Add((z, Neg(w))), ZERO))
-            return enclose(Add((above, Call("min", (Add((z, w)), ZERO)))), values)
+            return interval_of(Add((above, Call("min", (Add((z, w)), ZERO)))), values)
         case "saturate", (z, w):
-            return enclose(Call("min", (Call("max", (z, Neg(w))), w)), values)
-    lows, highs = zip(*(enclose(arg, values) for arg in args), strict=True)
+            return interval_of(Call("min", (Call("max", (z, Neg(w))), w)), values)
+    lows, highs = zip(*(interval_of(arg, values) for arg in args), strict=True)
     match function:
         case "min" | "max":
             choose = min if function == "min" else max

@@ -9,7 +9,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from spec_laws import laws, precise, steady
 
-from piezo_sym.spec.enclosure import UndecidedError, enclose, holds_surely
+from piezo_sym.spec.enclosure import UndecidedError, holds_surely, interval_of
 from piezo_sym.spec.parse import parse_condition, parse_law
 from piezo_sym.spec.text import spell
 
@@ -49,7 +49,7 @@ def test_values_lie_in_their_intervals(tree, ends, places):
         return
     assume(mpmath.isfinite(value))
     with suppress(UndecidedError):
-        least, most = enclose(tree, intervals)
+        least, most = interval_of(tree, intervals)
         slack = ERROR * (1 + abs(exact(value)))
         assert least - slack <= exact(value) <= most + slack
 
@@ -59,7 +59,7 @@ def test_values_lie_in_their_intervals(tree, ends, places):
 def test_intervals_of_single_values_are_narrow(tree, ends):
     values = {name: Fraction(end) for name, end in zip("xyw", ends, strict=True)}
     with suppress(ArithmeticError, ValueError, UndecidedError):
-        least, most = enclose(tree, {name: point(value) for name, value in values.items()})
+        least, most = interval_of(tree, {name: point(value) for name, value in values.items()})
         assert most - least <= 1e-3 * (1 + max(abs(least), abs(most))) or abs(most) > 1e6
 
 
@@ -95,7 +95,7 @@ def test_conditions_at_two(text, answer):
 @pytest.mark.parametrize("text", ["1/(x - 2)", "log(x - 2)", "sqrt(1 - x)", "(1 - x)**(-1/2)"])
 def test_laws_without_a_value(text):
     with pytest.raises((ArithmeticError, ValueError)):
-        enclose(parse_law(text, "law"), {"x": point(2)})
+        interval_of(parse_law(text, "law"), {"x": point(2)})
 
 
 @pytest.mark.parametrize(

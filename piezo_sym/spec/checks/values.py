@@ -13,7 +13,7 @@ from typing import TypeAlias
 
 from piezo_sym.errors import SpecError, quote
 from piezo_sym.spec.elements.base import state_symbol
-from piezo_sym.spec.enclosure import Interval, UndecidedError, enclose, holds_surely
+from piezo_sym.spec.enclosure import Interval, UndecidedError, holds_surely, interval_of
 from piezo_sym.spec.expressions import Expr, Num, names
 from piezo_sym.spec.parse import parse_law
 from piezo_sym.spec.tables import (
@@ -88,7 +88,7 @@ def _starts(spec: Tables, symbol: str, lanes: Mapping[str, Values]) -> Iterator[
 
 def _value(tree: Expr, values: Mapping[str, Interval], where: str) -> Interval:
     try:
-        return enclose(tree, values)
+        return interval_of(tree, values)
     except (ArithmeticError, ValueError, UndecidedError):
         remedy = "check the values of its parameters"
         raise SpecError("has no finite real value", where, remedy=remedy) from None
@@ -105,7 +105,7 @@ def _check_condition(condition: Condition, lanes: Mapping[str, Values]) -> None:
             outside = True
         if outside:
             given = ", ".join(f"{word} = {float(low):.6g}" for word, (low, _) in values.items())
-            what = f"the values given are outside the domain: {given}"
+            what = f"the values given are outside the domain: {given or 'no value is inside'}"
             at = f" in lane {lane + 1}" if count > 1 else ""
             expected = quote(condition_text(condition.tree)) + at
             raise SpecError(what, condition.where, expected, "change a value or the domain")
