@@ -134,7 +134,8 @@ def _needed(spec: Tables, hot: Mapping[str, str]) -> Iterator[Condition]:
     """Yield what the kinds of the elements need; `hot`: the temperature symbol of each body."""
     for name, element in spec.elements.items():
         for condition in element.requires():
-            yield Condition(f"elements.{name}", _in_domain_words(condition, element, name, hot))
+            tree = _in_domain_words(condition, element, name, hot, (element.letter,))
+            yield Condition(f"elements.{name}", tree)
 
 
 def _not_negative(
@@ -144,7 +145,8 @@ def _not_negative(
     for name, element in spec.elements.items():
         for law in law_fields(name, element):
             for width in _widths(law.tree):
-                yield Condition(law.where, _in_domain_words(width, element, name, hot))
+                tree = _in_domain_words(width, element, name, hot, law.letters)
+                yield Condition(law.where, tree)
     places: list[tuple[str, Node]] = [(condition.where, condition.tree) for condition in assumed]
     places += [(f"initial.{s}", tree) for s, start in spec.initial.items() for tree in _laws(start)]
     for where, node in places:
@@ -160,12 +162,14 @@ def _widths(law: Node) -> Iterator[Cmp]:
                 yield Cmp(">=", width, ZERO)
 
 
-def _in_domain_words(condition: Cmp, element: Element, name: str, hot: Mapping[str, str]) -> Cmp:
+def _in_domain_words(
+    condition: Cmp, element: Element, name: str, hot: Mapping[str, str], letters: tuple[str, ...]
+) -> Cmp:
     """Return a condition of a law in the words of [domain]: its state's symbol, its body's T."""
     body = next((given for _, to, given in references(element) if to == "thermal_mass"), "")
-    words = {"T": hot.get(body, "T")}
-    words |= {element.letter: state_symbol(element, name)} if element.letter else {}
-    return Cmp(condition.op, rename(condition.left, words), rename(condition.right, words))
+    words = {"T": hot.get(body, "T"), element.letter: state_symbol(element, name)}
+    own = {letter: words[letter] for letter in letters if letter in words}
+    return Cmp(condition.op, rename(condition.left, own), rename(condition.right, own))
 
 
 def greater(condition: Cmp) -> Cmp:
@@ -186,7 +190,7 @@ def lane_parameters(spec: Tables) -> dict[str, str]:
     users: dict[str, set[str]] = {}
     for name, element in spec.elements.items():
         for law in law_fields(name, element):
-            for word in names(law.tree):
+            for word in set(names(law.tree)) - set(law.letters):
                 users.setdefault(word, set()).add(name)
     elements = states(spec)
     for symbol, start in spec.initial.items():

@@ -292,6 +292,17 @@ def test_half_widths_are_not_negative_wherever_they_stand(edit):
     assert "outside the domain: b = -1; expected" in refused_edit(BREADTH, edit)
 
 
+def test_a_half_width_is_the_parameter_where_the_letter_of_that_name_is_not_the_laws():
+    model = edited(
+        ("[inputs]", 'phi = { value = 1, unit = "A" }\n[inputs]'),
+        ('state = "phi"', 'state = "flux"'),
+        ("deadzone(i, i_0)", "deadzone(i, phi)"),
+    )
+    found = [condition_text(c.tree) for c in conditions(model)]
+    assert "phi >= 0" in found
+    assert "flux >= 0" not in found
+
+
 def test_plain_half_widths_add_no_condition_unless_they_are_negative():
     before = len(conditions(load("piezo_stack")))
     edit = ('"lam >= 0"', '"lam >= 0", "saturate(q, {}) < 2"')
