@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from piezo_sym.codegen.differences import sharp_program
 from piezo_sym.codegen.functions import functions_of, limits_of
 from piezo_sym.codegen.jacobian import jacobian_of
 from piezo_sym.codegen.program import Field, Program
@@ -35,7 +36,7 @@ def lower(iphs: IPHS, verdict: str) -> Program:
     lanes = {**lane_parameters(model), **{s.name: s.bank for s in states if s.bank}}
     rates = next(function for function in functions if function.name == "rhs").rows
     jacobian = jacobian_of(rates, states, lanes, q)
-    return Program(
+    program = Program(
         name=model.name,
         title=model.model.title,
         source=model.model.source,
@@ -55,6 +56,7 @@ def lower(iphs: IPHS, verdict: str) -> Program:
         limits=limits,
         taken=frozenset(q.taken),
     )
+    return sharp_program(program)
 
 
 def _values(
