@@ -19,9 +19,10 @@ from piezo_sym.iphs import IPHS
 from piezo_sym.proofs import balances, bodies, laws
 from piezo_sym.proofs.continuity import continuous
 from piezo_sym.proofs.divisors import divisors
+from piezo_sym.proofs.domain import defined, not_shown
 from piezo_sym.proofs.ground import Ground, Law, ground_of, on_warm_bodies
 from piezo_sym.proofs.obligations import Obligation
-from piezo_sym.proofs.prove import nothing_inside, prove
+from piezo_sym.proofs.prove import prove
 from piezo_sym.proofs.recheck import recheck
 from piezo_sym.proofs.record import proofs_json, smt2
 from piezo_sym.proofs.report import Report, Row, Verdict
@@ -58,7 +59,7 @@ def verify(iphs: IPHS) -> Report:
     """
     rows: list[Row] = []
     found, asked = obligations(iphs), opinions()
-    empty = nothing_inside(ground_of(iphs), asked) if found else ""
+    empty = not_shown(iphs, ground_of(iphs), asked) if found else ""
     for obligation in found:
         left = replace(obligation, open_because=empty) if empty else obligation
         rows.append(prove(left, iphs, rows, asked))
@@ -82,6 +83,7 @@ def obligations(iphs: IPHS) -> tuple[Obligation, ...]:
 
 def _obligations(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
     yield from (balances.skew(iphs), balances.casimir(iphs))
+    yield from defined(iphs, ground)
     yield from bodies.temperature(iphs, ground)
     yield from divisors(iphs, ground)
     yield from (balances.energy(iphs), balances.entropy(iphs))

@@ -14,9 +14,7 @@ from fractions import Fraction
 import sympy as sp
 
 from piezo_sym.iphs import IPHS
-from piezo_sym.proofs.branches import TooManyBranchesError
-from piezo_sym.proofs.exactly import holds, value_of
-from piezo_sym.proofs.ground import Ground
+from piezo_sym.proofs.exactly import TooCloseError, holds, value_of
 from piezo_sym.proofs.jumps import jumps
 from piezo_sym.proofs.obligations import Obligation, Question, Residual
 from piezo_sym.proofs.report import Row, Verdict
@@ -49,12 +47,8 @@ def prove(
     before : the verdicts so far, with those of what it rests on; without them it stays open.
     solver : for its questions; z3, and cvc5 where z3 does not know, if none is given.
     """
-    try:
-        asked = solver or opinions()
-        verdict, witness, reason, method = _decide(obligation, iphs, tuple(before), asked)
-    except TooManyBranchesError:
-        reason = "the domain or a law has too many branches; use fewer kinks"
-        verdict, witness, method = Verdict.OPEN, None, "branches"
+    asked = solver or opinions()
+    verdict, witness, reason, method = _decide(obligation, iphs, tuple(before), asked)
     return Row(
         obligation.id,
         obligation.element,
@@ -65,18 +59,6 @@ def prove(
         obligation.required,
         method,
     )
-
-
-def nothing_inside(ground: Ground, solver: Asks) -> str:
-    """Return what to say of a domain that no point is in; everything would be true there."""
-    never = Cmp("<", ONE, ZERO)
-    question = Question("the domain is empty", ground.order, ground.where, never, never, whole=True)
-    try:
-        empty = solver.ask(question.query()).result == "unsat"
-    except TooManyBranchesError:
-        return ""
-    conditions = ", ".join(ground.texts)
-    return f"no point is in the domain, where all is true: {conditions}" if empty else ""
 
 
 def _decide(obligation: Obligation, iphs: IPHS, before: tuple[Row, ...], solver: Asks) -> Decided:
@@ -184,10 +166,7 @@ def _nonzero(iphs: IPHS, expr: sp.Expr) -> tuple[dict[str, str], sp.Expr] | None
 
 def _answered(question: Question, solver: Asks) -> Found | None:
     """Return None if the claim follows, else how it fails or why it is open."""
-    try:
-        answer = solver.ask(question.query())
-    except TooManyBranchesError:
-        return Verdict.OPEN, None, f"{question.label}: the domain has too many branches"
+    answer = solver.ask(question.query())
     if answer.result == "unsat" or _never_meet(question, solver):
         return None
     if answer.result == "sat":
@@ -219,6 +198,8 @@ def _refuted(question: Question, answer: Answer, shown: tuple[str, ...]) -> Foun
         inside = all(holds(condition, values) for condition in question.where)
         if question.meeting:
             broken = inside and jumps(question.meeting, values)
+        elif question.law is not None:
+            broken = inside and _has_no_value(question.law, values)
         else:
             broken = inside and not holds(question.original, values)
     except (ArithmeticError, ValueError, KeyError):
@@ -227,6 +208,18 @@ def _refuted(question: Question, answer: Answer, shown: tuple[str, ...]) -> Foun
         reason = f"{question.label}: bounds on the functions in it do not decide it"
         return Verdict.OPEN, None, reason
     return _broken(question, {name: value for name, value in values.items() if name in shown})
+
+
+def _has_no_value(law: Expr | Cmp, values: Mapping[str, Fraction]) -> bool:
+    """Return whether a law, or a side of a comparison, certainly has no value."""
+    try:
+        for side in (law.left, law.right) if isinstance(law, Cmp) else (law,):
+            value_of(side, values)
+    except TooCloseError:
+        return False
+    except (ArithmeticError, ValueError):
+        return True
+    return False
 
 
 def _broken(question: Question, values: Mapping[str, Fraction]) -> Found:

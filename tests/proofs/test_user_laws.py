@@ -22,7 +22,6 @@ CONTINUOUS = (
     "d*v*saturate(T/T_0, 1)",
     "d*v*(0 if T < T_0 else ((T-T_0)/(T_1-T_0) if T < T_1 else 1))",
     "d*v_s*min(1, max(0, v/v_s))",
-    "d*v*min(1, 0)",
     "d*v if T > -T_0 else -d*v",
     "d*v if abs(v) <= w else (-d*w+2*d*(v+w) if v < -w else d*w+2*d*(v-w))",
     "d*v*(1/(n-1) if T < -T_0 else 1)",
