@@ -57,6 +57,7 @@ def proofs_json(report: Report, model: Model, made: str) -> str:
         "made": made,
         "model": report.model,
         "spec_sha256": model.sha256,
+        "system": report.system,
         "obligations": [_entry(row, obligation) for row, obligation in entries],
     }
     return json.dumps(content, indent=1) + "\n"
@@ -72,6 +73,8 @@ def _entry(row: Row, obligation: Obligation | None) -> dict[str, object]:
         "witness": dict(row.witness) if row.witness else None,
         "reason": row.reason or None,
         "method": row.method,
+        "points": row.points,
+        "certificate": list(row.certificate) or None,
     }
     if obligation:
         entry["latex"] = obligation.latex
