@@ -155,7 +155,7 @@ def passive(law: Law, ground: Ground) -> Obligation:
         r"W_k z_k \ge 0",
         ground.texts,
         rests_on=(("welldef", law.element),),
-        sign=SignOf(law.tree, law.letter),
+        sign=SignOf(law.tree, law.letter, ground.where),
     )
     original = Cmp(">=", mul(law.tree, Sym(law.letter)), ZERO)
     try:

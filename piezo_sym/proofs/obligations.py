@@ -131,10 +131,11 @@ class Question:
 @final
 @dataclass(frozen=True)
 class SignOf:
-    """The sign of a law times its letter, for methods that look at the law as a whole."""
+    """The sign of a law times its letter in a domain, for methods that look at the whole law."""
 
     law: Expr
     letter: str
+    where: tuple[Cmp, ...] = ()
 
 
 @final

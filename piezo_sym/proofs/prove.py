@@ -14,15 +14,16 @@ from fractions import Fraction
 import sympy as sp
 
 from piezo_sym.iphs import IPHS
+from piezo_sym.proofs.asked import Asked, tried
 from piezo_sym.proofs.branches import TooManyBranchesError
 from piezo_sym.proofs.exactly import holds, value_of
 from piezo_sym.proofs.ground import Ground
 from piezo_sym.proofs.jumps import jumps
-from piezo_sym.proofs.obligations import Obligation, Question, Residual
+from piezo_sym.proofs.obligations import Obligation, Question, Residual, SignOf
 from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.proofs.solvers import Answer, Asks, opinions
 from piezo_sym.proofs.total import negative_total
-from piezo_sym.proofs.whole import tried, whole_sign
+from piezo_sym.proofs.whole import whole_sign
 from piezo_sym.spec.expressions import ONE, ZERO, Cmp, Expr
 from piezo_sym.spec.text import spell
 
@@ -90,7 +91,7 @@ def _decide(obligation: Obligation, iphs: IPHS, before: tuple[Row, ...], solver:
     method = "branches" if obligation.questions else "algebra"
     failed = _asked(obligation.questions, solver)
     if failed and failed[0] is Verdict.OPEN and obligation.sign:
-        method, failed = "intervals", _as_a_whole(obligation, failed, solver)
+        method, failed = "intervals", _as_a_whole(obligation, obligation.sign, failed, solver)
     if failed and failed[0] is Verdict.OPEN and obligation.letter:
         failed = _by_numbers(obligation, solver) or failed
     proved: Found = (Verdict.PROVED, None, "")
@@ -113,23 +114,27 @@ def _asked(questions: Iterable[Question], solver: Asks) -> Found | None:
     return left[0] if left else None
 
 
-def _as_a_whole(obligation: Obligation, still_open: Found, solver: Asks) -> Found | None:
+def _as_a_whole(
+    obligation: Obligation, sign: SignOf, still_open: Found, solver: Asks
+) -> Found | None:
     """Return None if the law is shown to be passive as a whole, else how it fails or is open."""
-    found = whole_sign(obligation, solver)
+    question = obligation.questions[0]
+    found = whole_sign(sign, question.order, solver)
     if found is None:
         return still_open
-    verdict, numbers, reason = found
-    if verdict is Verdict.PROVED:
+    if found.verdict is Verdict.PROVED:
         return None
-    if verdict is Verdict.REFUTED and numbers is not None:
-        return _broken(obligation.questions[0], numbers)
-    return Verdict.OPEN, None, f"{obligation.statement}: {reason}"
+    if found.numbers is not None:
+        return _broken(question, found.numbers)
+    return Verdict.OPEN, None, f"{obligation.statement}: {found.reason}"
 
 
 def _by_numbers(obligation: Obligation, solver: Asks) -> Found | None:
     """Return the refutation of a claim by simple numbers, or None."""
     question = obligation.questions[0]
-    numbers = tried(question, obligation.letter, solver)
+    domain = question.where[: len(question.where) - len(question.branch)]
+    asked = Asked(domain, question.order, solver)
+    numbers = tried(question.original, obligation.letter, asked)
     return _broken(question, numbers) if numbers else None
 
 
