@@ -14,13 +14,15 @@ from fractions import Fraction
 import sympy as sp
 
 from piezo_sym.iphs import IPHS
+from piezo_sym.proofs.asked import Asked, tried
 from piezo_sym.proofs.exactly import TooCloseError, holds, value_of
 from piezo_sym.proofs.jumps import jumps
-from piezo_sym.proofs.obligations import Obligation, Question, Residual
+from piezo_sym.proofs.obligations import Obligation, Question, Residual, SignOf
 from piezo_sym.proofs.report import Row, Verdict
+from piezo_sym.proofs.signs import Case
 from piezo_sym.proofs.solvers import Answer, Asks, opinions
 from piezo_sym.proofs.total import negative_total
-from piezo_sym.proofs.whole import tried, whole_sign
+from piezo_sym.proofs.whole import whole_sign
 from piezo_sym.spec.expressions import ONE, ZERO, Cmp, Expr
 from piezo_sym.spec.text import spell
 
@@ -32,7 +34,7 @@ TRIES = (1, 2, 3)
 MOST_OPEN = 4
 
 Found = tuple[Verdict, Mapping[str, str] | None, str]
-Decided = tuple[Verdict, Mapping[str, str] | None, str, str]
+Decided = tuple[Verdict, Mapping[str, str] | None, str, str, tuple[Case, ...]]
 
 
 def prove(
@@ -48,7 +50,8 @@ def prove(
     solver : for its questions; z3, and cvc5 where z3 does not know, if none is given.
     """
     asked = solver or opinions()
-    verdict, witness, reason, method = _decide(obligation, iphs, tuple(before), asked)
+    decided = _decide(obligation, iphs, tuple(before), asked)
+    verdict, witness, reason, method, certificate = decided
     return Row(
         obligation.id,
         obligation.element,
@@ -58,28 +61,30 @@ def prove(
         reason,
         obligation.required,
         method,
+        certificate=tuple(case.as_data() for case in certificate),
     )
 
 
 def _decide(obligation: Obligation, iphs: IPHS, before: tuple[Row, ...], solver: Asks) -> Decided:
     """Return the first thing that fails, or that nothing does, and the method that says so."""
     if obligation.open_because:
-        return Verdict.OPEN, None, obligation.open_because, "branches"
+        return Verdict.OPEN, None, obligation.open_because, "branches", ()
     for residual in obligation.residuals:
         failed = _vanishes(residual, iphs)
         if failed:
-            return *failed, "algebra"
-    method = "branches" if obligation.questions else "algebra"
+            return *failed, "algebra", ()
+    method, certificate = "branches" if obligation.questions else "algebra", tuple[Case, ...]()
     failed = _asked(obligation.questions, solver)
     if failed and failed[0] is Verdict.OPEN and obligation.sign:
-        method, failed = "intervals", _as_a_whole(obligation, failed, solver)
+        method = "intervals"
+        failed, certificate = _as_a_whole(obligation, obligation.sign, failed, solver)
     if failed and failed[0] is Verdict.OPEN and obligation.letter:
         failed = _by_numbers(obligation, solver) or failed
     proved: Found = (Verdict.PROVED, None, "")
     failed = failed or _grounded(obligation, before)
     if failed and obligation.id == "sigma":
         failed = _total(iphs, before, solver) or failed
-    return *(failed or proved), method
+    return *(failed or proved), method, () if failed else certificate
 
 
 def _asked(questions: Iterable[Question], solver: Asks) -> Found | None:
@@ -95,23 +100,27 @@ def _asked(questions: Iterable[Question], solver: Asks) -> Found | None:
     return left[0] if left else None
 
 
-def _as_a_whole(obligation: Obligation, still_open: Found, solver: Asks) -> Found | None:
-    """Return None if the law is shown to be passive as a whole, else how it fails or is open."""
-    found = whole_sign(obligation, solver)
+def _as_a_whole(
+    obligation: Obligation, sign: SignOf, still_open: Found, solver: Asks
+) -> tuple[Found | None, tuple[Case, ...]]:
+    """Return how a law fails to be passive as a whole, or its certificate if it is shown to be."""
+    question = obligation.questions[0]
+    found = whole_sign(sign, question.order, solver)
     if found is None:
-        return still_open
-    verdict, numbers, reason = found
-    if verdict is Verdict.PROVED:
-        return None
-    if verdict is Verdict.REFUTED and numbers is not None:
-        return _broken(obligation.questions[0], numbers)
-    return Verdict.OPEN, None, f"{obligation.statement}: {reason}"
+        return still_open, ()
+    if found.verdict is Verdict.PROVED:
+        return None, found.certificate
+    if found.numbers is not None:
+        return _broken(question, found.numbers), ()
+    return (Verdict.OPEN, None, f"{obligation.statement}: {found.reason}"), ()
 
 
 def _by_numbers(obligation: Obligation, solver: Asks) -> Found | None:
     """Return the refutation of a claim by simple numbers, or None."""
     question = obligation.questions[0]
-    numbers = tried(question, obligation.letter, solver)
+    domain = question.where[: len(question.where) - len(question.branch)]
+    asked = Asked(domain, question.order, solver)
+    numbers = tried(question.original, obligation.letter, asked)
     return _broken(question, numbers) if numbers else None
 
 

@@ -16,7 +16,7 @@ import sys
 import threading
 from collections.abc import Iterator
 from functools import cache
-from typing import TYPE_CHECKING, Any, BinaryIO, final
+from typing import TYPE_CHECKING, Any, IO, final
 
 from piezo_sym.errors import PiezoError
 
@@ -151,13 +151,13 @@ def _exchange(process: subprocess.Popen[bytes], request: bytes) -> Iterator[tupl
         yield kind, content
 
 
-def write(pipe: BinaryIO, message: bytes) -> None:
+def write(pipe: IO[bytes], message: bytes) -> None:
     """Write one message, after its length."""
     pipe.write(LENGTH.pack(len(message)) + message)
     pipe.flush()
 
 
-def read(pipe: BinaryIO) -> bytes:
+def read(pipe: IO[bytes]) -> bytes:
     """Return the next message.
 
     Raises
