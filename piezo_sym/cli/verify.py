@@ -73,7 +73,7 @@ def _reports(specs: list[str]) -> tuple[dict[str, Report], list[PiezoError]]:
 
 
 def _rechecked(reports: dict[str, Report]) -> list[PiezoError]:
-    """Return an error for each spec that the second program does not confirm; print what it says."""
+    """Return an error for each spec that the second program does not confirm, and print why."""
     from piezo_sym.proofs import proofs_json
     from piezo_sym.spec.load import load
     from piezo_sym.spec.source import find, read

@@ -16,7 +16,7 @@ import sys
 import threading
 from collections.abc import Iterator
 from functools import cache
-from typing import TYPE_CHECKING, Any, IO, final
+from typing import IO, TYPE_CHECKING, Any, final
 
 from piezo_sym.errors import PiezoError
 
@@ -84,11 +84,11 @@ class Examiner:
         subject : an `IPHS` or a `Model`.
         seconds : after which the process is stopped.
         """
+        late = threading.Event()
         with self._lock:
             try:
                 process = self._running()
-                late = threading.Event()
-                watch = threading.Timer(seconds, lambda: (late.set(), self._kill(process)))
+                watch = threading.Timer(seconds, self._kill, (process, late))
                 watch.start()
                 try:
                     yield from _exchange(process, pickle.dumps(subject))
@@ -105,7 +105,7 @@ class Examiner:
     def close(self) -> None:
         """Stop the process; the next question starts another."""
         if self._process is not None:
-            self._kill(self._process)
+            self._kill(self._process, threading.Event())
             self._process.wait()
             for pipe in (self._process.stdin, self._process.stdout):
                 if pipe is not None:
@@ -125,7 +125,8 @@ class Examiner:
         return self._process
 
     @staticmethod
-    def _kill(process: subprocess.Popen[bytes]) -> None:
+    def _kill(process: subprocess.Popen[bytes], done: threading.Event) -> None:
+        done.set()
         try:
             os.killpg(process.pid, signal.SIGKILL)
         except ProcessLookupError:
