@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 
 from piezo_sym import Model, load
-from piezo_sym.bench.by_hand import hand_of
-from piezo_sym.bench.ours import run_in_c, states, whole
-from piezo_sym.bench.peers import LSODA, PEERS
-from piezo_sym.bench.problem import problem_of
-from piezo_sym.bench.rates import batch_rows, rhs_rows, sample_of
-from piezo_sym.bench.reference import reference_of
-from piezo_sym.bench.runs import run_rows, unable
-from piezo_sym.bench.settings import QUICK
 from piezo_sym.errors import EngineError
+from tests.benchmarks.by_hand import hand_of
+from tests.benchmarks.case_p import problem_of
+from tests.benchmarks.ours import run_in_c, states, whole
+from tests.benchmarks.peers import LSODA, PEERS
+from tests.benchmarks.rates import batch_rows, rhs_rows, sample_of
+from tests.benchmarks.reference import reference_of
+from tests.benchmarks.runs import run_rows, unable
+from tests.benchmarks.settings import QUICK
 
 SMALL = replace(QUICK, rounds=1, columns=300, most=1e4, patience=1e4)  # however busy the machine
 SPECS = Path(__file__).parents[1] / "networks" / "specs"
@@ -30,7 +30,7 @@ def case_p():
 @pytest.fixture(scope="module")
 def brief(case_p):
     """A part of it that is soon computed, and what LSODA's tightest run says of its end."""
-    problem = case_p.over(2e-3)
+    problem = replace(case_p, duration=2e-3)
     end = states(problem, whole(problem, 1e-12, [2e-3], "LSODA"))[:, -1]
     return problem, end
 
@@ -56,7 +56,7 @@ def test_a_peer_solves_smooth_problems(peer, spec):
 @pytest.mark.parametrize("peer", PEERS, ids=lambda peer: peer.name)
 def test_a_peers_rates_are_the_models(case_p, peer):
     pytest.importorskip(peer.package)
-    sample = sample_of(case_p.over(1e-2), 50)
+    sample = sample_of(replace(case_p, duration=1e-2), 50)
     assert peer.rates is None or sample.error(peer.rates(case_p)(sample.x)) <= 1e-9
 
 
@@ -77,11 +77,11 @@ def broken(*_):
 
 def test_a_peer_that_fails_is_left_out(case_p, monkeypatch):
     peers = (LSODA, replace(LSODA, name="first", solver=broken, rates=broken))
-    monkeypatch.setattr("piezo_sym.bench.runs.PEERS", peers)
-    monkeypatch.setattr("piezo_sym.bench.rates.PEERS", peers)
-    run = run_rows("run", case_p.over(1e-3), 1e-3, SMALL, independent=False)
+    monkeypatch.setattr("tests.benchmarks.runs.PEERS", peers)
+    monkeypatch.setattr("tests.benchmarks.rates.PEERS", peers)
+    run = run_rows("run", replace(case_p, duration=1e-3), 1e-3, SMALL, independent=False)
     assert run.left_out == ("run, first: fails: cannot\\ndo this",)
-    batch = batch_rows(case_p.over(1e-2), SMALL)
+    batch = batch_rows(replace(case_p, duration=1e-2), SMALL)
     assert batch.left_out == ("batch, sympy: fails: cannot\\ndo this",)
 
 
@@ -105,13 +105,13 @@ def test_case_p_has_known_answers(case_p):
 
 
 def test_another_problems_reference_is_confirmed_by_lsoda(case_p):
-    exact = reference_of(case_p.over(0.01), independent=True)
+    exact = reference_of(replace(case_p, duration=0.01), independent=True)
     assert exact.good_to <= 1e-6
     assert "LSODA" in exact.line
 
 
 def test_runs_stand_at_equal_error(case_p):
-    part = run_rows("run", case_p.over(5e-3), 1e-5, SMALL, independent=False)
+    part = run_rows("run", replace(case_p, duration=5e-3), 1e-5, SMALL, independent=False)
     tuned = [row for row in part.rows if "tolerance" in row.note]
     assert {row.other for row in tuned} | {
         line.split(": ")[0][5:] for line in part.left_out
@@ -125,14 +125,14 @@ def test_without_a_compiler_runs_are_left_out(case_p, monkeypatch):
     def refuse(_):
         raise EngineError("there is no compiler")
 
-    monkeypatch.setattr("piezo_sym.bench.ours.engine_of", refuse)
+    monkeypatch.setattr("tests.benchmarks.ours.engine_of", refuse)
     part = run_rows("run", case_p, 1e-5, SMALL, independent=False)
     assert part.rows == ()
     assert part.left_out == ("run: there is no compiler",)
 
 
 def test_rates_stand_beside_those_written_by_hand(case_p):
-    part = rhs_rows(case_p.over(1e-2), SMALL)
+    part = rhs_rows(replace(case_p, duration=1e-2), SMALL)
     names = {row.other for row in part.rows}
     assert {"lambdified SymPy (numpy)", "hand-written NumPy", "hand-written C, r = 64"} <= names
     errors = [e for row in part.rows for e in (row.other_error, row.ours_error) if e is not None]
@@ -140,7 +140,7 @@ def test_rates_stand_beside_those_written_by_hand(case_p):
 
 
 def test_batches_stand_beside_those_written_by_hand(case_p):
-    part = batch_rows(case_p.over(1e-2), SMALL)
+    part = batch_rows(replace(case_p, duration=1e-2), SMALL)
     groups = {f"batch of {SMALL.columns}, {size} states each" for size in (6, 68)}
     assert {row.group for row in part.rows} == groups
     assert {"hand-written C, in blocks", "hand-written NumPy"} <= {row.other for row in part.rows}
@@ -148,7 +148,7 @@ def test_batches_stand_beside_those_written_by_hand(case_p):
 
 
 def test_a_sample_sees_a_wrong_rate(case_p):
-    sample = sample_of(case_p.over(1e-2), 20)
+    sample = sample_of(replace(case_p, duration=1e-2), 20)
     rates = case_p.module.rhs(sample.x, np.array([0.0, 70.0, 298.15]), case_p.system.parameters)
     assert sample.error(rates) > 1e-3  # the voltage is another one
 

@@ -6,26 +6,27 @@ which it reaches the target, and LSODA on lambdified SymPy at rtol 1e-6 besides,
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from time import perf_counter
 from typing import TYPE_CHECKING
 
 from piezo_sym.bench.contest import Contestant, Pair, compared
-from piezo_sym.bench.machine import installed
-from piezo_sym.bench.ours import RUN, SAMPLED, WHOLE, run_in_c, states, whole
-from piezo_sym.bench.peers import LSODA, PEERS
-from piezo_sym.bench.reference import reference_of
-from piezo_sym.bench.rows import Part
-from piezo_sym.bench.tuning import tuned
 from piezo_sym.errors import EngineError, RunError, one_line
+from tests.benchmarks.machine import installed
+from tests.benchmarks.ours import RUN, SAMPLED, WHOLE, run_in_c, states, whole
+from tests.benchmarks.peers import LSODA, PEERS
+from tests.benchmarks.reference import reference_of
+from tests.benchmarks.report import Part
+from tests.benchmarks.tuning import tuned
 
 if TYPE_CHECKING:
-    from piezo_sym.bench.peers import Peer
-    from piezo_sym.bench.peers.peer import Solver
     from piezo_sym.bench.problem import Problem
-    from piezo_sym.bench.reference import Reference
-    from piezo_sym.bench.settings import Settings
     from piezo_sym.run.checks import FloatArray
+    from tests.benchmarks.peers import Peer
+    from tests.benchmarks.peers.peer import Solver
+    from tests.benchmarks.reference import Reference
+    from tests.benchmarks.settings import Settings
 
 PROBED = 1 / 50  # of a run: how long a peer's run takes is seen from that part of it
 PROBE, USUAL = 1e-6, 1e-6
@@ -118,7 +119,7 @@ def failure(error: Exception) -> str:
 def probed(peer: Peer, problem: Problem) -> tuple[float, float]:
     """Return the seconds that a peer takes to compile, and those that a run may take."""
     start = perf_counter()
-    solve = peer.solver(problem.over(problem.duration * PROBED))
+    solve = peer.solver(replace(problem, duration=problem.duration * PROBED))
     solve(PROBE)
     first = perf_counter()
     solve(PROBE)

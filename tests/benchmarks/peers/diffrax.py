@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import sympy as sp
 
-from piezo_sym.bench.peers.peer import INSTANT, Peer
-from piezo_sym.bench.problem import TIME
+from piezo_sym.bench.problem import INSTANT, TIME
+from tests.benchmarks.peers.peer import Peer, scaled
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from piezo_sym.bench.peers.peer import Rates, Solver
     from piezo_sym.bench.problem import Problem
+    from tests.benchmarks.peers.peer import Rates, Solver
 
 MOST_STEPS = 20_000_000
 
@@ -38,7 +38,7 @@ def solver(problem: Problem) -> Solver:
     import diffrax
     import jax
 
-    rates = field(problem, problem.scaled)
+    rates = field(problem, scaled(problem))
     term = diffrax.ODETerm(lambda t, z, _: rates(t, z))
     start = jax.numpy.asarray(problem.start / problem.scale)
 

@@ -15,24 +15,25 @@ process, in turns, so that its ratios hold on a busy machine too.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from piezo_sym.bench.machine import machine
-from piezo_sym.bench.making import making_rows
-from piezo_sym.bench.peers import PEERS
-from piezo_sym.bench.problem import problem_of
-from piezo_sym.bench.rates import batch_rows, rhs_rows
-from piezo_sym.bench.rows import Part, Report
-from piezo_sym.bench.runs import run_rows
-from piezo_sym.bench.settings import THOROUGH
-from piezo_sym.bench.sweeps import sweep_rows
 from piezo_sym.errors import UsageError, nearest, quote
+from tests.benchmarks.case_p import problem_of
+from tests.benchmarks.machine import machine
+from tests.benchmarks.making import making_rows
+from tests.benchmarks.peers import PEERS
+from tests.benchmarks.rates import batch_rows, rhs_rows
+from tests.benchmarks.report import Part, Report
+from tests.benchmarks.runs import run_rows
+from tests.benchmarks.settings import THOROUGH
+from tests.benchmarks.sweeps import sweep_rows
 
 if TYPE_CHECKING:
     from piezo_sym.bench.problem import Problem
-    from piezo_sym.bench.settings import Settings
     from piezo_sym.run.inputs import InputValue
     from piezo_sym.spec.model import Model
+    from tests.benchmarks.settings import Settings
 
 LONGER = 100
 
@@ -42,7 +43,7 @@ def _run(problem: Problem, settings: Settings) -> Part:
 
 
 def _long(problem: Problem, settings: Settings) -> Part:
-    longer = problem.over(problem.duration * LONGER)
+    longer = replace(problem, duration=problem.duration * LONGER)
     return run_rows("long", longer, settings.long_target, settings, independent=False)
 
 

@@ -13,16 +13,16 @@ from typing import TYPE_CHECKING
 from sympy.core.cache import clear_cache
 
 from piezo_sym.bench.contest import Contestant, Pair, compared
-from piezo_sym.bench.rows import Part
 from piezo_sym.build import render
 from piezo_sym.derivation import derive
 from piezo_sym.proofs import verify
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import banks
+from tests.benchmarks.report import Part
 
 if TYPE_CHECKING:
     from piezo_sym.bench.problem import Problem
-    from piezo_sym.bench.settings import Settings
+    from tests.benchmarks.settings import Settings
 
 LARGE = 10_000
 STAGES: tuple[tuple[str, Callable[[Model], object]], ...] = (

@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Any, final
 import numpy as np
 import sympy as sp
 
-from piezo_sym.bench.kinks import positive, switched, twins
 from piezo_sym.bench.problem import TIME
+from tests.benchmarks.kinks import positive, switched, twins
+from tests.benchmarks.peers.peer import scaled
 
 if TYPE_CHECKING:
     from piezo_sym.bench.problem import Problem
@@ -59,9 +60,9 @@ def equations_of(problem: Problem, free: tuple[sp.Symbol, ...] = ()) -> Equation
     """
     import heyoka
 
-    smooth = switched(problem.scaled)
+    smooth = switched(scaled(problem))
     start = problem.start / problem.scale
-    tie = twins(problem.states, problem.scaled, start.tolist())
+    tie = twins(problem.states, scaled(problem), start.tolist())
     places: dict[sp.Expr, int] = {}
     for gap in smooth.gaps.values():
         places.setdefault(gap.xreplace(tie), len(places))

@@ -1,7 +1,7 @@
-"""Right-hand sides written by hand, for the paper's actuator: they lie in a clone's tests.
+"""Right-hand sides written by hand for the paper's actuator, in NumPy and C.
 
-Input: a `Problem`.  Output: `Hand`, or nothing where the clone's folder or a compiler is missing,
-or the problem is of another model.
+Input: a `Problem`.  Output: `Hand`, or nothing where there is no compiler, or the problem is of
+another model.
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache, partial
-from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, final
@@ -19,18 +18,19 @@ from typing import TYPE_CHECKING, Any, final
 import numpy as np
 
 from piezo_sym.bench.contest import Contestant
-from piezo_sym.bench.ours import inputs_at_instant
+from piezo_sym.bench.problem import SHIPPED
 from piezo_sym.errors import EngineError
 from piezo_sym.run.engine.compiler import FLAGS, build, compilers
 from piezo_sym.run.engine.structure import Layout
 from piezo_sym.spec.load import load
+from tests.benchmarks import hand_written
+from tests.benchmarks.ours import inputs_at_instant
 
 if TYPE_CHECKING:
     from piezo_sym.bench.problem import Problem
     from piezo_sym.run.checks import FloatArray
 
-FOLDER = Path(__file__).parents[2] / "tests" / "benchmarks"
-MODEL = "piezo_stack"
+FOLDER = Path(__file__).parent
 LANE_CALLS = 400_000  # lanes computed in one call of a loop
 
 
@@ -99,13 +99,13 @@ class Hand:
 
 def hand_of(problem: Problem) -> Hand | None:
     """Return what is written by hand for a problem, if there is anything."""
-    if not (FOLDER / "loop.c").is_file() or problem.model.sha256 != load(MODEL).sha256:
+    if problem.model.sha256 != load(SHIPPED).sha256:
         return None
     try:
-        loop, batch = _libraries(Path(str(problem.module.__file__)).parent)  # type: ignore[attr-defined]
+        loop, batch = _libraries(Path(str(problem.module.__file__)).parent)
     except EngineError:
         return None
-    return Hand(problem, _module(), loop, batch)
+    return Hand(problem, hand_written, loop, batch)
 
 
 @lru_cache(maxsize=4)
@@ -120,13 +120,3 @@ def _libraries(generated: Path) -> tuple[ctypes.CDLL, ctypes.CDLL]:
             build(compiler, flags, FOLDER / f"{path.stem}.c", path)
         loop, batch = (ctypes.CDLL(str(path)) for path in paths)
     return loop, batch
-
-
-@lru_cache(maxsize=1)
-def _module() -> ModuleType:
-    spec = spec_from_file_location("rates_by_hand", FOLDER / "hand_written.py")
-    if spec is None or spec.loader is None:
-        raise EngineError("hand_written.py is no Python module", str(FOLDER))
-    module = module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module

@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import sympy as sp
 
-from piezo_sym.bench.peers.lambdified import integrated
-from piezo_sym.bench.peers.peer import INSTANT, Peer
-from piezo_sym.bench.problem import TIME
+from piezo_sym.bench.lambdified import integrated
+from piezo_sym.bench.problem import INSTANT, TIME
+from tests.benchmarks.peers.peer import Peer
 
 if TYPE_CHECKING:
-    from piezo_sym.bench.peers.peer import Rates, Solver
     from piezo_sym.bench.problem import Problem
+    from tests.benchmarks.peers.peer import Rates, Solver
 
 
 def compiled(problem: Problem) -> Callable[..., Any]:

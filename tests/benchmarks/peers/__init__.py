@@ -4,14 +4,14 @@ Input: a `Problem`.  Output: `PEERS`, each with a solver (tolerance -> state at 
 rates of many states at once where it has them.  A peer that is not installed is left out.
 """
 
-from piezo_sym.bench.peers.casadi import CASADI
-from piezo_sym.bench.peers.diffrax import DIFFRAX
-from piezo_sym.bench.peers.heyoka import HEYOKA
-from piezo_sym.bench.peers.lambdified import LSODA, LSODA_MATH, RK45, field
-from piezo_sym.bench.peers.numba import NUMBA
-from piezo_sym.bench.peers.peer import Peer
+from tests.benchmarks.peers.casadi import CASADI
+from tests.benchmarks.peers.diffrax import DIFFRAX
+from tests.benchmarks.peers.heyoka import HEYOKA
+from tests.benchmarks.peers.lambdified import LSODA, LSODA_MATH, RK45
+from tests.benchmarks.peers.numba import NUMBA
+from tests.benchmarks.peers.peer import Peer
 
 #: All peers, in the order of the report.
 PEERS = (LSODA, RK45, LSODA_MATH, NUMBA, CASADI, DIFFRAX, HEYOKA)
 
-__all__ = ["LSODA", "PEERS", "Peer", "field"]
+__all__ = ["LSODA", "PEERS", "Peer"]

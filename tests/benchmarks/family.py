@@ -12,8 +12,6 @@ from typing import TYPE_CHECKING, final
 import numpy as np
 import sympy as sp
 
-from piezo_sym.bench.case_p import SWEPT, case_p
-from piezo_sym.bench.ours import states, whole
 from piezo_sym.bench.problem import explicit
 from piezo_sym.errors import RunError
 from piezo_sym.run.adaptive import adaptive
@@ -22,6 +20,8 @@ from piezo_sym.run.module import lanes
 from piezo_sym.run.parameters import own_initial, read_parameters
 from piezo_sym.run.scales import shared
 from piezo_sym.run.system import System
+from tests.benchmarks.case_p import SWEPT, case_p
+from tests.benchmarks.ours import states, whole
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -8,9 +8,11 @@ import pytest
 import sympy as sp
 
 from piezo_sym import PiezoError, chirp, load, sine, step
-from piezo_sym.bench.kinks import switched, twins
-from piezo_sym.bench.ours import states, whole
-from piezo_sym.bench.problem import TIME, problem_of
+from piezo_sym.bench.problem import TIME
+from tests.benchmarks.case_p import problem_of
+from tests.benchmarks.kinks import switched, twins
+from tests.benchmarks.ours import states, whole
+from tests.benchmarks.peers.peer import scaled
 
 SPECS = sorted((Path(__file__).parents[1] / "networks" / "specs").glob("*.toml"))
 MODELS = ["piezo_stack", *SPECS]
@@ -59,7 +61,7 @@ def test_explicit_rates_are_the_modules(problem, path, number):
 def test_scaled_rates_are_those_of_scaled_states(problem, path):
     x, _ = drawn(problem, path, 0)
     scale = np.random.default_rng(1).uniform(0.1, 3, x.size)
-    found = at(replace(problem, scale=scale).scaled, problem, x / scale)
+    found = at(scaled(replace(problem, scale=scale)), problem, x / scale)
     np.testing.assert_allclose(found * scale, at(problem.rates, problem, x), rtol=1e-9, atol=1e-9)
 
 

@@ -1,4 +1,4 @@
-"""A report as text: cells of a table, Markdown, JSON.
+"""A report as text: Markdown, JSON.
 
 Input: a `Report`.  Output: text.
 """
@@ -9,9 +9,11 @@ import json
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
+from piezo_sym.bench.contest import COLUMNS
+
 if TYPE_CHECKING:
-    from piezo_sym.bench.machine import Machine
-    from piezo_sym.bench.rows import Report, Row, Spread
+    from tests.benchmarks.machine import Machine
+    from tests.benchmarks.report import Report
 
 BATCHES = (
     "the time of a batch is that of one call, shared among its states; below about 1000 of them "
@@ -21,36 +23,6 @@ SWEEPS = (
     "the time of a sweep is that of one of its runs; small sweeps gain less by lanes and threads; "
     "single runs in C: each a call of its own; one by one: without lanes"
 )
-COLUMNS = ("group", "compared with", "time", "error", "ours", "time", "error", "ratio", "quartiles")
-UNITS = ((1.0, "s"), (1e-3, "ms"), (1e-6, "us"), (1e-9, "ns"))
-
-
-def cells(row: Row) -> tuple[str, ...]:
-    """Return a row's cells, in the order of `COLUMNS`."""
-    return (
-        row.group,
-        row.other or "-",
-        duration(row.other_time),
-        error(row.other_error),
-        row.ours,
-        duration(row.ours_time),
-        error(row.ours_error),
-        f"{row.ratio.median:.3g}" if row.ratio else "-",
-        f"{row.ratio.low:.3g} - {row.ratio.high:.3g}" if row.ratio else "-",
-    )
-
-
-def duration(spread: Spread | None) -> str:
-    """Return a median time in the unit that fits it."""
-    if spread is None:
-        return "-"
-    size, unit = next((pair for pair in UNITS if spread.median >= pair[0]), UNITS[-1])
-    return f"{spread.median / size:.3g} {unit}"
-
-
-def error(value: float | None) -> str:
-    """Return an error in one digit, for more would mean nothing."""
-    return "-" if value is None else f"{value:.0e}"
 
 
 def about(machine: Machine) -> str:
@@ -83,7 +55,7 @@ def markdown(report: Report) -> str:
         "ours, round by round, with its quartiles.\n\n"
     )
     lines = ["| " + " | ".join(COLUMNS) + " |", "|" + "---|" * len(COLUMNS)]
-    lines += ["| " + " | ".join(cells(row)) + " |" for row in report.rows]
+    lines += ["| " + " | ".join(row.cells) + " |" for row in report.rows]
     listed = "".join(f"- {line}\n" for line in notes(report))
     return f"{head}{explained}" + "\n".join(lines) + f"\n\n{listed}"
 

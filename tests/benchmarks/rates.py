@@ -13,22 +13,23 @@ from typing import TYPE_CHECKING, Any, final
 import numpy as np
 import sympy as sp
 
-from piezo_sym.bench.by_hand import hand_of
 from piezo_sym.bench.contest import Contestant, Pair, compared
-from piezo_sym.bench.ours import rates_in_place, rates_into, rates_of, states, whole
-from piezo_sym.bench.peers import PEERS, field
-from piezo_sym.bench.peers.peer import INSTANT, at_instant
-from piezo_sym.bench.problem import problem_of
-from piezo_sym.bench.rows import Part
-from piezo_sym.bench.runs import failure, unable
+from piezo_sym.bench.lambdified import field
+from piezo_sym.bench.problem import INSTANT
 from piezo_sym.errors import EngineError
 from piezo_sym.run.engine.engine import engine_of
+from tests.benchmarks.by_hand import hand_of
+from tests.benchmarks.case_p import problem_of
+from tests.benchmarks.ours import rates_in_place, rates_into, rates_of, states, whole
+from tests.benchmarks.peers import PEERS
+from tests.benchmarks.report import Part
+from tests.benchmarks.runs import failure, unable
 
 if TYPE_CHECKING:
-    from piezo_sym.bench.peers.peer import Rates
     from piezo_sym.bench.problem import Problem
-    from piezo_sym.bench.settings import Settings
     from piezo_sym.run.checks import FloatArray
+    from tests.benchmarks.peers.peer import Rates
+    from tests.benchmarks.settings import Settings
 
 LOOPED = 2048  # states of a loop in C: a call costs little beside them
 CALLED = 50  # states of a loop in Python
@@ -67,7 +68,7 @@ def precise(problem: Problem, x: FloatArray) -> list[float]:
     """Return the rates of one state, computed in 30 digits."""
     values = zip(problem.states, x, strict=True)
     known = {state: sp.Float(float(value), DIGITS) for state, value in values}
-    return [float(rate.xreplace(known).evalf(DIGITS)) for rate in at_instant(problem)]
+    return [float(rate.xreplace(known).evalf(DIGITS)) for rate in problem.at_instant]
 
 
 def rhs_rows(problem: Problem, settings: Settings) -> Part:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from piezo_sym.bench.peers.peer import INSTANT
+from piezo_sym.bench.problem import INSTANT
 from piezo_sym.run import simulate
 from piezo_sym.run.adaptive import adaptive
 from piezo_sym.run.discrete import METHOD
@@ -21,9 +21,9 @@ from piezo_sym.run.module import GeneratedModule
 if TYPE_CHECKING:
     import xarray
 
-    from piezo_sym.bench.peers.peer import Rates, Solver
     from piezo_sym.bench.problem import Problem
     from piezo_sym.run.checks import FloatArray
+    from tests.benchmarks.peers.peer import Rates, Solver
 
 RUN = "discrete gradient in C"
 WHOLE = "simulate(), Dataset of the end"

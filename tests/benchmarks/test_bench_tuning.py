@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from piezo_sym.bench.tuning import LADDER, PARTS, Tuned, tuned
+from tests.benchmarks.tuning import LADDER, PARTS, Tuned, tuned
 
 
 def error(x):
@@ -51,7 +51,7 @@ def test_a_tolerance_at_which_a_solver_fails_is_passed_over(fault):
 
 def test_no_more_is_tried_once_patience_is_spent(monkeypatch):
     now = [0.0]
-    monkeypatch.setattr("piezo_sym.bench.tuning.perf_counter", lambda: now[0])
+    monkeypatch.setattr("tests.benchmarks.tuning.perf_counter", lambda: now[0])
 
     def solve(tolerance):
         now[0] += 2.0

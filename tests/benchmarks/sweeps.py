@@ -13,11 +13,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from piezo_sym.bench.contest import Contestant, Pair, compared
-from piezo_sym.bench.family import family_of
-from piezo_sym.bench.peers import PEERS
-from piezo_sym.bench.rows import Part
-from piezo_sym.bench.runs import failure, unable
-from piezo_sym.bench.tuning import tuned
 from piezo_sym.errors import EngineError, RunError
 from piezo_sym.run.adaptive import adaptive
 from piezo_sym.run.discrete import METHOD
@@ -25,14 +20,19 @@ from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.sweeps.plan import Plan
 from piezo_sym.sweeps.read import Asked, read_plan
 from piezo_sym.sweeps.sweep import in_threads
+from tests.benchmarks.family import family_of
+from tests.benchmarks.peers import PEERS
+from tests.benchmarks.report import Part
+from tests.benchmarks.runs import failure, unable
+from tests.benchmarks.tuning import tuned
 
 if TYPE_CHECKING:
-    from piezo_sym.bench.family import Family
-    from piezo_sym.bench.peers import Peer
-    from piezo_sym.bench.peers.peer import Solver
     from piezo_sym.bench.problem import Problem
-    from piezo_sym.bench.settings import Settings
     from piezo_sym.run.checks import FloatArray
+    from tests.benchmarks.family import Family
+    from tests.benchmarks.peers import Peer
+    from tests.benchmarks.peers.peer import Solver
+    from tests.benchmarks.settings import Settings
 
 
 def sweep_rows(problem: Problem, settings: Settings) -> Part:

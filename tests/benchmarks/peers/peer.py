@@ -12,18 +12,13 @@ from typing import TYPE_CHECKING, TypeAlias, final
 
 import sympy as sp
 
-from piezo_sym.bench.problem import TIME
-
 if TYPE_CHECKING:
-    from piezo_sym.bench.family import Family
     from piezo_sym.bench.problem import Problem
     from piezo_sym.run.checks import FloatArray
+    from tests.benchmarks.family import Family
 
     Solver: TypeAlias = Callable[[float], FloatArray]
     Rates: TypeAlias = Callable[[FloatArray], object]
-
-#: When the rates of many states are computed, so that an input in motion is one number.
-INSTANT = 1.25e-3
 
 
 @final
@@ -50,6 +45,9 @@ class Peer:
     many: Mapping[str, Callable[[Family], Solver]] = field(default_factory=dict)
 
 
-def at_instant(problem: Problem) -> tuple[sp.Expr, ...]:
-    """Return the rates at `INSTANT`."""
-    return tuple(rate.xreplace({TIME: sp.Float(INSTANT)}) for rate in problem.rates)
+def scaled(problem: Problem) -> tuple[sp.Expr, ...]:
+    """Return the rates of z = x/scale as expressions of z, whose symbols are `states` as well."""
+    pairs = zip(problem.states, problem.scale, strict=True)
+    change = {state: sp.Float(size) * state for state, size in pairs}
+    rates = zip(problem.rates, problem.scale, strict=True)
+    return tuple(rate.xreplace(change) / sp.Float(size) for rate, size in rates)

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from piezo_sym.bench.kinks import Switched, switched
-from piezo_sym.bench.peers.heyoka_many import ended, in_batches, integrator, one_by_one
-from piezo_sym.bench.peers.heyoka_words import equations_of, worded
-from piezo_sym.bench.peers.peer import Peer, at_instant
+from tests.benchmarks.kinks import Switched, switched
+from tests.benchmarks.peers.heyoka_many import ended, in_batches, integrator, one_by_one
+from tests.benchmarks.peers.heyoka_words import equations_of, worded
+from tests.benchmarks.peers.peer import Peer
 
 if TYPE_CHECKING:
-    from piezo_sym.bench.peers.peer import Rates, Solver
     from piezo_sym.bench.problem import Problem
+    from tests.benchmarks.peers.peer import Rates, Solver
 
 
 def solver(problem: Problem) -> Solver:
@@ -38,7 +38,7 @@ def batch(problem: Problem) -> Rates:
     """Return the rates of many states at once, kinks as `select`."""
     import heyoka
 
-    smooth: Switched = switched(at_instant(problem))
+    smooth: Switched = switched(problem.at_instant)
     variables = heyoka.make_vars(*(f"x_{n}" for n in range(len(problem.states))))
     variables = tuple(np.atleast_1d(variables).tolist())
     zero, one = heyoka.expression(0.0), heyoka.expression(1.0)

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from piezo_sym.bench.peers.heyoka_words import Equations, equations_of
+from tests.benchmarks.peers.heyoka_words import Equations, equations_of
 
 if TYPE_CHECKING:
-    from piezo_sym.bench.family import Family
-    from piezo_sym.bench.peers.peer import Solver
+    from tests.benchmarks.family import Family
+    from tests.benchmarks.peers.peer import Solver
 
 
 def integrator(equations: Equations, start: Any, pars: Any, tolerance: float) -> Any:

@@ -1,24 +1,28 @@
 """The paper's actuator at 100 V and 100 Hz, from equilibrium: its states are known at two times.
 
-Input: a spec's hash and the inputs given.  Output: `CaseP`, or nothing for any other run.  At
-0.1 s three solvers with located kinks agree to 1e-14; at 10 s the digits below are good to 1e-6 of
-the scale.
+Input: a model and the inputs given.  Output: its `Problem`; `CaseP`, or nothing for any other run.
+At 0.1 s three solvers with located kinks agree to 1e-14; at 10 s the digits below are good to 1e-6
+of the scale.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, final
 
 import numpy as np
 
-from piezo_sym.run.signals import Constant, Sine, sine
+from piezo_sym.bench import problem as explicit
+from piezo_sym.bench.problem import DRIVEN, SHIPPED
+from piezo_sym.run.signals import Constant
 from piezo_sym.spec.load import load
 
 if TYPE_CHECKING:
+    from piezo_sym.bench.problem import Problem
     from piezo_sym.run.checks import FloatArray
     from piezo_sym.run.inputs import InputValue
+    from piezo_sym.spec.model import Model
 
 #: State at a time [s], and how far it is known, in units of the scale: q, p, Q_C, phi, S.
 KNOWN: tuple[tuple[float, tuple[float, ...], float], ...] = (
@@ -36,7 +40,6 @@ KNOWN: tuple[tuple[float, tuple[float, ...], float], ...] = (
     (10.0, (-1.6791582326e-3, -1.645951262e-2, -1.47885318e-4, -0.2161631682, 11.0909671), 1e-6),
 )
 SCALE = (2e-3, 5e-3, 5e-4, 6e-3, 5e-2)
-NAME = "piezo_stack"
 #: The parameter that its sweep varies.
 SWEPT = "L"
 
@@ -44,9 +47,7 @@ SWEPT = "L"
 @final
 @dataclass(frozen=True)
 class CaseP:
-    """Case P: its inputs, the scale of each state, and its states at known times."""
-
-    inputs: Mapping[str, InputValue]
+    """Case P: the scale of each state, and its states at known times."""
 
     def scale(self, hysterons: int) -> FloatArray:
         """Return by what the error of each state is measured (n,)."""
@@ -62,15 +63,26 @@ class CaseP:
 
 def case_p(sha256: str, inputs: Mapping[str, InputValue]) -> CaseP | None:
     """Return case P if this is the shipped actuator with its inputs, or with none given."""
-    if sha256 != load(NAME).sha256:
+    if sha256 != load(SHIPPED).sha256:
         return None
-    driven: dict[str, InputValue] = {"V_in": sine(100.0, 100.0)}
-    return CaseP(driven) if not inputs or _same(inputs) else None
+    return CaseP() if not inputs or _same(inputs) else None
+
+
+def problem_of(
+    model: Model,
+    inputs: Mapping[str, InputValue],
+    duration: float,
+    sizes: Mapping[str, int] | None = None,
+) -> Problem:
+    """Return a model as a problem, with the scale of case P if it is that, else 1."""
+    problem = explicit.problem_of(model, inputs, duration, sizes)
+    case = case_p(model.sha256, problem.inputs)
+    return replace(problem, scale=case.scale(problem.start.size - 4)) if case else problem
 
 
 def _same(inputs: Mapping[str, InputValue]) -> bool:
     """Return whether inputs are those of case P; its constants may be given or left out."""
-    expected = {"V_in": Sine(100.0, 100.0, 0.0, 0.0), "F_ext": 0.0, "T_e": 298.15}
+    expected = {**DRIVEN, "F_ext": 0.0, "T_e": 298.15}
     plain = {n: s.value if isinstance(s, Constant) else s for n, s in inputs.items()}
     return "V_in" in plain and all(expected.get(n) == value for n, value in plain.items())
 

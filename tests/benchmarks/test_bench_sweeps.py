@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 from piezo_sym import load, simulate
-from piezo_sym.bench.family import family_of, varied
-from piezo_sym.bench.peers import PEERS
-from piezo_sym.bench.problem import problem_of
-from piezo_sym.bench.settings import QUICK
-from piezo_sym.bench.sweeps import single_runs, sweep_rows, swept
 from piezo_sym.errors import EngineError
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.engine.march import Batch
+from tests.benchmarks.case_p import problem_of
+from tests.benchmarks.family import family_of, varied
+from tests.benchmarks.peers import PEERS
+from tests.benchmarks.settings import QUICK
+from tests.benchmarks.sweeps import single_runs, sweep_rows, swept
 
 SPECS = Path(__file__).parents[1] / "networks" / "specs"
 SMALL = replace(QUICK, rounds=1, members=11, patience=1e4)  # more than the lanes of any vector
@@ -125,7 +125,7 @@ def test_without_a_compiler_sweeps_are_left_out(problem, monkeypatch):
     def refuse(_):
         raise EngineError("there is no compiler")
 
-    monkeypatch.setattr("piezo_sym.bench.family.engine_of", refuse)
+    monkeypatch.setattr("tests.benchmarks.family.engine_of", refuse)
     assert sweep_rows(problem, SMALL).left_out == ("sweep: there is no compiler",)
 
 

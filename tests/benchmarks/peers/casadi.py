@@ -14,16 +14,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import sympy as sp
 
-from piezo_sym.bench.kinks import switched
-from piezo_sym.bench.peers.peer import INSTANT, Peer
-from piezo_sym.bench.problem import TIME
+from piezo_sym.bench.problem import INSTANT, TIME
 from piezo_sym.run.engine.compiler import compilers
+from tests.benchmarks.kinks import switched
+from tests.benchmarks.peers.peer import Peer, scaled
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from piezo_sym.bench.peers.peer import Rates, Solver
     from piezo_sym.bench.problem import Problem
+    from tests.benchmarks.peers.peer import Rates, Solver
 
 FUNCTIONS = ("exp", "log", "sqrt", "sin", "cos", "tanh")
 
@@ -68,7 +68,7 @@ def solver(problem: Problem) -> Solver:
     import casadi
 
     t, z = casadi.SX.sym("t"), casadi.SX.sym("z", len(problem.states))
-    equations = {"t": t, "x": z, "ode": graph(problem, problem.scaled, t, z)}
+    equations = {"t": t, "x": z, "ode": graph(problem, scaled(problem), t, z)}
     start = problem.start / problem.scale
 
     @lru_cache(maxsize=2)
