@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
 from typing import Any
 
 from .field import Field, Ratio, constant
@@ -31,6 +32,7 @@ class Finding:
 
     reasons: dict[str, str] = field(default_factory=dict)
     divisors: dict[Node, None] = field(default_factory=dict)
+    letters: dict[str, Node] = field(default_factory=dict)
     energy: Node | None = None
 
     def say(self, subject: str, good: bool, reason: str) -> None:
@@ -191,7 +193,8 @@ class Comparison:
         for pivot in solution.pivots:
             determinant = determinant * pivot
         if not self.field.is_zero(determinant - constant(1)):
-            self.finding.divisors |= dict.fromkeys(self.field.factors(determinant.top))
+            trees = self.field.factors(determinant.top)
+            self.finding.divisors |= dict.fromkeys(replaced(tree, _unlaned) for tree in trees)
         rates = dict(self._rates(solution))
         power = self._inputs(dict(self._outputs(solution)))
         heat = constant(0)
@@ -222,20 +225,6 @@ class Comparison:
                 total = total + factor * self.state(self.spec.elements[label[1]], label[2])
         return total
 
-    def _processes(self, solution: Solution) -> Iterator[tuple[Any, Element, Ratio, Ratio]]:
-        """Yield (label, element, z, W) of every dissipative law."""
-        for part in parts(self.spec, self.counts):
-            element = self.spec.elements[part.element]
-            if part.role == "law" and element.law is not None:
-                form = solution.through[part] if part.across else solution.across[part]
-                letter = ("z", element.name)
-                outputs: dict[Any, Ratio] = {}
-                if is_linear(element.law, letter):
-                    outputs = self.outputs
-                z = self._given(form, outputs)
-                W = self.law(element.law, part.lane, z)
-                yield ("W", part.element, part.lane), element, z, W
-
     def _solved(self, solution: Solution) -> list[tuple[Any, Element, Ratio, Ratio]]:
         """Return the processes, those that are not linear first: others may depend on them."""
         self.outputs: dict[Any, Ratio] = {}
@@ -252,8 +241,22 @@ class Comparison:
             W = self.law(element.law or num(0), part.lane, z)
             label = ("W", part.element, part.lane)
             self.outputs[label] = W
+            self._tie(element, form)
             found.append((label, element, z, W))
         return found
+
+    def _tie(self, element: Element, form: Mapping[Any, Ratio]) -> None:
+        """Keep what a letter is in terms of states and inputs, if it is so lane by lane."""
+        terms = []
+        for label, factor in form.items():
+            source = self.spec.elements[label[1]]
+            foreign = source.count is not None and source.name != element.name
+            if label[0] == "W" or foreign or not factor.top.is_constant():
+                return
+            of = sym(("u", source.input)) if label[0] == "u" else source.costate or num(0)
+            lead = factor.top.leading_coefficient()
+            terms.append(Node("*", (num(Fraction(int(lead.p), int(lead.q))), of)))
+        self.finding.letters[element.name] = Node("+", tuple(terms)) if terms else num(0)
 
     def _rates(self, solution: Solution) -> Iterator[tuple[tuple[str, int], Ratio]]:
         """Yield the rate of every state, as the network has it."""
@@ -320,6 +323,10 @@ class Comparison:
                     total = total + self.published(derivative(inner, symbol), bound)
             own = self.law(element.costate or num(0), lane)
             self._equal("energy", total, own, f"dU/d{symbol}")
+
+
+def _unlaned(key: Any) -> Node:
+    return sym(key if key[2] else key[:2])
 
 
 def check_system(spec: Spec, system: Mapping[str, Any]) -> Finding:
