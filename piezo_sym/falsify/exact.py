@@ -39,6 +39,8 @@ class Exact:
             If the checker cannot.
         """
         self.circuit, self.spec = iphs.circuit, read_spec(iphs.model.to_toml())
+        #: Conditions that only the checker has; what is proved is proved without them.
+        self.apart = {f"{text}: a width is not negative" for text in iphs.model.domain.assume}
 
     def broken(self, claim: Claim, space: Space, point: Array) -> str | None:
         """Return what breaks a row at a point of the domain, or None."""
@@ -47,7 +49,7 @@ class Exact:
         if at is None:
             alone = claim.id == "welldef" and not claim.element
             return "the junction laws have no solution" if alone else None
-        if at.inside is not True:
+        if not self._inside(at):
             return None
         if claim.id == "welldef":
             lost = at.undefined if not claim.element else set(at.undefined) & {claim.element}
@@ -61,7 +63,7 @@ class Exact:
     def has_value(self, claim: Claim, space: Space, point: Array) -> bool:
         """Return whether a law that is nan in floating point has a value at a point inside."""
         at = self._at(space, [Fraction(v) for v in point.tolist()])
-        return at is not None and at.inside is True and claim.element not in at.undefined
+        return at is not None and self._inside(at) and claim.element not in at.undefined
 
     def jump(self, claim: Claim, space: Space, low: Array, high: Array) -> str | None:
         """Return the jump of a law between two points, or None if it fades as they meet."""
@@ -73,7 +75,7 @@ class Exact:
         def seen(value: Fraction) -> tuple[Any, ...] | None:
             point = [*sides[0][:column], value, *sides[0][column + 1 :]]
             at = self._at(space, point)
-            return _watched(claim, at) if at is not None and at.inside else None
+            return _watched(claim, at) if at is not None and self._inside(at) else None
 
         found = [seen(end) for end in ends]
         gaps = []
@@ -93,6 +95,9 @@ class Exact:
         if gaps[1] > 0 and gaps[1] > SAME * gaps[0]:
             return f"its values differ by {_text(gaps[1])} at distances {float(NEARER):g} apart"
         return None
+
+    def _inside(self, at: Point) -> bool:
+        return all(holds for text, holds in at.conditions if text not in self.apart)
 
     def _at(self, space: Space, values: list[Fraction]) -> Point | None:
         """Return the spec at a point, or None if its network has no solution there."""

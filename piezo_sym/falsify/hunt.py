@@ -7,6 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
+from itertools import chain
+from operator import itemgetter
 from types import ModuleType
 from typing import Any, final
 
@@ -15,10 +18,11 @@ import numpy as np
 from piezo_sym.errors import ContradictionError
 from piezo_sym.falsify.claims import Claim, claim_of, laws_of
 from piezo_sym.falsify.exact import Exact, exact_of
-from piezo_sym.falsify.points import CORNERS, FEW, ROOTS, Draw
+from piezo_sym.falsify.points import CORNERS, FEW, ROOTS, Draw, warmed
 from piezo_sym.falsify.probe import probe_of
 from piezo_sym.falsify.space import Array, Seen, Space
 from piezo_sym.iphs import IPHS
+from piezo_sym.spec.elements.ports import Body
 from piezo_sym.spec.expressions import Num, Sym
 from piezo_sym.spec.tables import conditions, greater
 from piezo_sym.spec.units import parse_unit
@@ -57,8 +61,8 @@ class Track:
 
     claim: Claim
     points: int = 0
-    worst: list[tuple[float, str, Space, Array]] = field(default_factory=list)
-    lost: tuple[float, str, Space, Array] | None = None
+    worst: dict[str, list[tuple[float, Space, Array]]] = field(default_factory=dict)
+    lost: tuple[Space, Array] | None = None
 
     def see(self, kind: str, seen: Seen) -> None:
         """Take in points that are inside the domain."""
@@ -72,24 +76,25 @@ class Track:
         if lost.any():
             ratio = np.where(lost, np.where(np.isnan(value), 2, np.sign(value)), ratio)
             if self.claim.climbs:
-                self._lose(kind, seen, np.isnan(value).any(axis=0))
+                self._lose(seen, np.isnan(value).any(axis=0))
         key = ratio.min(axis=0, initial=2)
         self._keep(kind, seen, np.where((key < 0) & seen.extreme, key / 1000, key))
 
     def _keep(self, kind: str, seen: Seen, key: Array) -> None:
         """Keep the worst points of their kind."""
-        most = min(KEPT, len(key))
-        first = np.sort(np.argpartition(key, most - 1)[:most]) if most else []
-        new = [(float(key[n]), kind, seen.space, seen.points[:, n]) for n in first]
-        rest = [entry for entry in self.worst if entry[1] != kind]
-        same = sorted([e for e in self.worst if e[1] == kind] + new, key=lambda e: e[0])
-        self.worst = rest + same[:KEPT]
+        known = self.worst.setdefault(kind, [])
+        limit = known[-1][0] if len(known) == KEPT else np.inf
+        place = np.flatnonzero(key < limit)
+        first = place[np.argsort(key[place], kind="stable")[:KEPT]]
+        known += [(float(key[n]), seen.space, seen.points[:, n]) for n in first]
+        known.sort(key=itemgetter(0))
+        del known[KEPT:]
 
-    def _lose(self, kind: str, seen: Seen, lost: Any) -> None:
+    def _lose(self, seen: Seen, lost: Any) -> None:
         """Note a point where the number is nan though nothing overflowed."""
         place = np.flatnonzero(lost & ~seen.extreme & ~np.isinf(seen.laws).any(axis=0))
         if len(place) and self.lost is None:
-            self.lost = (0.0, kind, seen.space, seen.points[:, place[0]])
+            self.lost = (seen.space, seen.points[:, place[0]])
 
 
 @final
@@ -144,20 +149,14 @@ class Hunt:
         """Yield points inside the domain, and how they were found."""
         draw, own = self.draw, self.spec.own()
         yield "own", self.spec, own[:, self.spec.at(own).inside]
-        draw.known = draw.inside(draw.known)
-        total = draw.known
-        yield "own", self.space, draw.known
-        if draw.known.shape[1]:
-            kinks = draw.kinks(draw.known[:, :6], ROOTS)
-            yield "kinks", self.space, kinks
-            draw.learn(kinks)
-            corners = draw.kinks(draw.known[:, -12:], CORNERS)
-            yield "corners", self.space, corners
-            draw.learn(corners)
-            total = np.concatenate([total, kinks, corners], axis=1)
-        else:
-            draw.known = self._anything()
-            draw.learn(draw.known[:, :0])
+        total = draw.inside(draw.known)
+        draw.known = total if total.shape[1] else draw.known
+        yield "own", self.space, total
+        for kind, most in (("kinks", ROOTS), ("corners", CORNERS)):
+            found = draw.kinks(draw.known[:, -12:], most)
+            yield kind, self.space, found
+            draw.learn(found)
+            total = np.concatenate([total, found], axis=1)
         count = total.shape[1]
         for _ in range(4 * self.wanted // self.space.block + 4):
             if count >= self.wanted:
@@ -170,9 +169,6 @@ class Hunt:
             yield "walked", self.space, draw.walked(total, self.wanted - count)
         yield from self._descended()
 
-    def _anything(self) -> Array:
-        return np.concatenate([self.space.own()], axis=1)
-
     def _descended(self) -> Iterator[tuple[str, Space, Array]]:
         """Yield steps from the worst points of each row, from where they led, and so on."""
         for n in range(DESCENTS):
@@ -180,7 +176,7 @@ class Hunt:
                 point
                 for track in self.tracks
                 if track.claim.climbs
-                for _, _, space, point in sorted(track.worst, key=lambda e: e[0])[:KEPT]
+                for _, space, point in sorted(chain(*track.worst.values()), key=itemgetter(0))[:KEPT]
                 if space is self.space
             ]
             if not starts:
@@ -191,14 +187,14 @@ class Hunt:
     def _judged(self, track: Track, exact: Exact) -> Attack:
         """Return what became of a row, its suspicious points evaluated exactly."""
         claim, rounding = track.claim, None
-        doubtful = [entry for entry in sorted(track.worst, key=lambda e: e[0]) if entry[0] < 0]
-        for _, kind, space, point in doubtful:
+        doubtful = [(kind, *e) for kind, found in track.worst.items() for e in found if e[0] < 0]
+        for kind, _, space, point in doubtful:
             value = exact.broken(claim, space, point)
             if value:
                 raise self._contradiction(claim, value, space.words(point), kind)
             rounding = rounding or (space, point)
-        if track.lost and rounding is None and exact.has_value(claim, *track.lost[2:]):
-            rounding = track.lost[2:]
+        if track.lost and rounding is None and exact.has_value(claim, *track.lost):
+            rounding = track.lost
         if claim.id == "continuous":
             self._jumps(claim, exact)
         worst = rounding[0].words(rounding[1]) if rounding else None
@@ -258,9 +254,14 @@ class Hunt:
         return np.array(pairs, dtype=np.int64).reshape(-1, 2)
 
     def _hinted(self, hint: Mapping[str, object]) -> Array:
-        """Return the spec's own point with the values of a hint, temperatures put in by entropy."""
+        """Return the spec's own point with the values of a hint; a temperature sets the entropy."""
         point = self.space.own()
         for n, (name, lane) in enumerate(self.space.columns):
             given = hint.get(f"{name}_{lane + 1}", hint.get(name))
-            point[n] = point[n] if given is None else float(str(given))
+            point[n] = point[n] if given is None else float(Fraction(str(given)))
+        for row, (_, port) in enumerate(self.iphs.circuit.of(Body)):
+            if port.temperature in hint and port.state not in hint:
+                column = self.space.states_at + self.space.rows("STATES", port.state).start
+                wanted = float(Fraction(str(hint[port.temperature])))
+                point[column] = warmed(self.space, point, column, row, wanted)
         return point

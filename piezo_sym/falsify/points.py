@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import final
 
 import numpy as np
@@ -81,8 +82,7 @@ class Draw:
         step = self.space.block
         parts = [points[:, n : n + step] for n in range(0, points.shape[1], step)]
         kept = [part[:, self.space.at(part).inside] for part in parts]
-        found = np.concatenate([points[:, :0], *kept], axis=1)
-        return found[:, ((found == 0) | (np.abs(found) >= LEAST)).all(axis=0)]
+        return np.concatenate([points[:, :0], *kept], axis=1)
 
     # Kinks
 
@@ -90,7 +90,7 @@ class Draw:
         """Return points on edges and next to them, found along one column from each base."""
         roots = self._bisected(self._crossed(bases, most))
         self.roots.append(roots)
-        return self.inside(np.concatenate([roots.at(v) for v in self._near(roots)], axis=1))
+        return self.inside(_normal(np.concatenate([roots.at(v) for v in self._near(roots)], axis=1)))
 
     def _near(self, roots: Roots) -> Iterator[Array]:
         for value in (roots.low, roots.high):
@@ -144,9 +144,13 @@ class Draw:
                     self.scales[column].append(value)
         chosen = self.rng.integers(0, max(1, points.shape[1]), min(256, points.shape[1]))
         self.known = np.concatenate([self.known, points[:, chosen]], axis=1)
+
+    @cached_property
+    def table(self) -> Array:
+        """Values to draw from per column, twice in a row; made when scales are learnt."""
         fixed = self._one_sided(self.known[:, -32:])
         once = np.array([self._values(column, fixed[column]) for column in range(len(self.scales))])
-        self.table = np.concatenate([once, once], axis=1)
+        return np.concatenate([once, once], axis=1)
 
     def _one_sided(self, bases: Array) -> list[bool]:
         """Return for which columns no point stays inside with that column's sign turned."""
@@ -170,6 +174,7 @@ class Draw:
         simple = SIMPLE[self.rng.integers(0, len(SIMPLE), TABLE)]
         with np.errstate(over="ignore"):
             values = _bounded(np.where(kind == 14, simple, sign * scale * factor))
+        values[np.abs(values) < LEAST] = 0
         return np.abs(values) if self.positive[column] else values
 
     def drawn(self, count: int) -> Array:
@@ -207,7 +212,7 @@ class Draw:
             drawn = self.table[column, rng.integers(0, TABLE, count * each)]
             old = children[place]
             children[place] = np.where(rng.random(count * each) < 0.1, drawn, old + step * (old + (old == 0) * drawn))
-        return children
+        return _normal(children)
 
     def walked(self, points: Array, wanted: int) -> Array:
         """Return points inside found by steps from points inside."""
@@ -218,6 +223,24 @@ class Draw:
             new = self.inside(self.moved(start, max(1, min(16, wanted // 512)), 2.0 + n % 12))
             points = np.concatenate([points, new], axis=1)
         return points[:, :wanted]
+
+
+def warmed(space: Space, point: Array, column: int, row: int, wanted: float) -> Array:
+    """Return the entropy in `column` at which the temperature in `row` reaches a value."""
+    low, high = _key(np.array([-LARGEST])), _key(np.array([LARGEST]))
+    for _ in range(64):
+        middle = (low >> 1) + (high >> 1) + (low & high & 1)
+        points = point.copy()
+        points[column] = _float(middle)
+        above = space.at(points).temperatures[row] >= wanted
+        low, high = np.where(above, low, middle), np.where(above, middle, high)
+    return _float(high)
+
+
+def _normal(points: Array) -> Array:
+    """Return those of some points with no value so small that arithmetic loses its digits."""
+    size = np.abs(points)
+    return points[:, ((size == 0) | (size >= LEAST)).all(axis=0)]
 
 
 def _bounded(values: Array) -> Array:

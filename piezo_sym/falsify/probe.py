@@ -11,15 +11,15 @@ from __future__ import annotations
 import importlib.abc
 import importlib.util
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from fractions import Fraction
+from dataclasses import dataclass
 from types import ModuleType
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
-from piezo_sym.codegen import lower, numpy_module
+from piezo_sym.codegen import numpy_module
 from piezo_sym.codegen.functions import limits_of
-from piezo_sym.codegen.program import Function, Jacobian, Row, bank_of
+from piezo_sym.codegen.lower import program_of
+from piezo_sym.codegen.program import Function, Row, bank_of
 from piezo_sym.codegen.quantities import Quantities
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name
@@ -53,6 +53,7 @@ from piezo_sym.spec.expressions import (
     rename,
     walk,
 )
+from piezo_sym.spec.tables import lane_parameters
 from piezo_sym.spec.units import parse_unit
 
 PAIRED = frozenset({"min", "max", "deadzone", "saturate"})
@@ -124,9 +125,7 @@ def probe_of(iphs: IPHS) -> Probe:
     laws = tuple(_laws(q))
     banks = {name: quantity.bank for quantity in q.defined if (name := quantity.name)}
     banks |= {port.state: placed.bank for placed, port in q.stores}
-    program = lower(iphs, "")
-    banks |= {field.name: field.bank for field in program.parameters}
-    lanes = {name: bank for name, bank in banks.items() if bank}
+    lanes = lane_parameters(iphs.model) | {name: bank for name, bank in banks.items() if bank}
     trees = [quantity.value for quantity in q.defined] + [limit.margin for limit in limits]
     trees += [tree for _, _, tree in laws]
     found = [edge for tree in trees for edge in _edges(tree)]
@@ -138,14 +137,7 @@ def probe_of(iphs: IPHS) -> Probe:
         _function("sizes", [(e, _size(_own(tree, known)) if what != "effort" else ONE) for e, what, tree in laws], lanes),
         _function("edges", [("", edge.tree) for edge in edges], lanes),
     )
-    program = replace(
-        program,
-        quantities=tuple(q.defined),
-        functions=functions,
-        jacobian=Jacobian("", ()),
-        limits=(),
-        taken=frozenset(q.taken),
-    )
+    program = program_of(iphs, q, functions)
     slots = tuple(tuple(row.slot for row in function.rows) for function in functions)
     named = tuple((element, what) for element, what, _ in laws)
     return Probe(module_from(numpy_module(program)), named, edges, (slots[0], slots[2]))
