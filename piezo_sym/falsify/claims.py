@@ -19,6 +19,9 @@ from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, Resistor, S
 #: Of the sum of absolute terms; a balance that is off by less is rounding.
 TOLERANCE = 1e-9
 
+#: Stands for a zero where a row says > 0: not negative, but to be looked at exactly.
+ZERO = -1e-300
+
 Look = tuple[Array, Array]
 
 
@@ -96,7 +99,7 @@ def _warm(seen: Seen, element: str) -> Look:
     law, slope = (seen.space.law_rows[element, what] for what in ("law", "slope"))
     value = np.concatenate([seen.temperatures[_body(seen.space, element)], seen.laws[slope]])
     scale = np.concatenate([seen.sizes[law], seen.sizes[slope]])
-    return np.where(value == 0, -1e-300, value), scale
+    return np.where(value == 0, ZERO, value), np.where(value == 0, 1, scale)
 
 
 def _body(space: Space, element: str) -> slice:

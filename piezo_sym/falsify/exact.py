@@ -6,10 +6,11 @@ breaks the row, as text, or None.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from fractions import Fraction
 from typing import Any, final
 
+import numpy as np
 from flint import arb, ctx, fmpq
 
 from piezo_sym.checker import InputError, Point, evaluate, read_spec
@@ -24,6 +25,7 @@ BITS = 1024
 #: Two sides of a jump are brought together to these relative distances, and differ as before.
 NEAR, NEARER = Fraction(1, 10**40), Fraction(1, 10**80)
 SAME = Fraction(9, 10)
+WIDER = (Fraction(0), Fraction(1, 10**15), Fraction(1, 10**12))
 
 
 @final
@@ -67,33 +69,19 @@ class Exact:
 
     def jump(self, claim: Claim, space: Space, low: Array, high: Array) -> str | None:
         """Return the jump of a law between two points, or None if it fades as they meet."""
-        sides = [[Fraction(v) for v in point.tolist()] for point in (low, high)]
-        column = next(n for n, (a, b) in enumerate(zip(*sides, strict=True)) if a != b)
-        ends = [side[column] for side in sides]
-        scale = max(map(abs, ends))
+        point = [Fraction(v) for v in low.tolist()]
+        column = int(np.flatnonzero(low != high)[0])
+        near, far = point[column], Fraction(float(high[column]))
 
         def seen(value: Fraction) -> tuple[Any, ...] | None:
-            point = [*sides[0][:column], value, *sides[0][column + 1 :]]
-            at = self._at(space, point)
+            at = self._at(space, [*point[:column], value, *point[column + 1 :]])
             return _watched(claim, at) if at is not None and self._inside(at) else None
 
-        found = [seen(end) for end in ends]
-        gaps = []
-        for limit in (NEAR, NEARER):
-            while abs(ends[1] - ends[0]) > limit * scale:
-                middle = sum(ends, Fraction(0)) / 2
-                value = seen(middle)
-                if value is None or None in found:
-                    return None
-                left = _gap(found[0], value) >= _gap(value, found[1])
-                ends, found = (
-                    ([ends[0], middle], [found[0], value])
-                    if left
-                    else ([middle, ends[1]], [value, found[1]])
-                )
-            gaps.append(_gap(*found))
-        if gaps[1] > 0 and gaps[1] > SAME * gaps[0]:
-            return f"its values differ by {_text(gaps[1])} at distances {float(NEARER):g} apart"
+        for wider in WIDER:  # a kink in floating point may lie beside the kink
+            off = wider * max(abs(near), abs(far)) * (1 if far > near else -1)
+            gap = _narrowed(seen, near - off, far + off)
+            if gap:
+                return f"its values differ by {_text(gap)} at a distance of {float(NEARER):g}"
         return None
 
     def _inside(self, at: Point) -> bool:
@@ -160,6 +148,26 @@ class Exact:
                 yield "the heat brought", power, False
 
 
+def _narrowed(
+    seen: Callable[[Fraction], tuple[Any, ...] | None], low: Fraction, high: Fraction
+) -> Fraction | None:
+    """Return by how much values differ on two sides that come together, if it does not fade."""
+    scale, gaps = max(abs(low), abs(high)), []
+    one, other = seen(low), seen(high)
+    for limit in (NEAR, NEARER):
+        while abs(high - low) > limit * scale:
+            middle = (low + high) / 2
+            value = seen(middle)
+            if one is None or other is None or value is None or not _gap(one, other):
+                return None
+            if _gap(one, value) >= _gap(value, other):
+                high, other = middle, value
+            else:
+                low, one = middle, value
+        gaps.append(_gap(one, other))
+    return gaps[1] if gaps[1] > SAME * gaps[0] else None
+
+
 def _known(value: Any) -> Any:
     """Return a value to compute with; what cannot be told is an enclosure of everything."""
     return arb("nan") if value is None else exact(value)
@@ -175,10 +183,10 @@ def _watched(claim: Claim, at: Point) -> tuple[Any, ...]:
     return tuple(value for rates in at.rates.values() for value in rates)
 
 
-def _gap(one: Any, other: Any) -> Any:
+def _gap(one: tuple[Any, ...] | None, other: tuple[Any, ...] | None) -> Fraction:
     """Return the largest difference of two vectors, as a lower bound."""
     with ctx.workprec(BITS):
-        gaps = [abs(_known(a) - _known(b)) for a, b in zip(one, other, strict=True)]
+        gaps = [abs(_known(a) - _known(b)) for a, b in zip(one or (), other or (), strict=True)]
         return max((Fraction(0), *(_least(gap) for gap in gaps)))
 
 

@@ -16,7 +16,7 @@ from typing import Any, final
 import numpy as np
 
 from piezo_sym.errors import ContradictionError
-from piezo_sym.falsify.claims import Claim, claim_of, laws_of
+from piezo_sym.falsify.claims import ZERO, Claim, claim_of, laws_of
 from piezo_sym.falsify.exact import Exact, exact_of
 from piezo_sym.falsify.points import CORNERS, FEW, ROOTS, Draw, warmed
 from piezo_sym.falsify.probe import probe_of
@@ -153,7 +153,7 @@ class Hunt:
         draw.known = total if total.shape[1] else draw.known
         yield "own", self.space, total
         for kind, most in (("kinks", ROOTS), ("corners", CORNERS)):
-            found = draw.kinks(draw.known[:, -12:], most)
+            found = draw.kinks(draw.known[:, -20:], most)
             yield kind, self.space, found
             draw.learn(found)
             total = np.concatenate([total, found], axis=1)
@@ -188,11 +188,11 @@ class Hunt:
         """Return what became of a row, its suspicious points evaluated exactly."""
         claim, rounding = track.claim, None
         doubtful = [(kind, *e) for kind, found in track.worst.items() for e in found if e[0] < 0]
-        for kind, _, space, point in doubtful:
+        for kind, key, space, point in doubtful:
             value = exact.broken(claim, space, point)
             if value:
                 raise self._contradiction(claim, value, space.words(point), kind)
-            rounding = rounding or (space, point)
+            rounding = rounding or ((space, point) if key < ZERO else None)
         if track.lost and rounding is None and exact.has_value(claim, *track.lost):
             rounding = track.lost
         if claim.id == "continuous":
@@ -209,7 +209,7 @@ class Hunt:
             chosen = np.repeat(edges, sizes)
             low, high = (space.at(roots.at(value)) for value in (roots.low, roots.high))
             near = chosen[roots.edge] & (roots.column >= space.inputs_at)
-            near &= low.inside & high.inside & ~low.extreme
+            near &= low.inside & high.inside & ~space.at(roots.base).extreme
             for law in laws_of(space, claim.element):
                 with np.errstate(all="ignore"):
                     jump = np.abs(high.laws[law] - low.laws[law])

@@ -23,6 +23,8 @@ Index = npt.NDArray[np.int64]
 #: Fewer points inside than these are too few to say anything; then one walks.
 FEW = 1000
 ROUNDS, WALKS = 40, 40
+#: Zero is bracketed by this, since a product of less may be zero.
+TINY = 1e-280
 TABLE = 8192
 ROOTS, CORNERS = 400, 300
 DECADES = (-290, -100, -30, -15, -9, -6, -4, -3, -2, -1, -0.3, 0, 0.3, 1, 2, 3, 4, 6, 9, 15, 30, 100)
@@ -132,7 +134,9 @@ class Draw:
             seen = self.space.at(roots.at(_float(middle))).edges[roots.edge, here]
             same = np.sign(seen) == sign
             low, high = np.where(same, middle, low), np.where(same, high, middle)
-        return Roots(roots.edge, roots.column, roots.base, _float(low), _float(high))
+        ends = np.array([_float(low), _float(high)])
+        ends = np.where(np.abs(ends).max(axis=0) < LEAST, [[-TINY], [TINY]], ends)
+        return Roots(roots.edge, roots.column, roots.base, *ends)
 
     # Drawing
 
@@ -140,10 +144,13 @@ class Draw:
         """Take values that lie on edges as scales, and some points as ones to start from."""
         for roots in self.roots:
             for column, value in zip(roots.column.tolist(), np.abs(roots.high).tolist(), strict=True):
-                if 0 < value < LARGEST and len(self.scales[column]) < 64:
+                if 1e-100 < value < 1e100 and len(self.scales[column]) < 64:
                     self.scales[column].append(value)
         chosen = self.rng.integers(0, max(1, points.shape[1]), min(256, points.shape[1]))
         self.known = np.concatenate([self.known, points[:, chosen]], axis=1)
+        anywhere = self.inside(self.drawn(256))
+        plain = anywhere[:, ~self.space.at(anywhere).extreme]
+        self.known = np.concatenate([self.known, plain[:, :10]], axis=1)
 
     @cached_property
     def table(self) -> Array:

@@ -19,12 +19,14 @@ count = 1
 inductance = "L"
 voltage = "R*i"
 heats = "body"
+state = "phi_h"
 [elements.h_j]
 kind = "hysteron"
 between = ["in", "gnd"]
 inductance = "L"
 voltage = "R*i*(1 - (i/i_1)**2)"
 heats = "body"
+state = "psi"
 [elements.source]
 kind = "voltage_source"
 between = ["in", "gnd"]
@@ -125,14 +127,14 @@ def test_a_law_that_is_nan_where_it_has_a_value_is_rounding(tmp_path):
         ("a*v*a_1/(b - a_1)", ()),
         ("a*v*v_1/v", ()),
         ("a*sqrt(v*v_1)", ()),
-        ("F_1*log(v/v_1)", ("p > 0",)),
+        ("F_1*log(v/v_1 - 1)", ("p > M*v_1/2",)),
         ("a*v*(v_1/(v - v_1) if v > v_1 else v_1/(v - v_2))", ("v_2 < v_1",)),
         ("a*v/((2*b - 3*a_1)/a_1)", ()),
     ],
 )
 def test_a_law_without_a_value_somewhere_is_caught(tmp_path, law, assume):
-    starts = ["p = 1.0"] if assume == ("p > 0",) else []
-    iphs = built(tmp_path, damper(law), *of_names(law, *assume), starts=starts, v_2=0.5, p=1.0)
+    starts = ["p = 5.0"]
+    iphs = built(tmp_path, damper(law), *of_names(law, *assume), starts=starts, v_2=0.5)
     with pytest.raises(ContradictionError, match="a law has no value"):
         attacked(iphs, ("welldef", "damper"))
 
@@ -174,18 +176,11 @@ def test_a_steep_law_and_a_choice_of_parameters_are_no_jumps(tmp_path, law):
     assert attack.points >= 100_000
 
 
-def test_a_stiffness_that_jumps_is_caught(tmp_path):
-    spring = SPRING.format("k if abs(q) < v_1*M/a_1 else 2*k")
-    iphs = built(tmp_path, damper("a_1*v") + spring, "a_1 > 0", "v_1 > 0")
-    with pytest.raises(ContradictionError, match="its values differ by"):
-        attacked(iphs, ("continuous", "spring"))
-
-
 @pytest.mark.parametrize(
     ("heat", "assume"),
     [
         ("T_0*(1 - S/c_0)", ()),
-        ("T_0*(2 + sin(S/c_0))", ()),
+        ("T_0*(2 + S/c_0 - (S/c_0)**2)", ("S >= 0", "S < c_0")),
         ("T_0*(1 + (S/c_0)**3)", ("T > T_0/2",)),
         ("T_0*(1 + S/c_0)", ()),
     ],
@@ -205,7 +200,6 @@ def test_a_temperature_that_is_known_to_be_positive_is_not(tmp_path):
     "row", [("passive", "ambient"), ("exergy", ""), ("environment", ""), ("invariant", "body")]
 )
 def test_a_conductance_that_may_be_negative_breaks_all_that_rests_on_it(tmp_path, row):
-    elements = damper("a*v") + AMBIENT.format("lam - 1e-6*lam*T_0/c_0*0 if lam > 0 else lam")
     elements = damper("a*v") + AMBIENT.format("lam") + INPUT.format(301.0)
     iphs = built(tmp_path, elements, "a >= 0", "T > T_0/2", "T_e > 0")
     with pytest.raises(ContradictionError):
