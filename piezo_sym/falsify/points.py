@@ -26,8 +26,32 @@ ROUNDS, WALKS = 40, 40
 #: Zero is bracketed by this, since a product of less may be zero.
 TINY = 1e-280
 TABLE = 8192
-ROOTS, CORNERS = 400, 300
-DECADES = (-290, -100, -30, -15, -9, -6, -4, -3, -2, -1, -0.3, 0, 0.3, 1, 2, 3, 4, 6, 9, 15, 30, 100)
+#: Edges are solved for from points known, then from points on edges.
+STAGES = (("kinks", 400), ("corners", 300))
+DECADES = (
+    -290,
+    -100,
+    -30,
+    -15,
+    -9,
+    -6,
+    -4,
+    -3,
+    -2,
+    -1,
+    -0.3,
+    0,
+    0.3,
+    1,
+    2,
+    3,
+    4,
+    6,
+    9,
+    15,
+    30,
+    100,
+)
 LADDER = np.array([-(10.0**e) for e in DECADES[::-1]] + [0.0] + [10.0**e for e in DECADES])
 OFF = np.array([0, *(s * 10.0**-e for e in (12, 9, 6, 5, 4, 3, 2, 1) for s in (1, -1))])
 POWERS = np.array([float(f"1e{n}") for n in range(-300, 302)])
@@ -92,7 +116,9 @@ class Draw:
         """Return points on edges and next to them, found along one column from each base."""
         roots = self._bisected(self._crossed(bases, most))
         self.roots.append(roots)
-        return self.inside(_normal(np.concatenate([roots.at(v) for v in self._near(roots)], axis=1)))
+        return self.inside(
+            _normal(np.concatenate([roots.at(v) for v in self._near(roots)], axis=1))
+        )
 
     def _near(self, roots: Roots) -> Iterator[Array]:
         for value in (roots.low, roots.high):
@@ -105,7 +131,9 @@ class Draw:
     def _crossed(self, bases: Array, most: int) -> Roots:
         """Return brackets of sign changes of edges, along a ladder of values of each column."""
         columns, count = bases.shape
-        steps = [np.unique(_bounded(np.multiply.outer(row[-3:], LADDER).ravel())) for row in self.scales]
+        steps = [
+            np.unique(_bounded(np.multiply.outer(row[-3:], LADDER).ravel())) for row in self.scales
+        ]
         found: list[tuple[Index, Index, Index, Array, Array]] = []
         for column, ladder in enumerate(steps):
             points = np.repeat(bases, len(ladder), axis=1)
@@ -143,7 +171,9 @@ class Draw:
     def learn(self, points: Array) -> None:
         """Take values that lie on edges as scales, and some points as ones to start from."""
         for roots in self.roots:
-            for column, value in zip(roots.column.tolist(), np.abs(roots.high).tolist(), strict=True):
+            for column, value in zip(
+                roots.column.tolist(), np.abs(roots.high).tolist(), strict=True
+            ):
                 if 1e-100 < value < 1e100 and len(self.scales[column]) < 64:
                     self.scales[column].append(value)
         chosen = self.rng.integers(0, max(1, points.shape[1]), min(256, points.shape[1]))
@@ -172,7 +202,9 @@ class Draw:
         """Return values to draw from: scales times factors near 1, moderate, wide, and simple ones."""
         u, v = self.rng.random((2, TABLE))
         kind = np.arange(TABLE) % 16
-        exponent = np.select([kind < 6, kind < 9, kind < 15], [4 * u - 2, 18 * u - 9, 0], 600 * u - 300)
+        exponent = np.select(
+            [kind < 6, kind < 9, kind < 15], [4 * u - 2, 18 * u - 9, 0], 600 * u - 300
+        )
         near = 1 + np.where(v < 0.5, 1, -1) * _power(-16 * u)
         factor = np.where((kind >= 9) & (kind < 14), near, _power(exponent))
         scale = np.array(self.scales[column])[self.rng.integers(0, len(self.scales[column]), TABLE)]
@@ -189,7 +221,9 @@ class Draw:
         rng, columns = self.rng, len(self.scales)
         first = np.where(rng.random(count) < 0.3, 0, rng.integers(0, self.known.shape[1], count))
         share = np.array([1.5 / columns, 4 / columns, 0.5, 1.0])[rng.integers(0, 4, count)]
-        anew = rng.integers(0, 256, (columns, count), dtype=np.uint8) < (256 * share).astype(np.int16)
+        anew = rng.integers(0, 256, (columns, count), dtype=np.uint8) < (256 * share).astype(
+            np.int16
+        )
         points = self.known[:, first]
         for column, start in enumerate(rng.integers(0, TABLE, columns).tolist()):
             drawn = self.table[column, start : start + count]
@@ -218,7 +252,9 @@ class Draw:
             step = size * (2 * rng.random(count * each) - 1)
             drawn = self.table[column, rng.integers(0, TABLE, count * each)]
             old = children[place]
-            children[place] = np.where(rng.random(count * each) < 0.1, drawn, old + step * (old + (old == 0) * drawn))
+            children[place] = np.where(
+                rng.random(count * each) < 0.1, drawn, old + step * (old + (old == 0) * drawn)
+            )
         return _normal(children)
 
     def walked(self, points: Array, wanted: int) -> Array:
