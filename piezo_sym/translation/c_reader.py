@@ -155,6 +155,7 @@ class _Function:
         self.least: set[int] = set()
         self.zeros = self.name != "jacobian"
         self.slots = known.slots.get(self.name, ())
+        self.field.derived = self.name == "jacobian"
         self.read = Expressions(self.field, known.numbers, self._leaf, CALLS, True)
 
     def _argument(self, word: str, model: str, n: int) -> str:

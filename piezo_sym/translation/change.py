@@ -51,11 +51,11 @@ def _put(field: Field, g: int, new: Mapping[int, Value]) -> Value:
 
 
 def moved(value: Value, bank: str, lane: int) -> Value:
-    """Return a value of lane 0 of a bank in another lane."""
+    """Return a value of a row's lane of a bank (0) in a column's (1), or the other way round."""
     field, new = value.field, {}
     for g in value.names:
         mark = field.gens[g].mark
-        if isinstance(mark, tuple) and mark[1:] == (bank, 0):
+        if isinstance(mark, tuple) and mark[1:] == (bank, 1 - lane):
             new[g] = field.name(mark[0], bank, lane, field.sign_of(g))
     return put(value, new)
 

@@ -19,7 +19,9 @@ from functools import cached_property, partial
 from math import floor
 from typing import final
 
-from sympy import factorint
+from sympy import QQ, factorint
+from sympy.polys.orderings import lex
+from sympy.polys.rings import PolyElement, PolyRing
 
 Exponent = int | Fraction
 Mono = tuple[tuple[int, Exponent], ...]
@@ -28,6 +30,7 @@ Lane = tuple[str, int]  # a bank, and which of its lanes: 0 a row's, 1 a column'
 MOST_WORK = 3_000_000
 MOST_BITS = 20_000
 MOST_FACTOR = 10**12
+MOST_FACTORED = 40
 SIDES = {"<": (-1,), "<=": (-1, 0), ">": (1,), ">=": (1, 0), "==": (0,), "!=": (1, -1)}
 
 
@@ -112,11 +115,15 @@ class Value:
 @final
 @dataclass(frozen=True)
 class Need:
-    """What has to hold where `path` is 1: `value` is not zero, not negative or positive."""
+    """What has to hold where `path` is 1: `value` is not zero, not negative or positive.
+
+    `derived` says that derivatives need it, laws do not.
+    """
 
     kind: str
     value: Value
     path: Value
+    derived: bool = False
 
 
 @final
@@ -127,6 +134,8 @@ class Field:
     ----------
     signs : differences that the domain says are positive (2) or not negative (1).
     needs : what divisions, roots and logarithms needed, while `path` is not None.
+    cases : the signs that differences may have together, once they are known.
+    derived : whether what is computed at the moment is a derivative.
     path : a product of signs, 1 where what is computed at the moment is chosen.
     """
 
@@ -136,16 +145,20 @@ class Field:
         self._signed: dict[int, int] = {}
         self._joined: dict[tuple[Mono, Mono], tuple[Mono, Value | None] | None] = {}
         self.signs: dict[Value, int] = {}
+        self._known: dict[Value, int] = {}
+        self._factored: dict[Value, list[tuple[Value, int]]] = {}
+        self.cases: dict[tuple[Value, ...], list[dict[Value, int]]] = {}
         self.needs: dict[Need, None] = {}
         self.zero, self.one = Value(self, {}), Value(self, {(): 1})
         self.path: Value | None = self.one
+        self.derived = False
         self.work = 0
 
     # Generators
 
     def number(self, value: Exponent) -> Value:
         """Return a rational number."""
-        return Value(self, {(): value})
+        return Value(self, {(): value.numerator if value.denominator == 1 else value})
 
     def name(self, name: str, bank: str | None = None, lane: int = 0, sign: int = 0) -> Value:
         """Return a name, of one lane of a bank if it has one; `sign` 2: positive, 1: >= 0."""
@@ -230,7 +243,8 @@ class Field:
             if exponent > 64 and len(base.terms) != 1:
                 raise NotShownError("a power is too large")
             return self._whole(base, exponent.numerator)
-        return self.lifted(lambda v: self._power(v, exponent), base)
+        q = exponent.numerator if exponent.denominator == 1 else exponent
+        return self.lifted(lambda v: self._power(v, q), base)
 
     def _whole(self, base: Value, n: int) -> Value:
         if n > 64 and base.constant is None:
@@ -244,7 +258,7 @@ class Field:
             made = made * made * base if bit == "1" else made * made
         return made
 
-    def _power(self, base: Value, q: Fraction) -> Value:
+    def _power(self, base: Value, q: Exponent) -> Value:
         """Return a power of a value without signs, for an exponent that is not whole or negative."""
         if not base.terms:
             raise NotShownError("a quotient or power of zero")
@@ -255,23 +269,47 @@ class Field:
             if q < 0:
                 arg = self.gens[g].arg if self.gens[g].kind == "power" else None
                 self._needs("nonzero", arg or Value(self, {((g, 1),): 1}))
-        if rest != self.one:
-            made = made * self.generator_power(rest, q)
-            if q.denominator != 1:
-                self._needs("nonnegative", rest)
+        if q.denominator != 1 and rest != self.one:
+            self._needs("nonnegative", rest)
+        for factor, times in self._factors(rest, whole=q.denominator == 1):
+            made = made * self.generator_power(factor, times * q)
             if q < 0:
-                self._needs("nonzero", rest)
+                self._needs("nonzero", factor)
         return made
 
-    def generator_power(self, arg: Value, q: Fraction) -> Value:
+    def _factors(self, rest: Value, *, whole: bool) -> list[tuple[Value, int]]:
+        """Return the irreducible factors of a sum; for roots, the sum itself."""
+        if rest not in self._factored or not whole:
+            found = [(rest, 1)] if rest != self.one else []
+            numbers = sorted(rest.generators())
+            exponents = {Fraction(e).denominator for mono in rest.terms for _, e in mono}
+            if whole and 1 < len(rest.terms) <= MOST_FACTORED and exponents == {1}:
+                terms = {tuple(dict(m).get(g, 0) for g in numbers): c for m, c in rest.terms.items()}
+                table = {m: QQ(c.numerator, c.denominator) for m, c in terms.items()}
+                polynomial = PolyRing([f"g{g}" for g in numbers], QQ, lex).from_dict(table)
+                found = [(self._monic(f, numbers), n) for f, n in polynomial.factor_list()[1]]
+            if not whole:
+                return found
+            self._factored[rest] = found
+        return self._factored[rest]
+
+    def _monic(self, factor: PolyElement, numbers: list[int]) -> Value:
+        terms: dict[Mono, Exponent] = {}
+        for powers, c in factor.terms():
+            mono = tuple((g, e) for g, e in zip(numbers, powers, strict=True) if e)
+            terms[mono] = Fraction(int(c.numerator), int(c.denominator))
+        made = Value(self, terms)
+        return made * self.number(1 / Fraction(terms[max(terms)]))
+
+    def generator_power(self, arg: Value, q: Exponent) -> Value:
         """Return a power of a sum as a generator."""
         (mono,) = self.generator("power", arg).terms
         return Value(self, {((mono[0][0], q),): 1}) * self.one
 
-    def _root(self, size: Fraction, q: Fraction) -> Value:
+    def _root(self, size: Fraction, q: Exponent) -> Value:
         """Return a power of a number, positive if the exponent is not whole."""
         if q.denominator == 1:
-            return self.number(size**q.numerator)
+            return self.number(size**q)
         if max(size.numerator, size.denominator) > MOST_FACTOR:
             raise NotShownError("a root of a long number")
         made = self.one
@@ -293,10 +331,11 @@ class Field:
             if e and (not partly or sign == 2 or (sign == 1 and e > 0)):
                 least[g] = e
         common = tuple(sorted(least.items()))
-        rest = value * Value(self, {tuple((g, -e) for g, e in common): 1})
-        lead = rest.terms[max(rest.terms)]
-        size = abs(Fraction(lead)) if partly else Fraction(lead)
-        return size, common, rest * self.number(1 / size)
+        below = Value(self, {tuple((g, -e) for g, e in common): 1})
+        rest = value * below if common else value
+        lead = Fraction(rest.terms[max(rest.terms)])
+        size = abs(lead) if partly else lead
+        return size, common, rest if size == 1 else rest * self.number(1 / size)
 
     # Signs
 
@@ -314,6 +353,11 @@ class Field:
 
     def sign(self, value: Value) -> int:
         """Return 2 if a value is positive in the domain, 1 if it is >= 0, 0 if that is not known."""
+        if value not in self._known:
+            self._known[value] = self._sign(value)
+        return self._known[value]
+
+    def _sign(self, value: Value) -> int:
         if value in self.signs:
             return self.signs[value]
         found = [self._sign_of_term(mono, c) for mono, c in value.terms.items()]
@@ -333,6 +377,7 @@ class Field:
 
     def assume(self, value: Value, sign: int) -> None:
         """Take it that a value is positive (2) or not negative (1)."""
+        self._known.clear()
         if value.names:
             rest = self.primitive(value, partly=True)[2]
             self.signs[rest] = max(sign, self.signs.get(rest, 0))
@@ -394,7 +439,7 @@ class Field:
     def _needs(self, kind: str, value: Value) -> None:
         enough = 2 if kind != "nonnegative" else 1
         if self.path is not None and self.sign(value) < enough and self.sign(-value) < 2:
-            self.needs[Need(kind, value, self.path)] = None
+            self.needs[Need(kind, value, self.path, self.derived)] = None
 
     # Functions
 

@@ -84,6 +84,7 @@ class _Function:
         self.places = [known.position(self.slots, n) for n in range(len(self.slots) + 1)]
         self.filled = node.name == "_rates"
         self.found: dict[Key, Value] = {}
+        self.field.derived = self.name == "jacobian"
         self.read = Expressions(self.field, known.numbers, self._leaf, CALLS, False)
 
     def rows(self) -> dict[Key, Value]:
@@ -98,6 +99,10 @@ class _Function:
             self._returned(last.value)
         elif last:
             refuse(last, "a last statement")
+        if self.name == "initial_state":  # made of zeros
+            written = {key[1] for key in self.found}
+            left = (n for n in range(len(self.slots)) if n not in written)
+            self.found |= {(self.name, n): self.field.zero for n in left}
         return self.found
 
     def _returned(self, value: ast.expr) -> None:

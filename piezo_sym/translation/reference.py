@@ -223,7 +223,7 @@ class _Reader:
                 path = path * Value(self.field, {((g, 1),): 1}) if gens[g].kind == "sign" else path
             for g in below:
                 arg = gens[g].arg if gens[g].kind == "power" else None
-                yield Need("nonzero", arg or Value(self.field, {((g, 1),): 1}), path)
+                yield Need("nonzero", arg or Value(self.field, {((g, 1),): 1}), path, True)
 
     # Expressions
 

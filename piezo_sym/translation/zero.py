@@ -96,7 +96,9 @@ def _by_cases(value: Value, groups: Sequence[tuple[Value, ...]], *, inside: bool
     for group in groups:
         here = _chosen_by(value, group)
         first: Value | None = None
-        for sides in cases(group):
+        if group not in value.field.cases:
+            value.field.cases[group] = list(cases(group))
+        for sides in value.field.cases[group]:
             if inside and 0 in sides.values():
                 continue
             part = value.field.at(here, sides)
@@ -147,14 +149,25 @@ def _possible(d: Value, side: int) -> bool:
 
 def _contradict(first: Value, s: int, second: Value, t: int) -> bool:
     """Return whether two differences cannot have these signs: a sum of theirs has another one."""
-    for turn_first, turn_second in product((1, -1), repeat=2):
-        signs = turn_first * s, turn_second * t
+    field, number = first.field, first.field.number
+    for scale, turns in product(_scales(first, second), product((1, -1), repeat=2)):
+        signs = turns[0] * s, turns[1] * t
         if max(signs) <= 0:
-            number = first.field.number
-            total = first * number(turn_first) + second * number(turn_second)
-            if total.field.sign(total) > (0 if min(signs) < 0 else 1):
+            total = first * scale * number(turns[0]) + second * number(turns[1])
+            if field.sign(total) > (0 if min(signs) < 0 else 1):
                 return True
     return False
+
+
+def _scales(first: Value, second: Value) -> Iterator[Value]:
+    """Yield positive factors that make a term of one value like a term of the other."""
+    field, found = first.field, set[Value]()
+    for m, n in product(first.terms, second.terms):
+        below = Value(field, {tuple((g, -e) for g, e in m): 1})
+        scale = below * Value(field, {n: 1})
+        if scale not in found and field.sign(scale) == 2:
+            found.add(scale)
+            yield scale
 
 
 def _at_edges(value: Value, sides: Sides) -> Value:
