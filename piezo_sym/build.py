@@ -26,10 +26,11 @@ from piezo_sym.codegen import (
 from piezo_sym.derivation import derive
 from piezo_sym.errors import DriftError
 from piezo_sym.files import path_of, path_text, read_text, write_together
-from piezo_sym.proofs import Report, Verdict, proofs_json, smt2, verify
+from piezo_sym.proofs import Report, Verdict, proofs_json, smt2
 from piezo_sym.spec.load import load
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.source import shipped
+from piezo_sym.verification import verify
 from piezo_sym.version import VERSION
 
 #: What a generated file says of itself; only such files are ever called left over.

@@ -12,6 +12,8 @@ from fractions import Fraction
 
 import sympy as sp
 
+from piezo_sym.algebra.sums import LaneSymbol
+from piezo_sym.errors import PiezoError
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.exactly import holds
 from piezo_sym.proofs.ground import ground_of
@@ -29,11 +31,14 @@ Found = tuple[dict[str, str], sp.Rational]
 def negative_total(iphs: IPHS, rows: Iterable[Row], solver: Asks) -> Found | None:
     """Return numbers at which sigma < 0, found from the laws that are refuted."""
     sizes = dict.fromkeys(banks(iphs.model), 1)
-    single = iphs.expand(sizes) if sizes else iphs
+    try:
+        single = iphs.expand(sizes) if sizes else iphs
+    except PiezoError:  # a lane's name is taken; a law that is refuted says enough
+        return None
     for row in rows:
         if row.id == "passive" and row.verdict is Verdict.REFUTED and row.witness:
             lane = "_1" if row.element in sizes else ""
-            given = {_in_lane(n, lane, single): Fraction(v) for n, v in row.witness.items()}
+            given = {_in_lane(n, iphs): Fraction(v) for n, v in row.witness.items()}
             found = _driven(single, f"{row.element}{lane}", given, solver)
             if found:
                 counts = {f"{bank}_count": "1" for bank in sizes}
@@ -41,9 +46,9 @@ def negative_total(iphs: IPHS, rows: Iterable[Row], solver: Asks) -> Found | Non
     return None
 
 
-def _in_lane(name: str, lane: str, iphs: IPHS) -> str:
+def _in_lane(name: str, iphs: IPHS) -> str:
     """Return what a name of a bank's law is called in its first lane."""
-    return name + lane if name + lane in iphs.symbols.symbols else name
+    return f"{name}_1" if isinstance(iphs.symbols.symbols.get(name), LaneSymbol) else name
 
 
 def _driven(iphs: IPHS, element: str, given: Values, solver: Asks) -> Found | None:

@@ -1,0 +1,2 @@
+"""x"""
+def check_certificate(*a): return "no"
