@@ -1,4 +1,4 @@
-"""Laws as text to trees, read by a small parser of the checker's own.
+"""Laws as text to trees, by a small parser of the checker's own.
 
 Input: text of the law grammar (numbers, names, + - * / **, ``a if x < y else b``, functions; in a
 published system ``sum(bank, law)`` too).  Output: `Node` trees with exact rationals.  A tree is
@@ -12,14 +12,17 @@ from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-MAX_LENGTH, MAX_DEPTH, MAX_DIGITS, MAX_EXPONENT, MAX_POWER = 1000, 60, 60, 400, 16
-FUNCTIONS = {name: 1 for name in ("exp", "log", "sqrt", "sin", "cos", "tanh", "abs", "sign")}
-FUNCTIONS |= {name: 2 for name in ("min", "max", "deadzone", "saturate")}
-COMPARISONS = ("<", "<=", ">", ">=")
+MAX_LENGTH, MAX_DEPTH, MAX_DIGITS, MAX_EXPONENT, MAX_POWER = 1000, 100, 60, 400, 16
+FUNCTIONS = dict.fromkeys(("exp", "log", "sqrt", "sin", "cos", "tanh", "abs", "sign"), 1)
+FUNCTIONS |= dict.fromkeys(("min", "max", "deadzone", "saturate"), 2)
+KINKED = ("abs", "sign", "min", "max", "deadzone", "saturate")
+BINDS = {"if": 1, "<": 2, "<=": 2, ">": 2, ">=": 2, "+": 3, "-": 3, "*": 4, "/": 4, "**": 6}
+PREFIX = 5
 TOKEN = re.compile(
-    r" *(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?![A-Za-z0-9_.])"
-    r"|(?P<name>[A-Za-z_][A-Za-z0-9_]*)|(?P<sign>\*\*|<=|>=|[-+*/(),<>]))"
+    r" *((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![A-Za-z0-9_.])"
+    r"|[A-Za-z_][A-Za-z0-9_]*|\*\*|<=|>=|[-+*/(),<>]) *"
 )
+OPPOSITE = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
 
 
 class InputError(Exception):
@@ -53,19 +56,22 @@ def compare(left: Node, operator: str, right: Node | int) -> Node:
     return Node("cmp", (left, right if isinstance(right, Node) else num(right)), operator)
 
 
+def minus(left: Node, right: Node) -> Node:
+    """Return a difference."""
+    return Node("+", (left, Node("neg", (right,))))
+
+
 def negated(condition: Node) -> Node:
     """Return the opposite of a comparison."""
-    opposite = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
-    return Node("cmp", condition.args, opposite[condition.value])
+    return Node("cmp", condition.args, OPPOSITE[condition.value])
 
 
 def walk(node: Node) -> Iterator[Node]:
     """Yield a node and all that is in it."""
     stack = [node]
     while stack:
-        top = stack.pop()
+        stack.extend(reversed((top := stack.pop()).args))
         yield top
-        stack.extend(reversed(top.args))
 
 
 def symbols(node: Node) -> dict[Any, None]:
@@ -85,14 +91,24 @@ def put(node: Node, values: Mapping[Any, Node]) -> Node:
     return replaced(node, lambda name: values.get(name, sym(name)))
 
 
-def number(text: str) -> Fraction:
-    """Return the exact value of a decimal number.
+def unkinked(node: Node) -> Node:
+    """Return a function with kinks written as a choice, by its definition."""
+    x, y, zero = node.args[0], node.args[-1], num(0)
+    if node.op == "abs":
+        return Node("if", (compare(x, ">=", 0), x, Node("neg", (x,))))
+    if node.op == "sign":
+        below = Node("if", (compare(x, "<", 0), num(-1), zero))
+        return Node("if", (compare(x, ">", 0), num(1), below))
+    if node.op in ("min", "max"):
+        return Node("if", (compare(x, "<=" if node.op == "min" else ">=", y), x, y))
+    if node.op == "saturate":
+        return Node("min", (Node("max", (x, Node("neg", (y,)))), y))
+    above, below = Node("max", (minus(x, y), zero)), Node("min", (Node("+", (x, y)), zero))
+    return Node("+", (above, below))
 
-    Raises
-    ------
-    InputError
-        If it is none, or has too many digits.
-    """
+
+def number(text: str) -> Fraction:
+    """Return the exact value of a decimal number; raises `InputError` if it is none."""
     mantissa, _, exponent = text.strip().lower().replace("_", "").partition("e")
     try:
         if len(mantissa) > MAX_DIGITS or abs(int(exponent[:9] or 0)) > MAX_EXPONENT:
@@ -103,7 +119,7 @@ def number(text: str) -> Fraction:
 
 
 def parse(text: Any, sums: bool = False, length: int = MAX_LENGTH) -> Node:
-    """Return the tree of a law.
+    """Return the tree of a law, or of a comparison.
 
     Parameters
     ----------
@@ -116,153 +132,117 @@ def parse(text: Any, sums: bool = False, length: int = MAX_LENGTH) -> Node:
     InputError
         If the text is not of the grammar.
     """
-    tree = _Parser(text, sums, length).whole()
+    if not isinstance(text, str) or len(text) > length or not text.isascii():
+        raise InputError(f"{str(text)[:60]!r} is no law of plain text, or too long")
+    return _Parser(text, sums).whole()
+
+
+def parse_law(text: Any, sums: bool = False, length: int = MAX_LENGTH) -> Node:
+    """Return the tree of a law that is no comparison."""
+    tree = parse(text, sums, length)
     if tree.op == "cmp":
         raise InputError(f"{text[:60]!r} is a comparison, not a law")
-    return tree
-
-
-def parse_condition(text: Any) -> Node:
-    """Return the tree of one comparison; raises `InputError` if it is none."""
-    tree = _Parser(text, False, MAX_LENGTH).whole()
-    if tree.op != "cmp":
-        raise InputError(f"{str(text)[:60]!r} is no comparison")
     return tree
 
 
 class _Parser:
     """Precedence climbing, as Python reads the same text."""
 
-    def __init__(self, text: Any, sums: bool, length: int) -> None:
-        if not isinstance(text, str) or len(text) > length or not text.isascii():
-            raise InputError(f"{str(text)[:60]!r} is no law of plain text, or too long")
-        self.text, self.sums, self.depth, self.tokens = text, sums, 0, list[tuple[str, str]]()
-        end, place = len(text.rstrip(" ")), 0
-        while place < end:
-            found = TOKEN.match(text, place)
-            if found is None:
-                raise self.fault()
-            self.tokens.append((found.lastgroup or "", found.group(found.lastgroup or 0)))
+    def __init__(self, text: str, sums: bool) -> None:
+        self.text, self.sums, self.depth, place = text, sums, 0, 0
+        self.tokens: list[str] = []
+        while found := TOKEN.match(text, place):
+            self.tokens.append(found[1])
             place = found.end()
-        self.tokens.append(("end", ""))
-        self.at = 0
-
-    def fault(self) -> InputError:
-        return InputError(f"{self.text[:60]!r} is not of the law grammar")
-
-    def take(self, *wanted: str) -> str:
-        """Return the next token if it is one of those wanted, else nothing."""
-        text = self.tokens[self.at][1]
-        if text not in wanted:
-            return ""
-        self.at += 1
-        return text
-
-    def need(self, wanted: str) -> None:
-        if not self.take(wanted):
+        if place < len(text):
             raise self.fault()
+        self.tokens = ["", *reversed(self.tokens)]
+
+    def fault(self, why: str = "is not of the law grammar") -> InputError:
+        return InputError(f"{self.text[:60]!r} {why}")
+
+    def need(self, *wanted: str) -> str:
+        if self.tokens[-1] not in wanted:
+            raise self.fault()
+        return self.tokens.pop()
 
     def whole(self) -> Node:
-        tree = self.choice()
-        if self.tokens[self.at][0] != "end":
+        tree = self.expression(0)
+        if self.tokens != [""]:
             raise self.fault()
         return tree
 
-    def choice(self) -> Node:
-        self.depth += 1
-        if self.depth > MAX_DEPTH:
-            raise InputError(f"{self.text[:60]!r} is nested too deeply")
-        tree = self.comparison()
-        if self.take("if"):
-            condition = self.comparison()
-            self.need("else")
-            other = self.choice()
-            if condition.op != "cmp" or "cmp" in (tree.op, other.op):
-                raise self.fault()
-            tree = Node("if", (condition, tree, other))
-        self.depth -= 1
-        return tree
-
-    def comparison(self) -> Node:
-        left = self.sum()
-        operator = self.take(*COMPARISONS)
-        return self.made("cmp", (left, self.sum()), operator) if operator else left
-
-    def made(self, op: str, args: tuple[Node, ...], value: Any = None) -> Node:
-        if any(arg.op == "cmp" for arg in args):
+    def made(self, op: str, *args: Node, value: Any = None) -> Node:
+        if any((arg.op == "cmp") != (op == "if" and n == 0) for n, arg in enumerate(args)):
             raise self.fault()
         return Node(op, args, value)
 
-    def sum(self) -> Node:
-        terms = [self.product()]
-        while operator := self.take("+", "-"):
-            term = self.product()
-            terms.append(self.made("neg", (term,)) if operator == "-" else term)
-        return terms[0] if len(terms) == 1 else self.made("+", tuple(terms))
-
-    def product(self) -> Node:
-        tree = self.unary()
-        while operator := self.take("*", "/"):
-            tree = self.made(operator, (tree, self.unary()))
-        return tree
-
-    def unary(self) -> Node:
-        operator = self.take("-", "+")
-        if not operator:
-            return self.power()
+    def expression(self, least: int) -> Node:
         self.depth += 1
         if self.depth > MAX_DEPTH:
-            raise InputError(f"{self.text[:60]!r} is nested too deeply")
-        tree = self.unary()
+            raise self.fault("is nested too deeply")
+        tree = self.operand()
+        while (power := BINDS.get(self.tokens[-1], -1)) >= least:
+            operator = self.tokens.pop()
+            if operator == "if":
+                condition = self.expression(2)
+                self.need("else")
+                tree = self.made("if", condition, tree, self.expression(1))
+                continue
+            right = self.expression(PREFIX if operator == "**" else power + 1)
+            if operator == "**":
+                tree = self.made("**", tree, value=self.exponent(right))
+            elif operator in "+-":
+                term = self.made("neg", right) if operator == "-" else right
+                tree = self.made("+", *(tree.args if tree.op == "+" else (tree,)), term)
+            elif power == BINDS["<"]:
+                tree = self.made("cmp", tree, right, value=operator)
+            else:
+                tree = self.made(operator, tree, right)
         self.depth -= 1
-        return self.made("neg", (tree,)) if operator == "-" else tree
+        return tree
 
-    def power(self) -> Node:
-        base = self.atom()
-        if not self.take("**"):
-            return base
-        exponent = _constant(self.unary())
-        if exponent is None or max(abs(exponent.numerator), exponent.denominator) > MAX_POWER:
-            raise InputError(f"{self.text[:60]!r} has a power beyond small rationals")
-        return self.made("**", (base,), exponent)
-
-    def atom(self) -> Node:
-        kind, text = self.tokens[self.at]
-        self.at += 1
-        if kind == "number":
-            return num(number(text))
-        if text == "(":
-            tree = self.choice()
+    def operand(self) -> Node:
+        token = self.tokens[-1]
+        if not token or token in ("if", "else"):
+            raise self.fault()
+        self.tokens.pop()
+        if token[0].isdigit() or token[0] == ".":
+            return num(number(token))
+        if token in "+-":
+            tree = self.expression(PREFIX)
+            return self.made("neg", tree) if token == "-" else tree
+        if token == "(":
+            tree = self.expression(0)
             self.need(")")
             return tree
-        if kind != "name" or text in ("if", "else"):
+        if not (token[0].isalpha() or token[0] == "_"):
             raise self.fault()
-        return self.call(text) if self.take("(") else sym(text)
+        if self.tokens[-1] != "(":
+            return sym(token)
+        self.tokens.pop()
+        bank = self.tokens.pop() if token == "sum" and self.sums and self.tokens[-1] else None
+        args = [] if bank is None else [self.argument(",")]
+        args += [self.expression(0)] if not args else []
+        while self.need(",", ")") == ",":
+            args.append(self.expression(0))
+        if len(args) != (1 if bank else FUNCTIONS.get(token)):
+            raise self.fault(f"calls {token[:20]} in a way that laws do not have")
+        return self.made(token, *args, value=bank)
 
-    def call(self, function: str) -> Node:
-        if function == "sum" and self.sums:
-            bank = self.tokens[self.at][1]
-            self.at += 1
-            self.need(",")
-            args = (self.choice(),)
-            self.need(")")
-            return self.made("sum", args, bank)
-        found = [self.choice()]
-        while self.take(","):
-            found.append(self.choice())
-        self.need(")")
-        if FUNCTIONS.get(function) != len(found):
-            raise InputError(f"{function} of {len(found)} arguments is no function of laws")
-        return self.made(function, tuple(found))
+    def argument(self, before: str) -> Node:
+        self.need(before)
+        return self.expression(0)
 
-
-def _constant(node: Node) -> Fraction | None:
-    """Return the value of an exponent written with numbers, - and /."""
-    parts = [_constant(arg) for arg in node.args]
-    if node.op == "num":
-        return Fraction(node.value)
-    if node.op == "neg" and parts[0] is not None:
-        return -parts[0]
-    if node.op == "/" and parts[0] is not None and parts[1]:
-        return parts[0] / parts[1]
-    return None
+    def exponent(self, node: Node) -> Fraction:
+        """Return the value of an exponent written with numbers, - and /."""
+        sign = 1
+        while node.op == "neg":
+            sign, node = -sign, node.args[0]
+        parts = [arg.value if arg.op == "num" else None for arg in node.args] or [node.value, 1]
+        if node.op not in ("num", "/") or None in parts or not parts[1]:
+            raise self.fault("has a power that is no number")
+        value = sign * Fraction(parts[0]) / parts[1]
+        if max(abs(value.numerator), value.denominator) > MAX_POWER:
+            raise self.fault("has a power beyond small rationals")
+        return value
