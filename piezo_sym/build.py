@@ -52,8 +52,16 @@ def shipped_models() -> tuple[Model, ...]:
     return tuple(load(name) for name in shipped())
 
 
-def render(model: Model, *, allow_unproved: bool = False) -> dict[str, str]:
+def render(
+    model: Model, *, allow_unproved: bool = False, report: Report | None = None
+) -> dict[str, str]:
     """Return the text of each generated file of a model, by its path below the output folder.
+
+    Parameters
+    ----------
+    model : from `load`, or made in Python.
+    allow_unproved : render even if a required property is not proved.
+    report : its verdicts, if they are known already.
 
     Raises
     ------
@@ -63,7 +71,7 @@ def render(model: Model, *, allow_unproved: bool = False) -> dict[str, str]:
         If the model cannot be derived.
     """
     iphs = derive(model)
-    report = verify(iphs)
+    report = report or verify(iphs)
     if not allow_unproved:
         report.raise_if_not_proved()
     program = lower(iphs, verdict_line(report))

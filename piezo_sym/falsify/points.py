@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import final
 
 import numpy as np
@@ -22,9 +23,35 @@ Index = npt.NDArray[np.int64]
 #: Fewer points inside than these are too few to say anything; then one walks.
 FEW = 1000
 ROUNDS, WALKS = 40, 40
+#: Zero is bracketed by this, since a product of less may be zero.
+TINY = 1e-280
 TABLE = 8192
-ROOTS, CORNERS = 400, 300
-DECADES = (-290, -100, -30, -15, -9, -6, -4, -3, -2, -1, -0.3, 0, 0.3, 1, 2, 3, 4, 6, 9, 15, 30, 100)
+#: Edges are solved for from points known, then from points on edges.
+STAGES = (("kinks", 400), ("corners", 300))
+DECADES = (
+    -290,
+    -100,
+    -30,
+    -15,
+    -9,
+    -6,
+    -4,
+    -3,
+    -2,
+    -1,
+    -0.3,
+    0,
+    0.3,
+    1,
+    2,
+    3,
+    4,
+    6,
+    9,
+    15,
+    30,
+    100,
+)
 LADDER = np.array([-(10.0**e) for e in DECADES[::-1]] + [0.0] + [10.0**e for e in DECADES])
 OFF = np.array([0, *(s * 10.0**-e for e in (12, 9, 6, 5, 4, 3, 2, 1) for s in (1, -1))])
 POWERS = np.array([float(f"1e{n}") for n in range(-300, 302)])
@@ -81,8 +108,7 @@ class Draw:
         step = self.space.block
         parts = [points[:, n : n + step] for n in range(0, points.shape[1], step)]
         kept = [part[:, self.space.at(part).inside] for part in parts]
-        found = np.concatenate([points[:, :0], *kept], axis=1)
-        return found[:, ((found == 0) | (np.abs(found) >= LEAST)).all(axis=0)]
+        return np.concatenate([points[:, :0], *kept], axis=1)
 
     # Kinks
 
@@ -90,7 +116,9 @@ class Draw:
         """Return points on edges and next to them, found along one column from each base."""
         roots = self._bisected(self._crossed(bases, most))
         self.roots.append(roots)
-        return self.inside(np.concatenate([roots.at(v) for v in self._near(roots)], axis=1))
+        return self.inside(
+            _normal(np.concatenate([roots.at(v) for v in self._near(roots)], axis=1))
+        )
 
     def _near(self, roots: Roots) -> Iterator[Array]:
         for value in (roots.low, roots.high):
@@ -103,7 +131,9 @@ class Draw:
     def _crossed(self, bases: Array, most: int) -> Roots:
         """Return brackets of sign changes of edges, along a ladder of values of each column."""
         columns, count = bases.shape
-        steps = [np.unique(_bounded(np.multiply.outer(row[-3:], LADDER).ravel())) for row in self.scales]
+        steps = [
+            np.unique(_bounded(np.multiply.outer(row[-3:], LADDER).ravel())) for row in self.scales
+        ]
         found: list[tuple[Index, Index, Index, Array, Array]] = []
         for column, ladder in enumerate(steps):
             points = np.repeat(bases, len(ladder), axis=1)
@@ -132,21 +162,32 @@ class Draw:
             seen = self.space.at(roots.at(_float(middle))).edges[roots.edge, here]
             same = np.sign(seen) == sign
             low, high = np.where(same, middle, low), np.where(same, high, middle)
-        return Roots(roots.edge, roots.column, roots.base, _float(low), _float(high))
+        ends = np.array([_float(low), _float(high)])
+        ends = np.where(np.abs(ends).max(axis=0) < LEAST, [[-TINY], [TINY]], ends)
+        return Roots(roots.edge, roots.column, roots.base, *ends)
 
     # Drawing
 
     def learn(self, points: Array) -> None:
         """Take values that lie on edges as scales, and some points as ones to start from."""
         for roots in self.roots:
-            for column, value in zip(roots.column.tolist(), np.abs(roots.high).tolist(), strict=True):
-                if 0 < value < LARGEST and len(self.scales[column]) < 64:
+            for column, value in zip(
+                roots.column.tolist(), np.abs(roots.high).tolist(), strict=True
+            ):
+                if 1e-100 < value < 1e100 and len(self.scales[column]) < 64:
                     self.scales[column].append(value)
         chosen = self.rng.integers(0, max(1, points.shape[1]), min(256, points.shape[1]))
         self.known = np.concatenate([self.known, points[:, chosen]], axis=1)
+        anywhere = self.inside(self.drawn(256))
+        plain = anywhere[:, ~self.space.at(anywhere).extreme]
+        self.known = np.concatenate([self.known, plain[:, :10]], axis=1)
+
+    @cached_property
+    def table(self) -> Array:
+        """Values to draw from per column, twice in a row; made when scales are learnt."""
         fixed = self._one_sided(self.known[:, -32:])
         once = np.array([self._values(column, fixed[column]) for column in range(len(self.scales))])
-        self.table = np.concatenate([once, once], axis=1)
+        return np.concatenate([once, once], axis=1)
 
     def _one_sided(self, bases: Array) -> list[bool]:
         """Return for which columns no point stays inside with that column's sign turned."""
@@ -161,7 +202,9 @@ class Draw:
         """Return values to draw from: scales times factors near 1, moderate, wide, and simple ones."""
         u, v = self.rng.random((2, TABLE))
         kind = np.arange(TABLE) % 16
-        exponent = np.select([kind < 6, kind < 9, kind < 15], [4 * u - 2, 18 * u - 9, 0], 600 * u - 300)
+        exponent = np.select(
+            [kind < 6, kind < 9, kind < 15], [4 * u - 2, 18 * u - 9, 0], 600 * u - 300
+        )
         near = 1 + np.where(v < 0.5, 1, -1) * _power(-16 * u)
         factor = np.where((kind >= 9) & (kind < 14), near, _power(exponent))
         scale = np.array(self.scales[column])[self.rng.integers(0, len(self.scales[column]), TABLE)]
@@ -170,6 +213,7 @@ class Draw:
         simple = SIMPLE[self.rng.integers(0, len(SIMPLE), TABLE)]
         with np.errstate(over="ignore"):
             values = _bounded(np.where(kind == 14, simple, sign * scale * factor))
+        values[np.abs(values) < LEAST] = 0
         return np.abs(values) if self.positive[column] else values
 
     def drawn(self, count: int) -> Array:
@@ -177,7 +221,9 @@ class Draw:
         rng, columns = self.rng, len(self.scales)
         first = np.where(rng.random(count) < 0.3, 0, rng.integers(0, self.known.shape[1], count))
         share = np.array([1.5 / columns, 4 / columns, 0.5, 1.0])[rng.integers(0, 4, count)]
-        anew = rng.integers(0, 256, (columns, count), dtype=np.uint8) < (256 * share).astype(np.int16)
+        anew = rng.integers(0, 256, (columns, count), dtype=np.uint8) < (256 * share).astype(
+            np.int16
+        )
         points = self.known[:, first]
         for column, start in enumerate(rng.integers(0, TABLE, columns).tolist()):
             drawn = self.table[column, start : start + count]
@@ -206,8 +252,10 @@ class Draw:
             step = size * (2 * rng.random(count * each) - 1)
             drawn = self.table[column, rng.integers(0, TABLE, count * each)]
             old = children[place]
-            children[place] = np.where(rng.random(count * each) < 0.1, drawn, old + step * (old + (old == 0) * drawn))
-        return children
+            children[place] = np.where(
+                rng.random(count * each) < 0.1, drawn, old + step * (old + (old == 0) * drawn)
+            )
+        return _normal(children)
 
     def walked(self, points: Array, wanted: int) -> Array:
         """Return points inside found by steps from points inside."""
@@ -218,6 +266,24 @@ class Draw:
             new = self.inside(self.moved(start, max(1, min(16, wanted // 512)), 2.0 + n % 12))
             points = np.concatenate([points, new], axis=1)
         return points[:, :wanted]
+
+
+def warmed(space: Space, point: Array, column: int, row: int, wanted: float) -> Array:
+    """Return the entropy in `column` at which the temperature in `row` reaches a value."""
+    low, high = _key(np.array([-LARGEST])), _key(np.array([LARGEST]))
+    for _ in range(64):
+        middle = (low >> 1) + (high >> 1) + (low & high & 1)
+        points = point.copy()
+        points[column] = _float(middle)
+        above = space.at(points).temperatures[row] >= wanted
+        low, high = np.where(above, low, middle), np.where(above, middle, high)
+    return _float(high)
+
+
+def _normal(points: Array) -> Array:
+    """Return those of some points with no value so small that arithmetic loses its digits."""
+    size = np.abs(points)
+    return points[:, ((size == 0) | (size >= LEAST)).all(axis=0)]
 
 
 def _bounded(values: Array) -> Array:

@@ -11,15 +11,15 @@ from __future__ import annotations
 import importlib.abc
 import importlib.util
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from fractions import Fraction
+from dataclasses import dataclass
 from types import ModuleType
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
-from piezo_sym.codegen import lower, numpy_module
+from piezo_sym.codegen import numpy_module
 from piezo_sym.codegen.functions import limits_of
-from piezo_sym.codegen.program import Function, Jacobian, Row, bank_of
+from piezo_sym.codegen.lower import program_of
+from piezo_sym.codegen.program import Function, Row, bank_of
 from piezo_sym.codegen.quantities import Quantities
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name
@@ -53,6 +53,7 @@ from piezo_sym.spec.expressions import (
     rename,
     walk,
 )
+from piezo_sym.spec.tables import lane_parameters
 from piezo_sym.spec.units import parse_unit
 
 PAIRED = frozenset({"min", "max", "deadzone", "saturate"})
@@ -86,12 +87,14 @@ class Probe:
     laws : (element, what) of each row; what is law, effort, output or slope.
     edges : the edges, row by row.
     slots : of the rows of `laws` and of `edges`.
+    states : the state of each body, by element.
     """
 
     module: ModuleType
     laws: tuple[tuple[str, str], ...]
     edges: tuple[Edge, ...]
     slots: tuple[tuple[Slot, ...], tuple[Slot, ...]]
+    states: dict[str, str]
 
 
 @final
@@ -124,35 +127,32 @@ def probe_of(iphs: IPHS) -> Probe:
     laws = tuple(_laws(q))
     banks = {name: quantity.bank for quantity in q.defined if (name := quantity.name)}
     banks |= {port.state: placed.bank for placed, port in q.stores}
-    program = lower(iphs, "")
-    banks |= {field.name: field.bank for field in program.parameters}
-    lanes = {name: bank for name, bank in banks.items() if bank}
+    lanes = lane_parameters(iphs.model) | {name: bank for name, bank in banks.items() if bank}
     trees = [quantity.value for quantity in q.defined] + [limit.margin for limit in limits]
     trees += [tree for _, _, tree in laws]
     found = [edge for tree in trees for edge in _edges(tree)]
     found += [Edge(limit.margin) for limit in limits] + [Edge(tree) for tree in _equal(iphs, q)]
     edges = tuple(dict.fromkeys(e for e in found if not isinstance(e.tree, Num)))[:MOST_EDGES]
     known = {quantity.name: quantity.value for quantity in q.defined}
+    values = [(tree, bank_of(tree, lanes)) for _, _, tree in laws]
+    sizes = [
+        (ONE if what == "effort" else _size(_own(tree, known)), bank)
+        for (_, what, _), (tree, bank) in zip(laws, values, strict=True)
+    ]
     functions = (
-        _function("laws", [(e, tree) for e, _, tree in laws], lanes),
-        _function("sizes", [(e, _size(_own(tree, known)) if what != "effort" else ONE) for e, what, tree in laws], lanes),
-        _function("edges", [("", edge.tree) for edge in edges], lanes),
+        _function("laws", values),
+        _function("sizes", sizes),
+        _function("edges", [(edge.tree, bank_of(edge.tree, lanes)) for edge in edges]),
     )
-    program = replace(
-        program,
-        quantities=tuple(q.defined),
-        functions=functions,
-        jacobian=Jacobian("", ()),
-        limits=(),
-        taken=frozenset(q.taken),
-    )
+    program = program_of(iphs, q, functions)
+    states = {name: port.state for name, port in q.bodies.items()}
     slots = tuple(tuple(row.slot for row in function.rows) for function in functions)
     named = tuple((element, what) for element, what, _ in laws)
-    return Probe(module_from(numpy_module(program)), named, edges, (slots[0], slots[2]))
+    return Probe(module_from(numpy_module(program)), named, edges, (slots[0], slots[2]), states)
 
 
-def _function(name: str, rows: list[tuple[str, Expr]], lanes: dict[str, str]) -> Function:
-    made = tuple(Row(Slot(label, bank_of(tree, lanes)), tree) for label, tree in rows)
+def _function(name: str, rows: list[tuple[Expr, str | None]]) -> Function:
+    made = tuple(Row(Slot("", bank), tree) for tree, bank in rows)
     return Function(name, name, ("x", "u", "p"), made)
 
 
@@ -229,7 +229,9 @@ def _edges(tree: Node) -> Iterator[Edge]:
             case Div(_, bottom):
                 yield Edge(bottom, "!=")
             case Pow(base, exponent) if exponent < 0 or exponent.denominator != 1:
-                yield Edge(base, ">=" if exponent > 0 else "!=" if exponent.denominator == 1 else ">")
+                yield Edge(
+                    base, ">=" if exponent > 0 else "!=" if exponent.denominator == 1 else ">"
+                )
             case Add():
                 yield Edge(node)
 
@@ -240,7 +242,9 @@ def _equal(iphs: IPHS, q: Quantities) -> Iterator[Expr]:
     units = [(name, field.dimension.dimension) for name, field in fields]
     quantities: list[tuple[Expr, str]] = []
     for _, port in q.stores:
-        quantities.append((Sym(costate_name(port)), "K" if isinstance(port, Body) else port.units[1]))
+        quantities.append(
+            (Sym(costate_name(port)), "K" if isinstance(port, Body) else port.units[1])
+        )
     for force, (_, port) in zip(q.forces, iphs.circuit.of(Resistor, Conductor), strict=True):
         if isinstance(port, Resistor):
             quantities.append((force, UNITS[port.domain, port.imposes.other]))

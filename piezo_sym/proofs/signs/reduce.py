@@ -69,7 +69,10 @@ class Reduction:
 
     def back(self, value: Fraction, values: Mapping[str, Fraction]) -> Fraction | None:
         """Return the letter's value for a value of s and of the parameters, if it is rational."""
-        size = value_of(self.scale, values)
+        try:
+            size = value_of(self.scale, values)
+        except (ArithmeticError, ValueError, KeyError):
+            return None
         return value * size if isinstance(size, Fraction) else None
 
 
