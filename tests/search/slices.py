@@ -5,12 +5,16 @@ same package.
 """
 
 import time
+import tomllib
 from collections import Counter
+
+import tomli_w
 
 from piezo_sym.errors import PiezoError
 from piezo_sym.spec.parse import parse_condition, parse_law
-from tests.search.judge import judge
+from tests.search.judge import Fault, judge
 from tests.search.laws import read
+from tests.search.shrink import shrunk
 from tests.search.specs import LAWS, draw
 
 SPECS = 10
@@ -66,8 +70,6 @@ def _one(seed, prover, laws, counts, seconds):
 
 def verdicts(text, answer, counts, labels=None):
     """Return the faults in an answer on a spec, and count its verdicts."""
-    from tests.search.judge import Fault
-
     if "rows" in answer:
         faults, found = judge(text, answer["rows"], labels=labels)
         counts.update(found)
@@ -78,3 +80,32 @@ def verdicts(text, answer, counts, labels=None):
         return []
     kind = "contradiction" if kind == "ContradictionError" else "crash"
     return [Fault(kind, "", "", f"{answer['error']}: {answer['text']}")]
+
+
+def still_at_fault(fault, prover):
+    """Return the test of whether a spec, as data, has a fault of the same kind."""
+
+    def test(data):
+        try:
+            answer = prover.rows(tomli_w.dumps(data))
+            found = verdicts(tomli_w.dumps(data), answer, Counter())
+        except (ValueError, KeyError, StopIteration, IndexError):  # not read
+            return False
+        return any((f.kind, f.id) == (fault["kind"], fault["id"]) for f in found)
+
+    return test
+
+
+def keep(fault, folder, prover, seconds=120):
+    """Write a fault's spec, made small, into a folder, and return its path."""
+    still = still_at_fault(fault, prover)
+    data = shrunk(tomllib.loads(fault["spec"]), still, seconds, fault["element"])
+    text = tomli_w.dumps(data)
+    answer = prover.rows(text)
+    found = [f for f in verdicts(text, answer, Counter()) if f.kind == fault["kind"]]
+    head = f"# {fault['kind']}: {fault['id']} (seed {fault['seed']})\n"
+    head += "".join(f"# {f.id} {f.element}: {f.at}\n".replace("\n# ", " ") for f in found[:2])
+    name = f"{fault['kind']}_{fault['id']}_{fault['seed']}".replace(" ", "_").replace(".", "_")
+    path = folder / f"{name.lower()}.toml"
+    path.write_text(head + text)
+    return path
