@@ -2,8 +2,9 @@
 
 The floors, two towers on one ground:
 
-    errors < spec < algebra < network < iphs < derivation < {proofs, codegen} < build < modules
-        < {sweeps, api} < bench < cli
+    errors < spec < algebra < network < iphs < derivation < {proofs, codegen}
+        < {translation, falsify} < verification < build < modules < {sweeps, api} < bench < cli
+    checker < falsify; the checker imports nothing of the package
     errors < run < {sweeps, analysis} < api < bench < cli
 """
 
@@ -26,7 +27,9 @@ PROVING = (
     {"network"},
     {"iphs"},
     {"derivation"},
-    {"proofs", "codegen"},
+    {"proofs", "codegen", "checker"},
+    {"translation", "falsify"},
+    {"verification"},
     {"build"},
     {"modules"},
     {"sweeps", "api"},

@@ -12,8 +12,8 @@ import cvc5
 import pytest
 import z3
 
-from piezo_sym import derive, load, verify
-from piezo_sym.proofs import Verdict, proofs_json, smt2
+from piezo_sym import derive, load
+from piezo_sym.proofs import Verdict, decide, proofs_json, smt2
 from piezo_sym.proofs.record import queries
 from piezo_sym.spec.load import parse
 
@@ -28,7 +28,7 @@ IDS = {"skew", "casimir", "energy", "entropy", "temperature", "welldef", "contin
 
 @cache
 def report_of(spec):
-    return verify(derive(load(str(spec))))
+    return decide(derive(load(str(spec))))
 
 
 def by_z3(text):
@@ -83,7 +83,7 @@ def test_the_file_has_every_query_of_the_report_in_its_order(spec):
 
 def test_a_claim_that_is_false_is_sat_in_the_file():
     text = (ROOT / "piezo_sym/models/piezo_stack.toml").read_text().replace('"d >= 0", ', "")
-    written = smt2(verify(derive(parse(text))), "x")
+    written = smt2(decide(derive(parse(text))), "x")
     answers = dict(zip(comments(written), by_z3(written), strict=True))
     assert answers == dict(zip(comments(written), by_cvc5(written), strict=True))
     false = [claim for claim, answer in answers.items() if answer == "sat"]
@@ -110,7 +110,7 @@ body = { kind = "thermal_mass", temperature = "T_0*exp(S/c)" }
 
 
 def test_what_intervals_prove_is_said_and_not_asked():
-    report = verify(derive(parse(INTERVALS)))
+    report = decide(derive(parse(INTERVALS)))
     assert report.proved
     written = smt2(report, "x")
     assert "; passive of load is PROVED by intervals" in written
@@ -145,12 +145,12 @@ def test_the_json_has_a_true_entry_a_row(spec):
 
 RECORDS = """
 from pathlib import Path
-from piezo_sym import derive, load, verify
-from piezo_sym.proofs import proofs_json, smt2
+from piezo_sym import derive, load
+from piezo_sym.proofs import decide, proofs_json, smt2
 import sys
 for spec in sys.argv[1:]:
     model = load(spec)
-    report = verify(derive(model))
+    report = decide(derive(model))
     print(smt2(report, "x"), proofs_json(report, model, "x"))
 """
 

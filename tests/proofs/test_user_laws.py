@@ -2,8 +2,8 @@
 
 import pytest
 
-from piezo_sym import derive, verify
-from piezo_sym.proofs import Verdict
+from piezo_sym import derive
+from piezo_sym.proofs import Verdict, decide
 from piezo_sym.spec.load import parse
 from piezo_sym.spec.starter import starter
 
@@ -22,7 +22,6 @@ CONTINUOUS = (
     "d*v*saturate(T/T_0, 1)",
     "d*v*(0 if T < T_0 else ((T-T_0)/(T_1-T_0) if T < T_1 else 1))",
     "d*v_s*min(1, max(0, v/v_s))",
-    "d*v*min(1, 0)",
     "d*v if T > -T_0 else -d*v",
     "d*v if abs(v) <= w else (-d*w+2*d*(v+w) if v < -w else d*w+2*d*(v-w))",
     "d*v*(1/(n-1) if T < -T_0 else 1)",
@@ -40,7 +39,7 @@ WITHOUT_VALUE = ("d*v/max(0, T/T_0 - 1)", "d*v/(0 if T < T_0 else 1)", "d*v/abs(
 def rows(law, assumed=ASSUMED):
     text = starter("actuator").replace("[inputs]", PARAMETERS.strip(), 1)
     text = text.replace('force = "d*v"', f'force = "{law}"').replace("assume = [", assumed)
-    return {(r.id, r.element): r for r in verify(derive(parse(text))).rows}
+    return {(r.id, r.element): r for r in decide(derive(parse(text))).rows}
 
 
 @pytest.mark.parametrize("law", CONTINUOUS)
@@ -89,7 +88,7 @@ def test_a_temperature_is_one_that_its_entropy_gives():
     text = starter("actuator").replace("T_0*exp(S/c)", "T_0*(1 + exp(S/c))")
     text = text.replace('force = "d*v"', 'force = "d*v*(T - T_0)/T_0"')
     row = next(
-        r for r in verify(derive(parse(text))).rows if (r.id, r.element) == ("passive", "damper")
+        r for r in decide(derive(parse(text))).rows if (r.id, r.element) == ("passive", "damper")
     )
     assert row.verdict is Verdict.PROVED
 

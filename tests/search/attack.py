@@ -106,7 +106,9 @@ def _welldef(claim, points):
 
 
 def _missing(claim, law, points, at):
-    bad = np.flatnonzero(~np.isfinite(np.broadcast_to(floats(law, at), at[points.spec.free[0]].shape)))
+    bad = np.flatnonzero(
+        ~np.isfinite(np.broadcast_to(floats(law, at), at[points.spec.free[0]].shape))
+    )
     for n in bad[:MOST]:
         point = points.exactly(n, at)
         if fails(claim, point, points.spec):

@@ -106,7 +106,9 @@ def _needs(spec, name, element):
     if element["kind"] in STORES:
         words[STORES[element["kind"]][0]] = ("name", state_of(name, element))
     if element["kind"] == "thermal_mass":
-        yield from ((">", ("name", n), ZERO) for n in names(read(element["temperature"])) if n != "S")
+        yield from (
+            (">", ("name", n), ZERO) for n in names(read(element["temperature"])) if n != "S"
+        )
     for key, law in element.items():
         if key in POSITIVE:
             yield (">", put(read(law), words), ZERO)
@@ -128,7 +130,10 @@ def _add_state(spec, name, element, used):
     spec.own[state] = Fraction(0) if isinstance(start, str) else _first(start)
     letter, law = _law_of_state(element)
     if kind == "thermal_mass":
-        made, free = spec.hot[name], law[0] == "*" and law[1][0] == "name" and _is_exponential(law[2])
+        made, free = (
+            spec.hot[name],
+            law[0] == "*" and law[1][0] == "name" and _is_exponential(law[2]),
+        )
         (spec.domain if free else spec.warm).append((">", ("name", made), ZERO))
     else:
         size = law[1] if kind == "spring" else law[2]

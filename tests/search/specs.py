@@ -41,7 +41,9 @@ class Draft:
     def __init__(self, random, fit, count=LAWS):
         self.random, self.fit, self.count = random, fit, count
         self.symbols = random.sample(SYMBOLS, len(SYMBOLS))
-        self.names = list({name.lower(): name for name in random.sample(ELEMENTS, len(ELEMENTS))}.values())
+        self.names = list(
+            {name.lower(): name for name in random.sample(ELEMENTS, len(ELEMENTS))}.values()
+        )
         self.nodes = random.sample(NODES, len(NODES))
         self.elements, self.labels, self.inputs = {}, {}, {}
         self.depths = random.choice(DEPTHS)
@@ -211,7 +213,11 @@ def _domain(draft):
 def _condition(draft, spec):
     pick = draft.random.choice
     (a, b), (p, n) = draft.random.sample(draft.any, 2), (pick(draft.above), pick(draft.least))
-    states = [s for s in spec.free if s not in spec.fixed and "~" not in s and s not in spec.data["inputs"]]
+    states = [
+        s
+        for s in spec.free
+        if s not in spec.fixed and "~" not in s and s not in spec.data["inputs"]
+    ]
     guard = draft.grammar("", "").guarded(1, least=True).text
     form = pick(CONDITIONS)
     T = pick([*spec.hot.values()])

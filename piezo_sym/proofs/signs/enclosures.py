@@ -17,6 +17,7 @@ from piezo_sym.proofs.signs import intervals as iv
 from piezo_sym.proofs.signs import jets
 from piezo_sym.proofs.signs.intervals import INF, Interval
 from piezo_sym.proofs.signs.jets import Jet
+from piezo_sym.proofs.signs.vanish import vanishes
 from piezo_sym.spec.expressions import Add, Call, Cmp, Div, Expr, If, Mul, Neg, Num, Pow, Sym
 
 
@@ -84,7 +85,7 @@ def _enclose(node: Expr, x: Enclosure, order: int) -> Enclosure:
         case Neg(arg):
             return _minus(of(arg))
         case Add(terms):
-            return _sum([of(term) for term in terms])
+            return _cancelled(_sum([of(term) for term in terms]), node, x)
         case Mul(left, right):
             return _product(of(left), of(right))
         case Div(left, right):
@@ -104,6 +105,28 @@ def _sum(parts: list[Enclosure]) -> Enclosure:
     for part in parts[1:]:
         total = _each(jets.plus, total, part)
     return total
+
+
+def _cancelled(total: Enclosure, tree: Expr, x: Enclosure) -> Enclosure:
+    """Return a sum whose terms cancel exactly at the left end, or at the one point, as zero there.
+
+    A tree that `vanishes` has no jump there, so that its limit is its value.
+    """
+    if x.left and _vague(total.left) and _vanishes(tree, x.left[0]):
+        left = (iv.NOUGHT, *total.left[1:])
+        return Enclosure(_sharpened(total.inner, left, total.right), left, total.right)
+    if not x.left and _vague(total.inner) and _vanishes(tree, x.inner[0]):
+        return Enclosure((iv.NOUGHT,))
+    return total
+
+
+def _vague(jet: Jet) -> bool:
+    """Return whether a limit may be zero but is not known to be."""
+    return bool(jet) and jet[0].exact is None and jet[0].lo <= 0 <= jet[0].hi
+
+
+def _vanishes(tree: Expr, at: Interval) -> bool:
+    return at.exact is not None and vanishes(tree, at.exact)
 
 
 def _each(operation: Callable[..., Jet], *parts: Enclosure) -> Enclosure:

@@ -1,0 +1,242 @@
+"""Laws as rational functions over atoms, in a normal form: equal if and only if the same.
+
+Input: trees, and what each symbol stands for.  Output: `Ratio`, a reduced quotient of FLINT's
+polynomials.  Symbols and functions (of normal arguments) are atoms; a choice ``a if c else b`` is
+``[c]*a + (1 - [c])*b`` with an atom [c] of which [c]**2 = [c].  An identity between atoms holds
+wherever both sides have values.  Functions give up positive factors, signs and constants.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from fractions import Fraction
+from math import comb
+from typing import Any
+
+from flint import fmpq, fmpq_mpoly_ctx
+
+from .laws import InputError, Node, compare, num
+
+SIZE, MAX_TERMS, MAX_PRODUCT = 160, 3000, 60_000
+ODD, EVEN = ("sin", "tanh", "sign", "deadzone", "saturate"), ("cos", "abs")
+HOMOGENEOUS = ("abs", "min", "max", "deadzone", "saturate")
+CTX = fmpq_mpoly_ctx.get([f"x{n}" for n in range(SIZE)], "lex")
+
+
+class Ratio:
+    """A reduced quotient of two polynomials, the lower one with leading coefficient 1."""
+
+    __slots__ = ("bottom", "top")
+
+    def __init__(self, top: Any, bottom: Any = None) -> None:
+        if bottom is not None and not bottom.is_one():
+            if bottom.is_zero():
+                raise InputError("a divisor is zero by its form")
+            shared = top.gcd(bottom) * bottom.leading_coefficient()
+            top, bottom = top / shared, bottom / shared
+            lead = bottom.leading_coefficient()
+            top, bottom = top / lead, bottom / lead
+        self.top, self.bottom = top, CTX.constant(1) if bottom is None else bottom
+
+    def __add__(self, other: Ratio) -> Ratio:
+        if self.bottom == other.bottom:
+            return Ratio(self.top + other.top, self.bottom)
+        tops = _product(self.top, other.bottom) + _product(other.top, self.bottom)
+        return Ratio(tops, _product(self.bottom, other.bottom))
+
+    def __neg__(self) -> Ratio:
+        return self * constant(-1)
+
+    def __sub__(self, other: Ratio) -> Ratio:
+        return self + -other
+
+    def __mul__(self, other: Ratio) -> Ratio:
+        return Ratio(_product(self.top, other.top), _product(self.bottom, other.bottom))
+
+    def __truediv__(self, other: Ratio) -> Ratio:
+        return Ratio(_product(self.top, other.bottom), _product(self.bottom, other.top))
+
+    def __pow__(self, power: int) -> Ratio:
+        if power < 0:
+            return Ratio(self.bottom, self.top) ** -power
+        if any(comb(len(p) + power, power) > MAX_TERMS for p in (self.top, self.bottom)):
+            raise InputError("a power is too large to be written out")
+        return Ratio(self.top**power, self.bottom**power)
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, Ratio):
+            return bool(self.top == other.top and self.bottom == other.bottom)
+        return bool(self.bottom.is_one() and self.top == other)
+
+    def __hash__(self) -> int:
+        return hash((str(self.top), str(self.bottom)))
+
+    @property
+    def number(self) -> Fraction | None:
+        """Its value if it is a number."""
+        if not (self.top.is_constant() and self.bottom.is_one()):
+            return None
+        return _fraction(self.top.leading_coefficient()) if self.top != 0 else Fraction(0)
+
+    @property
+    def negative(self) -> bool:
+        """Whether its first coefficient is negative."""
+        return bool(self.top != 0 and self.top.leading_coefficient() < 0)
+
+
+def _product(left: Any, right: Any) -> Any:
+    if len(left) * len(right) > MAX_PRODUCT:
+        raise InputError("a product is too large to be written out")
+    return left * right
+
+
+def _fraction(number: Any) -> Fraction:
+    return Fraction(int(number.p), int(number.q))
+
+
+def constant(value: int | Fraction) -> Ratio:
+    """Return a number."""
+    return Ratio(CTX.constant(fmpq(value.numerator, value.denominator)))
+
+
+class Field:
+    """The atoms of one comparison; `positive` are the symbols known to be so."""
+
+    def __init__(self, positive: Collection[Any] = ()) -> None:
+        self.atoms: dict[Any, int] = {}
+        self.trees: list[Node] = []
+        self.positives: list[int] = []
+        self.choices: list[int] = []
+        self.positive = positive
+
+    def atom(self, key: Any, tree: Node, positive: bool = False) -> Ratio:
+        """Return an atom, the same for the same key."""
+        if key not in self.atoms:
+            place = self.atoms[key] = len(self.trees)
+            if place == SIZE:
+                raise InputError(f"more than {SIZE} different symbols and functions")
+            self.trees.append(tree)
+            self.positives += [place] * positive
+            self.choices += [place] * (key[0] == "choice")
+        return Ratio(CTX.gen(self.atoms[key]))
+
+    def symbol(self, key: Any) -> Ratio:
+        """Return the atom of a symbol."""
+        return self.atom(("symbol", key), Node("sym", (), key), key in self.positive)
+
+    def of(self, node: Node, words: Callable[[Any], Ratio] | None = None) -> Ratio:
+        """Return the normal form of a tree, `words` giving that of its symbols."""
+        if node.op in ("num", "sym"):
+            return constant(node.value) if node.op == "num" else (words or self.symbol)(node.value)
+        if node.op == "if":
+            chosen = self.choice(node.args[0], words)
+            then, other = (self.of(arg, words) for arg in node.args[1:])
+            return then if then == other else other + chosen * (then - other)
+        args = [self.of(arg, words) for arg in node.args]
+        match node.op:
+            case "+":
+                return sum(args[1:], args[0])
+            case "neg":
+                return -args[0]
+            case "*" | "/":
+                return args[0] * args[1] if node.op == "*" else args[0] / args[1]
+            case "**" | "sqrt":
+                power = node.value if node.op == "**" else Fraction(1, 2)
+                return self.power(args[0], power, node.args[0])
+        return self.function(node, args)
+
+    def choice(self, condition: Node, words: Callable[[Any], Ratio] | None) -> Ratio:
+        """Return the atom [difference > 0], or 1 less that of its opposite."""
+        less = condition.value in ("<", ">=")
+        left, right = condition.args[::-1] if less else condition.args
+        found = self.scaled([self.of(left, words) - self.of(right, words)])[1][0]
+        if found.number is None:
+            tree = Node("if", (compare(left, ">", right), num(1), num(0)))
+            found = self.atom(("choice", found), tree)
+        else:
+            found = constant(int(found.number > 0))
+        return found if condition.value in "<>" else constant(1) - found
+
+    def power(self, base: Ratio, power: Fraction, tree: Node) -> Ratio:
+        """Return a power; roots of positive factors are atoms of their own."""
+        if power.denominator == 1:
+            return base**power.numerator
+        factors, (rest,) = self.scaled([base], numbers=False)
+        found = self._root(rest, power, tree)
+        for place, exponent in factors:
+            found = found * self._root(Ratio(CTX.gen(place)), exponent * power, self.trees[place])
+        return found
+
+    def _root(self, base: Ratio, power: Fraction, tree: Node) -> Ratio:
+        if power.denominator == 1 or base == 1:
+            return base**power.numerator
+        root = Fraction(1, power.denominator)
+        made = self.atom(("root", root, base), Node("**", (tree,), root), tree.op == "sym")
+        return made**power.numerator
+
+    def function(self, node: Node, args: list[Ratio]) -> Ratio:
+        """Return the atom of a function, times what the function gives up."""
+        name, outside = node.op, constant(1)
+        if name in (*HOMOGENEOUS, "sign"):
+            factors, args = self.scaled(args)
+            for place, power in factors if name != "sign" else ():
+                outside = outside * (constant(power) if place < 0 else Ratio(CTX.gen(place)) ** power)
+        if all(arg == 0 for arg in args):
+            return constant(int(name in ("exp", "cos")))
+        turned = args[0].negative and name in (*ODD, *EVEN, "exp")
+        if turned:
+            args = [-args[0], *args[1:]]
+            node = Node(name, (Node("neg", (node.args[0],)), *node.args[1:]))
+        found = self.atom((name, *args), node, name == "exp")
+        if turned and name == "exp":
+            return constant(1) / found
+        return (-outside if turned and name in ODD else outside) * found
+
+    def scaled(
+        self, args: list[Ratio], numbers: bool = True
+    ) -> tuple[list[tuple[int, Any]], list[Ratio]]:
+        """Return the positive factor that arguments share, as powers of atoms, and the rest.
+
+        A number among the factors has place -1 and stands for itself.
+        """
+        some, factors = [arg for arg in args if arg != 0], list[tuple[int, Any]]()
+        for place in self.positives if some else ():
+            power = min(_valuation(a.top, place) - _valuation(a.bottom, place) for a in some)
+            if power:
+                factors.append((place, power))
+                args = [arg * Ratio(CTX.gen(place)) ** -power for arg in args]
+        if some and numbers:
+            first = next(arg for arg in args if arg != 0)
+            size = _fraction(abs(first.top.leading_coefficient()))
+            factors.append((-1, size))
+            args = [arg * constant(1 / size) for arg in args]
+        return factors, args
+
+    def is_zero(self, ratio: Ratio) -> bool:
+        """Return whether an expression vanishes, a choice being 0 or 1."""
+        if ratio.top == 0 or not self.choices:
+            return bool(ratio.top == 0)
+        total: dict[Any, Any] = {}
+        for powers, factor in ratio.top.to_dict().items():
+            key = tuple(min(p, 1) if n in self.choices else p for n, p in enumerate(powers))
+            total[key] = total.get(key, 0) + factor
+        return not any(total.values())
+
+    def factors(self, ratio: Ratio) -> list[Node]:
+        """Return the factors above the line that are no numbers, as trees."""
+        return [self._tree(part) for part, _ in ratio.top.factor()[1]]
+
+    def _tree(self, polynomial: Any) -> Node:
+        terms = []
+        for powers, factor in polynomial.to_dict().items():
+            tree = num(_fraction(factor))
+            for place, power in enumerate(powers):
+                if power:
+                    tree = Node("*", (tree, Node("**", (self.trees[place],), Fraction(int(power)))))
+            terms.append(tree)
+        return Node("+", tuple(terms))
+
+
+def _valuation(polynomial: Any, place: int) -> int:
+    """Return the power of an atom that divides a polynomial."""
+    return min((int(powers[place]) for powers in polynomial.monoms()), default=0)

@@ -1,0 +1,279 @@
+"""The attack itself: points block by block, the worst of each row kept, followed and confirmed.
+
+Input: an `IPHS`, its module, rows.  Output: an `Attack` per row, or a `ContradictionError`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from itertools import chain
+from operator import itemgetter
+from types import ModuleType
+from typing import Any, final
+
+import numpy as np
+
+from piezo_sym.errors import ContradictionError
+from piezo_sym.falsify.claims import TOLERANCE, Claim, claim_of
+from piezo_sym.falsify.exact import Exact
+from piezo_sym.falsify.points import FEW, STAGES, Draw, warmed
+from piezo_sym.falsify.probe import probe_of
+from piezo_sym.falsify.space import Array, Mask, Seen, Space
+from piezo_sym.iphs import IPHS
+from piezo_sym.spec.elements.ports import Body
+from piezo_sym.spec.expressions import Num, Sym
+from piezo_sym.spec.tables import conditions, greater
+from piezo_sym.spec.units import parse_unit
+
+POINTS = 100_000
+LANES = 2
+KEPT, CHILDREN, DESCENTS = 8, 24, 8
+#: Of a law's size; between neighbouring floats it may change by less than this.
+JUMP = 1e-6
+#: Stands for a zero where a row says > 0: not negative, but to be looked at exactly.
+ZERO = -1e-300
+
+
+@final
+@dataclass(frozen=True)
+class Attack:
+    """What became of a row.
+
+    Attributes
+    ----------
+    id, element : of the row.
+    points : inside the domain at which it held.
+    worst : a point at which the module's number breaks it, by name, though the exact one does not.
+    rounding : whether there is one.
+    """
+
+    id: str
+    element: str
+    points: int
+    worst: Mapping[str, str] | None = None
+    rounding: bool = False
+
+
+@final
+@dataclass(eq=False)
+class Track:
+    """What is kept of a claim: how many points, and the worst, by the way they were found."""
+
+    claim: Claim
+    points: int = 0
+    worst: dict[str, list[tuple[float, Space, Array]]] = field(default_factory=dict)
+    lost: tuple[Space, Array] | None = None
+
+    def see(self, kind: str, seen: Seen) -> None:
+        """Take in points that are inside the domain."""
+        with np.errstate(all="ignore"):
+            says = np.broadcast_to(self.claim.says(seen), seen.x.shape[1:])
+            self.points += int(says.sum())
+            if self.claim.id == "welldef":
+                key = np.where(seen.undefined(self.claim.element), -1.0, 1.0)
+            elif self.claim.numbers:
+                key = self._least(seen, says)
+            else:
+                return
+        if self.claim.climbs or (key < 0).any():
+            self._keep(kind, seen, np.where((key < 0) & seen.extreme, key / 1000, key))
+
+    def _least(self, seen: Seen, says: Mask) -> Array:
+        """Return the least number of the claim relative to its scale, 2 where it has none."""
+        least: Array = np.full(says.shape, 2.0)
+        tolerance = 0 if self.claim.climbs else TOLERANCE
+        for _, value, scale, strict in self.claim.at(seen):
+            ratio = np.clip(value / scale + tolerance, -1, 1)
+            odd = np.isnan(ratio)
+            if odd.any():
+                lost = np.isnan(value)
+                ratio = np.where(odd, np.where(lost, 2, np.sign(value)), ratio)
+                self._lose(seen, lost & says)
+            ratio = np.where(value == 0, ZERO, ratio) if strict else ratio
+            least = np.minimum(least, ratio)
+        return np.where(says, least, 2)
+
+    def _keep(self, kind: str, seen: Seen, key: Array) -> None:
+        """Keep the worst points of their kind."""
+        known = self.worst.setdefault(kind, [])
+        place = np.flatnonzero(key < (known[-1][0] if len(known) == KEPT else np.inf))
+        first = place[np.argsort(key[place], kind="stable")[:KEPT]]
+        known += [(float(key[n]), seen.space, seen.points[:, n]) for n in first]
+        known.sort(key=itemgetter(0))
+        del known[KEPT:]
+
+    def _lose(self, seen: Seen, lost: Mask) -> None:
+        """Note a point where a law is nan though nothing overflowed."""
+        if self.claim.climbs and self.lost is None:
+            place = np.flatnonzero(lost & ~seen.extreme & ~np.isinf(seen.laws).any(axis=0))
+            self.lost = (seen.space, seen.points[:, place[0]]) if len(place) else None
+
+
+@final
+class Hunt:
+    """An attack on the rows of one model."""
+
+    def __init__(
+        self,
+        iphs: IPHS,
+        module: ModuleType,
+        claims: tuple[tuple[str, str], ...],
+        hints: tuple[Mapping[str, object], ...],
+        points: int,
+    ) -> None:
+        self.iphs, self.wanted = iphs, points
+        spec, probe = module.Parameters(), probe_of(iphs)
+        sizes = {bank: getattr(spec, f"{bank}_count") for bank in module.BANKS}
+        self.spec = Space(module, probe, sizes)
+        self.space = Space(module, probe, dict.fromkeys(sizes, LANES))
+        found = (claim_of(iphs, *row) for row in claims)
+        self.tracks = [Track(claim) for claim in found if claim]
+        known = [self.space.own(), *(self._hinted(hint) for hint in hints)]
+        self.draw = Draw(self.space, np.concatenate(known, axis=1), self._positive(), self._pairs())
+
+    def attacks(self) -> tuple[Attack, ...]:
+        """Return what became of each row.
+
+        Raises
+        ------
+        ContradictionError
+            If one is false.
+        """
+        for kind, space, points in self._blocks():
+            for n in range(0, points.shape[1], space.block):
+                self._see(kind, space, points[:, n : n + space.block])
+        exact = Exact(self.iphs)
+        return tuple(self._judged(track, exact) for track in self.tracks)
+
+    def _see(self, kind: str, space: Space, points: Array) -> None:
+        seen = space.at(points)
+        for track in self.tracks:
+            rest = track.claim.rest()
+            if rest is None:
+                track.see(kind, seen)
+                continue
+            changed, rows = points.copy(), space.places["INPUTS"]
+            for name in rest[0]:
+                changed[space.inputs_at + rows[name].start] = 0
+            for name in rest[1]:
+                changed[space.inputs_at + rows[name].start] = seen.u[rows[rest[1][0]].start]
+            track.see(kind, space.at(changed[:, space.at(changed).inside]))
+
+    def _blocks(self) -> Iterator[tuple[str, Space, Array]]:
+        """Yield points inside the domain, and how they were found."""
+        draw, own = self.draw, self.spec.own()
+        yield "own", self.spec, own[:, self.spec.at(own).inside]
+        total = draw.inside(draw.known)
+        draw.known = total if total.shape[1] else draw.known
+        yield "own", self.space, total
+        for kind, most in STAGES:
+            found = draw.kinks(draw.known[:, -20:], most)
+            draw.learn(found)
+            yield kind, self.space, found
+            total = np.concatenate([total, found], axis=1)
+        count = total.shape[1]
+        for _ in range(4 * self.wanted // self.space.block + 4):
+            if count >= self.wanted:
+                break
+            new = draw.inside(draw.drawn(self.space.block))
+            count += new.shape[1]
+            total = total if total.shape[1] > FEW else np.concatenate([total, new], axis=1)
+            yield "drawn", self.space, new
+        yield "walked", self.space, draw.walked(total, self.wanted - count)
+        yield from self._descended()
+
+    def _descended(self) -> Iterator[tuple[str, Space, Array]]:
+        """Yield steps from the worst points of each row, from where they led, and so on."""
+        for n in range(DESCENTS):
+            starts = [
+                point
+                for track in self.tracks
+                if track.claim.climbs
+                for _, space, point in sorted(chain(*track.worst.values()), key=itemgetter(0))[
+                    :KEPT
+                ]
+                if space is self.space
+            ]
+            if starts:
+                moved = self.draw.moved(np.array(starts).T, CHILDREN, 1.0 + n)
+                yield "descended", self.space, self.draw.inside(moved)
+
+    def _judged(self, track: Track, exact: Exact) -> Attack:
+        """Return what became of a row, its suspicious points evaluated exactly."""
+        claim, rounding = track.claim, None
+        for key, space, point in chain(*track.worst.values()):
+            value = exact.broken(claim, space, point) if key < 0 else None
+            if value:
+                raise self._contradiction(claim, value, space.words(point))
+            rounding = rounding or ((space, point) if key < ZERO else None)
+        if track.lost and rounding is None and exact.has_value(claim, *track.lost):
+            rounding = track.lost
+        if claim.id == "continuous":
+            self._jumps(claim, exact)
+        worst = rounding[0].words(rounding[1]) if rounding else None
+        return Attack(claim.id, claim.element, track.points, worst, rounding is not None)
+
+    def _jumps(self, claim: Claim, exact: Exact) -> None:
+        """Look at a law on both sides of the kinks that states and inputs reach."""
+        space = self.space
+        sizes = [row.stop - row.start for row in space.edge_rows]
+        chosen = np.repeat([edge.op == "if" for edge in space.probe.edges], sizes)
+        for roots in self.draw.roots:
+            low, high = (space.at(roots.at(value)) for value in (roots.low, roots.high))
+            near = chosen[roots.edge] & (roots.column >= space.inputs_at)
+            near &= low.inside & high.inside & ~space.at(roots.base).extreme
+            for what in ("law", "output"):
+                law = space.law_rows.get((claim.element, what), slice(0))
+                with np.errstate(all="ignore"):
+                    jump = np.abs(high.laws[law] - low.laws[law])
+                    big = (jump / (high.sizes[law] + low.sizes[law])).max(axis=0, initial=0)
+                big = np.where(near & np.isfinite(big), big, 0)
+                for n in np.argsort(-big, kind="stable")[:4]:
+                    pair = (low.points[:, n], high.points[:, n])
+                    value = exact.jump(claim, space, *pair) if big[n] > JUMP else None
+                    if value:
+                        raise self._contradiction(claim, value, space.words(pair[1]))
+
+    def _contradiction(
+        self, claim: Claim, value: str, words: Mapping[str, str]
+    ) -> ContradictionError:
+        at = ", ".join(f"{name} = {text}" for name, text in words.items())
+        row = f"{claim.id} of {claim.element}" if claim.element else claim.id
+        what = f"a proof and a number disagree: {row} is PROVED, but {value} at {at}"
+        remedy = "this is a fault of piezo-sym: report it with the spec"
+        return ContradictionError(what, self.iphs.model.name, remedy=remedy)
+
+    # What the spec says of columns
+
+    def _positive(self) -> Mask:
+        """Return which columns the domain keeps from being negative."""
+        trees = [greater(condition.tree) for condition in conditions(self.iphs.model)]
+        floors = [(c.left, c.right) for c in trees]
+        found = {
+            left.name
+            for left, right in floors
+            if isinstance(left, Sym) and isinstance(right, Num) and right.value >= 0
+        }
+        return np.array([name in found for name, _ in self.space.columns])
+
+    def _pairs(self) -> Any:
+        """Return pairs of columns of equal dimension."""
+        units = {f.name: parse_unit(f.unit).dimension for f in self.space.fields}
+        columns = [(n, units[name]) for n, (name, _) in enumerate(self.space.columns)]
+        pairs = [(a, b) for a, one in columns for b, other in columns if a != b and one == other]
+        return np.array(pairs, dtype=np.int64).reshape(-1, 2)
+
+    def _hinted(self, hint: Mapping[str, object]) -> Array:
+        """Return the spec's own point with the values of a hint; a temperature sets the entropy."""
+        point = self.space.own()
+        for n, (name, lane) in enumerate(self.space.columns):
+            given = hint.get(f"{name}_{lane + 1}", hint.get(name))
+            point[n] = point[n] if given is None else float(Fraction(str(given)))
+        for row, (_, port) in enumerate(self.iphs.circuit.of(Body)):
+            if port.temperature in hint and port.state not in hint:
+                column = self.space.states_at + self.space.places["STATES"][port.state].start
+                wanted = float(Fraction(str(hint[port.temperature])))
+                point[column] = warmed(self.space, point, column, row, wanted)
+        return point
