@@ -87,7 +87,7 @@ class ProofError(PiezoError):
 
 @final
 class ContradictionError(PiezoError):
-    """A row that is proved, and a point at which exact arithmetic finds it false; a fault of ours."""
+    """A proved row, and a point at which exact arithmetic finds it false: a fault of ours."""
 
     exit_code: ClassVar[int] = 3
 

@@ -19,6 +19,8 @@ from piezo_sym.spec.fields import Input, Parameter
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import banks, lane_parameters
 
+NO_JACOBIAN = Jacobian("", ())
+
 
 def lower(iphs: IPHS, verdict: str) -> Program:
     """Return the program of a system.
@@ -42,7 +44,7 @@ def program_of(
     iphs: IPHS,
     q: Quantities,
     functions: tuple[Function, ...],
-    jacobian: Jacobian = Jacobian("", ()),
+    jacobian: Jacobian = NO_JACOBIAN,
     limits: tuple[Limit, ...] = (),
     verdict: str = "",
 ) -> Program:

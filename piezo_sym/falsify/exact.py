@@ -1,4 +1,4 @@
-"""A suspicious point again, exactly, by the checker's reader: is the row false there, or the float?
+"""A suspicious point evaluated again, exactly, by the checker's reader.
 
 Input: the spec as text, a `Claim` and a point (floats are rationals).  Output: the exact value that
 breaks the row, as text, or None.
@@ -13,16 +13,19 @@ from typing import Any, final
 import numpy as np
 from flint import arb, ctx, fmpq
 
-from piezo_sym.checker import Point, evaluate, read_spec
+from piezo_sym.checker import read_spec
 from piezo_sym.checker.network import SingularError
-from piezo_sym.checker.point import exact
+from piezo_sym.checker.numbers import exact
 from piezo_sym.falsify.claims import Claim
+from piezo_sym.falsify.point import Point, evaluate
 from piezo_sym.falsify.space import Array, Space
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.elements.ports import Body
 
 BITS = 1024
 #: Two sides of a jump are brought together to these relative distances, and differ as before.
+#: What has shrunk to this part of what it was is no jump.
+FADED = Fraction(1, 10**9)
 NEAR, NEARER, SAME = Fraction(1, 10**40), Fraction(1, 10**80), Fraction(9, 10)
 #: A kink in floating point may lie beside the kink, by so much of its place.
 WIDER = (Fraction(0), Fraction(1, 10**15), Fraction(1, 10**12))
@@ -132,11 +135,12 @@ def _narrowed(
     """Return by how much values differ on two sides that come together, if it does not fade."""
     scale, gaps = max(abs(low), abs(high)), []
     one, other = seen(low), seen(high)
+    most = _gap(one, other)
     for limit in (NEAR, NEARER):
         while abs(high - low) > limit * scale:
             middle = (low + high) / 2
             value = seen(middle)
-            if value is None or not _gap(one, other):
+            if value is None or _gap(one, other) <= FADED * most:
                 return None
             if _gap(one, value) >= _gap(value, other):
                 high, other = middle, value

@@ -23,7 +23,7 @@ from piezo_sym.falsify.probe import probe_of
 from piezo_sym.falsify.space import Array, Mask, Seen, Space
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.elements.ports import Body
-from piezo_sym.spec.expressions import Num, Sym
+from piezo_sym.spec.expressions import Num, Sym, names
 from piezo_sym.spec.tables import conditions, greater
 from piezo_sym.spec.units import parse_unit
 
@@ -83,16 +83,18 @@ class Track:
     def _least(self, seen: Seen, says: Mask) -> Array:
         """Return the least number of the claim relative to its scale, 2 where it has none."""
         least: Array = np.full(says.shape, 2.0)
-        tolerance = 0 if self.claim.climbs else TOLERANCE
         for _, value, scale, strict in self.claim.at(seen):
-            ratio = np.clip(value / scale + tolerance, -1, 1)
+            if not self.claim.climbs and not (value < -TOLERANCE * scale).any():
+                continue
+            ratio = np.clip(value / scale, -1, 1)
             odd = np.isnan(ratio)
             if odd.any():
                 lost = np.isnan(value)
                 ratio = np.where(odd, np.where(lost, 2, np.sign(value)), ratio)
                 self._lose(seen, lost & says)
-            ratio = np.where(value == 0, ZERO, ratio) if strict else ratio
-            least = np.minimum(least, ratio)
+            if not self.claim.climbs:
+                ratio = np.where(ratio < -TOLERANCE, ratio, 1)
+            least = np.minimum(least, np.where(value == 0, ZERO, ratio) if strict else ratio)
         return np.where(says, least, 2)
 
     def _keep(self, kind: str, seen: Seen, key: Array) -> None:
@@ -106,7 +108,7 @@ class Track:
 
     def _lose(self, seen: Seen, lost: Mask) -> None:
         """Note a point where a law is nan though nothing overflowed."""
-        if self.claim.climbs and self.lost is None:
+        if self.claim.climbs and self.lost is None and lost.any():
             place = np.flatnonzero(lost & ~seen.extreme & ~np.isinf(seen.laws).any(axis=0))
             self.lost = (seen.space, seen.points[:, place[0]]) if len(place) else None
 
@@ -130,6 +132,8 @@ class Hunt:
         self.space = Space(module, probe, dict.fromkeys(sizes, LANES))
         found = (claim_of(iphs, *row) for row in claims)
         self.tracks = [Track(claim) for claim in found if claim]
+        trees = [condition.tree for condition in conditions(iphs.model)]
+        self.conditioned = {name for tree in trees for name in names(tree)}
         known = [self.space.own(), *(self._hinted(hint) for hint in hints)]
         self.draw = Draw(self.space, np.concatenate(known, axis=1), self._positive(), self._pairs())
 
@@ -159,7 +163,8 @@ class Hunt:
                 changed[space.inputs_at + rows[name].start] = 0
             for name in rest[1]:
                 changed[space.inputs_at + rows[name].start] = seen.u[rows[rest[1][0]].start]
-            track.see(kind, space.at(changed[:, space.at(changed).inside]))
+            bound = self.conditioned.isdisjoint({*rest[0], *rest[1][1:]})
+            track.see(kind, space.at(changed if bound else self.draw.inside(changed)))
 
     def _blocks(self) -> Iterator[tuple[str, Space, Array]]:
         """Yield points inside the domain, and how they were found."""

@@ -49,7 +49,6 @@ from piezo_sym.spec.expressions import (
     Num,
     Pow,
     Sym,
-    children,
     rename,
     walk,
 )
@@ -238,16 +237,15 @@ def _edges(tree: Node) -> Iterator[Edge]:
 
 def _equal(iphs: IPHS, q: Quantities) -> Iterator[Expr]:
     """Yield differences and sums of a quantity and a parameter or input of equal dimension."""
-    fields = (*iphs.model.parameters.items(), *iphs.model.inputs.items())
-    units = [(name, field.dimension.dimension) for name, field in fields]
+    units = [(name, p.dimension.dimension) for name, p in iphs.model.parameters.items()]
+    units += [(name, u.dimension.dimension) for name, u in iphs.model.inputs.items()]
     quantities: list[tuple[Expr, str]] = []
-    for _, port in q.stores:
-        quantities.append(
-            (Sym(costate_name(port)), "K" if isinstance(port, Body) else port.units[1])
-        )
-    for force, (_, port) in zip(q.forces, iphs.circuit.of(Resistor, Conductor), strict=True):
-        if isinstance(port, Resistor):
-            quantities.append((force, UNITS[port.domain, port.imposes.other]))
+    for _, store in q.stores:
+        unit = "K" if isinstance(store, Body) else store.units[1]
+        quantities.append((Sym(costate_name(store)), unit))
+    for force, (_, process) in zip(q.forces, iphs.circuit.of(Resistor, Conductor), strict=True):
+        if isinstance(process, Resistor):
+            quantities.append((force, UNITS[process.domain, process.imposes.other]))
     for tree, unit in dict.fromkeys(quantities):
         for name, dimension in units:
             if parse_unit(unit).dimension == dimension:

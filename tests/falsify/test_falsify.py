@@ -214,7 +214,7 @@ def stack():
 
 
 @pytest.fixture(scope="module")
-def rows(stack):
+def rows():
     bodies = [(row, "body") for row in ("temperature", "invariant")]
     laws = [(p, e) for p in ("passive", "welldef", "continuous") for e in ("hysteron", "damper")]
     return (
