@@ -108,25 +108,19 @@ def _sum(parts: list[Enclosure]) -> Enclosure:
 
 
 def _cancelled(total: Enclosure, tree: Expr, x: Enclosure) -> Enclosure:
-    """Return a sum whose terms cancel exactly at the left end, or at the one point, as zero there.
-
-    A tree that `vanishes` has no jump there, so that its limit is its value.
-    """
-    if x.left and _vague(total.left) and _vanishes(tree, x.left[0]):
+    """Return a sum as zero at the left end, or the one point, if its terms cancel and none jumps."""
+    if x.left and _cancels(total.left, tree, x.left[0]):
         left = (iv.NOUGHT, *total.left[1:])
         return Enclosure(_sharpened(total.inner, left, total.right), left, total.right)
-    if not x.left and _vague(total.inner) and _vanishes(tree, x.inner[0]):
+    if not x.left and _cancels(total.inner, tree, x.inner[0]):
         return Enclosure((iv.NOUGHT,))
     return total
 
 
-def _vague(jet: Jet) -> bool:
-    """Return whether a limit may be zero but is not known to be."""
-    return bool(jet) and jet[0].exact is None and jet[0].lo <= 0 <= jet[0].hi
-
-
-def _vanishes(tree: Expr, at: Interval) -> bool:
-    return at.exact is not None and vanishes(tree, at.exact)
+def _cancels(jet: Jet, tree: Expr, at: Interval) -> bool:
+    """Return whether a limit that may be zero is exactly zero."""
+    vague = jet and jet[0].exact is None and jet[0].lo <= 0 <= jet[0].hi
+    return bool(vague) and at.exact is not None and vanishes(tree, at.exact)
 
 
 def _each(operation: Callable[..., Jet], *parts: Enclosure) -> Enclosure:
