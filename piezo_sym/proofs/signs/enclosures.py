@@ -9,7 +9,7 @@ most of the cancellation that intervals suffer from.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import final
 
@@ -108,7 +108,7 @@ def _sum(parts: list[Enclosure]) -> Enclosure:
 
 
 def _cancelled(total: Enclosure, tree: Expr, x: Enclosure) -> Enclosure:
-    """Return a sum as zero at the left end, or the one point, if its terms cancel and none jumps."""
+    """Return a sum as zero at its left end or one point if its terms cancel and none jumps."""
     if x.left and _cancels(total.left, tree, x.left[0]):
         left = (iv.NOUGHT, *total.left[1:])
         return Enclosure(_sharpened(total.inner, left, total.right), left, total.right)
@@ -215,8 +215,7 @@ def _call(function: str, args: list[Enclosure]) -> Enclosure:
 
 
 def _minus(a: Enclosure) -> Enclosure:
-    found = _each(jets.minus, a)
-    return Enclosure(found.inner, found.left, found.right, a.growth)
+    return replace(_each(jets.minus, a), growth=a.growth)
 
 
 def _nought(like: Enclosure) -> Enclosure:
