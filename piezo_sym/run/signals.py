@@ -3,20 +3,16 @@
 Input: a waveform's numbers (SI; frequencies in Hz).  Output: a frozen `Signal`, callable on t.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
+from collections.abc import Iterable
 from dataclasses import dataclass
 from math import inf, pi
-from typing import TYPE_CHECKING, final
+from typing import final
 
 import numpy as np
 
 from piezo_sym.errors import UsageError
 from piezo_sym.run.checks import FloatArray, number, positive
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
 
 MOST_CORNERS = 1000
 STEPS_PER_PERIOD = 8

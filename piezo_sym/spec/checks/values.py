@@ -1,7 +1,5 @@
 """Values of a spec: lanes of the right number, starts that exist, all inside the domain."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from piezo_sym.errors import SpecError, quote
