@@ -57,7 +57,7 @@ def _parts(spec: Spec, counts: Mapping[str, int]) -> list[Part]:
     """Return every branch, those of a bank once per lane."""
     found = []
     for e in spec.of("store", "law", "source", "coupling", "hysteron"):
-        for lane in range(1, counts[e.name] + 1) if e.count is not None else (0,):
+        for lane in range(1, counts[e.name] + 1) if e.lanes is not None else (0,):
             if e.kind.form == "hysteron":
                 (a, b), inner = e.pairs[0], (e.name, lane)
                 found.append(Part(e.name, lane, "store", (a, inner), False))
@@ -179,7 +179,11 @@ def _added(left: Form, right: Form, factor: Any) -> Form:
     total = dict(left)
     for label, value in right.items():
         total[label] = factor * value + total[label] if label in total else factor * value
-    return {label: value for label, value in total.items() if not value == 0}
+    return {label: value for label, value in total.items() if not _vanishes(value)}
+
+
+def _vanishes(value: Any) -> bool:
+    return bool(value == 0)  # an enclosure of zero is neither == 0 nor != 0
 
 
 def _is_given(label: Any) -> bool:
@@ -225,4 +229,8 @@ def degree(node: Node, letter: Any) -> int | None:
         return 1 if set(degrees) == {1} else None
     if node.op == "if":
         return 1 if letter not in symbols(node.args[0]) and set(degrees[1:]) == {1} else None
-    return 1 if (node.op == "*" and set(degrees) == {0, 1}) or (node.op == "/" and degrees == [1, 0]) else None
+    return (
+        1
+        if (node.op == "*" and set(degrees) == {0, 1}) or (node.op == "/" and degrees == [1, 0])
+        else None
+    )

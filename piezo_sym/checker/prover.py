@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from time import monotonic
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import cvc5
 
@@ -105,7 +105,9 @@ class _Query:
             parts = (self.holds(arg) if arg.op == "cmp" else self.term(arg) for arg in args)
             return f"({OPERATIONS[node.op]} {' '.join(parts)})"
         if node.op in ("**", "sqrt"):
-            return self.term(self._power(args[0], Fraction(1, 2) if node.op == "sqrt" else node.value))
+            return self.term(
+                self._power(args[0], Fraction(1, 2) if node.op == "sqrt" else node.value)
+            )
         if node.op == "/" and args[1].op == "num" and args[1].value:
             return self.term(Node("*", (num(1 / args[1].value), args[0])))
         y = self._fresh(node)
@@ -182,7 +184,9 @@ class Prover:
             self.answers[key] = any(self._follows(claim, (*where, *path)) for where in tries)
         return self.answers[key]
 
-    def _follows(self, claim: Node, where: tuple[Node, ...], assumed: tuple[Node, ...] = ()) -> bool:
+    def _follows(
+        self, claim: Node, where: tuple[Node, ...], assumed: tuple[Node, ...] = ()
+    ) -> bool:
         """Return whether a claim follows, if need be from a comparison in it and its opposite."""
         query = _Query(assumed)
         for term in (*map(query.holds, where), *map(query.plain, assumed)):
@@ -218,11 +222,16 @@ def partial(node: Node, path: tuple[Node, ...] = ()) -> Iterator[Claim]:
         return
     for arg in node.args:
         yield from partial(arg, path)
+    yield from (Claim(path, claim) for claim in needed(node))
+
+
+def needed(node: Node) -> Iterator[Node]:
+    """Yield what must hold of a function's arguments for it to have a value."""
     given = {"/": -1, "sqrt": Fraction(1, 2), "**": node.value}.get(node.op, 1)
     power, last = Fraction(given), node.args[-1] if node.args else node
     if node.op == "log" or (power < 0 and power.denominator > 1):
-        yield Claim(path, compare(last, ">"))
+        yield compare(last, ">")
     elif power.denominator > 1:
-        yield Claim(path, compare(last, ">="))
+        yield compare(last, ">=")
     elif power < 0 and not (last.op == "num" and last.value):
-        yield Claim(path, compare(last, "!="))
+        yield compare(last, "!=")

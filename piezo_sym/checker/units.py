@@ -15,7 +15,10 @@ from typing import Any, NamedTuple
 from .laws import InputError, Node, need
 
 TERM = re.compile(r"([*/]|^)([A-Za-z]+|1)(?:(?:\*\*|\^)(-?[1-9]))?(?![A-Za-z0-9^]|\*\*)")
-BASES = [f"[{w}]" for w in "mass length time current temperature substance luminosity".split()]
+BASES = [
+    f"[{w}]"
+    for w in ["mass", "length", "time", "current", "temperature", "substance", "luminosity"]
+]
 Dimension = tuple[Fraction, ...]
 NONE: Dimension = (Fraction(0),) * len(BASES)
 PURE = ("exp", "log", "sin", "cos", "tanh")

@@ -49,7 +49,6 @@ from piezo_sym.spec.expressions import (
     Num,
     Pow,
     Sym,
-    children,
     rename,
     walk,
 )
