@@ -8,8 +8,6 @@ there, FLINT gives the Taylor series at lo and its remainder.  A window to infin
 far out, where coarse bounds of functions are enough.
 """
 
-from __future__ import annotations
-
 import operator
 from collections.abc import Mapping
 from fractions import Fraction
@@ -21,7 +19,7 @@ from flint import arb, arb_series, ctx, fmpq
 from . import laws
 from .field import Field
 from .laws import KINKS, InputError, Node, compare, made, need, negated, num, put, sym, symbols
-from .prover import Prover
+from .prover import Claim, Prover, partial
 from .spec import Element, Spec
 
 BITS, ORDER, MOST_WINDOWS, MOST_CASES, FARTHEST = 192, 10, 3000, 64, 2**12
@@ -92,33 +90,28 @@ class _Certificate:
         if tree.op in KINKS and free:
             return self._decided(laws.unkinked(tree), guards)
         args = tuple(self._decided(arg, guards) for arg in tree.args)
-        for side, branch in (
-            ((tree.args[0], 1), (tree.args[0], 2)) if tree.op == "if" and free else ()
-        ):
-            if self.prover.proves(side if branch == 1 else negated(side), guards):
+        for branch in (1, 2) if tree.op == "if" and free else ():
+            side = tree.args[0] if branch == 1 else negated(tree.args[0])
+            if self.prover.proves(side, guards):
                 return args[branch]
         return Node(tree.op, args, tree.value)
 
     def _term(self, law: Node, term: Mapping[str, Any], guards: tuple[Node, ...]) -> str:
         """Return why law*letter >= 0 is not shown of one summand."""
-        front, f, way, scale = (
-            self.read(term["prefactor"]),
-            laws.parse(term["f"]),
-            term["sign"],
-            num(1),
-        )
+        front, f, way = self.read(term["prefactor"]), laws.parse(term["f"]), term["sign"]
+        scale, valued = num(1), [*partial(front)]
         need(not set(symbols(f)) - {"s"} and way in (1, -1), "f is not of s alone, or has no sign")
         for text, power in term["scale"].items():
             base = self.read(text)
-            free = self.letter not in symbols(base)
-            if not (free and self.prover.proves(compare(base, ">"), guards)):
-                return f"the scale {text[:40]!r} is not shown to be positive"
+            need(self.letter not in symbols(base), "a scale has the letter in it")
+            valued += [*partial(base), Claim((), compare(base, ">"))]
             scale = Node("*", (scale, Node("**", (base,), Fraction(power))))
         letter = {self.letter: Node("*", (scale, S))}
         if not self._same(put(law, letter), put(Node("*", (front, f)), letter), guards):
             return "a term is not shown to be prefactor*f(s)"
-        if not self.prover.proves(compare(front, ">=" if way > 0 else "<="), guards):
-            return "the sign of a prefactor is not shown"
+        valued.append(Claim((), compare(front, ">=" if way > 0 else "<=")))
+        if not all(self.prover.proves(claim, (*guards, *path)) for path, claim in valued):
+            return "the sign of a prefactor or scale is not shown"
         return self._rays(Node("*", (num(way), f)), term["rays"])
 
     # f(s)*s on the whole line
@@ -163,8 +156,7 @@ class _Certificate:
 
     def _at(self, f: Node, s: Fraction) -> bool:
         """Return whether f(s)*s >= 0 at a number."""
-        here = num(s)
-        tree = self._smooth(put(f, {"s": here}), ())
+        tree = self._smooth(put(f, {"s": num(s)}), ())
         return s == 0 or bool(_exact(s) * _series(tree, arb_series([0]))[0] >= 0)
 
     def _smooth(self, tree: Node, window: tuple[Node, ...]) -> Node:
@@ -207,7 +199,7 @@ def _shown(f: Node, s: Node, lo: Fraction, hi: Fraction) -> bool:
         left, whole = (g * _series(s, t) for g, t in zip((left, whole), both, strict=True))
     except (ValueError, ZeroDivisionError, InputError):
         return False
-    first = next((k for k in range(ORDER + 1) if not _is_nought(left[k])), ORDER)
+    first = next((k for k in range(ORDER + 1) if (left[k] == 0) is not True), ORDER)
     for order in range(ORDER + 1):
         total, skipped = whole[order], min(first, order)
         for k in reversed(range(skipped, order)):
@@ -215,10 +207,6 @@ def _shown(f: Node, s: Node, lo: Fraction, hi: Fraction) -> bool:
         if total >= 0:
             return True
     return False
-
-
-def _is_nought(number: Any) -> bool:
-    return bool(number == 0)  # an enclosure of zero is neither == 0 nor != 0
 
 
 def _exact(number: Fraction) -> Any:

@@ -5,8 +5,6 @@ reason empty where it is confirmed.  skew and casimir follow from the balances: 
 co-states vanishes for all of them, and nothing but processes and inputs is in an entropy's rate.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial as bind
 from typing import Any
@@ -94,8 +92,8 @@ class _Audit:
         """Return the first claim that does not follow."""
         for path, claim in dict.fromkeys(claims):
             if not (prover or self.prover).proves(claim, path):
-                text = f"{_spelled(claim.args[0])} {claim.value} {_spelled(claim.args[1])}"
-                return f"{text[:100]} does not follow"
+                names = ", ".join(str(name[1]) for name in symbols(claim))
+                return f"a comparison ({claim.value}) of {names[:80]} does not follow"
         return ""
 
     # The rows
@@ -107,14 +105,9 @@ class _Audit:
         own |= {("p", n): [num(value) for value in v] for n, v in spec.parameters.items()}
         own |= {("x", n): [*spec.initial.get(n, [num(0)])] for n in spec.states.values()}
         own |= {("T", b.name): [b.laws["temperature"]] for b in spec.of("body")}
-        for tree in self.conditions:
-            for lane in range(max(map(len, own.values()))):
-                path, asked = dict[Node, None](), [tree]
-                while asked:
-                    for name in symbols(asked.pop()):
-                        asked.append(own[name][lane % len(own[name])])
-                        path[compare(sym(name), "=", asked[-1])] = None
-                claims.append(Claim(tuple(path), tree))
+        for lane in range(max(map(len, own.values()))):
+            here = [compare(sym(n), "=", found[lane % len(found)]) for n, found in own.items()]
+            claims += [Claim(tuple(here), tree) for tree in self.conditions]
         return self._all(claims, Prover(()))
 
     def _system(self) -> str:
@@ -267,9 +260,3 @@ class _Closed:
             edge = Node("if", (step, edge, num(0)))
         self.where.append(compare(edge, ">="))
         return chosen if above != turned else negated(chosen)
-
-
-def _spelled(node: Node) -> str:
-    if node.op in ("num", "sym"):
-        return str(node.value if node.op == "num" else ".".join(map(str, node.value)))
-    return f"{node.op}({', '.join(map(_spelled, node.args))})"

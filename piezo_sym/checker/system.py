@@ -8,8 +8,6 @@ rates have sums over lanes with coefficients that no count is in, and products o
 none, concerns three lanes at once at most: it holds for every count if it does for 1, 2 and 3.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 

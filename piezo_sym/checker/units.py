@@ -4,8 +4,6 @@ Input: texts such as ``N*s/m``, and trees with the dimension of every symbol.  O
 the faults that a tree has.  pint knows the units; the grammar is the checker's own.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
