@@ -8,23 +8,25 @@ there, FLINT gives the Taylor series at lo and its remainder.  A window to infin
 far out, where coarse bounds of functions are enough.
 """
 
-from __future__ import annotations
-
+import operator
 from collections.abc import Mapping
 from fractions import Fraction
+from math import prod
 from typing import Any
 
-from flint import arb, arb_series, ctx
+from flint import arb, arb_series, ctx, fmpq
 
+from . import laws
 from .field import Field
-from .laws import KINKS, Node, compare, made, need, negated, num, parse, put, sym, symbols, unkinked
-from .numbers import CannotTell, NoValue, compute, exact
-from .prover import Prover
+from .laws import KINKS, InputError, Node, compare, made, need, negated, num, put, sym, symbols
+from .prover import Claim, Prover, partial
 from .spec import Element, Spec
 
 BITS, ORDER, MOST_WINDOWS, MOST_CASES, FARTHEST = 192, 10, 3000, 64, 2**12
 NARROWEST = Fraction(1, 2**20)
 S, TANH = sym("s"), "1 - 2/(exp(2*x) + 1)"
+SERIES = {"*": operator.mul, "/": operator.truediv, "neg": operator.neg}
+SERIES |= {"+": lambda *terms: sum(terms[1:], terms[0])}
 
 
 def check_certificate(spec: Spec, element: Element, cases: Any, prover: Prover) -> str:
@@ -47,7 +49,7 @@ class _Certificate:
 
     def read(self, text: str) -> Node:
         """Return a text of the certificate in the symbols of the spec."""
-        tree = parse(text)
+        tree = laws.parse(text)
         unknown = [name for name in symbols(tree) if name not in self.words]
         need(not unknown, f"its certificate has the unknown name {str(unknown)[:40]}")
         return put(tree, self.words)
@@ -86,28 +88,30 @@ class _Certificate:
         """Return a tree without the choices of parameters that guards decide."""
         free = not {self.letter, "s"} & set(symbols(tree.args[0] if tree.op == "if" else tree))
         if tree.op in KINKS and free:
-            return self._decided(unkinked(tree), guards)
+            return self._decided(laws.unkinked(tree), guards)
         args = tuple(self._decided(arg, guards) for arg in tree.args)
-        for side, branch in ((tree.args[0], 1), (tree.args[0], 2)) if tree.op == "if" and free else ():
-            if self.prover.proves(side if branch == 1 else negated(side), guards):
+        for branch in (1, 2) if tree.op == "if" and free else ():
+            side = tree.args[0] if branch == 1 else negated(tree.args[0])
+            if self.prover.proves(side, guards):
                 return args[branch]
         return Node(tree.op, args, tree.value)
 
     def _term(self, law: Node, term: Mapping[str, Any], guards: tuple[Node, ...]) -> str:
         """Return why law*letter >= 0 is not shown of one summand."""
-        front, f, way, scale = self.read(term["prefactor"]), parse(term["f"]), term["sign"], num(1)
+        front, f, way = self.read(term["prefactor"]), laws.parse(term["f"]), term["sign"]
+        scale, valued = num(1), [*partial(front)]
         need(not set(symbols(f)) - {"s"} and way in (1, -1), "f is not of s alone, or has no sign")
         for text, power in term["scale"].items():
             base = self.read(text)
-            free = self.letter not in symbols(base)
-            if not (free and self.prover.proves(compare(base, ">"), guards)):
-                return f"the scale {text[:40]!r} is not shown to be positive"
+            need(self.letter not in symbols(base), "a scale has the letter in it")
+            valued += [*partial(base), Claim((), compare(base, ">"))]
             scale = Node("*", (scale, Node("**", (base,), Fraction(power))))
         letter = {self.letter: Node("*", (scale, S))}
         if not self._same(put(law, letter), put(Node("*", (front, f)), letter), guards):
             return "a term is not shown to be prefactor*f(s)"
-        if not self.prover.proves(compare(front, ">=" if way > 0 else "<="), guards):
-            return "the sign of a prefactor is not shown"
+        valued.append(Claim((), compare(front, ">=" if way > 0 else "<=")))
+        if not all(self.prover.proves(claim, (*guards, *path)) for path, claim in valued):
+            return "the sign of a prefactor or scale is not shown"
         return self._rays(Node("*", (num(way), f)), term["rays"])
 
     # f(s)*s on the whole line
@@ -118,7 +122,7 @@ class _Certificate:
         for ray in rays:
             centre, side = Fraction(ray["centre"]), ray["side"]
             covered.append((centre, centre))
-            if side not in (1, -1) or not _holds_at(f, centre):
+            if side not in (1, -1) or not self._at(f, centre):
                 return f"f is not shown to have its sign at {centre}"
             for lo, hi, _ in ray["windows"]:
                 ends = Fraction(lo), None if hi == "inf" else Fraction(hi)
@@ -140,9 +144,9 @@ class _Certificate:
             far, signed = compare(S, ">=", a), compare(Node("*", (num(side), moved)), ">=")
             if b is None and a > abs(centre) and self.tails.proves(signed, (far,)):
                 continue
-            if b is not None and _holds_at(f, centre + side * a):
-                tree = self._smooth(Node("*", (moved, s)), (compare(S, ">", a), compare(S, "<=", b)))
-                if _shown(tree, a, b):
+            if b is not None and self._at(f, centre + side * a):
+                tree = self._smooth(moved, (compare(S, ">", a), compare(S, "<=", b)))
+                if _shown(tree, s, a, b):
                     continue
             if a >= FARTHEST or (b is not None and b - a < NARROWEST * max(b, 1)):
                 return False
@@ -150,13 +154,19 @@ class _Certificate:
             pieces += [(middle, b), (a, middle)]
         return True
 
-    def _smooth(self, tree: Node, window: tuple[Node, Node]) -> Node:
+    def _at(self, f: Node, s: Fraction) -> bool:
+        """Return whether f(s)*s >= 0 at a number."""
+        tree = self._smooth(put(f, {"s": num(s)}), ())
+        return s == 0 or bool(_exact(s) * _series(tree, arb_series([0]))[0] >= 0)
+
+    def _smooth(self, tree: Node, window: tuple[Node, ...]) -> Node:
         """Return a tree without the choices that a window settles."""
-        if tree.op in KINKS:
-            return self._smooth(unkinked(tree), window)
+        wide = tree.op in ("abs", "min", "max")  # both branches are equal at the edge
+        tree = laws.unkinked(tree) if tree.op in KINKS else tree
         for branch in (1, 2) if tree.op == "if" else ():
             side = tree.args[0] if branch == 1 else negated(tree.args[0])
-            if self.tails.proves(side, window):
+            value = side.value[0] + "=" if wide else side.value
+            if self.tails.proves(Node("cmp", side.args, value), window):
                 return self._smooth(tree.args[branch], window)
         return Node(tree.op, tuple(self._smooth(arg, window) for arg in tree.args), tree.value)
 
@@ -164,35 +174,32 @@ class _Certificate:
 def _is_line(covered: list[tuple[Any, Any]]) -> bool:
     """Return whether closed intervals (None: infinity) cover the real line."""
     covered = sorted(covered, key=lambda c: (c[0] is not None, c[0] or 0))
-    reached = covered[0][1] if covered and covered[0][0] is None else Fraction(-1, 0 + 1)
     if not covered or covered[0][0] is not None:
         return False
-    for lo, hi in covered:
-        if reached is not None and lo is not None and lo > reached:
-            return False
-        reached = None if reached is None or hi is None else max(reached, hi)
+    reached = covered[0][1]
+    for lo, hi in covered[1:]:
+        if reached is None or (lo is not None and lo > reached):
+            break
+        reached = None if hi is None else max(reached, hi)
     return reached is None
 
 
-def _holds_at(f: Node, s: Fraction) -> bool:
-    """Return whether f(s)*s >= 0 at a number."""
-    try:
-        return bool(compute(Node("*", (f, S)), {"s": exact(s)}) >= 0)
-    except (CannotTell, NoValue):
-        return False
+def _shown(f: Node, s: Node, lo: Fraction, hi: Fraction) -> bool:
+    """Return whether f*s >= 0 for lo < t <= hi, both functions of t, by Taylor series.
 
-
-def _shown(g: Node, lo: Fraction, hi: Fraction) -> bool:
-    """Return whether g(t) >= 0 for lo < t <= hi, by a Taylor series of some order.
-
-    What is exactly zero at lo is divided out, t - lo being positive.
+    What is exactly zero at lo is divided out, t - lo being positive; f may be so by its form.
     """
-    step = arb(exact((hi - lo) / 2), exact((hi - lo) / 2))
+    radius = arb(_exact((hi - lo) / 2))
+    step, field = arb(radius, radius), Field()
     try:
-        left, whole = (_series(g, arb_series([arb(exact(lo)) + more, 1])) for more in (0, step))
-    except (CannotTell, ValueError, ZeroDivisionError):
+        both = [arb_series([arb(_exact(lo)) + more, 1]) for more in (0, step)]
+        left, whole = (_series(f, t) for t in both)
+        if field.is_zero(field.of(put(f, {"s": num(lo)}))):
+            left = arb_series([0, *list(left)[1:]])
+        left, whole = (g * _series(s, t) for g, t in zip((left, whole), both, strict=True))
+    except (ValueError, ZeroDivisionError, InputError):
         return False
-    first = next((k for k in range(ORDER + 1) if not left[k] == 0), ORDER)
+    first = next((k for k in range(ORDER + 1) if (left[k] == 0) is not True), ORDER)
     for order in range(ORDER + 1):
         total, skipped = whole[order], min(first, order)
         for k in reversed(range(skipped, order)):
@@ -202,34 +209,25 @@ def _shown(g: Node, lo: Fraction, hi: Fraction) -> bool:
     return False
 
 
+def _exact(number: Fraction) -> Any:
+    return fmpq(number.numerator, number.denominator)
+
+
 def _series(node: Node, t: Any) -> Any:
-    """Return the series of a tree without choices; raises `CannotTell` where there is none."""
+    """Return the series of a tree without choices; raises an error where there is none."""
     if node.op in ("num", "sym"):
-        return t if node.op == "sym" else arb_series([exact(node.value)])
-    if node.op == "if":
-        raise CannotTell
+        return t if node.op == "sym" else arb_series([_exact(node.value)])
     if node.op == "tanh":
         return _series(made(TANH, x=node.args[0]), t)
+    need(node.op != "if", "a choice is not settled")
     args = [_series(arg, t) for arg in node.args]
-    x, power = args[0], Fraction(node.value or 0)
-    match node.op:
-        case "+":
-            found = sum(args[1:], x)
-        case "neg":
-            found = -x
-        case "*":
-            found = x * args[1]
-        case "/":
-            found = x / args[1]
-        case "**" if power.denominator == 1:
-            found = arb_series([1])
-            for _ in range(abs(power.numerator)):
-                found = found * x
-            found = found if power >= 0 else 1 / found
-        case "**":
-            found = (x.log() * arb(exact(power))).exp()
-        case _:
-            found = getattr(x, node.op)()
-    if not all(c.is_finite() for c in found):
-        raise CannotTell
+    power = Fraction(node.value or 0)
+    if node.op == "**" and power.denominator == 1:
+        found = prod([args[0]] * abs(power.numerator), start=arb_series([1]))
+        found = found if power >= 0 else 1 / found
+    elif node.op == "**":
+        found = (args[0].log() * arb(_exact(power))).exp()
+    else:
+        found = SERIES[node.op](*args) if node.op in SERIES else getattr(args[0], node.op)()
+    need(all(c.is_finite() for c in found), "it has no value")
     return found

@@ -6,8 +6,6 @@ across variable (a coupling gyrates if not), law fields with unit and letters, o
 co-state of a store as a law of its state x.  ``?`` marks what may be left out.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 REFERENCES = {"gnd": "E", "wall": "M"}

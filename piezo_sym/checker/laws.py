@@ -11,9 +11,11 @@ import re
 from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
 from functools import cache
+from math import ceil, comb, prod
 from typing import Any, NamedTuple
 
 MAX_LENGTH, MAX_DEPTH, MAX_DIGITS, MAX_EXPONENT, MAX_POWER = 1000, 100, 60, 400, 16
+MAX_TERMS = 600
 FUNCTIONS = dict.fromkeys(("exp", "log", "sqrt", "sin", "cos", "tanh", "abs", "sign"), 1)
 FUNCTIONS |= dict.fromkeys(("min", "max", "deadzone", "saturate"), 2)
 BINDS = {"if": 1, "<": 2, "<=": 2, ">": 2, ">=": 2, "+": 3, "-": 3, "*": 4, "/": 4, "**": 6}
@@ -138,6 +140,18 @@ def derivative(node: Node, by: Any) -> Node:
     return slope if node.op in ("*", "/", "neg") else Node("*", (slope, dx))
 
 
+def _terms(node: Node, most: int) -> int:
+    """Return how many terms a law has when it is multiplied out; refuse too many."""
+    parts = [_terms(arg, most) for arg in node.args]
+    found = 1 if node.op not in ("+", "neg") else sum(parts)
+    if node.op in "*/":
+        found = prod(parts)
+    elif node.op == "**":
+        found = comb(parts[0] + ceil(abs(node.value)) - 1, ceil(abs(node.value)))
+    need(found <= most, "a law is too large when it is multiplied out")
+    return found
+
+
 def number(text: str) -> Fraction:
     """Return the exact value of a decimal number."""
     mantissa, _, exponent = text.strip().lower().replace("_", "").partition("e")
@@ -161,6 +175,7 @@ def parse(text: Any, length: int = MAX_LENGTH, compares: bool | None = None) -> 
     need(plain, f"{str(text)[:60]!r} is no law of plain text, or too long")
     tree = _Parser(text, sums=length > MAX_LENGTH).whole()
     need(compares in (None, tree.op == "cmp"), f"{text[:60]!r} is a comparison, or should be one")
+    _terms(tree, MAX_TERMS * length // MAX_LENGTH)
     return tree
 
 

@@ -5,17 +5,15 @@ reason empty where it is confirmed.  skew and casimir follow from the balances: 
 co-states vanishes for all of them, and nothing but processes and inputs is in an entropy's rate.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial as bind
 from typing import Any
 
+from . import laws
 from .certificate import check_certificate
 from .field import Field
-from .laws import KINKS, InputError, Node, compare, derivative, made, need, negated, num, put
-from .laws import sym, symbols, unkinked, walk
-from .numbers import CannotTell, NoValue, compute, exact, holds
-from .prover import Claim, Prover, partial
+from .laws import KINKS, InputError, Node, compare, made, need, negated, num, put, sym, symbols
+from .prover import Claim, Prover, needed, partial
 from .spec import Element, Spec
 from .system import check_system
 
@@ -90,48 +88,41 @@ class _Audit:
     def _good(self, *names: str) -> bool:
         return not any(reason for (name, _), reason in self.done.items() if name in names)
 
-    def _all(self, claims: Iterable[Claim]) -> str:
+    def _all(self, claims: Iterable[Claim], prover: Prover | None = None) -> str:
         """Return the first claim that does not follow."""
         for path, claim in dict.fromkeys(claims):
-            if not self.prover.proves(claim, path):
-                text = f"{_spelled(claim.args[0])} {claim.value} {_spelled(claim.args[1])}"
-                return f"{text[:100]} does not follow"
+            if not (prover or self.prover).proves(claim, path):
+                names = ", ".join(str(name[1]) for name in symbols(claim))
+                return f"a comparison ({claim.value}) of {names[:80]} does not follow"
         return ""
 
     # The rows
 
     def _domain(self) -> str:
-        """Return why the spec's own values may be outside of its domain."""
-        words = {("u", name): [value] for name, value in self.spec.inputs.items()}
-        words |= {("p", name): list(values) for name, values in self.spec.parameters.items()}
-
-        def at(lane: int) -> dict[Any, Any]:
-            return {name: exact(values[lane % len(values)]) for name, values in words.items()}
-
-        for name in self.spec.states.values():
-            starts = self.spec.initial.get(name, (num(0),))
-            lanes = max(len(starts), *(len(words[s]) for tree in starts for s in symbols(tree)), 1)
-            words["x", name] = [compute(starts[n % len(starts)], at(n)) for n in range(lanes)]
-        for body in self.spec.of("body"):
-            words["T", body.name] = [compute(body.laws["temperature"], at(0))]
-        for text, tree in self.spec.conditions:
-            lanes = max((len(words[s]) for s in symbols(tree)), default=1)
-            if not all(holds(tree, at(lane)) for lane in range(lanes)):
-                return f"the spec's own values are not in {text!r}"
-        return ""
+        """Return why the spec's own values, in each lane, may be outside of its domain."""
+        spec, claims = self.spec, list[Claim]()
+        own = {("u", name): [num(value)] for name, value in spec.inputs.items()}
+        own |= {("p", n): [num(value) for value in v] for n, v in spec.parameters.items()}
+        own |= {("x", n): [*spec.initial.get(n, [num(0)])] for n in spec.states.values()}
+        own |= {("T", b.name): [b.laws["temperature"]] for b in spec.of("body")}
+        for lane in range(max(map(len, own.values()))):
+            here = [compare(sym(n), "=", found[lane % len(found)]) for n, found in own.items()]
+            claims += [Claim(tuple(here), tree) for tree in self.conditions]
+        return self._all(claims, Prover(()))
 
     def _system(self) -> str:
-        divisors = [Claim((), compare(tree, "!=")) for tree in self.found.divisors]
+        divisors = [_true(tree, "!=") for tree in self.found.divisors]
         return self.found.reasons.get("system", "") or self._all(divisors)
 
     def _temperature(self, body: Element) -> str:
         law = body.laws["temperature"]
-        slope = derivative(law, ("x", body.name))
-        claims = [*partial(law), *partial(slope)]
-        return self._all([*claims, *(Claim((), compare(tree, ">")) for tree in (law, slope))])
+        slope = laws.derivative(law, ("x", body.name))
+        claims = [*partial(law), *partial(slope), _true(law, ">"), _true(slope, ">")]
+        return self._all(claims)
 
     def _element(self, element: Element) -> Iterator[Row]:
-        trees = [tree for tree in (element.costate, element.law) if tree] or [*element.laws.values()]
+        own = tuple(tree for tree in (element.costate, element.law) if tree)
+        trees = own or tuple(element.laws.values())
         claims = [claim for tree in trees for claim in partial(tree)]
         moving = [tree for tree in trees if _moves(tree)]
         if claims or element.law:
@@ -141,27 +132,26 @@ class _Audit:
         if element.law:
             yield self._row("passive", element.name, lambda: self._passive(element))
         elif element.kind.form == "conduction":
-            flows = [*claims, Claim((), compare(trees[0], ">="))]
+            flows = [*claims, _true(trees[0], ">=")]
             yield self._row("passive", element.name, lambda: self._all(flows))
 
     def _continuous(self, trees: list[Node]) -> str:
+        claims: list[Claim] = []
         for tree in trees:
             closed = _Closed()
             relaxed = closed.tree(tree, ())
-            same = [Claim(tuple(closed.where), compare(relaxed, "=", tree))] * (relaxed != tree)
-            if reason := self._all([*closed.claims, *same]):
-                return reason
-        return ""
+            same = Claim(tuple(closed.where), compare(relaxed, "=", tree))
+            claims += [*closed.claims, same] if relaxed != tree else closed.claims
+        return self._all(claims)
 
     def _passive(self, element: Element) -> str:
         """Return why a law may give power: its certificate, if it has one, else cvc5."""
         law, z = element.law or num(0), sym(("z", element.name))
-        given = [e["certificate"] for e in self.stated["passive", element.name] if e.get("certificate")]
-        if given:
-            reason = check_certificate(self.spec, element, given[0], self.prover)
+        given = (entry.get("certificate") for entry in self.stated["passive", element.name])
+        if certificate := next(filter(None, given), None):
+            reason = check_certificate(self.spec, element, certificate, self.prover)
         else:
-            sides = ((">", ">="), ("<", "<="))
-            reason = self._all([Claim((compare(z, s),), compare(law, op)) for s, op in sides])
+            reason = self._all([Claim((compare(z, s),), compare(law, s + "=")) for s in "<>"])
         return reason or self._of("welldef", element.name)
 
     def _balances(self) -> Iterator[Row]:
@@ -170,7 +160,7 @@ class _Audit:
         claims = []
         for element in self.spec.of("ambient"):
             law, hot = element.laws["conductance"], sym(("u", element.input))
-            claims += [*partial(law), *(Claim((), compare(*c)) for c in ((law, ">="), (hot, ">")))]
+            claims += [*partial(law), _true(law, ">="), _true(hot, ">")]
         for name in ("exergy", "environment") if claims else ():
             rests = self._of("sigma") or self._of("energy")
             yield self._row(name, "", lambda rests=rests: rests or self._all(claims))
@@ -180,25 +170,26 @@ class _Audit:
     def _others(self) -> Iterator[Row]:
         for (name, owner), entries in self.stated.items():
             claimed = any(e.get("verdict") == "PROVED" or e.get("required", True) for e in entries)
-            element = self.spec.elements.get(owner)
-            if (name, owner) in self.done or not claimed:
-                continue
-            check: Callable[[], str] = lambda: "the checker knows no such row"  # noqa: E731
-            if name == "odd" and element and element.law:
-                check = lambda element=element: self._odd(element)  # noqa: E731
-            elif name == "invariant" and element and element.kind.form == "body":
-                check = lambda element=element: self._invariant(element)  # noqa: E731
-            yield self._row(name, owner, check)
+            checks = {"odd": self._odd, "invariant": self._invariant}
+            if claimed and (name, owner) not in self.done:
+                check = bind(checks.get(name, self._unknown), self.spec.elements.get(owner))
+                yield self._row(name, owner, check)
 
-    def _odd(self, element: Element) -> str:
-        law, z = element.law or num(0), ("z", element.name)
-        turned, minus = put(law, {z: Node("neg", (sym(z),))}), Node("neg", (law,))
-        if not Field().same(turned, minus):
-            return self._all([Claim((), compare(turned, "=", minus))])
-        return self._of("welldef", element.name)
+    def _unknown(self, _: Element | None) -> str:
+        return "the checker knows no such row"
 
-    def _invariant(self, body: Element) -> str:
+    def _odd(self, element: Element | None) -> str:
+        if element is None or element.law is None:
+            return self._unknown(element)
+        z = ("z", element.name)
+        turned = put(element.law, {z: made("-z", z=sym(z))})
+        claim = Claim((), compare(turned, "=", made("-x", x=element.law)))
+        return self._all([claim]) or self._of("welldef", element.name)
+
+    def _invariant(self, body: Element | None) -> str:
         """Return why a body may cool below its floor: T > floor, T <= m < T_e."""
+        if body is None or body.kind.form != "body":
+            return self._unknown(body)
         T, m, claims, cold = sym(("T", body.name)), sym(("m", "")), list[Claim](), False
         for element in self.spec.of("ambient", "conduction"):
             if body.name not in element.bodies:
@@ -220,9 +211,13 @@ class _Audit:
         return self._all(claims) or self._of("sigma")
 
 
+def _true(left: Node, operator: str) -> Claim:
+    return Claim((), compare(left, operator))
+
+
 def _moves(tree: Node) -> bool:
     """Return whether a law has a choice or kink in its letter, a state or a temperature."""
-    choosers = (n.args[0] if n.op == "if" else n for n in walk(tree) if n.op in ("if", *KINKS))
+    choosers = (n.args[0] if n.op == "if" else n for n in laws.walk(tree) if n.op in ("if", *KINKS))
     return any(role in MOVING for chooser in choosers for role, _ in symbols(chooser))
 
 
@@ -240,15 +235,11 @@ class _Closed:
     def tree(self, node: Node, path: tuple[Node, ...]) -> Node:
         """Return a law in choices of sides; book what is needed for it to have a value."""
         if node.op == "sign":
-            return self.tree(unkinked(node), path)
+            return self.tree(laws.unkinked(node), path)
         if node.op != "if":
-            made = Node(node.op, tuple(self.tree(arg, path) for arg in node.args), node.value)
-            bare = Node(node.op, tuple(sym(("part", str(n))) for n in range(len(made.args))), node.value)
-            inner = {("part", str(n)): arg for n, arg in enumerate(made.args)}
-            if node.op != "/" or made.args[1].op != "num" or not made.args[1].value:
-                own = [put(claim, inner) for _, claim in partial(bare)]
-                self.claims += [Claim((*self.where, *path), claim) for claim in own]
-            return made
+            here = Node(node.op, tuple(self.tree(arg, path) for arg in node.args), node.value)
+            self.claims += [Claim((*self.where, *path), c) for c in needed(here)]
+            return here
         left, right = (self.tree(arg, path) for arg in node.args[0].args)
         side = Node("cmp", (left, right), node.args[0].value)
         if any(role in MOVING for role, _ in symbols(node.args[0])):
@@ -260,7 +251,8 @@ class _Closed:
         """Return the comparison b > 0 (or b <= 0) that stands for left above (below) right."""
         difference = made("x - z", x=condition.args[0], z=condition.args[1])
         key = self.field.scaled([self.field.of(difference)])[1][0]
-        turned, above = key.negative, condition.value in (">", ">=")
+        turned = key != 0 and key.top.leading_coefficient() < 0
+        above = condition.value in (">", ">=")
         key, difference = (-key, Node("neg", (difference,))) if turned else (key, difference)
         chosen = compare(sym(("side", f"{key.top}/{key.bottom}")), ">")
         edge = Node("if", (chosen, difference, Node("neg", (difference,))))
@@ -268,9 +260,3 @@ class _Closed:
             edge = Node("if", (step, edge, num(0)))
         self.where.append(compare(edge, ">="))
         return chosen if above != turned else negated(chosen)
-
-
-def _spelled(node: Node) -> str:
-    if node.op in ("num", "sym"):
-        return str(node.value if node.op == "num" else ".".join(map(str, node.value)))
-    return f"{node.op}({', '.join(map(_spelled, node.args))})"

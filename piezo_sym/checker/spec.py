@@ -6,23 +6,19 @@ Symbols are pairs: ("p", parameter), ("u", input), ("x", element) its state, ("z
 letter of its dissipative law, ("T", body).
 """
 
-from __future__ import annotations
-
 import re
 import tomllib
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from typing import Any, NamedTuple
 
+from . import laws
 from .kinds import GIVES, KINDS, LETTERS, REFERENCES, STATES, Kind
-from .laws import FUNCTIONS, InputError, Node, compare, made, need, num, number, parse
-from .laws import replaced, sym, symbols, walk
+from .laws import InputError, Node, compare, made, need, num, parse, sym, symbols, walk
 from .units import Dimension, check, unit
 
-NAME = re.compile(r"[A-Za-z](?:[A-Za-z0-9_]*[A-Za-z0-9])?")
-QUOTED = re.compile(r'"(?:\\.|[^"\\\n])*"|\'[^\'\n]*\'|#[^\n]*')
-MAX_BYTES, MAX_NESTING, MAX_DOTS, MAX_ELEMENTS, MAX_COUNT = 500_000, 20, 8, 300, 1_000_000
-RESERVED = {"i", "v", "f", "T", "np", "if", "else", "sum", *FUNCTIONS}
+DOTTED = re.compile(r"(\s*\.\s*[\w\"'-]+){9}")
+MAX_BYTES, MAX_ELEMENTS, MAX_COUNT = 500_000, 300, 1_000_000
 TABLES = ("model", "parameters", "inputs", "domain", "initial", "elements")
 Symbol = tuple[str, str]
 
@@ -46,7 +42,7 @@ class Element(NamedTuple):
     across: bool
     bodies: tuple[str, ...]
     input: str
-    count: int | None
+    lanes: int | None
     jumps: bool
 
 
@@ -73,21 +69,11 @@ class Spec(NamedTuple):
 
 
 def read_spec(text: str) -> Spec:
-    """Return what a spec says.
-
-    Raises
-    ------
-    InputError
-        If it is no spec that the checker knows; one line says why.
-    """
-    bare, depths = QUOTED.sub("", text[: MAX_BYTES + 1]), [0]
-    for c in bare:
-        depths.append(depths[-1] + (c in "[{") - (c in "]}"))
-    dots = max(part.count(".") for part in re.split(r"[=,{}\[\]\n]", bare))
-    need(len(text) <= MAX_BYTES, "the spec is too large")
-    need(max(depths) <= MAX_NESTING and dots <= MAX_DOTS, "the spec is nested too deeply")
+    """Return what a spec says; raises `InputError` if it is none that the checker knows."""
+    small = len(text) <= MAX_BYTES and not DOTTED.search(text)
+    need(small, "the spec is too large, or nested too deeply")
     try:
-        data = tomllib.loads(text, parse_float=number)
+        data = tomllib.loads(text, parse_float=laws.number)
     except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
         raise InputError(f"not TOML: {str(error)[:100]}") from None
     need(not set(data) - set(TABLES), "the spec has an unknown table")
@@ -125,10 +111,9 @@ class _Reader:
     def spec(self) -> Spec:
         domains = dict(REFERENCES)
         for element in self.elements.values():
-            for pair, domain in zip(element.pairs, element.kind.domains, strict=True):
-                for node in pair:
-                    same = domains.setdefault(node, domain) == domain
-                    need(same, f"node {node!r} is in two domains")
+            for pair, own in zip(element.pairs, element.kind.domains, strict=True):
+                same = all(domains.setdefault(node, own) == own for node in pair)
+                need(same, f"a node of {element.name} is in two domains")
         texts: dict[Node, str] = {}
         for text, tree in self._conditions():
             texts.setdefault(tree, text)
@@ -152,8 +137,8 @@ class _Reader:
 
     def _kind(self, name: str, entry: dict[str, Any]) -> Kind:
         kind = KINDS.get(str(entry.get("kind")))
-        if kind is None or not NAME.fullmatch(name):
-            raise InputError(f"elements.{name[:60]}: unknown kind, or no name")
+        if kind is None:
+            raise InputError(f"elements.{name[:60]}: unknown kind")
         fields = {"kind", *kind.nodes, *kind.laws, *kind.others}
         needed = {field for field in fields if not field.endswith("?")}
         unknown = set(entry) - {field.rstrip("?") for field in fields}
@@ -173,15 +158,14 @@ class _Reader:
         heat = {("T" if one else f"T_{name}"): ("T", name) for name in self.bodies}
         self.units |= dict.fromkeys(heat.values(), unit("K").dimension)
         for word, meaning in found:
-            free = word not in words and word not in heat and word not in RESERVED
-            need(free and bool(NAME.fullmatch(word)), f"{word[:60]!r} is taken, or no name")
+            need(word not in words and word not in heat, f"{word[:60]!r} is taken")
             words[word] = meaning
         return words | heat
 
     def _resolved(self, tree: Node, words: Mapping[str, Symbol], where: str) -> Node:
         for name in symbols(tree):
             need(name in words, f"{where}: unknown name {str(name)[:60]!r}")
-        return replaced(tree, lambda name: sym(words[name]))
+        return laws.replaced(tree, lambda name: sym(words[name]))
 
     # Elements
 
@@ -193,39 +177,30 @@ class _Reader:
         source, count = _a(str, entry.get("input", ""), where), entry.get("count")
         if "input" in kind.others:
             need(source in self.inputs, f"{where}: {source[:60]!r} is no input")
-            given = GIVES[kind.domains, kind.across] if kind.form == "source" else "K"
-            fits = self.units["u", source] == unit(given).dimension
-            self.faults += [] if fits else [f"{where}.input is not in {given}"]
+            row = GIVES[kind.domains, kind.across] if kind.form == "source" else "K"
+            fits = self.units["u", source] == unit(row).dimension
+            self.faults += [] if fits else [f"{where}.input is not in {row}"]
         if count is not None:
             need(1 <= _a(int, count, where) <= MAX_COUNT, f"{where}.count is out of range")
         need(kind.form != "law" or len(laws) == 1, f"{where} needs exactly one law")
         field, dissipates = next(reversed(laws), ""), kind.form in ("law", "hysteron")
         parts = {"rest": num(0), **laws, "x": sym(("x", name))}
-        return Element(
-            name=name,
-            kind=kind,
-            laws=laws,
-            state=next((word for word, owner in self.states.items() if owner == name), ""),
-            costate=made(kind.costate, **parts) if kind.costate else None,
-            law=laws[field] if dissipates else None,
-            letter=fields[field][1][0] if dissipates else "",
-            pairs=tuple(self._pair(entry[key], f"{where}.{key}") for key in kind.nodes),
-            across=kind.across and (kind.form != "law" or field in ("voltage", "velocity")),
-            bodies=bodies,
-            input=source,
-            count=count,
-            jumps=_a(bool, entry.get("discontinuous", False), where),
-        )
+        costate = made(kind.costate, **parts) if kind.costate else None
+        law, letter = (laws[field], fields[field][1][0]) if dissipates else (None, "")
+        pairs = tuple(self._pair(entry[key], f"{where}.{key}") for key in kind.nodes)
+        across = kind.across and (kind.form != "law" or field in ("voltage", "velocity"))
+        jumps = _a(bool, entry.get("discontinuous", False), where)
+        state = next((word for word, owner in self.states.items() if owner == name), "")
+        given = (pairs, across, bodies, source, count, jumps)
+        return Element(name, kind, laws, state, costate, law, letter, *given)
 
-    def _law(
-        self, text: Any, name: str, bodies: tuple[str, ...], needed: str, letters: tuple[str, ...]
-    ) -> Node:
+    def _law(self, text: Any, name: str, bodies: Any, needed: str, letters: Any) -> Node:
         words: dict[str, Symbol] = {p: ("p", p) for p in self.parameters}
         across = GIVES.get((self.kinds[name].domains, True), "1")
         for letter in letters:
             if letter == "T":
                 owner = bodies or (tuple(self.bodies) if len(self.bodies) == 1 else ())
-                words |= {"T": ("T", body) for body in owner[:1]}
+                words |= dict(zip("T", [("T", body) for body in owner], strict=False))
                 continue
             words[letter] = ("x" if letter in STATES else "z", name)
             self.units[words[letter]] = unit(LETTERS.get(letter, across)).dimension
@@ -234,8 +209,8 @@ class _Reader:
         return law
 
     def _bodies_of(self, entry: dict[str, Any], kind: Kind, where: str) -> tuple[str, ...]:
-        named = ("heats", "body") if kind.form == "body" else ("heats", "temperature", "body")
-        given = [entry[f] for f in named if f in entry and kind.form != "body"]
+        fields = ("heats", "body", "temperature") if kind.form != "body" else ()
+        given = [entry[field] for field in fields if field in entry]
         if kind.form == "conduction":
             given = _a(list, entry["between"], where)
             need(len(given) == 2 and given[0] != given[1], f"{where} names no two bodies")
@@ -277,7 +252,7 @@ class _Reader:
             where, owner = f"initial.{state}", self.states.get(state, "")
             need(owner in self.elements, f"{where}: no such state")
             listed = isinstance(given, list)
-            fits = not listed or len(given) == self.elements[owner].count
+            fits = not listed or len(given) == self.elements[owner].lanes
             need(fits, f"{where} has a list of another length")
             starts = []
             for value in given if listed else [given]:
@@ -290,11 +265,11 @@ class _Reader:
 
     def _lists(self, conditions: tuple[tuple[str, Node], ...]) -> Iterator[tuple[str, str]]:
         """Yield the bank of each list; refuse those that are not of one bank's laws alone."""
-        owner: dict[Symbol, str] = {("x", n): n for n, e in self.elements.items() if e.count}
+        owner: dict[Symbol, str] = {("x", n): n for n, e in self.elements.items() if e.lanes}
         for name, values in self.parameters.items():
             if isinstance(self.tables["parameters"][name]["value"], list):
                 laws = [(e, law) for e in self.elements.values() for law in e.laws.values()]
-                users = {e.name: e.count for e, law in laws if ("p", name) in symbols(law)}
+                users = {e.name: e.lanes for e, law in laws if ("p", name) in symbols(law)}
                 good = [*users.values()] == [len(values)]
                 need(good, f"parameters.{name}: a list, but no bank of its length")
                 owner["p", name] = next(iter(users))
@@ -304,9 +279,9 @@ class _Reader:
             need(len(banks) < 2, f"{text!r} mixes lanes of two banks")
 
 
-def _required(element: Element) -> Iterator[Node]:
-    """Yield what an element's kind requires to be positive."""
+def _required(element: Element) -> list[Node]:
+    """Return what an element's kind requires to be positive."""
+    first = next(iter(element.laws.values()), num(1))
     if element.kind.form == "body":
-        yield from (sym(s) for s in symbols(element.laws["temperature"]) if s[0] == "p")
-    elif element.costate:
-        yield next(iter(element.laws.values()))
+        return [sym(symbol) for symbol in symbols(first) if symbol[0] == "p"]
+    return [first] if element.costate else []

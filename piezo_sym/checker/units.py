@@ -4,8 +4,6 @@ Input: texts such as ``N*s/m``, and trees with the dimension of every symbol.  O
 the faults that a tree has.  pint knows the units; the grammar is the checker's own.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
@@ -15,7 +13,10 @@ from typing import Any, NamedTuple
 from .laws import InputError, Node, need
 
 TERM = re.compile(r"([*/]|^)([A-Za-z]+|1)(?:(?:\*\*|\^)(-?[1-9]))?(?![A-Za-z0-9^]|\*\*)")
-BASES = [f"[{w}]" for w in "mass length time current temperature substance luminosity".split()]
+BASES = [
+    f"[{w}]"
+    for w in ["mass", "length", "time", "current", "temperature", "substance", "luminosity"]
+]
 Dimension = tuple[Fraction, ...]
 NONE: Dimension = (Fraction(0),) * len(BASES)
 PURE = ("exp", "log", "sin", "cos", "tanh")
