@@ -15,11 +15,11 @@ from typing import Any
 
 from flint import fmpq, fmpq_mpoly_ctx
 
-from .laws import InputError, Node, compare, num
+from .laws import Node, compare, need, num, sym
 
 SIZE, MAX_TERMS, MAX_PRODUCT = 160, 3000, 60_000
 ODD, EVEN = ("sin", "tanh", "sign", "deadzone", "saturate"), ("cos", "abs")
-HOMOGENEOUS = ("abs", "min", "max", "deadzone", "saturate")
+HOMOGENEOUS = ("abs", "min", "max", "deadzone", "saturate", "sign")
 CTX = fmpq_mpoly_ctx.get([f"x{n}" for n in range(SIZE)], "lex")
 
 
@@ -30,9 +30,8 @@ class Ratio:
 
     def __init__(self, top: Any, bottom: Any = None) -> None:
         if bottom is not None and not bottom.is_one():
-            if bottom.is_zero():
-                raise InputError("a divisor is zero by its form")
-            shared = top.gcd(bottom) * bottom.leading_coefficient()
+            need(not bottom.is_zero(), "a divisor is zero by its form")
+            shared = top.gcd(bottom)
             top, bottom = top / shared, bottom / shared
             lead = bottom.leading_coefficient()
             top, bottom = top / lead, bottom / lead
@@ -59,8 +58,8 @@ class Ratio:
     def __pow__(self, power: int) -> Ratio:
         if power < 0:
             return Ratio(self.bottom, self.top) ** -power
-        if any(comb(len(p) + power, power) > MAX_TERMS for p in (self.top, self.bottom)):
-            raise InputError("a power is too large to be written out")
+        terms = max(len(self.top), len(self.bottom))
+        need(terms < 2 or comb(terms + power, power) <= MAX_TERMS, "a power is too large")
         return Ratio(self.top**power, self.bottom**power)
 
     def __eq__(self, other: object) -> bool:
@@ -85,8 +84,7 @@ class Ratio:
 
 
 def _product(left: Any, right: Any) -> Any:
-    if len(left) * len(right) > MAX_PRODUCT:
-        raise InputError("a product is too large to be written out")
+    need(len(left) * len(right) <= MAX_PRODUCT, "a product is too large to be written out")
     return left * right
 
 
@@ -103,18 +101,14 @@ class Field:
     """The atoms of one comparison; `positive` are the symbols known to be so."""
 
     def __init__(self, positive: Collection[Any] = ()) -> None:
-        self.atoms: dict[Any, int] = {}
-        self.trees: list[Node] = []
-        self.positives: list[int] = []
-        self.choices: list[int] = []
-        self.positive = positive
+        self.atoms, self.trees = dict[Any, int](), list[Node]()
+        self.positives, self.choices, self.positive = list[int](), list[int](), positive
 
     def atom(self, key: Any, tree: Node, positive: bool = False) -> Ratio:
         """Return an atom, the same for the same key."""
         if key not in self.atoms:
             place = self.atoms[key] = len(self.trees)
-            if place == SIZE:
-                raise InputError(f"more than {SIZE} different symbols and functions")
+            need(place < SIZE, f"more than {SIZE} different symbols and functions")
             self.trees.append(tree)
             self.positives += [place] * positive
             self.choices += [place] * (key[0] == "choice")
@@ -122,14 +116,14 @@ class Field:
 
     def symbol(self, key: Any) -> Ratio:
         """Return the atom of a symbol."""
-        return self.atom(("symbol", key), Node("sym", (), key), key in self.positive)
+        return self.atom(("symbol", key), sym(key), key in self.positive)
 
     def of(self, node: Node, words: Callable[[Any], Ratio] | None = None) -> Ratio:
         """Return the normal form of a tree, `words` giving that of its symbols."""
         if node.op in ("num", "sym"):
             return constant(node.value) if node.op == "num" else (words or self.symbol)(node.value)
         if node.op == "if":
-            chosen = self.choice(node.args[0], words)
+            chosen = self._choice(node.args[0], words)
             then, other = (self.of(arg, words) for arg in node.args[1:])
             return then if then == other else other + chosen * (then - other)
         args = [self.of(arg, words) for arg in node.args]
@@ -138,14 +132,16 @@ class Field:
                 return sum(args[1:], args[0])
             case "neg":
                 return -args[0]
-            case "*" | "/":
-                return args[0] * args[1] if node.op == "*" else args[0] / args[1]
+            case "*":
+                return args[0] * args[1]
+            case "/":
+                return args[0] / args[1]
             case "**" | "sqrt":
                 power = node.value if node.op == "**" else Fraction(1, 2)
-                return self.power(args[0], power, node.args[0])
-        return self.function(node, args)
+                return self._power(args[0], power, node.args[0])
+        return self._function(node, args)
 
-    def choice(self, condition: Node, words: Callable[[Any], Ratio] | None) -> Ratio:
+    def _choice(self, condition: Node, words: Callable[[Any], Ratio] | None) -> Ratio:
         """Return the atom [difference > 0], or 1 less that of its opposite."""
         less = condition.value in ("<", ">=")
         left, right = condition.args[::-1] if less else condition.args
@@ -157,7 +153,7 @@ class Field:
             found = constant(int(found.number > 0))
         return found if condition.value in "<>" else constant(1) - found
 
-    def power(self, base: Ratio, power: Fraction, tree: Node) -> Ratio:
+    def _power(self, base: Ratio, power: Fraction, tree: Node) -> Ratio:
         """Return a power; roots of positive factors are atoms of their own."""
         if power.denominator == 1:
             return base**power.numerator
@@ -174,13 +170,14 @@ class Field:
         made = self.atom(("root", root, base), Node("**", (tree,), root), tree.op == "sym")
         return made**power.numerator
 
-    def function(self, node: Node, args: list[Ratio]) -> Ratio:
+    def _function(self, node: Node, args: list[Ratio]) -> Ratio:
         """Return the atom of a function, times what the function gives up."""
         name, outside = node.op, constant(1)
-        if name in (*HOMOGENEOUS, "sign"):
+        if name in HOMOGENEOUS:
             factors, args = self.scaled(args)
             for place, power in factors if name != "sign" else ():
-                outside = outside * (constant(power) if place < 0 else Ratio(CTX.gen(place)) ** power)
+                part = constant(power) if place < 0 else Ratio(CTX.gen(place)) ** power
+                outside = outside * part
         if all(arg == 0 for arg in args):
             return constant(int(name in ("exp", "cos")))
         turned = args[0].negative and name in (*ODD, *EVEN, "exp")
@@ -214,13 +211,17 @@ class Field:
 
     def is_zero(self, ratio: Ratio) -> bool:
         """Return whether an expression vanishes, a choice being 0 or 1."""
-        if ratio.top == 0 or not self.choices:
-            return bool(ratio.top == 0)
+        if not self.choices:
+            return bool(ratio.top.is_zero())
         total: dict[Any, Any] = {}
         for powers, factor in ratio.top.to_dict().items():
             key = tuple(min(p, 1) if n in self.choices else p for n, p in enumerate(powers))
             total[key] = total.get(key, 0) + factor
         return not any(total.values())
+
+    def same(self, one: Node, other: Node) -> bool:
+        """Return whether two trees are the same function."""
+        return self.is_zero(self.of(one) - self.of(other))
 
     def factors(self, ratio: Ratio) -> list[Node]:
         """Return the factors above the line that are no numbers, as trees."""

@@ -1,4 +1,4 @@
-"""Laws as text to trees, by a small parser of the checker's own.
+"""Laws as text to trees, by a small parser of the checker's own, and trees from trees.
 
 Input: text of the law grammar (numbers, names, + - * / **, ``a if x < y else b``, functions; in a
 published system ``sum(bank, law)`` too).  Output: `Node` trees with exact rationals.  A tree is
@@ -10,12 +10,12 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
+from functools import cache
 from typing import Any, NamedTuple
 
 MAX_LENGTH, MAX_DEPTH, MAX_DIGITS, MAX_EXPONENT, MAX_POWER = 1000, 100, 60, 400, 16
 FUNCTIONS = dict.fromkeys(("exp", "log", "sqrt", "sin", "cos", "tanh", "abs", "sign"), 1)
 FUNCTIONS |= dict.fromkeys(("min", "max", "deadzone", "saturate"), 2)
-KINKED = ("abs", "sign", "min", "max", "deadzone", "saturate")
 BINDS = {"if": 1, "<": 2, "<=": 2, ">": 2, ">=": 2, "+": 3, "-": 3, "*": 4, "/": 4, "**": 6}
 PREFIX = 5
 TOKEN = re.compile(
@@ -23,6 +23,17 @@ TOKEN = re.compile(
     r"|[A-Za-z_][A-Za-z0-9_]*|\*\*|<=|>=|[-+*/(),<>]) *"
 )
 OPPOSITE = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
+#: Functions with kinks, by their definition, and derivatives of y = f(x).
+KINKS = {
+    "abs": "x if x >= 0 else -x",
+    "sign": "1 if x > 0 else -1 if x < 0 else 0",
+    "min": "x if x <= z else z",
+    "max": "x if x >= z else z",
+    "deadzone": "max(x - z, 0) + min(x + z, 0)",
+    "saturate": "min(max(x, -z), z)",
+}
+SLOPES = {"exp": "y", "log": "1/x", "sin": "cos(x)", "cos": "-sin(x)", "tanh": "1 - y**2"}
+SLOPES |= {"sqrt": "1/(2*y)", "*": "dx*z + x*dz", "/": "dx/z - x*dz/z**2", "neg": "-dx"}
 
 
 class InputError(Exception):
@@ -41,6 +52,12 @@ class Node(NamedTuple):
     value: Any = None
 
 
+def need(good: bool, reason: str) -> None:
+    """Refuse what is not good."""
+    if not good:
+        raise InputError(reason)
+
+
 def num(value: int | Fraction) -> Node:
     """Return a number."""
     return Node("num", (), Fraction(value))
@@ -51,14 +68,9 @@ def sym(name: Any) -> Node:
     return Node("sym", (), name)
 
 
-def compare(left: Node, operator: str, right: Node | int) -> Node:
+def compare(left: Node, operator: str, right: Node | int | Fraction = 0) -> Node:
     """Return a comparison."""
     return Node("cmp", (left, right if isinstance(right, Node) else num(right)), operator)
-
-
-def minus(left: Node, right: Node) -> Node:
-    """Return a difference."""
-    return Node("+", (left, Node("neg", (right,))))
 
 
 def negated(condition: Node) -> Node:
@@ -91,57 +103,64 @@ def put(node: Node, values: Mapping[Any, Node]) -> Node:
     return replaced(node, lambda name: values.get(name, sym(name)))
 
 
+def made(text: str, **parts: Node) -> Node:
+    """Return the tree of a text, its names replaced by trees."""
+    return put(_known(text), parts)
+
+
+@cache
+def _known(text: str) -> Node:
+    return parse(text)
+
+
 def unkinked(node: Node) -> Node:
     """Return a function with kinks written as a choice, by its definition."""
-    x, y, zero = node.args[0], node.args[-1], num(0)
-    if node.op == "abs":
-        return Node("if", (compare(x, ">=", 0), x, Node("neg", (x,))))
-    if node.op == "sign":
-        below = Node("if", (compare(x, "<", 0), num(-1), zero))
-        return Node("if", (compare(x, ">", 0), num(1), below))
-    if node.op in ("min", "max"):
-        return Node("if", (compare(x, "<=" if node.op == "min" else ">=", y), x, y))
-    if node.op == "saturate":
-        return Node("min", (Node("max", (x, Node("neg", (y,)))), y))
-    above, below = Node("max", (minus(x, y), zero)), Node("min", (Node("+", (x, y)), zero))
-    return Node("+", (above, below))
+    return made(KINKS[node.op], x=node.args[0], z=node.args[-1])
+
+
+def derivative(node: Node, by: Any) -> Node:
+    """Return the derivative of a law by a symbol, branch by branch."""
+    if by not in symbols(node) or node.op == "sym":
+        return num(int(node.op == "sym" and node.value == by))
+    if node.op in KINKS:
+        return derivative(unkinked(node), by)
+    if node.op == "if":
+        return Node("if", (node.args[0], *(derivative(arg, by) for arg in node.args[1:])))
+    inner = tuple(derivative(arg, by) for arg in node.args)
+    x, z, dx, dz = node.args[0], node.args[-1], inner[0], inner[-1]
+    if node.op == "+":
+        return Node("+", inner)
+    if node.op == "**":
+        return made("n*y*dx", n=num(node.value), y=Node("**", (x,), node.value - 1), dx=dx)
+    if node.op == "/" and dz == num(0):
+        return Node("/", (dx, z))
+    slope = made(SLOPES[node.op], x=x, y=node, z=z, dx=dx, dz=dz)
+    return slope if node.op in ("*", "/", "neg") else Node("*", (slope, dx))
 
 
 def number(text: str) -> Fraction:
-    """Return the exact value of a decimal number; raises `InputError` if it is none."""
+    """Return the exact value of a decimal number."""
     mantissa, _, exponent = text.strip().lower().replace("_", "").partition("e")
     try:
-        if len(mantissa) > MAX_DIGITS or abs(int(exponent[:9] or 0)) > MAX_EXPONENT:
-            raise InputError(f"number {text[:40]!r} has too many digits")
+        small = len(mantissa) <= MAX_DIGITS and abs(int(exponent[:9] or 0)) <= MAX_EXPONENT
+        need(small, f"number {text[:40]!r} has too many digits")
         return Fraction(f"{mantissa}e{exponent or 0}")
     except ValueError:
         raise InputError(f"{text[:40]!r} is no finite number") from None
 
 
-def parse(text: Any, sums: bool = False, length: int = MAX_LENGTH) -> Node:
-    """Return the tree of a law, or of a comparison.
-
-    Parameters
-    ----------
-    text : the law.
-    sums : whether ``sum(bank, law)`` is allowed.
-    length : the most characters.
+def parse(text: Any, length: int = MAX_LENGTH, compares: bool | None = None) -> Node:
+    """Return the tree of a law, or of a comparison if it `compares` (None: of either).
 
     Raises
     ------
     InputError
         If the text is not of the grammar.
     """
-    if not isinstance(text, str) or len(text) > length or not text.isascii():
-        raise InputError(f"{str(text)[:60]!r} is no law of plain text, or too long")
-    return _Parser(text, sums).whole()
-
-
-def parse_law(text: Any, sums: bool = False, length: int = MAX_LENGTH) -> Node:
-    """Return the tree of a law that is no comparison."""
-    tree = parse(text, sums, length)
-    if tree.op == "cmp":
-        raise InputError(f"{text[:60]!r} is a comparison, not a law")
+    plain = isinstance(text, str) and len(text) <= length and text.isascii()
+    need(plain, f"{str(text)[:60]!r} is no law of plain text, or too long")
+    tree = _Parser(text, sums=length > MAX_LENGTH).whole()
+    need(compares in (None, tree.op == "cmp"), f"{text[:60]!r} is a comparison, or should be one")
     return tree
 
 
@@ -154,48 +173,42 @@ class _Parser:
         while found := TOKEN.match(text, place):
             self.tokens.append(found[1])
             place = found.end()
-        if place < len(text):
-            raise self.fault()
         self.tokens = ["", *reversed(self.tokens)]
+        self.need(place == len(text))
 
-    def fault(self, why: str = "is not of the law grammar") -> InputError:
-        return InputError(f"{self.text[:60]!r} {why}")
+    def need(self, good: bool, why: str = "is not of the law grammar") -> None:
+        need(good, f"{self.text[:60]!r} {why}")
 
-    def need(self, *wanted: str) -> str:
-        if self.tokens[-1] not in wanted:
-            raise self.fault()
+    def take(self, *wanted: str) -> str:
+        self.need(self.tokens[-1] in wanted)
         return self.tokens.pop()
 
     def whole(self) -> Node:
         tree = self.expression(0)
-        if self.tokens != [""]:
-            raise self.fault()
+        self.need(self.tokens == [""])
         return tree
 
     def made(self, op: str, *args: Node, value: Any = None) -> Node:
-        if any((arg.op == "cmp") != (op == "if" and n == 0) for n, arg in enumerate(args)):
-            raise self.fault()
+        chosen = [arg.op == "cmp" for arg in args]
+        self.need(not any(chosen[1:] if op == "if" else chosen) and (op != "if" or chosen[0]))
         return Node(op, args, value)
 
     def expression(self, least: int) -> Node:
         self.depth += 1
-        if self.depth > MAX_DEPTH:
-            raise self.fault("is nested too deeply")
+        self.need(self.depth <= MAX_DEPTH, "is nested too deeply")
         tree = self.operand()
         while (power := BINDS.get(self.tokens[-1], -1)) >= least:
             operator = self.tokens.pop()
+            right = self.expression({"if": 2, "**": PREFIX}.get(operator, power + 1))
             if operator == "if":
-                condition = self.expression(2)
-                self.need("else")
-                tree = self.made("if", condition, tree, self.expression(1))
-                continue
-            right = self.expression(PREFIX if operator == "**" else power + 1)
-            if operator == "**":
+                self.take("else")
+                tree = self.made("if", right, tree, self.expression(1))
+            elif operator == "**":
                 tree = self.made("**", tree, value=self.exponent(right))
             elif operator in "+-":
                 term = self.made("neg", right) if operator == "-" else right
                 tree = self.made("+", *(tree.args if tree.op == "+" else (tree,)), term)
-            elif power == BINDS["<"]:
+            elif operator in OPPOSITE:
                 tree = self.made("cmp", tree, right, value=operator)
             else:
                 tree = self.made(operator, tree, right)
@@ -204,45 +217,40 @@ class _Parser:
 
     def operand(self) -> Node:
         token = self.tokens[-1]
-        if not token or token in ("if", "else"):
-            raise self.fault()
+        self.need(token not in ("", "if", "else") and token not in OPPOSITE)
         self.tokens.pop()
         if token[0].isdigit() or token[0] == ".":
             return num(number(token))
         if token in "+-":
             tree = self.expression(PREFIX)
-            return self.made("neg", tree) if token == "-" else tree
+            return self.made("neg", tree) if token == "-" else self.made("+", tree)
         if token == "(":
             tree = self.expression(0)
-            self.need(")")
+            self.take(")")
             return tree
-        if not (token[0].isalpha() or token[0] == "_"):
-            raise self.fault()
-        if self.tokens[-1] != "(":
-            return sym(token)
-        self.tokens.pop()
-        bank = self.tokens.pop() if token == "sum" and self.sums and self.tokens[-1] else None
-        args = [] if bank is None else [self.argument(",")]
-        args += [self.expression(0)] if not args else []
-        while self.need(",", ")") == ",":
-            args.append(self.expression(0))
-        if len(args) != (1 if bank else FUNCTIONS.get(token)):
-            raise self.fault(f"calls {token[:20]} in a way that laws do not have")
-        return self.made(token, *args, value=bank)
+        self.need(token[0].isalpha() or token[0] == "_")
+        return self.call(token) if self.tokens[-1] == "(" else sym(token)
 
-    def argument(self, before: str) -> Node:
-        self.need(before)
-        return self.expression(0)
+    def call(self, function: str) -> Node:
+        self.tokens.pop()
+        bank, args = None, list[Node]()
+        if function == "sum" and self.sums:
+            bank = self.operand().value
+            self.take(",")
+        while not args or self.take(",", ")") == ",":
+            args.append(self.expression(0))
+        known = len(args) == (FUNCTIONS.get(function) if bank is None else 1)
+        self.need(known, f"calls {function[:20]} in a way that laws do not have")
+        return self.made(function, *args, value=bank)
 
     def exponent(self, node: Node) -> Fraction:
-        """Return the value of an exponent written with numbers, - and /."""
         sign = 1
         while node.op == "neg":
             sign, node = -sign, node.args[0]
         parts = [arg.value if arg.op == "num" else None for arg in node.args] or [node.value, 1]
-        if node.op not in ("num", "/") or None in parts or not parts[1]:
-            raise self.fault("has a power that is no number")
+        good = node.op in ("num", "/") and None not in parts and parts[1] != 0
+        self.need(good, "has a power that is no number")
         value = sign * Fraction(parts[0]) / parts[1]
-        if max(abs(value.numerator), value.denominator) > MAX_POWER:
-            raise self.fault("has a power beyond small rationals")
+        small = max(abs(value.numerator), value.denominator) <= MAX_POWER
+        self.need(small, "has a power beyond small rationals")
         return value

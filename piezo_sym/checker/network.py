@@ -19,15 +19,13 @@ Slot = tuple[str, int]
 
 
 class Algebra(Protocol):
-    """What the laws are written in."""
+    """What the laws are written in: a law ("law" the dissipative one), and "u", "E" or "T"."""
 
     one: Any
 
-    def law(self, element: Element, field: str, lane: int, letter: Any = None) -> Any:
-        """Return a law of an element ("law" its dissipative one) in a lane."""
+    def law(self, element: Element, field: str, lane: int, letter: Any = None) -> Any: ...  # noqa: D102
 
-    def given(self, role: str, owner: str, lane: int) -> Any:
-        """Return an input "u", a co-state "E" or a temperature "T"."""
+    def given(self, role: str, owner: str, lane: int) -> Any: ...  # noqa: D102
 
 
 class Part(NamedTuple):
@@ -55,24 +53,19 @@ class Flows(NamedTuple):
     pivots: list[Any]
 
 
-def lanes(element: Element, counts: Mapping[str, int]) -> range:
-    """Return the lanes of an element, 0 alone if it is no bank."""
-    return range(1, counts[element.name] + 1) if element.count is not None else range(1)
-
-
-def parts(spec: Spec, counts: Mapping[str, int]) -> list[Part]:
+def _parts(spec: Spec, counts: Mapping[str, int]) -> list[Part]:
     """Return every branch, those of a bank once per lane."""
     found = []
     for e in spec.of("store", "law", "source", "coupling", "hysteron"):
-        for lane in lanes(e, counts):
+        for lane in range(1, counts[e.name] + 1) if e.count is not None else (0,):
             if e.kind.form == "hysteron":
                 (a, b), inner = e.pairs[0], (e.name, lane)
                 found.append(Part(e.name, lane, "store", (a, inner), False))
                 found.append(Part(e.name, lane, "law", (inner, b), True))
-            elif e.kind.form == "coupling":
-                found += [Part(e.name, lane, f"{n}", pair, False) for n, pair in enumerate(e.pairs)]
-            else:
-                found.append(Part(e.name, lane, e.kind.form, e.pairs[0], e.across))
+                continue
+            roles = "01" if e.kind.form == "coupling" else (e.kind.form,)
+            pairs = zip(roles, e.pairs, strict=True)
+            found += [Part(e.name, lane, role, pair, e.across) for role, pair in pairs]
     return found
 
 
@@ -84,25 +77,25 @@ def flows(spec: Spec, counts: Mapping[str, int], algebra: Algebra) -> Flows:
     SingularError
         If its laws have no, or more than one, solution, or a loop of laws that are not linear.
     """
-    found = parts(spec, counts)
+    found = _parts(spec, counts)
     answers, pivots = _solved(spec, found, algebra)
     made = Flows({}, {}, {}, {}, {}, pivots)
 
     def total(form: Form) -> Any:
         terms = algebra.one - algebra.one
         for (role, name, lane), factor in form.items():
-            W = made.outputs.get((name, lane)) if role == "W" else None
-            if role == "W" and W is None:
+            if role == "W" and (name, lane) not in made.outputs:
                 raise SingularError("laws that are not linear depend on each other")
-            terms = terms + factor * (algebra.given(role, name, lane) if role != "W" else W)
+            value = made.outputs[name, lane] if role == "W" else algebra.given(role, name, lane)
+            terms = terms + factor * value
         return terms
 
     laws = [part for part in found if part.role == "law"]
     for part in sorted(laws, key=lambda p: _is_equation(spec, p)):
         slot = part.element, part.lane
-        made.forms[slot] = answers[part]
-        made.letters[slot] = z = total(answers[part])
-        made.outputs[slot] = algebra.law(spec.elements[part.element], "law", part.lane, z)
+        made.forms[slot], made.letters[slot] = answers[part], total(answers[part])
+        element = spec.elements[part.element]
+        made.outputs[slot] = algebra.law(element, "law", part.lane, made.letters[slot])
     for part in found:
         if part.role == "store":
             made.rates[part.element, part.lane] = total(answers[part])
@@ -116,20 +109,20 @@ def flows(spec: Spec, counts: Mapping[str, int], algebra: Algebra) -> Flows:
 def _heat(spec: Spec, algebra: Algebra, made: Flows) -> None:
     """Add the rates of entropies: what processes produce, and what is exchanged."""
     heat = {body.name: algebra.given("T", body.name, 0) for body in spec.of("body")}
-    rates = {(body, 0): algebra.one - algebra.one for body in heat}
+    rates = {body: algebra.one - algebra.one for body in heat}
     for (name, lane), W in made.outputs.items():
         body = spec.elements[name].bodies[0]
-        rates[body, 0] = rates[body, 0] + W * made.letters[name, lane] / heat[body]
+        rates[body] = rates[body] + W * made.letters[name, lane] / heat[body]
     for e in spec.of("conduction", "ambient"):
-        lam, first = algebra.law(e, "conductance", 0), e.bodies[0]
+        first = e.bodies[0]
         if e.kind.form == "ambient":
-            rates[first, 0] = rates[first, 0] + exchange(e, algebra)
+            rates[first] = rates[first] + exchange(e, algebra)
             made.conjugates[e.name] = heat[first]
             continue
-        power = lam * (heat[first] - heat[e.bodies[1]])
+        power = algebra.law(e, "conductance", 0) * (heat[first] - heat[e.bodies[1]])
         for body, share in zip(e.bodies, (-power, power), strict=True):
-            rates[body, 0] = rates[body, 0] + share / heat[body]
-    made.rates.update(rates)
+            rates[body] = rates[body] + share / heat[body]
+    made.rates.update({(body, 0): rate for body, rate in rates.items()})
 
 
 def exchange(element: Element, algebra: Algebra) -> Any:
@@ -145,38 +138,33 @@ def _is_equation(spec: Spec, part: Part) -> bool:
 
 def _solved(spec: Spec, found: list[Part], algebra: Algebra) -> tuple[dict[Any, Form], list[Any]]:
     """Return for each branch the variable that it does not impose, and the pivots."""
-    rows, one = list[Form](), algebra.one
-    balances: dict[Any, Form] = {}
-    for part in found:
+    rows, one, balances = list[Form](), algebra.one, dict[Any, Form]()
+    for n, part in enumerate(found):
         for node, sign in zip(part.nodes, (one, -one), strict=True):
             if node not in REFERENCES:
                 balances.setdefault(node, {})[part] = sign
-    for n, part in enumerate(found):
         rows.append(_law(spec, part, found[n - 1], found[(n + 1) % len(found)], algebra))
     unknowns, pivots = _eliminated([*balances.values(), *rows], len(balances) + len(found))
-    answers: dict[Any, Form] = {}
+    answers: dict[Any, Form] = {part: {} for part in found}
     for part in found:
-        asked = {part: one} if part.across else _potential(part.nodes, one)
-        for label, factor in asked.items():
-            answers[part] = _added(answers.get(part, {}), unknowns[label], factor)
+        for label, factor in ({part: one} if part.across else _potential(part.nodes, one)).items():
+            answers[part] = _added(answers[part], unknowns[label], factor)
     return answers, pivots
 
 
 def _law(spec: Spec, part: Part, before: Part, after: Part, algebra: Algebra) -> Form:
-    """Return the equation of one branch; a given label stands with what is added to it."""
+    """Return the equation of one branch, a form that vanishes."""
     element, one, own = spec.elements[part.element], algebra.one, {part: algebra.one}
     across = _potential(part.nodes, one)
-    if part.role in "01":
+    if part.role == "1":  # through_2 = -ratio * (through_1 or across_1)
         n = algebra.law(element, "ratio", 0)
-        if part.role == "1":  # through_2 = -ratio * (through_1 or across_1)
-            return own | ({before: n} if element.across else _potential(before.nodes, n))
-        # across_1 = ratio * across_2, or through_1 = ratio * across_2
-        return _added(across if element.across else own, _potential(after.nodes, -n), one)
+        return own | ({before: n} if element.across else _potential(before.nodes, n))
+    if part.role == "0":  # across_1 = ratio * across_2, or through_1 = ratio * across_2
+        other = _potential(after.nodes, -algebra.law(element, "ratio", 0))
+        return _added(across if element.across else own, other, one)
     if part.role == "law" and _is_equation(spec, part):
         slope = algebra.law(element, "law", part.lane, one)
-        if part.across:
-            return across | {part: -slope}
-        return own | _potential(part.nodes, -slope)
+        return across | {part: -slope} if part.across else own | _potential(part.nodes, -slope)
     given = {"store": "E", "law": "W", "source": "u"}[part.role], part.element, part.lane
     sign = one if part.role == "source" and not part.across else -one
     return (across if part.across else own) | {given: sign}
@@ -209,35 +197,32 @@ def _eliminated(left: list[Form], size: int) -> tuple[dict[Any, Form], list[Any]
             if not _is_given(label) and value != 0
         ]
         if not choices:
-            raise SingularError("the laws of the network have no single solution")
+            break
         (_, _, n), label = min(choices, key=lambda choice: choice[0])
         row = left.pop(n)
-        pivot = row.pop(label)
-        pivots.append(pivot)
+        pivots.append(pivot := row.pop(label))
         row = {key: -value / pivot for key, value in row.items()}
         left = [_without(other, label, row) for other in left]
-        solved = {key: _without(other, label, row) for key, other in solved.items()}
-        solved[label] = row
-    if len(solved) != size or any(not _is_given(key) for row in solved.values() for key in row):
+        solved = {key: _without(other, label, row) for key, other in solved.items()} | {label: row}
+    open_ = any(not _is_given(key) for row in solved.values() for key in row)
+    if left or len(solved) != size or open_:
         raise SingularError("the laws of the network have no single solution")
     return solved, pivots
 
 
 def _without(form: Form, label: Any, row: Form) -> Form:
-    """Return a form with an unknown replaced by what it is."""
     if label not in form:
         return form
     return _added({k: v for k, v in form.items() if k != label}, row, form[label])
 
 
 def degree(node: Node, letter: Any) -> int | None:
-    """Return 0 for a law free of its letter, 1 for one proportional to it by its form, else None."""
+    """Return 0 for a law free of a letter, 1 for one proportional to it by its form, else None."""
     if node.op == "sym" or letter not in symbols(node):
         return int(node.op == "sym" and node.value == letter)
     degrees = [degree(arg, letter) for arg in node.args]
+    if node.op in ("neg", "+"):
+        return 1 if set(degrees) == {1} else None
     if node.op == "if":
-        degrees = degrees[1:] if letter not in symbols(node.args[0]) else [None]
-    if node.op in ("neg", "+", "if"):
-        return 1 if all(found == 1 for found in degrees) else None
-    good = (node.op == "*" and None not in degrees) or (node.op == "/" and degrees[1] == 0)
-    return 1 if good and sum(found or 0 for found in degrees) == 1 and degrees[0] is not None else None
+        return 1 if letter not in symbols(node.args[0]) and set(degrees[1:]) == {1} else None
+    return 1 if (node.op == "*" and set(degrees) == {0, 1}) or (node.op == "/" and degrees == [1, 0]) else None

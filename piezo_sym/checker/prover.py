@@ -8,20 +8,17 @@ is left undecided is split by a comparison in it and its opposite, which togethe
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from time import monotonic
 from typing import Any, NamedTuple
 
 import cvc5
-from cvc5 import Kind
 
-from .laws import KINKED, Node, compare, negated, num, parse, put, sym, symbols, unkinked, walk
+from .laws import KINKS, Node, compare, made, negated, num, symbols, unkinked, walk
 
-EFFORT, SPLIT_EFFORT, MILLISECONDS, SECONDS = 150_000, 40_000, 8_000, 300
-MOST_PAIRS, DEEPEST = 12, 5
-KINDS = {"<": Kind.LT, "<=": Kind.LEQ, ">": Kind.GT, ">=": Kind.GEQ, "=": Kind.EQUAL}
-KINDS |= {"+": Kind.ADD, "*": Kind.MULT, "neg": Kind.NEG}
+EFFORT, SPLIT_EFFORT, MILLISECONDS, SECONDS, MOST_PAIRS, DEEPEST = 150_000, 40_000, 8000, 300, 12, 5
+OPERATIONS = {"+": "+", "*": "*", "neg": "-", "if": "ite"}
 #: What is known of y = f(x), and of two values y and b of f at x and a: "premise: fact".
 FACTS = {
     "exp": "y > 0; y >= 1 + x; x <= 0: y <= 1; x <= 0: y <= 1 + x + x**2/2; x < 1: y*(1 - x) <= 1;"
@@ -34,12 +31,17 @@ FACTS = {
     "x <= 0: y <= x - x**3/3; x < 0: y < 0; x >= 0: (1 - y)*(1 + x + x**2) <= 1;"
     "x <= 0: (1 + y)*(1 - x + x**2) <= 1",
 }
-RISING = "x < a: y < b; x > a: y > b"
+RISING = "x < a: y < b; x > a: y > b; x >= a: y >= b; x <= a: y <= b"
+MIRROR = "x + a <= 0: y + b <= 0; x + a >= 0: y + b >= 0"
 PAIRS = {
     "exp": f"{RISING}; x + a <= 0: y*b <= 1; x + a >= 0: y*b >= 1",
-    "log": f"{RISING}; x*a >= 1: y + b >= 0; x*a <= 1: y + b <= 0",
-    "tanh": f"{RISING}; x + a <= 0: y + b <= 0; x + a >= 0: y + b >= 0",
+    "log": f"x > 0: a > 0: {RISING.replace('; ', '; x > 0: a > 0: ')}",
+    "tanh": f"{RISING}; {MIRROR}",
+    "sin": "x <= a: x >= a: y <= b; x <= a: x >= a: y >= b;"
+    "x + a <= 0: x + a >= 0: y + b <= 0; x + a <= 0: x + a >= 0: y + b >= 0",
+    "cos": "(x - a)*(x + a) <= 0: (x - a)*(x + a) >= 0: y <= b",
 }
+PAIRS["cos"] += f"; {PAIRS['cos'].replace('y <= b', 'y >= b')}"
 
 
 class Claim(NamedTuple):
@@ -49,113 +51,114 @@ class Claim(NamedTuple):
     claim: Node
 
 
-class Encoder:
-    """Trees as terms, and the facts on the functions in them."""
+class _Query:
+    """Trees as SMT-LIB text, each part once, and the facts on the functions in them."""
 
-    def __init__(self, effort: int, assumed: Iterable[Node] = ()) -> None:
-        self.tm = cvc5.TermManager()
-        self.solver = cvc5.Solver(self.tm)
-        self.solver.setOption("rlimit-per", str(effort))
-        self.solver.setOption("tlimit-per", str(MILLISECONDS))
-        self.solver.setLogic("QF_NRA")
-        self.known: dict[Node, Any] = {}
+    def __init__(self, assumed: tuple[Node, ...]) -> None:
+        self.lines = ["(set-logic QF_NRA)"]
+        self.known: dict[Node, str] = {}
         self.calls: dict[str, list[tuple[Node, Node]]] = {}
-        self.assumed = {condition: True for condition in assumed}
-        self.assumed |= {negated(condition): False for condition in self.assumed}
+        self.assumed = {c: "true" for c in assumed} | {negated(c): "false" for c in assumed}
 
-    def holds(self, condition: Node) -> Any:
-        """Return the term of a comparison."""
-        if condition in self.assumed:
-            return self.tm.mkBoolean(self.assumed[condition])
-        return self.plain(condition)
+    def say(self, term: str) -> None:
+        self.lines.append(f"(assert {term})")
 
-    def plain(self, condition: Node) -> Any:
-        """Return the term of a comparison as it stands."""
+    def holds(self, condition: Node) -> str:
+        """Return a comparison; one that is assumed is settled."""
+        return self.assumed.get(condition) or self.plain(condition)
+
+    def plain(self, condition: Node) -> str:
         left, right = map(self.term, condition.args)
         if condition.value == "!=":
-            return self.tm.mkTerm(Kind.NOT, self.tm.mkTerm(Kind.EQUAL, left, right))
-        return self.tm.mkTerm(KINDS[condition.value], left, right)
+            return f"(not (= {left} {right}))"
+        return f"({condition.value} {left} {right})"
 
-    def know(self, fact: Node, premise: Node | None = None) -> None:
-        """Assert a comparison, or that it holds where its premise does."""
-        term = self.plain(fact)
-        if premise:
-            term = self.tm.mkTerm(Kind.IMPLIES, self.plain(premise), term)
-        self.solver.assertFormula(term)
-
-    def term(self, node: Node) -> Any:
-        """Return the term of a tree, the same for the same tree."""
+    def term(self, node: Node) -> str:
+        """Return the name of a tree's term, the same for the same tree."""
         if node not in self.known:
-            self.known[node] = self._made(node)
+            text = self._text(node)
+            name = self.known[node] = text if text.isalnum() else f"t{len(self.known)}"
+            if name != text:
+                self.lines.append(f"(define-fun {name} () Real {text})")
         return self.known[node]
 
-    def _made(self, node: Node) -> Any:
+    def _fresh(self, node: Node) -> Node:
+        symbol = Node("sym", (), ("value", node))
+        name = self.known[symbol] = f"y{len(self.known)}"
+        self.lines.append(f"(declare-const {name} Real)")
+        return symbol
+
+    def _text(self, node: Node) -> str:
+        args = node.args
         if node.op == "num":
-            return self.tm.mkReal(f"{node.value.numerator}/{node.value.denominator}")
+            size = f"(/ {abs(node.value.numerator)}.0 {node.value.denominator}.0)"
+            return size if node.value >= 0 else f"(- {size})"
         if node.op == "sym":
-            return self.tm.mkConst(self.tm.getRealSort(), f"x{len(self.known)}")
-        if node.op == "if" and node.args[0] in self.assumed:
-            return self.term(node.args[1 if self.assumed[node.args[0]] else 2])
-        if node.op == "if":
-            parts = [self.holds(node.args[0]), *map(self.term, node.args[1:])]
-            return self.tm.mkTerm(Kind.ITE, *parts)
-        if node.op in KINKED:
+            return self.term(self._fresh(node))
+        if node.op == "if" and args[0] in self.assumed:
+            return self.term(args[1 if self.assumed[args[0]] == "true" else 2])
+        if node.op in KINKS:
             return self.term(unkinked(node))
-        if node.op in KINDS:
-            args = [self.term(arg) for arg in node.args]
-            return args[0] if node.op == "+" and len(args) == 1 else self.tm.mkTerm(KINDS[node.op], *args)
-        x, y = node.args[0], sym(("value", node))
+        if node.op == "+" and len(args) == 1:
+            return self.term(args[0])
+        if node.op in OPERATIONS:
+            parts = (self.holds(arg) if arg.op == "cmp" else self.term(arg) for arg in args)
+            return f"({OPERATIONS[node.op]} {' '.join(parts)})"
+        if node.op in ("**", "sqrt"):
+            return self.term(self._power(args[0], Fraction(1, 2) if node.op == "sqrt" else node.value))
+        if node.op == "/" and args[1].op == "num" and args[1].value:
+            return self.term(Node("*", (num(1 / args[1].value), args[0])))
+        y = self._fresh(node)
         if node.op == "/":
-            bottom = node.args[1]
-            if bottom.op == "num" and bottom.value:
-                return self.term(Node("*", (num(1 / bottom.value), x)))
-            self.know(compare(Node("*", (y, bottom)), "=", x), compare(bottom, "!=", 0))
-        elif node.op in ("**", "sqrt"):
-            return self.term(self._power(x, node.value if node.op == "**" else Fraction(1, 2)))
+            product = compare(Node("*", (y, args[1])), "=", args[0])
+            self._know(product, compare(args[1], "!="))
         else:
-            self._function(node, x, y)
+            self._function(node.op, args[0], y)
         return self.term(y)
+
+    def _know(self, fact: Node, *premises: Node) -> None:
+        self.say(f"(=> {' '.join(map(self.plain, premises))} {self.plain(fact)})")
 
     def _power(self, x: Node, exponent: Fraction) -> Node:
         """Return x**(p/q) in products, by y with x >= 0 -> y >= 0 and y**q = x."""
         if exponent.denominator > 1:
-            y = sym(("root", exponent.denominator, x))
-            raised = _times(y, exponent.denominator)
-            for fact in (compare(y, ">=", 0), compare(raised, "=", x)):
-                self.know(fact, compare(x, ">=", 0))
+            y = self._fresh(Node("root", (x,), exponent.denominator))
+            inside, raised = compare(x, ">="), _times(y, exponent.denominator)
+            self._know(compare(y, ">="), inside)
+            self._know(compare(raised, "=", x), inside)
             x = y
         size = _times(x, abs(exponent.numerator))
         return size if exponent >= 0 else Node("/", (num(1), size))
 
-    def _function(self, node: Node, x: Node, y: Node) -> None:
+    def _function(self, name: str, x: Node, y: Node) -> None:
         """Assert what is known of exp, log, sin, cos or tanh, alone and of two values of one."""
-        inverse = {"exp": "log", "log": "exp"}.get(node.op)
-        if x.op == inverse:  # exp(log(a)) = a where a > 0, log(exp(a)) = a
-            a = x.args[0]
-            self.know(compare(y, "=", a), compare(a, ">", 0) if inverse == "log" else None)
-        self._facts(FACTS[node.op], {"x": x, "y": y}, ())
-        others = self.calls.setdefault(node.op, [])
+        if (name, x.op) == ("log", "exp"):
+            self.say(self.plain(compare(y, "=", x.args[0])))
+        if (name, x.op) == ("exp", "log"):
+            self._know(compare(y, "=", x.args[0]), compare(x.args[0], ">"))
+        others = self.calls.setdefault(name, [])
+        self._facts(FACTS[name], x=x, y=y)
         for a, b in others[:MOST_PAIRS]:
-            inside = (compare(x, ">", 0), compare(a, ">", 0)) if node.op == "log" else ()
-            self._facts(PAIRS.get(node.op, ""), {"x": x, "y": y, "a": a, "b": b}, inside)
-            for turned in (a, Node("neg", (a,))) if node.op in ("sin", "cos") else ():
-                odd = node.op == "sin" and turned is not a
-                self.know(compare(y, "=", Node("neg", (b,)) if odd else b), compare(x, "=", turned))
+            self._facts(PAIRS[name], x=x, y=y, a=a, b=b)
         others.append((x, y))
 
-    def _facts(self, texts: str, words: dict[str, Node], inside: tuple[Node, ...]) -> None:
-        for text in filter(None, texts.split(";")):
-            *premises, fact = (put(parse(part), words) for part in text.split(":"))
-            terms = [self.plain(part) for part in (*inside, *premises)]
-            known = self.plain(fact)
-            for premise in terms:
-                known = self.tm.mkTerm(Kind.IMPLIES, premise, known)
-            self.solver.assertFormula(known)
+    def _facts(self, texts: str, **words: Node) -> None:
+        for text in texts.split(";"):
+            *premises, fact = (made(part.strip(), **words) for part in text.split(":"))
+            self._know(fact, *premises) if premises else self.say(self.plain(fact))
 
-    def check(self) -> str:
+    def answer(self, effort: int) -> str:
         """Return sat, unsat or unknown."""
-        result = self.solver.checkSat()
-        return "unsat" if result.isUnsat() else "sat" if result.isSat() else "unknown"
+        solver = cvc5.Solver(cvc5.TermManager())
+        solver.setOption("rlimit-per", str(effort))
+        solver.setOption("tlimit-per", str(MILLISECONDS))
+        parser = cvc5.InputParser(solver)
+        text = "\n".join([*self.lines, "(check-sat)"])
+        parser.setStringInput(cvc5.InputLanguage.SMT_LIB_2_6, text, "query")
+        found = ""
+        while not (command := parser.nextCommand()).isNull():
+            found += str(command.invoke(solver, parser.getSymbolManager()))
+        return found.strip()
 
 
 def _times(x: Node, count: int) -> Node:
@@ -179,41 +182,28 @@ class Prover:
             self.answers[key] = any(self._follows(claim, (*where, *path)) for where in tries)
         return self.answers[key]
 
-    def _follows(self, claim: Node, where: tuple[Node, ...]) -> bool:
-        result = self._ask(claim, where, EFFORT)
-        return result == "unsat" or (result == "unknown" and self._split(claim, where, ()))
-
-    def _ask(
-        self, claim: Node, where: tuple[Node, ...], effort: int, assumed: tuple[Node, ...] = ()
-    ) -> str:
-        if monotonic() > self.deadline:
-            return "out of time"
-        encoder = Encoder(effort, assumed)
-        for condition in where:
-            encoder.solver.assertFormula(encoder.holds(condition))
-        for condition in assumed:
-            encoder.know(condition)
-        encoder.solver.assertFormula(encoder.tm.mkTerm(Kind.NOT, encoder.holds(claim)))
-        return encoder.check()
-
-    def _split(self, claim: Node, where: tuple[Node, ...], assumed: tuple[Node, ...]) -> bool:
-        """Return whether a claim follows from a comparison in it, and from its opposite."""
+    def _follows(self, claim: Node, where: tuple[Node, ...], assumed: tuple[Node, ...] = ()) -> bool:
+        """Return whether a claim follows, if need be from a comparison in it and its opposite."""
+        query = _Query(assumed)
+        for term in (*map(query.holds, where), *map(query.plain, assumed)):
+            query.say(term)
+        query.say(f"(not {query.holds(claim)})")
+        late = monotonic() > self.deadline
+        result = "late" if late else query.answer(SPLIT_EFFORT if assumed else EFFORT)
+        if result != "unknown" or len(assumed) == DEEPEST:
+            return result == "unsat"
         settled = {*assumed, *map(negated, assumed)}
         found = next((c for c in choices(claim) if c not in settled), None)
-        if found is None or len(assumed) == DEEPEST:
+        if found is None:
             return False
-        for side in (found, negated(found)):
-            result = self._ask(claim, where, SPLIT_EFFORT, (*assumed, side))
-            open_ = result == "unknown" and self._split(claim, where, (*assumed, side))
-            if result != "unsat" and not open_:
-                return False
-        return True
+        sides = (found, negated(found))
+        return all(self._follows(claim, where, (*assumed, side)) for side in sides)
 
 
 def choices(tree: Node) -> Iterator[Node]:
     """Yield the comparisons that choose in a tree, those of functions with kinks too."""
     for node in walk(tree):
-        if node.op in KINKED:
+        if node.op in KINKS:
             yield from choices(unkinked(node))
         elif node.op == "if":
             yield node.args[0]
@@ -221,18 +211,18 @@ def choices(tree: Node) -> Iterator[Node]:
 
 def partial(node: Node, path: tuple[Node, ...] = ()) -> Iterator[Claim]:
     """Yield what must hold for a tree to have a value, where each part is reached."""
-    first, last = (node.args[0], node.args[-1]) if node.args else (node, node)
     if node.op == "if":
-        yield from partial(first, path)
-        yield from partial(node.args[1], (*path, first))
-        yield from partial(last, (*path, negated(first)))
+        yield from partial(node.args[0], path)
+        yield from partial(node.args[1], (*path, node.args[0]))
+        yield from partial(node.args[2], (*path, negated(node.args[0])))
         return
     for arg in node.args:
         yield from partial(arg, path)
-    power = {"/": -1, "sqrt": Fraction(1, 2), "**": node.value}.get(node.op, 1)
-    if node.op == "log" or (power < 0 and Fraction(power).denominator > 1):
-        yield Claim(path, compare(last, ">", 0))
-    elif Fraction(power).denominator > 1:
-        yield Claim(path, compare(last, ">=", 0))
+    given = {"/": -1, "sqrt": Fraction(1, 2), "**": node.value}.get(node.op, 1)
+    power, last = Fraction(given), node.args[-1] if node.args else node
+    if node.op == "log" or (power < 0 and power.denominator > 1):
+        yield Claim(path, compare(last, ">"))
+    elif power.denominator > 1:
+        yield Claim(path, compare(last, ">="))
     elif power < 0 and not (last.op == "num" and last.value):
-        yield Claim(path, compare(last, "!=", 0))
+        yield Claim(path, compare(last, "!="))

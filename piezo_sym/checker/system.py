@@ -11,37 +11,29 @@ none, concerns three lanes at once at most: it holds for every count if it does 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from .field import Field, Ratio, constant
-from .laws import KINKED, InputError, Node, num, parse_law, replaced, sym, symbols, walk
+from .laws import KINKS, InputError, Node, derivative, need, num, parse, replaced, sym, symbols, walk
 from .network import Flows, SingularError, exchange, flows
-from .point import derivative
 from .spec import Element, Spec
 
-MAX_TEXT, MOST_SUMS, MOST_COUNT, MAX_NAMES = 100_000, 2, 3, 1000
-PLAIN = ("sum", "+", "neg", "*", "/", "**", "sym", "num")
+MAX_TEXT, MOST_SUMS, MOST_COUNT, MAX_NAMES, MAX_CHAIN = 100_000, 2, 3, 1000, 50
+PLAIN = ("sum", "+", "neg", "*", "/", "**", "sym")
 
 
-@dataclass
-class Finding:
+class Finding(NamedTuple):
     """What a check finds: reasons by subject ("system", "energy"), what letters are in states.
 
     `divisors` must be nonzero for the network to have one solution.
     """
 
-    reasons: dict[str, str] = field(default_factory=dict)
-    divisors: dict[Node, None] = field(default_factory=dict)
-    letters: dict[str, Node] = field(default_factory=dict)
-
-    def say(self, subject: str, good: bool, reason: str) -> None:
-        """Keep the first reason of a subject."""
-        if not good:
-            self.reasons.setdefault(subject, reason)
+    reasons: dict[str, str]
+    divisors: dict[Node, None]
+    letters: dict[str, Node]
 
 
-class Published:
+class _Published:
     """The published text, parsed; no more sums over lanes are multiplied than can be checked."""
 
     def __init__(self, spec: Spec, system: Mapping[str, Any]) -> None:
@@ -49,87 +41,76 @@ class Published:
             self.states = [(s["name"], s["element"], s["bank"]) for s in system["states"]]
             names = system["names"].items()
             self.names = {n: (str(e["element"]), e["role"], e["bank"]) for n, e in names}
-            self.laws = {n: parse_law(e["law"], True, MAX_TEXT) for n, e in names}
+            self.laws = {n: parse(e["law"], MAX_TEXT, False) for n, e in names}
             self.rates, self.outputs = (
-                {n: parse_law(text, True, MAX_TEXT) for n, text in system[table].items()}
+                {n: parse(text, MAX_TEXT, False) for n, text in system[table].items()}
                 for table in ("rates", "outputs")
             )
-            self.energy = parse_law(system["energy"], True, MAX_TEXT)
+            self.energy = parse(system["energy"], MAX_TEXT, False)
         except (KeyError, TypeError, AttributeError) as error:
             raise InputError(f"the published system is not complete: {error}") from None
-        taken = set(self.names) & {word for word, (role, _) in spec.words.items() if role != "T"}
-        if taken or len(self.names) > MAX_NAMES:
-            raise InputError("a published name is a symbol of the spec, or there are too many")
+        free = not any(n in spec.words and spec.words[n][0] != "T" for n in self.names)
+        need(free and len(self.names) <= MAX_NAMES, "a published name is taken, or too many are")
         self.order: dict[str, int] = {}
         for tree in (*self.laws.values(), *self.rates.values(), *self.outputs.values()):
             self.sums(tree, 0)
 
     def sums(self, node: Node, depth: int) -> int:
         """Return how many sums over lanes are multiplied at most."""
-        if depth > 50:
-            raise InputError("published names are defined by themselves")
+        need(depth <= MAX_CHAIN, "published names are defined by themselves")
         if node.op == "sym":
             if node.value in self.laws and node.value not in self.order:
                 self.order[node.value] = self.sums(self.laws[node.value], depth + 1)
             return self.order.get(node.value, 0)
         own = [self.sums(arg, depth) for arg in node.args]
-        found = sum(own) if node.op == "*" else max(own, default=0)
+        found = sum(own) if node.op == "*" else max(own, default=0) + (node.op == "sum")
         whole = node.op == "**" and node.value > 0 and node.value.denominator == 1
-        if node.op in ("/", "**") and own[-1] and not whole:
-            raise InputError("a published divisor or root has a sum over lanes")
-        found = found * int(node.value) if whole else found + (node.op == "sum")
-        if found > MOST_SUMS:
-            raise InputError(f"more than {MOST_SUMS} published sums over lanes are multiplied")
+        plain = whole or node.op not in ("/", "**") or not own[-1]
+        found = found * int(node.value) if whole else found
+        need(plain, "a published divisor or root has a sum over lanes")
+        need(found <= MOST_SUMS, f"more than {MOST_SUMS} published sums over lanes are multiplied")
         return found if node.op in PLAIN else 0
 
 
-class Comparison:
+class _Comparison:
     """One comparison, for one size of every bank; the algebra of its network."""
 
-    def __init__(self, spec: Spec, text: Published, count: int, finding: Finding) -> None:
+    def __init__(self, spec: Spec, text: _Published, count: int, finding: Finding) -> None:
         self.spec, self.text, self.finding, self.one = spec, text, finding, constant(1)
         self.counts = {e.name: count for e in spec.of("hysteron") if e.count is not None}
         self.field, self.known = Field(), dict[Any, Ratio]()
 
     # What symbols stand for
 
-    def symbol(self, meaning: tuple[str, str], lane: int) -> Ratio:
-        """Return the atom of a symbol of the spec, in a lane."""
-        role, owner = meaning
-        per_lane = owner in (self.spec.lists if role == "p" else self.counts if role in "xE" else ())
-        if per_lane and not lane:
-            raise InputError(f"{owner!r} is of a lane, and stands outside of lanes")
+    def symbol(self, role: str, owner: str, lane: int) -> Ratio:
+        lists = {"p": self.spec.lists, "x": self.counts, "E": self.counts}
+        per_lane = owner in lists.get(role, ())
+        need(lane > 0 or not per_lane, f"{owner!r} is of a lane, and stands outside of lanes")
         return self.field.symbol((role, owner, lane if per_lane else 0))
 
     def law(self, element: Element, field: str, lane: int, letter: Ratio | None = None) -> Ratio:
-        """Return a law of the spec."""
         tree = element.law if field == "law" else element.laws.get(field, element.costate)
         own = letter or constant(0)
         return self.field.of(
-            tree or num(0), lambda name: own if name[0] == "z" else self.symbol(name, lane)
+            tree or num(0), lambda name: own if name[0] == "z" else self.symbol(*name, lane)
         )
 
     def given(self, role: str, owner: str, lane: int) -> Ratio:
-        """Return the atom of an input, a co-state or a temperature."""
-        return self.symbol((role, self.spec.elements[owner].input if role == "u" else owner), lane)
+        return self.symbol(role, self.spec.elements[owner].input if role == "u" else owner, lane)
 
     def state(self, element: Element, lane: int) -> Ratio:
-        """Return the atom of a co-state or temperature."""
         return self.given("T" if element.kind.form == "body" else "E", element.name, lane)
 
     def published(self, node: Node, bound: Mapping[str, int]) -> Ratio:
         """Return a published text, its lanes bound."""
         if not any(part.op == "sum" for part in walk(node)):
             return self.field.of(node, lambda name: self.name(name, bound))
+        need(node.op != "if", "a published choice has a sum over lanes")
         if node.op == "sum":
-            if node.value not in self.counts:
-                raise InputError(f"{node.value!r} is no bank")
-            total = constant(0)
-            for lane in range(1, self.counts[node.value] + 1):
-                total = total + self.published(node.args[0], {**bound, node.value: lane})
-            return total
-        if node.op == "if":
-            raise InputError("a published choice has a sum over lanes")
+            need(node.value in self.counts, f"{node.value!r} is no bank")
+            rows = range(1, self.counts[node.value] + 1)
+            terms = (self.published(node.args[0], {**bound, node.value: lane}) for lane in rows)
+            return sum(terms, constant(0))
         inner = [self.published(arg, bound) for arg in node.args]
         shell = Node(node.op, tuple(sym(n) for n in range(len(inner))), node.value)
         return self.field.of(shell, inner.__getitem__)
@@ -137,41 +118,33 @@ class Comparison:
     def name(self, name: str, bound: Mapping[str, int]) -> Ratio:
         """Return what a published name stands for."""
         if name not in self.text.names:
-            meaning = self.spec.words.get(name, ("T", ""))
-            if meaning[0] == "T":
-                raise InputError(f"unknown published name {name[:60]!r}")
-            own = self.spec.lists.get(meaning[1], "") if meaning[0] == "p" else meaning[1]
-            return self.symbol(meaning, bound.get(own, 0))
-        bank = self.text.names[name][2]
+            role, owner = self.spec.words.get(name, ("T", ""))
+            need(role != "T", f"unknown published name {name[:60]!r}")
+            return self.symbol(role, owner, bound.get(self.spec.lists.get(owner, owner), 0))
+        element, role, bank = self.text.names[name]
         lane = bound.get(bank, 0) if bank else 0
-        if bank and not lane:
-            raise InputError(f"{name!r} is of a lane of {bank!r}, and stands outside of lanes")
+        need(lane > 0 or not bank, f"{name!r} is of a lane, and stands outside of lanes")
         if (name, lane) not in self.known:
-            self.known[name, lane] = self._named(name, lane, {bank: lane} if bank else {})
+            found = self.published(self.text.laws[name], {bank: lane} if bank else {})
+            owner = self.spec.elements.get(element)
+            if role in ("costate", "temperature") and owner is not None and owner.costate:
+                self._equal("system", found, self.law(owner, "costate", lane), name)
+                found = self.state(owner, lane)
+            self.known[name, lane] = found
         return self.known[name, lane]
-
-    def _named(self, name: str, lane: int, bound: Mapping[str, int]) -> Ratio:
-        """Return a name's law; a co-state or temperature that is the spec's own is an atom."""
-        element, role, _ = self.text.names[name]
-        found, owner = self.published(self.text.laws[name], bound), self.spec.elements.get(element)
-        if role not in ("costate", "temperature") or owner is None or owner.costate is None:
-            return found
-        same = self.field.is_zero(found - self.law(owner, "costate", lane))
-        self.finding.say("system", same, f"{name} is not the law of {element}")
-        return self.state(owner, lane)
 
     # The comparison
 
     def check(self) -> None:
         """Compare rates and outputs, and close the balances."""
-        own = flows(self.spec, self.counts, self)
+        own, power = flows(self.spec, self.counts, self), constant(0)
         self._keep(own)
-        power = constant(0)
         for name, y in own.conjugates.items():
             element, given = self.spec.elements[name], self.published(self.text.outputs[name], {})
             self._equal("system", given, y, f"output of {name}")
             ambient = element.kind.form == "ambient"
-            power = power + given * (exchange(element, self) if ambient else self.given("u", name, 0))
+            u = exchange(element, self) if ambient else self.given("u", name, 0)
+            power = power + given * u
         for (name, lane), rate in own.rates.items():
             element = self.spec.elements[name]
             given = self.published(self.text.rates[element.state], {name: lane} if lane else {})
@@ -181,8 +154,8 @@ class Comparison:
         self._gradient()
 
     def _equal(self, subject: str, given: Ratio, own: Ratio, what: str) -> None:
-        same = self.field.is_zero(given - own)
-        self.finding.say(subject, same, f"{what} is not that of the network")
+        if not self.field.is_zero(given - own):
+            self.finding.reasons.setdefault(subject, f"{what} is not that of the network")
 
     def _keep(self, own: Flows) -> None:
         """Keep what must be nonzero, and what letters are in terms of states and inputs."""
@@ -209,37 +182,35 @@ class Comparison:
 
     def _gradient(self) -> None:
         """Compare dU/dx with the co-states; a choice in U may be of parameters alone."""
-        energy = self.text.energy
-        for name in self.spec.states.values():
-            element, symbol, total = self.spec.elements[name], self.spec.elements[name].state, constant(0)
+        energy, states = self.text.energy, self.spec.states
+        for term in energy.args if energy.op == "+" else (energy,):
+            for part in walk(term.args[0] if term.op == "sum" else term):
+                chooser = part.args[0] if part.op == "if" else part
+                moves = part.op in ("if", *KINKS) and any(s in states for s in symbols(chooser))
+                need(part.op != "sum" and not moves, "the energy has choices of states")
+        for state, name in states.items():
+            total = constant(0)
             for term in energy.args if energy.op == "+" else (energy,):
                 inner = term.args[0] if term.op == "sum" else term
-                for part in walk(inner):
-                    chooser = part.args[0] if part.op == "if" else part
-                    moving = part.op in (*KINKED, "if") and set(symbols(chooser)) & set(self.spec.states)
-                    if part.op == "sum" or moving:
-                        raise InputError("the energy has choices of states, or sums in products")
-                if symbol in symbols(inner):
-                    bound = {term.value: 1} if term.op == "sum" else {}
-                    total = total + self.published(derivative(inner, symbol), bound)
-            own = self.law(element, "costate", 1 if name in self.counts else 0)
-            self._equal("energy", total, own, f"dU/d{symbol}")
+                bound = {term.value: 1} if term.op == "sum" else {}
+                if state in symbols(inner):
+                    total = total + self.published(derivative(inner, state), bound)
+            own = self.law(self.spec.elements[name], "costate", 1 if name in self.counts else 0)
+            self._equal("energy", total, own, f"dU/d{state}")
 
 
 def check_system(spec: Spec, system: Mapping[str, Any]) -> Finding:
     """Return what is found of a published system."""
-    finding = Finding()
+    finding, banks = Finding({}, {}, {}), {e.name for e in spec.elements.values() if e.count}
     try:
-        text = Published(spec, system)
-        banks = {e.name for e in spec.of("hysteron") if e.count is not None}
+        text = _Published(spec, system)
         expected = [(s, name, name if name in banks else None) for s, name in spec.states.items()]
         ports = {e.name for e in spec.of("source", "ambient")}
-        finding.say("system", text.states == expected, "the states are not those of the spec")
-        finding.say("system", set(text.rates) == set(spec.states), "rates are not those of states")
-        finding.say("system", set(text.outputs) == ports, "outputs are not those of ports")
+        tables = set(text.rates) == set(spec.states) and set(text.outputs) == ports
+        need(text.states == expected and tables, "states or ports are not those of the spec")
         for count in range(1, MOST_COUNT + 1 if banks else 2):
             if not finding.reasons:
-                Comparison(spec, text, count, finding).check()
+                _Comparison(spec, text, count, finding).check()
     except (InputError, SingularError, RecursionError) as error:
-        finding.say("system", False, str(error))
+        finding.reasons.setdefault("system", str(error))
     return finding

@@ -12,7 +12,7 @@ from fractions import Fraction
 from functools import cache
 from typing import Any, NamedTuple
 
-from .laws import InputError, Node
+from .laws import InputError, Node, need
 
 TERM = re.compile(r"([*/]|^)([A-Za-z]+|1)(?:(?:\*\*|\^)(-?[1-9]))?(?![A-Za-z0-9^]|\*\*)")
 BASES = [f"[{w}]" for w in "mass length time current temperature substance luminosity".split()]
@@ -30,6 +30,20 @@ class Unit(NamedTuple):
 
 
 @cache
+def unit(text: str) -> Unit:
+    """Return the unit that a text names; raises `InputError` if it names none."""
+    factor, dimension, place = Fraction(1), NONE, 0
+    while len(text) <= 60 and (term := TERM.match(text, place)):
+        power = (-1 if term[1] == "/" else 1) * int(term[3] or 1)
+        named = Unit(Fraction(1), NONE) if term[2] == "1" else _named(term[2])
+        factor *= named.factor**power
+        dimension = _times(dimension, named.dimension, power)
+        place = term.end()
+    need(0 < place == len(text), f"{text[:60]!r} is no unit")
+    return Unit(factor, dimension)
+
+
+@cache
 def _registry() -> Any:
     import pint
 
@@ -37,44 +51,20 @@ def _registry() -> Any:
 
 
 @cache
-def unit(text: str) -> Unit:
-    """Return the unit that a text names; raises `InputError` if it names none."""
-    factor, dimension, place = Fraction(1), NONE, 0
-    while len(text) <= 60 and (term := TERM.match(text, place)):
-        power = (-1 if term[1] == "/" else 1) * int(term[3] or 1)
-        named = _named(term[2])
-        factor *= named.factor**power
-        dimension = _times(dimension, named.dimension, power)
-        place = term.end()
-    if not 0 < place == len(text):
-        raise InputError(f"{text[:60]!r} is no unit")
-    return Unit(factor, dimension)
-
-
-@cache
 def _named(name: str) -> Unit:
-    import pint
-
-    if name == "1":
-        return Unit(Fraction(1), NONE)
     try:
         factor, base = _registry().get_base_units(name)
         origin = _registry().Quantity(Fraction(0), name).to_base_units().magnitude
         powers = dict(base.dimensionality)
-    except (pint.PintError, TypeError, AttributeError, ValueError):
+    except (TypeError, AttributeError, ValueError):  # pint's own errors are among them
         raise InputError(f"{name!r} is no unit") from None
     dimension = tuple(Fraction(powers.pop(word, 0)) for word in BASES)
-    if origin or powers:
-        raise InputError(f"{name!r} is no plain unit")
+    need(not origin and not powers, f"{name!r} is no plain unit")
     return Unit(Fraction(factor), dimension)
 
 
 def _times(left: Dimension, right: Dimension, power: Fraction | int) -> Dimension:
     return tuple(a + power * b for a, b in zip(left, right, strict=True))
-
-
-class _FaultError(Exception):
-    """Two parts of a tree have different units."""
 
 
 def check(
@@ -84,7 +74,7 @@ def check(
     try:
         if _dimension(tree, units) not in (None, needed) and needed is not None:
             yield f"{where} has another unit than its row"
-    except _FaultError as fault:
+    except InputError as fault:
         yield f"{where}: {fault}"
 
 
@@ -94,10 +84,9 @@ def _dimension(node: Node, units: Mapping[Any, Dimension]) -> Dimension | None:
         return units[node.value] if node.op == "sym" else NONE if node.value else None
     parts = [_dimension(arg, units) for arg in node.args]
     known = [part for part in (parts[1:] if node.op == "if" else parts) if part is not None]
-    if node.op in PURE and known not in ([], [NONE]):
-        raise _FaultError(f"the argument of {node.op} has a unit")
-    if node.op in EQUAL and any(part != known[0] for part in known):
-        raise _FaultError(f"the terms of {node.op!r} have different units")
+    need(node.op not in PURE or known in ([], [NONE]), f"the argument of {node.op} has a unit")
+    equal = node.op not in EQUAL or all(part == known[0] for part in known)
+    need(equal, f"the terms of {node.op!r} have different units")
     if node.op in (*PURE, "sign") or (node.op == "**" and node.value == 0):
         return NONE
     if node.op in "*/":

@@ -27,7 +27,7 @@ Exponent = int | Fraction
 Mono = tuple[tuple[int, Exponent], ...]
 Lane = tuple[str, int]  # a bank, and which of its lanes: 0 a row's, 1 a column's
 
-MOST_WORK = 3_000_000
+MOST_WORK = 400_000
 MOST_BITS = 20_000
 MOST_FACTOR = 10**12
 MOST_FACTORED = 40
@@ -134,7 +134,8 @@ class Field:
     ----------
     signs : differences that the domain says are positive (2) or not negative (1).
     needs : what divisions, roots and logarithms needed, while `path` is not None.
-    cases : the signs that differences may have together, once they are known.
+    asked : whether some signs cannot be together, as a solver said.
+    never : whether two differences cannot have two signs, once that is known.
     derived : whether what is computed at the moment is a derivative.
     path : a product of signs, 1 where what is computed at the moment is chosen.
     """
@@ -147,7 +148,8 @@ class Field:
         self.signs: dict[Value, int] = {}
         self._known: dict[Value, int] = {}
         self._factored: dict[Value, list[tuple[Value, int]]] = {}
-        self.cases: dict[tuple[Value, ...], list[dict[Value, int]]] = {}
+        self.asked: dict[frozenset[tuple[Value, int]], bool] = {}
+        self.never: dict[tuple[Value, int, Value, int], bool] = {}
         self.needs: dict[Need, None] = {}
         self.zero, self.one = Value(self, {}), Value(self, {(): 1})
         self.path: Value | None = self.one
@@ -220,7 +222,7 @@ class Field:
                 found[g] = 1
                 if seen.setdefault(gen.arg, g) != g:
                     return None
-            elif gen.kind == "power" and gen.arg and (e >= 1 or (e < 0 and not gen.arg.names)):
+            elif gen.kind == "power" and gen.arg and (e >= 1 or (e < 0 and gen.arg.constant is not None)):
                 whole = floor(e)
                 found[g] = e - whole
                 if e == whole:
@@ -260,8 +262,10 @@ class Field:
 
     def _power(self, base: Value, q: Exponent) -> Value:
         """Return a power of a value without signs, for an exponent that is not whole or negative."""
+        if not base.terms and q > 0:
+            return base
         if not base.terms:
-            raise NotShownError("a quotient or power of zero")
+            return self._undefined("nonzero")
         size, common, rest = self.primitive(base, partly=q.denominator != 1)
         made = self._root(size, q)
         for g, e in common:
@@ -378,7 +382,7 @@ class Field:
     def assume(self, value: Value, sign: int) -> None:
         """Take it that a value is positive (2) or not negative (1)."""
         self._known.clear()
-        if value.names:
+        if value.constant is None:
             rest = self.primitive(value, partly=True)[2]
             self.signs[rest] = max(sign, self.signs.get(rest, 0))
             for g in rest.generators():  # of what is but a name, the name is marked itself
@@ -441,6 +445,12 @@ class Field:
         if self.path is not None and self.sign(value) < enough and self.sign(-value) < 2:
             self.needs[Need(kind, value, self.path, self.derived)] = None
 
+    def _undefined(self, kind: str) -> Value:
+        """Return 1/0 or log(0): a name of which nothing is known, needed nowhere."""
+        if self.path is not None:
+            self.needs[Need(kind, self.zero, self.path, self.derived)] = None
+        return self.generator("name", None, (f"not {kind}", None, 0))
+
     # Functions
 
     def call(self, function: str, arg: Value) -> Value:
@@ -460,9 +470,9 @@ class Field:
         return made
 
     def _log(self, arg: Value) -> Value:
-        self._needs("positive", arg)
         if not arg.terms:
-            raise NotShownError("a logarithm of zero")
+            return self._undefined("positive")
+        self._needs("positive", arg)
         (mono, c), *more = arg.terms.items()
         if more or c <= 0 or any(self.sign_of(g) < 2 for g, _ in mono):
             return self.generator("log", arg)

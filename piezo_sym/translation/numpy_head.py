@@ -46,9 +46,9 @@ def _lanes(value, count, ndim):
     if np.ndim(value) == 0:
         return value
     value = np.asarray(value, dtype=float)
-    if value.shape != (count,):
-        raise ValueError(f"a parameter of a bank of {{count}} lanes has {{value.size}} values")
-    return value.reshape(count, *(1,) * (ndim - 1))
+    if len(value) != count or value.ndim > ndim:
+        raise ValueError(f"a parameter of a bank of {{count}} lanes has {{len(value)}} values")
+    return value.reshape(*value.shape, *(1,) * (ndim - value.ndim))
 def rhs(x, u, p, /):
     x, u = _states(x, p), _inputs(u)
     out = np.empty(x.shape)

@@ -228,8 +228,10 @@ class _Function:
         match node:
             case ast.Call(ast.Attribute(ast.Name("np"), "min"), [arg], keywords):
                 value, shape = self.read.numeric(arg)
-                axis = [ast.unparse(word) for word in keywords]
-                if (shape.kind, axis) in (("maybe", []), ("lanes", ["axis=0"])):
+                names = (part.id for part in ast.walk(arg) if isinstance(part, ast.Name))
+                own = all(name in self.values and self.values[name][1] == shape for name in names)
+                axis = [ast.unparse(word) for word in keywords] == ["axis=0"]
+                if axis and (shape.kind == "lanes" or (shape.kind == "maybe" and own)):
                     return value
         refuse(node, "a least value")
 
@@ -327,7 +329,8 @@ class _Function:
         if name == "ones" and len(args) == 1 and isinstance(args[0], ast.Tuple) and not words:
             count, *rest = args[0].elts
             if [ast.unparse(part) for part in rest] == [f"*(1,) * ({x}.ndim - 1)"]:
-                banks = {self.field.count(s.bank): s.bank for s in self.slots if s.bank}
+                slots = self.known.slots["rhs"]
+                banks = {self.field.count(s.bank): s.bank for s in slots if s.bank}
                 bank = banks.get(self._whole(count))
                 if bank:
                     return self.field.one, Shape("lanes", bank)

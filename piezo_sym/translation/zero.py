@@ -7,16 +7,19 @@ fraction is multiplied out.  A sum over lanes is zero if its terms are.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from itertools import combinations, product
+from itertools import product
 from math import ceil
 
 from piezo_sym.translation.change import put
 from piezo_sym.translation.field import Field, NotShownError, Value
+from piezo_sym.translation.possible import impossible
 
-MOST_CASES = 3**6
+MOST_CASES = 500
 Sides = Mapping[Value, int]
+Case = tuple[Value, dict[Value, int]]
 
 
 def is_zero(value: Value, *, inside: bool = False) -> bool:
@@ -95,20 +98,54 @@ def _by_cases(value: Value, groups: Sequence[tuple[Value, ...]], *, inside: bool
     left = value
     for group in groups:
         here = _chosen_by(value, group)
-        first: Value | None = None
-        if group not in value.field.cases:
-            value.field.cases[group] = list(cases(group))
-        for sides in value.field.cases[group]:
-            if inside and 0 in sides.values():
-                continue
-            part = value.field.at(here, sides)
-            if first is None:
-                first, left = part, left - here + part
-            elif not is_zero(_at_edges(part - first, sides)):
-                return False
-        if first is None:
+        base = _common(list(_cases(here, {}, [MOST_CASES], inside=inside)))
+        if base is None:
             return False
+        left = left - here + base
     return is_zero(left)
+
+
+def _common(cases: list[Case]) -> Value | None:
+    """Return what a value is in every case that can be, or None if it is not the same in all."""
+    while cases:
+        (base, sides), *rest = cases
+        wrong = [case for case in rest if not is_zero(_at_edges(case[0] - base, case[1]))]
+        if all(impossible(case[1]) for case in wrong):
+            return base
+        if not impossible(sides):
+            return None
+        cases = rest
+    return None
+
+
+def _cases(
+    value: Value, sides: dict[Value, int], left: list[int], *, inside: bool
+) -> Iterator[Case]:
+    """Yield what a value is in each case that does not contradict itself, and the signs there."""
+    field = value.field
+    found = Counter(
+        gen.arg for mono in value.terms for g, _ in mono if (gen := field.gens[g]).kind == "sign"
+    )
+    if not found:
+        left[0] -= 1
+        if left[0] < 0:
+            raise NotShownError("too many branches meet in one row")
+        yield value, sides
+        return
+    d = max(found, key=lambda d: found[d])
+    assert d is not None
+    for side in (1, -1) if inside else (1, -1, 0):
+        if _possible(d, side) and not any(_never(d, side, e, s) for e, s in sides.items()):
+            here = {**sides, d: side}
+            yield from _cases(field.at(value, {d: side}), here, left, inside=inside)
+
+
+def _never(first: Value, s: int, second: Value, t: int) -> bool:
+    """Return whether two differences cannot have these signs; what was found is kept."""
+    field, key = first.field, (first, s, second, t)
+    if key not in field.never:
+        field.never[key] = _contradict(*key)
+    return field.never[key]
 
 
 def _chosen_by(value: Value, group: Sequence[Value]) -> Value:
@@ -120,23 +157,6 @@ def _chosen_by(value: Value, group: Sequence[Value]) -> Value:
         if any(gens[g].kind == "sign" and gens[g].arg in group for g, _ in mono)
     }
     return Value(value.field, terms)
-
-
-def cases(group: Sequence[Value]) -> Iterator[dict[Value, int]]:
-    """Yield the signs that differences may have together, those inside branches first."""
-    if 3 ** len(group) > MOST_CASES:
-        raise NotShownError("too many branches meet in one row")
-    never = {
-        (m, s, n, t)
-        for (m, first), (n, second) in combinations(enumerate(group), 2)
-        for s, t in product((1, 0, -1), repeat=2)
-        if _contradict(first, s, second, t)
-    }
-    for sides in product((1, -1, 0), repeat=len(group)):
-        pairs = combinations(enumerate(sides), 2)
-        known = all(_possible(d, side) for d, side in zip(group, sides, strict=True))
-        if known and not any((m, s, n, t) in never for (m, s), (n, t) in pairs):
-            yield dict(zip(group, sides, strict=True))
 
 
 def _possible(d: Value, side: int) -> bool:

@@ -53,9 +53,11 @@ def summary(found):
         total.update({k: v for k, v in record["counts"].items() if not k.startswith("refused:")})
         seconds.update(record["seconds"])
     laws = sum(record["laws"] for record in found)
-    rate = laws / max(sum(seconds.values()), 1e-9) * 3600
+    spent = sum(v for name, v in seconds.items() if "wall" not in name)
+    rate = laws / max(spent, 1e-9) * 3600
+    rounded = {name: round(value) for name, value in seconds.items()}
     rows = [f"  {name:32} {count}" for name, count in sorted(total.items())]
-    return "\n".join([f"{laws} laws, {dict(seconds)} s, {rate:.0f} laws/hour", *rows])
+    return "\n".join([f"{laws} laws, {rounded} s, {rate:.0f} laws per hour of processor", *rows])
 
 
 if __name__ == "__main__":

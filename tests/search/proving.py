@@ -50,6 +50,18 @@ class Prover:
         threading.Thread(target=_read, args=(self.process.stdout, self.lines), daemon=True).start()
         self.lines.get(timeout=60)  # it has imported what it needs
 
+    def cpu(self):
+        """Return the seconds of processor that the process and its solvers have used so far."""
+        ticks = 0
+        for stat in Path("/proc").glob("[0-9]*/stat") if self.process else ():
+            try:
+                fields = stat.read_text().rpartition(")")[2].split()
+            except OSError:  # it ended meanwhile
+                continue
+            if int(fields[2]) == self.process.pid:
+                ticks += int(fields[11]) + int(fields[12])
+        return ticks / os.sysconf("SC_CLK_TCK")
+
     def close(self):
         """End the process and the solvers that it started."""
         if self.process is not None:

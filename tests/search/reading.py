@@ -136,7 +136,8 @@ def _add_state(spec, name, element, used):
         )
         (spec.domain if free else spec.warm).append((">", ("name", made), ZERO))
     else:
-        made, free = f"~{name}", law[0] == "/" and letter not in names(law[2])
+        size = law[1] if kind == "spring" else law[2]
+        made, free = f"~{name}", letter not in names(size)
     if free and state not in used:
         spec.free.append(made)
         spec.own[made] = spec.own[law[1][1]] if kind == "thermal_mass" else Fraction(0)

@@ -15,8 +15,8 @@ from tests.search.reading import spec_of
 from tests.search.values import DoubtError, NoValueError, exact, rational
 
 LAWS = 20
-#: Depth of the laws; the deep ones cost the prover most.
-DEPTHS = (0, 0, 0, 1, 1, 1, 1, 2, 2, 3)
+#: Depths of the laws of one spec; the deep ones cost the prover most.
+DEPTHS = ((0, 0, 0, 1), (0, 0, 1, 1), (0, 0, 1, 1), (0, 1, 1, 2, 3))
 #: Letters of states: in the law of a store they are not the parameter of that name.
 LETTERS = frozenset({"p", "q", "Q", "S", "phi"})
 ABOVE = (0.5, 1.0, 2.0, 0.25, 4.0, 3.0)
@@ -46,6 +46,7 @@ class Draft:
         )
         self.nodes = random.sample(NODES, len(NODES))
         self.elements, self.labels, self.inputs = {}, {}, {}
+        self.depths = random.choice(DEPTHS)
         self.parameters = {}
         self.above = [self.parameter(ABOVE) for _ in range(3)]
         self.least = [self.parameter((*ABOVE, 0.0)) for _ in range(random.randint(1, 2))]
@@ -96,7 +97,7 @@ class Draft:
     def law(self, letter):
         """Return a law that the package reads, and what is known of it."""
         while True:
-            drawn = self.grammar(letter).law(self.random.choice(DEPTHS))
+            drawn = self.grammar(letter).law(self.random.choice(self.depths))
             made = text(read(drawn.text))
             if len(made) < 400 and self.fit(made) and self._wide(made):
                 return made, drawn

@@ -1,7 +1,7 @@
-"""A spec at one point, exactly: rationals where all is rational, else enclosures that tell.
+"""A spec at one point, exactly, by the checker's reader: rationals, else enclosures that tell.
 
-Input: a `Spec`, and numbers for parameters, inputs and states.  Output: a `Point`.  What 8192 bits
-do not decide is None: it cannot be told.
+Input: the checker's `Spec`, and numbers for parameters, inputs and states.  Output: a `Point`.
+What 8192 bits do not decide is None: it cannot be told.
 """
 
 from __future__ import annotations
@@ -9,29 +9,22 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any
+from typing import Any, final
 
-from flint import arb, ctx, fmpq, fmpz
+from flint import arb, ctx, fmpq
 
-from .laws import InputError, Node, minus, num, symbols, unkinked
-from .network import Flows, SingularError, flows
-from .spec import Element, Spec
+from piezo_sym.checker.laws import InputError, Node, derivative, num, symbols
+from piezo_sym.checker.network import Flows, SingularError, flows
+from piezo_sym.checker.numbers import CannotTell, NoValue, compute, exact, holds
+from piezo_sym.checker.spec import Element, Spec
 
 PRECISIONS = (128, 512, 2048, 8192)
-MAX_BITS, MAX_LANES = 40_000, 64
-HUGE = {"exp": 2**34, "tanh": 2**34, "sin": 2**4096, "cos": 2**4096}
+MAX_LANES = 64
 Given = Mapping[str, Any]
 Values = tuple[Any, ...]
 
 
-class CannotTell(ArithmeticError):
-    """The precision does not decide a comparison, or a number is beyond what is computed."""
-
-
-class NoValue(ArithmeticError):
-    """A law has no real value: a division by zero, a root or logarithm outside its domain."""
-
-
+@final
 @dataclass
 class Point:
     """What a spec says at a point; None where it cannot be told or (`undefined`) has no value.
@@ -91,168 +84,13 @@ def evaluate(
     return found
 
 
-def value(tree: Node, words: Mapping[Any, Any]) -> Any:
-    """Return the exact value of a law, a Fraction or an enclosure.
-
-    Raises
-    ------
-    NoValue
-        If it has none.
-    CannotTell
-        If no precision tells.
-    """
-    before, given = ctx.prec, {name: exact(number) for name, number in words.items()}
-    try:
-        for ctx.prec in PRECISIONS[:-1]:
-            try:
-                return _plain(compute(tree, given))
-            except CannotTell:
-                continue
-        ctx.prec = PRECISIONS[-1]
-        return _plain(compute(tree, given))
-    finally:
-        ctx.prec = before
-
-
-def exact(number: Any) -> Any:
-    """Return a number as an exact rational of FLINT; enclosures stay."""
-    if not isinstance(number, int | float | Fraction):
-        return number
-    ratio = Fraction(number)
-    return fmpq(ratio.numerator, ratio.denominator)
-
-
-def real(number: Any) -> Any:
-    """Return a rational as an enclosure."""
-    return arb(number) if isinstance(number, fmpq) else number
-
-
-def _plain(number: Any) -> Any:
-    if isinstance(number, fmpq):
-        return Fraction(int(number.p), int(number.q))
-    return number if number is not None and number.is_finite() else None
-
-
-def sign(number: Any) -> int:
-    """Return the sign of a number; raises `CannotTell` if its enclosure does not tell."""
-    told = 1 if number > 0 else -1 if number < 0 else 0 if number == 0 else None
-    if told is None:
-        raise CannotTell
-    return told
-
-
-def holds(condition: Node, words: Mapping[Any, Any]) -> bool:
-    """Return whether a comparison holds."""
-    told = sign(compute(minus(*condition.args), words))
-    return {"<": told < 0, "<=": told <= 0, ">": told > 0, ">=": told >= 0}[condition.value]
-
-
-def compute(node: Node, words: Mapping[Any, Any]) -> Any:
-    """Return the value of a law at the present precision; `words` has exact numbers."""
-    if node.op == "num":
-        return exact(node.value)
-    if node.op == "sym":
-        return words[node.value]
-    if node.op == "if":
-        return compute(node.args[1 if holds(node.args[0], words) else 2], words)
-    if node.op == "abs":
-        node = Node("max", (node.args[0], Node("neg", node.args)))
-    if node.op in ("deadzone", "saturate"):
-        return compute(unkinked(node), words)
-    args = [compute(arg, words) for arg in node.args]
-    found = _operation(node, args[0], args[-1]) if node.op != "+" else sum(args[1:], args[0])
-    if isinstance(found, fmpq):
-        long = found.p.bit_length() + found.q.bit_length() > MAX_BITS
-        return arb(found) if long else found
-    if not found.is_finite():
-        raise CannotTell
-    return found
-
-
-def _operation(node: Node, x: Any, y: Any) -> Any:
-    match node.op:
-        case "neg":
-            return -x
-        case "*":
-            return x * y
-        case "/":
-            return x / _nonzero(y)
-        case "**" | "sqrt":
-            return _power(x, Fraction(1, 2) if node.op == "sqrt" else node.value)
-        case "sign":
-            return exact(sign(x))
-        case "min" | "max":
-            try:
-                return x if (sign(x - y) >= 0) == (node.op == "max") else y
-            except CannotTell:
-                return real(x).min(y) if node.op == "min" else real(x).max(y)
-        case "log":
-            if sign(x) <= 0:
-                raise NoValue("logarithm of no positive number")
-            return exact(0) if x == 1 else real(x).log()
-    if x == 0:
-        return exact(1 if node.op in ("exp", "cos") else 0)
-    if not abs(x) < HUGE[node.op]:
-        raise CannotTell
-    return getattr(real(x), node.op)()
-
-
-def _nonzero(x: Any) -> Any:
-    if sign(x) == 0:
-        raise NoValue("division by zero")
-    return x
-
-
-def _power(x: Any, exponent: Fraction) -> Any:
-    top, order = exponent.numerator, exponent.denominator
-    x = _nonzero(x) if top < 0 else x
-    if order > 1:
-        if sign(x) < 0:
-            raise NoValue("root of a negative number")
-        roots = [fmpz(n).root(order) for n in (x.p, x.q)] if isinstance(x, fmpq) else [0, 0]
-        rational = isinstance(x, fmpq) and fmpq(*roots) ** order == x
-        x = fmpq(*roots) if rational else real(x).root(order)
-    return 1 / x ** abs(top) if top < 0 else x**top
-
-
-def derivative(node: Node, by: Any) -> Node:
-    """Return the derivative of a law by a symbol, branch by branch."""
-    zero, one, two = num(0), num(1), Fraction(2)
-    if by not in symbols(node) or node.op == "sym":
-        return num(int(node.op == "sym" and node.value == by))
-    if node.op == "if":
-        return Node("if", (node.args[0], *(derivative(arg, by) for arg in node.args[1:])))
-    inner = tuple(derivative(arg, by) for arg in node.args)
-    x, y, dx, dy = node.args[0], node.args[-1], inner[0], inner[-1]
-    match node.op:
-        case "+" | "neg":
-            return Node(node.op, inner)
-        case "*":
-            return Node("+", (Node("*", (dx, y)), Node("*", (x, dy))))
-        case "/":
-            over = Node("/", (Node("*", (x, dy)), Node("**", (y,), two)))
-            return Node("/", (dx, y)) if dy == zero else minus(Node("/", (dx, y)), over)
-        case "min" | "max" | "deadzone" | "saturate" | "abs" | "sign":
-            return derivative(unkinked(node), by)
-        case "**":
-            slope = Node("*", (num(node.value), Node("**", (x,), node.value - 1)))
-        case "sqrt":
-            slope = Node("/", (num(Fraction(1, 2)), node))
-        case "log":
-            slope = Node("/", (one, x))
-        case "sin" | "cos":
-            turned = Node("cos" if node.op == "sin" else "sin", (x,))
-            slope = turned if node.op == "sin" else Node("neg", (turned,))
-        case _:
-            slope = node if node.op == "exp" else minus(one, Node("**", (node,), two))
-    return Node("*", (slope, dx))
-
-
+@final
 class _Evaluation:
     """One evaluation, the algebra of its network; what cannot be told is no number (nan)."""
 
     def __init__(self, spec: Spec, counts: Mapping[str, int]) -> None:
-        self.spec, self.one, self.untold, self.undefined = spec, exact(1), False, dict[str, None]()
+        self.spec, self.one, self.rational = spec, exact(1), True
+        self.untold, self.undefined = False, dict[str, None]()
         self.counts = {e.name: e.count for e in spec.of("hysteron") if e.count} | dict(counts)
         if max(self.counts.values(), default=0) > MAX_LANES:
             raise InputError(f"a point is computed for banks of {MAX_LANES} lanes at most")
@@ -270,7 +108,8 @@ class _Evaluation:
             told = (self.told(tree, state, n) for n, tree in enumerate(starts, 1))
             self.known["x", owner] = list(told) if given is None else _list(given)
         for body in self.spec.of("body"):
-            self.known["T", body.name] = [self.told(body.laws["temperature"], body.name)]
+            T = self.told(body.laws["temperature"], body.name)
+            self.known["T", body.name] = [T if T != 0 else arb(0)]  # W*z/T is then no number
 
     def words(self, lane: int) -> dict[Any, Any]:
         """Return the values of names in one lane."""
@@ -290,7 +129,10 @@ class _Evaluation:
     def law(self, element: Element, field: str, lane: int, letter: Any = None) -> Any:
         """Return the value of a law."""
         tree = element.law if field == "law" else element.laws[field]
-        return self.told(tree or num(0), element.name, lane, letter)
+        found = self.told(tree or num(0), element.name, lane, letter)
+        solving = field == "ratio" or letter is self.one
+        self.rational &= isinstance(found, fmpq) or not solving
+        return found
 
     def given(self, role: str, owner: str, lane: int) -> Any:
         """Return an input, a co-state or a temperature."""
@@ -304,8 +146,10 @@ class _Evaluation:
         made = Point()
         try:
             self._book(flows(self.spec, self.counts, self), made)
-        except (SingularError, ZeroDivisionError):
-            self.untold, made.undefined = True, ("network",)
+        except SingularError:
+            if self.rational:  # else more digits may find a pivot
+                raise
+            self.untold = True
         for body in self.spec.of("body"):
             slope = derivative(body.laws["temperature"], ("x", body.name))
             made.temperatures[body.name] = _plain(self.known["T", body.name][0])
@@ -354,3 +198,8 @@ class _Evaluation:
 def _list(given: Any) -> list[Any]:
     several = isinstance(given, Sequence) and not isinstance(given, str)
     return [exact(v) for v in given] if several else [exact(given)]
+
+def _plain(number: Any) -> Any:
+    if isinstance(number, fmpq):
+        return Fraction(int(number.p), int(number.q))
+    return number if number.is_finite() else None
