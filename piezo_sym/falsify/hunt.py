@@ -48,7 +48,8 @@ class Attack:
     Attributes
     ----------
     id, element : of the row.
-    points : inside the domain at which it held.
+    points : inside the domain at which it held, at least; one digit, for another processor's
+        last bits decide on some points otherwise, and the number is published.
     worst : a point at which the module's number breaks it, by name, though the exact one does not.
     rounding : whether there is one.
     """
@@ -229,7 +230,8 @@ class Hunt:
         if claim.id == "continuous":
             self._jumps(claim, exact)
         worst = rounding[0].words(rounding[1]) if rounding else None
-        return Attack(claim.id, claim.element, track.points, worst, rounding is not None)
+        points = int(str(track.points)[0]) * 10 ** (len(str(track.points)) - 1)
+        return Attack(claim.id, claim.element, points, worst, rounding is not None)
 
     def _jumps(self, claim: Claim, exact: Exact) -> None:
         """Look at a law on both sides of the kinks that states and inputs reach."""

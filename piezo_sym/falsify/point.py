@@ -199,6 +199,7 @@ def _list(given: Any) -> list[Any]:
     several = isinstance(given, Sequence) and not isinstance(given, str)
     return [exact(v) for v in given] if several else [exact(given)]
 
+
 def _plain(number: Any) -> Any:
     if isinstance(number, fmpq):
         return Fraction(int(number.p), int(number.q))

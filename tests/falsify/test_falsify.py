@@ -107,7 +107,7 @@ def test_a_law_that_is_active_on_a_small_set_is_caught(tmp_path, name):
 @pytest.mark.parametrize(
     "law",
     [
-        "F_1*(exp(v/v_1) - 1 - v/v_1)*v/v_1",
+        "F_1*v/v_1*(exp(v/v_1)*exp(-v/v_1) - 1 + 1e-17)",
         "a*v*((v/v_1 + 1)**2 - (v/v_1)**2 - 2*v/v_1)",
         "F_1*(v/v_1)**3*((v/v_1 - 1)**2 + 2*v/v_1 - 1)",
     ],
