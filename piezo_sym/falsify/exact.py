@@ -161,7 +161,8 @@ def _gap(one: Watched, other: Watched) -> Fraction:
     if one is None or other is None:
         return Fraction(0)
     with ctx.workprec(BITS):
-        return max(_least(_known(a) - _known(b)) for a, b in zip(one, other, strict=True))
+        gaps = (_least(_known(a) - _known(b)) for a, b in zip(one, other, strict=True))
+        return max(gaps, default=Fraction(0))
 
 
 def _least(gap: Any) -> Fraction:

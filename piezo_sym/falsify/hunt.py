@@ -19,7 +19,7 @@ from piezo_sym.checker import InputError
 from piezo_sym.errors import ContradictionError
 from piezo_sym.falsify.claims import TOLERANCE, Claim, claim_of
 from piezo_sym.falsify.exact import Exact
-from piezo_sym.falsify.points import FEW, STAGES, Draw, warmed
+from piezo_sym.falsify.points import FEW, STAGES, Draw, Roots, warmed
 from piezo_sym.falsify.probe import probe_of
 from piezo_sym.falsify.space import Array, Mask, Seen, Space
 from piezo_sym.iphs import IPHS
@@ -31,9 +31,11 @@ from piezo_sym.spec.units import parse_unit
 POINTS = 100_000
 #: Lanes that points have; of those of the spec, so many are looked at.
 LANES, MOST_LANES = 2, 512
-KEPT, CHILDREN, DESCENTS = 8, 24, 8
+KEPT, CHECKED, CHILDREN, DESCENTS = 8, 4, 24, 8
 #: Of a law's size; between neighbouring floats it may change by less than this.
 JUMP = 1e-6
+#: Off a jump by so many times the distance of two floats, a law has changed by about as much.
+WIDE = 100
 #: Stands for a zero where a row says > 0: not negative, but to be looked at exactly.
 ZERO = -1e-300
 
@@ -46,7 +48,8 @@ class Attack:
     Attributes
     ----------
     id, element : of the row.
-    points : inside the domain at which it held.
+    points : inside the domain at which it held, at least; one digit, for another processor's
+        last bits decide on some points otherwise, and the number is published.
     worst : a point at which the module's number breaks it, by name, though the exact one does not.
     rounding : whether there is one.
     """
@@ -74,7 +77,7 @@ class Track:
             says = np.broadcast_to(self.claim.says(seen), seen.x.shape[1:])
             self.points += int(says.sum())
             if self.claim.id == "welldef":
-                key = np.where(seen.undefined(self.claim.element), -1.0, 1.0)
+                key = np.where(seen.holed(self.claim.element), -1.0, 1.0)
             elif self.claim.numbers:
                 key = self._least(seen, says)
             else:
@@ -215,39 +218,49 @@ class Hunt:
     def _judged(self, track: Track, exact: Exact) -> Attack:
         """Return what became of a row, its suspicious points evaluated exactly."""
         claim, rounding = track.claim, None
-        for key, space, point in chain(*track.worst.values()):
+        for key, space, point in chain(*(worst[:CHECKED] for worst in track.worst.values())):
             value = exact.broken(claim, space, point) if key < 0 else None
             if value:
                 raise self._contradiction(claim, value, space.words(point))
-            overflow = claim.id == "welldef" and key > -1  # of an extreme point
-            rounding = rounding or (None if overflow or key >= ZERO else (space, point))
+            plain = not space.at(point[:, None]).extreme[0]  # else underflow, which is none either
+            told = key < ZERO and claim.numbers and plain
+            rounding = rounding or ((space, point) if told else None)
         if track.lost and rounding is None and exact.has_value(claim, *track.lost):
             rounding = track.lost
         if claim.id == "continuous":
             self._jumps(claim, exact)
         worst = rounding[0].words(rounding[1]) if rounding else None
-        return Attack(claim.id, claim.element, track.points, worst, rounding is not None)
+        points = int(str(track.points)[0]) * 10 ** (len(str(track.points)) - 1)
+        return Attack(claim.id, claim.element, points, worst, rounding is not None)
 
     def _jumps(self, claim: Claim, exact: Exact) -> None:
         """Look at a law on both sides of the kinks that states and inputs reach."""
-        space = self.space
-        sizes = [row.stop - row.start for row in space.edge_rows]
-        chosen = np.repeat([edge.op == "if" for edge in space.probe.edges], sizes)
+        sizes = [row.stop - row.start for row in self.space.edge_rows]
+        kinks = np.repeat([edge.kink for edge in self.space.probe.edges], sizes)
         for roots in self.draw.roots:
-            low, high = (space.at(roots.at(value)) for value in (roots.low, roots.high))
-            near = chosen[roots.edge] & (roots.column >= space.inputs_at)
-            near &= low.inside & high.inside & ~space.at(roots.base).extreme
+            near = kinks[roots.edge] & (roots.column >= self.space.inputs_at)
+            ends = [self.space.at(roots.at(value)) for value in (roots.low, roots.high)]
+            near &= ends[0].inside & ends[1].inside & ~self.space.at(roots.base).extreme
             for what in ("law", "output"):
-                law = space.law_rows.get((claim.element, what), slice(0))
-                with np.errstate(all="ignore"):
-                    jump = np.abs(high.laws[law] - low.laws[law])
-                    big = (jump / (high.sizes[law] + low.sizes[law])).max(axis=0, initial=0)
-                big = np.where(near & np.isfinite(big), big, 0)
-                for n in np.argsort(-big, kind="stable")[:4]:
-                    pair = (low.points[:, n], high.points[:, n])
-                    value = exact.jump(claim, space, *pair) if big[n] > JUMP else None
+                row = self.space.law_rows.get((claim.element, what), slice(0))
+                big = np.where(near, self._leap(row, roots, ends), 0)
+                for n in np.argsort(-big, kind="stable")[:2]:
+                    pair = (ends[0].points[:, n], ends[1].points[:, n])
+                    value = exact.jump(claim, self.space, *pair) if big[n] > JUMP else None
                     if value:
-                        raise self._contradiction(claim, value, space.words(pair[1]))
+                        raise self._contradiction(claim, value, self.space.words(pair[1]))
+
+    def _leap(self, row: slice, roots: Roots, ends: list[Seen]) -> Array:
+        """Return by how much of its size a law changes; 0 if farther off it changes more."""
+        low, high = ends
+        off = WIDE * (roots.high - roots.low)
+        wide = [self.space.at(roots.at(v)) for v in (roots.low - off, roots.high + off)]
+        with np.errstate(all="ignore"):
+            leap = np.abs(high.laws[row] - low.laws[row])
+            steep = np.abs(wide[1].laws[row] - wide[0].laws[row]) > 4 * leap
+            big = np.where(np.isinf(leap), 1, leap / (high.sizes[row] + low.sizes[row]))
+        found: Array = np.where(steep | np.isnan(big), 0, big).max(axis=0, initial=0)
+        return found
 
     def _contradiction(
         self, claim: Claim, value: str, words: Mapping[str, str]

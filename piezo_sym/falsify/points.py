@@ -26,8 +26,8 @@ WALKS = 40
 #: Zero is bracketed by this, since a product of less may be zero.
 TINY = 1e-280
 TABLE = 8192
-#: Edges are solved for from points known, then from points on edges.
-STAGES = (("kinks", 400), ("corners", 300))
+#: Edges are solved for from points known, then from points on edges; so often each.
+STAGES = (("kinks", 16), ("corners", 12))
 FAR = (-290, -100, -30, -15, -9, -6)
 DECADES = (*FAR, -4, -3, -2, -1, -0.3, 0, 0.3, 1, 2, 3, 4, 6, 9, 15, 30, 100)
 LADDER = np.array([-(10.0**e) for e in DECADES[::-1]] + [0.0] + [10.0**e for e in DECADES])
@@ -100,6 +100,7 @@ class Draw:
     def _near(self, roots: Roots) -> Iterator[Array]:
         for value in (roots.low, roots.high):
             yield from (value, np.nextafter(value, np.inf), np.nextafter(value, -np.inf))
+        yield np.where(np.abs(roots.high) <= TINY, 0, roots.high)
         largest = np.array([row[-1] for row in self.scales])[roots.column]
         size = np.where(roots.high == 0, largest, roots.high)
         for off in OFF[1:].tolist():
@@ -123,8 +124,10 @@ class Draw:
             high = np.where(rising, ladder[step + 1], ladder[step])
             found.append((edge, np.full_like(edge, column), base, low, high))
         edges, columns, at, lows, highs = map(np.concatenate, zip(*found, strict=True))
-        order = self.rng.permutation(len(edges))
-        kept = order[np.argsort(at[order] > 0, kind="stable")][:most]
+        order = np.argsort(self.rng.random(len(edges)) - 0.5 * (columns >= self.space.inputs_at))
+        order = order[np.argsort(edges[order], kind="stable")]
+        rank = np.arange(len(order)) - np.searchsorted(edges[order], edges[order])
+        kept = order[rank < most]
         return Roots(edges[kept], columns[kept], bases[:, at[kept]], lows[kept], highs[kept])
 
     def _bisected(self, roots: Roots) -> Roots:

@@ -107,7 +107,7 @@ def test_a_law_that_is_active_on_a_small_set_is_caught(tmp_path, name):
 @pytest.mark.parametrize(
     "law",
     [
-        "F_1*(exp(v/v_1) - 1 - v/v_1)*v/v_1",
+        "F_1*v/v_1*(exp(v/v_1)*exp(-v/v_1) - 1 + 1e-17)",
         "a*v*((v/v_1 + 1)**2 - (v/v_1)**2 - 2*v/v_1)",
         "F_1*(v/v_1)**3*((v/v_1 - 1)**2 + 2*v/v_1 - 1)",
     ],
@@ -292,3 +292,17 @@ def test_a_mass_alone_has_nothing_to_jump(tmp_path):
     iphs = built(tmp_path, MASS + damper("a*v").removeprefix(MASS), "a > 0")
     (attack,) = attacked(iphs, ("continuous", "mass"))
     assert attack.points >= 20_000
+
+
+def test_a_module_takes_parameters_of_a_bank_per_lane_and_point(stack):
+    module, rng = module_of(stack), np.random.default_rng(3)
+    x, u = rng.random((6, 5)) + 1, rng.random((3, 5)) + 300
+    lanes = {name: rng.random((2, 5)) + 1 for name in ("L", "rho", "i_0")}
+    together = module.Parameters(**lanes, T_0=rng.random(5) + 200)
+    for function in ("rhs", "heat", "entropy_production", "margins", "jacobian"):
+        found = getattr(module, function)(x, u, together)
+        for n in range(5):
+            own = {name: tuple(values[:, n]) for name, values in lanes.items()}
+            alone = module.Parameters(**own, T_0=together.T_0[n])
+            expected = getattr(module, function)(x[:, n], u[:, n], alone)
+            np.testing.assert_allclose(found[..., n], expected, rtol=1e-13)
