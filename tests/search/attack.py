@@ -7,8 +7,8 @@ edges of the law and by descent; exact arithmetic decides.
 import numpy as np
 
 from tests.search.laws import edges, names
-from tests.search.points import certain, filled, joined, onto
-from tests.search.reading import moving
+from tests.search.points import Points, certain, filled, joined, onto
+from tests.search.reading import moving, total
 from tests.search.values import DoubtError, NoValueError, exact, floats, rational, sign
 
 MOST = 4
@@ -29,6 +29,7 @@ def counterexample(claim, points):
 def fails(claim, point, spec):
     """Return whether a claim certainly fails at an exact point of the domain."""
     warm = claim.id != "temperature"
+    spec = total(spec) if claim.id == "domain" else spec
     return certain(point, spec, warm) and FAILS[claim.id](claim, point, spec)
 
 
@@ -150,13 +151,13 @@ def _continuous(claim, points):
         jumping = [edge for kind, edge in edges(law) if kind != "bend"]
         for edge in dict.fromkeys(jumping[:8]):
             for name in points.free_names(edge):
-                found = name in moving(points.spec) and _jump(claim, law, edge, name, points)
+                found = name in moving(points.spec) and _jump(law, edge, name, points)
                 if found:
                     return found
     return None
 
 
-def _jump(claim, law, edge, name, points, most=48):
+def _jump(law, edge, name, points, most=48):
     """Return a point at an edge next to which a law jumps along a name."""
     pick = points.random.integers(0, points.count, most)
     at = {n: points.values[n][pick] for n in points.spec.free}
@@ -278,14 +279,51 @@ def _sinks(law, point, spec, name, side):
     return bool(rises[1] < 0) or bool(rises[1] * 2**20 < rises[0])
 
 
+def _odd(claim, points):
+    law = claim.trees[0]
+    at = _edge_points(claim, points)
+    size = np.abs(np.broadcast_to(floats(law, at), at[points.spec.free[0]].shape))
+    return _confirmed(claim, points, at, -size)
+
+
+def _is_not_odd(claim, point, spec):
+    try:
+        return sign(exact(claim.trees[0], filled(point, spec))) != 0
+    except (NoValueError, DoubtError):
+        return False
+
+
+def _undefined(claim, points):
+    wider = Points(total(points.spec), points.random)
+    return _welldef(claim, wider) if claim.trees and wider.count else None
+
+
+def _lacks(claim, point, spec):
+    """Return whether a condition certainly has no value where those before it hold."""
+    at = filled(point, spec)
+    for condition in claim.trees:
+        try:
+            if not exact(condition, at):
+                return False
+        except NoValueError:
+            return True
+        except DoubtError:
+            return False
+    return False
+
+
 SEARCHES = {
     "passive": _passive,
+    "odd": _odd,
+    "domain": _undefined,
     "welldef": _welldef,
     "continuous": _continuous,
     "temperature": _temperature,
 }
 FAILS = {
     "passive": _is_negative,
+    "odd": _is_not_odd,
+    "domain": _lacks,
     "welldef": _has_no_value,
     "continuous": _jumps_at,
     "temperature": _is_cold,
