@@ -12,7 +12,8 @@ from tests.search.reading import moving, total
 from tests.search.values import DoubtError, NoValueError, exact, floats, rational, sign
 
 MOST = 4
-STEPS = (24, 48)
+#: How many points a descent keeps, copies of each it moves, and by how much.
+KEPT, COPIES, WIDTHS = 16, 5, (1, 0.3, 0.1, 0.02, 1e-3, 1e-5)
 #: How near two points are at which a law may jump; the law's own scales are far above.
 NEAR = tuple(rational(1) / 2**n for n in (100, 200))
 GAPS = (2.0**-42, 2.0**-30, 2.0**-18)
@@ -41,13 +42,12 @@ def _edge_points(claim, points):
     return joined([points.values, *found])
 
 
-def _descended(objective, at, points):
+def _descended(objective, at, points, names):
     """Return points at which an objective is small: the best ones, moved by smaller steps."""
-    found, best = [], _best(objective, at, STEPS[0])
-    for width in (1, 0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4, 1e-6):
-        tried = {n: np.repeat(v, 1 + STEPS[1] // STEPS[0] * 2) for n, v in best.items()}
-        tried = joined([best, points.around(tried, width)])
-        best = _best(objective, tried, STEPS[0])
+    found, best = [], _best(objective, at, KEPT)
+    for width in WIDTHS:
+        tried = {n: np.repeat(v, COPIES) for n, v in best.items()}
+        best = _best(objective, joined([best, points.around(tried, width, names)]), KEPT)
         found.append(best)
     return joined(found)
 
@@ -68,10 +68,10 @@ def _passive(claim, points):
         return floats(law, at) / floats(letter, at)
 
     at = _edge_points(claim, points)
-    found = _confirmed(claim, points, at, power(at))
+    found, beside = _confirmed(claim, points, at, power(at)), points.beside(law, letter)
     for objective in (slope, power):
         if found is None:
-            lower = _descended(objective, at, points)
+            lower = _descended(objective, at, points, beside)
             found = _confirmed(claim, points, lower, power(lower))
     return found
 
@@ -99,10 +99,10 @@ def _welldef(claim, points):
     found = None
     for law in claim.trees:
         found = found or _missing(claim, law, points, at)
-        ends = [edge for kind, edge in edges(law) if kind == "end"]
-        for end in dict.fromkeys(ends[:6]):
+        ends = [(kind, edge) for kind, edge in edges(law) if kind in {"end", "pole"}]
+        for kind, end in dict.fromkeys(ends[:6]):
             if found is None:
-                found = _ended(claim, law, end, points, at)
+                found = _ended(claim, law, (kind, end), points, at)
     return found
 
 
@@ -117,16 +117,16 @@ def _missing(claim, law, points, at):
     return None
 
 
-def _ended(claim, law, end, points, at):
-    """Return a point where an argument ends, found by descent or exactly on the end."""
-    lower = _descended(lambda at: np.abs(floats(end, at)), at, points)
+def _ended(claim, law, edge, points, at):
+    """Return a point past the end of a root or logarithm, or on what a law divides by."""
+    kind, end = edge
+    near = np.abs if kind == "pole" else np.positive
+    lower = _descended(lambda at: near(floats(end, at)), at, points, points.beside(end))
     size = np.abs(np.broadcast_to(floats(end, lower), lower[points.spec.free[0]].shape))
     for n in np.argsort(size, kind="stable")[:MOST]:
-        if size[n] < 1e-6 * (1 + max(abs(float(v[n])) for v in lower.values())):
-            point = onto(end, points.exactly(n, lower), points.spec)
-            if point is not None and fails(claim, point, points.spec):
-                return point
-    lower = _descended(lambda at: floats(end, at), at, points)
+        point = onto(end, points.exactly(n, lower), points.spec) if size[n] < 1 else None
+        if point is not None and fails(claim, point, points.spec):
+            return point
     return _missing(claim, law, points, lower)
 
 
@@ -148,7 +148,7 @@ def has_value(law, at):
 
 def _continuous(claim, points):
     for law in claim.trees:
-        jumping = [edge for kind, edge in edges(law) if kind != "bend"]
+        jumping = [edge for kind, edge in edges(law) if kind == "jump"]
         for edge in dict.fromkeys(jumping[:8]):
             for name in points.free_names(edge):
                 found = name in moving(points.spec) and _jump(law, edge, name, points)
@@ -245,7 +245,7 @@ def _temperature(claim, points):
         return value / step
 
     for objective in (lambda at: floats(law, at), rise):
-        for tried in (at, _descended(objective, at, points)):
+        for tried in (at, _descended(objective, at, points, points.beside(law))):
             found = _confirmed(claim, points, tried, objective(tried))
             if found:
                 return found

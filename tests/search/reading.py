@@ -87,7 +87,7 @@ def spec_of(text):
         _add_state(spec, name, element, used)
     for name, element in elements.items():
         _add_claims(spec, name, element)
-    partial = [c for c in spec.domain if any(kind == "end" for kind, _ in edges(c))]
+    partial = [c for c in spec.domain if {"end", "pole"} & {kind for kind, _ in edges(c)}]
     spec.claims["welldef", ""] = Claim("domain", "", tuple(partial))
     spec.words[""] = {}
     return spec
