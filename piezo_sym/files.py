@@ -96,6 +96,36 @@ def read_text(path: Path) -> str | None:
         raise _cannot("read", path, error) from error
 
 
+def read_bytes(path: Path) -> bytes | None:
+    """Return a file's content, or None if there is no such file or folder.
+
+    Raises
+    ------
+    FileError
+        If it is there and cannot be read.
+    """
+    try:
+        return path.read_bytes()
+    except (FileNotFoundError, NotADirectoryError):
+        return None
+    except OSError as error:
+        raise _cannot("read", path, error) from error
+
+
+def folder_entries(path: Path) -> list[Path]:
+    """Return what a folder contains, in order.
+
+    Raises
+    ------
+    FileError
+        If it cannot be read.
+    """
+    try:
+        return sorted(path.iterdir())
+    except OSError as error:
+        raise _cannot("read", path, error) from error
+
+
 @cache
 def temporary_folder() -> Path:
     """Return a folder that lives as long as the process, in place of a cache.

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from piezo_sym.codegen.differences import sharp_program
 from piezo_sym.codegen.functions import functions_of, limits_of
 from piezo_sym.codegen.jacobian import jacobian_of
 from piezo_sym.codegen.program import Field, Function, Jacobian, Limit, Program
@@ -50,7 +51,7 @@ def program_of(
 ) -> Program:
     """Return a program of some functions of a system's quantities, which are all defined by now."""
     model = iphs.model
-    return Program(
+    program = Program(
         name=model.name,
         title=model.model.title,
         source=model.model.source,
@@ -70,6 +71,7 @@ def program_of(
         limits=limits,
         taken=frozenset(q.taken),
     )
+    return sharp_program(program)
 
 
 def _values(

@@ -15,6 +15,7 @@ from typing import Any, final
 
 import numpy as np
 
+from piezo_sym.checker import InputError
 from piezo_sym.errors import ContradictionError
 from piezo_sym.falsify.claims import TOLERANCE, Claim, claim_of
 from piezo_sym.falsify.exact import Exact
@@ -28,7 +29,8 @@ from piezo_sym.spec.tables import conditions, greater
 from piezo_sym.spec.units import parse_unit
 
 POINTS = 100_000
-LANES = 2
+#: Lanes that points have; of those of the spec, so many are looked at.
+LANES, MOST_LANES = 2, 512
 KEPT, CHILDREN, DESCENTS = 8, 24, 8
 #: Of a law's size; between neighbouring floats it may change by less than this.
 JUMP = 1e-6
@@ -94,7 +96,7 @@ class Track:
                 self._lose(seen, lost & says)
             if not self.claim.climbs:
                 ratio = np.where(ratio < -TOLERANCE, ratio, 1)
-            least = np.minimum(least, np.where(value == 0, ZERO, ratio) if strict else ratio)
+            least = np.minimum(least, np.where(value == 0, ZERO if strict else 2, ratio))
         return np.where(says, least, 2)
 
     def _keep(self, kind: str, seen: Seen, key: Array) -> None:
@@ -134,7 +136,9 @@ class Hunt:
         self.tracks = [Track(claim) for claim in found if claim]
         trees = [condition.tree for condition in conditions(iphs.model)]
         self.conditioned = {name for tree in trees for name in names(tree)}
-        known = [self.space.own(), *(self._hinted(hint) for hint in hints)]
+        most = min(MOST_LANES, max(sizes.values(), default=1))
+        known = [self.space.own(lane) for lane in range(0, most, LANES)]
+        known += [self._hinted(hint) for hint in hints]
         self.draw = Draw(self.space, np.concatenate(known, axis=1), self._positive(), self._pairs())
 
     def attacks(self) -> tuple[Attack, ...]:
@@ -148,7 +152,10 @@ class Hunt:
         for kind, space, points in self._blocks():
             for n in range(0, points.shape[1], space.block):
                 self._see(kind, space, points[:, n : n + space.block])
-        exact = Exact(self.iphs)
+        try:
+            exact = Exact(self.iphs)
+        except InputError:  # nothing could be confirmed, so that nothing was attacked
+            return tuple(Attack(t.claim.id, t.claim.element, 0) for t in self.tracks)
         return tuple(self._judged(track, exact) for track in self.tracks)
 
     def _see(self, kind: str, space: Space, points: Array) -> None:
@@ -212,7 +219,8 @@ class Hunt:
             value = exact.broken(claim, space, point) if key < 0 else None
             if value:
                 raise self._contradiction(claim, value, space.words(point))
-            rounding = rounding or ((space, point) if key < ZERO else None)
+            overflow = claim.id == "welldef" and key > -1  # of an extreme point
+            rounding = rounding or (None if overflow or key >= ZERO else (space, point))
         if track.lost and rounding is None and exact.has_value(claim, *track.lost):
             rounding = track.lost
         if claim.id == "continuous":

@@ -90,8 +90,8 @@ class Space:
         ends = [0, *accumulate(self.lanes(part.bank) for part in parts)]
         return tuple(slice(a, b) for a, b in pairwise(ends))
 
-    def own(self) -> Array:
-        """Return the spec's own values as one point; a bank of another size repeats its lanes."""
+    def own(self, first: int = 0) -> Array:
+        """Return the spec's own values as one point, of a bank's lanes those from `first` on."""
         spec, u = self.module.Parameters(), np.asarray(self.module.INPUT_DEFAULTS, dtype=float)
         full = Space(self.module, self.probe, {b: getattr(spec, f"{b}_count") for b in self.counts})
         size = {field.name: full.lanes(field.bank) for field in self.fields}
@@ -99,7 +99,7 @@ class Space:
         values = [np.broadcast_to(getattr(spec, name), size[name]) for name in names]
         point = np.concatenate([*values, u, self.module.initial_state(u, spec)])
         at = dict(zip(full.columns, point, strict=True))
-        return np.array([[at[name, lane % size[name]]] for name, lane in self.columns])
+        return np.array([[at[name, (first + lane) % size[name]]] for name, lane in self.columns])
 
     def at(self, points: Array) -> Seen:
         """Return what is seen at points."""

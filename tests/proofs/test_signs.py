@@ -193,10 +193,3 @@ def test_the_budget_ends_the_search():
 def test_an_empty_domain_is_refused():
     with pytest.raises(ValueError, match="no number lies from 2 to 1"):
         Domain(Fraction(2), Fraction(1))
-
-
-def test_without_the_library_signs_are_open(monkeypatch):
-    monkeypatch.setattr(decide, "find_spec", lambda _: None)
-    decision = decide_sign(power_of("tanh(x)"), "x")
-    assert decision.verdict is Verdict.OPEN
-    assert "piezo_sym[proof]" in decision.reason

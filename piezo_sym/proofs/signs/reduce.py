@@ -117,8 +117,12 @@ def reductions(law: Expr, letter: str, positive: Positive) -> list[Reduction]:
 
 def _reduction(law: Expr, setting: Setting) -> tuple[Reduction | None, int]:
     """Return a law as far as it comes down in one unit, and how many factors do not."""
-    inside, outside = Product(Fraction(1), {}), list[Expr]()
+    inside = Product(Fraction(1), {})
+    front, outside = list[Expr](), list[Expr]()
     for factor in _factors(law):
+        if names(factor) and setting.letter not in names(factor):
+            front.append(factor)
+            continue
         part = factored(factor, setting)
         if {*names(part.bound)} <= {setting.letter}:
             inside = _times(inside, part)
@@ -127,7 +131,8 @@ def _reduction(law: Expr, setting: Setting) -> tuple[Reduction | None, int]:
     f = _tree(Product(inside.number, {}, inside.bound))
     if outside and setting.letter not in names(f):
         return None, 0
-    prefactors = (*(power(base, e) for base, e in inside.free.items()), *outside)
+    free = (power(base, e) for base, e in inside.free.items())
+    prefactors = (*front, *free, *outside)
     units = tuple(setting.scale.items())
     return Reduction(prefactors, f, setting.letter, units), len(outside)
 
