@@ -10,6 +10,7 @@ import random
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import islice
 from typing import Any, final
 
 from mpmath.ctx_iv import MPIntervalContext
@@ -19,6 +20,8 @@ from piezo_sym.translation.field import Value
 from piezo_sym.translation.reference import Proved
 
 POINTS = 30
+#: Terms that are worked out at all points together.
+MOST_TERMS = 3_000
 PRECISION = 160
 MOST_EXPONENT = 10_000
 #: A smaller part of the proved value could come from the rounding of printed numbers.
@@ -43,7 +46,8 @@ class _UndecidedError(Exception):
 def witness(printed: Value, wanted: Value, known: Proved, iphs: IPHS) -> Witness | None:
     """Return a point of the domain at which two values differ."""
     difference = printed - wanted
-    for point in _points(known, iphs):
+    size = len(difference.terms) + len(printed.terms) + len(wanted.terms)
+    for point in islice(_points(known, iphs), max(2, min(POINTS, MOST_TERMS // size))):
         try:
             if not all(_inside(margin, point, strict) for margin, strict in known.margins):
                 continue
