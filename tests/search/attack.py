@@ -161,7 +161,7 @@ def _jump(law, edge, name, points, most=48):
     """Return a point at an edge next to which a law jumps along a name."""
     pick = points.random.integers(0, points.count, most)
     at = {n: points.values[n][pick] for n in points.spec.free}
-    root = points.root(edge, name, at)
+    root = points.root(edge, name, at, 8)
     scale = np.where(root == 0, 1, np.abs(root))
     gaps = []
     for gap in GAPS:

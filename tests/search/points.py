@@ -94,16 +94,21 @@ class Points:
                 found |= dict.fromkeys(names(law))
         return [name for name in found if name in self.spec.own]
 
-    def root(self, difference, name, at):
-        """Return the values of a name where a difference may vanish: Newton's way, two steps."""
+    def root(self, difference, name, at, steps=2):
+        """Return the values of a name where a difference may vanish, by secants."""
+
+        def value(x):
+            return floats(difference, self.whole({**at, name: x}))
+
         here = at[name]
+        other = here + 1 + np.abs(here)
         with np.errstate(all="ignore"):
-            for _ in range(2):
-                step = 1 + np.abs(here)
-                value = floats(difference, self.whole({**at, name: here}))
-                other = floats(difference, self.whole({**at, name: here + step}))
-                moved = here - value * step / (other - value)
-                here = np.where(np.isfinite(moved), moved, here)
+            ends = value(other), value(here)
+            for step in range(steps):
+                moved = here - ends[1] * (here - other) / (ends[1] - ends[0])
+                moved = np.where(np.isfinite(moved), moved, here)
+                other, here = here, moved
+                ends = ends[1], value(here) if step + 1 < steps else 0
         return here
 
     def near(self, difference, most=24):
