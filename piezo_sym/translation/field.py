@@ -228,7 +228,11 @@ class Field:
                 found[g] = 1
                 if seen.setdefault(gen.arg, g) != g:
                     return None
-            elif gen.kind == "power" and gen.arg and (e >= 1 or (e < 0 and gen.arg.constant is not None)):
+            elif (
+                gen.kind == "power"
+                and gen.arg
+                and (e >= 1 or (e < 0 and gen.arg.constant is not None))
+            ):
                 whole = floor(e)
                 found[g] = e - whole
                 if e == whole:
@@ -533,8 +537,11 @@ class Field:
         if more or c <= 0 or any(self.sign_of(g) < 2 for g, _ in mono):
             return self.generator("log", arg)
         whole = Fraction(c)
-        parts = [self.generator("log", self.number(n)) * self.number(s)
-                 for n, s in ((whole.numerator, 1), (whole.denominator, -1)) if n != 1]
+        parts = [
+            self.generator("log", self.number(n)) * self.number(s)
+            for n, s in ((whole.numerator, 1), (whole.denominator, -1))
+            if n != 1
+        ]
         for g, e in mono:
             gen, factor = self.gens[g], Value(self, {((g, 1),): 1})
             log = gen.arg if gen.kind == "exp" and gen.arg else self.generator("log", factor)

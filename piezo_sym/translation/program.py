@@ -107,7 +107,9 @@ def _unmet(needs: tuple[Need, ...], known: Proved) -> Iterator[str]:
     field = known.field
     for need in needs:
         value = _in_first_lane(need.value)
-        fails = field.compare({"nonzero": "==", "nonnegative": "<"}.get(need.kind, "<="), value, field.zero)
+        fails = field.compare(
+            {"nonzero": "==", "nonnegative": "<"}.get(need.kind, "<="), value, field.zero
+        )
         left = _in_first_lane(need.path) * fails
         for given in known.needs:
             fits = {given.kind} in _ENOUGH[need.kind] and (need.derived or not given.derived)

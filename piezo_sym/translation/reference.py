@@ -67,9 +67,7 @@ class Proved:
     def position(self, slots: Sequence[Slot], n: int) -> Value:
         """Return the place of slot n's first row, in sizes of banks."""
         field = self.field
-        return field.total(
-            field.count(slot.bank) if slot.bank else field.one for slot in slots[:n]
-        )
+        return field.total(field.count(slot.bank) if slot.bank else field.one for slot in slots[:n])
 
 
 def proved(iphs: IPHS) -> Proved:

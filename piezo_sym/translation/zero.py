@@ -229,7 +229,9 @@ def _remainder(value: Value, d: Value) -> Value:
 def _solved(d: Value) -> dict[int, Value]:
     """Return what a generator is where d = 0, if d is linear in it by a factor that is not zero."""
     field = d.field
-    for g in sorted(d.generators(), key=lambda g: (field.gens[g].kind != "name", not field.gens[g].lanes)):
+    for g in sorted(
+        d.generators(), key=lambda g: (field.gens[g].kind != "name", not field.gens[g].lanes)
+    ):
         gen = field.gens[g]
         own = {mono: c for mono, c in d.terms.items() if g in dict(mono)}
         powers = {dict(mono)[g] for mono in own}
