@@ -111,6 +111,13 @@ class Expressions:
             refuse(node, "a condition as a number")
         return value, shape
 
+    def whole(self, node: ast.expr) -> Value:
+        """Return an integer: an index or a size."""
+        value, shape = self(node)
+        if shape != WHOLE:
+            refuse(node, "no integer")
+        return value
+
     def test(self, node: ast.expr) -> Value:
         """Return a condition: 1 where it holds."""
         value, shape = self(node)

@@ -26,6 +26,7 @@ from piezo_sym.spec.expressions import Num, walk
 from piezo_sym.spec.parse import parse_law
 from piezo_sym.spec.tables import conditions, lane_parameters, law_fields, states
 from piezo_sym.translation.change import across, derivative
+from piezo_sym.translation.expressions import PLAIN, WHOLE, Shape
 from piezo_sym.translation.field import Field, Need, NotShownError, Value
 from piezo_sym.translation.zero import is_zero
 
@@ -64,12 +65,34 @@ class Proved:
     parameters: frozenset[str]
     inputs: tuple[Slot, ...]
 
-    def position(self, slots: Sequence[Slot], n: int) -> Value:
-        """Return the place of slot n's first row, in sizes of banks."""
-        field = self.field
-        return field.total(
-            field.count(slot.bank) if slot.bank else field.one for slot in slots[:n]
-        )
+    def places(self, slots: Sequence[Slot]) -> list[Value]:
+        """Return where the rows of each slot start, in sizes of banks; and their number."""
+        found = [self.field.zero]
+        for slot in slots:
+            found.append(found[-1] + (self.field.count(slot.bank) if slot.bank else self.field.one))
+        return found
+
+    @property
+    def counts(self) -> dict[str, str]:
+        """The bank of each name of a size."""
+        return {f"{slot.bank}_count": slot.bank for slot in self.slots["rhs"] if slot.bank}
+
+    def parameter(self, name: str) -> tuple[Value, Shape]:
+        """Return a parameter that lanes share, or the size of a bank."""
+        if name in self.counts:
+            return self.field.count(self.counts[name]), WHOLE
+        if name not in self.parameters or name in self.banks:
+            raise NotShownError(f"{name} is no parameter that lanes share")
+        return self.names[name], PLAIN
+
+    def part(self, role: str, place: Value) -> Value:
+        """Return the part of x or u at a place, one that lanes share."""
+        slots = self.slots["rhs"] if role == "x" else self.inputs
+        found = zip(slots, self.places(slots), strict=False)
+        name = next((s.label for s, at in found if at == place and not s.bank), None)
+        if name is None:
+            raise NotShownError(f"a part of {role} that is none")
+        return self.names[name]
 
 
 def proved(iphs: IPHS) -> Proved:
