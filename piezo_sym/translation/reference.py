@@ -28,6 +28,8 @@ from piezo_sym.spec.tables import conditions, lane_parameters, law_fields, state
 from piezo_sym.translation.change import across, derivative
 from piezo_sym.translation.expressions import PLAIN, WHOLE, Shape
 from piezo_sym.translation.field import Field, Need, NotShownError, Value
+from piezo_sym.translation.functions import call, power, size_of
+from piezo_sym.translation.signs import assume, compare
 from piezo_sym.translation.zero import is_zero
 
 #: A function, its row, and for an entry its column and whether it is of equal lanes.
@@ -163,9 +165,9 @@ class _Reader:
             left, right = (self(self.iphs.symbols.law(t, {})) for t in (tree.left, tree.right))
             found.append(((left - right) * turn, "=" not in tree.op))
         for margin, strict in found:
-            self.field.assume(margin, 2 if strict else 1)
+            assume(margin, 2 if strict else 1)
         for _, port in self.iphs.circuit.of(Body):
-            self.field.assume(self(self.iphs.symbols[port.temperature]), 2)
+            assume(self(self.iphs.symbols[port.temperature]), 2)
         self.known = {s: v for s, v in self.known.items() if s not in self.definitions}
         return tuple(found)
 
@@ -243,10 +245,10 @@ class _Reader:
             below = [g for g, e in mono if e < 0]
             path = one
             for g, _ in mono:
-                path = path * Value(self.field, {((g, 1),): 1}) if gens[g].kind == "sign" else path
+                path = path * self.field.raised(g, 1) if gens[g].kind == "sign" else path
             for g in below:
                 arg = gens[g].arg if gens[g].kind == "power" else None
-                yield Need("nonzero", arg or Value(self.field, {((g, 1),): 1}), path, True)
+                yield Need("nonzero", arg or self.field.raised(g, 1), path, True)
 
     # Expressions
 
@@ -266,7 +268,7 @@ class _Reader:
         if isinstance(expr, LaneSum):
             return field.lane_sum(self(expr.args[0]), expr.args[1].name)
         if expr is sp.E:
-            return field.call("exp", field.one)
+            return call("exp", field.one)
         args = [self(arg) for arg in expr.args]
         if isinstance(expr, sp.Add):
             return field.total(args)
@@ -282,14 +284,14 @@ class _Reader:
         if isinstance(expr, sp.Pow):
             exponent = args[1].constant
             if exponent is not None:
-                return field.power(args[0], exponent)
-            return field.call("exp", args[1] * field.call("log", args[0]))
+                return power(args[0], exponent)
+            return call("exp", args[1] * call("log", args[0]))
         if isinstance(expr, sp.Abs):
-            return field.size(args[0])
+            return size_of(args[0])
         function = type(expr).__name__
         if function not in {"exp", "log", "sin", "cos", "tanh"}:
             raise NotShownError(f"{function} in the proved system")
-        return field.call(function, args[0])
+        return call(function, args[0])
 
     def _chosen(self, expr: sp.Piecewise) -> Value:
         field, path, left, parts = self.field, self.field.path, self.field.one, []
@@ -309,7 +311,7 @@ class _Reader:
             return field.number(int(bool(condition)))
         if type(condition) in _RELATIONS:
             left, right = map(self, condition.args)
-            return field.compare(_RELATIONS[type(condition)], left, right)
+            return compare(_RELATIONS[type(condition)], left, right)
         parts = [self._test(part) for part in condition.args]
         if not isinstance(condition, sp.And | sp.Or | sp.Not):
             raise NotShownError(f"{type(condition).__name__} in a condition of the proved system")
