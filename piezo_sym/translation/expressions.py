@@ -20,6 +20,8 @@ from fractions import Fraction
 from typing import NoReturn, final
 
 from piezo_sym.translation.field import Field, NotShownError, Value
+from piezo_sym.translation.functions import call, power, size_of
+from piezo_sym.translation.signs import choose, compare, side_of
 
 MOST_MAGNITUDE = 400
 _ARGUMENTS = {"pow": 2, "copysign": 2, "minimum": 2, "maximum": 2, "clip": 3}
@@ -94,7 +96,7 @@ class Expressions:
                 first, second = self.numeric(left), self.numeric(right)
                 joined(first[1], second[1], node)
                 op = _OPERATORS[type(operator)]
-                return self.field.compare(op, first[0], second[0]), TEST
+                return compare(op, first[0], second[0]), TEST
             case ast.BoolOp(ast.Or(), [left, right]):
                 one, tests = self.field.one, (self.test(left), self.test(right))
                 return one - (one - tests[0]) * (one - tests[1]), TEST
@@ -110,6 +112,13 @@ class Expressions:
         if shape == TEST:
             refuse(node, "a condition as a number")
         return value, shape
+
+    def whole(self, node: ast.expr) -> Value:
+        """Return an integer: an index or a size."""
+        value, shape = self(node)
+        if shape != WHOLE:
+            refuse(node, "no integer")
+        return value
 
     def test(self, node: ast.expr) -> Value:
         """Return a condition: 1 where it holds."""
@@ -127,10 +136,8 @@ class Expressions:
             parts.append(self.numeric(node))
         field.path = path
         (first, shape), (second, shape_of_other) = parts
-        shape = joined(
-            joined(shape, shape_of_other, condition), self.shape_of(condition), condition
-        )
-        return field.choose(test, first, second), shape
+        shape = joined(joined(shape, shape_of_other, condition), self.shape_of(condition), condition)
+        return choose(test, first, second), shape
 
     def shape_of(self, condition: ast.expr) -> Shape:
         """Return the shape of the numbers that a condition compares."""
@@ -159,9 +166,9 @@ class Expressions:
                 return left[0] * right[0], shape
             case ast.Div() if shape != WHOLE or not self.whole_division:
                 shape = PLAIN if shape == WHOLE else shape
-                return left[0] * self.field.power(right[0], Fraction(-1)), shape
+                return left[0] * power(right[0], Fraction(-1)), shape
             case ast.Pow() if right[0].constant is not None and not self.whole_division:
-                return self.field.power(left[0], right[0].constant), left[1]
+                return power(left[0], right[0].constant), left[1]
         refuse(node, "an operator")
 
     def _call(self, function: str, nodes: list[ast.expr], node: ast.expr) -> Read:
@@ -181,29 +188,29 @@ class Expressions:
         field, z, w = self.field, args[0], args[-1]
         match function:
             case "expm1":
-                return field.call("exp", z) - field.one
+                return call("exp", z) - field.one
             case "sqrt":
-                return field.power(z, Fraction(1, 2))
+                return power(z, Fraction(1, 2))
             case "abs":
-                return field.size(z)
+                return size_of(z)
             case "sign":
-                return field.side(z)
+                return side_of(z)
             case "minimum":
-                return field.choose(field.compare("<=", z, w), z, w)
+                return choose(compare("<=", z, w), z, w)
             case "maximum":
-                return field.choose(field.compare(">=", z, w), z, w)
+                return choose(compare(">=", z, w), z, w)
             case "clip":
                 return self.apply("minimum", [self.apply("maximum", args[:2]), w])
             case "pow":
                 exponent = w.constant
                 if exponent is None:
                     raise NotShownError("a power with an exponent that is no number")
-                return field.power(z, exponent)
+                return power(z, exponent)
             case "copysign":
                 unknown = field.generator("unknown", None, (f"copysign {len(field.gens)}", None, 0))
-                of_zero = field.compare("==", w, field.zero) * unknown
-                return field.size(z) * (field.side(w) + of_zero)
-        return field.call(function, z)
+                of_zero = compare("==", w, field.zero) * unknown
+                return size_of(z) * (side_of(w) + of_zero)
+        return call(function, z)
 
 
 def refuse(node: ast.AST, what: str) -> NoReturn:

@@ -14,6 +14,7 @@ from piezo_sym.proofs.solvers import opinions
 from piezo_sym.spec.calculus import add, mul, neg, power
 from piezo_sym.spec.expressions import ONE, ZERO, Cmp, Expr, Num, Sym
 from piezo_sym.translation.field import Exponent, Field, Value
+from piezo_sym.translation.signs import sign_of
 
 MOST_ASKED = 60
 MOST_TERMS = 60
@@ -31,7 +32,7 @@ def impossible(sides: Mapping[Value, int]) -> bool:
 
 def _impossible(sides: Mapping[Value, int]) -> bool:
     field = next(iter(sides)).field
-    known = {value: sign for value, sign in field.signs.items() if value.constant is None}
+    known = {value: sign for value, sign in field.assumed.items() if value.constant is None}
     values = [*sides, *(v for v in known if len(v.terms) <= MOST_TERMS)]
     if any(len(value.terms) > MOST_TERMS for value in sides):
         return False
@@ -47,7 +48,7 @@ def _impossible(sides: Mapping[Value, int]) -> bool:
 
 def _of_generator(field: Field, part: tuple[int, Exponent]) -> Iterator[Cmp]:
     """Yield what is known of a generator's power: its sign, and what functions do with signs."""
-    sign, gen, symbol = field.sign_of(part[0]), field.gens[part[0]], _symbol(part)
+    sign, gen, symbol = sign_of(field, part[0]), field.gens[part[0]], _symbol(part)
     if sign:
         yield Cmp(">" if sign == 2 else ">=", symbol, ZERO)
     if gen.arg is None or len(gen.arg.terms) > MOST_TERMS:

@@ -15,6 +15,7 @@ from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.translation.c_reader import read_c
 from piezo_sym.translation.change import moved
 from piezo_sym.translation.field import Need, NotShownError, Value
+from piezo_sym.translation.signs import compare
 from piezo_sym.translation.numpy_head import numpy_functions
 from piezo_sym.translation.numpy_reader import read_numpy
 from piezo_sym.translation.reference import Key, Proved, proved
@@ -107,9 +108,7 @@ def _unmet(needs: tuple[Need, ...], known: Proved) -> Iterator[str]:
     field = known.field
     for need in needs:
         value = _in_first_lane(need.value)
-        fails = field.compare(
-            {"nonzero": "==", "nonnegative": "<"}.get(need.kind, "<="), value, field.zero
-        )
+        fails = compare({"nonzero": "==", "nonnegative": "<"}.get(need.kind, "<="), value, field.zero)
         left = _in_first_lane(need.path) * fails
         for given in known.needs:
             fits = {given.kind} in _ENOUGH[need.kind] and (need.derived or not given.derived)

@@ -26,7 +26,10 @@ from piezo_sym.spec.expressions import Num, walk
 from piezo_sym.spec.parse import parse_law
 from piezo_sym.spec.tables import conditions, lane_parameters, law_fields, states
 from piezo_sym.translation.change import across, derivative
+from piezo_sym.translation.expressions import PLAIN, WHOLE, Shape
 from piezo_sym.translation.field import Field, Need, NotShownError, Value
+from piezo_sym.translation.functions import call, power, size_of
+from piezo_sym.translation.signs import assume, compare
 from piezo_sym.translation.zero import is_zero
 
 #: A function, its row, and for an entry its column and whether it is of equal lanes.
@@ -64,10 +67,34 @@ class Proved:
     parameters: frozenset[str]
     inputs: tuple[Slot, ...]
 
-    def position(self, slots: Sequence[Slot], n: int) -> Value:
-        """Return the place of slot n's first row, in sizes of banks."""
-        field = self.field
-        return field.total(field.count(slot.bank) if slot.bank else field.one for slot in slots[:n])
+    def places(self, slots: Sequence[Slot]) -> list[Value]:
+        """Return where the rows of each slot start, in sizes of banks; and their number."""
+        found = [self.field.zero]
+        for slot in slots:
+            found.append(found[-1] + (self.field.count(slot.bank) if slot.bank else self.field.one))
+        return found
+
+    @property
+    def counts(self) -> dict[str, str]:
+        """The bank of each name of a size."""
+        return {f"{slot.bank}_count": slot.bank for slot in self.slots["rhs"] if slot.bank}
+
+    def parameter(self, name: str) -> tuple[Value, Shape]:
+        """Return a parameter that lanes share, or the size of a bank."""
+        if name in self.counts:
+            return self.field.count(self.counts[name]), WHOLE
+        if name not in self.parameters or name in self.banks:
+            raise NotShownError(f"{name} is no parameter that lanes share")
+        return self.names[name], PLAIN
+
+    def part(self, role: str, place: Value) -> Value:
+        """Return the part of x or u at a place, one that lanes share."""
+        slots = self.slots["rhs"] if role == "x" else self.inputs
+        found = zip(slots, self.places(slots), strict=False)
+        name = next((s.label for s, at in found if at == place and not s.bank), None)
+        if name is None:
+            raise NotShownError(f"a part of {role} that is none")
+        return self.names[name]
 
 
 def proved(iphs: IPHS) -> Proved:
@@ -138,9 +165,9 @@ class _Reader:
             left, right = (self(self.iphs.symbols.law(t, {})) for t in (tree.left, tree.right))
             found.append(((left - right) * turn, "=" not in tree.op))
         for margin, strict in found:
-            self.field.assume(margin, 2 if strict else 1)
+            assume(margin, 2 if strict else 1)
         for _, port in self.iphs.circuit.of(Body):
-            self.field.assume(self(self.iphs.symbols[port.temperature]), 2)
+            assume(self(self.iphs.symbols[port.temperature]), 2)
         self.known = {s: v for s, v in self.known.items() if s not in self.definitions}
         return tuple(found)
 
@@ -218,10 +245,10 @@ class _Reader:
             below = [g for g, e in mono if e < 0]
             path = one
             for g, _ in mono:
-                path = path * Value(self.field, {((g, 1),): 1}) if gens[g].kind == "sign" else path
+                path = path * self.field.raised(g, 1) if gens[g].kind == "sign" else path
             for g in below:
                 arg = gens[g].arg if gens[g].kind == "power" else None
-                yield Need("nonzero", arg or Value(self.field, {((g, 1),): 1}), path, True)
+                yield Need("nonzero", arg or self.field.raised(g, 1), path, True)
 
     # Expressions
 
@@ -241,7 +268,7 @@ class _Reader:
         if isinstance(expr, LaneSum):
             return field.lane_sum(self(expr.args[0]), expr.args[1].name)
         if expr is sp.E:
-            return field.call("exp", field.one)
+            return call("exp", field.one)
         args = [self(arg) for arg in expr.args]
         if isinstance(expr, sp.Add):
             return field.total(args)
@@ -257,14 +284,14 @@ class _Reader:
         if isinstance(expr, sp.Pow):
             exponent = args[1].constant
             if exponent is not None:
-                return field.power(args[0], exponent)
-            return field.call("exp", args[1] * field.call("log", args[0]))
+                return power(args[0], exponent)
+            return call("exp", args[1] * call("log", args[0]))
         if isinstance(expr, sp.Abs):
-            return field.size(args[0])
+            return size_of(args[0])
         function = type(expr).__name__
         if function not in {"exp", "log", "sin", "cos", "tanh"}:
             raise NotShownError(f"{function} in the proved system")
-        return field.call(function, args[0])
+        return call(function, args[0])
 
     def _chosen(self, expr: sp.Piecewise) -> Value:
         field, path, left, parts = self.field, self.field.path, self.field.one, []
@@ -284,7 +311,7 @@ class _Reader:
             return field.number(int(bool(condition)))
         if type(condition) in _RELATIONS:
             left, right = map(self, condition.args)
-            return field.compare(_RELATIONS[type(condition)], left, right)
+            return compare(_RELATIONS[type(condition)], left, right)
         parts = [self._test(part) for part in condition.args]
         if not isinstance(condition, sp.And | sp.Or | sp.Not):
             raise NotShownError(f"{type(condition).__name__} in a condition of the proved system")

@@ -10,17 +10,7 @@ import re
 from collections.abc import Iterator
 
 TOKEN = re.compile(r"[A-Za-z_]\w*|\d+\.?\d*(?:e-?\d+)?|\+=|->|<=|>=|[!=]=|\|\||\*\*|[-+*/<>=?:()]")
-SWAPS = {
-    "+": "-",
-    "-": "+",
-    "*": "/",
-    "/": "*",
-    "<=": ">",
-    ">": "<=",
-    ">=": "<",
-    "+=": "=",
-    "**": "*",
-}
+SWAPS = {"+": "-", "-": "+", "*": "/", "/": "*", "<=": ">", ">": "<=", ">=": "<", "+=": "=", "**": "*"}
 WORDS = {
     "exp": "cos", "expm1": "exp", "log": "exp", "sin": "cos", "cos": "sin", "tanh": "sin",
     "sqrt": "exp", "abs": "sign", "fabs": "exp", "minimum": "maximum", "maximum": "minimum",
@@ -45,9 +35,7 @@ def mutants(text: str, start: str) -> Iterator[tuple[str, str]]:
 
 def _is_code(line: str) -> bool:
     plain = line.strip()
-    return bool(plain) and not plain.startswith(
-        ("#", "/*", '"""', "def ", "long ", "void ", "double piezo")
-    )
+    return bool(plain) and not plain.startswith(("#", "/*", '"""', "def ", "long ", "void ", "double piezo"))
 
 
 def _scopes(lines: list[str], first: int) -> dict[int, list[str]]:
@@ -57,9 +45,7 @@ def _scopes(lines: list[str], first: int) -> dict[int, list[str]]:
     for n in range(first, len(lines)):
         if lines[n].startswith(("def ", "void ", "double ", "long ", "static ")):
             names = []
-        match = re.match(
-            r"\s+(?:const )?(?:double |long )?(?:\*?(?:restrict )?)?(\w+) = ", lines[n]
-        )
+        match = re.match(r"\s+(?:const )?(?:double |long )?(?:\*?(?:restrict )?)?(\w+) = ", lines[n])
         if match and match[1] not in names:
             names.append(match[1])
         found[n] = names
