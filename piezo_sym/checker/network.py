@@ -185,7 +185,7 @@ def _eliminated(left: list[Form], size: int) -> tuple[dict[Any, Form], list[Any]
             ((value not in (1, -1), len(row), n), label)
             for n, row in enumerate(left)
             for label, value in row.items()
-            if not _is_given(label) and value != 0
+            if not (_is_given(label) or value == 0)
         ]
         if not choices:
             break

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from piezo_sym.codegen.differences import sharp_program
 from piezo_sym.codegen.functions import functions_of, limits_of
 from piezo_sym.codegen.jacobian import jacobian_of
 from piezo_sym.codegen.program import Field, Function, Jacobian, Limit, Program
@@ -18,6 +19,8 @@ from piezo_sym.spec.elements.ports import Body, Exchange, Source, Storage
 from piezo_sym.spec.fields import Input, Parameter
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import banks, lane_parameters
+
+NO_JACOBIAN = Jacobian("", ())
 
 
 def lower(iphs: IPHS, verdict: str) -> Program:
@@ -42,13 +45,13 @@ def program_of(
     iphs: IPHS,
     q: Quantities,
     functions: tuple[Function, ...],
-    jacobian: Jacobian = Jacobian("", ()),
+    jacobian: Jacobian = NO_JACOBIAN,
     limits: tuple[Limit, ...] = (),
     verdict: str = "",
 ) -> Program:
     """Return a program of some functions of a system's quantities, which are all defined by now."""
     model = iphs.model
-    return Program(
+    program = Program(
         name=model.name,
         title=model.model.title,
         source=model.model.source,
@@ -68,6 +71,7 @@ def program_of(
         limits=limits,
         taken=frozenset(q.taken),
     )
+    return sharp_program(program)
 
 
 def _values(

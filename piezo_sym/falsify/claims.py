@@ -115,8 +115,9 @@ class Claim:
         for _, port in self.circuit.of(Exchange):
             if port.body == self.element:
                 cold = cold & (hot < view.get("input", port.input)[0][0])
-        for _, port in self.circuit.of(Conductor):
-            for own, other in ((port.first, port.second), (port.second, port.first)):
+        for _, contact in self.circuit.of(Conductor):
+            ends = (contact.first, contact.second)
+            for own, other in (ends, ends[::-1]):
                 if own == self.element:
                     cold = cold & (hot <= view.get("temperature", other)[0][0])
         return cold

@@ -15,23 +15,27 @@ from typing import Any, final
 
 import numpy as np
 
+from piezo_sym.checker import InputError
 from piezo_sym.errors import ContradictionError
 from piezo_sym.falsify.claims import TOLERANCE, Claim, claim_of
 from piezo_sym.falsify.exact import Exact
-from piezo_sym.falsify.points import FEW, STAGES, Draw, warmed
+from piezo_sym.falsify.points import FEW, STAGES, Draw, Roots, warmed
 from piezo_sym.falsify.probe import probe_of
 from piezo_sym.falsify.space import Array, Mask, Seen, Space
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.elements.ports import Body
-from piezo_sym.spec.expressions import Num, Sym
+from piezo_sym.spec.expressions import Num, Sym, names
 from piezo_sym.spec.tables import conditions, greater
 from piezo_sym.spec.units import parse_unit
 
 POINTS = 100_000
-LANES = 2
-KEPT, CHILDREN, DESCENTS = 8, 24, 8
+#: Lanes that points have; of those of the spec, so many are looked at.
+LANES, MOST_LANES = 2, 512
+KEPT, CHECKED, CHILDREN, DESCENTS = 8, 4, 24, 8
 #: Of a law's size; between neighbouring floats it may change by less than this.
 JUMP = 1e-6
+#: Off a jump by so many times the distance of two floats, a law has changed by about as much.
+WIDE = 100
 #: Stands for a zero where a row says > 0: not negative, but to be looked at exactly.
 ZERO = -1e-300
 
@@ -44,7 +48,8 @@ class Attack:
     Attributes
     ----------
     id, element : of the row.
-    points : inside the domain at which it held.
+    points : inside the domain at which it held, at least; one digit, for another processor's
+        last bits decide on some points otherwise, and the number is published.
     worst : a point at which the module's number breaks it, by name, though the exact one does not.
     rounding : whether there is one.
     """
@@ -72,7 +77,7 @@ class Track:
             says = np.broadcast_to(self.claim.says(seen), seen.x.shape[1:])
             self.points += int(says.sum())
             if self.claim.id == "welldef":
-                key = np.where(seen.undefined(self.claim.element), -1.0, 1.0)
+                key = np.where(seen.holed(self.claim.element), -1.0, 1.0)
             elif self.claim.numbers:
                 key = self._least(seen, says)
             else:
@@ -83,16 +88,18 @@ class Track:
     def _least(self, seen: Seen, says: Mask) -> Array:
         """Return the least number of the claim relative to its scale, 2 where it has none."""
         least: Array = np.full(says.shape, 2.0)
-        tolerance = 0 if self.claim.climbs else TOLERANCE
         for _, value, scale, strict in self.claim.at(seen):
-            ratio = np.clip(value / scale + tolerance, -1, 1)
+            if not self.claim.climbs and not (value < -TOLERANCE * scale).any():
+                continue
+            ratio = np.clip(value / scale, -1, 1)
             odd = np.isnan(ratio)
             if odd.any():
                 lost = np.isnan(value)
                 ratio = np.where(odd, np.where(lost, 2, np.sign(value)), ratio)
                 self._lose(seen, lost & says)
-            ratio = np.where(value == 0, ZERO, ratio) if strict else ratio
-            least = np.minimum(least, ratio)
+            if not self.claim.climbs:
+                ratio = np.where(ratio < -TOLERANCE, ratio, 1)
+            least = np.minimum(least, np.where(value == 0, ZERO if strict else 2, ratio))
         return np.where(says, least, 2)
 
     def _keep(self, kind: str, seen: Seen, key: Array) -> None:
@@ -106,7 +113,7 @@ class Track:
 
     def _lose(self, seen: Seen, lost: Mask) -> None:
         """Note a point where a law is nan though nothing overflowed."""
-        if self.claim.climbs and self.lost is None:
+        if self.claim.climbs and self.lost is None and lost.any():
             place = np.flatnonzero(lost & ~seen.extreme & ~np.isinf(seen.laws).any(axis=0))
             self.lost = (seen.space, seen.points[:, place[0]]) if len(place) else None
 
@@ -130,7 +137,11 @@ class Hunt:
         self.space = Space(module, probe, dict.fromkeys(sizes, LANES))
         found = (claim_of(iphs, *row) for row in claims)
         self.tracks = [Track(claim) for claim in found if claim]
-        known = [self.space.own(), *(self._hinted(hint) for hint in hints)]
+        trees = [condition.tree for condition in conditions(iphs.model)]
+        self.conditioned = {name for tree in trees for name in names(tree)}
+        most = min(MOST_LANES, max(sizes.values(), default=1))
+        known = [self.space.own(lane) for lane in range(0, most, LANES)]
+        known += [self._hinted(hint) for hint in hints]
         self.draw = Draw(self.space, np.concatenate(known, axis=1), self._positive(), self._pairs())
 
     def attacks(self) -> tuple[Attack, ...]:
@@ -144,7 +155,10 @@ class Hunt:
         for kind, space, points in self._blocks():
             for n in range(0, points.shape[1], space.block):
                 self._see(kind, space, points[:, n : n + space.block])
-        exact = Exact(self.iphs)
+        try:
+            exact = Exact(self.iphs)
+        except InputError:  # nothing could be confirmed, so that nothing was attacked
+            return tuple(Attack(t.claim.id, t.claim.element, 0) for t in self.tracks)
         return tuple(self._judged(track, exact) for track in self.tracks)
 
     def _see(self, kind: str, space: Space, points: Array) -> None:
@@ -159,7 +173,8 @@ class Hunt:
                 changed[space.inputs_at + rows[name].start] = 0
             for name in rest[1]:
                 changed[space.inputs_at + rows[name].start] = seen.u[rows[rest[1][0]].start]
-            track.see(kind, space.at(changed[:, space.at(changed).inside]))
+            bound = self.conditioned.isdisjoint({*rest[0], *rest[1][1:]})
+            track.see(kind, space.at(changed if bound else self.draw.inside(changed)))
 
     def _blocks(self) -> Iterator[tuple[str, Space, Array]]:
         """Yield points inside the domain, and how they were found."""
@@ -203,38 +218,49 @@ class Hunt:
     def _judged(self, track: Track, exact: Exact) -> Attack:
         """Return what became of a row, its suspicious points evaluated exactly."""
         claim, rounding = track.claim, None
-        for key, space, point in chain(*track.worst.values()):
+        for key, space, point in chain(*(worst[:CHECKED] for worst in track.worst.values())):
             value = exact.broken(claim, space, point) if key < 0 else None
             if value:
                 raise self._contradiction(claim, value, space.words(point))
-            rounding = rounding or ((space, point) if key < ZERO else None)
+            plain = not space.at(point[:, None]).extreme[0]  # else underflow, which is none either
+            told = key < ZERO and claim.numbers and plain
+            rounding = rounding or ((space, point) if told else None)
         if track.lost and rounding is None and exact.has_value(claim, *track.lost):
             rounding = track.lost
         if claim.id == "continuous":
             self._jumps(claim, exact)
         worst = rounding[0].words(rounding[1]) if rounding else None
-        return Attack(claim.id, claim.element, track.points, worst, rounding is not None)
+        points = int(str(track.points)[0]) * 10 ** (len(str(track.points)) - 1)
+        return Attack(claim.id, claim.element, points, worst, rounding is not None)
 
     def _jumps(self, claim: Claim, exact: Exact) -> None:
         """Look at a law on both sides of the kinks that states and inputs reach."""
-        space = self.space
-        sizes = [row.stop - row.start for row in space.edge_rows]
-        chosen = np.repeat([edge.op == "if" for edge in space.probe.edges], sizes)
+        sizes = [row.stop - row.start for row in self.space.edge_rows]
+        kinks = np.repeat([edge.kink for edge in self.space.probe.edges], sizes)
         for roots in self.draw.roots:
-            low, high = (space.at(roots.at(value)) for value in (roots.low, roots.high))
-            near = chosen[roots.edge] & (roots.column >= space.inputs_at)
-            near &= low.inside & high.inside & ~space.at(roots.base).extreme
+            near = kinks[roots.edge] & (roots.column >= self.space.inputs_at)
+            ends = [self.space.at(roots.at(value)) for value in (roots.low, roots.high)]
+            near &= ends[0].inside & ends[1].inside & ~self.space.at(roots.base).extreme
             for what in ("law", "output"):
-                law = space.law_rows.get((claim.element, what), slice(0))
-                with np.errstate(all="ignore"):
-                    jump = np.abs(high.laws[law] - low.laws[law])
-                    big = (jump / (high.sizes[law] + low.sizes[law])).max(axis=0, initial=0)
-                big = np.where(near & np.isfinite(big), big, 0)
-                for n in np.argsort(-big, kind="stable")[:4]:
-                    pair = (low.points[:, n], high.points[:, n])
-                    value = exact.jump(claim, space, *pair) if big[n] > JUMP else None
+                row = self.space.law_rows.get((claim.element, what), slice(0))
+                big = np.where(near, self._leap(row, roots, ends), 0)
+                for n in np.argsort(-big, kind="stable")[:2]:
+                    pair = (ends[0].points[:, n], ends[1].points[:, n])
+                    value = exact.jump(claim, self.space, *pair) if big[n] > JUMP else None
                     if value:
-                        raise self._contradiction(claim, value, space.words(pair[1]))
+                        raise self._contradiction(claim, value, self.space.words(pair[1]))
+
+    def _leap(self, row: slice, roots: Roots, ends: list[Seen]) -> Array:
+        """Return by how much of its size a law changes; 0 if farther off it changes more."""
+        low, high = ends
+        off = WIDE * (roots.high - roots.low)
+        wide = [self.space.at(roots.at(v)) for v in (roots.low - off, roots.high + off)]
+        with np.errstate(all="ignore"):
+            leap = np.abs(high.laws[row] - low.laws[row])
+            steep = np.abs(wide[1].laws[row] - wide[0].laws[row]) > 4 * leap
+            big = np.where(np.isinf(leap), 1, leap / (high.sizes[row] + low.sizes[row]))
+        found: Array = np.where(steep | np.isnan(big), 0, big).max(axis=0, initial=0)
+        return found
 
     def _contradiction(
         self, claim: Claim, value: str, words: Mapping[str, str]

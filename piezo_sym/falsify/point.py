@@ -109,7 +109,7 @@ class _Evaluation:
             self.known["x", owner] = list(told) if given is None else _list(given)
         for body in self.spec.of("body"):
             T = self.told(body.laws["temperature"], body.name)
-            self.known["T", body.name] = [T if T != 0 else arb(0)]  # W*z/T is then no number
+            self.known["T", body.name] = [arb(0) if T == 0 else T]  # W*z/T is then no number
 
     def words(self, lane: int) -> dict[Any, Any]:
         """Return the values of names in one lane."""

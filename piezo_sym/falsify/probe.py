@@ -12,6 +12,7 @@ import importlib.abc
 import importlib.util
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import reduce
 from types import ModuleType
 from typing import final
 
@@ -36,6 +37,7 @@ from piezo_sym.spec.elements.ports import (
 )
 from piezo_sym.spec.expressions import (
     ONE,
+    ZERO,
     Add,
     Call,
     Cmp,
@@ -49,6 +51,7 @@ from piezo_sym.spec.expressions import (
     Num,
     Pow,
     Sym,
+    children,
     rename,
     walk,
 )
@@ -69,10 +72,10 @@ MOST_EDGES = 400
 @final
 @dataclass(frozen=True)
 class Edge:
-    """An expression whose zeros are looked for, and the sign (`op` 0) it must have there."""
+    """An expression whose zeros are looked for; at a `kink` a law changes branches."""
 
     tree: Expr
-    op: str = ""
+    kink: bool = False
 
 
 @final
@@ -83,7 +86,8 @@ class Probe:
     Attributes
     ----------
     module : with functions `laws`, `sizes` and `edges`.
-    laws : (element, what) of each row; what is law, effort, output or slope.
+    laws : (element, what) of each row; what is law, effort, output, slope or hole (where > 0, the
+        element's laws have no value).
     edges : the edges, row by row.
     slots : of the rows of `laws` and of `edges`.
     states : the state of each body, by element.
@@ -123,19 +127,19 @@ def probe_of(iphs: IPHS) -> Probe:
     """Return the probe of a system."""
     q = Quantities(iphs)
     limits = limits_of(iphs.model, q)
-    laws = tuple(_laws(q))
-    banks = {name: quantity.bank for quantity in q.defined if (name := quantity.name)}
+    known = {quantity.name: quantity.value for quantity in q.defined}
+    laws = (*_laws(q), *_holes(iphs, q, known))
+    banks = {quantity.name: quantity.bank for quantity in q.defined}
     banks |= {port.state: placed.bank for placed, port in q.stores}
     lanes = lane_parameters(iphs.model) | {name: bank for name, bank in banks.items() if bank}
     trees = [quantity.value for quantity in q.defined] + [limit.margin for limit in limits]
-    trees += [tree for _, _, tree in laws]
+    trees += [tree for _, what, tree in laws if what != "hole"]
     found = [edge for tree in trees for edge in _edges(tree)]
     found += [Edge(limit.margin) for limit in limits] + [Edge(tree) for tree in _equal(iphs, q)]
     edges = tuple(dict.fromkeys(e for e in found if not isinstance(e.tree, Num)))[:MOST_EDGES]
-    known = {quantity.name: quantity.value for quantity in q.defined}
     values = [(tree, bank_of(tree, lanes)) for _, _, tree in laws]
     sizes = [
-        (ONE if what == "effort" else _size(_own(tree, known)), bank)
+        (ONE if what in {"effort", "hole"} else _size(_own(tree, known)), bank)
         for (_, what, _), (tree, bank) in zip(laws, values, strict=True)
     ]
     functions = (
@@ -206,6 +210,44 @@ def _absolute(node: Expr) -> Expr:
     return Num(abs(node.value)) if isinstance(node, Num) else Call("abs", (node,))
 
 
+def _holes(iphs: IPHS, q: Quantities, known: dict[str, Expr]) -> Iterator[tuple[str, str, Expr]]:
+    """Yield where the laws of each element, and of the junction, have no value."""
+    found: dict[str, list[Expr]] = {}
+    for element, what, tree in _laws(q):
+        if what != "effort":
+            found.setdefault(element, []).append(_hole(_own(tree, known)))
+    junction = [known[str(symbol.name)] for symbol, _ in (*iphs.slopes, *iphs.shares)]
+    for element, parts in {**found, "": [_hole(tree) for tree in junction]}.items():
+        yield element, "hole", _any(parts)
+
+
+def _hole(node: Node) -> Expr:
+    """Return an expression that is > 0 where a law has no value, on the branches taken."""
+    match node:
+        case If(then, condition, other):
+            inside = If(_hole(then), condition, _hole(other))
+            return _any(
+                [_hole(condition), inside if {inside.then, inside.other} != {ZERO} else ZERO]
+            )
+        case Div(_, bottom) if not isinstance(bottom, Num):
+            own: Cmp | None = Cmp("<=", _absolute(bottom), ZERO)
+        case Pow(base, exponent) if exponent.denominator != 1:
+            own = Cmp("<" if exponent > 0 else "<=", base, ZERO)
+        case Pow(base, exponent) if exponent < 0:
+            own = Cmp("<=", _absolute(base), ZERO)
+        case Call("sqrt" | "log" as function, (arg,)):
+            own = Cmp("<" if function == "sqrt" else "<=", arg, ZERO)
+        case _:
+            own = None
+    return _any([If(ONE, own, ZERO) if own else ZERO, *map(_hole, children(node))])
+
+
+def _any(parts: list[Expr]) -> Expr:
+    """Return the largest of some expressions that are not negative."""
+    kept = [part for part in dict.fromkeys(parts) if part != ZERO]
+    return reduce(lambda one, other: Call("max", (one, other)), kept) if kept else ZERO
+
+
 def _edges(tree: Node) -> Iterator[Edge]:
     """Yield the edges of a law, outermost first."""
     for node in walk(tree):
@@ -213,40 +255,32 @@ def _edges(tree: Node) -> Iterator[Edge]:
             case LaneSum() | Num() | Sym():
                 continue
             case Cmp(_, left, right):
-                yield Edge(add(left, neg(right)), "if")
+                yield Edge(add(left, neg(right)), kink=True)
             case Call(function, (z, w)) if function in PAIRED:
-                yield Edge(add(z, neg(w)), "if")
+                yield Edge(add(z, neg(w)), kink=True)
                 if function in {"deadzone", "saturate"}:
-                    yield Edge(add(z, w), "if")
+                    yield Edge(add(z, w), kink=True)
             case Call("abs" | "sign", (z,)):
-                yield Edge(z, "if")
-            case Call("sqrt", (z,)):
-                yield Edge(z, ">=")
+                yield Edge(z, kink=True)
+            case Call("sqrt", (z,)) | Pow(z, _) | Div(_, z):
+                yield Edge(z)
             case Call(function, (z,)) if function in SCALED:
-                yield from (Edge(add(z, neg(ONE))), Edge(add(z, ONE)))
-                yield Edge(z, ">" if function == "log" else "")
-            case Div(_, bottom):
-                yield Edge(bottom, "!=")
-            case Pow(base, exponent) if exponent < 0 or exponent.denominator != 1:
-                yield Edge(
-                    base, ">=" if exponent > 0 else "!=" if exponent.denominator == 1 else ">"
-                )
+                yield from (Edge(z), Edge(add(z, neg(ONE))), Edge(add(z, ONE)))
             case Add():
                 yield Edge(node)
 
 
 def _equal(iphs: IPHS, q: Quantities) -> Iterator[Expr]:
     """Yield differences and sums of a quantity and a parameter or input of equal dimension."""
-    fields = (*iphs.model.parameters.items(), *iphs.model.inputs.items())
-    units = [(name, field.dimension.dimension) for name, field in fields]
+    units = [(name, p.dimension.dimension) for name, p in iphs.model.parameters.items()]
+    units += [(name, u.dimension.dimension) for name, u in iphs.model.inputs.items()]
     quantities: list[tuple[Expr, str]] = []
-    for _, port in q.stores:
-        quantities.append(
-            (Sym(costate_name(port)), "K" if isinstance(port, Body) else port.units[1])
-        )
-    for force, (_, port) in zip(q.forces, iphs.circuit.of(Resistor, Conductor), strict=True):
-        if isinstance(port, Resistor):
-            quantities.append((force, UNITS[port.domain, port.imposes.other]))
+    for _, store in q.stores:
+        unit = "K" if isinstance(store, Body) else store.units[1]
+        quantities.append((Sym(costate_name(store)), unit))
+    for force, (_, process) in zip(q.forces, iphs.circuit.of(Resistor, Conductor), strict=True):
+        if isinstance(process, Resistor):
+            quantities.append((force, UNITS[process.domain, process.imposes.other]))
     for tree, unit in dict.fromkeys(quantities):
         for name, dimension in units:
             if parse_unit(unit).dimension == dimension:

@@ -6,7 +6,7 @@ their columns every parameter, input and state, a bank's one per lane.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate, pairwise
@@ -90,8 +90,8 @@ class Space:
         ends = [0, *accumulate(self.lanes(part.bank) for part in parts)]
         return tuple(slice(a, b) for a, b in pairwise(ends))
 
-    def own(self) -> Array:
-        """Return the spec's own values as one point; a bank of another size repeats its lanes."""
+    def own(self, first: int = 0) -> Array:
+        """Return the spec's own values as one point, of a bank's lanes those from `first` on."""
         spec, u = self.module.Parameters(), np.asarray(self.module.INPUT_DEFAULTS, dtype=float)
         full = Space(self.module, self.probe, {b: getattr(spec, f"{b}_count") for b in self.counts})
         size = {field.name: full.lanes(field.bank) for field in self.fields}
@@ -99,7 +99,7 @@ class Space:
         values = [np.broadcast_to(getattr(spec, name), size[name]) for name in names]
         point = np.concatenate([*values, u, self.module.initial_state(u, spec)])
         at = dict(zip(full.columns, point, strict=True))
-        return np.array([[at[name, lane % size[name]]] for name, lane in self.columns])
+        return np.array([[at[name, (first + lane) % size[name]]] for name, lane in self.columns])
 
     def at(self, points: Array) -> Seen:
         """Return what is seen at points."""
@@ -177,23 +177,11 @@ class Seen:
         found: Mask = np.any((size > EXTREME) | ((size > 0) & (size < 1 / EXTREME)), axis=0)
         return found
 
-    def undefined(self, element: str) -> Mask:
-        """Return where a law has no value, and a divisor or an argument is out of its range."""
-        rows = [self.space.law_rows.get((element, what)) for what in ("law", "output")]
-        values = [self.laws[row] for row in rows if row] or [self.rhs, self.margins]
-        lost: Mask = ~np.all([np.isfinite(value).all(axis=0) for value in values], axis=0)
-        if lost.any():
-            edges = self.space.at(self.points[:, lost]).edges
-            parts = zip(self.space.probe.edges, self.space.edge_rows, strict=True)
-            out = [OUT[edge.op](edges[row]).any(axis=0) for edge, row in parts if edge.op in OUT]
-            lost[lost] = np.any(out, axis=0)
-        return lost
+    def holed(self, element: str) -> Mask:
+        """Return where an element's laws have no value; for none, what the junction divides by."""
+        row = self.space.law_rows.get((element, "hole"), slice(0))
+        found: Mask = np.any(self.laws[row] > 0, axis=0)
+        return found
 
 
-#: By what the value of an edge must be, where it is not.
-OUT: Mapping[str, Callable[[Array], Mask]] = {
-    "!=": lambda value: value == 0,
-    ">=": lambda value: value < 0,
-    ">": lambda value: value <= 0,
-}
 PROBED = frozenset({"laws", "sizes", "edges"})

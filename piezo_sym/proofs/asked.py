@@ -46,8 +46,8 @@ FEW = 8
 MOVES = tuple((Fraction(a), Fraction(b)) for a, b in ((10, 0), (-1, 0), (1, 1), (1, -1)))
 MOVES += ((Fraction(1, 10), Fraction(0)),)
 
-#: Claims of one case that a solver is asked.
-MOST_ASKED = 40
+#: Questions on one law before no more are asked, and how many of them may have no answer.
+MOST_ASKED, MOST_UNKNOWN = 60, 4
 NEVER = Cmp("<", ONE, ZERO)
 
 Numbers = Mapping[str, Fraction]
@@ -63,14 +63,19 @@ class Asked:
     where : the domain.
     order : names, in the order in which a witness should be simple.
     solver : whom to ask.
-    known, asked : answers on what is positive, and the claims put to the solver so far.
+    known : answers on what is positive.
+    results : the solver's answers so far, on all cases of one law.
     """
 
     where: tuple[Cmp, ...]
     order: tuple[str, ...]
     solver: Asks
     known: dict[Expr, bool] = field(default_factory=dict)
-    asked: list[Cmp] = field(default_factory=list)
+    results: list[str] = field(default_factory=list)
+
+    def within(self, *guards: Cmp) -> Asked:
+        """Return the same in a part of the domain."""
+        return replace(self, where=(*self.where, *guards), known={})
 
     def positive(self, part: Expr) -> bool:
         """Return whether a tree is shown to be positive."""
@@ -88,9 +93,7 @@ class Asked:
                 return False
             case Sym() if Cmp(">", part, ZERO) in map(greater, self.where):
                 return True
-            case Mul(left, right) | Div(left, right) if self.positive(left) and self.positive(
-                right
-            ):
+            case Mul(a, b) | Div(a, b) if self.positive(a) and self.positive(b):
                 return True
             case Pow(base, _) | Call("sqrt" | "abs", (base,)) if self.positive(base):
                 return True
@@ -117,9 +120,6 @@ class Asked:
         """Return whether a claim holds in all of the domain."""
         if any(_broken((claim,), sample) for sample in self.samples):
             return False
-        if len(self.asked) >= MOST_ASKED:
-            return False
-        self.asked.append(claim)
         return all(answer.result == "unsat" for answer in self._answers(claim, claim))
 
     @cached_property
@@ -137,7 +137,7 @@ class Asked:
     def empty(self) -> bool:
         """Return whether no point is in the domain."""
         made = Question("", self.order, self.where, NEVER, NEVER, whole=True)
-        return self.solver.ask(made.query()).result == "unsat"
+        return self._answer(made).result == "unsat"
 
     def point(self, claim: Cmp, wanted: Iterable[str]) -> Numbers | None:
         """Return simple numbers in the domain at which a claim is false, or None."""
@@ -156,9 +156,22 @@ class Asked:
     def _answers(self, claim: Cmp, original: Cmp) -> Iterator[Answer]:
         made = Question("", self.order, self.where, claim, original)
         try:
-            yield from (self.solver.ask(part.query()) for part in made.smooth())
+            parts = made.smooth()
         except TooManyBranchesError:
-            yield Answer("unknown")
+            return iter((Answer("unknown"),))
+        return map(self._answer, parts)
+
+    def _answer(self, question: Question) -> Answer:
+        """Return the answer to a question, or none if enough has been asked."""
+        results = self.results
+        if len(results) >= MOST_ASKED or results.count("unknown") >= MOST_UNKNOWN:
+            return Answer("unknown")
+        try:
+            answer = self.solver.ask(question.query())
+        except TooManyBranchesError:
+            answer = Answer("unknown")
+        results.append(answer.result)
+        return answer
 
     def breaks(self, claim: Cmp, numbers: Numbers) -> bool:
         """Return whether numbers lie in the domain and break a claim, which is evaluated exactly.
@@ -191,8 +204,7 @@ def _placed(claim: Cmp, letter: str, asked: Asked, point: Numbers | None) -> Ite
         yield from ({**point, letter: value} for value in TRIED)
         return
     for value in TRIED[:FEW]:
-        where = (*asked.where, Cmp("=", Sym(letter), Num(value)))
-        found = replace(asked, where=where, known={}).point(NEVER, names(claim))
+        found = asked.within(Cmp("=", Sym(letter), Num(value))).point(NEVER, names(claim))
         yield from () if found is None else (found,)
 
 

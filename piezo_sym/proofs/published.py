@@ -47,7 +47,8 @@ def published(iphs: IPHS) -> dict[str, object]:
         },
         "energy": write(add(*stored), STYLE),
         "outputs": {
-            slot.label: write(tree(y), STYLE) for slot, y in zip(system.ports, system.y, strict=True)
+            slot.label: write(tree(y), STYLE)
+            for slot, y in zip(system.ports, system.y, strict=True)
         },
     }
 
@@ -137,4 +138,6 @@ class _Trees:
         if not rest:
             return self(value)
         left, right = self(condition.args[0]), self(condition.args[1])
-        return If(self(value), Cmp(COMPARISONS[type(condition)], left, right), self._choice(tuple(rest)))
+        return If(
+            self(value), Cmp(COMPARISONS[type(condition)], left, right), self._choice(tuple(rest))
+        )

@@ -83,7 +83,7 @@ def whole_sign(sign: SignOf, order: tuple[str, ...], solver: Asks) -> Outcome | 
     shown: list[Case] = []
     reasons: list[str] = []
     for guards, law in split:
-        search = Search(law, sign.letter, Asked((*sign.where, *guards), order, solver))
+        search = Search(law, sign.letter, asked.within(*guards))
         terms = search.terms(law)
         if terms is not None:
             shown.append(Case(guards, terms))

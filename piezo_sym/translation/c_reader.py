@@ -167,7 +167,9 @@ class _Function:
     def rows(self) -> dict[Key, Value]:
         """Return the rows that the function writes."""
         self._block()
-        if not self.zeros or (self.least and {(self.name, n, LEAST) for n in self.least} - {*self.found}):
+        if not self.zeros or (
+            self.least and {(self.name, n, LEAST) for n in self.least} - {*self.found}
+        ):
             raise NotShownError(f"{self.name} leaves numbers that were never written")
         return self.found
 

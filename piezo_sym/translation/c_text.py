@@ -58,7 +58,9 @@ class Tokens:
                 raise NotShownError(f"line {line} of the C file is outside the grammar")
             place = match.end()
             if match["pragma"] is not None:
-                self.sums.append(frozenset(re.findall(r"\w+", match["pragma"][len(" reduction") :])))
+                self.sums.append(
+                    frozenset(re.findall(r"\w+", match["pragma"][len(" reduction") :]))
+                )
                 self.found.append("#pragma")
             elif match["space"] is None:
                 self.found.append(match[0])

@@ -127,7 +127,9 @@ class Expressions:
             parts.append(self.numeric(node))
         field.path = path
         (first, shape), (second, shape_of_other) = parts
-        shape = joined(joined(shape, shape_of_other, condition), self.shape_of(condition), condition)
+        shape = joined(
+            joined(shape, shape_of_other, condition), self.shape_of(condition), condition
+        )
         return field.choose(test, first, second), shape
 
     def shape_of(self, condition: ast.expr) -> Shape:

@@ -15,8 +15,9 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property, partial
-from math import floor
+from functools import cached_property, partial, reduce
+from itertools import product
+from math import floor, prod
 from typing import final
 
 from sympy import QQ, factorint
@@ -27,7 +28,7 @@ Exponent = int | Fraction
 Mono = tuple[tuple[int, Exponent], ...]
 Lane = tuple[str, int]  # a bank, and which of its lanes: 0 a row's, 1 a column's
 
-MOST_WORK = 3_000_000
+MOST_WORK = 400_000
 MOST_BITS = 20_000
 MOST_FACTOR = 10**12
 MOST_FACTORED = 40
@@ -41,13 +42,16 @@ class NotShownError(Exception):
 @final
 @dataclass(frozen=True)
 class Generator:
-    """What a value is made of; `mark` is a name and its lane, a side, or the bank of a sum."""
+    """What a value is made of; `mark` is a name and its lane, a side, or the bank of a sum.
+
+    `parts` are the generators in it, itself among them; `lanes` those on which it depends.
+    """
 
     kind: str
     arg: Value | None
     mark: Hashable
     lanes: frozenset[Lane]
-    names: frozenset[int]
+    parts: frozenset[int]
 
 
 @final
@@ -101,10 +105,10 @@ class Value:
         return frozenset().union(*(gens[g].lanes for g in self.generators()))
 
     @cached_property
-    def names(self) -> frozenset[int]:
-        """The names in the value, those in arguments of functions too."""
+    def parts(self) -> frozenset[int]:
+        """The generators in the value, those in arguments of functions too."""
         gens = self.field.gens
-        return frozenset().union(*(gens[g].names for g in self.generators()))
+        return frozenset().union(*(gens[g].parts for g in self.generators()))
 
     @property
     def constant(self) -> Fraction | None:
@@ -134,7 +138,8 @@ class Field:
     ----------
     signs : differences that the domain says are positive (2) or not negative (1).
     needs : what divisions, roots and logarithms needed, while `path` is not None.
-    cases : the signs that differences may have together, once they are known.
+    asked : whether some signs cannot be together, as a solver said.
+    never : whether two differences cannot have two signs, once that is known.
     derived : whether what is computed at the moment is a derivative.
     path : a product of signs, 1 where what is computed at the moment is chosen.
     """
@@ -146,10 +151,13 @@ class Field:
         self._joined: dict[tuple[Mono, Mono], tuple[Mono, Value | None] | None] = {}
         self.signs: dict[Value, int] = {}
         self._known: dict[Value, int] = {}
+        self._forms: dict[Value, tuple[list[Value], int]] = {}
         self._factored: dict[Value, list[tuple[Value, int]]] = {}
-        self.cases: dict[tuple[Value, ...], list[dict[Value, int]]] = {}
+        self.asked: dict[frozenset[tuple[Value, int]], bool] = {}
+        self.never: dict[tuple[Value, int, Value, int], bool] = {}
         self.needs: dict[Need, None] = {}
         self.zero, self.one = Value(self, {}), Value(self, {(): 1})
+        self.signs[self.zero] = 1
         self.path: Value | None = self.one
         self.derived = False
         self.work = 0
@@ -163,7 +171,7 @@ class Field:
     def name(self, name: str, bank: str | None = None, lane: int = 0, sign: int = 0) -> Value:
         """Return a name, of one lane of a bank if it has one; `sign` 2: positive, 1: >= 0."""
         made = self.generator("name", None, (name, bank, lane))
-        (number,) = made.names
+        (number,) = made.parts
         self._signed[number] = max(sign, self._signed.get(number, 0))
         return made
 
@@ -173,12 +181,12 @@ class Field:
         if known is None:
             known = self._numbers[kind, arg, mark] = len(self.gens)
             lanes = arg.lanes if arg else frozenset()
-            names = arg.names if arg else frozenset({known})
+            parts = frozenset({known}) | (arg.parts if arg else frozenset())
             if isinstance(mark, tuple):
                 lanes = frozenset({(mark[1], mark[2])} if mark[1] else ())
             elif kind == "sum":
                 lanes -= {(mark, 0)}
-            self.gens.append(Generator(kind, arg, mark, lanes, names))
+            self.gens.append(Generator(kind, arg, mark, lanes, parts))
         return Value(self, {((known, 1),): 1})
 
     # Products and powers
@@ -220,7 +228,11 @@ class Field:
                 found[g] = 1
                 if seen.setdefault(gen.arg, g) != g:
                     return None
-            elif gen.kind == "power" and gen.arg and (e >= 1 or (e < 0 and not gen.arg.names)):
+            elif (
+                gen.kind == "power"
+                and gen.arg
+                and (e >= 1 or (e < 0 and gen.arg.constant is not None))
+            ):
                 whole = floor(e)
                 found[g] = e - whole
                 if e == whole:
@@ -260,15 +272,22 @@ class Field:
 
     def _power(self, base: Value, q: Exponent) -> Value:
         """Return a power of a value without signs, for an exponent that is not whole or negative."""
+        if not base.terms and q > 0:
+            return base
         if not base.terms:
-            raise NotShownError("a quotient or power of zero")
+            return self._undefined("nonzero")
         size, common, rest = self.primitive(base, partly=q.denominator != 1)
+        if not rest.terms:
+            return self._power(rest, q)
         made = self._root(size, q)
         for g, e in common:
             made = made * Value(self, {((g, e * q),): 1}) * self.one
             if q < 0:
                 arg = self.gens[g].arg if self.gens[g].kind == "power" else None
                 self._needs("nonzero", arg or Value(self, {((g, 1),): 1}))
+        if q.denominator != 1:
+            rest, even = self._even(rest, q)
+            made = made * even
         if q.denominator != 1 and rest != self.one:
             self._needs("nonnegative", rest)
         for factor, times in self._factors(rest, whole=q.denominator == 1):
@@ -277,6 +296,17 @@ class Field:
                 self._needs("nonzero", factor)
         return made
 
+    def _even(self, value: Value, q: Exponent) -> tuple[Value, Value]:
+        """Return a value without factors such as x**2, and the root of those, such as ``abs(x)``."""
+        made = self.one
+        for g in value.generators():
+            e = min(dict(mono).get(g, 0) for mono in value.terms)
+            if e and e % 2 == 0 and (e * q).denominator == 1:
+                factor = Value(self, {((g, 1),): 1})
+                value = value * Value(self, {((g, -e),): 1})
+                made = made * self.power(self.size(factor), Fraction(e * q))
+        return value, made
+
     def _factors(self, rest: Value, *, whole: bool) -> list[tuple[Value, int]]:
         """Return the irreducible factors of a sum; for roots, the sum itself."""
         if rest not in self._factored or not whole:
@@ -284,7 +314,9 @@ class Field:
             numbers = sorted(rest.generators())
             exponents = {Fraction(e).denominator for mono in rest.terms for _, e in mono}
             if whole and 1 < len(rest.terms) <= MOST_FACTORED and exponents == {1}:
-                terms = {tuple(dict(m).get(g, 0) for g in numbers): c for m, c in rest.terms.items()}
+                terms = {
+                    tuple(int(dict(m).get(g, 0)) for g in numbers): c for m, c in rest.terms.items()
+                }
                 table = {m: QQ(c.numerator, c.denominator) for m, c in terms.items()}
                 polynomial = PolyRing([f"g{g}" for g in numbers], QQ, lex).from_dict(table)
                 found = [(self._monic(f, numbers), n) for f, n in polynomial.factor_list()[1]]
@@ -333,7 +365,7 @@ class Field:
         common = tuple(sorted(least.items()))
         below = Value(self, {tuple((g, -e) for g, e in common): 1})
         rest = value * below if common else value
-        lead = Fraction(rest.terms[max(rest.terms)])
+        lead = Fraction(rest.terms[max(rest.terms)] if rest.terms else 1)
         size = abs(lead) if partly else lead
         return size, common, rest if size == 1 else rest * self.number(1 / size)
 
@@ -378,7 +410,8 @@ class Field:
     def assume(self, value: Value, sign: int) -> None:
         """Take it that a value is positive (2) or not negative (1)."""
         self._known.clear()
-        if value.names:
+        self._forms.clear()
+        if value.constant is None:
             rest = self.primitive(value, partly=True)[2]
             self.signs[rest] = max(sign, self.signs.get(rest, 0))
             for g in rest.generators():  # of what is but a name, the name is marked itself
@@ -391,17 +424,48 @@ class Field:
 
     def _compared(self, sides: tuple[int, ...], d: Value) -> Value:
         number = d.constant
+        if number is None and not self.primitive(d, partly=False)[2].terms:
+            number = Fraction(0)
         if number is not None:
             return self.number(int((number > 0) - (number < 0) in sides))
         possible = {2: {1}, 1: {1, 0}, 0: {1, 0, -1}}[self.sign(d)]
         possible &= {2: {-1}, 1: {-1, 0}, 0: {1, 0, -1}}[self.sign(-d)]
         if possible <= {*sides}:
             return self.one
-        form = self.primitive(d, partly=True)[2]
-        turn = 1 if form.terms[max(form.terms)] > 0 else -1
-        form = form * self.number(turn)
-        chosen = sorted({*sides} & possible)
-        return self.total([self.generator("sign", form, side * turn) for side in chosen])
+        forms, turn = self._forms_of(d)
+        found = []
+        for chosen in product((1, 0, -1), repeat=len(forms)):
+            if prod(chosen) * turn in {*sides} & possible:
+                parts = (self.generator("sign", f, s) for f, s in zip(forms, chosen, strict=True))
+                found.append(reduce(self.times, parts, self.one))
+        return self.total(found)
+
+    def _forms_of(self, d: Value) -> tuple[list[Value], int]:
+        """Return values without positive factors whose signs, multiplied, are that of d times 1 or -1."""
+        if d not in self._forms:
+            size, common, rest = self.primitive(d, partly=False)
+            turn, forms = (1 if size > 0 else -1), list[Value]()
+            powers = [(Value(self, {((g, 1),): 1}), e) for g, e in common]
+            for factor, e in (*powers, *self._factors(rest, whole=True)):
+                whole = Fraction(e).denominator == 1
+                known, below = self.sign(factor), self.sign(-factor)
+                if below == 2 and e % 2:
+                    turn = -turn
+                elif known < 2 and below < 2:
+                    own, side = self._bent(factor if whole else self.power(factor, Fraction(e)))
+                    forms += own if e % 2 else own * 2
+                    turn *= side if e % 2 else 1
+            self._forms[d] = forms, turn
+        return self._forms[d]
+
+    def _bent(self, factor: Value) -> tuple[list[Value], int]:
+        """Return the values whose signs are that of a factor: tanh has that of its argument."""
+        (mono, c), *more = factor.terms.items()
+        gen = self.gens[mono[0][0]] if len(mono) == 1 and mono[0][1] == 1 else None
+        if not more and gen and gen.kind == "tanh" and gen.arg:
+            return self._forms_of(gen.arg * self.number(c))
+        lead = Fraction(factor.terms[max(factor.terms)])
+        return [factor * self.number(1 / lead)], 1 if lead > 0 else -1
 
     def lifted(self, function: Callable[[Value], Value], value: Value) -> Value:
         """Return a function of a value whose signs choose what it is: of each choice."""
@@ -441,6 +505,12 @@ class Field:
         if self.path is not None and self.sign(value) < enough and self.sign(-value) < 2:
             self.needs[Need(kind, value, self.path, self.derived)] = None
 
+    def _undefined(self, kind: str) -> Value:
+        """Return 1/0 or log(0): a name of which nothing is known, needed nowhere."""
+        if self.path is not None:
+            self.needs[Need(kind, self.zero, self.path, self.derived)] = None
+        return self.generator("name", None, (f"not {kind}", None, 0))
+
     # Functions
 
     def call(self, function: str, arg: Value) -> Value:
@@ -460,15 +530,18 @@ class Field:
         return made
 
     def _log(self, arg: Value) -> Value:
-        self._needs("positive", arg)
         if not arg.terms:
-            raise NotShownError("a logarithm of zero")
+            return self._undefined("positive")
+        self._needs("positive", arg)
         (mono, c), *more = arg.terms.items()
         if more or c <= 0 or any(self.sign_of(g) < 2 for g, _ in mono):
             return self.generator("log", arg)
         whole = Fraction(c)
-        parts = [self.generator("log", self.number(n)) * self.number(s)
-                 for n, s in ((whole.numerator, 1), (whole.denominator, -1)) if n != 1]
+        parts = [
+            self.generator("log", self.number(n)) * self.number(s)
+            for n, s in ((whole.numerator, 1), (whole.denominator, -1))
+            if n != 1
+        ]
         for g, e in mono:
             gen, factor = self.gens[g], Value(self, {((g, 1),): 1})
             log = gen.arg if gen.kind == "exp" and gen.arg else self.generator("log", factor)

@@ -192,7 +192,9 @@ class _Function:
     def _entry(self, place: ast.expr, value: ast.expr, *, added: bool) -> None:
         if not isinstance(place, ast.Tuple) or len(place.elts) != 2:
             refuse(place, "a place in a matrix")
-        diagonal = [isinstance(p, ast.Name | ast.BinOp) and _first_name(p) in self.lanes for p in place.elts]
+        diagonal = [
+            isinstance(p, ast.Name | ast.BinOp) and _first_name(p) in self.lanes for p in place.elts
+        ]
         if all(diagonal):
             row, col = (self._index_array(part) for part in place.elts)
             bank = self.slots[row].bank
@@ -228,8 +230,10 @@ class _Function:
         match node:
             case ast.Call(ast.Attribute(ast.Name("np"), "min"), [arg], keywords):
                 value, shape = self.read.numeric(arg)
-                axis = [ast.unparse(word) for word in keywords]
-                if (shape.kind, axis) in (("maybe", []), ("lanes", ["axis=0"])):
+                names = (part.id for part in ast.walk(arg) if isinstance(part, ast.Name))
+                own = all(name in self.values and self.values[name][1] == shape for name in names)
+                axis = [ast.unparse(word) for word in keywords] == ["axis=0"]
+                if axis and (shape.kind == "lanes" or (shape.kind == "maybe" and own)):
                     return value
         refuse(node, "a least value")
 
@@ -249,7 +253,11 @@ class _Function:
             if node.lower is None or node.upper is None or node.step is not None:
                 refuse(node, "a slice")
             ends = self._whole(node.lower), self._whole(node.upper)
-            found = [n for n, slot in enumerate(slots) if slot.bank and ends == (places[n], places[n + 1])]
+            found = [
+                n
+                for n, slot in enumerate(slots)
+                if slot.bank and ends == (places[n], places[n + 1])
+            ]
         else:
             place = self._whole(node)
             found = [n for n, slot in enumerate(slots) if not slot.bank and places[n] == place]
@@ -262,7 +270,9 @@ class _Function:
         shift = self.field.zero
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
             shift, node = self._whole(node.right), node.left
-        first, last = self.lanes[_first_name(node)] if isinstance(node, ast.Name) else refuse(node, "lanes")
+        first, last = (
+            self.lanes[_first_name(node)] if isinstance(node, ast.Name) else refuse(node, "lanes")
+        )
         for n, slot in enumerate(self.slots):
             ends = first + shift, last + shift
             if slot.bank and ends == (self.places[n], self.places[n + 1]):
@@ -281,9 +291,9 @@ class _Function:
                 return self._part(self.roles[x], place)
             case ast.Subscript(arg, place):
                 return self._turned(arg, ast.unparse(place), node)
-            case ast.Call(ast.Name("_lanes"), [ast.Attribute(ast.Name(p), name), count, axes], []) if (
-                self.roles.get(p) == "p"
-            ):
+            case ast.Call(
+                ast.Name("_lanes"), [ast.Attribute(ast.Name(p), name), count, axes], []
+            ) if self.roles.get(p) == "p":
                 bank = self.known.banks.get(name, "")
                 dimensions = f"{self.words['x']}.ndim" if "x" in self.words else "1"
                 right = name in self.known.names and ast.unparse(axes) == dimensions
@@ -310,13 +320,20 @@ class _Function:
     def _turned(self, arg: ast.expr, place: str, node: ast.expr) -> Read:
         """Return lanes as those of a matrix's rows or columns."""
         value, shape = self.read.numeric(arg)
-        kind = {"(slice(None, None, None), None)": "row", ":, None": "row", "(:, None)": "row", "None": "column"}.get(place)
+        kind = {
+            "(slice(None, None, None), None)": "row",
+            ":, None": "row",
+            "(:, None)": "row",
+            "None": "column",
+        }.get(place)
         if shape.kind != "lanes" or kind is None:
             refuse(node, "an index")
         value = moved(value, shape.bank, 1) if kind == "column" else value
         return value, Shape(kind, shape.bank)
 
-    def _array_call(self, name: str, args: list[ast.expr], words: list[str], node: ast.expr) -> Read:
+    def _array_call(
+        self, name: str, args: list[ast.expr], words: list[str], node: ast.expr
+    ) -> Read:
         x = self.words.get("x", "")
         if name == "where" and len(args) == 3 and not words:
             return self.read.choice(*args)
@@ -327,7 +344,8 @@ class _Function:
         if name == "ones" and len(args) == 1 and isinstance(args[0], ast.Tuple) and not words:
             count, *rest = args[0].elts
             if [ast.unparse(part) for part in rest] == [f"*(1,) * ({x}.ndim - 1)"]:
-                banks = {self.field.count(s.bank): s.bank for s in self.slots if s.bank}
+                slots = self.known.slots["rhs"]
+                banks = {self.field.count(s.bank): s.bank for s in slots if s.bank}
                 bank = banks.get(self._whole(count))
                 if bank:
                     return self.field.one, Shape("lanes", bank)

@@ -67,9 +67,7 @@ class Proved:
     def position(self, slots: Sequence[Slot], n: int) -> Value:
         """Return the place of slot n's first row, in sizes of banks."""
         field = self.field
-        return field.total(
-            field.count(slot.bank) if slot.bank else field.one for slot in slots[:n]
-        )
+        return field.total(field.count(slot.bank) if slot.bank else field.one for slot in slots[:n])
 
 
 def proved(iphs: IPHS) -> Proved:
@@ -192,7 +190,7 @@ class _Reader:
         system = self.iphs.system
         for slot, law, costate in zip(system.states, self.iphs.energies, system.E, strict=True):
             term = self(self.iphs.symbols.law(law, {}))
-            (state,) = self.names[slot.label].names
+            (state,) = self.names[slot.label].parts
             if not is_zero(derivative(term, state) - self(costate)):
                 raise NotShownError(f"dU/d{slot.label} is not shown to be the co-state")
             parts.append(self.field.lane_sum(term, slot.bank) if slot.bank else term)
@@ -202,7 +200,7 @@ class _Reader:
         slots = self.slots["rhs"]
         for r, rate in enumerate(rates):
             for c, slot in enumerate(slots):
-                (state,) = self.names[slot.label].names
+                (state,) = self.names[slot.label].parts
                 row, own = slots[r].bank, derivative(rate, state)
                 kind = SAME if row and row == slot.bank else ALL
                 yield ("jacobian", r, c, kind), own

@@ -10,6 +10,7 @@ import random
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import islice
 from typing import Any, final
 
 from mpmath.ctx_iv import MPIntervalContext
@@ -18,7 +19,9 @@ from piezo_sym.iphs import IPHS
 from piezo_sym.translation.field import Value
 from piezo_sym.translation.reference import Proved
 
-POINTS = 60
+POINTS = 30
+#: Terms that are worked out at all points together.
+MOST_TERMS = 3_000
 PRECISION = 160
 MOST_EXPONENT = 10_000
 #: A smaller part of the proved value could come from the rounding of printed numbers.
@@ -43,7 +46,8 @@ class _UndecidedError(Exception):
 def witness(printed: Value, wanted: Value, known: Proved, iphs: IPHS) -> Witness | None:
     """Return a point of the domain at which two values differ."""
     difference = printed - wanted
-    for point in _points(known, iphs):
+    size = len(difference.terms) + len(printed.terms) + len(wanted.terms)
+    for point in islice(_points(known, iphs), max(2, min(POINTS, MOST_TERMS // size))):
         try:
             if not all(_inside(margin, point, strict) for margin, strict in known.margins):
                 continue
@@ -92,6 +96,7 @@ class _Point:
         self.known, self.numbers, self.gens = known, numbers, known.field.gens
         self.interval: Any = MPIntervalContext()
         self.interval.prec = PRECISION
+        self.found: dict[tuple[object, ...], Any] = {}
         self.size = max(map(len, numbers.values()), default=2)
         self.size = max(self.size, 2)
 
@@ -103,9 +108,10 @@ class _Point:
         """Return an interval around a value; a row's lane is the first, a column's the second."""
         total = self.exact(Fraction(0))
         for mono, c in value.terms.items():
-            term = self.exact(Fraction(c))
+            term = self.exact(Fraction(c)) if c != 1 else self.interval.one
             for g, e in mono:
-                term = term * self._power(self._generator(g, lanes), Fraction(e))
+                own = self._generator(g, lanes)
+                term = term * (own if e == 1 else self._power(own, Fraction(e)))
             total = total + term
         return total
 
@@ -128,6 +134,14 @@ class _Point:
         return self.interval.exp(arg)
 
     def _generator(self, g: int, lanes: Mapping[str, int]) -> Any:
+        """Return an interval around a generator, kept for the lanes on which it depends."""
+        banks = {bank for bank, _ in self.gens[g].lanes}
+        key = g, *sorted((bank, n) for bank, n in lanes.items() if bank in banks)
+        if key not in self.found:
+            self.found[key] = self._made(g, lanes)
+        return self.found[key]
+
+    def _made(self, g: int, lanes: Mapping[str, int]) -> Any:
         gen = self.gens[g]
         if gen.arg is None:
             name, bank, lane = gen.mark  # type: ignore[misc]  # a name's mark

@@ -7,16 +7,20 @@ fraction is multiplied out.  A sum over lanes is zero if its terms are.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from itertools import combinations, product
+from itertools import product
 from math import ceil
 
 from piezo_sym.translation.change import put
 from piezo_sym.translation.field import Field, NotShownError, Value
+from piezo_sym.translation.possible import impossible
 
-MOST_CASES = 3**6
+MOST_CASES = 500
+MOST_STEPS = 12
 Sides = Mapping[Value, int]
+Case = tuple[Value, dict[Value, int]]
 
 
 def is_zero(value: Value, *, inside: bool = False) -> bool:
@@ -95,20 +99,54 @@ def _by_cases(value: Value, groups: Sequence[tuple[Value, ...]], *, inside: bool
     left = value
     for group in groups:
         here = _chosen_by(value, group)
-        first: Value | None = None
-        if group not in value.field.cases:
-            value.field.cases[group] = list(cases(group))
-        for sides in value.field.cases[group]:
-            if inside and 0 in sides.values():
-                continue
-            part = value.field.at(here, sides)
-            if first is None:
-                first, left = part, left - here + part
-            elif not is_zero(_at_edges(part - first, sides)):
-                return False
-        if first is None:
+        base = _common(list(_cases(here, {}, [MOST_CASES], inside=inside)))
+        if base is None:
             return False
+        left = left - here + base
     return is_zero(left)
+
+
+def _common(cases: list[Case]) -> Value | None:
+    """Return what a value is in every case that can be, or None if it is not the same in all."""
+    while cases:
+        (base, sides), *rest = cases
+        wrong = [case for case in rest if _differs(base, case)]
+        if all(impossible(case[1]) for case in wrong):
+            return base
+        if not impossible(sides):
+            return None
+        cases = rest
+    return None
+
+
+def _cases(
+    value: Value, sides: dict[Value, int], left: list[int], *, inside: bool
+) -> Iterator[Case]:
+    """Yield what a value is in each case that does not contradict itself, and the signs there."""
+    field = value.field
+    found = Counter(
+        gen.arg for mono in value.terms for g, _ in mono if (gen := field.gens[g]).kind == "sign"
+    )
+    if not found:
+        left[0] -= 1
+        if left[0] < 0:
+            raise NotShownError("too many branches meet in one row")
+        yield value, sides
+        return
+    d = max(found, key=lambda d: found[d])
+    assert d is not None
+    for side in (1, -1) if inside else (1, -1, 0):
+        if _possible(d, side) and not any(_never(d, side, e, s) for e, s in sides.items()):
+            here = {**sides, d: side}
+            yield from _cases(field.at(value, {d: side}), here, left, inside=inside)
+
+
+def _never(first: Value, s: int, second: Value, t: int) -> bool:
+    """Return whether two differences cannot have these signs; what was found is kept."""
+    field, key = first.field, (first, s, second, t)
+    if key not in field.never:
+        field.never[key] = _contradict(*key)
+    return field.never[key]
 
 
 def _chosen_by(value: Value, group: Sequence[Value]) -> Value:
@@ -120,23 +158,6 @@ def _chosen_by(value: Value, group: Sequence[Value]) -> Value:
         if any(gens[g].kind == "sign" and gens[g].arg in group for g, _ in mono)
     }
     return Value(value.field, terms)
-
-
-def cases(group: Sequence[Value]) -> Iterator[dict[Value, int]]:
-    """Yield the signs that differences may have together, those inside branches first."""
-    if 3 ** len(group) > MOST_CASES:
-        raise NotShownError("too many branches meet in one row")
-    never = {
-        (m, s, n, t)
-        for (m, first), (n, second) in combinations(enumerate(group), 2)
-        for s, t in product((1, 0, -1), repeat=2)
-        if _contradict(first, s, second, t)
-    }
-    for sides in product((1, -1, 0), repeat=len(group)):
-        pairs = combinations(enumerate(sides), 2)
-        known = all(_possible(d, side) for d, side in zip(group, sides, strict=True))
-        if known and not any((m, s, n, t) in never for (m, s), (n, t) in pairs):
-            yield dict(zip(group, sides, strict=True))
 
 
 def _possible(d: Value, side: int) -> bool:
@@ -170,32 +191,65 @@ def _scales(first: Value, second: Value) -> Iterator[Value]:
             yield scale
 
 
-def _at_edges(value: Value, sides: Sides) -> Value:
-    """Return a value where the differences of sign 0 are zero, one of their names put in."""
-    edges = [d for d, side in sides.items() if side == 0]
+def _differs(base: Value, case: Case) -> bool:
+    """Return whether a case that can be has not been shown to have the value `base`."""
+    value, edges = case[0] - base, {d: side for d, side in case[1].items() if side == 0}
+    others = {d: side for d, side in case[1].items() if side}
     while edges:
-        d = edges.pop(0)
+        d, _ = edges.popitem()
         new = _solved(d)
-        value = put(value, new)
-        edges = [put(other, new) for other in edges]
+        value = put(value, new) if new else _remainder(value, d)
+        edges = {put(other, new): 0 for other in edges}
+        others = {put(other, new): side for other, side in others.items()}
+        if not all(_possible(other, side) for other, side in (*edges.items(), *others.items())):
+            return False
+    return not is_zero(value)
+
+
+def _remainder(value: Value, d: Value) -> Value:
+    """Return a value where d = 0, powers put in of a generator that d has a power of."""
+    field, value = d.field, cleared(value)
+    for g in sorted(d.generators()):
+        powers = {mono: dict(mono).get(g, 0) for mono in d.terms}
+        top = max(powers.values())
+        head = Value(field, {mono: c for mono, c in d.terms.items() if powers[mono] == top})
+        factor = head * Value(field, {((g, -top),): 1})
+        if min(powers.values()) < 0 or max(field.sign(factor), field.sign(-factor)) < 2:
+            continue
+        lift = max([0, *(-e for mono in value.terms for n, e in mono if n == g)])
+        value, below = value * Value(field, {((g, lift),): 1}), _inverse(head)
+        for _ in range(MOST_STEPS):
+            high = {m: c for m, c in value.terms.items() if dict(m).get(g, 0) >= top}
+            if not high:
+                return value
+            value = value - Value(field, high) * below * d
     return value
 
 
 def _solved(d: Value) -> dict[int, Value]:
-    """Return what a name is where d = 0, if d is linear in one by a factor that is not zero."""
+    """Return what a generator is where d = 0, if d is linear in it by a factor that is not zero."""
     field = d.field
-    for g in sorted(d.generators(), key=lambda g: not field.gens[g].lanes):
+    for g in sorted(
+        d.generators(), key=lambda g: (field.gens[g].kind != "name", not field.gens[g].lanes)
+    ):
         gen = field.gens[g]
-        if gen.kind != "name" or (d.lanes and not gen.lanes):
-            continue
         own = {mono: c for mono, c in d.terms.items() if g in dict(mono)}
-        (mono, c), *more = own.items()
-        factor = Value(field, {tuple(p for p in mono if p[0] != g): c})
+        powers = {dict(mono)[g] for mono in own}
+        if len(powers) > 1 or gen.kind == "sum" or (d.lanes and not gen.lanes):
+            continue
         rest = d - Value(field, own)
-        linear = not more and dict(mono)[g] == 1 and g not in factor.names | rest.names
-        if linear and max(field.sign(factor), field.sign(-factor)) == 2:
-            path, field.path = field.path, None
-            found = -(rest * field.power(factor, Fraction(-1)))
-            field.path = path
-            return {g: found}
+        factor = Value(field, {tuple(p for p in m if p[0] != g): c for m, c in own.items()})
+        if g in factor.parts | rest.parts or (powers != {1} and (rest.terms or min(powers) < 0)):
+            continue
+        if max(field.sign(factor), field.sign(-factor)) < 2:
+            continue
+        found = -(rest * _inverse(factor))
+        return {g: found}
     return {}
+
+
+def _inverse(value: Value) -> Value:
+    path, value.field.path = value.field.path, None
+    found = value.field.power(value, Fraction(-1))
+    value.field.path = path
+    return found

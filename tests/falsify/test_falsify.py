@@ -47,10 +47,10 @@ ONCE_PROVED = {
     "a root in the domain": (damper("a*v"), ("a_1 > 0", f"{SIDE.format(1)} >= 0"), {"a": -1.0}),
     "the other branch": (damper(ELSE), ("F_1 > 0", "v_1 > 0"), {"a": -1.0}),
     "two names alike": (HYSTERONS, ("phi_h**2 < L*L*i_1*i_1", "i_1 > 0", "R > 0"), {}),
-    "a width below zero": (
+    "a width in the domain": (
         damper("(a - b)*v"),
-        ("saturate(a, b) < 0", "b < 0"),
-        {"a": -5.0, "b": -1.0},
+        ("saturate(a, b) < 0",),
+        {"a": -5.0, "b": 1.0},
     ),
 }
 POSITIVE = ("a > 0", "b > 0", "a_1 > 0", "v_1 > 0", "F_1 > 0")
@@ -65,12 +65,17 @@ WEDGES = {
     "two parameters alike": "a*v*(1 if abs(b - a_1) > 0 else -1)",
     "on a kink alone": "a*v*(1 if abs(v - v_1) > 0 else -1)",
     "at two thresholds": "a*v*(-1 if abs(v - v_1) + abs(v_1*(b - a_1)/a_1) < 1e-6*v_1 else 1)",
+    "a narrow wedge": "F_1*v/v_1*((v/v_1 - 0.37)**2 - 1e-18)",
+    "a speck in two": "F_1*v/v_1*((v/v_1 - 0.37)**2 + (b/a_1 - 2.2)**2 - 1e-8)",
+    "a speck in three": (
+        "F_1*v/v_1*((v/v_1 - 0.37)**2 + (b/a_1 - 2.2)**2 + (T/T_0 - 1.3)**2 - 1e-6)"
+    ),
     "far out": "a*v*(1 if abs(v) < 1e100*v_1 else -1)",
 }
 
 
-def attacked(iphs, *claims, **more):
-    return falsify(iphs, module_of(iphs), claims, **more)
+def attacked(iphs, *claims, points=20_000, **more):
+    return falsify(iphs, module_of(iphs), claims, points=points, **more)
 
 
 def of_names(law, *assume):
@@ -96,13 +101,13 @@ def test_what_was_wrongly_proved_is_caught(tmp_path, name, row):
 def test_a_law_that_is_active_on_a_small_set_is_caught(tmp_path, name):
     law = WEDGES[name]
     with pytest.raises(ContradictionError, match=r"heat = -"):
-        attacked(built(tmp_path, damper(law), *of_names(law)), PASSIVE)
+        attacked(built(tmp_path, damper(law), *of_names(law)), PASSIVE, points=100_000)
 
 
 @pytest.mark.parametrize(
     "law",
     [
-        "F_1*(exp(v/v_1) - 1 - v/v_1)*v/v_1",
+        "F_1*v/v_1*(exp(v/v_1)*exp(-v/v_1) - 1 + 1e-17)",
         "a*v*((v/v_1 + 1)**2 - (v/v_1)**2 - 2*v/v_1)",
         "F_1*(v/v_1)**3*((v/v_1 - 1)**2 + 2*v/v_1 - 1)",
     ],
@@ -110,7 +115,7 @@ def test_a_law_that_is_active_on_a_small_set_is_caught(tmp_path, name):
 def test_a_true_law_that_rounds_below_zero_is_no_contradiction(tmp_path, law):
     (attack,) = attacked(built(tmp_path, damper(law), *of_names(law)), PASSIVE)
     assert attack.rounding
-    assert attack.points >= 100_000
+    assert attack.points >= 20_000
     assert float(attack.worst["p"]) != 0
 
 
@@ -173,7 +178,7 @@ def test_a_jump_is_caught(tmp_path, law):
 )
 def test_a_steep_law_and_a_choice_of_parameters_are_no_jumps(tmp_path, law):
     (attack,) = attacked(built(tmp_path, damper(law), *of_names(law)), ("continuous", "damper"))
-    assert attack.points >= 100_000
+    assert attack.points >= 20_000
 
 
 @pytest.mark.parametrize(
@@ -214,7 +219,7 @@ def stack():
 
 
 @pytest.fixture(scope="module")
-def rows(stack):
+def rows():
     bodies = [(row, "body") for row in ("temperature", "invariant")]
     laws = [(p, e) for p in ("passive", "welldef", "continuous") for e in ("hysteron", "damper")]
     return (
@@ -245,7 +250,7 @@ def test_a_thin_domain_is_walked(tmp_path):
     thin = ("a <= b", "b <= a", "v_1 > 0", "T < 1.0001*T_0", "T > 0.9999*T_0")
     iphs = built(tmp_path, damper("a*v"), *thin, "a >= 0", a=3.0)
     (attack,) = attacked(iphs, PASSIVE)
-    assert attack.points >= 50_000
+    assert attack.points >= 20_000
     with pytest.raises(ContradictionError):
         attacked(built(tmp_path, damper(law), *thin, "a >= 0", a=3.0), PASSIVE)
 
@@ -286,4 +291,18 @@ def test_the_module_is_attacked_not_the_spec(stack):
 def test_a_mass_alone_has_nothing_to_jump(tmp_path):
     iphs = built(tmp_path, MASS + damper("a*v").removeprefix(MASS), "a > 0")
     (attack,) = attacked(iphs, ("continuous", "mass"))
-    assert attack.points >= 100_000
+    assert attack.points >= 20_000
+
+
+def test_a_module_takes_parameters_of_a_bank_per_lane_and_point(stack):
+    module, rng = module_of(stack), np.random.default_rng(3)
+    x, u = rng.random((6, 5)) + 1, rng.random((3, 5)) + 300
+    lanes = {name: rng.random((2, 5)) + 1 for name in ("L", "rho", "i_0")}
+    together = module.Parameters(**lanes, T_0=rng.random(5) + 200)
+    for function in ("rhs", "heat", "entropy_production", "margins", "jacobian"):
+        found = getattr(module, function)(x, u, together)
+        for n in range(5):
+            own = {name: tuple(values[:, n]) for name, values in lanes.items()}
+            alone = module.Parameters(**own, T_0=together.T_0[n])
+            expected = getattr(module, function)(x[:, n], u[:, n], alone)
+            np.testing.assert_allclose(found[..., n], expected, rtol=1e-13)

@@ -97,3 +97,24 @@ def test_many_kinks_in_the_domain_leave_rows_open_instead_of_raising():
     kinks = ", ".join(f'"abs(abs(abs(v_s - {n}*w)) - w) + abs(w) >= 0*w"' for n in range(1, 9))
     found = rows("d*v", ASSUMED + kinks + ", ")
     assert found["passive", "damper"].verdict in {Verdict.PROVED, Verdict.OPEN}
+
+
+HUGE = (
+    "d*w*exp(exp(exp(exp(exp(v/w)))))",
+    "-d*v*exp(exp(1e9*v/w))",
+    "d*v*sin(exp(exp(1e3*v/w)))",
+)
+
+
+@pytest.mark.parametrize("law", HUGE)
+def test_towers_of_exponentials_end(law):
+    assert rows(law)["passive", "damper"].verdict is not Verdict.PROVED
+
+
+def test_what_parameters_choose_is_proved_branch_by_branch():
+    """The first branch alone has the sign that the second would need."""
+    text = "F_c*v/v_s*(exp(v/v_s) - 2.7*v/v_s) if n > 0 else F_c*v/v_s*{}"
+    false = rows(text.format("(exp(v/v_s - 0.37) - 2.72*(v/v_s - 0.37))"))
+    assert false["passive", "damper"].verdict is Verdict.REFUTED
+    true = rows(text.format("(exp(v/v_s - 0.37) - 2.7*(v/v_s - 0.37))"))
+    assert true["passive", "damper"].verdict is Verdict.PROVED

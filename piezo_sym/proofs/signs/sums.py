@@ -6,6 +6,7 @@ and these in groups: ``F_1*exp(v/v_1) - F_1`` is one group, ``-F_2*exp(-v/v_2) +
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from fractions import Fraction
 from functools import reduce as fold
@@ -46,14 +47,14 @@ def balanced(groups: Sequence[Expr], letter: str, positive: Positive) -> list[Ex
 
     ``F*exp(v/v_1)`` and ``-F*exp(-v/v_2)`` are F and -F there, which cancel.
     """
-    total: dict[frozenset[Expr], Fraction] = {}
+    total: dict[frozenset[tuple[Expr, int]], Fraction] = {}
     made: list[Expr] = []
     for group in groups:
         reduction = next(iter(reductions(group, letter, positive)), None)
         at_zero = None if reduction is None else rational_at(reduction.f, Fraction(0))
         if reduction is None or at_zero is None:
             return None
-        front = frozenset(reduction.prefactors)
+        front = frozenset(Counter(reduction.prefactors).items())
         total[front] = total.get(front, Fraction(0)) + at_zero
         constant: Expr = Num(-at_zero)
         constant = fold(Mul, reduction.prefactors, constant)
