@@ -144,7 +144,8 @@ class _Point:
     def _made(self, g: int, lanes: Mapping[str, int]) -> Any:
         gen = self.gens[g]
         if gen.arg is None:
-            name, bank, lane = gen.mark  # type: ignore[misc]  # a name's mark
+            assert isinstance(gen.mark, tuple)
+            name, bank, lane = gen.mark
             if lane == -1:
                 return self.exact(Fraction(self.size))
             if name not in self.numbers:
