@@ -61,6 +61,7 @@ def different(language: str, text: str, iphs: IPHS, known: Proved) -> tuple[Row,
         if len(text) > MOST_TEXT:
             raise NotShownError("the text is too long")
         known.field.needs.clear()
+        known.field.path = known.field.one  # whatever a refusal before has left
         if language == "C":
             rows = read_c(text, iphs.model.name, known)
         else:
