@@ -24,13 +24,13 @@ from typing import final
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.translation.c_scope import CALLS, Helper, Listed, Scope, Variable
 from piezo_sym.translation.c_text import Tokens
-from piezo_sym.translation.expressions import PLAIN, WHOLE, refuse
+from piezo_sym.translation.expressions import PLAIN, WHOLE, refused
 from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.reference import LEAST, Key, Proved
 from piezo_sym.translation.rows import Rows
 
 SIGNATURES = dict.fromkeys(
-    "rhs jacobian margins outputs supply heat entropy_production".split(), "x u p out"
+    ["rhs", "jacobian", "margins", "outputs", "supply", "heat", "entropy_production"], "x u p out"
 ) | {"initial_state": "u p out", "temperatures": "x p out", "energy": "x p", "entropy": "x p"}
 SIGNATURES |= {"states": "p", "processes": "p"}
 _HELPERS = r"pick|sign|min|max|saturate|deadzone|power_[2-8]"
@@ -87,10 +87,13 @@ class _Function:
     ) -> None:
         self.tokens, self.known, self.field = tokens, known, known.field
         kind = tokens.one_of("void", "double", "long")
-        self.name = tokens.word().removeprefix(f"{model}_")
+        word = tokens.word()
+        self.name = word.removeprefix(f"{model}_") if word != word.removeprefix(f"{model}_") else ""
         words = SIGNATURES.get(self.name, "").split()
         roles = {self._argument(word, model, n): word for n, word in enumerate(words)}
         tokens.take(")")
+        if not words:
+            raise NotShownError(f"a function {word}")
         wanted = "void" if "out" in words else "long" if words == ["p"] else "double"
         if kind != wanted or len(roles) != len(words):
             raise NotShownError(f"the types of a function {self.name}")
@@ -144,14 +147,14 @@ class _Function:
     def _return(self, node: ast.expr) -> None:
         self.tokens.take(";")
         if self.tokens.peek() != "}" or self.returned or self.scope.lanes:
-            refuse(node, "a return")
+            raise refused(node, "a return")
         self.returned = True
         if self.written.slots == (Slot(""),):
             self.keep((self.name, 0), self.read.numeric(node)[0])
             return
         slots = self.known.slots[{"states": "rhs", "processes": "heat"}[self.name]]
         if self.read.whole(node) != self.known.places(slots)[-1]:
-            refuse(node, "another number of rows")
+            raise refused(node, "another number of rows")
 
     # Declarations
 
@@ -201,13 +204,14 @@ class _Function:
         node = tokens.expression()
         tokens.take(";", "++", name, ")")
         size, square = self.read.whole(node), self.written.places[-1] * self.written.places[-1]
-        if self.name == "jacobian" and size == square and not self.written.found:
+        inside = self.written.found or self.scope.lanes
+        if self.name == "jacobian" and size == square and not inside:
             tokens.take("{", self.out, "[", name, "]", "=", "0.0", ";", "}")
             self.written.zeros = True
             return
         banks = {self.field.count(bank): bank for bank in self.known.counts.values()}
         if size not in banks or len(self.scope.lanes) > 1:
-            refuse(node, "a loop over no bank")
+            raise refused(node, "a loop over no bank")
         self._lanes(name, banks[size], pragma)
 
     def _lanes(self, name: str, bank: str, pragma: frozenset[str] | None) -> None:
@@ -246,7 +250,7 @@ class _Function:
         elif added and len(self.scope.lanes) == 1 and found.loop == 0 and found.value is not None:
             value = self.read.numeric(node)[0]
             if loop in found.read:
-                refuse(node, "a sum that is read in its loop")
+                raise refused(node, "a sum that is read in its loop")
             found.value = found.value + self.field.lane_sum(value, self.scope.lanes[0][1])
             found.added.add(loop)
             self.summed.add(name)
@@ -254,13 +258,13 @@ class _Function:
             raise NotShownError(f"{name} is changed where it should not be")
 
     def _write(self, place: ast.expr, node: ast.expr, *, added: bool) -> None:
-        at, banks = self.read.whole(place), [bank for _, bank in self.scope.lanes]
+        at, banks = self.read.whole(place), tuple(bank for _, bank in self.scope.lanes)
         if self.name == "margins" and self._is_least(place, at, node):
             return
-        key = next((key for key, other in self.written.lane_places(banks) if other == at), None)
+        key = self.written.key_at(at, banks)
         listed = self._listed(node)
         if key is None or (listed and added):
-            refuse(place, "a place of another row")
+            raise refused(place, "a place of another row")
         for lane, value in enumerate(listed):
             self.keep((*key, lane), value)
         if not listed:
@@ -274,12 +278,15 @@ class _Function:
                 self.least.add(n)
                 return True
             case ast.Call(ast.Name("min"), [first, value]) if n in self.least and self.scope.lanes:
-                if ast.unparse(first) == f"{self.out}[{ast.unparse(place)}]" and self.scope.lesser():
+                if (
+                    ast.unparse(first) == f"{self.out}[{ast.unparse(place)}]"
+                    and self.scope.lesser()
+                ):
                     self.keep((self.name, n, LEAST), self.read.numeric(value)[0])
                     self.summed.add("the least")
                     return True
         if self.scope.lanes or n in self.least:
-            refuse(node, "a margin")
+            raise refused(node, "a margin")
         return False
 
     def _listed(self, node: ast.expr) -> tuple[Value, ...]:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import final
 
 from piezo_sym.translation.change import moved
-from piezo_sym.translation.expressions import PLAIN, TEST, Expressions, Read, refuse
+from piezo_sym.translation.expressions import PLAIN, TEST, Expressions, Read, refused
 from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.reference import Proved
 from piezo_sym.translation.rows import slot_at
@@ -50,7 +50,7 @@ class Argument:
 @final
 @dataclass
 class Variable:
-    """A variable: its value so far, the loop it is declared in, the loops that read or add to it."""
+    """A variable: its value so far, the loop of its declaration, those that read or add to it."""
 
     value: Value | None
     loop: int
@@ -115,13 +115,14 @@ class Scope:
                     return Lanes(self.known.names[name], self.known.banks[name])
             case ast.BinOp(left, ast.Add(), right):
                 while isinstance(left, ast.BinOp) and isinstance(left.op, ast.Add):
-                    left, right = left.left, ast.BinOp(left.right, ast.Add(), right)
+                    right = ast.BinOp(left.right, ast.Add(), right)
+                    left = left.left
                 if isinstance(left, ast.Name) and self.roles.get(left.id) == "x":
                     slots = self.known.slots["rhs"]
                     place = self.read.whole(right)
                     slot = slots[slot_at(slots, self.known.places(slots), place, True)]
                     return Lanes(self.known.names[slot.label], slot.bank or "")
-        refuse(node, "a pointer")
+        raise refused(node, "a pointer")
 
     def _leaf(self, node: ast.expr) -> Read:
         match node:
@@ -138,7 +139,7 @@ class Scope:
                     return moved(found.value, found.bank, 1) if lane else found.value, PLAIN
             case ast.Call(ast.Name(function), args, []) if function in self.helpers:
                 return self._inlined(self.helpers[function], args, node), PLAIN
-        refuse(node, "an expression")
+        raise refused(node, "an expression")
 
     def _named(self, found: Meaning, node: ast.expr) -> Read:
         if isinstance(found, Argument):
@@ -147,22 +148,22 @@ class Scope:
                 found.known[path] = self._within(found.names, found.helpers, found.node)
             value, shape = found.known[path]
             if (shape == TEST) != (found.kind == "int"):
-                refuse(found.node, "an argument of another type")
+                raise refused(found.node, "an argument of another type")
             return value, shape if shape == TEST else PLAIN
         if isinstance(found, Variable):
             outside = self.open[self.open.index(found.loop) + 1 :]
             found.read.update(outside)
             if found.value is None or found.added & {*outside}:
-                refuse(node, "a sum that is read before its loop ends")
+                raise refused(node, "a sum that is read before its loop ends")
             return found.value, PLAIN
         if isinstance(found, tuple):
             return found
-        refuse(node, "an array as a number")
+        raise refused(node, "an array as a number")
 
     def _inlined(self, helper: Helper, args: list[ast.expr], node: ast.expr) -> Value:
         """Return what a helper gives for some arguments."""
         if len(args) != len(helper.names):
-            refuse(node, "a call with other arguments")
+            raise refused(node, "a call with other arguments")
         inner = {
             name: Argument(arg, kind, self.names, self.helpers)
             for (name, kind), arg in zip(helper.names, args, strict=True)

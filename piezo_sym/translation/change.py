@@ -100,7 +100,9 @@ def _chain(value: Value, state: int, own: Value, of_sum: Inner) -> Value:
     for mono, c in value.terms.items():
         for n, (g, e) in enumerate(mono):
             if gens[g].terms:
-                rest = (*mono[:n], (g, e - 1), *mono[n + 1 :]) if e != 1 else mono[:n] + mono[n + 1 :]
+                rest = (
+                    (*mono[:n], (g, e - 1), *mono[n + 1 :]) if e != 1 else mono[:n] + mono[n + 1 :]
+                )
                 parts.append(Value(field, {rest: c * e}) * gens[g])
     return field.total(parts)
 

@@ -17,13 +17,14 @@ import ast
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import NoReturn, final
+from typing import final
 
 from piezo_sym.translation.field import Field, NotShownError, Value
 from piezo_sym.translation.functions import call, power, size_of
 from piezo_sym.translation.signs import choose, compare, side_of
 
-MOST_MAGNITUDE = 400
+MOST_MAGNITUDE = 300
+MOST_WHOLE = 2**31 - 1
 _ARGUMENTS = {"pow": 2, "copysign": 2, "minimum": 2, "maximum": 2, "clip": 3}
 _OPERATORS = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
 
@@ -85,8 +86,8 @@ class Expressions:
             If it is outside the grammar.
         """
         match node:
-            case ast.Constant(value):
-                return self._number(value)
+            case ast.Constant(number):
+                return self._number(number)
             case ast.UnaryOp(ast.USub(), arg):
                 value, shape = self.numeric(arg)
                 return -value, shape
@@ -110,21 +111,21 @@ class Expressions:
         """Return an expression that is no condition."""
         value, shape = self(node)
         if shape == TEST:
-            refuse(node, "a condition as a number")
+            raise refused(node, "a condition as a number")
         return value, shape
 
     def whole(self, node: ast.expr) -> Value:
         """Return an integer: an index or a size."""
         value, shape = self(node)
         if shape != WHOLE:
-            refuse(node, "no integer")
+            raise refused(node, "no integer")
         return value
 
     def test(self, node: ast.expr) -> Value:
         """Return a condition: 1 where it holds."""
         value, shape = self(node)
         if shape != TEST:
-            refuse(node, "a number as a condition")
+            raise refused(node, "a number as a condition")
         return value
 
     def choice(self, condition: ast.expr, then: ast.expr, other: ast.expr) -> Read:
@@ -136,7 +137,9 @@ class Expressions:
             parts.append(self.numeric(node))
         field.path = path
         (first, shape), (second, shape_of_other) = parts
-        shape = joined(joined(shape, shape_of_other, condition), self.shape_of(condition), condition)
+        shape = joined(
+            joined(shape, shape_of_other, condition), self.shape_of(condition), condition
+        )
         return choose(test, first, second), shape
 
     def shape_of(self, condition: ast.expr) -> Shape:
@@ -163,13 +166,16 @@ class Expressions:
             case ast.Sub():
                 return left[0] - right[0], shape
             case ast.Mult():
-                return left[0] * right[0], shape
+                made = left[0] * right[0]
+                if shape == WHOLE and abs(made.constant or Fraction(0)) > MOST_WHOLE:
+                    raise refused(node, "an integer that is too large")
+                return made, shape
             case ast.Div() if shape != WHOLE or not self.whole_division:
                 shape = PLAIN if shape == WHOLE else shape
                 return left[0] * power(right[0], Fraction(-1)), shape
             case ast.Pow() if right[0].constant is not None and not self.whole_division:
                 return power(left[0], right[0].constant), left[1]
-        refuse(node, "an operator")
+        raise refused(node, "an operator")
 
     def _call(self, function: str, nodes: list[ast.expr], node: ast.expr) -> Read:
         if function == "choice" and len(nodes) == 3:
@@ -180,7 +186,7 @@ class Expressions:
             shape = joined(shape, own, node)
         args = [value for value, _ in read]
         if len(args) != _ARGUMENTS.get(function, 1):
-            refuse(node, "a call")
+            raise refused(node, "a call")
         return self.apply(function, args), joined(shape, PLAIN, node)
 
     def apply(self, function: str, args: list[Value]) -> Value:
@@ -213,9 +219,9 @@ class Expressions:
         return call(function, z)
 
 
-def refuse(node: ast.AST, what: str) -> NoReturn:
-    """Refuse a piece of text."""
-    raise NotShownError(f"{what} outside the grammar: {ast.unparse(node)[:60]}")
+def refused(node: ast.AST, what: str) -> NotShownError:
+    """Return that a piece of text is refused, to be raised."""
+    return NotShownError(f"{what} outside the grammar: {ast.unparse(node)[:60]}")
 
 
 def joined(left: Shape, right: Shape, node: ast.AST) -> Shape:
@@ -229,4 +235,4 @@ def joined(left: Shape, right: Shape, node: ast.AST) -> Shape:
         return kinds["lanes"]
     if kinds.keys() == {"row", "column"}:
         return Shape("pair", kinds["row"].bank, kinds["column"].bank)
-    refuse(node, "lanes of two banks")
+    raise refused(node, "lanes of two banks")

@@ -3,8 +3,8 @@
 Input: values of one `Field`.  Output: values in which equal expressions look equal.  Generators are
 names (of one lane of a bank, where they have one), functions of values (``exp``, ``log``, ``sin``,
 ``cos``, ``tanh``), powers of sums that are no whole positive ones, sums over the lanes of a bank,
-and signs: ``sign(d, s)`` is 1 where d has the sign s, else 0.  Of the signs of one value exactly one
-is 1, and each is its own square.
+and signs: ``sign(d, s)`` is 1 where d has the sign s, else 0.  Of the signs of one value
+exactly one is 1, and each is its own square.
 """
 
 from __future__ import annotations
@@ -136,6 +136,7 @@ class Field:
     path : a product of signs, 1 where what is computed at the moment is chosen.
     derived : whether it is a derivative.
     needs : what divisions, roots and logarithms needed, where `path` is not None.
+    states : the names by which derivatives are taken.
     signed : generators that are positive (2) or not negative (1).
     assumed : other values of which the domain says so.
     signs, forms, factors, never, asked : what was found of signs and factors, see `signs`, `zero`.
@@ -150,6 +151,7 @@ class Field:
         self.path: Value | None = self.one
         self.derived = False
         self.needs: dict[Need, None] = {}
+        self.states: frozenset[int] = frozenset()
         self.signed: dict[int, int] = {}
         self.assumed: dict[Value, int] = {self.zero: 1}
         self.signs: dict[Value, int] = {}
@@ -265,7 +267,7 @@ class Field:
             left = []
             for g, e in mono:
                 gen = self.gens[g]
-                if gen.kind != "sign" or gen.arg not in sides:
+                if gen.kind != "sign" or gen.arg is None or gen.arg not in sides:
                     left.append((g, e))
                 elif sides[gen.arg] != gen.mark:
                     break

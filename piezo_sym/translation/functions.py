@@ -1,7 +1,8 @@
 """Powers, exponentials, logarithms, sine, cosine and tanh in normal form.
 
 Input: values.  Output: values.  What a function needs of its argument is noted in `Field.needs`.
-Identities used, and their premises: exp(a + b) = exp(a) exp(b), exp(c log x) = x**c, log(exp z) = z;
+Identities used, and their premises:
+exp(a + b) = exp(a) exp(b); exp(c log x) = x**c; log(exp z) = z;
 log(a b) = log a + log b and (a b)**c = a**c b**c for a, b > 0; (x**(1/n))**n = x for x >= 0;
 (x**2)**(1/2) = abs(x); sin and tanh are odd, cos is even.
 """
@@ -59,7 +60,7 @@ def _generated(arg: Value, q: Exponent) -> Value:
 def _root(field: Field, size: Fraction, q: Exponent) -> Value:
     """Return a power of a number, positive if the exponent is a fraction."""
     if q.denominator == 1:
-        return field.number(size ** q.numerator)
+        return field.number(size**q.numerator)
     if max(size.numerator, size.denominator) > MOST_FACTOR:
         raise NotShownError("a root of a long number")
     made = field.one
@@ -140,4 +141,6 @@ def _even_or_odd(function: str, arg: Value) -> Value:
 
 def size_of(value: Value) -> Value:
     """Return the absolute value."""
+    if max(sign(value), sign(-value)) > 0:
+        return value if sign(value) else -value
     return value * side_of(value)

@@ -14,7 +14,7 @@ from typing import final
 
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.translation.change import moved
-from piezo_sym.translation.expressions import PLAIN, Expressions, Read, Shape, refuse
+from piezo_sym.translation.expressions import PLAIN, Expressions, Read, Shape, refused
 from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.reference import ALL, LEAST, SAME, Key, Proved
 from piezo_sym.translation.rows import Rows, slot_at
@@ -32,6 +32,7 @@ ARGUMENTS = {
     "entropy": "x p",
     "temperatures": "x p",
 }
+KEPT = ("np", "_states", "_inputs", "_lanes")
 CALLS = {f"np.{name}": name for name in ("exp", "expm1", "log", "sqrt", "sin", "cos", "tanh")}
 CALLS |= {"np.abs": "abs", "np.sign": "sign", "np.minimum": "minimum", "np.maximum": "maximum"}
 CALLS |= {"np.clip": "clip"}
@@ -62,9 +63,21 @@ class _Function:
         self.name = node.name.replace("_rates", "rhs")
         given = node.args
         arguments = [arg.arg for arg in given.posonlyargs]
-        others = (given.args, given.kwonlyargs, given.defaults, given.vararg, given.kwarg)
+        others: list[object] = [
+            given.args,
+            given.kwonlyargs,
+            given.defaults,
+            given.vararg,
+            given.kwarg,
+        ]
+        others += [
+            given.vararg,
+            given.kwarg,
+            node.returns,
+            *(arg.annotation for arg in given.posonlyargs),
+        ]
         if len(arguments) != len(words) or any(others) or node.decorator_list:
-            refuse(node, "the arguments of a function")
+            raise refused(node, "the arguments of a function")
         self.words = dict(zip(words, arguments, strict=True))
         self.x = self.words.get("x", "")
         self.unchecked = {"x", "u"} & {*words} if node.name != "_rates" else set()
@@ -82,13 +95,13 @@ class _Function:
         for statement in body:
             self._statement(statement)
         if not (isinstance(doc, ast.Expr) and isinstance(doc.value, ast.Constant)):
-            refuse(doc, "a function without docstring")
+            raise refused(doc, "a function without docstring")
         if "x" in self.unchecked:
-            refuse(doc, "a function that takes states of any shape")
+            raise refused(doc, "a function that takes states of any shape")
         if isinstance(last, ast.Return) and last.value:
             self._return(last.value)
         elif last:
-            refuse(last, "a last statement")
+            raise refused(last, "a last statement")
         if self.name == "initial_state":  # made of zeros
             found = self.written.found
             left = {*range(len(self.written.slots))} - {key[1] for key in found}
@@ -98,7 +111,7 @@ class _Function:
     def _return(self, value: ast.expr) -> None:
         if self.written.slots != (Slot(""),):
             if not isinstance(value, ast.Name) or self.roles.get(value.id) != "out":
-                refuse(value, "what is returned")
+                raise refused(value, "what is returned")
             return
         match value:
             case ast.Call(ast.Attribute(name, "copy"), [], []):
@@ -118,7 +131,7 @@ class _Function:
             ):
                 self._write(place, value, added=True)
             case _:
-                refuse(node, "a statement")
+                raise refused(node, "a statement")
 
     def _is_out(self, name: str) -> bool:
         return self.roles.get(name) == "out"
@@ -127,13 +140,21 @@ class _Function:
         p, u = self.words["p"], self.words.get("u", "")
         checks = {(self.x, f"_states({self.x}, {p})"): "x", (u, f"_inputs({u})"): "u"}
         role = checks.get((name, ast.unparse(value)))
-        kept = {"np", "_states", "_inputs", "_lanes", *self.words.values(), *self.values, *self.roles}
+        kept = {
+            "np",
+            "_states",
+            "_inputs",
+            "_lanes",
+            *self.words.values(),
+            *self.values,
+            *self.roles,
+        }
         if role in self.unchecked:
             self.unchecked.remove(str(role))
             self.roles[name] = str(role)
         elif isinstance(value, ast.Call) and ast.unparse(value.func) == "np.arange":
             if name in kept or len(value.args) != 2 or value.keywords:
-                refuse(value, "an index array")
+                raise refused(value, "an index array")
             first, last = value.args
             self.lanes[name] = self.read.whole(first), self.read.whole(last)
         elif name in kept or name in self.lanes:
@@ -158,7 +179,7 @@ class _Function:
                 right = self.read.whole(shape) == self.written.places[-1]
                 right = right and zeros and self.name == "initial_state"
         if not right or len(value.args) != 1 or value.keywords or "out" in self.roles.values():
-            refuse(value, "an array")
+            raise refused(value, "an array")
         self.written.zeros = zeros
 
     # Rows
@@ -179,13 +200,13 @@ class _Function:
 
     def _entry(self, place: ast.expr, value: ast.expr, *, added: bool) -> None:
         if not isinstance(place, ast.Tuple) or len(place.elts) != 2:
-            refuse(place, "a place in a matrix")
+            raise refused(place, "a place in a matrix")
         slots, shapes = self.written.slots, list[Shape]()
         equal = [_first(part) in self.lanes for part in place.elts]
         if all(equal):
             (row, rows), (col, cols) = map(self._index_array, place.elts)
             if rows != cols:
-                refuse(place, "equal lanes of two banks")
+                raise refused(place, "equal lanes of two banks")
         else:
             (row, rows), (col, cols) = (self._row(part, slots) for part in place.elts)
         if rows and cols and not all(equal):
@@ -199,7 +220,7 @@ class _Function:
         """Return an expression that has one of some shapes, or the same value for all lanes."""
         value, shape = self.read.numeric(node)
         if shape.bank and shape not in shapes:
-            refuse(node, "an array of another shape")
+            raise refused(node, "an array of another shape")
         return value
 
     def _least(self, node: ast.expr) -> Value | None:
@@ -208,23 +229,23 @@ class _Function:
             case ast.Call(ast.Attribute(ast.Name("np"), "min"), [arg], [axis]):
                 value, shape = self.read.numeric(arg)
                 names = (part.id for part in ast.walk(arg) if isinstance(part, ast.Name))
-                own = all(name in self.values and self.values[name][1] == shape for name in names)
+                own = all(self.values.get(n, (0, shape))[1] == shape for n in names)
                 right = shape.kind == "lanes" or (shape.kind == "maybe" and own)
                 return value if right and ast.unparse(axis) == "axis=0" else None
         return None
 
     # Places
 
-    def _row(self, node: ast.expr, slots: Sequence[Slot]) -> tuple[int, str | None]:
+    def _row(self, node: ast.expr, slots: tuple[Slot, ...]) -> tuple[int, str | None]:
         """Return the slot of an index or of a slice, and its bank."""
         places = self.known.places(slots)
         if not isinstance(node, ast.Slice):
             return slot_at(slots, places, self.read.whole(node), bank=False), None
         if node.lower is None or node.upper is None or node.step is not None:
-            refuse(node, "a slice")
+            raise refused(node, "a slice")
         n = slot_at(slots, places, self.read.whole(node.lower), bank=True)
         if self.read.whole(node.upper) != places[n + 1]:
-            refuse(node, "a slice")
+            raise refused(node, "a slice")
         return n, slots[n].bank
 
     def _index_array(self, node: ast.expr) -> tuple[int, str | None]:
@@ -236,7 +257,7 @@ class _Function:
         first, last = self.lanes[_first(node)]
         n = slot_at(slots, places, first + shift, bank=True)
         if not isinstance(node, ast.Name) or last + shift != places[n + 1]:
-            refuse(node, "lanes of another bank")
+            raise refused(node, "lanes of another bank")
         return n, slots[n].bank
 
     # Names
@@ -261,12 +282,12 @@ class _Function:
                 bank = self.known.banks.get(name, "")
                 dimensions = f"{self.x}.ndim" if self.x else "1"
                 known = name in self.known.parameters and self.roles.get(p) == "p"
-                if bank and known and ast.unparse(axes) == dimensions:
-                    if self.read.whole(size) == self.field.count(bank):
-                        return self.known.names[name], Shape("maybe", bank)
+                known = known and ast.unparse(axes) == dimensions
+                if bank and known and self.read.whole(size) == self.field.count(bank):
+                    return self.known.names[name], Shape("maybe", bank)
             case ast.Call(ast.Attribute(ast.Name("np"), name), args, keywords):
                 return self._array_call(name, args, [ast.unparse(word) for word in keywords], node)
-        refuse(node, "an expression")
+        raise refused(node, "an expression")
 
     def _array_call(
         self, name: str, args: list[ast.expr], words: list[str], node: ast.expr
@@ -283,7 +304,7 @@ class _Function:
                 bank = banks.get(self.read.whole(size), "")
                 if bank and ast.unparse(rest) == f"*(1,) * ({self.x}.ndim - 1)":
                     return self.field.one, Shape("lanes", bank)
-        refuse(node, "a call")
+        raise refused(node, "a call")
 
 
 def _first(node: ast.expr) -> str:

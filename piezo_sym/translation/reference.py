@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from dataclasses import field as dataclass_field
 from fractions import Fraction
 from typing import final
 
@@ -54,6 +55,7 @@ class Proved:
     margins : of the conditions of the domain, and whether each is strict.
     numbers : numbers of the spec that have to be rounded to be printed, by what they become.
     parameters, inputs : the names that are parameters, the rows of u.
+    placed : what `places` found.
     """
 
     field: Field
@@ -66,13 +68,17 @@ class Proved:
     numbers: Mapping[float, Fraction]
     parameters: frozenset[str]
     inputs: tuple[Slot, ...]
+    placed: dict[tuple[Slot, ...], list[Value]] = dataclass_field(default_factory=dict)
 
-    def places(self, slots: Sequence[Slot]) -> list[Value]:
+    def places(self, slots: tuple[Slot, ...]) -> list[Value]:
         """Return where the rows of each slot start, in sizes of banks; and their number."""
-        found = [self.field.zero]
-        for slot in slots:
-            found.append(found[-1] + (self.field.count(slot.bank) if slot.bank else self.field.one))
-        return found
+        if slots not in self.placed:
+            found = [self.field.zero]
+            for slot in slots:
+                size = self.field.count(slot.bank) if slot.bank else self.field.one
+                found.append(found[-1] + size)
+            self.placed[slots] = found
+        return self.placed[slots]
 
     @property
     def counts(self) -> dict[str, str]:
@@ -140,6 +146,8 @@ class _Reader:
         if len({*iphs.symbols.symbols.values()}) < len(iphs.symbols.symbols):
             raise NotShownError("two names of the system have one symbol")
         self.names = {name: self._name(name, symbol) for name, symbol in symbols.items()}
+        own = (self.names[slot.label].parts for slot in system.states)
+        self.field.states = frozenset().union(*own)
         self.known = {symbols[name]: value for name, value in self.names.items()}
         self.known |= {s: self.field.count(bank) for bank, s in iphs.symbols.counts.items()}
         groups = (iphs.laws, iphs.shares, iphs.slopes, iphs.ratios, iphs.costates)
@@ -280,7 +288,6 @@ class _Reader:
         return self._function(expr, args)
 
     def _function(self, expr: sp.Expr, args: Sequence[Value]) -> Value:
-        field = self.field
         if isinstance(expr, sp.Pow):
             exponent = args[1].constant
             if exponent is not None:

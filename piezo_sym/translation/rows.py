@@ -31,6 +31,7 @@ class Rows:
         self.places = known.places(self.slots)
         self.found: dict[Key, Value] = {}
         self.zeros = False
+        self._tables: dict[tuple[str, ...], dict[Value, Key]] = {}
 
     def keep(self, key: Key, value: Value, *, added: bool = False) -> None:
         """Take what is written; refuse what is written over, or added to nothing."""
@@ -41,8 +42,14 @@ class Rows:
             raise NotShownError(f"{self.name}{list(key[1:])} is not written once")
         self.found[key] = self.found[key] + value if key in self.found else value
 
-    def lane_places(self, banks: Sequence[str]) -> Iterator[tuple[Key, Value]]:
-        """Yield what code in loops over the lanes of some banks may write: its key and its place."""
+    def key_at(self, place: Value, banks: tuple[str, ...]) -> Key | None:
+        """Return what stands at a place that loops over the lanes of some banks write."""
+        if banks not in self._tables:
+            self._tables[banks] = {at: key for key, at in self._lane_places(banks)}
+        return self._tables[banks].get(place)
+
+    def _lane_places(self, banks: Sequence[str]) -> Iterator[tuple[Key, Value]]:
+        """Yield the key and the place of all that such loops can write."""
         index = [self.known.field.name("index", bank, n) for n, bank in enumerate(banks)]
         for r, row in enumerate(self.slots):
             if row.bank and [row.bank] != [*banks[:1]]:
@@ -52,7 +59,7 @@ class Rows:
             if self.name != "jacobian":
                 yield from [((self.name, r), first)] if used == len(banks) else []
                 continue
-            for c, col in enumerate(self.slots):
+            for c in range(len(self.slots)):
                 place = first * self.places[-1] + self.places[c]
                 yield from self._entries(r, c, place, banks, used, index)
 

@@ -16,8 +16,8 @@ from math import ceil
 from piezo_sym.translation.change import put
 from piezo_sym.translation.field import Field, NotShownError, Value
 from piezo_sym.translation.functions import power
-from piezo_sym.translation.signs import has_sign, sign
 from piezo_sym.translation.possible import impossible
+from piezo_sym.translation.signs import has_sign, sign
 
 MOST_CASES = 500
 MOST_STEPS = 12
@@ -26,7 +26,7 @@ Case = tuple[Value, dict[Value, int]]
 
 
 def is_zero(value: Value, *, inside: bool = False) -> bool:
-    """Return whether a value is shown to be zero; with `inside`, where no difference is zero."""
+    """Return whether a value is shown to be zero; with `inside`, inside the branches of states."""
     if not value.terms:
         return True
     parts = _apart(value)
@@ -137,7 +137,7 @@ def _cases(
         return
     d = max(found, key=lambda d: found[d])
     assert d is not None
-    for side in (1, -1) if inside else (1, -1, 0):
+    for side in (1, -1) if inside and d.parts & field.states else (1, -1, 0):
         if _possible(d, side) and not any(_never(d, side, e, s) for e, s in sides.items()):
             here = {**sides, d: side}
             yield from _cases(field.at(value, {d: side}), here, left, inside=inside)
@@ -172,7 +172,7 @@ def _possible(d: Value, side: int) -> bool:
 
 def _contradict(first: Value, s: int, second: Value, t: int) -> bool:
     """Return whether two differences cannot have these signs: a sum of theirs has another one."""
-    field, number = first.field, first.field.number
+    number = first.field.number
     for scale, turns in product(_scales(first, second), product((1, -1), repeat=2)):
         signs = turns[0] * s, turns[1] * t
         if max(signs) <= 0:
@@ -231,7 +231,9 @@ def _remainder(value: Value, d: Value) -> Value:
 def _solved(d: Value) -> dict[int, Value]:
     """Return what a generator is where d = 0, if d is linear in it by a factor that is not zero."""
     field = d.field
-    for g in sorted(d.generators(), key=lambda g: (field.gens[g].kind != "name", not field.gens[g].lanes)):
+    for g in sorted(
+        d.generators(), key=lambda g: (field.gens[g].kind != "name", not field.gens[g].lanes)
+    ):
         gen = field.gens[g]
         own = {mono: c for mono, c in d.terms.items() if g in dict(mono)}
         powers = {dict(mono)[g] for mono in own}
