@@ -14,7 +14,7 @@ import cvc5
 
 from .laws import KINKS, Node, compare, made, negated, num, symbols, unkinked
 
-EFFORT, MILLISECONDS, SECONDS, MOST_PAIRS = 60_000, 4000, 300, 12
+EFFORT, MILLISECONDS, SECONDS, MOST_PAIRS = 100_000, 8000, 300, 12
 OPERATIONS = {"+": "+", "*": "*", "neg": "-", "if": "ite"}
 #: What is known of y = f(x), and of two values y and b of f at x and a: "premise: fact".
 FACTS = {
@@ -95,6 +95,8 @@ class _Query:
             return self.term(self._power(args[0], node.value or Fraction(node.op == "sqrt", 2)))
         if node.op == "/" and args[1].op == "num" and args[1].value:
             return self.term(Node("*", (num(1 / args[1].value), args[0])))
+        if node.op == "/" and args[0].op == "neg":  # -(a/b), for a/b may be known
+            return self.term(made("-(x/z)", x=args[0].args[0], z=args[1]))
         y = self._fresh(node)
         if node.op == "/":
             product = compare(Node("*", (y, args[1])), "=", args[0])
