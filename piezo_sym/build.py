@@ -7,8 +7,7 @@ Input: a `Model`.  Output: the files of its generated module, or a list of what 
 from __future__ import annotations
 
 import difflib
-import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import final
@@ -25,7 +24,7 @@ from piezo_sym.codegen import (
 )
 from piezo_sym.derivation import derive
 from piezo_sym.errors import DriftError
-from piezo_sym.files import path_of, path_text, read_text, write_together
+from piezo_sym.files import folder_entries, path_of, path_text, read_bytes, write_together
 from piezo_sym.proofs import Report, Verdict, proofs_json, smt2
 from piezo_sym.spec.load import load
 from piezo_sym.spec.model import Model
@@ -33,18 +32,25 @@ from piezo_sym.spec.source import shipped
 from piezo_sym.verification import verify
 from piezo_sym.version import VERSION
 
-#: What a generated file says of itself; only such files are ever called left over.
-MADE = re.compile(rf"^\W*(?:made\W*)?{MARK} \S+; do not edit: ", re.MULTILINE)
+MISSING, DIFFERS, ENDS = "is missing", "differs from its spec", "has other line ends than \\n"
+LINK, LEFT = "is no regular file or folder", "belongs to no spec given"
 
 
 @final
 @dataclass(frozen=True)
 class Drift:
-    """A generated file that is not what its spec gives: missing, changed, or left over."""
+    """A path below the output folder that is not what the specs give, and how it differs."""
 
     path: Path
     fault: str
     diff: str = ""
+
+    def remedy(self, command: str) -> str:
+        """Return what to do; `command` is what brings the files up to date."""
+        if self.fault == LEFT:
+            return "delete it, or name its spec on the command line"
+        first = "delete it, then " if self.fault == LINK else ""
+        return f"{first}run `{command}` and commit the result"
 
 
 def shipped_models() -> tuple[Model, ...]:
@@ -52,8 +58,16 @@ def shipped_models() -> tuple[Model, ...]:
     return tuple(load(name) for name in shipped())
 
 
-def render(model: Model, *, allow_unproved: bool = False) -> dict[str, str]:
+def render(
+    model: Model, *, allow_unproved: bool = False, report: Report | None = None
+) -> dict[str, str]:
     """Return the text of each generated file of a model, by its path below the output folder.
+
+    Parameters
+    ----------
+    model : from `load`, or made in Python.
+    allow_unproved : render even if a required property is not proved.
+    report : its verdicts, if they are known already.
 
     Raises
     ------
@@ -63,7 +77,7 @@ def render(model: Model, *, allow_unproved: bool = False) -> dict[str, str]:
         If the model cannot be derived.
     """
     iphs = derive(model)
-    report = verify(iphs)
+    report = report or verify(iphs)
     if not allow_unproved:
         report.raise_if_not_proved()
     program = lower(iphs, verdict_line(report))
@@ -124,49 +138,59 @@ def drift(
     complete: bool = False,
     allow_unproved: bool = False,
 ) -> tuple[Drift, ...]:
-    """Return the generated files that are not what the models give.
+    """Return what is below a folder and is not, byte for byte, what the models give.
 
     Parameters
     ----------
-    models : the models whose files to compare.
+    models : the models whose folders to compare, file for file.
     out : the folder with the generated files.
-    complete : whether files of any other model in `out` are left over, too.
+    complete : whether these models are all there is to be in `out`.
     allow_unproved : as for `generate`.
+
+    Raises
+    ------
+    FileError
+        If a file or folder cannot be read.
     """
-    expected: dict[Path, str] = {}
+    root, expected = path_of(out, "generate.out"), {}
     for model in models:
         for name, text in render(model, allow_unproved=allow_unproved).items():
-            expected[Path(out) / name] = text
-    found = [fault for path, text in expected.items() for fault in _compare(path, text)]
-    folders = [Path(out)] if complete else sorted({path.parent for path in expected})
-    return tuple([*found, *_left_over(folders, expected)])
+            expected[root / name] = text.encode()
+    found = [fault for path, data in expected.items() for fault in _compare(path, data)]
+    folders = [root] if complete else sorted({path.parent for path in expected})
+    left = [fault for folder in folders for fault in _others(folder, expected)]
+    return tuple([*found, *left])
 
 
-def _compare(path: Path, text: str) -> Iterator[Drift]:
-    present = read_text(path)
+def _compare(path: Path, data: bytes) -> Iterator[Drift]:
+    """Yield how a file differs from what it should hold."""
+    present = None if _is_odd(path) or path.is_dir() else read_bytes(path)
     if present is None:
-        yield Drift(path, "is missing")
-    elif present != text:
-        lines = present.splitlines(), text.splitlines()
-        diff = difflib.unified_diff(*lines, f"{path} (present)", f"{path} (from the spec)", n=2)
-        yield Drift(path, "differs from its spec", "\n".join(line.rstrip("\n") for line in diff))
+        yield Drift(path, LINK if _is_odd(path) or path.is_dir() else MISSING)
+    elif present.replace(b"\r\n", b"\n") == data != present:
+        yield Drift(path, ENDS)
+    elif present != data:
+        old, new = (text.decode(errors="replace").splitlines() for text in (present, data))
+        diff = difflib.unified_diff(old, new, f"{path} (present)", f"{path} (from the spec)", n=2)
+        yield Drift(path, DIFFERS, "\n".join(line.rstrip("\n") for line in diff))
 
 
-def _left_over(folders: Iterable[Path], expected: dict[Path, str]) -> Iterator[Drift]:
-    for folder in folders:
-        for path in sorted(folder.rglob("*")):
-            if path in expected or not path.is_file() or "__pycache__" in path.parts:
-                continue
-            if MADE.search(_start(path)):
-                yield Drift(path, "belongs to no spec given")
+def _is_odd(path: Path) -> bool:
+    """Return whether something is there that is neither a regular file nor a folder."""
+    return path.is_symlink() or (path.exists() and not (path.is_file() or path.is_dir()))
 
 
-def _start(path: Path) -> str:
-    try:
-        with path.open("rb") as file:
-            return file.read(4000).decode("utf-8", errors="replace")
-    except OSError:  # a file that cannot be read is none that was made here
-        return ""
+def _others(path: Path, expected: Collection[Path]) -> Iterator[Drift]:
+    """Yield what is at a path or below it and not expected, but for Python's own caches."""
+    if path in expected or (path.suffix == ".pyc" and path.parent.name == "__pycache__"):
+        return
+    if _is_odd(path):
+        yield Drift(path, LINK)
+    elif path.is_dir():
+        for inner in folder_entries(path):
+            yield from _others(inner, expected)
+    elif path.exists():
+        yield Drift(path, LEFT)
 
 
 def raise_if_drifted(found: Iterable[Drift], command: str) -> None:
@@ -180,7 +204,5 @@ def raise_if_drifted(found: Iterable[Drift], command: str) -> None:
     faults = list(found)
     if faults:
         more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
-        left = faults[0].fault.startswith("belongs")
-        delete = "delete it, or name its spec on the command line"
-        remedy = delete if left else f"run `{command}` and commit the result"
-        raise DriftError(f"{faults[0].fault}{more}", path_text(faults[0].path), remedy=remedy)
+        what, remedy = f"{faults[0].fault}{more}", faults[0].remedy(command)
+        raise DriftError(what, path_text(faults[0].path), remedy=remedy)

@@ -3,8 +3,6 @@
 Input: a path and its text.  Output: the file, or one `FileError`.
 """
 
-from __future__ import annotations
-
 import atexit
 import os
 import shutil
@@ -93,6 +91,36 @@ def read_text(path: Path) -> str | None:
     except (FileNotFoundError, NotADirectoryError):
         return None
     except (OSError, UnicodeDecodeError) as error:
+        raise _cannot("read", path, error) from error
+
+
+def read_bytes(path: Path) -> bytes | None:
+    """Return a file's content, or None if there is no such file or folder.
+
+    Raises
+    ------
+    FileError
+        If it is there and cannot be read.
+    """
+    try:
+        return path.read_bytes()
+    except (FileNotFoundError, NotADirectoryError):
+        return None
+    except OSError as error:
+        raise _cannot("read", path, error) from error
+
+
+def folder_entries(path: Path) -> list[Path]:
+    """Return what a folder contains, in order.
+
+    Raises
+    ------
+    FileError
+        If it cannot be read.
+    """
+    try:
+        return sorted(path.iterdir())
+    except OSError as error:
         raise _cannot("read", path, error) from error
 
 

@@ -8,207 +8,172 @@ wherever both sides have values.  Functions give up positive factors, signs and 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection
 from fractions import Fraction
 from math import comb
 from typing import Any
 
 from flint import fmpq, fmpq_mpoly_ctx
 
-from .laws import Node, compare, num
+from .laws import Node, compare, need, num, sym
 
-SIZE, MAX_TERMS = 160, 3000
-ODD, EVEN = ("sin", "tanh", "sign", "deadzone", "saturate"), ("cos", "abs")
-HOMOGENEOUS = ("abs", "min", "max", "deadzone", "saturate")
+SIZE, MAX_TERMS, MAX_PRODUCT = 160, 3000, 60_000
+HOMOGENEOUS = ("abs", "min", "max", "deadzone", "saturate", "sign")
 CTX = fmpq_mpoly_ctx.get([f"x{n}" for n in range(SIZE)], "lex")
-ONE, ZERO = CTX.constant(1), CTX.constant(0)
 
 
-class TooLargeError(Exception):
-    """An expression is beyond what is written out."""
-
-
-class Ratio:
+class _Ratio:
     """A reduced quotient of two polynomials, the lower one with leading coefficient 1."""
 
     __slots__ = ("bottom", "top")
 
-    def __init__(self, top: Any, bottom: Any = ONE) -> None:
-        if bottom.is_zero():
-            raise ZeroDivisionError("a divisor is zero by its form")
-        if not bottom.is_one():
+    def __init__(self, top: Any, bottom: Any = None) -> None:
+        if bottom is not None and not bottom.is_one():
+            need(not bottom.is_zero(), "a divisor is zero by its form")
             shared = top.gcd(bottom)
             top, bottom = top / shared, bottom / shared
             lead = bottom.leading_coefficient()
             top, bottom = top / lead, bottom / lead
-        self.top, self.bottom = top, bottom
+        self.top, self.bottom = top, CTX.constant(1) if bottom is None else bottom
 
-    def __add__(self, other: Ratio) -> Ratio:
+    def __add__(self, other: _Ratio) -> _Ratio:
         if self.bottom == other.bottom:
-            return Ratio(self.top + other.top, self.bottom)
+            return _Ratio(self.top + other.top, self.bottom)
         tops = _product(self.top, other.bottom) + _product(other.top, self.bottom)
-        return Ratio(tops, _product(self.bottom, other.bottom))
+        return _Ratio(tops, _product(self.bottom, other.bottom))
 
-    def __neg__(self) -> Ratio:
-        return Ratio(-self.top, self.bottom)
+    def __neg__(self) -> _Ratio:
+        return self * constant(-1)
 
-    def __sub__(self, other: Ratio) -> Ratio:
+    def __sub__(self, other: _Ratio) -> _Ratio:
         return self + -other
 
-    def __mul__(self, other: Any) -> Ratio:
-        if not isinstance(other, Ratio):
-            return Ratio(self.top * other, self.bottom)
-        return Ratio(_product(self.top, other.top), _product(self.bottom, other.bottom))
+    def __mul__(self, other: _Ratio) -> _Ratio:
+        return _Ratio(_product(self.top, other.top), _product(self.bottom, other.bottom))
 
-    __rmul__ = __mul__
+    def __truediv__(self, other: _Ratio) -> _Ratio:
+        return _Ratio(_product(self.top, other.bottom), _product(self.bottom, other.top))
 
-    def __truediv__(self, other: Ratio) -> Ratio:
-        return Ratio(_product(self.top, other.bottom), _product(self.bottom, other.top))
-
-    def __pow__(self, power: int) -> Ratio:
+    def __pow__(self, power: int) -> _Ratio:
         if power < 0:
-            return Ratio(self.bottom, self.top) ** -power
-        if any(comb(len(p) + power - 1, power) > MAX_TERMS for p in (self.top, self.bottom)):
-            raise TooLargeError("a power is too large to be written out")
-        return Ratio(self.top**power, self.bottom**power)
+            return _Ratio(self.bottom, self.top) ** -power
+        terms = max(len(self.top), len(self.bottom))
+        need(terms < 2 or comb(terms + power, power) <= MAX_TERMS, "a power is too large")
+        return _Ratio(self.top**power, self.bottom**power)
 
     def __eq__(self, other: object) -> bool:
-        if isinstance(other, Ratio):
+        if isinstance(other, _Ratio):
             return bool(self.top == other.top and self.bottom == other.bottom)
         return bool(self.bottom.is_one() and self.top == other)
 
     def __hash__(self) -> int:
         return hash((str(self.top), str(self.bottom)))
 
+    @property
+    def number(self) -> Fraction | None:
+        """Its value if it is a number."""
+        if not (self.top.is_constant() and self.bottom.is_one()):
+            return None
+        return _fraction(self.top.leading_coefficient()) if self.top != 0 else Fraction(0)
+
 
 def _product(left: Any, right: Any) -> Any:
-    if len(left) * len(right) > MAX_TERMS * 20:
-        raise TooLargeError("a product is too large to be written out")
+    need(len(left) * len(right) <= MAX_PRODUCT, "a product is too large to be written out")
     return left * right
 
 
-def constant(value: Any) -> Ratio:
+def _fraction(number: Any) -> Fraction:
+    return Fraction(int(number.p), int(number.q))
+
+
+Ratio = _Ratio
+
+
+def constant(value: int | Fraction) -> _Ratio:
     """Return a number."""
-    ratio = Fraction(value)
-    return Ratio(CTX.constant(fmpq(ratio.numerator, ratio.denominator)))
+    return _Ratio(CTX.constant(fmpq(value.numerator, value.denominator)))
 
 
 class Field:
-    """The atoms of one comparison; `positive` tells which symbols are positive."""
+    """The atoms of one comparison; `positive` are the symbols known to be so."""
 
-    def __init__(self, positive: Callable[[Any], bool] = lambda _: False) -> None:
-        self.atoms: dict[Any, int] = {}
-        self.trees: list[Node] = []
-        self.positives: list[int] = []
-        self.choices: list[int] = []
-        self.positive = positive
+    def __init__(self, positive: Collection[Any] = ()) -> None:
+        self.atoms, self.trees = dict[Any, int](), list[Node]()
+        self.positives, self.choices, self.positive = list[int](), list[int](), positive
 
-    def atom(self, key: Any, tree: Node, positive: bool = False) -> Ratio:
+    def atom(self, key: Any, tree: Node, positive: bool = False) -> _Ratio:
         """Return an atom, the same for the same key."""
         if key not in self.atoms:
-            place = len(self.trees)
-            if place == SIZE:
-                raise TooLargeError(f"more than {SIZE} different symbols and functions")
-            self.atoms[key] = place
+            place = self.atoms[key] = len(self.trees)
+            need(place < SIZE, f"more than {SIZE} different symbols and functions")
             self.trees.append(tree)
-            self.positives += [place] if positive else []
-            self.choices += [place] if key[0] == "choice" else []
-        return Ratio(CTX.gen(self.atoms[key]))
+            self.positives += [place] * positive
+            self.choices += [place] * (key[0] == "choice")
+        return _Ratio(CTX.gen(self.atoms[key]))
 
-    def symbol(self, key: Any) -> Ratio:
+    def symbol(self, key: Any) -> _Ratio:
         """Return the atom of a symbol."""
-        return self.atom(("symbol", key), Node("sym", (), key), self.positive(key))
+        return self.atom(("symbol", key), sym(key), key in self.positive)
 
-    def of(self, node: Node, words: Callable[[Any], Ratio]) -> Ratio:
+    def of(self, node: Node, words: Callable[[Any], Ratio] | None = None) -> _Ratio:
         """Return the normal form of a tree, `words` giving that of its symbols."""
-        if node.op == "num":
-            return constant(node.value)
-        if node.op == "sym":
-            return words(node.value)
+        if node.op in ("num", "sym"):
+            return constant(node.value) if node.op == "num" else (words or self.symbol)(node.value)
         if node.op == "if":
-            chosen = self.choice(node.args[0], words)
+            chosen = self._choice(node.args[0], words)
             then, other = (self.of(arg, words) for arg in node.args[1:])
             return then if then == other else other + chosen * (then - other)
         args = [self.of(arg, words) for arg in node.args]
-        if node.op == "+":
-            return sum(args[1:], args[0])
-        if node.op == "neg":
-            return -args[0]
-        if node.op in "*/":
-            return args[0] * args[1] if node.op == "*" else args[0] / args[1]
-        if node.op == "**" and node.value.denominator == 1:
-            return args[0] ** node.value.numerator
-        if node.op in ("**", "sqrt"):
-            power = node.value if node.op == "**" else Fraction(1, 2)
-            return self.root(args[0], power, node.args[0])
-        return self.function(node, args)
+        match node.op:
+            case "+":
+                return sum(args[1:], args[0])
+            case "neg":
+                return -args[0]
+            case "*":
+                return args[0] * args[1]
+            case "/":
+                return args[0] / args[1]
+            case "**" | "sqrt":
+                power = node.value if node.op == "**" else Fraction(1, 2)
+                if power.denominator > 1:
+                    root = Node("**", node.args, Fraction(1, power.denominator))
+                    args = [self.atom((root.value, *args), root)]
+                return args[0] ** power.numerator
+        return self._function(node, args)
 
-    def choice(self, condition: Node, words: Callable[[Any], Ratio]) -> Ratio:
+    def _choice(self, condition: Node, words: Callable[[Any], Ratio] | None) -> _Ratio:
         """Return the atom [difference > 0], or 1 less that of its opposite."""
-        left, right = (self.of(arg, words) for arg in condition.args)
         less = condition.value in ("<", ">=")
-        difference = self.scaled([right - left if less else left - right])[1][0]
-        sides = condition.args[::-1] if less else condition.args
-        tree = Node("if", (compare(sides[0], ">", sides[1]), num(1), num(0)))
-        if difference.top.is_constant() and difference.bottom.is_one():
-            found = constant(int(difference.top.leading_coefficient() > 0)) if difference != 0 else constant(0)
+        left, right = condition.args[::-1] if less else condition.args
+        found = self.scaled([self.of(left, words) - self.of(right, words)])[1][0]
+        if found.number is None:
+            tree = Node("if", (compare(left, ">", right), num(1), num(0)))
+            found = self.atom(("choice", found), tree)
         else:
-            found = self.atom(("choice", difference), tree)
+            found = constant(int(found.number > 0))
         return found if condition.value in "<>" else constant(1) - found
 
-    def root(self, base: Ratio, power: Fraction, tree: Node) -> Ratio:
-        """Return a power of a root; positive factors have roots of their own."""
-        factor, (rest,) = self.scaled([base], numbers=False)
-        found = constant(1)
-        for place, exponent in factor:
-            found = found * self.single(constant(0) + Ratio(CTX.gen(place)), self.trees[place], power * exponent)
-        return found if rest == 1 else found * self.single(rest, tree, power)
-
-    def single(self, base: Ratio, tree: Node, power: Fraction) -> Ratio:
-        if power.denominator == 1:
-            return base**power.numerator
-        root = Fraction(1, power.denominator)
-        return self.atom(("root", root, base), Node("**", (tree,), root), True) ** power.numerator
-
-    def function(self, node: Node, args: list[Ratio]) -> Ratio:
-        """Return the atom of a function, times what the function gives up."""
-        name, outside = node.op, constant(1)
-        if name in (*HOMOGENEOUS, "sign"):
-            factor, args = self.scaled(args)
-            for place, exponent in factor if name != "sign" else ():
-                outside = outside * (constant(exponent) if place < 0 else Ratio(CTX.gen(place)) ** int(exponent))
+    def _function(self, node: Node, args: list[_Ratio]) -> _Ratio:
+        """Return the atom of a function, times the positive factor that the function gives up."""
         if all(arg == 0 for arg in args):
-            return constant(int(name in ("exp", "cos")))
-        turned = args[0] != 0 and args[0].top.leading_coefficient() < 0
-        if name in (*ODD, *EVEN, "exp") and turned:
-            args = [-args[0], *args[1:]]
-            node = Node(name, (Node("neg", (node.args[0],)), *node.args[1:]))
-        found = self.atom((name, *args), node, name == "exp")
-        if turned and name == "exp":
-            return constant(1) / found
-        return (-outside if turned and name in ODD else outside) * found
+            return constant(int(node.op in ("exp", "cos")))
+        outside = constant(1)
+        if node.op in HOMOGENEOUS:
+            outside, args = self.scaled(args)
+        found = self.atom((node.op, *args), node, node.op == "exp")
+        return found if node.op == "sign" else outside * found
 
-    def scaled(self, args: list[Ratio], numbers: bool = True) -> tuple[list[tuple[int, Any]], list[Ratio]]:
-        """Return the positive factor that arguments share, as powers of atoms, and the rest.
-
-        A number among the factors has place -1 and stands for itself.
-        """
-        some = [arg for arg in args if arg != 0]
-        factor: list[tuple[int, Any]] = []
+    def scaled(self, args: list[_Ratio]) -> tuple[Ratio, list[_Ratio]]:
+        """Return the positive atoms that arguments share as a factor, and the arguments over it."""
+        some, factor = [arg for arg in args if arg != 0], constant(1)
         for place in self.positives if some else ():
-            power = min(_valuation(a.top, place) - _valuation(a.bottom, place) for a in some)
-            if power:
-                factor.append((place, power))
-                args = [arg * Ratio(CTX.gen(place)) ** -power for arg in args]
-        if some and numbers:
-            size = abs(next(a for a in args if a != 0).top.leading_coefficient())
-            factor.append((-1, Fraction(int(size.p), int(size.q))))
-            args = [arg * (1 / size) for arg in args]
-        return factor, args
+            powers = (_valuation(a.top, place) - _valuation(a.bottom, place) for a in some)
+            factor = factor * _Ratio(CTX.gen(place)) ** min(powers)
+        return factor, [arg / factor for arg in args]
 
-    def is_zero(self, ratio: Ratio) -> bool:
+    def is_zero(self, ratio: _Ratio) -> bool:
         """Return whether an expression vanishes, a choice being 0 or 1."""
-        if ratio.top.is_zero() or not self.choices:
+        if not self.choices:
             return bool(ratio.top.is_zero())
         total: dict[Any, Any] = {}
         for powers, factor in ratio.top.to_dict().items():
@@ -216,18 +181,21 @@ class Field:
             total[key] = total.get(key, 0) + factor
         return not any(total.values())
 
-    def factors(self, polynomial: Any) -> Iterable[Node]:
-        """Return the factors of a polynomial that are no numbers, as trees."""
-        return [self.tree(part) for part, _ in polynomial.factor()[1]]
+    def same(self, one: Node, other: Node) -> bool:
+        """Return whether two trees are the same function."""
+        return self.is_zero(self.of(one) - self.of(other))
 
-    def tree(self, polynomial: Any) -> Node:
-        """Return a polynomial as a tree."""
+    def factors(self, ratio: _Ratio) -> list[Node]:
+        """Return the factors above the line that are no numbers, as trees."""
+        return [self._tree(part) for part, _ in ratio.top.factor()[1]]
+
+    def _tree(self, polynomial: Any) -> Node:
         terms = []
         for powers, factor in polynomial.to_dict().items():
-            tree = num(Fraction(int(factor.p), int(factor.q)))
+            tree = num(_fraction(factor))
             for place, power in enumerate(powers):
-                for _ in range(int(power)):
-                    tree = Node("*", (tree, self.trees[place]))
+                if power:
+                    tree = Node("*", (tree, Node("**", (self.trees[place],), Fraction(int(power)))))
             terms.append(tree)
         return Node("+", tuple(terms))
 

@@ -3,24 +3,22 @@
 Input: a `Spec` and the parsed ``proofs.json``.  Output: one (id, element, reason) per row, the
 reason empty where it is confirmed.  skew and casimir follow from the balances: the power of the
 co-states vanishes for all of them, and nothing but processes and inputs is in an entropy's rate.
+`program` is about printed text, which is not read here: it has to be stated.
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
+from . import laws
 from .certificate import check_certificate
-from .field import Field, TooLargeError
-from .laws import InputError, Node, compare, negated, num, parse, put, replaced, sym, symbols, walk
-from .point import derivative, evaluate, unkinked
-from .prover import KINKED, Claim, Prover, partial
+from .field import Field
+from .laws import KINKS, InputError, Node, compare, made, need, negated, num, put, sym, symbols
+from .prover import Claim, Prover, needed, partial
 from .spec import Element, Spec
-from .system import Finding, check_system
+from .system import check_system
 
 Row = tuple[str, str, str]
-Check = Callable[[], str]
-MOVING = ("z", "x", "T")
+MOVING, OWN = ("z", "x", "T"), ("domain", "system")  # rows that are not stated by the package
 
 
 def audit(spec: Spec, proofs: Mapping[str, Any]) -> Iterator[Row]:
@@ -32,204 +30,167 @@ class _Audit:
     def __init__(self, spec: Spec, proofs: Mapping[str, Any]) -> None:
         self.spec, self.done = spec, dict[tuple[str, str], str]()
         self.stated: dict[tuple[str, str], list[Mapping[str, Any]]] = {}
+        need(isinstance(proofs, dict), "the proofs are no table")
         entries, system = proofs.get("obligations"), proofs.get("system")
-        if not isinstance(entries, list) or not all(isinstance(e, dict) for e in entries):
-            raise InputError("the proofs have no list of obligations")
-        for entry in entries:
+        listed = isinstance(entries, list) and all(isinstance(e, dict) for e in entries)
+        need(listed, "the proofs have no list of obligations")
+        for entry in entries or ():
             key = str(entry.get("id")), str(entry.get("element") or "")
             self.stated.setdefault(key, []).append(entry)
-        self.found: Finding = check_system(spec, system if isinstance(system, dict) else {})
+        self.found = check_system(spec, system if isinstance(system, dict) else {})
         self.conditions = tuple(tree for _, tree in spec.conditions)
-        self.prover = Prover(self.conditions, self._ties())
-
-    def _ties(self) -> tuple[Node, ...]:
-        """Return what temperatures and letters are as functions of states."""
-        heat = [(("T", b.name), b.laws["temperature"]) for b in self.spec.of("body")]
+        heat = [(("T", b.name), b.laws["temperature"]) for b in spec.of("body")]
         letters = [(("z", name), tree) for name, tree in self.found.letters.items()]
-        return tuple(compare(sym(name), "=", law) for name, law in (*heat, *letters))
+        self.ties = tuple(compare(sym(name), "=", law) for name, law in (*heat, *letters))
+        self.prover = Prover(self.conditions, self.ties)
 
     def rows(self) -> Iterator[Row]:
         """Yield the rows, each after those that it rests on."""
-        yield self._row("domain", "", self._domain, listed=False)
-        yield self._row("system", "", self._system, listed=False)
+        reasons, system = self.found.reasons, [("system", "")]
+        divisors = [_true(tree, "!=") for tree in self.found.divisors]
+        yield self._row("domain", "", self._own_values())
+        yield self._row("system", "", divisors, why=reasons.get("system", ""))
         for body in self.spec.of("body"):
-            yield self._row("temperature", body.name, lambda body=body: self._temperature(body))
-        if self._good("temperature"):
-            warm = tuple(compare(sym(("T", b.name)), ">", 0) for b in self.spec.of("body"))
-            self.prover = Prover((*self.conditions, *warm), self._ties())
-        for name in ("skew", "energy"):
-            yield self._row(name, "", lambda: self.found.reasons.get("energy", "") or self._of("system"))
-        for name in ("casimir", "entropy"):
-            yield self._row(name, "", lambda: self._of("system"))
-        domain = [c for n in range(len(self.conditions)) for c in self._domain_claims(n)]
+            law = body.laws["temperature"]
+            slope = laws.derivative(law, ("x", body.name))
+            claims = [*partial(law), *partial(slope), _true(law, ">"), _true(slope, ">")]
+            yield self._row("temperature", body.name, claims)
+        if not any(self.done[key] for key in self.done if key[0] == "temperature"):
+            warm = tuple(compare(sym(("T", b.name)), ">") for b in self.spec.of("body"))
+            self.prover = Prover((*self.conditions, *warm), self.ties)
+        for name in ("skew", "casimir", "energy", "entropy"):
+            why = reasons.get("energy", "") if name in ("skew", "energy") else ""
+            yield self._row(name, "", (), system, why)
+        domain = [claim for tree in self.conditions for claim in partial(tree)]
         if domain or ("welldef", "") in self.stated:
-            yield self._row("welldef", "", lambda: self._all(domain) or self._of("system"))
+            yield self._row("welldef", "", domain, system)
         for element in self.spec.elements.values():
             yield from self._element(element)
-        yield from self._balances()
-        yield self._row("units", "", lambda: next(iter(self.spec.faults), ""))
-        yield self._row("program", "", lambda: "")
-        yield from self._others()
+        heat = [key for key in self.done if key[0] in ("domain", "temperature", "passive")]
+        yield self._row("sigma", "", (), heat)
+        cooled = [claim for e in self.spec.of("ambient") for claim in _cooling(e)]
+        for name in ("exergy", "environment") if cooled else ():
+            yield self._row(name, "", cooled, [("sigma", ""), ("energy", "")])
+        yield self._row("units", why=next(iter(self.spec.faults), ""))
+        yield self._row("program")
+        for key, entries in self.stated.items():
+            claimed = any(e.get("verdict") == "PROVED" or e.get("required", True) for e in entries)
+            if claimed and key not in self.done:
+                yield self._information(*key)
 
-    def _row(self, name: str, element: str, check: Check, listed: bool = True) -> Row:
-        """Return a row: stated as PROVED, and found to be so."""
-        stated = self.stated.get((name, element), [])
+    def _row(
+        self, name: str, element: str = "", claims: Any = (), rests: Any = (), why: str = ""
+    ) -> Row:
+        """Return a row: stated as PROVED, its claims follow, and what it rests on is confirmed."""
+        stated, listed = self.stated.get((name, element), []), name not in OWN
         verdicts = {str(entry.get("verdict")) for entry in stated} - {"PROVED"}
-        reason = ""
-        if listed and (not stated or verdicts):
-            reason = f"stated as {min(verdicts)}" if verdicts else "missing"
+        prover = self.prover if name != "domain" else Prover(())
         try:
-            reason = reason or check()
-        except (InputError, TooLargeError, ArithmeticError, RecursionError) as error:
+            need(not listed or bool(stated), "missing")
+            need(not listed or not verdicts, f"stated as {min(verdicts, default='')}")
+            need(not why, why)
+            for key in rests:
+                need(not self.done[key], f"it rests on {' '.join(key)}, which is not confirmed")
+            for path, claim in dict.fromkeys(claims):
+                names = ", ".join(str(name[1]) for name in symbols(claim))
+                need(
+                    prover.proves(claim, path),
+                    f"a comparison ({claim.value}) of {names[:80]} does not follow",
+                )
+            reason = ""
+        except (InputError, ArithmeticError, RuntimeError) as error:
             reason = str(error) or type(error).__name__
         self.done[name, element] = reason
         return name, element, reason
 
-    def _of(self, name: str, element: str = "") -> str:
-        """Return why a row that another rests on is not confirmed."""
-        if name == "system" and "system" in self.found.reasons:
-            return self.found.reasons["system"]
-        reason = self.done.get((name, element), "")
-        return f"it rests on {name} {element}: {reason}".rstrip() if reason else ""
-
-    def _good(self, *names: str) -> bool:
-        return not any(reason for (name, _), reason in self.done.items() if name in names)
-
-    def _all(self, claims: Iterable[Claim]) -> str:
-        """Return the first claim that does not follow."""
-        for path, claim in dict.fromkeys(claims):
-            if not self.prover.proves(claim, path):
-                return f"{spelled(claim)} does not follow"
-        return ""
-
-    # The rows
-
-    def _domain(self) -> str:
-        outside = [text for text, holds in evaluate(self.spec).conditions if not holds]
-        return f"the spec's own values are not shown to be in {outside[0]!r}" if outside else ""
-
-    def _domain_claims(self, n: int) -> Iterator[Claim]:
-        """Yield that a condition has a value where the others hold."""
-        yield from partial(self.conditions[n])
-
-    def _system(self) -> str:
-        divisors = [Claim((), compare(tree, "!=", 0)) for tree in self.found.divisors]
-        return self.found.reasons.get("system", "") or self._all(divisors)
-
-    def _temperature(self, body: Element) -> str:
-        law = body.laws["temperature"]
-        slope = derivative(law, ("x", body.name))
-        claims = [*partial(law), *partial(slope)]
-        return self._all([*claims, *(Claim((), compare(tree, ">", 0)) for tree in (law, slope))])
+    def _own_values(self) -> Iterator[Claim]:
+        """Yield that the spec's own values, in each lane, are in its domain."""
+        spec = self.spec
+        own = {("u", name): [num(value)] for name, value in spec.inputs.items()}
+        own |= {("p", n): [num(value) for value in v] for n, v in spec.parameters.items()}
+        own |= {("x", n): [*spec.initial.get(n, [num(0)])] for n in spec.states.values()}
+        own |= {("T", b.name): [b.laws["temperature"]] for b in spec.of("body")}
+        for lane in range(max(map(len, own.values()))):
+            here = [compare(sym(n), "=", found[lane % len(found)]) for n, found in own.items()]
+            yield from (Claim(tuple(here), tree) for tree in self.conditions)
 
     def _element(self, element: Element) -> Iterator[Row]:
-        trees = [tree for tree in (element.costate, element.law) if tree]
-        if element.kind.form in ("coupling", "ambient", "conduction"):
-            trees = list(element.laws.values())
+        own, name = tuple(tree for tree in (element.costate, element.law) if tree), element.name
+        trees = own or tuple(element.laws.values())
         claims = [claim for tree in trees for claim in partial(tree)]
         if claims or element.law:
-            yield self._row("welldef", element.name, lambda: self._all(claims))
-        moving = [tree for tree in trees if moves(tree)]
+            yield self._row("welldef", name, claims)
+        moving = [tree for tree in trees if _moves(tree)]
         if moving and not element.jumps:
-            yield self._row("continuous", element.name, lambda: self._continuous(moving))
+            yield self._row("continuous", name, _continuous(moving))
         if element.law:
-            yield self._row("passive", element.name, lambda: self._passive(element))
+            yield self._row("passive", name, self._passive(element), [("welldef", name)])
         elif element.kind.form == "conduction":
-            law = element.laws["conductance"]
-            flows = [*claims, Claim((), compare(law, ">=", 0))]
-            yield self._row("passive", element.name, lambda: self._all(flows))
+            yield self._row("passive", name, [*claims, _true(trees[0], ">=")])
 
-    def _continuous(self, trees: list[Node]) -> str:
-        for tree in trees:
-            closed = _Closed()
-            relaxed = closed.tree(tree, ())
-            same = Claim(tuple(closed.where), compare(relaxed, "=", tree))
-            if reason := self._all([*closed.claims, *([same] if relaxed != tree else [])]):
-                return reason
-        return ""
-
-    def _passive(self, element: Element) -> str:
-        """Return why a law may give power: its certificate, if it has one, else cvc5."""
+    def _passive(self, element: Element) -> Iterator[Claim]:
+        """Yield that a law takes power in, after its certificate if it has one."""
         law, z = element.law or num(0), sym(("z", element.name))
-        certificates = [e.get("certificate") for e in self.stated["passive", element.name]]
-        if given := next((c for c in certificates if c), None):
-            reason = check_certificate(self.spec, element, given, self.prover)
-        else:
-            sides = [(">", ">="), ("<", "<=")]
-            claims = [Claim((compare(z, s, 0),), compare(law, op, 0)) for s, op in sides]
-            reason = self._all(claims)
-        return reason or self._of("welldef", element.name)
+        given = [entry.get("certificate") for entry in self.stated["passive", element.name]]
+        for certificate in filter(None, given):
+            check_certificate(self.spec, element, certificate, self.prover)
+        for side in "<>" if not any(given) else "":
+            yield Claim((compare(z, side),), compare(law, side + "="))
 
-    def _balances(self) -> Iterator[Row]:
-        self.done["heat", ""] = "" if self._good("temperature", "passive") else "a row is not confirmed"
-        yield self._row("sigma", "", lambda: self._of("heat"))
-        claims = []
-        for element in self.spec.of("ambient"):
-            law = element.laws["conductance"]
-            claims += [*partial(law), Claim((), compare(law, ">=", 0))]
-            claims.append(Claim((), compare(sym(("u", element.input)), ">", 0)))
-        for name in ("exergy", "environment") if claims else ():
-            yield self._row(name, "", lambda: self._all(claims) or self._of("sigma") or self._of("energy"))
+    def _information(self, name: str, owner: str) -> Row:
+        """Return a row that is looked at where it is claimed."""
+        element = self.spec.elements.get(owner)
+        if name == "odd" and element and element.law:
+            turned = put(element.law, {("z", owner): made("-z", z=sym(("z", owner)))})
+            claim = Claim((), compare(turned, "=", made("-x", x=element.law)))
+            return self._row(name, owner, [claim], [("welldef", owner)])
+        if name == "invariant" and element and element.kind.form == "body":
+            return self._row(name, owner, self._invariant(element), [("sigma", "")])
+        return self._row(name, owner, why="the checker knows no such row")
 
-    # Information, where it is claimed
-
-    def _others(self) -> Iterator[Row]:
-        for (name, owner), entries in self.stated.items():
-            claimed = any(e.get("verdict") == "PROVED" or e.get("required", True) for e in entries)
-            element = self.spec.elements.get(owner)
-            if (name, owner) in self.done or not claimed:
-                continue
-            if name == "odd" and element and element.law:
-                yield self._row(name, owner, lambda element=element: self._odd(element))
-            elif name == "invariant" and element and element.kind.form == "body":
-                yield self._row(name, owner, lambda element=element: self._invariant(element))
-            else:
-                yield self._row(name, owner, lambda: "the checker knows no such row")
-
-    def _odd(self, element: Element) -> str:
-        law, z = element.law or num(0), ("z", element.name)
-        turned = put(law, {z: Node("neg", (sym(z),))})
-        field = Field()
-        if field.is_zero(field.of(law, field.symbol) + field.of(turned, field.symbol)):
-            return self._of("welldef", element.name)
-        return self._all([Claim((), compare(turned, "=", Node("neg", (law,))))])
-
-    def _invariant(self, body: Element) -> str:
-        """Return why a body may cool below its floor: T > floor, T <= m < T_e."""
+    def _invariant(self, body: Element) -> Iterator[Claim]:
+        """Yield that a body does not cool below its floor: T > floor, T <= m < T_e."""
         T, m = sym(("T", body.name)), sym(("m", ""))
-        floors = [c for c in self.conditions if _above(c) == T]
-        cold = [e for e in self.spec.of("ambient") if body.name in e.bodies]
-        claims = []
-        for element in self.spec.of("ambient", "conduction"):
-            if body.name not in element.bodies:
-                continue
-            lam, one = element.laws["conductance"], num(-1)
-            if element.kind.form == "conduction":
-                other = sym(("T", next(b for b in element.bodies if b != body.name)))
-                gain = Node("*", (lam, Node("+", (Node("/", (other, T)), one))))
-                claims.append(Claim((compare(T, "<=", other),), compare(gain, ">=", 0)))
-                continue
-            hot = sym(("u", element.input))
-            at_T, at_m = (Node("*", (lam, Node("+", (Node("/", (hot, x)), one)))) for x in (T, m))
+        around = [e for e in self.spec.of("ambient", "conduction") if body.name in e.bodies]
+        for e in around:
+            lam, others = e.laws["conductance"], [b for b in e.bodies if b != body.name]
+            hot = sym(("T", others[0]) if others else ("u", e.input))
+            gains = [made("lam*(a/T - 1)", lam=lam, a=hot, T=x) for x in (T, m)]
             between = (compare(T, "<=", m), compare(m, "<", hot))
-            claims += [Claim(between, compare(at_T, ">=", at_m)), Claim(between, compare(at_m, ">=", 0))]
-        if not floors or not cold:
-            return "no floor of T, or no environment"
-        return self._all(claims) or self._of("sigma")
+            if others:
+                yield Claim((compare(T, "<=", hot),), compare(gains[0], ">="))
+            else:
+                yield Claim(between, compare(gains[0], ">=", gains[1]))
+                yield Claim(between, compare(gains[1], ">="))
+        floors = [c for c in self.conditions if T in (c.args[:1] if c.value == ">" else c.args[1:])]
+        strict = any(c.value in "<>" for c in floors) and any(e.input for e in around)
+        need(strict, "no floor of T, or no environment")
 
 
-def _above(condition: Node) -> Node | None:
-    """Return what a comparison puts strictly above something."""
-    return {">": condition.args[0], "<": condition.args[1]}.get(condition.value)
+def _continuous(trees: list[Node]) -> Iterator[Claim]:
+    """Yield that laws do not jump where their choices meet."""
+    for tree in trees:
+        closed = _Closed()
+        relaxed = closed.tree(tree, ())
+        yield from closed.claims
+        if relaxed != tree:
+            yield Claim(tuple(closed.where), compare(relaxed, "=", tree))
 
 
-def moves(tree: Node) -> bool:
+def _cooling(element: Element) -> list[Claim]:
+    """Return what heat exchange needs: a conductance that is not negative, T_e above zero."""
+    law = element.laws["conductance"]
+    return [*partial(law), _true(law, ">="), _true(sym(("u", element.input)), ">")]
+
+
+def _true(left: Node, operator: str) -> Claim:
+    return Claim((), compare(left, operator))
+
+
+def _moves(tree: Node) -> bool:
     """Return whether a law has a choice or kink in its letter, a state or a temperature."""
-    for node in walk(tree):
-        chooser = node.args[0] if node.op == "if" else node if node.op in KINKED else None
-        if chooser and any(role in MOVING for role, _ in symbols(chooser)):
-            return True
-    return False
+    choosers = (n.args[0] if n.op == "if" else n for n in laws.walk(tree) if n.op in ("if", *KINKS))
+    return any(role in MOVING for chooser in choosers for role, _ in symbols(chooser))
 
 
 class _Closed:
@@ -241,53 +202,33 @@ class _Closed:
     """
 
     def __init__(self) -> None:
-        self.where: list[Node] = []
-        self.claims: list[Claim] = []
-        self.sides: dict[Any, Node] = {}
-        self.field = Field()
+        self.where, self.claims, self.field = list[Node](), list[Claim](), Field()
 
     def tree(self, node: Node, path: tuple[Node, ...]) -> Node:
         """Return a law in choices of sides; book what is needed for it to have a value."""
-        if node.op == "sign" and moves(node):
-            return self.tree(unkinked(node), path)
+        if node.op == "sign":
+            return self.tree(laws.unkinked(node), path)
         if node.op != "if":
-            made = Node(node.op, tuple(self.tree(arg, path) for arg in node.args), node.value)
-            own = [c for c in partial(made) if not c.path and made.args and c.claim.args[0] in made.args]
-            self.claims += [Claim((*self.where, *path), c.claim) for c in own]
-            return made
-        condition = node.args[0]
-        left, right = (self.tree(arg, path) for arg in condition.args)
-        side = Node("cmp", (left, right), condition.value)
-        if any(role in MOVING for role, _ in symbols(condition)):
-            side = self.side(left, right, condition.value in (">", ">="), path)
+            here = Node(node.op, tuple(self.tree(arg, path) for arg in node.args), node.value)
+            self.claims += [Claim((*self.where, *path), c) for c in needed(here)]
+            return here
+        left, right = (self.tree(arg, path) for arg in node.args[0].args)
+        side = Node("cmp", (left, right), node.args[0].value)
+        if any(role in MOVING for role, _ in symbols(node.args[0])):
+            side = self._side(side, path)
         then = self.tree(node.args[1], (*path, side))
-        other = self.tree(node.args[2], (*path, negated(side)))
-        return Node("if", (side, then, other))
+        return Node("if", (side, then, self.tree(node.args[2], (*path, negated(side)))))
 
-    def side(self, left: Node, right: Node, above: bool, path: tuple[Node, ...]) -> Node:
+    def _side(self, condition: Node, path: tuple[Node, ...]) -> Node:
         """Return the comparison b > 0 (or b <= 0) that stands for left above (below) right."""
-        difference = Node("+", (left, Node("neg", (right,))))
-        key = self.field.scaled([self.field.of(difference, self.field.symbol)])[1][0]
+        difference = made("x - z", x=condition.args[0], z=condition.args[1])
+        key = self.field.scaled([self.field.of(difference)])[1][0]
         turned = key != 0 and key.top.leading_coefficient() < 0
-        if turned:
-            key, above = -key, not above
-            difference = Node("neg", (difference,))
-        b = sym(("side", str((str(key.top), str(key.bottom)))))
-        chosen = compare(b, ">", 0)
+        above = condition.value in (">", ">=")
+        key, difference = (-key, Node("neg", (difference,))) if turned else (key, difference)
+        chosen = compare(sym(("side", f"{key.top}/{key.bottom}")), ">")
         edge = Node("if", (chosen, difference, Node("neg", (difference,))))
         for step in reversed(path):
             edge = Node("if", (step, edge, num(0)))
-        self.where.append(compare(edge, ">=", 0))
-        return chosen if above else negated(chosen)
-
-
-def spelled(condition: Node, limit: int = 80) -> str:
-    """Return a comparison in short, for a reason."""
-    text = f"{_text(condition.args[0])} {condition.value} {_text(condition.args[1])}"
-    return text if len(text) <= limit else f"{text[:limit]}..."
-
-
-def _text(node: Node) -> str:
-    if node.op in ("num", "sym"):
-        return str(node.value if node.op == "num" else ".".join(node.value))
-    return f"{node.op}({', '.join(_text(arg) for arg in node.args)})"
+        self.where.append(compare(edge, ">="))
+        return chosen if above != turned else negated(chosen)

@@ -6,50 +6,29 @@ Symbols are pairs: ("p", parameter), ("u", input), ("x", element) its state, ("z
 letter of its dissipative law, ("T", body).
 """
 
-from __future__ import annotations
-
 import re
 import tomllib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, NamedTuple
 
-from .kinds import GIVES, KINDS, REFERENCES, STATES, UNITS, Kind
-from .laws import (
-    FUNCTIONS,
-    InputError,
-    Node,
-    compare,
-    num,
-    number,
-    parse,
-    parse_condition,
-    put,
-    replaced,
-    sym,
-    symbols,
-    walk,
-)
-from .units import Dimension, Unit, check, dimension_of, unit
+from . import laws
+from .kinds import GIVES, KINDS, LETTERS, REFERENCES, STATES, Kind
+from .laws import InputError, Node, compare, made, need, num, parse, sym, symbols, walk
+from .units import Dimension, check, unit
 
-NAME = re.compile(r"[A-Za-z](?:[A-Za-z0-9_]*[A-Za-z0-9])?")
-NODE = re.compile(r"[A-Za-z0-9_.+-]{1,40}")
-MAX_BYTES, MAX_NESTING, MAX_ELEMENTS, MAX_COUNT = 500_000, 20, 500, 1_000_000
-RESERVED = {"i", "v", "f", "T", "np", "if", "else", "sum", *FUNCTIONS}
+DOTTED = re.compile(r"(\s*\.\s*[\w\"'-]+){9}")
+MAX_BYTES, MAX_ELEMENTS, MAX_COUNT = 500_000, 300, 1_000_000
+TABLES = ("model", "parameters", "inputs", "domain", "initial", "elements")
 Symbol = tuple[str, str]
 
 
-@dataclass(frozen=True)
-class Element:
+class Element(NamedTuple):
     """An element: its kind, its laws in symbols, its branches.
 
-    Attributes
-    ----------
-    laws : by field; `costate` of a store or body, `law` of a dissipative element.
-    pairs : the nodes of its branch, or of both of a coupling.
-    across : whether what it imposes (co-state, W or input) is an across variable.
-    bodies : the body it heats, or reads T of; both of a conduction.
+    `costate` is dU/dx of a store or body, `law` that of a dissipative element and `letter` what the
+    law calls its variable; `across` is whether what it imposes is an across variable; `bodies` are
+    the body it heats or reads T of, or both of a conduction.
     """
 
     name: str
@@ -58,24 +37,28 @@ class Element:
     state: str
     costate: Node | None
     law: Node | None
+    letter: str
     pairs: tuple[tuple[str, str], ...]
     across: bool
     bodies: tuple[str, ...]
     input: str
-    count: int | None
+    lanes: int | None
     jumps: bool
 
 
-@dataclass(frozen=True)
-class Spec:
-    """What a spec says; `conditions` are (text, comparison) pairs, `initial` by element."""
+class Spec(NamedTuple):
+    """What a spec says; `conditions` are (text, comparison) pairs, `initial` is by element.
 
-    name: str
+    `words` is what the names of [domain] mean, `lists` the parameters with one value per lane and
+    their banks, `faults` what is wrong with its units.
+    """
+
     parameters: Mapping[str, tuple[Fraction, ...]]
-    lists: frozenset[str]
+    lists: Mapping[str, str]
     inputs: Mapping[str, Fraction]
     elements: Mapping[str, Element]
     states: Mapping[str, str]
+    words: Mapping[str, Symbol]
     conditions: tuple[tuple[str, Node], ...]
     initial: Mapping[str, tuple[Node, ...]]
     faults: tuple[str, ...]
@@ -86,361 +69,213 @@ class Spec:
 
 
 def read_spec(text: str) -> Spec:
-    """Return what a spec says.
-
-    Raises
-    ------
-    InputError
-        If it is no spec that the checker knows; one line says why.
-    """
-    data = _toml(text)
-    known = {"model", "parameters", "inputs", "domain", "initial", "elements"}
-    if unknown := set(data) - known:
-        raise InputError(f"unknown table {sorted(unknown)[0]!r}")
-    tables = {name: _table(data.get(name, {}), name) for name in known}
-    return _Reader(tables).spec()
-
-
-def _toml(text: str) -> dict[str, Any]:
-    if len(text) > MAX_BYTES:
-        raise InputError("the spec is too large")
-    bare = re.sub(r'"(?:\\.|[^"\\\n])*"|\'[^\'\n]*\'|#[^\n]*', "", text)
-    depth = deepest = 0
-    for c in bare:
-        depth += (c in "[{") - (c in "]}")
-        deepest = max(deepest, depth)
-    dots = max(part.count(".") for part in re.split(r"[=,{}\[\]\n]", bare))
-    if deepest > MAX_NESTING or dots > 8:
-        raise InputError("the spec is nested too deeply")
+    """Return what a spec says; raises `InputError` if it is none that the checker knows."""
+    small = len(text) <= MAX_BYTES and not DOTTED.search(text)
+    need(small, "the spec is too large, or nested too deeply")
     try:
-        return tomllib.loads(text, parse_float=number)
+        data = tomllib.loads(text, parse_float=laws.number)
     except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
         raise InputError(f"not TOML: {str(error)[:100]}") from None
+    need(not set(data) - set(TABLES), "the spec has an unknown table")
+    return _Reader({name: _a(dict, data.get(name, {}), name) for name in TABLES}).spec()
 
 
-def _table(value: Any, where: str) -> dict[str, Any]:
-    if not isinstance(value, dict):
-        raise InputError(f"{where} is no table")
-    return value
-
-
-def _text(value: Any, where: str) -> str:
-    if not isinstance(value, str):
-        raise InputError(f"{where} is no text")
+def _a(kind: type, value: Any, where: str) -> Any:
+    """Return a value of a type, a boolean being no number."""
+    good = isinstance(value, kind) and isinstance(value, bool) == (kind is bool)
+    need(good, f"{where} is no {kind.__name__}")
     return value
 
 
 def _value(value: Any, where: str) -> Fraction:
-    if isinstance(value, bool) or not isinstance(value, int | Fraction):
-        raise InputError(f"{where} is no number")
-    if abs(value) > 10**300:
-        raise InputError(f"{where} is too large")
-    return Fraction(value)
+    found = value if isinstance(value, Fraction) else Fraction(_a(int, value, where))
+    need(abs(found) <= 10**300, f"{where} is too large")
+    return found
 
 
 class _Reader:
     """Reads the tables in an order in which each knows the names it may use."""
 
     def __init__(self, tables: dict[str, dict[str, Any]]) -> None:
-        self.tables, self.faults = tables, list[str]()
-        self.units: dict[Symbol, Dimension] = {}
-        self.parameters = dict(self._values("parameters", "value"))
-        self.inputs = {n: v[0] for n, v in self._values("inputs", "default").items()}
-        self.lists = {
-            n for n, p in tables["parameters"].items() if isinstance(p.get("value"), list)
-        }
-        raw = {name: _table(e, f"elements.{name}") for name, e in tables["elements"].items()}
-        if not raw or len(raw) > MAX_ELEMENTS:
-            raise InputError(f"{len(raw)} elements; 1 to {MAX_ELEMENTS} are read")
-        self.kinds = {name: self._kind(name, e) for name, e in raw.items()}
-        self.bodies = [n for n, k in self.kinds.items() if k.form == "body"]
-        self.states = self._states(raw)
-        self.words = self._words()
-        self.elements = {name: self._element(name, e) for name, e in raw.items()}
+        self.tables, self.faults, self.units = tables, list[str](), dict[Symbol, Dimension]()
+        self.parameters = self._values("parameters", "value", "p")
+        self.inputs = {n: v[0] for n, v in self._values("inputs", "default", "u").items()}
+        raw = {name: _a(dict, e, f"elements.{name}") for name, e in tables["elements"].items()}
+        need(0 < len(raw) <= MAX_ELEMENTS, f"{len(raw)} elements; 1 to {MAX_ELEMENTS} are read")
+        self.kinds = {name: self._kind(name, entry) for name, entry in raw.items()}
+        self.bodies = [name for name, kind in self.kinds.items() if kind.form == "body"]
+        self.words = self._words(raw)
+        self.states = {word: owner for word, (role, owner) in self.words.items() if role == "x"}
+        self.elements = {name: self._element(name, entry) for name, entry in raw.items()}
 
     def spec(self) -> Spec:
-        """Return what was read, with domain and starts."""
-        self._domains()
-        conditions = tuple(dict.fromkeys(self._conditions()))
-        initial = dict(self._initial())
-        self._lane_lists(conditions)
-        name = _text(self.tables["model"].get("name"), "model.name")
-        return Spec(
-            name,
-            self.parameters,
-            frozenset(self.lists),
-            self.inputs,
-            self.elements,
-            self.states,
-            conditions,
-            initial,
-            tuple(self.faults),
-        )
+        domains = dict(REFERENCES)
+        for element in self.elements.values():
+            for pair, own in zip(element.pairs, element.kind.domains, strict=True):
+                same = all(domains.setdefault(node, own) == own for node in pair)
+                need(same, f"a node of {element.name} is in two domains")
+        texts = {tree: text for text, tree in [*self._conditions()][::-1]}
+        conditions = tuple((text, tree) for tree, text in texts.items())[::-1]
+        lists, initial = dict(self._lists(conditions)), dict(self._initial())
+        tables = (self.parameters, lists, self.inputs, self.elements, self.states, self.words)
+        return Spec(*tables, conditions, initial, tuple(self.faults))
 
-    # Names and values
-
-    def _values(self, table: str, field: str) -> dict[str, tuple[Fraction, ...]]:
+    def _values(self, table: str, field: str, role: str) -> dict[str, tuple[Fraction, ...]]:
         found = {}
         for name, entry in self.tables[table].items():
             where = f"{table}.{name}"
-            _table(entry, where)
-            if set(entry) - {field, "unit", "doc"} or (table == "parameters" and not entry):
-                raise InputError(f"{where} has an unknown key")
-            given = entry.get(field, 0 if table == "inputs" else None)
-            values = given if isinstance(given, list) and given else [given]
-            scale: Unit = unit(_text(entry.get("unit"), f"{where}.unit"))
+            unknown = set(_a(dict, entry, where)) - {field, "unit", "doc"}
+            complete = not unknown and (field in entry or role == "u") and name.isidentifier()
+            need(complete, f"{where} has a wrong key, or no name")
+            given = entry.get(field, 0)
+            scale = unit(_a(str, entry.get("unit"), f"{where}.unit"))
+            values = given if isinstance(given, list) and given and role == "p" else [given]
             found[name] = tuple(_value(v, where) * scale.factor for v in values)
-            self.units["p" if table == "parameters" else "u", name] = scale.dimension
+            self.units[role, name] = scale.dimension
         return found
 
     def _kind(self, name: str, entry: dict[str, Any]) -> Kind:
-        kind = KINDS.get(_text(entry.get("kind"), f"elements.{name}.kind"))
-        if kind is None or not NAME.fullmatch(name):
-            raise InputError(f"elements.{name}: unknown kind, or no name")
-        fields = (*kind.nodes, *kind.laws, *kind.others)
-        needed = {field for field in fields if not field.endswith("?")} | {"kind"}
-        if set(entry) - {field.rstrip("?") for field in fields} - {"kind"} or needed - set(entry):
-            raise InputError(f"elements.{name} has an unknown or a missing key")
+        kind = KINDS.get(str(entry.get("kind")))
+        if kind is None or not name.isidentifier():
+            raise InputError(f"elements.{name[:60]}: unknown kind, or no name")
+        fields = {"kind", *kind.nodes, *kind.laws, *kind.others}
+        needed = {field for field in fields if not field.endswith("?")}
+        unknown = set(entry) - {field.rstrip("?") for field in fields}
+        need(not unknown and needed <= set(entry), f"elements.{name} has a wrong key")
         return kind
 
-    def _states(self, raw: dict[str, dict[str, Any]]) -> dict[str, str]:
-        found: dict[str, str] = {}
-        for name, entry in raw.items():
-            letter = STATES.get(entry["kind"])
-            if letter:
-                symbol = _text(entry.get("state", f"{letter}_{name}"), f"elements.{name}.state")
-                if symbol in found:
-                    raise InputError(f"two states are called {symbol!r}")
-                found[symbol] = name
-                self.units["x", name] = dimension_of(UNITS[letter])
-        return found
-
-    def _words(self) -> dict[str, Symbol]:
+    def _words(self, raw: dict[str, dict[str, Any]]) -> dict[str, Symbol]:
         """Return what each name of the domain means; a name has one meaning."""
-        one = len(self.bodies) == 1
-        heat = {("T" if one else f"T_{name}"): ("T", name) for name in self.bodies}
-        self.units |= dict.fromkeys(heat.values(), dimension_of("K"))
-        groups: list[dict[str, Symbol]] = [
-            {name: ("p", name) for name in self.parameters},
-            {name: ("u", name) for name in self.inputs},
-            {name: ("x", element) for name, element in self.states.items()},
-        ]
-        words: dict[str, Symbol] = {}
-        for group in groups:
-            for name, meaning in group.items():
-                if name in words or name in heat or name in RESERVED or not NAME.fullmatch(name):
-                    raise InputError(f"name {name[:60]!r} is taken, or no name")
-                words[name] = meaning
+        words, found = dict[str, Symbol](), [(n, ("p", n)) for n in self.parameters]
+        found += [(n, ("u", n)) for n in self.inputs]
+        for name, kind in self.kinds.items():
+            for letter in (s for _, own in kind.laws.values() for s in own if s in STATES):
+                state = raw[name].get("state", f"{letter}_{name}")
+                found.append((_a(str, state, f"elements.{name}.state"), ("x", name)))
+                self.units["x", name] = unit(LETTERS[letter]).dimension
+        heat = {("T" if len(self.bodies) == 1 else f"T_{n}"): ("T", n) for n in self.bodies}
+        self.units |= dict.fromkeys(heat.values(), unit("K").dimension)
+        for word, meaning in found:
+            need(word not in words and word not in heat, f"{word[:60]!r} is taken")
+            words[word] = meaning
         return words | heat
 
     def _resolved(self, tree: Node, words: Mapping[str, Symbol], where: str) -> Node:
-        def change(name: Any) -> Node:
-            if name not in words:
-                raise InputError(f"{where}: unknown name {str(name)[:60]!r}")
-            return sym(words[name])
-
-        return replaced(tree, change)
+        for name in symbols(tree):
+            need(name in words, f"{where}: unknown name {str(name)[:60]!r}")
+        return laws.replaced(tree, lambda name: sym(words[name]))
 
     # Elements
 
     def _element(self, name: str, entry: dict[str, Any]) -> Element:
         kind, where = self.kinds[name], f"elements.{name}"
         bodies = self._bodies_of(entry, kind, where)
-        laws = {}
-        for field, (unit_text, letters) in kind.laws.items():
-            field = field.rstrip("?")
-            if field in entry:
-                at = f"{where}.{field}"
-                laws[field] = self._law(entry[field], name, letters, bodies, unit_text, at)
-        law, across = _given(laws, kind)
-        if kind.form == "resistor" and len(laws) != 1:
-            raise InputError(f"{where} needs exactly one law")
-        source = _text(entry.get("input", ""), where)
-        if "input" in kind.others and source not in self.inputs:
-            raise InputError(f"{where}: {source[:60]!r} is no input")
-        if kind.form in ("source", "ambient"):
-            given = GIVES[kind.domain[0], kind.across] if kind.form == "source" else "K"
-            if self.units["u", source] != dimension_of(given):
-                self.faults.append(f"{where}.input is not in {given}")
-        count, jumps = entry.get("count"), entry.get("discontinuous", False)
-        if count is not None and (isinstance(count, bool) or not isinstance(count, int)):
-            raise InputError(f"{where}.count is no whole number")
-        if not isinstance(jumps, bool) or (count is not None and not 1 <= count <= MAX_COUNT):
-            raise InputError(f"{where}.count or .discontinuous is out of range")
-        state = next((s for s, owner in self.states.items() if owner == name), "")
-        return Element(
-            name=name,
-            kind=kind,
-            laws=laws,
-            state=state,
-            costate=_costate(entry["kind"], laws, name),
-            law=law,
-            pairs=tuple(self._pair(entry[field], f"{where}.{field}") for field in kind.nodes),
-            across=across,
-            bodies=bodies,
-            input=source,
-            count=count,
-            jumps=jumps,
-        )
+        fields = {field.rstrip("?"): law for field, law in kind.laws.items()}
+        laws = {f: self._law(entry[f], name, bodies, *fields[f]) for f in fields if f in entry}
+        source, count = _a(str, entry.get("input", ""), where), entry.get("count")
+        if "input" in kind.others:
+            need(source in self.inputs, f"{where}: {source[:60]!r} is no input")
+            row = GIVES[kind.domains, kind.across] if kind.form == "source" else "K"
+            fits = self.units["u", source] == unit(row).dimension
+            self.faults += [] if fits else [f"{where}.input is not in {row}"]
+        if count is not None:
+            need(1 <= _a(int, count, where) <= MAX_COUNT, f"{where}.count is out of range")
+        need(kind.form != "law" or len(laws) == 1, f"{where} needs exactly one law")
+        field, dissipates = next(reversed(laws), ""), kind.form in ("law", "hysteron")
+        parts = {"rest": num(0), **laws, "x": sym(("x", name))}
+        costate = made(kind.costate, **parts) if kind.costate else None
+        law, letter = (laws[field], fields[field][1][0]) if dissipates else (None, "")
+        pairs = tuple(self._pair(entry[key], f"{where}.{key}") for key in kind.nodes)
+        across = kind.across and (kind.form != "law" or field in ("voltage", "velocity"))
+        jumps = _a(bool, entry.get("discontinuous", False), where)
+        state = next((word for word, owner in self.states.items() if owner == name), "")
+        given = (pairs, across, bodies, source, count, jumps)
+        return Element(name, kind, laws, state, costate, law, letter, *given)
 
-    def _law(
-        self, text: Any, name: str, letters: str, bodies: tuple[str, ...], needed: str, where: str
-    ) -> Node:
-        tree = parse(text)
+    def _law(self, text: Any, name: str, bodies: Any, needed: str, letters: Any) -> Node:
         words: dict[str, Symbol] = {p: ("p", p) for p in self.parameters}
-        units = {symbol: self.units[symbol] for symbol in words.values()}
-        for letter in letters.split():
+        across = GIVES.get((self.kinds[name].domains, True), "1")
+        for letter in letters:
             if letter == "T":
-                owner = (bodies or tuple(self.bodies) if len(self.bodies) == 1 else bodies)[:1]
-                words |= {"T": ("T", owner[0])} if owner else {}
+                owner = bodies or (tuple(self.bodies) if len(self.bodies) == 1 else ())
+                words |= dict(zip("T", [("T", body) for body in owner], strict=False))
                 continue
-            words[letter] = ("x" if letter in STATES.values() else "z", name)
-            electrical = "electrical" in self.kinds[name].domain
-            across = "V" if electrical else "m/s"
-            units[words[letter]] = dimension_of(UNITS.get(letter, across))
-        made = self._resolved(tree, words, where)
-        self.faults += check(made, self.units | units, dimension_of(needed), where)
-        return made
+            words[letter] = ("x" if letter in STATES else "z", name)
+            self.units[words[letter]] = unit(LETTERS.get(letter, across)).dimension
+        law = self._resolved(parse(text, compares=False), words, f"elements.{name}")
+        self.faults += check(law, self.units, unit(needed).dimension, f"elements.{name}")
+        return law
 
     def _bodies_of(self, entry: dict[str, Any], kind: Kind, where: str) -> tuple[str, ...]:
-        given = [entry[f] for f in ("heats", "temperature", "body") if f.rstrip("?") in entry]
-        if kind.form == "body":
-            return ()
+        fields = ("heats", "body", "temperature") if kind.form != "body" else ()
+        given = [entry[field] for field in fields if field in entry]
         if kind.form == "conduction":
-            given = entry["between"] if isinstance(entry["between"], list) else []
-            if len(given) != 2 or given[0] == given[1]:
-                raise InputError(f"{where}.between names no two bodies")
-        for body in given:
-            if body not in self.bodies:
-                raise InputError(f"{where}: {str(body)[:60]!r} is no thermal_mass")
+            given = _a(list, entry["between"], where)
+            need(len(given) == 2 and given[0] != given[1], f"{where} names no two bodies")
+        need(all(b in self.bodies for b in given), f"{where} names what is no thermal_mass")
         return tuple(given)
 
     def _pair(self, value: Any, where: str) -> tuple[str, str]:
-        pair = [value, "wall"] if where.endswith(".at") else value
-        if not isinstance(pair, list) or len(pair) != 2 or pair[0] == pair[1]:
-            raise InputError(f"{where} is no pair of nodes")
-        if not all(isinstance(node, str) and NODE.fullmatch(node) for node in pair):
-            raise InputError(f"{where} names no nodes")
+        pair = [value, "wall"] if where.endswith(".at") else _a(list, value, where)
+        good = len(pair) == 2 and pair[0] != pair[1] and all(isinstance(n, str) for n in pair)
+        need(good, f"{where} is no pair of nodes")
         return pair[0], pair[1]
-
-    def _domains(self) -> None:
-        """Refuse a node in two domains."""
-        found = dict(REFERENCES)
-        for element in self.elements.values():
-            own = element.kind.domain
-            for pair, domain in zip(element.pairs, own * len(element.pairs), strict=False):
-                for node in pair:
-                    if found.setdefault(node, domain) != domain:
-                        raise InputError(f"node {node!r} is in two domains")
 
     # The domain, and where a run starts
 
     def _conditions(self) -> Iterator[tuple[str, Node]]:
-        given = self.tables["domain"].get("assume", [])
-        if set(self.tables["domain"]) - {"assume"} or not isinstance(given, list):
-            raise InputError("domain.assume is no list")
-        made = []
-        for text in given:
-            tree = self._resolved(parse_condition(text), self.words, "domain.assume")
+        table = self.tables["domain"]
+        need(not set(table) - {"assume"}, "the domain has a wrong key")
+        places = []
+        for text in _a(list, table.get("assume", []), "domain.assume"):
+            tree = self._resolved(parse(text, compares=True), self.words, "domain.assume")
             self.faults += check(tree, self.units, None, f"domain.assume {text!r}")
-            made.append((text, tree))
-        yield from made
+            places.append((text, tree))
+        yield from places
         for name, element in self.elements.items():
-            for required in _required(element):
-                yield f"{name}: a law of its kind is positive", compare(required, ">", 0)
-        for where, tree in [*made, *((n, t) for n, e in self.elements.items() for t in _laws(e))]:
-            for width in _widths(tree):
-                if any(role == "z" for role, _ in symbols(width)):
-                    raise InputError(f"{where}: a width depends on the law's letter")
-                yield f"{where}: a width is not negative", compare(width, ">=", 0)
+            first = next(iter(element.laws.values()), num(1))
+            body = [sym(symbol) for symbol in symbols(first) if symbol[0] == "p"]
+            for required in (
+                body if element.kind.form == "body" else [first] * bool(element.costate)
+            ):
+                yield f"{name}: its kind requires > 0", compare(required, ">")
+            places += [(name, law) for law in element.laws.values()]
+        places += [(f"initial.{n}", tree) for n, starts in self._initial() for tree in starts]
+        for where, tree in places:
+            for width in (n.args[1] for n in walk(tree) if n.op in ("deadzone", "saturate")):
+                if width.op != "num" or width.value < 0:
+                    given = any(role == "z" for role, _ in symbols(width))
+                    need(not given, f"{where}: a width depends on the law's letter")
+                    yield f"{where}: a width is >= 0", compare(width, ">=")
 
     def _initial(self) -> Iterator[tuple[str, tuple[Node, ...]]]:
-        words = {n: s for n, s in self.words.items() if s[0] in "pu"}
-        for symbol, given in self.tables["initial"].items():
-            where = f"initial.{symbol}"
-            owner = self.states.get(symbol)
-            if owner is None:
-                raise InputError(f"{where}: no such state")
-            values = given if isinstance(given, list) and given else [given]
-            count = self.elements[owner].count
-            if isinstance(given, list) and len(values) != count:
-                raise InputError(f"{where} has a list of another length")
-            made = []
-            for value in values:
-                if isinstance(value, str):
-                    tree = self._resolved(parse(value), words, where)
-                    self.faults += check(tree, self.units, self.units["x", owner], where)
-                    made.append(tree)
-                else:
-                    made.append(num(_value(value, where)))
-            yield owner, tuple(made)
+        for state, given in self.tables["initial"].items():
+            where, owner = f"initial.{state}", self.states.get(state, "")
+            need(owner in self.elements, f"{where}: no such state")
+            fits = not isinstance(given, list) or len(given) == self.elements[owner].lanes
+            need(fits, f"{where} has a list of another length")
+            starts = given if isinstance(given, list) else [given]
+            yield owner, tuple(self._start(start, where, owner) for start in starts)
 
-    def _lane_lists(self, conditions: tuple[tuple[str, Node], ...]) -> None:
-        """Refuse lists but for parameters that one bank alone uses, with as many values."""
-        for name in self.lists:
-            users = {n for n, e in self.elements.items() if ("p", name) in _used(e)}
-            count = self.elements[next(iter(users))].count if len(users) == 1 else None
-            if count is None or len(self.parameters[name]) != count:
-                raise InputError(f"parameters.{name}: a list, but no bank of as many lanes")
-            for text, tree in conditions:
-                lanes = {n for role, n in symbols(tree) if role == "x" and self.elements[n].count}
-                lanes |= {
-                    n
-                    for role, p in symbols(tree)
-                    if role == "p" and p in self.lists
-                    for n, e in self.elements.items()
-                    if ("p", p) in _used(e)
-                }
-                if ("p", name) in symbols(tree) and lanes - users:
-                    raise InputError(f"{text!r} mixes lanes of two banks")
+    def _start(self, given: Any, where: str, owner: str) -> Node:
+        if not isinstance(given, str):
+            return num(_value(given, where))
+        words = {word: meaning for word, meaning in self.words.items() if meaning[0] in "pu"}
+        tree = self._resolved(parse(given, compares=False), words, where)
+        self.faults += check(tree, self.units, self.units["x", owner], where)
+        return tree
 
-
-def _given(laws: Mapping[str, Node], kind: Kind) -> tuple[Node | None, bool]:
-    """Return a dissipative law, and whether the element imposes an across variable."""
-    for field in ("voltage", "velocity", "current", "force"):
-        if field in laws and kind.form in ("resistor", "hysteron"):
-            return laws[field], kind.across and field in ("voltage", "velocity")
-    return None, kind.across
-
-
-def _laws(element: Element) -> Iterator[Node]:
-    yield from element.laws.values()
-
-
-def _used(element: Element) -> set[Symbol]:
-    return {symbol for law in element.laws.values() for symbol in symbols(law)}
-
-
-def _costate(kind: str, laws: Mapping[str, Node], name: str) -> Node | None:
-    """Return dU/dx of a store or body as a law of its state."""
-    if kind == "thermal_mass":
-        return laws["temperature"]
-    if kind == "spring":
-        rest = laws.get("rest", num(0))
-        return Node("*", (laws["stiffness"], Node("+", (sym(("x", name)), Node("neg", (rest,))))))
-    if kind in STATES:
-        field = next(iter(laws))
-        return Node("/", (sym(("x", name)), laws[field]))
-    return None
-
-
-def _required(element: Element) -> Iterator[Node]:
-    """Yield what an element's kind requires to be positive."""
-    if element.kind.form == "body":
-        names = symbols(element.laws["temperature"])
-        yield from (sym(symbol) for symbol in names if symbol[0] == "p")
-    elif element.kind.form in ("store", "hysteron"):
-        yield next(iter(element.laws.values()))
-
-
-def _widths(tree: Node) -> Iterator[Node]:
-    for node in walk(tree):
-        if node.op in ("deadzone", "saturate"):
-            width = node.args[1]
-            if not (width.op == "num" and width.value >= 0):
-                yield width
-
-
-def costate_law(element: Element, at: Node) -> Node:
-    """Return the co-state of a store or body for another tree in place of its state."""
-    return put(element.costate or num(0), {("x", element.name): at})
+    def _lists(self, conditions: tuple[tuple[str, Node], ...]) -> Iterator[tuple[str, str]]:
+        """Yield the bank of each list; refuse those that are not of one bank's laws alone."""
+        owner: dict[Symbol, str] = {("x", n): n for n, e in self.elements.items() if e.lanes}
+        for name, values in self.parameters.items():
+            if isinstance(self.tables["parameters"][name]["value"], list):
+                laws = [(e, law) for e in self.elements.values() for law in e.laws.values()]
+                users = {e.name: e.lanes for e, law in laws if ("p", name) in symbols(law)}
+                good = [*users.values()] == [len(values)]
+                need(good, f"parameters.{name}: a list, but no bank of its length")
+                owner["p", name] = next(iter(users))
+                yield name, owner["p", name]
+        for text, tree in conditions:
+            banks = {owner[symbol] for symbol in symbols(tree) if symbol in owner}
+            need(len(banks) < 2, f"{text!r} mixes lanes of two banks")

@@ -4,23 +4,23 @@ Input: texts such as ``N*s/m``, and trees with the dimension of every symbol.  O
 the faults that a tree has.  pint knows the units; the grammar is the checker's own.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from functools import cache
 from typing import Any, NamedTuple
 
-from .laws import InputError, Node
+from .laws import InputError, Node, need
 
-TERM = re.compile(r"([A-Za-z]+|1)(?:(?:\*\*|\^)(-?[1-9]))?")
-_WORDS = "mass length time current temperature substance luminosity"
-BASES = tuple(f"[{word}]" for word in _WORDS.split())
+TERM = re.compile(r"([*/]|^)([A-Za-z]+|1)(?:(?:\*\*|\^)(-?[1-9]))?(?![A-Za-z0-9^]|\*\*)")
+BASES = [
+    f"[{w}]"
+    for w in ["mass", "length", "time", "current", "temperature", "substance", "luminosity"]
+]
 Dimension = tuple[Fraction, ...]
 NONE: Dimension = (Fraction(0),) * len(BASES)
 PURE = ("exp", "log", "sin", "cos", "tanh")
-EQUAL = ("+", "min", "max", "deadzone", "saturate", "cmp")
+EQUAL = ("+", "min", "max", "deadzone", "saturate", "cmp", "if")
 
 
 class Unit(NamedTuple):
@@ -31,6 +31,20 @@ class Unit(NamedTuple):
 
 
 @cache
+def unit(text: str) -> Unit:
+    """Return the unit that a text names; raises `InputError` if it names none."""
+    factor, dimension, place = Fraction(1), NONE, 0
+    while len(text) <= 60 and (term := TERM.match(text, place)):
+        power = (-1 if term[1] == "/" else 1) * int(term[3] or 1)
+        named = Unit(Fraction(1), NONE) if term[2] == "1" else _named(term[2])
+        factor *= named.factor**power
+        dimension = _times(dimension, named.dimension, power)
+        place = term.end()
+    need(0 < place == len(text), f"{text[:60]!r} is no unit")
+    return Unit(factor, dimension)
+
+
+@cache
 def _registry() -> Any:
     import pint
 
@@ -38,53 +52,20 @@ def _registry() -> Any:
 
 
 @cache
-def unit(text: str) -> Unit:
-    """Return the unit that a text names; raises `InputError` if it names none."""
-    fault = InputError(f"{text[:60]!r} is no unit")
-    factor, dimension, place, sign = Fraction(1), NONE, 0, 1
-    while len(text) <= 60 and (term := TERM.match(text, place)):
-        power = sign * int(term[2] or 1)
-        named = _named(term[1])
-        factor *= named.factor**power
-        dimension = _times(dimension, named.dimension, power)
-        place = term.end()
-        if place == len(text):
-            return Unit(factor, dimension)
-        if text[place] not in "*/":
-            break
-        sign, place = (-1 if text[place] == "/" else 1), place + 1
-    raise fault
-
-
-@cache
 def _named(name: str) -> Unit:
-    if name == "1":
-        return Unit(Fraction(1), NONE)
-    import pint
-
     try:
         factor, base = _registry().get_base_units(name)
         origin = _registry().Quantity(Fraction(0), name).to_base_units().magnitude
         powers = dict(base.dimensionality)
-        dimension = tuple(Fraction(powers.pop(word, 0)) for word in BASES)
-    except (pint.PintError, TypeError, AttributeError, ValueError):
+    except (TypeError, AttributeError, ValueError):  # pint's own errors are among them
         raise InputError(f"{name!r} is no unit") from None
-    if origin or powers:
-        raise InputError(f"{name!r} is no plain unit")
+    dimension = tuple(Fraction(powers.pop(word, 0)) for word in BASES)
+    need(not origin and not powers, f"{name!r} is no plain unit")
     return Unit(Fraction(factor), dimension)
 
 
-def dimension_of(text: str) -> Dimension:
-    """Return the dimension of a unit."""
-    return unit(text).dimension
-
-
-def _times(left: Dimension, right: Dimension, power: Fraction | int = 1) -> Dimension:
+def _times(left: Dimension, right: Dimension, power: Fraction | int) -> Dimension:
     return tuple(a + power * b for a, b in zip(left, right, strict=True))
-
-
-class _Fault(Exception):
-    """Two parts of a tree have different units."""
 
 
 def check(
@@ -92,38 +73,25 @@ def check(
 ) -> Iterator[str]:
     """Yield the first fault of a tree's units, if there is one."""
     try:
-        found = _dimension(tree, units)
-    except _Fault as fault:
+        if _dimension(tree, units) not in (None, needed) and needed is not None:
+            yield f"{where} has another unit than its row"
+    except InputError as fault:
         yield f"{where}: {fault}"
-        return
-    if needed is not None and found not in (None, needed):
-        yield f"{where} has another unit than its row"
 
 
 def _dimension(node: Node, units: Mapping[Any, Dimension]) -> Dimension | None:
     """Return the dimension of a tree; None if it is zero and fits any."""
-    if node.op == "num":
-        return None if node.value == 0 else NONE
-    if node.op == "sym":
-        return units[node.value]
+    if node.op in ("num", "sym"):
+        return units[node.value] if node.op == "sym" else NONE if node.value else None
     parts = [_dimension(arg, units) for arg in node.args]
-    first = parts[0]
-    if node.op in PURE or node.op == "sign":
-        if node.op != "sign" and first not in (None, NONE):
-            raise _Fault(f"the argument of {node.op} has a unit")
+    known = [part for part in (parts[1:] if node.op == "if" else parts) if part is not None]
+    need(node.op not in PURE or known in ([], [NONE]), f"the argument of {node.op} has a unit")
+    equal = node.op not in EQUAL or all(part == known[0] for part in known)
+    need(equal, f"the terms of {node.op!r} have different units")
+    if node.op in (*PURE, "sign") or (node.op == "**" and node.value == 0):
         return NONE
-    if node.op == "if":
-        parts = parts[1:]
-    if node.op in (*EQUAL, "if"):
-        known = [part for part in parts if part is not None]
-        if any(part != known[0] for part in known):
-            raise _Fault(f"terms of {node.op} have different units")
-        return known[0] if known else None
     if node.op in "*/":
-        if None in parts:
-            return None
-        return _times(parts[0] or NONE, parts[1] or NONE, 1 if node.op == "*" else -1)
-    power = {"**": node.value, "sqrt": Fraction(1, 2)}.get(node.op, Fraction(1))
-    if first is None:
-        return NONE if power == 0 else None
-    return _times(NONE, first, power)
+        sign = 1 if node.op == "*" else -1
+        return _times(known[0], known[1], sign) if len(known) == 2 else None
+    power = {"**": node.value, "sqrt": Fraction(1, 2)}.get(node.op, 1)
+    return _times(NONE, known[0], power) if known else None

@@ -9,6 +9,7 @@ import typer
 
 from piezo_sym.cli.output import about
 from piezo_sym.errors import UsageError, quote
+from piezo_sym.files import path_text
 
 if TYPE_CHECKING:
     from piezo_sym.spec.model import Model
@@ -25,14 +26,14 @@ def generate(
     ] = False,
     every: Annotated[
         bool,
-        typer.Option("--all", help="With --check: these specs are all; fail on other modules."),
+        typer.Option("--all", help="With --check: these specs are all; fail on other files."),
     ] = False,
 ) -> None:
     """Generate the modules of specs into OUT/<model>/.
 
-    With --check nothing is written: exit code 1 if a file is missing or differs from its spec, with
-    the difference and the command that mends it; with --all (or without SPEC) also if a generated
-    file in OUT belongs to no spec.
+    With --check nothing is written: exit code 1 if OUT/<model>/ is not what the spec gives, file
+    for file and byte for byte, with the difference and what to do; with --all (or without SPEC)
+    also if anything else is in OUT.
     """
     from piezo_sym.build import shipped_models
     from piezo_sym.spec.load import load
@@ -65,12 +66,13 @@ def _check(
 ) -> None:
     from piezo_sym.build import drift, raise_if_drifted
 
-    found = drift(models, out, complete=complete, allow_unproved=allow_unproved)
-    for fault in found:
-        typer.echo(f"{fault.path} {fault.fault}")
-        if fault.diff:
-            typer.echo(fault.diff)
     options = ["--out", str(out)] if out != Path("generated") else []
     options += ["--allow-unproved"] if allow_unproved else []
-    raise_if_drifted(found, " ".join(["piezo-sym generate", *specs, *options]))
+    command = " ".join(["piezo-sym generate", *specs, *options])
+    found = drift(models, out, complete=complete, allow_unproved=allow_unproved)
+    for fault in found:
+        typer.echo(f"{path_text(fault.path)} {fault.fault}; {fault.remedy(command)}")
+        if fault.diff:
+            typer.echo(fault.diff)
+    raise_if_drifted(found, command)
     typer.echo(f"{len(models)} {'model' if len(models) == 1 else 'models'} up to date in {out}")

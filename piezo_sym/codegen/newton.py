@@ -19,6 +19,7 @@ from __future__ import annotations
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
+from piezo_sym.codegen.differences import sharp_quantity
 from piezo_sym.codegen.economy import economical
 from piezo_sym.codegen.eliminate import Equations, eliminate
 from piezo_sym.codegen.functions import exchanges_of, ports_of, rates_of
@@ -76,7 +77,7 @@ def _step(
         Step(
             h=h,
             after=tuple(state.name for state in states),
-            quantities=tuple(q.defined),
+            quantities=tuple(map(sharp_quantity, q.defined)),
             pivots=pivots,
             changes=changes,
             supplies=supplies,

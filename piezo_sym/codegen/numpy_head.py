@@ -53,7 +53,7 @@ def _inputs(u):
 LANES_TYPE = "_Lanes = float | tuple[float, ...]  # a bank's parameter: one value, or one a lane"
 
 LANES = '''def _lanes(value, count, ndim):
-    """Return a bank's parameter: a number, or values of shape (count, 1, ...) or (count, *batch)."""
+    """Return a bank's parameter: a number, or values of shape (count,) or (count, *batch)."""
     if np.ndim(value) == 0:
         return value
     value = np.asarray(value, dtype=float)

@@ -7,27 +7,37 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
+from itertools import chain
+from operator import itemgetter
 from types import ModuleType
 from typing import Any, final
 
 import numpy as np
 
+from piezo_sym.checker import InputError
 from piezo_sym.errors import ContradictionError
-from piezo_sym.falsify.claims import Claim, claim_of, laws_of
-from piezo_sym.falsify.exact import Exact, exact_of
-from piezo_sym.falsify.points import CORNERS, FEW, ROOTS, Draw
+from piezo_sym.falsify.claims import TOLERANCE, Claim, claim_of
+from piezo_sym.falsify.exact import Exact
+from piezo_sym.falsify.points import FEW, STAGES, Draw, Roots, warmed
 from piezo_sym.falsify.probe import probe_of
-from piezo_sym.falsify.space import Array, Seen, Space
+from piezo_sym.falsify.space import Array, Mask, Seen, Space
 from piezo_sym.iphs import IPHS
-from piezo_sym.spec.expressions import Num, Sym
+from piezo_sym.spec.elements.ports import Body
+from piezo_sym.spec.expressions import Num, Sym, names
 from piezo_sym.spec.tables import conditions, greater
 from piezo_sym.spec.units import parse_unit
 
 POINTS = 100_000
-LANES = 2
-KEPT, CHILDREN, DESCENTS = 8, 24, 8
+#: Lanes that points have; of those of the spec, so many are looked at.
+LANES, MOST_LANES = 2, 512
+KEPT, CHECKED, CHILDREN, DESCENTS = 8, 4, 24, 8
 #: Of a law's size; between neighbouring floats it may change by less than this.
 JUMP = 1e-6
+#: Off a jump by so many times the distance of two floats, a law has changed by about as much.
+WIDE = 100
+#: Stands for a zero where a row says > 0: not negative, but to be looked at exactly.
+ZERO = -1e-300
 
 
 @final
@@ -38,7 +48,8 @@ class Attack:
     Attributes
     ----------
     id, element : of the row.
-    points : inside the domain at which it held.
+    points : inside the domain at which it held, at least; one digit, for another processor's
+        last bits decide on some points otherwise, and the number is published.
     worst : a point at which the module's number breaks it, by name, though the exact one does not.
     rounding : whether there is one.
     """
@@ -57,39 +68,54 @@ class Track:
 
     claim: Claim
     points: int = 0
-    worst: list[tuple[float, str, Space, Array]] = field(default_factory=list)
-    lost: tuple[float, str, Space, Array] | None = None
+    worst: dict[str, list[tuple[float, Space, Array]]] = field(default_factory=dict)
+    lost: tuple[Space, Array] | None = None
 
     def see(self, kind: str, seen: Seen) -> None:
         """Take in points that are inside the domain."""
         with np.errstate(all="ignore"):
-            value, scale = self.claim.look(seen)
-            self.points += int((value[0] < np.inf).sum()) if self.claim.part else value.shape[1]
-            if not self.claim.climbs and not (value < 0).any():
+            says = np.broadcast_to(self.claim.says(seen), seen.x.shape[1:])
+            self.points += int(says.sum())
+            if self.claim.id == "welldef":
+                key = np.where(seen.holed(self.claim.element), -1.0, 1.0)
+            elif self.claim.numbers:
+                key = self._least(seen, says)
+            else:
                 return
+        if self.claim.climbs or (key < 0).any():
+            self._keep(kind, seen, np.where((key < 0) & seen.extreme, key / 1000, key))
+
+    def _least(self, seen: Seen, says: Mask) -> Array:
+        """Return the least number of the claim relative to its scale, 2 where it has none."""
+        least: Array = np.full(says.shape, 2.0)
+        for _, value, scale, strict in self.claim.at(seen):
+            if not self.claim.climbs and not (value < -TOLERANCE * scale).any():
+                continue
             ratio = np.clip(value / scale, -1, 1)
-            lost = np.isnan(ratio)
-        if lost.any():
-            ratio = np.where(lost, np.where(np.isnan(value), 2, np.sign(value)), ratio)
-            if self.claim.climbs:
-                self._lose(kind, seen, np.isnan(value).any(axis=0))
-        key = ratio.min(axis=0, initial=2)
-        self._keep(kind, seen, np.where((key < 0) & seen.extreme, key / 1000, key))
+            odd = np.isnan(ratio)
+            if odd.any():
+                lost = np.isnan(value)
+                ratio = np.where(odd, np.where(lost, 2, np.sign(value)), ratio)
+                self._lose(seen, lost & says)
+            if not self.claim.climbs:
+                ratio = np.where(ratio < -TOLERANCE, ratio, 1)
+            least = np.minimum(least, np.where(value == 0, ZERO if strict else 2, ratio))
+        return np.where(says, least, 2)
 
     def _keep(self, kind: str, seen: Seen, key: Array) -> None:
         """Keep the worst points of their kind."""
-        most = min(KEPT, len(key))
-        first = np.sort(np.argpartition(key, most - 1)[:most]) if most else []
-        new = [(float(key[n]), kind, seen.space, seen.points[:, n]) for n in first]
-        rest = [entry for entry in self.worst if entry[1] != kind]
-        same = sorted([e for e in self.worst if e[1] == kind] + new, key=lambda e: e[0])
-        self.worst = rest + same[:KEPT]
+        known = self.worst.setdefault(kind, [])
+        place = np.flatnonzero(key < (known[-1][0] if len(known) == KEPT else np.inf))
+        first = place[np.argsort(key[place], kind="stable")[:KEPT]]
+        known += [(float(key[n]), seen.space, seen.points[:, n]) for n in first]
+        known.sort(key=itemgetter(0))
+        del known[KEPT:]
 
-    def _lose(self, kind: str, seen: Seen, lost: Any) -> None:
-        """Note a point where the number is nan though nothing overflowed."""
-        place = np.flatnonzero(lost & ~seen.extreme & ~np.isinf(seen.laws).any(axis=0))
-        if len(place) and self.lost is None:
-            self.lost = (0.0, kind, seen.space, seen.points[:, place[0]])
+    def _lose(self, seen: Seen, lost: Mask) -> None:
+        """Note a point where a law is nan though nothing overflowed."""
+        if self.claim.climbs and self.lost is None and lost.any():
+            place = np.flatnonzero(lost & ~seen.extreme & ~np.isinf(seen.laws).any(axis=0))
+            self.lost = (seen.space, seen.points[:, place[0]]) if len(place) else None
 
 
 @final
@@ -105,14 +131,17 @@ class Hunt:
         points: int,
     ) -> None:
         self.iphs, self.wanted = iphs, points
-        probe = probe_of(iphs)
-        spec = module.Parameters()
+        spec, probe = module.Parameters(), probe_of(iphs)
         sizes = {bank: getattr(spec, f"{bank}_count") for bank in module.BANKS}
         self.spec = Space(module, probe, sizes)
         self.space = Space(module, probe, dict.fromkeys(sizes, LANES))
         found = (claim_of(iphs, *row) for row in claims)
         self.tracks = [Track(claim) for claim in found if claim]
-        known = [self.space.own(), *(self._hinted(hint) for hint in hints)]
+        trees = [condition.tree for condition in conditions(iphs.model)]
+        self.conditioned = {name for tree in trees for name in names(tree)}
+        most = min(MOST_LANES, max(sizes.values(), default=1))
+        known = [self.space.own(lane) for lane in range(0, most, LANES)]
+        known += [self._hinted(hint) for hint in hints]
         self.draw = Draw(self.space, np.concatenate(known, axis=1), self._positive(), self._pairs())
 
     def attacks(self) -> tuple[Attack, ...]:
@@ -126,38 +155,39 @@ class Hunt:
         for kind, space, points in self._blocks():
             for n in range(0, points.shape[1], space.block):
                 self._see(kind, space, points[:, n : n + space.block])
-        exact = exact_of(self.iphs)
+        try:
+            exact = Exact(self.iphs)
+        except InputError:  # nothing could be confirmed, so that nothing was attacked
+            return tuple(Attack(t.claim.id, t.claim.element, 0) for t in self.tracks)
         return tuple(self._judged(track, exact) for track in self.tracks)
 
     def _see(self, kind: str, space: Space, points: Array) -> None:
-        seen, prepared = space.at(points), None
+        seen = space.at(points)
         for track in self.tracks:
-            if track.claim.prepared is None:
+            rest = track.claim.rest()
+            if rest is None:
                 track.see(kind, seen)
                 continue
-            if prepared is None:
-                changed = track.claim.prepared(space, points)
-                prepared = space.at(changed[:, space.at(changed).inside])
-            track.see(kind, prepared)
+            changed, rows = points.copy(), space.places["INPUTS"]
+            for name in rest[0]:
+                changed[space.inputs_at + rows[name].start] = 0
+            for name in rest[1]:
+                changed[space.inputs_at + rows[name].start] = seen.u[rows[rest[1][0]].start]
+            bound = self.conditioned.isdisjoint({*rest[0], *rest[1][1:]})
+            track.see(kind, space.at(changed if bound else self.draw.inside(changed)))
 
     def _blocks(self) -> Iterator[tuple[str, Space, Array]]:
         """Yield points inside the domain, and how they were found."""
         draw, own = self.draw, self.spec.own()
         yield "own", self.spec, own[:, self.spec.at(own).inside]
-        draw.known = draw.inside(draw.known)
-        total = draw.known
-        yield "own", self.space, draw.known
-        if draw.known.shape[1]:
-            kinks = draw.kinks(draw.known[:, :6], ROOTS)
-            yield "kinks", self.space, kinks
-            draw.learn(kinks)
-            corners = draw.kinks(draw.known[:, -12:], CORNERS)
-            yield "corners", self.space, corners
-            draw.learn(corners)
-            total = np.concatenate([total, kinks, corners], axis=1)
-        else:
-            draw.known = self._anything()
-            draw.learn(draw.known[:, :0])
+        total = draw.inside(draw.known)
+        draw.known = total if total.shape[1] else draw.known
+        yield "own", self.space, total
+        for kind, most in STAGES:
+            found = draw.kinks(draw.known[:, -20:], most)
+            draw.learn(found)
+            yield kind, self.space, found
+            total = np.concatenate([total, found], axis=1)
         count = total.shape[1]
         for _ in range(4 * self.wanted // self.space.block + 4):
             if count >= self.wanted:
@@ -166,12 +196,8 @@ class Hunt:
             count += new.shape[1]
             total = total if total.shape[1] > FEW else np.concatenate([total, new], axis=1)
             yield "drawn", self.space, new
-        if count < self.wanted and total.shape[1]:
-            yield "walked", self.space, draw.walked(total, self.wanted - count)
+        yield "walked", self.space, draw.walked(total, self.wanted - count)
         yield from self._descended()
-
-    def _anything(self) -> Array:
-        return np.concatenate([self.space.own()], axis=1)
 
     def _descended(self) -> Iterator[tuple[str, Space, Array]]:
         """Yield steps from the worst points of each row, from where they led, and so on."""
@@ -180,74 +206,82 @@ class Hunt:
                 point
                 for track in self.tracks
                 if track.claim.climbs
-                for _, _, space, point in sorted(track.worst, key=lambda e: e[0])[:KEPT]
+                for _, space, point in sorted(chain(*track.worst.values()), key=itemgetter(0))[
+                    :KEPT
+                ]
                 if space is self.space
             ]
-            if not starts:
-                return
-            moved = self.draw.moved(np.array(starts).T, CHILDREN, 1.0 + n)
-            yield "descended", self.space, self.draw.inside(moved)
+            if starts:
+                moved = self.draw.moved(np.array(starts).T, CHILDREN, 1.0 + n)
+                yield "descended", self.space, self.draw.inside(moved)
 
     def _judged(self, track: Track, exact: Exact) -> Attack:
         """Return what became of a row, its suspicious points evaluated exactly."""
         claim, rounding = track.claim, None
-        doubtful = [entry for entry in sorted(track.worst, key=lambda e: e[0]) if entry[0] < 0]
-        for _, kind, space, point in doubtful:
-            value = exact.broken(claim, space, point)
+        for key, space, point in chain(*(worst[:CHECKED] for worst in track.worst.values())):
+            value = exact.broken(claim, space, point) if key < 0 else None
             if value:
-                raise self._contradiction(claim, value, space.words(point), kind)
-            rounding = rounding or (space, point)
-        if track.lost and rounding is None and exact.has_value(claim, *track.lost[2:]):
-            rounding = track.lost[2:]
+                raise self._contradiction(claim, value, space.words(point))
+            plain = not space.at(point[:, None]).extreme[0]  # else underflow, which is none either
+            told = key < ZERO and claim.numbers and plain
+            rounding = rounding or ((space, point) if told else None)
+        if track.lost and rounding is None and exact.has_value(claim, *track.lost):
+            rounding = track.lost
         if claim.id == "continuous":
             self._jumps(claim, exact)
         worst = rounding[0].words(rounding[1]) if rounding else None
-        return Attack(claim.id, claim.element, track.points, worst, rounding is not None)
+        points = int(str(track.points)[0]) * 10 ** (len(str(track.points)) - 1)
+        return Attack(claim.id, claim.element, points, worst, rounding is not None)
 
     def _jumps(self, claim: Claim, exact: Exact) -> None:
         """Look at a law on both sides of the kinks that states and inputs reach."""
-        space = self.space
+        sizes = [row.stop - row.start for row in self.space.edge_rows]
+        kinks = np.repeat([edge.kink for edge in self.space.probe.edges], sizes)
         for roots in self.draw.roots:
-            edges = [edge.op == "if" for edge in space.probe.edges]
-            sizes = [row.stop - row.start for row in space.edge_rows]
-            chosen = np.repeat(edges, sizes)
-            low, high = (space.at(roots.at(value)) for value in (roots.low, roots.high))
-            near = chosen[roots.edge] & (roots.column >= space.inputs_at)
-            near &= low.inside & high.inside & ~low.extreme
-            for law in laws_of(space, claim.element):
-                with np.errstate(all="ignore"):
-                    jump = np.abs(high.laws[law] - low.laws[law])
-                    big = (jump / (high.sizes[law] + low.sizes[law])).max(axis=0)
-                big = np.where(near & np.isfinite(big), big, 0)
-                for n in np.argsort(-big, kind="stable")[:4]:
-                    if big[n] > JUMP:
-                        pair = (low.points[:, n], high.points[:, n])
-                        value = exact.jump(claim, space, *pair)
-                        if value:
-                            raise self._contradiction(claim, value, space.words(pair[1]), "kinks")
+            near = kinks[roots.edge] & (roots.column >= self.space.inputs_at)
+            ends = [self.space.at(roots.at(value)) for value in (roots.low, roots.high)]
+            near &= ends[0].inside & ends[1].inside & ~self.space.at(roots.base).extreme
+            for what in ("law", "output"):
+                row = self.space.law_rows.get((claim.element, what), slice(0))
+                big = np.where(near, self._leap(row, roots, ends), 0)
+                for n in np.argsort(-big, kind="stable")[:2]:
+                    pair = (ends[0].points[:, n], ends[1].points[:, n])
+                    value = exact.jump(claim, self.space, *pair) if big[n] > JUMP else None
+                    if value:
+                        raise self._contradiction(claim, value, self.space.words(pair[1]))
+
+    def _leap(self, row: slice, roots: Roots, ends: list[Seen]) -> Array:
+        """Return by how much of its size a law changes; 0 if farther off it changes more."""
+        low, high = ends
+        off = WIDE * (roots.high - roots.low)
+        wide = [self.space.at(roots.at(v)) for v in (roots.low - off, roots.high + off)]
+        with np.errstate(all="ignore"):
+            leap = np.abs(high.laws[row] - low.laws[row])
+            steep = np.abs(wide[1].laws[row] - wide[0].laws[row]) > 4 * leap
+            big = np.where(np.isinf(leap), 1, leap / (high.sizes[row] + low.sizes[row]))
+        found: Array = np.where(steep | np.isnan(big), 0, big).max(axis=0, initial=0)
+        return found
 
     def _contradiction(
-        self, claim: Claim, value: str, words: Mapping[str, str], kind: str
+        self, claim: Claim, value: str, words: Mapping[str, str]
     ) -> ContradictionError:
         at = ", ".join(f"{name} = {text}" for name, text in words.items())
         row = f"{claim.id} of {claim.element}" if claim.element else claim.id
-        error = ContradictionError(
-            f"a proof and a number disagree: {row} is PROVED, but {value} at {at}",
-            self.iphs.model.name,
-            remedy="this is a fault of piezo-sym: report it with the spec",
-        )
-        error.kind = kind
-        return error
+        what = f"a proof and a number disagree: {row} is PROVED, but {value} at {at}"
+        remedy = "this is a fault of piezo-sym: report it with the spec"
+        return ContradictionError(what, self.iphs.model.name, remedy=remedy)
 
     # What the spec says of columns
 
-    def _positive(self) -> Any:
+    def _positive(self) -> Mask:
         """Return which columns the domain keeps from being negative."""
-        found = set()
-        for condition in conditions(self.iphs.model):
-            match greater(condition.tree):
-                case greater_ if isinstance(greater_.left, Sym) and isinstance(greater_.right, Num):
-                    found |= {greater_.left.name} if greater_.right.value >= 0 else set()
+        trees = [greater(condition.tree) for condition in conditions(self.iphs.model)]
+        floors = [(c.left, c.right) for c in trees]
+        found = {
+            left.name
+            for left, right in floors
+            if isinstance(left, Sym) and isinstance(right, Num) and right.value >= 0
+        }
         return np.array([name in found for name, _ in self.space.columns])
 
     def _pairs(self) -> Any:
@@ -258,9 +292,14 @@ class Hunt:
         return np.array(pairs, dtype=np.int64).reshape(-1, 2)
 
     def _hinted(self, hint: Mapping[str, object]) -> Array:
-        """Return the spec's own point with the values of a hint, temperatures put in by entropy."""
+        """Return the spec's own point with the values of a hint; a temperature sets the entropy."""
         point = self.space.own()
         for n, (name, lane) in enumerate(self.space.columns):
             given = hint.get(f"{name}_{lane + 1}", hint.get(name))
-            point[n] = point[n] if given is None else float(str(given))
+            point[n] = point[n] if given is None else float(Fraction(str(given)))
+        for row, (_, port) in enumerate(self.iphs.circuit.of(Body)):
+            if port.temperature in hint and port.state not in hint:
+                column = self.space.states_at + self.space.places["STATES"][port.state].start
+                wanted = float(Fraction(str(hint[port.temperature])))
+                point[column] = warmed(self.space, point, column, row, wanted)
         return point

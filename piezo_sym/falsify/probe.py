@@ -11,15 +11,16 @@ from __future__ import annotations
 import importlib.abc
 import importlib.util
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from fractions import Fraction
+from dataclasses import dataclass
+from functools import reduce
 from types import ModuleType
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
-from piezo_sym.codegen import lower, numpy_module
+from piezo_sym.codegen import numpy_module
 from piezo_sym.codegen.functions import limits_of
-from piezo_sym.codegen.program import Function, Jacobian, Row, bank_of
+from piezo_sym.codegen.lower import program_of
+from piezo_sym.codegen.program import Function, Row, bank_of
 from piezo_sym.codegen.quantities import Quantities
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name
@@ -36,6 +37,7 @@ from piezo_sym.spec.elements.ports import (
 )
 from piezo_sym.spec.expressions import (
     ONE,
+    ZERO,
     Add,
     Call,
     Cmp,
@@ -53,6 +55,7 @@ from piezo_sym.spec.expressions import (
     rename,
     walk,
 )
+from piezo_sym.spec.tables import lane_parameters
 from piezo_sym.spec.units import parse_unit
 
 PAIRED = frozenset({"min", "max", "deadzone", "saturate"})
@@ -69,10 +72,10 @@ MOST_EDGES = 400
 @final
 @dataclass(frozen=True)
 class Edge:
-    """An expression whose zeros are looked for, and the sign (`op` 0) it must have there."""
+    """An expression whose zeros are looked for; at a `kink` a law changes branches."""
 
     tree: Expr
-    op: str = ""
+    kink: bool = False
 
 
 @final
@@ -83,15 +86,18 @@ class Probe:
     Attributes
     ----------
     module : with functions `laws`, `sizes` and `edges`.
-    laws : (element, what) of each row; what is law, effort, output or slope.
+    laws : (element, what) of each row; what is law, effort, output, slope or hole (where > 0, the
+        element's laws have no value).
     edges : the edges, row by row.
     slots : of the rows of `laws` and of `edges`.
+    states : the state of each body, by element.
     """
 
     module: ModuleType
     laws: tuple[tuple[str, str], ...]
     edges: tuple[Edge, ...]
     slots: tuple[tuple[Slot, ...], tuple[Slot, ...]]
+    states: dict[str, str]
 
 
 @final
@@ -121,38 +127,35 @@ def probe_of(iphs: IPHS) -> Probe:
     """Return the probe of a system."""
     q = Quantities(iphs)
     limits = limits_of(iphs.model, q)
-    laws = tuple(_laws(q))
-    banks = {name: quantity.bank for quantity in q.defined if (name := quantity.name)}
+    known = {quantity.name: quantity.value for quantity in q.defined}
+    laws = (*_laws(q), *_holes(iphs, q, known))
+    banks = {quantity.name: quantity.bank for quantity in q.defined}
     banks |= {port.state: placed.bank for placed, port in q.stores}
-    program = lower(iphs, "")
-    banks |= {field.name: field.bank for field in program.parameters}
-    lanes = {name: bank for name, bank in banks.items() if bank}
+    lanes = lane_parameters(iphs.model) | {name: bank for name, bank in banks.items() if bank}
     trees = [quantity.value for quantity in q.defined] + [limit.margin for limit in limits]
-    trees += [tree for _, _, tree in laws]
+    trees += [tree for _, what, tree in laws if what != "hole"]
     found = [edge for tree in trees for edge in _edges(tree)]
     found += [Edge(limit.margin) for limit in limits] + [Edge(tree) for tree in _equal(iphs, q)]
     edges = tuple(dict.fromkeys(e for e in found if not isinstance(e.tree, Num)))[:MOST_EDGES]
-    known = {quantity.name: quantity.value for quantity in q.defined}
+    values = [(tree, bank_of(tree, lanes)) for _, _, tree in laws]
+    sizes = [
+        (ONE if what in {"effort", "hole"} else _size(_own(tree, known)), bank)
+        for (_, what, _), (tree, bank) in zip(laws, values, strict=True)
+    ]
     functions = (
-        _function("laws", [(e, tree) for e, _, tree in laws], lanes),
-        _function("sizes", [(e, _size(_own(tree, known)) if what != "effort" else ONE) for e, what, tree in laws], lanes),
-        _function("edges", [("", edge.tree) for edge in edges], lanes),
+        _function("laws", values),
+        _function("sizes", sizes),
+        _function("edges", [(edge.tree, bank_of(edge.tree, lanes)) for edge in edges]),
     )
-    program = replace(
-        program,
-        quantities=tuple(q.defined),
-        functions=functions,
-        jacobian=Jacobian("", ()),
-        limits=(),
-        taken=frozenset(q.taken),
-    )
+    program = program_of(iphs, q, functions)
+    states = {name: port.state for name, port in q.bodies.items()}
     slots = tuple(tuple(row.slot for row in function.rows) for function in functions)
     named = tuple((element, what) for element, what, _ in laws)
-    return Probe(module_from(numpy_module(program)), named, edges, (slots[0], slots[2]))
+    return Probe(module_from(numpy_module(program)), named, edges, (slots[0], slots[2]), states)
 
 
-def _function(name: str, rows: list[tuple[str, Expr]], lanes: dict[str, str]) -> Function:
-    made = tuple(Row(Slot(label, bank_of(tree, lanes)), tree) for label, tree in rows)
+def _function(name: str, rows: list[tuple[Expr, str | None]]) -> Function:
+    made = tuple(Row(Slot("", bank), tree) for tree, bank in rows)
     return Function(name, name, ("x", "u", "p"), made)
 
 
@@ -207,6 +210,44 @@ def _absolute(node: Expr) -> Expr:
     return Num(abs(node.value)) if isinstance(node, Num) else Call("abs", (node,))
 
 
+def _holes(iphs: IPHS, q: Quantities, known: dict[str, Expr]) -> Iterator[tuple[str, str, Expr]]:
+    """Yield where the laws of each element, and of the junction, have no value."""
+    found: dict[str, list[Expr]] = {}
+    for element, what, tree in _laws(q):
+        if what != "effort":
+            found.setdefault(element, []).append(_hole(_own(tree, known)))
+    junction = [known[str(symbol.name)] for symbol, _ in (*iphs.slopes, *iphs.shares)]
+    for element, parts in {**found, "": [_hole(tree) for tree in junction]}.items():
+        yield element, "hole", _any(parts)
+
+
+def _hole(node: Node) -> Expr:
+    """Return an expression that is > 0 where a law has no value, on the branches taken."""
+    match node:
+        case If(then, condition, other):
+            inside = If(_hole(then), condition, _hole(other))
+            return _any(
+                [_hole(condition), inside if {inside.then, inside.other} != {ZERO} else ZERO]
+            )
+        case Div(_, bottom) if not isinstance(bottom, Num):
+            own: Cmp | None = Cmp("<=", _absolute(bottom), ZERO)
+        case Pow(base, exponent) if exponent.denominator != 1:
+            own = Cmp("<" if exponent > 0 else "<=", base, ZERO)
+        case Pow(base, exponent) if exponent < 0:
+            own = Cmp("<=", _absolute(base), ZERO)
+        case Call("sqrt" | "log" as function, (arg,)):
+            own = Cmp("<" if function == "sqrt" else "<=", arg, ZERO)
+        case _:
+            own = None
+    return _any([If(ONE, own, ZERO) if own else ZERO, *map(_hole, children(node))])
+
+
+def _any(parts: list[Expr]) -> Expr:
+    """Return the largest of some expressions that are not negative."""
+    kept = [part for part in dict.fromkeys(parts) if part != ZERO]
+    return reduce(lambda one, other: Call("max", (one, other)), kept) if kept else ZERO
+
+
 def _edges(tree: Node) -> Iterator[Edge]:
     """Yield the edges of a law, outermost first."""
     for node in walk(tree):
@@ -214,36 +255,32 @@ def _edges(tree: Node) -> Iterator[Edge]:
             case LaneSum() | Num() | Sym():
                 continue
             case Cmp(_, left, right):
-                yield Edge(add(left, neg(right)), "if")
+                yield Edge(add(left, neg(right)), kink=True)
             case Call(function, (z, w)) if function in PAIRED:
-                yield Edge(add(z, neg(w)), "if")
+                yield Edge(add(z, neg(w)), kink=True)
                 if function in {"deadzone", "saturate"}:
-                    yield Edge(add(z, w), "if")
+                    yield Edge(add(z, w), kink=True)
             case Call("abs" | "sign", (z,)):
-                yield Edge(z, "if")
-            case Call("sqrt", (z,)):
-                yield Edge(z, ">=")
+                yield Edge(z, kink=True)
+            case Call("sqrt", (z,)) | Pow(z, _) | Div(_, z):
+                yield Edge(z)
             case Call(function, (z,)) if function in SCALED:
-                yield from (Edge(add(z, neg(ONE))), Edge(add(z, ONE)))
-                yield Edge(z, ">" if function == "log" else "")
-            case Div(_, bottom):
-                yield Edge(bottom, "!=")
-            case Pow(base, exponent) if exponent < 0 or exponent.denominator != 1:
-                yield Edge(base, ">=" if exponent > 0 else "!=" if exponent.denominator == 1 else ">")
+                yield from (Edge(z), Edge(add(z, neg(ONE))), Edge(add(z, ONE)))
             case Add():
                 yield Edge(node)
 
 
 def _equal(iphs: IPHS, q: Quantities) -> Iterator[Expr]:
     """Yield differences and sums of a quantity and a parameter or input of equal dimension."""
-    fields = (*iphs.model.parameters.items(), *iphs.model.inputs.items())
-    units = [(name, field.dimension.dimension) for name, field in fields]
+    units = [(name, p.dimension.dimension) for name, p in iphs.model.parameters.items()]
+    units += [(name, u.dimension.dimension) for name, u in iphs.model.inputs.items()]
     quantities: list[tuple[Expr, str]] = []
-    for _, port in q.stores:
-        quantities.append((Sym(costate_name(port)), "K" if isinstance(port, Body) else port.units[1]))
-    for force, (_, port) in zip(q.forces, iphs.circuit.of(Resistor, Conductor), strict=True):
-        if isinstance(port, Resistor):
-            quantities.append((force, UNITS[port.domain, port.imposes.other]))
+    for _, store in q.stores:
+        unit = "K" if isinstance(store, Body) else store.units[1]
+        quantities.append((Sym(costate_name(store)), unit))
+    for force, (_, process) in zip(q.forces, iphs.circuit.of(Resistor, Conductor), strict=True):
+        if isinstance(process, Resistor):
+            quantities.append((force, UNITS[process.domain, process.imposes.other]))
     for tree, unit in dict.fromkeys(quantities):
         for name, dimension in units:
             if parse_unit(unit).dimension == dimension:

@@ -6,7 +6,7 @@ their columns every parameter, input and state, a bank's one per lane.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate, pairwise
@@ -21,8 +21,8 @@ from piezo_sym.falsify.probe import Probe
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
-#: No value of a point is smaller or larger, but for zero.
-LEAST, LARGEST = 1e-300, 1e300
+#: No value of a point is smaller or larger, but for zero; beyond EXTREME products overflow.
+LEAST, LARGEST, EXTREME = 1e-300, 1e300, 1e30
 #: Numbers of a state array worked on together; the module's `rhs` splits what is larger.
 BLOCK = 100_000
 
@@ -44,12 +44,12 @@ class Space:
     @cached_property
     def columns(self) -> tuple[tuple[str, int], ...]:
         """Name and lane of each column; lane 0 where there is no bank."""
-        return tuple((f.name, lane) for f in self.fields for lane in range(self._lanes(f.bank)))
+        return tuple((f.name, lane) for f in self.fields for lane in range(self.lanes(f.bank)))
 
     @cached_property
     def inputs_at(self) -> int:
         """The first column of the inputs."""
-        return sum(self._lanes(field.bank) for field in self.module.PARAMETERS)
+        return sum(self.lanes(field.bank) for field in self.module.PARAMETERS)
 
     @cached_property
     def states_at(self) -> int:
@@ -61,48 +61,51 @@ class Space:
         """How many points are worked on together."""
         return max(1, min(8192, BLOCK // max(1, len(self.columns) - self.states_at)))
 
-    def _lanes(self, bank: str | None) -> int:
+    def lanes(self, bank: str | None) -> int:
+        """Return how many lanes a bank has, 1 for none."""
         return self.counts[bank] if bank else 1
 
     @cached_property
     def places(self) -> Mapping[str, Mapping[str, slice]]:
         """The rows of each record of a module's tables in a result with a row per lane."""
-        tables = ("PARAMETERS", "INPUTS", "STATES", "PROCESSES", "OUTPUTS", "BODIES")
+        tables = ("PARAMETERS", "INPUTS", "STATES", "PROCESSES", "BODIES")
         records = {table: getattr(self.module, table) for table in tables}
         return {
-            table: dict(zip([f.name for f in found], self._slices(found), strict=True))
+            table: dict(zip([f.name for f in found], self.slices(found), strict=True))
             for table, found in records.items()
         }
-
-    def rows(self, table: str, name: str) -> slice:
-        """Return the rows of one record."""
-        return self.places[table][name]
 
     @cached_property
     def law_rows(self) -> Mapping[tuple[str, str], slice]:
         """The rows of the probe's laws, by element and what they are."""
-        return dict(zip(self.probe.laws, self._slices(self.probe.slots[0]), strict=True))
+        return dict(zip(self.probe.laws, self.slices(self.probe.slots[0]), strict=True))
 
     @cached_property
     def edge_rows(self) -> tuple[slice, ...]:
         """The rows of the probe's edges."""
-        return self._slices(self.probe.slots[1])
+        return self.slices(self.probe.slots[1])
 
-    def _slices(self, parts: Iterable[Any]) -> tuple[slice, ...]:
-        ends = [0, *accumulate(self._lanes(part.bank) for part in parts)]
+    def slices(self, parts: Iterable[Any]) -> tuple[slice, ...]:
+        """Return the rows of records or slots."""
+        ends = [0, *accumulate(self.lanes(part.bank) for part in parts)]
         return tuple(slice(a, b) for a, b in pairwise(ends))
 
-    def own(self) -> Array:
-        """Return the spec's own values as one point; a bank of another size repeats its lanes."""
-        spec = self.module.Parameters()
-        u = np.asarray(self.module.INPUT_DEFAULTS, dtype=float)
-        sizes = {bank: getattr(spec, f"{bank}_count") for bank in self.module.BANKS}
-        full = Space(self.module, self.probe, sizes)
-        values = [np.broadcast_to(getattr(spec, f.name), full._lanes(f.bank)) for f in spec_of(full)]
-        point = np.concatenate([*values, u, self.module.initial_state(u, spec)])
-        at = dict(zip(full.columns, point, strict=True))
-        size = {field.name: full._lanes(field.bank) for field in self.fields}
-        return np.array([[at[name, lane % size[name]]] for name, lane in self.columns])
+    @cached_property
+    def _given(self) -> Mapping[str, Array]:
+        """The spec's own values, by name, one per lane."""
+        spec, u = self.module.Parameters(), np.asarray(self.module.INPUT_DEFAULTS, dtype=float)
+        full = Space(self.module, self.probe, {b: getattr(spec, f"{b}_count") for b in self.counts})
+        sizes = [full.lanes(field.bank) for field in self.fields]
+        values = [getattr(spec, field.name) for field in self.module.PARAMETERS]
+        spread = [np.broadcast_to(v, n) for v, n in zip(values, sizes, strict=False)]
+        point = np.concatenate([*spread, u, self.module.initial_state(u, spec)])
+        names, parts = (f.name for f in self.fields), np.split(point, np.cumsum(sizes)[:-1])
+        return dict(zip(names, parts, strict=True))
+
+    def own(self, first: int = 0) -> Array:
+        """Return the spec's own values as one point, of a bank's lanes those from `first` on."""
+        parts = ((self._given[name], lane) for name, lane in self.columns)
+        return np.array([[part[(first + lane) % len(part)]] for part, lane in parts])
 
     def at(self, points: Array) -> Seen:
         """Return what is seen at points."""
@@ -112,7 +115,7 @@ class Space:
         """Return points as states, inputs and parameters of the module."""
         values: dict[str, Any] = {f"{bank}_count": count for bank, count in self.counts.items()}
         for field in self.module.PARAMETERS:
-            rows = self.rows("PARAMETERS", field.name)
+            rows = self.places["PARAMETERS"][field.name]
             values[field.name] = points[rows] if field.bank else points[rows.start]
         p = self.module.Parameters(**values)
         return points[self.states_at :], points[self.inputs_at : self.states_at], p
@@ -124,11 +127,6 @@ class Space:
             name if name in single else f"{name}[{lane + 1}]": repr(float(value))
             for (name, lane), value in zip(self.columns, point, strict=True)
         }
-
-
-def spec_of(space: Space) -> tuple[Any, ...]:
-    """Return the records of the parameters."""
-    return tuple(space.module.PARAMETERS)
 
 
 @final
@@ -143,40 +141,53 @@ class Seen:
     def __getattr__(self, name: str) -> Array:
         """Return the result of a function of the module or the probe, and keep it."""
         home = self.space.probe.module if name in PROBED else self.space.module
-        arguments = (self.x, self.p) if name in STATE_ONLY else (self.x, self.u, self.p)
+        arguments = (self.x, self.p) if name == "temperatures" else (self.x, self.u, self.p)
         with np.errstate(all="ignore"):
             value: Array = getattr(home, name)(*arguments)
         setattr(self, name, value)
         return value
 
+    def get(self, what: str, name: str) -> list[tuple[Any, Any]]:
+        """Return quantities of an element as rows with their sizes."""
+        space = self.space
+        if what in ("heat", "production"):
+            row = space.places["PROCESSES"][name] if name else slice(None)
+            if what == "production":
+                return [(value, np.abs(value)) for value in self.entropy_production[row]]
+            law, effort = space.law_rows[name, "output"], space.law_rows[name, "effort"]
+            return [*zip(self.heat[row], self.sizes[law] * np.abs(self.laws[effort]), strict=True)]
+        if what == "input":
+            return [(value, 0) for value in self.u[space.places["INPUTS"][name]]]
+        law = space.law_rows[name, "slope" if what == "slope" else "law"]
+        if what == "rate":
+            rows = self.rhs[space.places["STATES"][space.probe.states[name]]]
+            return [(value, np.abs(value)) for value in rows]
+        values = (
+            self.temperatures[space.places["BODIES"][name]]
+            if what == "temperature"
+            else self.laws[law]
+        )
+        return [*zip(values, self.sizes[law], strict=True)]
+
     @property
     def inside(self) -> Mask:
         """Which points lie in the domain."""
         floors = [[0.0] if c.strict else [-np.nextafter(0, 1)] for c in self.space.module.DOMAIN]
-        found: Mask = (self.margins > np.reshape(floors, (-1, 1))).all(axis=0)
+        found: Mask = np.all(self.margins > np.reshape(floors, (-1, 1)), axis=0)
         return found
 
     @cached_property
     def extreme(self) -> Mask:
-        """Which points have a value beyond 1e+-30, where products overflow."""
+        """Which points have a value so large or small that products of it overflow."""
         size = np.abs(self.points)
-        return ((size > 1e30) | (size > 0) & (size < 1e-30)).any(axis=0)
+        found: Mask = np.any((size > EXTREME) | ((size > 0) & (size < 1 / EXTREME)), axis=0)
+        return found
 
-    @cached_property
-    def suspect(self) -> Mask:
-        """Where a divisor is zero, or the argument of a root or a logarithm out of its range."""
-        found = np.zeros(self.points.shape[1], dtype=bool)
-        for edge, row in zip(self.space.probe.edges, self.space.edge_rows, strict=True):
-            if edge.op in OUT:
-                found |= OUT[edge.op](self.edges[row]).any(axis=0)
+    def holed(self, element: str) -> Mask:
+        """Return where an element's laws have no value; for none, what the junction divides by."""
+        row = self.space.law_rows.get((element, "hole"), slice(0))
+        found: Mask = np.any(self.laws[row] > 0, axis=0)
         return found
 
 
-#: By what the value of an edge must be, where it is not.
-OUT: Mapping[str, Callable[[Array], Mask]] = {
-    "!=": lambda value: value == 0,
-    ">=": lambda value: value < 0,
-    ">": lambda value: value <= 0,
-}
 PROBED = frozenset({"laws", "sizes", "edges"})
-STATE_ONLY = frozenset({"energy", "entropy", "temperatures"})

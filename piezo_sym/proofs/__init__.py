@@ -22,6 +22,7 @@ from piezo_sym.proofs.domain import defined, not_shown
 from piezo_sym.proofs.ground import Ground, Law, ground_of, on_warm_bodies
 from piezo_sym.proofs.obligations import Obligation
 from piezo_sym.proofs.prove import prove
+from piezo_sym.proofs.published import published
 from piezo_sym.proofs.record import proofs_json, smt2
 from piezo_sym.proofs.report import Report, Row, Verdict
 from piezo_sym.proofs.solvers import opinions
@@ -51,7 +52,7 @@ def decide(iphs: IPHS) -> Report:
     for obligation in found:
         left = replace(obligation, open_because=empty) if empty else obligation
         rows.append(prove(left, iphs, rows, asked))
-    return Report(iphs.model.name, (*rows, *units(iphs)), found)
+    return Report(iphs.model.name, (*rows, *units(iphs)), found, published(iphs))
 
 
 def obligations(iphs: IPHS) -> tuple[Obligation, ...]:

@@ -226,9 +226,10 @@ def _kinked(function: str, z: Value, w: Value) -> Value:
             return w if _above(z, w) else z
         case "max":
             return z if _above(z, w) else w
-        case "deadzone":
-            return minus(z, _kinked("saturate", z, w))
-    return w if _above(z, w) else -w if _above(-w, z) else z  # saturate
+        case "deadzone":  # as the contracts have it, whatever the sign of w
+            above = _kinked("max", minus(z, w), Fraction(0))
+            return minus(above, _kinked("max", minus(-w, z), Fraction(0)))
+    return _kinked("min", _kinked("max", z, -w), w)  # saturate
 
 
 def _above(a: Value, b: Value) -> bool:

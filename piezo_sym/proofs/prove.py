@@ -167,7 +167,10 @@ def _nonzero(iphs: IPHS, expr: sp.Expr) -> tuple[dict[str, str], sp.Expr] | None
     sizes = {symbol.name: str(counts[bank]) for bank, symbol in lanes.counts.items()}
     for start in TRIES:
         values = {s: sp.Integer(start + n % len(TRIES)) for n, s in enumerate(symbols)}
-        value = written.xreplace(values)
+        try:
+            value = written.xreplace(values)
+        except TypeError:  # it compares what has no real value there
+            continue
         if value.is_number and value.is_zero is False:
             return {**sizes, **{s.name: str(v) for s, v in values.items()}}, value
     return None

@@ -122,7 +122,10 @@ class Report:
         lines = [f"{self.model}: {self.summary()}"]
         for row in self.rows:
             at = ", ".join(f"{name} = {value}" for name, value in (row.witness or {}).items())
-            lines.append(f"  {row.verdict.value:8} {row.id:12} {row.element:12} {row.statement}")
+            attacked = f" ({row.points:,} points)" if row.points else ""
+            lines.append(
+                f"  {row.verdict.value:8} {row.id:12} {row.element:12} {row.statement}{attacked}"
+            )
             lines += [f"           {row.reason}{f' at {at}' if at else ''}"] if row.reason else []
         return "\n".join(lines)
 

@@ -63,13 +63,21 @@ def _driven(iphs: IPHS, element: str, given: Values, solver: Asks) -> Found | No
     rest = dict.fromkeys(_drives(iphs), sp.S.Zero)
     named = {iphs.symbols[n]: sp.Rational(v.numerator, v.denominator) for n, v in known.items()}
     fixed = {symbol: value for symbol, value in named.items() if symbol not in rest}
-    z = _named(iphs, iphs.system.z[k, 0]).xreplace(fixed)
+    z = _value(_named(iphs, iphs.system.z[k, 0]), fixed)
     for drive in _one_drive(z, rest, given.get(getattr(port, "letter", ""))):
         values = {**fixed, **rest, **drive}
-        value = sigma.xreplace(values)
+        value = _value(sigma, values)
         if value.is_Rational and value < 0 and _allowed(iphs, sigma, values):
             return {s.name: str(v) for s, v in values.items() if s in sigma.free_symbols}, value
     return None
+
+
+def _value(expr: sp.Expr, values: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
+    """Return an expression at a point; nan where it has no real value to compare."""
+    try:
+        return expr.xreplace(dict(values))
+    except TypeError:
+        return sp.nan
 
 
 def _named(iphs: IPHS, expr: sp.Expr) -> sp.Expr:
@@ -112,7 +120,7 @@ def _one_drive(
         yield {}
         return
     for symbol in (symbol for symbol in rest if symbol in z.free_symbols):
-        share = z.xreplace({**rest, symbol: sp.S.One}) - z.xreplace(dict(rest))
+        share = _value(z, {**rest, symbol: sp.S.One}) - _value(z, rest)
         if share.is_Rational and share != 0:
             yield {symbol: sp.Rational(value.numerator, value.denominator) / share}
 

@@ -11,7 +11,7 @@ passive if each term is.  Where nothing is proved, simple numbers are tried in t
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import reduce as fold
@@ -24,9 +24,12 @@ from piezo_sym.proofs.signs import (
     Case,
     Reduction,
     Term,
+    balanced,
     cases,
+    choice_outside,
     decide_sign,
     grouped,
+    opposite,
     reductions,
     summands,
 )
@@ -36,20 +39,18 @@ from piezo_sym.spec.expressions import (
     ONE,
     ZERO,
     Add,
-    Call,
     Cmp,
-    Div,
     Expr,
+    If,
     Mul,
     Neg,
     Num,
-    Pow,
     Sym,
     names,
 )
 
 #: Functions of one variable that may fail before the search stops.
-MOST_FAILED = 6
+MOST_FAILED = 12
 
 
 @final
@@ -82,7 +83,7 @@ def whole_sign(sign: SignOf, order: tuple[str, ...], solver: Asks) -> Outcome | 
     shown: list[Case] = []
     reasons: list[str] = []
     for guards, law in split:
-        search = Search(sign.letter, Asked((*sign.where, *guards), order, solver))
+        search = Search(law, sign.letter, asked.within(*guards))
         terms = search.terms(law)
         if terms is not None:
             shown.append(Case(guards, terms))
@@ -104,90 +105,109 @@ class Search:
 
     Attributes
     ----------
-    letter : the letter.
+    law, letter : the law of one case, and its letter.
     asked : the solver, in the domain and the guards of a case.
     reasons : what is still open, filled as the search goes on.
     negative : where a reduced law has the wrong sign: the reduction, its sign, and s.
     """
 
+    law: Expr
     letter: str
     asked: Asked
     reasons: list[str] = field(default_factory=list)
     negative: list[tuple[Reduction, int, Fraction]] = field(default_factory=list)
 
     def terms(self, law: Expr) -> tuple[Term, ...] | None:
-        """Return summands that are shown to be passive and make up the law, or None."""
+        """Return summands that are shown to be passive and make up a law, or None."""
         if law == ZERO:
             return ()
+        law = choice_outside(law)
         if (term := self._term(law)) is not None:
-            return (term,)
-        if isinstance(law, Add):
-            parts = [self.terms(term) for term in law.terms]
-            if all(part is not None for part in parts):
-                return tuple(term for part in parts for term in part or ())
+            return term
+        match law:
+            case Add(parts) if (found := _joined(map(self.terms, parts))) is not None:
+                return found
+            case If(then, condition, other):
+                sides = ((then, condition), (other, opposite(condition)))
+                return _joined(self._where(side, where) for side, where in sides)
         groups = grouped(summands(law), self.letter, self.asked.positive)
         if not groups or len(groups) == 1:
-            return None
-        found = [self._term(group) for group in groups]
-        return tuple(filter(None, found)) if all(found) else None
+            return self._polynomial(law)
+        if (found := _joined(map(self._term, groups))) is not None:
+            return found
+        groups = balanced(groups, self.letter, self.asked.positive)
+        return None if groups is None else _joined(map(self._term, groups))
 
-    def _term(self, law: Expr) -> Term | None:
+    def _where(self, law: Expr, condition: Cmp) -> tuple[Term, ...] | None:
+        """Return the terms of a law that counts where a condition holds and is zero elsewhere."""
+        found = () if law == ZERO else self._term(If(law, condition, ZERO))
+        if found is None and (inner := self.terms(law)) is not None:
+            return tuple(term.where(condition) for term in inner)
+        return found
+
+    def _term(self, law: Expr) -> tuple[Term] | None:
         """Return a law that comes down to one variable and is shown to be passive, or None."""
         for reduction in reductions(law, self.letter, self.asked.positive):
-            sign = self._sign(reduction.prefactors)
-            if sign is None or len(self.reasons) + len(self.negative) >= MOST_FAILED:
-                continue
-            power = Mul(reduction.f, Sym(self.letter))
-            decision = decide_sign(power if sign > 0 else Neg(power), self.letter)
-            if decision.verdict is Verdict.PROVED:
-                front = fold(Mul, reduction.prefactors) if reduction.prefactors else ONE
-                return Term(
-                    law, self.letter, front, sign, reduction.units, reduction.f, decision.rays
-                )
-            if decision.witness is not None:
-                self.negative.append((reduction, sign, decision.witness))
-            else:
-                self.reasons.append(decision.reason)
+            for sign in (1, -1):
+                if len(self.reasons) + len(self.negative) >= MOST_FAILED:
+                    return None
+                power = Mul(reduction.f, Sym(self.letter))
+                decision = decide_sign(power if sign > 0 else Neg(power), self.letter)
+                if decision.witness is not None:
+                    self.negative.append((reduction, sign, decision.witness))
+                elif decision.verdict is not Verdict.PROVED:
+                    self.reasons.append(decision.reason)
+                elif self._keeps(reduction.prefactors, sign):
+                    front = fold(Mul, reduction.prefactors) if reduction.prefactors else ONE
+                    units, f = reduction.units, reduction.f
+                    return (Term(law, self.letter, front, sign, units, f, decision.rays),)
         return None
 
-    def _sign(self, factors: Iterable[Expr]) -> int | None:
-        """Return the sign that a product keeps in the domain, zero aside, or None."""
-        left = [factor for factor in factors if not self._plain(factor)]
-        if not left or self.asked.follows(Cmp(">=", fold(mul, left), ZERO)):
-            return 1
-        if self.asked.follows(Cmp("<=", fold(mul, left), ZERO)):
-            return -1
-        if len(left) == 1:
+    def _polynomial(self, law: Expr) -> tuple[Term] | None:
+        """Return a part of the law that the solver shows to be passive, or None."""
+        power = mul(law, Sym(self.letter))
+        if law == self.law or not self.asked.follows(Cmp(">=", power, ZERO)):
             return None
-        signs = [self._sign([factor]) for factor in left]
-        return None if None in signs else fold(int.__mul__, map(int, filter(None, signs)))
+        return (Term(law, self.letter, power),)
 
-    def _plain(self, factor: Expr) -> bool:
-        """Return whether a tree is seen to be nowhere negative, wherever it has a value."""
-        match factor:
-            case Sym() | Num():
-                return self.asked.positive(factor)
-            case Call("exp" | "abs" | "sqrt", _):
-                return True
-            case Pow(base, e):
-                return e.denominator != 1 or e % 2 == 0 or self._plain(base)
-            case Add(terms):
-                return all(map(self._plain, terms))
-            case Mul(left, right) | Div(left, right):
-                return self._plain(left) and self._plain(right)
-        return False
+    def _keeps(self, factors: Sequence[Expr], sign: int) -> bool:
+        """Return whether a product is shown to keep to one side of zero in the domain."""
+        left = [factor for factor in factors if not self.asked.plain(factor)]
+        if not left:
+            return sign > 0
+        start: Expr = Num(Fraction(sign))
+        if self.asked.follows(Cmp(">=", fold(mul, left, start), ZERO)):
+            return True
+        return len(left) > 1 and self._signs(left) == sign
+
+    def _signs(self, factors: Sequence[Expr]) -> int:
+        """Return the product of the signs that each of some factors keeps; 0 if one keeps none."""
+        total = 1
+        for factor in factors:
+            if not self._keeps([factor], 1):
+                total = -total if self._keeps([factor], -1) else 0
+        return total
 
     def witness(self, claim: Cmp) -> Numbers | None:
         """Return numbers at which a reduced law that has the wrong sign breaks the claim."""
-        for reduction, sign, value in self.negative:
+        for n, (reduction, sign, value) in enumerate(self.negative):
             start: Expr = Num(Fraction(sign))
-            front = fold(mul, reduction.prefactors, start)
-            wanted = {*names(claim), *names(reduction.scale)}
-            point = self.asked.point(Cmp("<=", front, ZERO), wanted)
-            letter = None if point is None else reduction.back(value, point)
-            if point is None or letter is None:
-                continue
-            numbers = {**point, self.letter: letter}
-            if self.asked.breaks(claim, numbers):
-                return numbers
+            front = Cmp("<=", fold(mul, reduction.prefactors, start), ZERO)
+            wanted = self.asked.near((*names(claim), *names(reduction.scale)))
+            found = None if n else self.asked.point(front, wanted)
+            for point in (*self.asked.samples, *((found,) if found else ())):
+                letter = reduction.back(value, point)
+                numbers = {**point, self.letter: letter or Fraction(0)}
+                if letter is not None and self.asked.breaks(claim, numbers):
+                    return {name: value for name, value in numbers.items() if name in wanted}
         return None
+
+
+def _joined(parts: Iterable[tuple[Term, ...] | None]) -> tuple[Term, ...] | None:
+    """Return all terms, or None at the first part that has none."""
+    found: list[Term] = []
+    for part in parts:
+        if part is None:
+            return None
+        found += part
+    return tuple(found)

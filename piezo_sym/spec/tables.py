@@ -4,18 +4,16 @@ Input: the tables of a spec (`Tables`, which `Model` satisfies).  Output: its st
 laws and conditions, in declaration order.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Protocol, final
 
 from piezo_sym.spec.elements import Conduction, Element, ThermalMass
 from piezo_sym.spec.elements.base import Letters, Refers, state_symbol
-from piezo_sym.spec.expressions import ZERO, Call, Cmp, Expr, Num, names, rename, walk
+from piezo_sym.spec.expressions import ZERO, Call, Cmp, Expr, Node, Num, names, rename, walk
 from piezo_sym.spec.fields import Domain, Header, Input, Parameter
 from piezo_sym.spec.parse import parse_condition, parse_law
-from piezo_sym.spec.text import spell
+from piezo_sym.spec.text import SPEC, write_comparison
 
 
 class Tables(Protocol):
@@ -118,50 +116,58 @@ def temperatures(spec: Tables) -> dict[str, str]:
 
 
 def conditions(spec: Tables) -> tuple[Condition, ...]:
-    """Return the domain: what the spec assumes, then what its kinds need, each once."""
+    """Return the domain: what the spec assumes, then what its kinds and half widths need."""
     assumed = [
         Condition(f"domain.assume[{n}]", parse_condition(text, f"domain.assume[{n}]"))
         for n, text in enumerate(spec.domain.assume)
     ]
-    needed = [
-        Condition(f"elements.{name}", _with_state(condition, element, name))
-        for name, element in spec.elements.items()
-        for condition in element.requires()
-    ]
-    needed += [
-        Condition(law.where, _in_domain_words(Cmp(">=", width, ZERO), spec, name))
-        for name, element in spec.elements.items()
-        for law in law_fields(name, element)
-        for width in _widths(law.tree)
-    ]
+    hot = {body: word for word, body in temperatures(spec).items()}
     found: dict[Cmp, Condition] = {}
-    for condition in assumed + needed:
+    for condition in [*assumed, *_needed(spec, hot), *_not_negative(spec, hot, assumed)]:
         found.setdefault(condition.tree, condition)
     return tuple(found.values())
 
 
-def _widths(law: Expr) -> Iterator[Expr]:
-    """Yield what stands as a half width in a law, but for plain numbers that are not negative."""
+def _needed(spec: Tables, hot: Mapping[str, str]) -> Iterator[Condition]:
+    """Yield what the kinds of the elements need; `hot`: the temperature symbol of each body."""
+    for name, element in spec.elements.items():
+        for condition in element.requires():
+            tree = _in_domain_words(condition, element, name, hot, (element.letter,))
+            yield Condition(f"elements.{name}", tree)
+
+
+def _not_negative(
+    spec: Tables, hot: Mapping[str, str], assumed: list[Condition]
+) -> Iterator[Condition]:
+    """Yield that each half width is >= 0: in laws, in what the spec assumes, and in its start."""
+    for name, element in spec.elements.items():
+        for law in law_fields(name, element):
+            for width in _widths(law.tree):
+                tree = _in_domain_words(width, element, name, hot, law.letters)
+                yield Condition(law.where, tree)
+    places: list[tuple[str, Node]] = [(condition.where, condition.tree) for condition in assumed]
+    places += [(f"initial.{s}", tree) for s, start in spec.initial.items() for tree in _laws(start)]
+    for where, node in places:
+        yield from (Condition(where, width) for width in _widths(node))
+
+
+def _widths(law: Node) -> Iterator[Cmp]:
+    """Yield that what stands as a half width is >= 0, but for plain numbers that are."""
     for node in walk(law):
         if isinstance(node, Call) and node.function in {"deadzone", "saturate"}:
             width = node.args[1]
             if not (isinstance(width, Num) and width.value >= 0):
-                yield width
+                yield Cmp(">=", width, ZERO)
 
 
-def _in_domain_words(condition: Cmp, spec: Tables, name: str) -> Cmp:
+def _in_domain_words(
+    condition: Cmp, element: Element, name: str, hot: Mapping[str, str], letters: tuple[str, ...]
+) -> Cmp:
     """Return a condition of a law in the words of [domain]: its state's symbol, its body's T."""
-    element = spec.elements[name]
-    body = next((given for _, to, given in references(element) if to == "thermal_mass"), None)
-    hot = next((word for word, own in temperatures(spec).items() if own == body), "T")
-    words = {"T": hot} | ({element.letter: state_symbol(element, name)} if element.letter else {})
-    return Cmp(condition.op, rename(condition.left, words), condition.right)
-
-
-def _with_state(condition: Cmp, element: Element, name: str) -> Cmp:
-    letters = {element.letter: state_symbol(element, name)} if element.letter else {}
-    left, right = rename(condition.left, letters), rename(condition.right, letters)
-    return Cmp(condition.op, left, right)
+    body = next((given for _, to, given in references(element) if to == "thermal_mass"), "")
+    words = {"T": hot.get(body, "T"), element.letter: state_symbol(element, name)}
+    own = {letter: words[letter] for letter in letters if letter in words}
+    return Cmp(condition.op, rename(condition.left, own), rename(condition.right, own))
 
 
 def greater(condition: Cmp) -> Cmp:
@@ -174,7 +180,7 @@ def greater(condition: Cmp) -> Cmp:
 
 def condition_text(condition: Cmp) -> str:
     """Return a condition as a reader would write it."""
-    return f"{spell(condition.left)} {condition.op} {spell(condition.right)}"
+    return write_comparison(condition, SPEC)
 
 
 def lane_parameters(spec: Tables) -> dict[str, str]:
@@ -182,11 +188,11 @@ def lane_parameters(spec: Tables) -> dict[str, str]:
     users: dict[str, set[str]] = {}
     for name, element in spec.elements.items():
         for law in law_fields(name, element):
-            for word in names(law.tree):
+            for word in set(names(law.tree)) - set(law.letters):
                 users.setdefault(word, set()).add(name)
     elements = states(spec)
     for symbol, start in spec.initial.items():
-        for word in _start_names(start):
+        for word in (word for tree in _laws(start) for word in names(tree)):
             users.setdefault(word, set()).add(elements.get(symbol, symbol))
     single = {
         word: next(iter(found))
@@ -200,10 +206,11 @@ def lane_parameters(spec: Tables) -> dict[str, str]:
     return {word: bank for word, bank in own.items() if word not in mixed}
 
 
-def _start_names(start: str | float | tuple[str | float, ...]) -> Iterator[str]:
+def _laws(start: str | float | tuple[str | float, ...]) -> Iterator[Expr]:
+    """Yield the laws in an initial value."""
     for part in start if isinstance(start, tuple) else (start,):
         if isinstance(part, str):
-            yield from names(parse_law(part, "initial"))
+            yield parse_law(part, "initial")
 
 
 def _condition_names(spec: Tables) -> Iterator[tuple[str, ...]]:

@@ -6,15 +6,15 @@ other; it shows explicit matrices, and checks the derivation that keeps sizes sy
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from piezo_sym.errors import UsageError, nearest, quote
 from piezo_sym.spec.elements.base import Element, state_symbol
 from piezo_sym.spec.expressions import Cmp, names, rename
 from piezo_sym.spec.model import Model
-from piezo_sym.spec.parse import parse_condition
-from piezo_sym.spec.tables import banks, condition_text, lane_parameters, law_fields
+from piezo_sym.spec.parse import parse_condition, parse_law
+from piezo_sym.spec.tables import banks, condition_text, lane_parameters, law_fields, states
 from piezo_sym.spec.text import spell
 
 
@@ -40,8 +40,8 @@ def unroll(model: Model, counts: Mapping[str, int]) -> Model:
     data = model.model_dump()
     data["parameters"] = _apart(_parameters(model, split))
     data["elements"] = _apart(_elements(model, sizes, split))
-    data["initial"] = dict(_initial(model, sizes))
-    data["domain"] = {"assume": tuple(_assumptions(model, split))}
+    data["initial"] = dict(_initial(model, sizes, split))
+    data["domain"] = {"assume": tuple(_assumptions(model, sizes, split))}
     return Model(**data)
 
 
@@ -86,34 +86,47 @@ def _elements(model: Model, sizes: Mapping[str, int], split: Mapping[str, int]) 
 
 
 def _lane(name: str, element: Element, lane: int, split: Mapping[str, int]) -> Element:
-    words = {parameter: f"{parameter}_{lane}" for parameter in split}
     laws = {
         law.where.rpartition(".")[2]: spell(rename(law.tree, words))
         for law in law_fields(name, element)
-        if words.keys() & set(names(law.tree))
+        if (words := _words(lane, split.keys() - law.letters)).keys() & set(names(law.tree))
     }
     state = f"{state_symbol(element, name)}_{lane}"
     return element.model_copy(update={**laws, "count": None, "state": state})
 
 
-def _initial(model: Model, sizes: Mapping[str, int]) -> Any:
-    symbols = {state_symbol(e, name): name for name, e in model.elements.items() if name in sizes}
+def _words(lane: int, split: Iterable[str]) -> dict[str, str]:
+    """Return the names of a lane's own symbols, lanes counted from 1."""
+    return {symbol: f"{symbol}_{lane}" for symbol in split}
+
+
+def _initial(model: Model, sizes: Mapping[str, int], split: Mapping[str, int]) -> Any:
+    elements = states(model)
     for symbol, start in model.initial.items():
-        if symbol not in symbols:
+        size = sizes.get(elements[symbol])
+        if size is None:
             yield symbol, start
             continue
-        size = sizes[symbols[symbol]]
         starts = start if isinstance(start, tuple) else (start,)
-        for lane in range(size):
-            yield f"{symbol}_{lane + 1}", starts[lane] if len(starts) == size else starts[0]
+        for lane in range(1, size + 1):
+            own = starts[lane - 1] if len(starts) == size else starts[0]
+            yield f"{symbol}_{lane}", _start(own, _words(lane, split))
 
 
-def _assumptions(model: Model, split: Mapping[str, int]) -> Any:
+def _start(start: str | float, words: Mapping[str, str]) -> str | float:
+    if not isinstance(start, str):
+        return start
+    return spell(rename(parse_law(start, "initial"), words))
+
+
+def _assumptions(model: Model, sizes: Mapping[str, int], split: Mapping[str, int]) -> Any:
+    lanes = {s: sizes[name] for s, name in states(model).items() if name in sizes}
+    lanes |= split
     for text in model.domain.assume:
         tree = parse_condition(text, "domain.assume")
-        lanes = max((split[word] for word in names(tree) if word in split), default=0)
-        for lane in range(1, lanes + 1):
-            words = {word: f"{word}_{lane}" for word in split}
+        count = max((lanes[word] for word in names(tree) if word in lanes), default=0)
+        for lane in range(1, count + 1):
+            words = _words(lane, lanes)
             yield condition_text(Cmp(tree.op, rename(tree.left, words), rename(tree.right, words)))
-        if not lanes:
+        if not count:
             yield text

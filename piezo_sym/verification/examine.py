@@ -35,7 +35,8 @@ def examine(iphs: IPHS, points: int = POINTS) -> Iterator[Report]:
     numpy_text = numpy_module(program)
     rows = (*proved.rows, *program_rows(iphs, numpy_text, c_source(program)))
     yield replace(proved, rows=rows)
-    claims = tuple(row for row in rows if row.id in ATTACKED and row.verdict is Verdict.PROVED)
+    proofs = (row for row in rows if row.id in ATTACKED and row.verdict is Verdict.PROVED)
+    claims = tuple((row.id, row.element) for row in proofs)
     attacks = falsify(iphs, module_from(numpy_text), claims, points=points)
     found = {(attack.id, attack.element): attack for attack in attacks}
     attacked = (_attacked(row, found.get((row.id, row.element))) for row in rows)

@@ -63,7 +63,7 @@ def _report(subject: IPHS | Model, model: Model) -> Report:
     from piezo_sym.verification.examine import unfinished
 
     if report is None:
-        row = Row("derivation", "", "the system, derived", Verdict.OPEN)
+        row = Row("derivation", "", "the system, derived", Verdict.OPEN, reason=reason)
         report = Report(model.name, (row,))
     return unfinished(report, reason)
 

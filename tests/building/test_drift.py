@@ -1,14 +1,25 @@
 """``generate --check``: what is committed is what the specs give, and every other file is named."""
 
+import os
+from functools import cache
 from pathlib import Path
 
 import pytest
 
-from piezo_sym import Model, generate
-from piezo_sym.build import MARK, drift, raise_if_drifted, shipped_models
+from piezo_sym import Model, build, generate
+from piezo_sym.build import DIFFERS, ENDS, LEFT, LINK, drift, raise_if_drifted, shipped_models
 from piezo_sym.errors import DriftError
 
 ROOT = Path(__file__).parents[2]
+
+
+#: Each model is rendered once: these tests are of what is done with the texts.
+rendered = cache(build.render)
+
+
+@pytest.fixture(autouse=True)
+def _rendered_once(monkeypatch):
+    monkeypatch.setattr(build, "render", rendered)
 
 
 @pytest.fixture
@@ -78,13 +89,82 @@ def test_files_of_models_not_given_are_no_drift(model, file, out):
     assert drift([model], out) == ()
 
 
-def test_foreign_files_are_left_alone(model, out):
-    (out / "notes.txt").write_text("mine")
-    (out / "piezo_stack" / "photo.png").write_bytes(bytes(range(256)))
+def test_a_left_over_file_is_found_whatever_it_says_of_itself(model, file, out):
+    old = out / "removed" / "removed.py"
+    old.parent.mkdir()
+    text = file.read_text()
+    old.write_text(text.replace(text[: text.index("import")], ""))
+    assert [(d.path, d.fault) for d in drift([model], out, complete=True)] == [(old, LEFT)]
+
+
+@pytest.mark.parametrize(
+    "name", ["notes.txt", ".hidden", "piezo_stack/photo.png", "a/b/c", "x.pyc"]
+)
+def test_whatever_else_is_in_the_folder_is_found(model, out, name):
+    extra = out / name
+    extra.parent.mkdir(parents=True, exist_ok=True)
+    extra.write_bytes(bytes(range(256)))
+    assert [(d.path, d.fault) for d in drift([model], out, complete=True)] == [(extra, LEFT)]
+    own = [extra] if extra.parent.name == "piezo_stack" else []
+    assert [d.path for d in drift([model], out)] == own
+
+
+def test_pythons_own_caches_and_empty_folders_are_no_drift(model, out):
     cache = out / "piezo_stack" / "__pycache__"
     cache.mkdir()
-    (cache / "piezo_stack.cpython-311.pyc").write_text(MARK)
+    (cache / "piezo_stack.cpython-311.pyc").write_text("")
+    (out / "removed").mkdir()
     assert drift([model], out, complete=True) == ()
+    (cache / "notes.txt").write_text("")
+    assert [d.path.name for d in drift([model], out)] == ["notes.txt"]
+
+
+@pytest.mark.parametrize("lines", [1, -1])
+def test_other_line_ends_are_found(model, file, out, lines):
+    file.write_bytes(file.read_bytes().replace(b"\n", b"\r\n", lines))
+    assert [(d.path, d.fault) for d in drift([model], out)] == [(file, ENDS)]
+
+
+@pytest.mark.parametrize("extra", [b"\xff", b"\n", b" ", b"\x0c", b"\r"])
+def test_every_byte_counts(model, file, out, extra):
+    file.write_bytes(file.read_bytes() + extra)
+    assert [(d.path, d.fault) for d in drift([model], out)] == [(file, DIFFERS)]
+
+
+@pytest.mark.parametrize("name", ["piezo_stack/piezo_stack.py", "piezo_stack", ""])
+@pytest.mark.parametrize("complete", [True, False])
+def test_a_link_is_found_even_if_what_it_leads_to_is_right(model, out, name, complete):
+    link, moved = out / name, out.parent / "moved"
+    link.rename(moved)
+    link.symlink_to(moved)
+    found = [(d.path, d.fault) for d in drift([model], out, complete=complete)]
+    assert found == ([(link, LINK)] if name or complete else [])
+
+
+def test_links_that_no_spec_gives_are_found_and_not_followed(model, out):
+    (out / "loop").symlink_to(out)
+    (out / "piezo_stack" / "nowhere").symlink_to("nothing")
+    found = [(d.path.name, d.fault) for d in drift([model], out, complete=True)]
+    assert found == [("loop", LINK), ("nowhere", LINK)]
+
+
+def test_a_folder_in_place_of_a_file_is_found(model, file, out):
+    file.unlink()
+    file.mkdir()
+    assert [(d.path, d.fault) for d in drift([model], out)] == [(file, LINK)]
+
+
+def test_a_pipe_is_found_and_not_read(model, file, out):
+    file.unlink()
+    os.mkfifo(file)
+    os.mkfifo(out / "pipe")
+    found = [(d.path, d.fault) for d in drift([model], out, complete=True)]
+    assert found == [(file, LINK), (out / "pipe", LINK)]
+
+
+def test_a_file_in_place_of_a_models_folder_is_found(model, tmp_path):
+    (tmp_path / "piezo_stack").write_text("")
+    assert {(d.path.name, d.fault) for d in drift([model], tmp_path)} >= {("piezo_stack", LEFT)}
 
 
 def test_a_check_writes_nothing(model, tmp_path):

@@ -65,6 +65,21 @@ def test_a_left_over_file_is_exit_code_1(refused, out):
     )
 
 
+def test_every_drifted_file_is_named_in_one_line_with_the_remedy(call, out):
+    (out / NAME).unlink()
+    (out / "notes.txt").write_text("")
+    answer = call("generate", "--check", "--all", "--out", out)
+    run = f"run `piezo-sym generate --out {out}` and commit the result"
+    assert (answer.code, answer.out.splitlines()) == (
+        1,
+        [
+            f"'{out / NAME}' is missing; {run}",
+            f"'{out / 'notes.txt'}' belongs to no spec given; "
+            "delete it, or name its spec on the command line",
+        ],
+    )
+
+
 def test_a_check_of_some_specs_leaves_other_modules_alone(call, spec_file, out):
     assert call("generate", spec_file(), "--out", out).code == 0
     assert call("generate", "piezo_stack", "--check", "--out", out).code == 0

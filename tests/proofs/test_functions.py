@@ -77,15 +77,6 @@ def test_an_active_law_is_refuted(law):
     assert len(row.witness["i"]) <= 5
 
 
-def test_without_the_library_for_intervals_a_law_is_open_and_says_what_to_install(monkeypatch):
-    from piezo_sym.proofs.signs import decide
-
-    monkeypatch.setattr(decide, "find_spec", lambda _: None)
-    row = passive("z + 4*sin(z)")
-    assert row.verdict is Verdict.OPEN
-    assert "pip install 'piezo_sym[proof]'" in row.reason
-
-
 def test_a_factor_in_front_may_have_kinks():
     assert passive("(z + 4*sin(z))*exp(abs(T/T_0))").verdict is Verdict.PROVED
     assert passive("(z + 5*sin(z))*exp(max(T/T_0, 1))").verdict is Verdict.REFUTED

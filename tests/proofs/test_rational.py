@@ -111,7 +111,9 @@ def fraction(tree, values):
 
 def _wrapped(text):
     exponents = re.sub(r"\*\*\((-?\d+)\)", r"**\1", text)
-    return re.sub(r"(?<![A-Za-z_0-9.*])(?<!\*\*-)(\d+\.?\d*(?:e[+-]?\d+)?)", r"F('\1')", exponents)
+    return re.sub(
+        r"(?<![A-Za-z_0-9.])(?<!\*\*)(?<!\*\*-)(\d+\.?\d*(?:e[+-]?\d+)?)", r"F('\1')", exponents
+    )
 
 
 def is_rational(tree):

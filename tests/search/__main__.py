@@ -19,10 +19,11 @@ def main():
     parser.add_argument("--out", type=Path, default=Path("search.jsonl"))
     parser.add_argument("--specs", type=int, default=SPECS, help="specs of a slice")
     parser.add_argument("--limit", type=float, default=60, help="seconds of a spec")
+    parser.add_argument("--stage", choices=("decide", "verify"), default="decide")
     asked = parser.parse_args()
     done = {record["slice"] for record in records(asked.out)}
     first, last = map(int, asked.slices.split(":"))
-    prover = Prover(asked.limit)
+    prover = Prover(asked.limit, asked.stage)
     try:
         for number in range(first, last):
             if number not in done:
@@ -53,9 +54,11 @@ def summary(found):
         total.update({k: v for k, v in record["counts"].items() if not k.startswith("refused:")})
         seconds.update(record["seconds"])
     laws = sum(record["laws"] for record in found)
-    rate = laws / max(sum(seconds.values()), 1e-9) * 3600
+    spent = sum(v for name, v in seconds.items() if "wall" not in name)
+    rate = laws / max(spent, 1e-9) * 3600
+    rounded = {name: round(value) for name, value in seconds.items()}
     rows = [f"  {name:32} {count}" for name, count in sorted(total.items())]
-    return "\n".join([f"{laws} laws, {dict(seconds)} s, {rate:.0f} laws/hour", *rows])
+    return "\n".join([f"{laws} laws, {rounded} s, {rate:.0f} laws per hour of processor", *rows])
 
 
 if __name__ == "__main__":

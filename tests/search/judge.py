@@ -11,9 +11,9 @@ import numpy as np
 
 from tests.search.attack import counterexample, fails
 from tests.search.laws import names, text
-from tests.search.points import Points, filled, onto
+from tests.search.points import Points, certain, filled, onto
 from tests.search.reading import moving, spec_of
-from tests.search.values import DoubtError, NoValueError, digits, rational
+from tests.search.values import DoubtError, NoValueError, digits, exact, rational
 
 ORDER = ("REFUTED", "OPEN", "PROVED")
 #: Points of the domain that are tried for what a witness leaves open.
@@ -103,13 +103,27 @@ def witness_fault(claim, witness, points):
         given = {name: Fraction(value) for name, value in witness.items()}
     except ValueError:
         return "unread witness"
-    at = _in_variables(claim, given, spec)
-    if at is None:
-        return "false REFUTED"
-    if any(fails(claim, point, spec) for point in _completed(at, points)):
-        return ""
-    missing = [n for n in points.free_names(*spec.domain, *claim.trees) if n not in at]
-    return "unconfirmed REFUTED" if missing else "false REFUTED"
+    for loose in (False, True):  # a co-state of which a state is given too
+        states = moving(spec) if loose else ()
+        at = _in_variables(claim, {n: v for n, v in given.items() if n not in states}, spec)
+        tried = list(_completed(at, points)) if at is not None else []
+        if any(fails(claim, point, spec) for point in tried):
+            return "loose REFUTED" * loose
+    known = at is not None and set(names(*claim.trees)) <= set(at)
+    inside = known and any(certain(point, spec) for point in tried)
+    broken = at is not None and _outside(at, spec)
+    return "false REFUTED" if inside or broken else "unconfirmed REFUTED"
+
+
+def _outside(at, spec):
+    """Return whether a condition is certainly broken, whatever the names not given are."""
+    for condition in spec.domain:
+        try:
+            if set(names(condition)) <= set(at) and not exact(condition, at):
+                return True
+        except (NoValueError, DoubtError):
+            continue
+    return False
 
 
 def _in_variables(claim, given, spec):
@@ -135,8 +149,6 @@ def _completed(at, points):
             point = _tied(name, point, at[name], fixed, spec)
         if all(_agrees(name, point, at[name], spec) for name in spec.derived if name in at):
             yield point
-        if set(spec.own) == set(fixed):
-            return
 
 
 def _tied(name, point, value, fixed, spec):

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import threading
 import time
+from itertools import pairwise
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -20,14 +21,14 @@ ROOT = Path(__file__).parents[2]
 class Prover:
     """A process that derives and verifies; it is started anew after it was killed."""
 
-    def __init__(self, limit):
-        self.limit, self.process, self.lines = limit, None, None
+    def __init__(self, limit, stage="decide"):
+        self.limit, self.stage, self.process, self.lines = limit, stage, None, None
 
     def rows(self, text):
         """Return {"rows": ...}, or {"error": type, "text": ..., "stage": ...}, and the seconds."""
         if self.process is None or self.process.poll() is not None:
             self._start()
-        self.process.stdin.write(json.dumps(text) + "\n")
+        self.process.stdin.write(json.dumps([text, self.stage]) + "\n")
         self.process.stdin.flush()
         try:
             line = self.lines.get(timeout=self.limit)
@@ -50,6 +51,18 @@ class Prover:
         threading.Thread(target=_read, args=(self.process.stdout, self.lines), daemon=True).start()
         self.lines.get(timeout=60)  # it has imported what it needs
 
+    def cpu(self):
+        """Return the seconds of processor that the process and its solvers have used so far."""
+        ticks = 0
+        for stat in Path("/proc").glob("[0-9]*/stat") if self.process else ():
+            try:
+                fields = stat.read_text().rpartition(")")[2].split()
+            except OSError:  # it ended meanwhile
+                continue
+            if int(fields[2]) == self.process.pid:
+                ticks += int(fields[11]) + int(fields[12])
+        return ticks / os.sysconf("SC_CLK_TCK")
+
     def close(self):
         """End the process and the solvers that it started."""
         if self.process is not None:
@@ -66,10 +79,11 @@ def _read(stream, lines):
     stream.close()
 
 
-def proved(text):
-    """Return what the package says of a spec."""
+def proved(text, until="decide"):
+    """Return what the package says of a spec: the prover alone ("decide"), or all ("verify")."""
     from piezo_sym import derive, verify
     from piezo_sym.errors import PiezoError
+    from piezo_sym.proofs import decide
     from piezo_sym.spec.load import parse
 
     times, stage = [time.perf_counter()], "load"
@@ -79,7 +93,7 @@ def proved(text):
         iphs = derive(model)
         times.append(time.perf_counter())
         stage = "verify"
-        rows = verify(iphs).rows
+        rows = (decide if until == "decide" else verify)(iphs).rows
     except PiezoError as error:
         return {"error": type(error).__name__, "text": str(error), "stage": stage}
     except Exception as error:  # whatever happens is a finding
@@ -96,7 +110,7 @@ def proved(text):
         for row in rows
         if row.id != "units"
     ]
-    return {"rows": plain, "seconds": [b - a for a, b in zip(times, times[1:], strict=False)]}
+    return {"rows": plain, "seconds": [b - a for a, b in pairwise(times)]}
 
 
 def main():
@@ -105,7 +119,7 @@ def main():
 
     print(json.dumps("ready"), flush=True)
     for line in sys.stdin:
-        print(json.dumps(proved(json.loads(line))), flush=True)
+        print(json.dumps(proved(*json.loads(line))), flush=True)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ from copy import deepcopy
 
 import pytest
 from pydantic import ValidationError
-from spec_tools import MINIMAL, SHIPPED, edited, refusal
+from spec_tools import MINIMAL, SHIPPED, edited, refusal, refused_edit
 
 from piezo_sym import Model, load
 from piezo_sym.errors import SpecError
@@ -269,6 +269,51 @@ temperature = "T_0*exp(S/c_0)"
         ('"T > T_0"', '"T_body > T_0", "T_shell >= T_0"'),
     )
     assert temperatures(model) == {"T_body": "body", "T_shell": "shell"}
+
+
+WIDTH = "[inputs]", 'b = { value = 1, unit = "m" }\n[inputs]'
+BREADTH = "[inputs]", 'b = { value = -1, unit = "m" }\n[inputs]'
+#: Where a half width may stand besides in laws.
+WIDE = {
+    "in a condition": ('"lam >= 0"', '"lam >= 0", "saturate(q, b) < 2"'),
+    "in a width": ('"lam >= 0"', '"lam >= 0", "deadzone(q, saturate(1, b)) < 2"'),
+    "in the condition of a choice": (
+        '"lam >= 0"',
+        '"lam >= 0", "(q if q < saturate(q, b) else 0) <= 0"',
+    ),
+    "in the start": ("[initial]", '[initial]\nq = "deadzone(q_l, b)"'),
+    "in the start of lanes": ("[initial]", '[initial]\nphi = [0, "0*deadzone(q_l, b)"]'),
+}
+
+
+@pytest.mark.parametrize("edit", WIDE.values(), ids=WIDE)
+def test_half_widths_are_not_negative_wherever_they_stand(edit):
+    assert "b >= 0" in [condition_text(c.tree) for c in conditions(edited(WIDTH, edit))]
+    assert "outside the domain: b = -1; expected" in refused_edit(BREADTH, edit)
+
+
+def test_a_half_width_is_the_parameter_where_the_letter_of_that_name_is_not_the_laws():
+    model = edited(
+        ("[inputs]", 'phi = { value = 1, unit = "A" }\n[inputs]'),
+        ('state = "phi"', 'state = "flux"'),
+        ("deadzone(i, i_0)", "deadzone(i, phi)"),
+    )
+    found = [condition_text(c.tree) for c in conditions(model)]
+    assert "phi >= 0" in found
+    assert "flux >= 0" not in found
+
+
+def test_plain_half_widths_add_no_condition_unless_they_are_negative():
+    before = len(conditions(load("piezo_stack")))
+    edit = ('"lam >= 0"', '"lam >= 0", "saturate(q, {}) < 2"')
+    assert len(conditions(edited((edit[0], edit[1].format(1))))) == before + 1
+    assert "expected '-1 >= 0'" in refused_edit((edit[0], edit[1].format(-1)))
+
+
+def test_conditions_with_choices_are_spelled_as_they_are_read():
+    text = "(q if q < 1 else 2) < (3 if q < 1 else 4)"
+    model = edited(('"lam >= 0"', f'"lam >= 0", "{text}"'))
+    assert text in [condition_text(c.tree) for c in conditions(model)]
 
 
 def test_laws_keep_their_letters_whatever_the_state_is_called():

@@ -3,7 +3,7 @@
 import pytest
 from spec_tools import MINIMAL, edited, refusal
 
-from piezo_sym import load
+from piezo_sym import derive, load
 from piezo_sym.errors import UsageError
 from piezo_sym.spec.circuit import circuit_of
 from piezo_sym.spec.elements.ports import Resistor, Storage
@@ -85,6 +85,47 @@ def test_conditions_of_a_list_become_one_a_lane():
         "i_0_2 >= 0",
         "lam >= 0",
     )
+
+
+CONDITION = '"lam >= 0"', '"lam >= 0", "{}"'
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("phi < 1", "phi_{0} < 1"),
+        ("phi*q < T", "phi_{0}*q < T"),
+        ("phi <= L", "phi_{0} <= L_{0}"),
+        ("(phi if phi > 0 else -phi) < 2", "(phi_{0} if phi_{0} > 0 else -phi_{0}) < 2"),
+    ],
+)
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_conditions_on_a_banks_state_become_one_a_lane(text, expected, count):
+    model = edited(TWO_VALUES, (CONDITION[0], CONDITION[1].format(text)))
+    lanes = unroll(model, {"hysteron": count})
+    assert lanes.domain.assume[6:] == tuple(expected.format(n + 1) for n in range(count))
+
+
+def test_a_system_with_a_condition_on_a_banks_state_is_written_out():
+    model = edited((CONDITION[0], CONDITION[1].format("phi**2 < 1")))
+    assert "phi_2" in {str(symbol) for symbol in derive(model).expand().x}
+
+
+@pytest.mark.parametrize(("start", "second"), [('"L"', "L_2"), ('["L", "L/2"]', "L_2/2")])
+def test_starts_in_a_banks_list_become_one_a_lane(start, second):
+    lanes = unroll(edited(TWO_VALUES, ("[initial]", f"[initial]\nphi = {start}")), {})
+    assert (lanes.initial["phi_1"], lanes.initial["phi_2"]) == ("L_1", second)
+
+
+def test_a_letter_is_no_parameter_of_the_same_name():
+    model = edited(
+        ("[inputs]", 'phi = { value = [1, 2], unit = "1" }\n[inputs]'),
+        ('state = "phi"', 'state = "flux"'),
+        ('inductance = "L"', 'inductance = "L*(1 + phi**2)"'),
+        ('"rho/(T - T_0)*deadzone(i, i_0)"', '"phi*rho/(T - T_0)*deadzone(i, i_0)"'),
+    )
+    lane = unroll(model, {}).elements["hysteron_2"]
+    assert (lane.inductance, lane.voltage[:5]) == ("L*(1 + phi**2)", "phi_2")
 
 
 def test_conditions_of_the_kind_are_one_a_lane():

@@ -203,6 +203,29 @@ def test_a_start_of_a_lane_outside_the_domain():
     assert "phi = -1; expected 'phi >= 0' in lane 2" in message
 
 
+@pytest.mark.parametrize(
+    "condition",
+    ["F_ext > 0", "q > 0", "phi_h > 0", "T > 300", "1 + lam/1e20 <= 1", "T_0*T_0 > T_0**2"],
+)
+def test_defaults_and_the_start_lie_in_the_domain(condition):
+    message = refused_edit(
+        ('state = "phi"', 'state = "phi_h"'), ('"lam >= 0"', f'"lam >= 0", "{condition}"')
+    )
+    assert message.startswith("spec: domain.assume[6]: the values given are outside the domain: ")
+    assert message.endswith("; change a value or the domain")
+
+
+@pytest.mark.parametrize("condition", ["1 + lam/1e20 > 1", "exp(1e9*d) > 1", "exp(0 - 1e9*d) > 0"])
+def test_what_rounding_hides_is_in_the_domain(condition):
+    edited(('"lam >= 0"', f'"lam >= 0", "{condition}"'))
+
+
+@pytest.mark.parametrize("T_e", [298.15, 297.003, 297.018, 297.002, 297.01])
+@pytest.mark.parametrize("condition", ["T >= T_e", "T <= T_e"])
+def test_a_start_on_an_edge_of_the_domain_is_not_refused_for_its_rounding(T_e, condition):
+    edited(("default = 298.15", f"default = {T_e}"), ('"lam >= 0"', f'"lam >= 0", "{condition}"'))
+
+
 @pytest.mark.parametrize("start", ["log(0*M - 1*M)", "1/(M - M)", "exp(1e9*M)"])
 def test_a_start_without_a_value(start):
     message = refused_edit(('"c_0*log(T_e/T_0)"', f'"{start}"'))
@@ -234,3 +257,15 @@ def test_states_of_two_banks_in_one_condition():
 def test_two_banks_with_lists_of_their_own():
     model = edited(TWO_VALUES, *WITH_SECOND_BANK)
     assert [len(model.parameters[name].si) for name in ("L", "L2")] == [2, 3]
+
+
+def test_every_body_starts_in_the_domain():
+    """Two bodies, so that each has a temperature of its own; the first starts at T_e."""
+    second = '[elements.other]\nkind = "thermal_mass"\ntemperature = "T_0*exp(S/c_0)"\n'
+    edits = (
+        ("[elements.ambient]", f"{second}\n[elements.ambient]"),
+        ('"T > T_0"', '"T_body > T_0", "T_other >= T_0"'),
+    )
+    edited(*edits)
+    message = refused_edit(*edits, ("[initial]", '[initial]\nS_other = "-1e-9*c_0"'))
+    assert "T_other = 296.15, T_0 = 296.15; expected 'T_other >= T_0'" in message

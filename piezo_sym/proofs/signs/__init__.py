@@ -9,23 +9,25 @@ enclosures  tree, window -> interval and jet      intervals, jets, recentre, van
 certificate what was shown, as data               for a checker
 """
 
-from piezo_sym.proofs.signs.cases import Positive, cases
+from piezo_sym.proofs.signs.cases import Positive, cases, opposite
 from piezo_sym.proofs.signs.certificate import Case, Term
-from piezo_sym.proofs.signs.decide import BUDGET, Decision, Domain, decide_sign
+from piezo_sym.proofs.signs.decide import Decision, Domain, decide_sign
 from piezo_sym.proofs.signs.reduce import Reduction, reductions
-from piezo_sym.proofs.signs.sums import grouped, summands
+from piezo_sym.proofs.signs.sums import balanced, choice_outside, grouped, summands
 
 __all__ = [
-    "BUDGET",
     "Case",
     "Decision",
     "Domain",
     "Positive",
     "Reduction",
     "Term",
+    "balanced",
     "cases",
+    "choice_outside",
     "decide_sign",
     "grouped",
+    "opposite",
     "reductions",
     "summands",
 ]

@@ -43,6 +43,11 @@ def cases(law: Expr, letter: str, positive: Positive) -> tuple[tuple[Guards, Exp
     return found if len(found) <= MOST else None
 
 
+def opposite(condition: Cmp) -> Cmp:
+    """Return the comparison that holds where one does not."""
+    return Cmp(OPPOSITE[condition.op], condition.left, condition.right)
+
+
 def _split(
     law: Expr, letter: str, positive: Positive, guards: Guards
 ) -> Iterator[tuple[Guards, Expr]]:
@@ -51,7 +56,7 @@ def _split(
         yield guards, law
         return
     for holds in (True, False):
-        guard = choice if holds else Cmp(OPPOSITE[choice.op], choice.left, choice.right)
+        guard = choice if holds else opposite(choice)
         yield from _split(_taken(law, choice, holds), letter, positive, (*guards, guard))
 
 

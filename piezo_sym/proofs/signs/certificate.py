@@ -10,12 +10,12 @@ wherever it is defined.  A law of zero has no terms.  A guard has no letter in i
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import final
 
 from piezo_sym.proofs.signs.intervals import INF
-from piezo_sym.spec.expressions import Cmp, Expr, rename
+from piezo_sym.spec.expressions import ZERO, Cmp, Expr, If, rename
 from piezo_sym.spec.text import spell
 
 #: The letter of f in a certificate.
@@ -61,31 +61,35 @@ class Term:
     prefactor : may hold the letter; ``sign*prefactor >= 0`` follows from the domain and the guards,
         for every value of the letter, wherever the prefactor is defined.
     sign : 1 or -1.
-    scale : (base, power); each base is free of the letter and > 0 by the domain and the guards;
-        s**power, not base, is rational only for whole powers.
-    f : a tree in the letter's name alone, which stands for s: ``sign*f(s)*s >= 0`` for all real s,
-        and f is defined there.
+    scale : (base, power); each base is free of the letter and > 0 by the domain and the guards.
+    f : a tree in the letter's name alone, which stands for s: f is defined and ``sign*f(s)*s >= 0``
+        for all real s.  None says that the prefactor is law*letter itself.
     rays : where that was shown; every real s is a centre of these or lies in one of their windows.
     """
 
     law: Expr
     letter: str
     prefactor: Expr
-    sign: int
-    scale: tuple[tuple[Expr, Fraction], ...]
-    f: Expr
-    rays: tuple[Windows, ...]
+    sign: int = 1
+    scale: tuple[tuple[Expr, Fraction], ...] = ()
+    f: Expr | None = None
+    rays: tuple[Windows, ...] = ()
+
+    def where(self, condition: Cmp) -> Term:
+        """Return the term that counts where a condition holds and is zero elsewhere."""
+        law, prefactor = (If(part, condition, ZERO) for part in (self.law, self.prefactor))
+        return replace(self, law=law, prefactor=prefactor)
 
     def as_data(self) -> dict[str, object]:
         """Return plain data; a power that is not whole is text such as 1/2."""
+        scale = {spell(b): int(e) if e.denominator == 1 else str(e) for b, e in self.scale}
+        f = None if self.f is None else spell(rename(self.f, {self.letter: LETTER}))
         return {
             "law": spell(self.law),
             "prefactor": spell(self.prefactor),
             "sign": self.sign,
-            "scale": {
-                spell(base): int(e) if e.denominator == 1 else str(e) for base, e in self.scale
-            },
-            "f": spell(rename(self.f, {self.letter: LETTER})),
+            "scale": scale,
+            "f": f,
             "rays": [ray.as_data() for ray in self.rays],
         }
 

@@ -13,7 +13,6 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from importlib.util import find_spec
 from itertools import pairwise
 from typing import final
 
@@ -104,9 +103,6 @@ def decide_sign(f: Expr, name: str, domain: Domain = REALS, budget: int = BUDGET
     Decision
         PROVED is a theorem.  REFUTED gives a rational number in the domain at which f < 0.
     """
-    if find_spec("flint") is None:
-        reason = "python-flint is missing: pip install 'piezo_sym[proof]'"
-        return Decision(Verdict.OPEN, reason=reason)
     if others := [other for other in names(f) if other != name]:
         return Decision(Verdict.OPEN, reason=f"depends on {', '.join(others)} too")
     if any(isinstance(node, LaneSum) for node in walk(f)):

@@ -69,7 +69,10 @@ class Reduction:
 
     def back(self, value: Fraction, values: Mapping[str, Fraction]) -> Fraction | None:
         """Return the letter's value for a value of s and of the parameters, if it is rational."""
-        size = value_of(self.scale, values)
+        try:
+            size = value_of(self.scale, values)
+        except (ArithmeticError, ValueError, KeyError):
+            return None
         return value * size if isinstance(size, Fraction) else None
 
 
@@ -100,11 +103,7 @@ class Setting:
 def reductions(law: Expr, letter: str, positive: Positive) -> list[Reduction]:
     """Return the ways of a law to a function of its letter alone, least in front first.
 
-    Parameters
-    ----------
-    law : a tree.
-    letter : the variable, which may take every real value.
-    positive : whether a tree without the letter is positive.
+    The letter may take every real value; `positive` says if a tree without it is positive.
     """
     plain, divided, single = settings(law, letter, positive)
     made = [_reduction(law, setting) for setting in (plain, *divided, *single)]
@@ -114,8 +113,12 @@ def reductions(law: Expr, letter: str, positive: Positive) -> list[Reduction]:
 
 def _reduction(law: Expr, setting: Setting) -> tuple[Reduction | None, int]:
     """Return a law as far as it comes down in one unit, and how many factors do not."""
-    inside, outside = Product(Fraction(1), {}), list[Expr]()
+    inside = Product(Fraction(1), {})
+    front, outside = list[Expr](), list[Expr]()
     for factor in _factors(law):
+        if names(factor) and setting.letter not in names(factor):
+            front.append(factor)
+            continue
         part = factored(factor, setting)
         if {*names(part.bound)} <= {setting.letter}:
             inside = _times(inside, part)
@@ -124,7 +127,8 @@ def _reduction(law: Expr, setting: Setting) -> tuple[Reduction | None, int]:
     f = _tree(Product(inside.number, {}, inside.bound))
     if outside and setting.letter not in names(f):
         return None, 0
-    prefactors = (*(power(base, e) for base, e in inside.free.items()), *outside)
+    free = (power(base, e) for base, e in inside.free.items())
+    prefactors = (*front, *free, *outside)
     units = tuple(setting.scale.items())
     return Reduction(prefactors, f, setting.letter, units), len(outside)
 
@@ -165,10 +169,8 @@ def _arguments(node: Node) -> tuple[Expr, ...]:
     match node:
         case Call(_, args):
             return args
-        case Pow(base, _):
-            return (base,)
-        case Div():
-            return (node,)
+        case Pow(part, _) | (Div() as part):
+            return (part,)
     return ()
 
 
@@ -284,9 +286,8 @@ def _tree(a: Product) -> Expr:
     if not factors:
         return Num(a.number)
     tree = factors[0] if len(factors) == 1 else Mul(*factors)
-    if a.number == 1:
-        return tree
-    return Neg(tree) if a.number == -1 else Mul(Num(a.number), tree)
+    signed = Neg(tree) if a.number == -1 else Mul(Num(a.number), tree)
+    return tree if a.number == 1 else signed
 
 
 def _product(powers: Powers) -> Expr:

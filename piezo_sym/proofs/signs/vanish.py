@@ -30,6 +30,12 @@ def vanishes(tree: Expr, at: Fraction) -> bool:
     return value is not None and not value
 
 
+def rational_at(tree: Expr, at: Fraction) -> Fraction | None:
+    """Return the value of a tree at a number if it is sure to be this rational."""
+    value = _value(tree, at)
+    return None if value is None else _rational(value)
+
+
 def _value(node: Expr, at: Fraction) -> Sum | None:
     """Return the value as a sum; None where there may be a jump or a division by zero."""
     match node:

@@ -1,12 +1,20 @@
-"""Values of a spec: lanes of the right number, starts that exist, all inside the domain."""
+"""Values of a spec: lanes of the right number, starts that exist, all inside the domain.
+
+Parameters and the inputs' defaults are what their doubles are, exactly; initial states and
+temperatures are intervals.  A condition that is then neither true nor false refuses nothing here.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import ChainMap
+from collections.abc import Iterable, Iterator, Mapping
+from fractions import Fraction
+from typing import TypeAlias
 
 from piezo_sym.errors import SpecError, quote
 from piezo_sym.spec.elements.base import state_symbol
-from piezo_sym.spec.expressions import evaluate, holds, names
+from piezo_sym.spec.enclosure import Interval, UndecidedError, holds_surely, interval_of
+from piezo_sym.spec.expressions import Expr, Num, names
 from piezo_sym.spec.parse import parse_law
 from piezo_sym.spec.tables import (
     Condition,
@@ -19,19 +27,38 @@ from piezo_sym.spec.tables import (
     temperatures,
 )
 
+#: The value of a name, or its values, one per lane of a bank.
+Values: TypeAlias = tuple[Interval, ...]
+
 
 def check_values(spec: Tables) -> None:
     """Check lists against banks, then every condition of the domain, lane by lane."""
     _check_lists(spec)
-    fixed = {name: entry.si for name, entry in spec.inputs.items()}
-    fixed |= {name: p.lanes[0] for name, p in spec.parameters.items() if len(p.lanes) == 1}
-    lists = {name: p.lanes for name, p in spec.parameters.items() if len(p.lanes) > 1}
-    starts = {s: _starts(spec, s, fixed, lists) for s in states(spec)}
-    lists |= {s: values for s, values in starts.items() if len(values) > 1}
-    fixed |= {s: values[0] for s, values in starts.items() if len(values) == 1}
-    fixed |= _temperatures(spec, fixed)
+    lanes: dict[str, Values] = {n: (_exactly(entry.si),) for n, entry in spec.inputs.items()}
+    lanes |= {name: tuple(map(_exactly, p.lanes)) for name, p in spec.parameters.items()}
+    lanes |= {symbol: tuple(_starts(spec, symbol, lanes)) for symbol in states(spec)}
+    for symbol, body in temperatures(spec).items():
+        element = spec.elements[body]
+        law, state = element.law("temperature"), lanes[state_symbol(element, body)]
+        values = _at(0, names(law), ChainMap({element.letter: state}, lanes))
+        lanes[symbol] = (_value(law, values, f"elements.{body}.temperature"),)
     for condition in conditions(spec):
-        _check_condition(condition, fixed, lists)
+        _check_condition(condition, lanes)
+
+
+def _exactly(value: float) -> Interval:
+    return Fraction(value), Fraction(value)
+
+
+def _at(lane: int, words: Iterable[str], lanes: Mapping[str, Values]) -> dict[str, Interval]:
+    """Return the values that names have in a lane, counted from 0."""
+    here = {word: lanes[word] for word in words}
+    return {word: values[lane if len(values) > 1 else 0] for word, values in here.items()}
+
+
+def _count(words: Iterable[str], lanes: Mapping[str, Values]) -> int:
+    """Return in how many lanes names have values of their own; 1 if all lanes are alike."""
+    return max((len(lanes[word]) for word in words), default=1)
 
 
 def _check_lists(spec: Tables) -> None:
@@ -48,65 +75,37 @@ def _check_lists(spec: Tables) -> None:
             raise SpecError(f"a list of {count} values is given", where, expected)
 
 
-def _starts(
-    spec: Tables, symbol: str, fixed: Mapping[str, float], lists: Mapping[str, tuple[float, ...]]
-) -> tuple[float, ...]:
-    """Return the initial values of a state, one, or one a lane where lanes differ."""
-    start = spec.initial.get(symbol, 0.0)
-    if isinstance(start, tuple):
-        return tuple(_start(part, n, symbol, fixed, lists) for n, part in enumerate(start))
-    words = names(parse_law(start, f"initial.{symbol}")) if isinstance(start, str) else ()
-    lanes = max((len(lists[word]) for word in words if word in lists), default=1)
-    return tuple(_start(start, n, symbol, fixed, lists) for n in range(lanes))
+def _starts(spec: Tables, symbol: str, lanes: Mapping[str, Values]) -> Iterator[Interval]:
+    """Yield the initial values of a state, one, or one per lane where lanes differ."""
+    start, where = spec.initial.get(symbol, 0.0), f"initial.{symbol}"
+    parts = start if isinstance(start, tuple) else (start,)
+    for n, part in enumerate(parts):
+        tree = parse_law(part, where) if isinstance(part, str) else Num(Fraction(part))
+        words = names(tree)
+        for lane in range(_count(words, lanes)) if len(parts) == 1 else (n,):
+            yield _value(tree, _at(lane, words, lanes), where)
 
 
-def _start(
-    start: str | float,
-    lane: int,
-    symbol: str,
-    fixed: Mapping[str, float],
-    lists: Mapping[str, tuple[float, ...]],
-) -> float:
-    """Return the initial value of a state in one lane."""
-    if not isinstance(start, str):
-        return start
-    tree = parse_law(start, f"initial.{symbol}")
-    here = {word: lists[word][lane] for word in names(tree) if word in lists}
-    return _value(tree, {**fixed, **here}, f"initial.{symbol}")
-
-
-def _value(tree: object, values: Mapping[str, float], where: str) -> float:
+def _value(tree: Expr, values: Mapping[str, Interval], where: str) -> Interval:
     try:
-        return evaluate(tree, values)  # type: ignore[arg-type]
-    except (ArithmeticError, ValueError):
+        return interval_of(tree, values)
+    except (ArithmeticError, ValueError, UndecidedError):
         remedy = "check the values of its parameters"
         raise SpecError("has no finite real value", where, remedy=remedy) from None
 
 
-def _temperatures(spec: Tables, values: Mapping[str, float]) -> dict[str, float]:
-    found = {}
-    for symbol, body in temperatures(spec).items():
-        element = spec.elements[body]
-        here = {**values, element.letter: values[state_symbol(element, body)]}
-        where = f"elements.{body}.temperature"
-        found[symbol] = _value(element.law("temperature"), here, where)
-    return found
-
-
-def _check_condition(
-    condition: Condition, fixed: Mapping[str, float], lists: Mapping[str, tuple[float, ...]]
-) -> None:
+def _check_condition(condition: Condition, lanes: Mapping[str, Values]) -> None:
     words = names(condition.tree)
-    lanes = max((len(lists[word]) for word in words if word in lists), default=1)
-    for lane in range(lanes):
-        values = {**fixed, **{word: lists[word][lane] for word in words if word in lists}}
+    count = _count(words, lanes)
+    for lane in range(count):
+        values = _at(lane, words, lanes)
         try:
-            good = holds(condition.tree, values)
+            outside = holds_surely(condition.tree, values) is False
         except (ArithmeticError, ValueError):
-            good = False
-        if not good:
-            given = ", ".join(f"{word} = {values[word]:.6g}" for word in words)
-            what = f"the values given are outside the domain: {given}"
-            at = f" in lane {lane + 1}" if lanes > 1 else ""
+            outside = True
+        if outside:
+            given = ", ".join(f"{word} = {float(low):.6g}" for word, (low, _) in values.items())
+            what = f"the values given are outside the domain: {given or 'no value is inside'}"
+            at = f" in lane {lane + 1}" if count > 1 else ""
             expected = quote(condition_text(condition.tree)) + at
             raise SpecError(what, condition.where, expected, "change a value or the domain")

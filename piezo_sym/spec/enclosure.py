@@ -1,0 +1,230 @@
+"""Where the value of a law lies, for certain: two rationals with the law's exact value between.
+
+Input: a law's tree and an interval for each of its names.  Output: an interval that contains every
+value of the law, or, for a comparison, whether it holds: True, False, or None where the intervals
+do not tell.  Rational arithmetic is exact, but for numbers too long to be worth it, which are
+rounded outward to doubles; the C library's functions are taken to err by less than SLACK.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from itertools import product
+from typing import TypeAlias, final
+
+from piezo_sym.spec.expressions import (
+    FUNCTIONS,
+    ONE,
+    ZERO,
+    Add,
+    Call,
+    Cmp,
+    Div,
+    Expr,
+    If,
+    LaneSum,
+    Mul,
+    Neg,
+    Num,
+    Pow,
+    Sym,
+)
+
+Interval: TypeAlias = tuple[Fraction, Fraction]
+
+LONGEST = 4096  # bits of a bound
+LARGEST, TINY = Fraction(sys.float_info.max), Fraction(sys.float_info.min)
+SLACK = Fraction(1, 2**40)
+#: Where the C library's functions have rational values.
+EXACT = {
+    (function, Fraction(at)): Fraction(value)
+    for function, at, value in [
+        ("exp", 0, 1),
+        ("log", 1, 0),
+        ("tanh", 0, 0),
+        ("sin", 0, 0),
+        ("cos", 0, 1),
+    ]
+}
+
+
+@final
+class UndecidedError(Exception):
+    """An interval in which a law has a value here and none there, or one beyond all doubles."""
+
+
+def holds_surely(condition: Cmp, values: Mapping[str, Interval]) -> bool | None:
+    """Return whether a comparison holds, or None where that is not certain.
+
+    Raises
+    ------
+    ArithmeticError, ValueError
+        Where one of its sides has no real value.
+    """
+    try:
+        left, right = interval_of(condition.left, values), interval_of(condition.right, values)
+    except UndecidedError:
+        return None
+    if condition.op in {"<", "<="}:
+        left, right = right, left
+    if condition.op in {">", "<"}:
+        return True if left[0] > right[1] else False if left[1] <= right[0] else None
+    return True if left[0] >= right[1] else False if left[1] < right[0] else None
+
+
+def interval_of(node: Expr, values: Mapping[str, Interval]) -> Interval:
+    """Return an interval that contains the value of `node`.
+
+    Raises
+    ------
+    ArithmeticError, ValueError
+        Where the law has no real value (1/0, log(0)), whatever its names are in their intervals.
+    UndecidedError
+        Where that depends on what they are.
+    """
+    match node:
+        case Num(value):
+            return value, value
+        case Sym(name):
+            return values[name]
+        case Neg(arg):
+            low, high = interval_of(arg, values)
+            return -high, -low
+        case Add(terms):
+            lows, highs = zip(*(interval_of(term, values) for term in terms), strict=True)
+            return _short(sum(lows, Fraction(0)), sum(highs, Fraction(0)))
+        case Mul(left, right):
+            return _product(interval_of(left, values), interval_of(right, values))
+        case Div(left, right):
+            return _product(interval_of(left, values), _inverse(interval_of(right, values)))
+        case Pow(base, exponent):
+            return _power(interval_of(base, values), exponent)
+        case Call(function, args):
+            return _call(function, args, values)
+        case If(then, condition, other):
+            chosen = holds_surely(condition, values)
+            if chosen is not None:
+                return interval_of(then if chosen else other, values)
+            return _either(then, other, values)
+        case LaneSum():
+            msg = "a sum over lanes has no value outside a program"
+            raise TypeError(msg)
+
+
+def _either(then: Expr, other: Expr, values: Mapping[str, Interval]) -> Interval:
+    """Return what contains both branches of a choice that is not certain."""
+    try:
+        parts = interval_of(then, values), interval_of(other, values)
+    except (ArithmeticError, ValueError) as cause:  # of a branch that is perhaps not taken
+        raise UndecidedError from cause
+    return min(parts[0][0], parts[1][0]), max(parts[0][1], parts[1][1])
+
+
+def _call(function: str, args: tuple[Expr, ...], values: Mapping[str, Interval]) -> Interval:
+    match function, args:
+        case "abs", (z,):
+            return interval_of(Call("max", (z, Neg(z))), values)
+        case "sign", (z,):
+            other = If(Neg(ONE), Cmp("<", z, ZERO), ZERO)
+            return interval_of(If(ONE, Cmp(">", z, ZERO), other), values)
+        case "deadzone", (z, w):
+            above = Call("max", (Add((z, Neg(w))), ZERO))
+            return interval_of(Add((above, Call("min", (Add((z, w)), ZERO)))), values)
+        case "saturate", (z, w):
+            return interval_of(Call("min", (Call("max", (z, Neg(w))), w)), values)
+    lows, highs = zip(*(interval_of(arg, values) for arg in args), strict=True)
+    match function:
+        case "min" | "max":
+            choose = min if function == "min" else max
+            return choose(lows), choose(highs)
+        case "sqrt":
+            return _power((lows[0], highs[0]), Fraction(1, 2))
+    return _library(function, lows[0], highs[0])
+
+
+def _library(function: str, low: Fraction, high: Fraction) -> Interval:
+    """Return the interval of a function of the C library."""
+    if low == high and (function, low) in EXACT:
+        return EXACT[function, low], EXACT[function, low]
+    if function == "log" and low <= 0 < high:
+        raise UndecidedError
+    value = FUNCTIONS[function][1]
+    if function in {"sin", "cos"}:  # neither changes faster than its argument
+        near, off = Fraction(value(_beside(low, -1))), high - low + SLACK + abs(low) / 2**52
+        return near - off, near + off
+    return _near(value, low, -1), _near(value, high, 1)
+
+
+def _near(function: Callable[[float], float], bound: Fraction, side: int) -> Fraction:
+    """Return a bound of a rising function, safely to a side of its value."""
+    try:
+        value = Fraction(function(_beside(bound, side)))
+    except OverflowError as cause:
+        raise UndecidedError from cause
+    return value + side * (SLACK * abs(value) + TINY)
+
+
+def _short(low: Fraction, high: Fraction) -> Interval:
+    """Return two bounds, each rounded outward if it is too long."""
+    bits = max(n.bit_length() for end in (low, high) for n in end.as_integer_ratio())
+    return (low, high) if bits <= LONGEST else (_double(low, -1), _double(high, 1))
+
+
+def _double(bound: Fraction, side: int) -> Fraction:
+    return Fraction(_beside(bound, side))
+
+
+def _beside(bound: Fraction, side: int) -> float:
+    """Return the double at a bound, or else the next one to a side of it."""
+    if abs(bound) >= LARGEST:
+        raise UndecidedError
+    near = float(bound)
+    outside = near >= bound if side > 0 else near <= bound
+    return near if outside else math.nextafter(near, side * math.inf)
+
+
+def _product(left: Interval, right: Interval) -> Interval:
+    ends = [a * b for a, b in product(left, right)]
+    return _short(min(ends), max(ends))
+
+
+def _inverse(divisor: Interval) -> Interval:
+    """Return the interval of 1/divisor."""
+    low, high = divisor
+    if low == high == 0:
+        raise ZeroDivisionError
+    if low <= 0 <= high:
+        raise UndecidedError
+    return 1 / high, 1 / low
+
+
+def _power(base: Interval, exponent: Fraction) -> Interval:
+    low, high = base
+    if exponent < 0:
+        return _inverse(_power(base, -exponent))
+    if exponent.denominator == 1:
+        return _whole_power(low, high, exponent.numerator)
+    if high < 0:
+        msg = "fractional power of a negative number"
+        raise ArithmeticError(msg)
+    if low < 0:
+        raise UndecidedError
+    return _root(low, exponent, -1), _root(high, exponent, 1)
+
+
+def _whole_power(low: Fraction, high: Fraction, power: int) -> Interval:
+    if power % 2 == 0 and low < 0:
+        low, high = (-high, -low) if high <= 0 else (Fraction(0), max(-low, high))
+    return _short(low**power, high**power)
+
+
+def _root(bound: Fraction, exponent: Fraction, side: int) -> Fraction:
+    """Return a fractional power of a bound; exactly, if it is a double."""
+    power = float(exponent)
+    near = Fraction(_beside(bound, side) ** power)
+    if near**exponent.denominator == bound**exponent.numerator:
+        return near
+    return _near(lambda z: z**power, bound, side)
