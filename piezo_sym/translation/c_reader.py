@@ -26,7 +26,7 @@ from piezo_sym.translation.c_scope import CALLS, Helper, Listed, Scope, Variable
 from piezo_sym.translation.c_text import Tokens
 from piezo_sym.translation.expressions import PLAIN, WHOLE, refused
 from piezo_sym.translation.field import NotShownError, Value
-from piezo_sym.translation.reference import LEAST, Key, Proved
+from piezo_sym.translation.known import LEAST, Key, Proved
 from piezo_sym.translation.rows import Rows
 
 SIGNATURES = dict.fromkeys(
@@ -46,8 +46,7 @@ def read_c(text: str, name: str, known: Proved) -> dict[Key, Value]:
     """
     tokens = Tokens(text, name)
     helpers: dict[str, Helper] = {}
-    rows: dict[Key, Value] = {}
-    seen: set[str] = set()
+    rows, seen = dict[Key, Value](), set[str]()
     while tokens.peek():
         if tokens.taken("static"):
             helper, made = _helper(tokens, helpers)
@@ -60,8 +59,8 @@ def read_c(text: str, name: str, known: Proved) -> dict[Key, Value]:
             raise NotShownError(f"{function.name} is defined twice")
         seen.add(function.name)
         rows |= function.rows()
-    if missing := SIGNATURES.keys() - seen:
-        raise NotShownError(f"the C file lacks {min(missing)}")
+    if seen != SIGNATURES.keys():
+        raise NotShownError("the C file lacks a function")
     return rows
 
 
@@ -87,16 +86,14 @@ class _Function:
     ) -> None:
         self.tokens, self.known, self.field = tokens, known, known.field
         kind = tokens.one_of("void", "double", "long")
-        word = tokens.word()
-        self.name = word.removeprefix(f"{model}_") if word != word.removeprefix(f"{model}_") else ""
+        word, prefix = tokens.word(), f"{model}_"
+        self.name = word[len(prefix) :] if word.startswith(prefix) else ""
         words = SIGNATURES.get(self.name, "").split()
         roles = {self._argument(word, model, n): word for n, word in enumerate(words)}
         tokens.take(")")
-        if not words:
-            raise NotShownError(f"a function {word}")
         wanted = "void" if "out" in words else "long" if words == ["p"] else "double"
-        if kind != wanted or len(roles) != len(words):
-            raise NotShownError(f"the types of a function {self.name}")
+        if kind != wanted or len(roles) != len(words) or not words:
+            raise NotShownError(f"a function {word} of such types")
         self.scope, self.written = Scope(known, helpers, roles), Rows(known, self.name)
         self.read, self.keep = self.scope.read, self.written.keep
         self.out = next((name for name, role in roles.items() if role == "out"), "")
@@ -152,8 +149,8 @@ class _Function:
         if self.written.slots == (Slot(""),):
             self.keep((self.name, 0), self.read.numeric(node)[0])
             return
-        slots = self.known.slots[{"states": "rhs", "processes": "heat"}[self.name]]
-        if self.read.whole(node) != self.known.places(slots)[-1]:
+        counted = self.known.slots[{"states": "rhs", "processes": "heat"}[self.name]]
+        if self.read.whole(node) != self.known.places(counted)[-1]:
             raise refused(node, "another number of rows")
 
     # Declarations
@@ -216,8 +213,7 @@ class _Function:
 
     def _lanes(self, name: str, bank: str, pragma: frozenset[str] | None) -> None:
         """Read a loop over the lanes of a bank."""
-        scope, before = self.scope, dict(self.scope.names)
-        self.loops += 1
+        scope, before, self.loops = self.scope, dict(self.scope.names), self.loops + 1
         number, outer, self.summed = self.loops, self.summed, set()
         scope.declare(name, (self.field.name("index", bank, len(scope.lanes)), WHOLE))
         scope.lanes.append((name, bank))
@@ -232,8 +228,8 @@ class _Function:
     # Changes
 
     def _change(self) -> None:
-        tokens = self.tokens
-        name, place = tokens.word(), None
+        tokens, place = self.tokens, None
+        name = tokens.word()
         if tokens.taken("["):
             place = tokens.expression()
             tokens.take("]")

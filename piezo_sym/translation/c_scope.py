@@ -12,9 +12,9 @@ from dataclasses import dataclass, field
 from typing import final
 
 from piezo_sym.translation.change import moved
-from piezo_sym.translation.expressions import PLAIN, TEST, Expressions, Read, refused
+from piezo_sym.translation.expressions import PLAIN, TEST, WHOLE, Expressions, Read, refused
 from piezo_sym.translation.field import NotShownError, Value
-from piezo_sym.translation.reference import Proved
+from piezo_sym.translation.known import Proved
 from piezo_sym.translation.rows import slot_at
 from piezo_sym.translation.zero import is_zero
 
@@ -129,7 +129,8 @@ class Scope:
             case ast.Name(name) if name in self.names:
                 return self._named(self.names[name], node)
             case ast.Attribute(ast.Name(p), name) if self.roles.get(p) == "p":
-                return self.known.parameter(name.rstrip("_"))  # names of a spec have none there
+                value, whole = self.known.parameter(name.rstrip("_"))  # names of a spec have none
+                return value, WHOLE if whole else PLAIN
             case ast.Subscript(ast.Name(x), place) if self.roles.get(x) in {"x", "u"}:
                 return self.known.part(self.roles[x], self.read.whole(place)), PLAIN
             case ast.Subscript(ast.Name(array), ast.Name(j)):

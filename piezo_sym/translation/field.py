@@ -140,6 +140,7 @@ class Field:
     signed : generators that are positive (2) or not negative (1).
     assumed : other values of which the domain says so.
     signs, forms, factors, never, asked : what was found of signs and factors, see `signs`, `zero`.
+    unknown : how often a solver did not know.
     """
 
     def __init__(self) -> None:
@@ -159,6 +160,7 @@ class Field:
         self.factors: dict[Value, list[tuple[Value, int]]] = {}
         self.never: dict[tuple[Value, int, Value, int], bool] = {}
         self.asked: dict[frozenset[tuple[Value, int]], bool] = {}
+        self.unknown = 0
 
     # Generators
 

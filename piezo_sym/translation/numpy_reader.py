@@ -14,24 +14,15 @@ from typing import final
 
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.translation.change import moved
-from piezo_sym.translation.expressions import PLAIN, Expressions, Read, Shape, refused
+from piezo_sym.translation.expressions import PLAIN, WHOLE, Expressions, Read, Shape, refused
 from piezo_sym.translation.field import NotShownError, Value
-from piezo_sym.translation.reference import ALL, LEAST, SAME, Key, Proved
+from piezo_sym.translation.known import ALL, LEAST, SAME, Key, Proved
 from piezo_sym.translation.rows import Rows, slot_at
 
-ARGUMENTS = {
-    "initial_state": "u p",
-    "_rates": "x u p out",
-    "jacobian": "x u p",
-    "margins": "x u p",
-    "outputs": "x u p",
-    "supply": "x u p",
-    "heat": "x u p",
-    "entropy_production": "x u p",
-    "energy": "x p",
-    "entropy": "x p",
-    "temperatures": "x p",
-}
+ARGUMENTS = dict.fromkeys(
+    ["jacobian", "margins", "outputs", "supply", "heat", "entropy_production"], "x u p"
+) | {"initial_state": "u p", "_rates": "x u p out", "temperatures": "x p"}
+ARGUMENTS |= {"energy": "x p", "entropy": "x p"}
 KEPT = ("np", "_states", "_inputs", "_lanes")
 CALLS = {f"np.{name}": name for name in ("exp", "expm1", "log", "sqrt", "sin", "cos", "tanh")}
 CALLS |= {"np.abs": "abs", "np.sign": "sign", "np.minimum": "minimum", "np.maximum": "maximum"}
@@ -63,20 +54,9 @@ class _Function:
         self.name = node.name.replace("_rates", "rhs")
         given = node.args
         arguments = [arg.arg for arg in given.posonlyargs]
-        others: list[object] = [
-            given.args,
-            given.kwonlyargs,
-            given.defaults,
-            given.vararg,
-            given.kwarg,
-        ]
-        others += [
-            given.vararg,
-            given.kwarg,
-            node.returns,
-            *(arg.annotation for arg in given.posonlyargs),
-        ]
-        if len(arguments) != len(words) or any(others) or node.decorator_list:
+        others = {**vars(given), "posonlyargs": [], "returns": node.returns}
+        noted = [arg.annotation for arg in given.posonlyargs if arg.annotation]
+        if node.decorator_list or len(arguments) != len(words) or any(others.values()) or noted:
             raise refused(node, "the arguments of a function")
         self.words = dict(zip(words, arguments, strict=True))
         self.x = self.words.get("x", "")
@@ -167,7 +147,7 @@ class _Function:
 
     def _allocate(self, value: ast.Call) -> None:
         """Read how the result is made: with zeros, rows may be left out."""
-        zeros, shape = ast.unparse(value.func) == "np.zeros", value.args[0]
+        zeros, shape = ast.unparse(value.func) == "np.zeros", next(iter(value.args), value)
         square = f"({self.x}.shape[0], *{self.x}.shape)"
         match shape:
             case ast.Tuple([size, ast.Starred() as rest]) if not zeros:
@@ -267,7 +247,8 @@ class _Function:
             case ast.Name(name) if name in self.values:
                 return self.values[name]
             case ast.Attribute(ast.Name(p), name) if self.roles.get(p) == "p":
-                return self.known.parameter(name)
+                value, whole = self.known.parameter(name)
+                return value, WHOLE if whole else PLAIN
             case ast.Subscript(ast.Name(x), place) if self.roles.get(x) in {"x", "u"}:
                 slots = self.known.slots["rhs"] if self.roles[x] == "x" else self.known.inputs
                 n, bank = self._row(place, slots)

@@ -15,9 +15,10 @@ from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.translation.c_reader import read_c
 from piezo_sym.translation.change import moved
 from piezo_sym.translation.field import Need, NotShownError, Value
+from piezo_sym.translation.known import Key, Proved
 from piezo_sym.translation.numpy_head import numpy_functions
 from piezo_sym.translation.numpy_reader import read_numpy
-from piezo_sym.translation.reference import Key, Proved, proved
+from piezo_sym.translation.reference import proved
 from piezo_sym.translation.signs import compare
 from piezo_sym.translation.witness import witness
 from piezo_sym.translation.zero import is_zero

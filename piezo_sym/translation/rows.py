@@ -11,7 +11,7 @@ from typing import final
 
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.translation.field import NotShownError, Value
-from piezo_sym.translation.reference import ALL, SAME, Key, Proved
+from piezo_sym.translation.known import ALL, SAME, Key, Proved
 
 
 @final

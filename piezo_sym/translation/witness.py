@@ -17,7 +17,7 @@ from mpmath.ctx_iv import MPIntervalContext
 
 from piezo_sym.iphs import IPHS
 from piezo_sym.translation.field import Value
-from piezo_sym.translation.reference import Proved
+from piezo_sym.translation.known import Proved
 
 POINTS = 30
 #: Terms that are worked out at all points together.
