@@ -252,7 +252,9 @@ class Hunt:
                     pair = (ends[0].points[:, n], ends[1].points[:, n])
                     if big[n] <= JUMP:
                         break
-                    value = exact.jump(claim, self.space, *pair, leap[n])
+                    value = exact.jump(
+                        claim, self.space, *pair, leap[n] if leap[n] < LARGEST else 0
+                    )
                     if value:
                         raise self._contradiction(claim, value, self.space.words(pair[1]))
 
@@ -266,7 +268,8 @@ class Hunt:
                 step = off * (roots.high - roots.low)
                 for value, other in ((roots.low - step, high), (roots.high + step, low)):
                     there = self.space.at(roots.at(value)).laws[row]
-                    leap = np.where(np.abs(there - other) > 1.25 * leap, 0, leap)
+                    far = np.nan_to_num(np.abs(there - other), nan=LARGEST, posinf=LARGEST)
+                    leap = np.where(far > 1.25 * leap, 0, leap)
         most = leap.max(axis=0, initial=0)
         return most, np.where(leap == most, size, 0).max(axis=0, initial=LEAST)
 

@@ -157,6 +157,7 @@ def test_an_overflow_is_no_contradiction(tmp_path, law):
     [
         "a*v if v < v_1 else 2*a*v",
         "a*v if v > v_1 else 0",
+        "a*v*(v_1**2/v**2 if v > 0 else 1)",
         "a*v_1**2/(v - v_1) if v > v_1 else 0",
         "a*v if v <= -v_1 else 2*a*v",
         "a*v + F_1*sign(v)",
