@@ -5,14 +5,10 @@ Input: the four parts.  Output: an exception whose ``str`` is one printable line
 3: a proof and a number disagree).
 """
 
-from __future__ import annotations
-
+from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
-from typing import TYPE_CHECKING, ClassVar, final
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
+from typing import ClassVar, final
 
 MAX_QUOTE = 60
 MAX_PLACE = 200

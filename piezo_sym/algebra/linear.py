@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass, field
+from heapq import heapify, heappop, heappush
 from typing import Any, final
 
 Label = Hashable
@@ -39,6 +40,11 @@ class SingularError(Exception):
     undetermined: list[Any]
 
 
+@final
+class LongError(Exception):
+    """Equations that take longer to solve than anybody would wait."""
+
+
 def accumulate(form: Form, label: Label, coefficient: Any) -> None:
     """Add a multiple of `label` to a combination, in place; zeros drop out."""
     total = form.get(label, 0) + coefficient
@@ -55,39 +61,68 @@ def combine(form: Form, other: Mapping[Any, Any], factor: Any) -> None:
 
 
 def solve(
-    equations: Iterable[Equation], unknowns: Iterable[Label], divisors: list[Any]
+    equations: Iterable[Equation], unknowns: Iterable[Label], divisors: list[Any], most: int
 ) -> dict[Any, Form]:
     """Return each unknown as a combination of givens.
 
     A pivot is a number as long as there is one; a symbol that had to be divided by is added to
     `divisors`, for somebody has to prove that it is not zero.
 
+    Parameters
+    ----------
+    most : how many coefficients may be combined on the way.
+
     Raises
     ------
     SingularError
         If the equations do not fix every unknown, or contradict each other.
+    LongError
+        If it takes more than `most`.
     """
-    open_rows = [Equation(dict(row.left), dict(row.right)) for row in equations]
+    rows = [Equation(dict(row.left), dict(row.right)) for row in equations]
+    users = _users(rows)
+    most -= sum(len(row.left) + len(row.right) for row in rows)
+    waiting = {n: _difficulty(row) for n, row in enumerate(rows)}
+    queue = [(difficulty, n) for n, difficulty in waiting.items()]
+    heapify(queue)
     done: list[tuple[Any, Equation]] = []
     relations: list[Form] = []
-    while open_rows:
-        row = min(open_rows, key=_difficulty)
-        open_rows = [other for other in open_rows if other is not row]
+    while waiting:
+        difficulty, n = heappop(queue)
+        if waiting.get(n) != difficulty:  # the row is done, or has changed and stands here anew
+            continue
+        del waiting[n]
+        row = rows[n]
         if not row.left:
             relations += [row.right] if row.right else []
             continue
-        pivot = next((k for k, v in row.left.items() if is_number(v)), next(iter(row.left)))
-        if not is_number(row.left[pivot]):
-            divisors.append(row.left[pivot])
+        pivot = _pivot(row, divisors)
         _normalise(row, pivot)
-        for other in [*open_rows, *(equation for _, equation in done)]:
-            _eliminate(other, row, pivot)
+        for other in users.pop(pivot) - {n}:
+            _eliminate(rows[other], row, pivot)
+            most -= len(row.left) + len(row.right)
+            for label in row.left:
+                (users[label].add if label in rows[other].left else users[label].discard)(other)
+            if other in waiting:
+                waiting[other] = _difficulty(rows[other])
+                heappush(queue, (waiting[other], other))
+        if most < 0:
+            raise LongError
         done.append((pivot, row))
     solved = {pivot: row for pivot, row in done if not row.left}
     undetermined = [label for label in unknowns if label not in solved]
     if relations or undetermined:
         raise SingularError(relations, undetermined)
     return {pivot: row.right for pivot, row in solved.items()}
+
+
+def _users(rows: list[Equation]) -> dict[Any, set[int]]:
+    """Return the rows in which each unknown stands."""
+    users: dict[Any, set[int]] = {}
+    for n, row in enumerate(rows):
+        for label in row.left:
+            users.setdefault(label, set()).add(n)
+    return users
 
 
 def is_number(coefficient: Any) -> bool:
@@ -99,6 +134,14 @@ def is_number(coefficient: Any) -> bool:
 def _difficulty(row: Equation) -> tuple[bool, int]:
     """Order rows: those with a number to divide by first, then short ones."""
     return bool(row.left) and not any(map(is_number, row.left.values())), len(row.left)
+
+
+def _pivot(row: Equation, divisors: list[Any]) -> Any:
+    """Return the unknown to solve a row for: one with a number if there is one."""
+    pivot = next((k for k, v in row.left.items() if is_number(v)), next(iter(row.left)))
+    if not is_number(row.left[pivot]):
+        divisors.append(row.left[pivot])
+    return pivot
 
 
 def _normalise(row: Equation, pivot: Label) -> None:

@@ -14,11 +14,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any, TypeAlias, final
+from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 
-from piezo_sym.analysis.repeating import refuse_unperiodic, steps_needed
+from piezo_sym.analysis.repeating import Driven, refuse_unperiodic, steps_needed
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run import simulate
 from piezo_sym.run.checks import known_keys
@@ -36,11 +36,8 @@ if TYPE_CHECKING:
 
     from piezo_sym.run.checks import FloatArray
     from piezo_sym.run.engine import Engine
-    from piezo_sym.run.inputs import InputValue
     from piezo_sym.run.module import GeneratedModule
     from piezo_sym.run.parameters import LaneValue
-
-    Driven: TypeAlias = Callable[[float], Mapping[str, InputValue]]
 
 LOOKS = 16  # times in a period at which sizes and the mean temperature are taken
 FLOOR = 1e-15  # so that no size is 0

@@ -3,8 +3,6 @@
 Input: contestants, paired.  Output: rows with times taken in turns, and their cells as text.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import final

@@ -3,20 +3,16 @@
 Input: a `Problem`.  Output: its rates as functions, and the state at the end of a run.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import sympy as sp
 from scipy.integrate import solve_ivp
 
 from piezo_sym.bench.problem import TIME, Problem
-
-if TYPE_CHECKING:
-    from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.checks import FloatArray
 
 
 def field(problem: Problem, modules: str = "numpy", cse: bool = False) -> Callable[..., Any]:

@@ -18,12 +18,11 @@ from flint import fmpq, fmpq_mpoly_ctx
 from .laws import Node, compare, need, num, sym
 
 SIZE, MAX_TERMS, MAX_PRODUCT = 160, 3000, 60_000
-ODD, EVEN = ("sin", "tanh", "sign", "deadzone", "saturate"), ("cos", "abs")
 HOMOGENEOUS = ("abs", "min", "max", "deadzone", "saturate", "sign")
 CTX = fmpq_mpoly_ctx.get([f"x{n}" for n in range(SIZE)], "lex")
 
 
-class Ratio:
+class _Ratio:
     """A reduced quotient of two polynomials, the lower one with leading coefficient 1."""
 
     __slots__ = ("bottom", "top")
@@ -37,33 +36,33 @@ class Ratio:
             top, bottom = top / lead, bottom / lead
         self.top, self.bottom = top, CTX.constant(1) if bottom is None else bottom
 
-    def __add__(self, other: Ratio) -> Ratio:
+    def __add__(self, other: _Ratio) -> _Ratio:
         if self.bottom == other.bottom:
-            return Ratio(self.top + other.top, self.bottom)
+            return _Ratio(self.top + other.top, self.bottom)
         tops = _product(self.top, other.bottom) + _product(other.top, self.bottom)
-        return Ratio(tops, _product(self.bottom, other.bottom))
+        return _Ratio(tops, _product(self.bottom, other.bottom))
 
-    def __neg__(self) -> Ratio:
+    def __neg__(self) -> _Ratio:
         return self * constant(-1)
 
-    def __sub__(self, other: Ratio) -> Ratio:
+    def __sub__(self, other: _Ratio) -> _Ratio:
         return self + -other
 
-    def __mul__(self, other: Ratio) -> Ratio:
-        return Ratio(_product(self.top, other.top), _product(self.bottom, other.bottom))
+    def __mul__(self, other: _Ratio) -> _Ratio:
+        return _Ratio(_product(self.top, other.top), _product(self.bottom, other.bottom))
 
-    def __truediv__(self, other: Ratio) -> Ratio:
-        return Ratio(_product(self.top, other.bottom), _product(self.bottom, other.top))
+    def __truediv__(self, other: _Ratio) -> _Ratio:
+        return _Ratio(_product(self.top, other.bottom), _product(self.bottom, other.top))
 
-    def __pow__(self, power: int) -> Ratio:
+    def __pow__(self, power: int) -> _Ratio:
         if power < 0:
-            return Ratio(self.bottom, self.top) ** -power
+            return _Ratio(self.bottom, self.top) ** -power
         terms = max(len(self.top), len(self.bottom))
         need(terms < 2 or comb(terms + power, power) <= MAX_TERMS, "a power is too large")
-        return Ratio(self.top**power, self.bottom**power)
+        return _Ratio(self.top**power, self.bottom**power)
 
     def __eq__(self, other: object) -> bool:
-        if isinstance(other, Ratio):
+        if isinstance(other, _Ratio):
             return bool(self.top == other.top and self.bottom == other.bottom)
         return bool(self.bottom.is_one() and self.top == other)
 
@@ -77,11 +76,6 @@ class Ratio:
             return None
         return _fraction(self.top.leading_coefficient()) if self.top != 0 else Fraction(0)
 
-    @property
-    def negative(self) -> bool:
-        """Whether its first coefficient is negative."""
-        return bool(self.top != 0 and self.top.leading_coefficient() < 0)
-
 
 def _product(left: Any, right: Any) -> Any:
     need(len(left) * len(right) <= MAX_PRODUCT, "a product is too large to be written out")
@@ -92,9 +86,12 @@ def _fraction(number: Any) -> Fraction:
     return Fraction(int(number.p), int(number.q))
 
 
-def constant(value: int | Fraction) -> Ratio:
+Ratio = _Ratio
+
+
+def constant(value: int | Fraction) -> _Ratio:
     """Return a number."""
-    return Ratio(CTX.constant(fmpq(value.numerator, value.denominator)))
+    return _Ratio(CTX.constant(fmpq(value.numerator, value.denominator)))
 
 
 class Field:
@@ -104,7 +101,7 @@ class Field:
         self.atoms, self.trees = dict[Any, int](), list[Node]()
         self.positives, self.choices, self.positive = list[int](), list[int](), positive
 
-    def atom(self, key: Any, tree: Node, positive: bool = False) -> Ratio:
+    def atom(self, key: Any, tree: Node, positive: bool = False) -> _Ratio:
         """Return an atom, the same for the same key."""
         if key not in self.atoms:
             place = self.atoms[key] = len(self.trees)
@@ -112,13 +109,13 @@ class Field:
             self.trees.append(tree)
             self.positives += [place] * positive
             self.choices += [place] * (key[0] == "choice")
-        return Ratio(CTX.gen(self.atoms[key]))
+        return _Ratio(CTX.gen(self.atoms[key]))
 
-    def symbol(self, key: Any) -> Ratio:
+    def symbol(self, key: Any) -> _Ratio:
         """Return the atom of a symbol."""
         return self.atom(("symbol", key), sym(key), key in self.positive)
 
-    def of(self, node: Node, words: Callable[[Any], Ratio] | None = None) -> Ratio:
+    def of(self, node: Node, words: Callable[[Any], Ratio] | None = None) -> _Ratio:
         """Return the normal form of a tree, `words` giving that of its symbols."""
         if node.op in ("num", "sym"):
             return constant(node.value) if node.op == "num" else (words or self.symbol)(node.value)
@@ -138,10 +135,13 @@ class Field:
                 return args[0] / args[1]
             case "**" | "sqrt":
                 power = node.value if node.op == "**" else Fraction(1, 2)
-                return self._power(args[0], power, node.args[0])
+                if power.denominator > 1:
+                    root = Node("**", node.args, Fraction(1, power.denominator))
+                    args = [self.atom((root.value, *args), root)]
+                return args[0] ** power.numerator
         return self._function(node, args)
 
-    def _choice(self, condition: Node, words: Callable[[Any], Ratio] | None) -> Ratio:
+    def _choice(self, condition: Node, words: Callable[[Any], Ratio] | None) -> _Ratio:
         """Return the atom [difference > 0], or 1 less that of its opposite."""
         less = condition.value in ("<", ">=")
         left, right = condition.args[::-1] if less else condition.args
@@ -153,63 +153,25 @@ class Field:
             found = constant(int(found.number > 0))
         return found if condition.value in "<>" else constant(1) - found
 
-    def _power(self, base: Ratio, power: Fraction, tree: Node) -> Ratio:
-        """Return a power; roots of positive factors are atoms of their own."""
-        if power.denominator == 1:
-            return base**power.numerator
-        factors, (rest,) = self.scaled([base], numbers=False)
-        found = self._root(rest, power, tree)
-        for place, exponent in factors:
-            found = found * self._root(Ratio(CTX.gen(place)), exponent * power, self.trees[place])
-        return found
-
-    def _root(self, base: Ratio, power: Fraction, tree: Node) -> Ratio:
-        if power.denominator == 1 or base == 1:
-            return base**power.numerator
-        root = Fraction(1, power.denominator)
-        made = self.atom(("root", root, base), Node("**", (tree,), root), tree.op == "sym")
-        return made**power.numerator
-
-    def _function(self, node: Node, args: list[Ratio]) -> Ratio:
-        """Return the atom of a function, times what the function gives up."""
-        name, outside = node.op, constant(1)
-        if name in HOMOGENEOUS:
-            factors, args = self.scaled(args)
-            for place, power in factors if name != "sign" else ():
-                part = constant(power) if place < 0 else Ratio(CTX.gen(place)) ** power
-                outside = outside * part
+    def _function(self, node: Node, args: list[_Ratio]) -> _Ratio:
+        """Return the atom of a function, times the positive factor that the function gives up."""
         if all(arg == 0 for arg in args):
-            return constant(int(name in ("exp", "cos")))
-        turned = args[0].negative and name in (*ODD, *EVEN, "exp")
-        if turned:
-            args = [-args[0], *args[1:]]
-            node = Node(name, (Node("neg", (node.args[0],)), *node.args[1:]))
-        found = self.atom((name, *args), node, name == "exp")
-        if turned and name == "exp":
-            return constant(1) / found
-        return (-outside if turned and name in ODD else outside) * found
+            return constant(int(node.op in ("exp", "cos")))
+        outside = constant(1)
+        if node.op in HOMOGENEOUS:
+            outside, args = self.scaled(args)
+        found = self.atom((node.op, *args), node, node.op == "exp")
+        return found if node.op == "sign" else outside * found
 
-    def scaled(
-        self, args: list[Ratio], numbers: bool = True
-    ) -> tuple[list[tuple[int, Any]], list[Ratio]]:
-        """Return the positive factor that arguments share, as powers of atoms, and the rest.
-
-        A number among the factors has place -1 and stands for itself.
-        """
-        some, factors = [arg for arg in args if arg != 0], list[tuple[int, Any]]()
+    def scaled(self, args: list[_Ratio]) -> tuple[Ratio, list[_Ratio]]:
+        """Return the positive atoms that arguments share as a factor, and the arguments over it."""
+        some, factor = [arg for arg in args if arg != 0], constant(1)
         for place in self.positives if some else ():
-            power = min(_valuation(a.top, place) - _valuation(a.bottom, place) for a in some)
-            if power:
-                factors.append((place, power))
-                args = [arg * Ratio(CTX.gen(place)) ** -power for arg in args]
-        if some and numbers:
-            first = next(arg for arg in args if arg != 0)
-            size = _fraction(abs(first.top.leading_coefficient()))
-            factors.append((-1, size))
-            args = [arg * constant(1 / size) for arg in args]
-        return factors, args
+            powers = (_valuation(a.top, place) - _valuation(a.bottom, place) for a in some)
+            factor = factor * _Ratio(CTX.gen(place)) ** min(powers)
+        return factor, [arg / factor for arg in args]
 
-    def is_zero(self, ratio: Ratio) -> bool:
+    def is_zero(self, ratio: _Ratio) -> bool:
         """Return whether an expression vanishes, a choice being 0 or 1."""
         if not self.choices:
             return bool(ratio.top.is_zero())
@@ -223,7 +185,7 @@ class Field:
         """Return whether two trees are the same function."""
         return self.is_zero(self.of(one) - self.of(other))
 
-    def factors(self, ratio: Ratio) -> list[Node]:
+    def factors(self, ratio: _Ratio) -> list[Node]:
         """Return the factors above the line that are no numbers, as trees."""
         return [self._tree(part) for part, _ in ratio.top.factor()[1]]
 

@@ -6,8 +6,6 @@ across variable (a coupling gyrates if not), law fields with unit and letters, o
 co-state of a store as a law of its state x.  ``?`` marks what may be left out.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 REFERENCES = {"gnd": "E", "wall": "M"}
@@ -46,11 +44,6 @@ class Kind(NamedTuple):
     laws: dict[str, tuple[str, tuple[str, ...]]]
     others: tuple[str, ...]
     costate: str
-
-    @property
-    def letter(self) -> str:
-        """The letter of its state, or nothing."""
-        return next((s for _, own in self.laws.values() for s in own if s in STATES), "")
 
 
 def _kind(row: str) -> tuple[str, Kind]:

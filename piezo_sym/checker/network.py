@@ -1,31 +1,23 @@
 """Kirchhoff's and Newton's laws of a spec as one tableau, solved in any field.
 
-Input: a `Spec`, the size of each bank, and an `Algebra`: numbers, or rational functions.  Output:
-`Flows`: letters, outputs, rates.  Every branch's through variable and every node's potential is an
+Input: a `Spec`, the size of each bank, and the algebra in which the laws are written, numbers or
+rational functions: its `one`, `law(element, field, lane, letter)` ("law" the dissipative one) and
+`given(role, owner, lane)` of an input "u", a co-state "E" or a temperature "T".  Output: `Flows`:
+letters, outputs, rates.  Every branch's through variable and every node's potential is an
 unknown; a law that is linear in its letter is an equation, in either causality.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
-from typing import Any, NamedTuple, Protocol
+from functools import cache
+from typing import Any, NamedTuple
 
+from .field import Field
 from .kinds import REFERENCES
-from .laws import Node, symbols
+from .laws import Node, made, put, sym
 from .spec import Element, Spec
 
 Form = dict[Any, Any]
 Slot = tuple[str, int]
-
-
-class Algebra(Protocol):
-    """What the laws are written in: a law ("law" the dissipative one), and "u", "E" or "T"."""
-
-    one: Any
-
-    def law(self, element: Element, field: str, lane: int, letter: Any = None) -> Any: ...  # noqa: D102
-
-    def given(self, role: str, owner: str, lane: int) -> Any: ...  # noqa: D102
 
 
 class Part(NamedTuple):
@@ -57,7 +49,7 @@ def _parts(spec: Spec, counts: Mapping[str, int]) -> list[Part]:
     """Return every branch, those of a bank once per lane."""
     found = []
     for e in spec.of("store", "law", "source", "coupling", "hysteron"):
-        for lane in range(1, counts[e.name] + 1) if e.count is not None else (0,):
+        for lane in range(1, counts[e.name] + 1) if e.lanes is not None else (0,):
             if e.kind.form == "hysteron":
                 (a, b), inner = e.pairs[0], (e.name, lane)
                 found.append(Part(e.name, lane, "store", (a, inner), False))
@@ -69,7 +61,7 @@ def _parts(spec: Spec, counts: Mapping[str, int]) -> list[Part]:
     return found
 
 
-def flows(spec: Spec, counts: Mapping[str, int], algebra: Algebra) -> Flows:
+def flows(spec: Spec, counts: Mapping[str, int], algebra: Any) -> Flows:
     """Return what flows in a network.
 
     Raises
@@ -90,8 +82,7 @@ def flows(spec: Spec, counts: Mapping[str, int], algebra: Algebra) -> Flows:
             terms = terms + factor * value
         return terms
 
-    laws = [part for part in found if part.role == "law"]
-    for part in sorted(laws, key=lambda p: _is_equation(spec, p)):
+    for part in sorted((p for p in found if p.role == "law"), key=lambda p: _is_equation(spec, p)):
         slot = part.element, part.lane
         made.forms[slot], made.letters[slot] = answers[part], total(answers[part])
         element = spec.elements[part.element]
@@ -106,7 +97,7 @@ def flows(spec: Spec, counts: Mapping[str, int], algebra: Algebra) -> Flows:
     return made
 
 
-def _heat(spec: Spec, algebra: Algebra, made: Flows) -> None:
+def _heat(spec: Spec, algebra: Any, made: Flows) -> None:
     """Add the rates of entropies: what processes produce, and what is exchanged."""
     heat = {body.name: algebra.given("T", body.name, 0) for body in spec.of("body")}
     rates = {body: algebra.one - algebra.one for body in heat}
@@ -125,7 +116,7 @@ def _heat(spec: Spec, algebra: Algebra, made: Flows) -> None:
     made.rates.update({(body, 0): rate for body, rate in rates.items()})
 
 
-def exchange(element: Element, algebra: Algebra) -> Any:
+def exchange(element: Element, algebra: Any) -> Any:
     """Return the entropy that an environment brings, lam*(T_e/T - 1)."""
     hot, T = algebra.given("u", element.name, 0), algebra.given("T", element.bodies[0], 0)
     return algebra.law(element, "conductance", 0) * (hot / T - algebra.one)
@@ -133,10 +124,10 @@ def exchange(element: Element, algebra: Algebra) -> Any:
 
 def _is_equation(spec: Spec, part: Part) -> bool:
     law = spec.elements[part.element].law
-    return law is not None and degree(law, ("z", part.element)) == 1
+    return law is not None and is_linear(law, ("z", part.element))
 
 
-def _solved(spec: Spec, found: list[Part], algebra: Algebra) -> tuple[dict[Any, Form], list[Any]]:
+def _solved(spec: Spec, found: list[Part], algebra: Any) -> tuple[dict[Any, Form], list[Any]]:
     """Return for each branch the variable that it does not impose, and the pivots."""
     rows, one, balances = list[Form](), algebra.one, dict[Any, Form]()
     for n, part in enumerate(found):
@@ -152,7 +143,7 @@ def _solved(spec: Spec, found: list[Part], algebra: Algebra) -> tuple[dict[Any, 
     return answers, pivots
 
 
-def _law(spec: Spec, part: Part, before: Part, after: Part, algebra: Algebra) -> Form:
+def _law(spec: Spec, part: Part, before: Part, after: Part, algebra: Any) -> Form:
     """Return the equation of one branch, a form that vanishes."""
     element, one, own = spec.elements[part.element], algebra.one, {part: algebra.one}
     across = _potential(part.nodes, one)
@@ -179,7 +170,7 @@ def _added(left: Form, right: Form, factor: Any) -> Form:
     total = dict(left)
     for label, value in right.items():
         total[label] = factor * value + total[label] if label in total else factor * value
-    return {label: value for label, value in total.items() if not value == 0}
+    return {label: value for label, value in total.items() if (value == 0) is not True}
 
 
 def _is_given(label: Any) -> bool:
@@ -194,7 +185,7 @@ def _eliminated(left: list[Form], size: int) -> tuple[dict[Any, Form], list[Any]
             ((value not in (1, -1), len(row), n), label)
             for n, row in enumerate(left)
             for label, value in row.items()
-            if not _is_given(label) and value != 0
+            if not (_is_given(label) or value == 0)
         ]
         if not choices:
             break
@@ -216,13 +207,8 @@ def _without(form: Form, label: Any, row: Form) -> Form:
     return _added({k: v for k, v in form.items() if k != label}, row, form[label])
 
 
-def degree(node: Node, letter: Any) -> int | None:
-    """Return 0 for a law free of a letter, 1 for one proportional to it by its form, else None."""
-    if node.op == "sym" or letter not in symbols(node):
-        return int(node.op == "sym" and node.value == letter)
-    degrees = [degree(arg, letter) for arg in node.args]
-    if node.op in ("neg", "+"):
-        return 1 if set(degrees) == {1} else None
-    if node.op == "if":
-        return 1 if letter not in symbols(node.args[0]) and set(degrees[1:]) == {1} else None
-    return 1 if (node.op == "*" and set(degrees) == {0, 1}) or (node.op == "/" and degrees == [1, 0]) else None
+@cache
+def is_linear(law: Node, letter: Any) -> bool:
+    """Return whether a law is proportional to its letter: rational, with f(2z) = 2f(z)."""
+    doubled = put(law, {letter: made("2*z", z=sym(letter))})
+    return Field().same(doubled, made("2*x", x=law))

@@ -2,22 +2,19 @@
 
 Input: trees.  Output: whether a claim follows.  Laws and conditions go whole, choices as `ite`.
 Every function is a symbol of which implications are known that hold for all real numbers, their
-premise being the function's own domain: b != 0 -> q*b = a.  Nothing is assumed of a path.  What
-is left undecided is split by a comparison in it and its opposite, which together are all there is.
+premise being the function's own domain: b != 0 -> q*b = a.  Nothing is assumed of a path.
 """
-
-from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from time import monotonic
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import cvc5
 
-from .laws import KINKS, Node, compare, made, negated, num, symbols, unkinked, walk
+from .laws import KINKS, Node, compare, made, negated, num, symbols, unkinked
 
-EFFORT, SPLIT_EFFORT, MILLISECONDS, SECONDS, MOST_PAIRS, DEEPEST = 150_000, 40_000, 8000, 300, 12, 5
+EFFORT, MILLISECONDS, SECONDS, MOST_PAIRS = 100_000, 8000, 300, 12
 OPERATIONS = {"+": "+", "*": "*", "neg": "-", "if": "ite"}
 #: What is known of y = f(x), and of two values y and b of f at x and a: "premise: fact".
 FACTS = {
@@ -54,20 +51,12 @@ class Claim(NamedTuple):
 class _Query:
     """Trees as SMT-LIB text, each part once, and the facts on the functions in them."""
 
-    def __init__(self, assumed: tuple[Node, ...]) -> None:
+    def __init__(self) -> None:
         self.lines = ["(set-logic QF_NRA)"]
         self.known: dict[Node, str] = {}
         self.calls: dict[str, list[tuple[Node, Node]]] = {}
-        self.assumed = {c: "true" for c in assumed} | {negated(c): "false" for c in assumed}
-
-    def say(self, term: str) -> None:
-        self.lines.append(f"(assert {term})")
 
     def holds(self, condition: Node) -> str:
-        """Return a comparison; one that is assumed is settled."""
-        return self.assumed.get(condition) or self.plain(condition)
-
-    def plain(self, condition: Node) -> str:
         left, right = map(self.term, condition.args)
         if condition.value == "!=":
             return f"(not (= {left} {right}))"
@@ -95,8 +84,6 @@ class _Query:
             return size if node.value >= 0 else f"(- {size})"
         if node.op == "sym":
             return self.term(self._fresh(node))
-        if node.op == "if" and args[0] in self.assumed:
-            return self.term(args[1 if self.assumed[args[0]] == "true" else 2])
         if node.op in KINKS:
             return self.term(unkinked(node))
         if node.op == "+" and len(args) == 1:
@@ -105,9 +92,11 @@ class _Query:
             parts = (self.holds(arg) if arg.op == "cmp" else self.term(arg) for arg in args)
             return f"({OPERATIONS[node.op]} {' '.join(parts)})"
         if node.op in ("**", "sqrt"):
-            return self.term(self._power(args[0], Fraction(1, 2) if node.op == "sqrt" else node.value))
+            return self.term(self._power(args[0], node.value or Fraction(node.op == "sqrt", 2)))
         if node.op == "/" and args[1].op == "num" and args[1].value:
             return self.term(Node("*", (num(1 / args[1].value), args[0])))
+        if node.op == "/" and args[0].op == "neg":  # -(a/b), for a/b may be known
+            return self.term(made("-(x/z)", x=args[0].args[0], z=args[1]))
         y = self._fresh(node)
         if node.op == "/":
             product = compare(Node("*", (y, args[1])), "=", args[0])
@@ -117,7 +106,8 @@ class _Query:
         return self.term(y)
 
     def _know(self, fact: Node, *premises: Node) -> None:
-        self.say(f"(=> {' '.join(map(self.plain, premises))} {self.plain(fact)})")
+        terms = " ".join(map(self.holds, (*premises, fact)))
+        self.lines.append(f"(assert (=> {terms}))")
 
     def _power(self, x: Node, exponent: Fraction) -> Node:
         """Return x**(p/q) in products, by y with x >= 0 -> y >= 0 and y**q = x."""
@@ -132,10 +122,9 @@ class _Query:
 
     def _function(self, name: str, x: Node, y: Node) -> None:
         """Assert what is known of exp, log, sin, cos or tanh, alone and of two values of one."""
-        if (name, x.op) == ("log", "exp"):
-            self.say(self.plain(compare(y, "=", x.args[0])))
-        if (name, x.op) == ("exp", "log"):
-            self._know(compare(y, "=", x.args[0]), compare(x.args[0], ">"))
+        if (name, x.op) in (("log", "exp"), ("exp", "log")):  # log(exp(a)) = a; a > 0 for the other
+            inside = compare(x.args[0], ">") if name == "exp" else compare(num(1), ">")
+            self._know(compare(y, "=", x.args[0]), inside)
         others = self.calls.setdefault(name, [])
         self._facts(FACTS[name], x=x, y=y)
         for a, b in others[:MOST_PAIRS]:
@@ -145,15 +134,14 @@ class _Query:
     def _facts(self, texts: str, **words: Node) -> None:
         for text in texts.split(";"):
             *premises, fact = (made(part.strip(), **words) for part in text.split(":"))
-            self._know(fact, *premises) if premises else self.say(self.plain(fact))
+            self._know(fact, compare(num(1), ">"), *premises)
 
-    def answer(self, effort: int) -> str:
+    def answer(self) -> str:
         """Return sat, unsat or unknown."""
         solver = cvc5.Solver(cvc5.TermManager())
-        solver.setOption("rlimit-per", str(effort))
-        solver.setOption("tlimit-per", str(MILLISECONDS))
-        parser = cvc5.InputParser(solver)
-        text = "\n".join([*self.lines, "(check-sat)"])
+        for option, most in {"rlimit-per": EFFORT, "tlimit-per": MILLISECONDS}.items():
+            solver.setOption(option, str(most))
+        parser, text = cvc5.InputParser(solver), "\n".join([*self.lines, "(check-sat)"])
         parser.setStringInput(cvc5.InputLanguage.SMT_LIB_2_6, text, "query")
         found = ""
         while not (command := parser.nextCommand()).isNull():
@@ -182,31 +170,11 @@ class Prover:
             self.answers[key] = any(self._follows(claim, (*where, *path)) for where in tries)
         return self.answers[key]
 
-    def _follows(self, claim: Node, where: tuple[Node, ...], assumed: tuple[Node, ...] = ()) -> bool:
-        """Return whether a claim follows, if need be from a comparison in it and its opposite."""
-        query = _Query(assumed)
-        for term in (*map(query.holds, where), *map(query.plain, assumed)):
-            query.say(term)
-        query.say(f"(not {query.holds(claim)})")
-        late = monotonic() > self.deadline
-        result = "late" if late else query.answer(SPLIT_EFFORT if assumed else EFFORT)
-        if result != "unknown" or len(assumed) == DEEPEST:
-            return result == "unsat"
-        settled = {*assumed, *map(negated, assumed)}
-        found = next((c for c in choices(claim) if c not in settled), None)
-        if found is None:
-            return False
-        sides = (found, negated(found))
-        return all(self._follows(claim, where, (*assumed, side)) for side in sides)
-
-
-def choices(tree: Node) -> Iterator[Node]:
-    """Yield the comparisons that choose in a tree, those of functions with kinks too."""
-    for node in walk(tree):
-        if node.op in KINKS:
-            yield from choices(unkinked(node))
-        elif node.op == "if":
-            yield node.args[0]
+    def _follows(self, claim: Node, where: tuple[Node, ...]) -> bool:
+        query = _Query()
+        terms = [*map(query.holds, where), f"(not {query.holds(claim)})"]
+        query.lines += [f"(assert {term})" for term in terms]
+        return monotonic() < self.deadline and query.answer() == "unsat"
 
 
 def partial(node: Node, path: tuple[Node, ...] = ()) -> Iterator[Claim]:
@@ -218,11 +186,16 @@ def partial(node: Node, path: tuple[Node, ...] = ()) -> Iterator[Claim]:
         return
     for arg in node.args:
         yield from partial(arg, path)
+    yield from (Claim(path, claim) for claim in needed(node))
+
+
+def needed(node: Node) -> Iterator[Node]:
+    """Yield what must hold of a function's arguments for it to have a value."""
     given = {"/": -1, "sqrt": Fraction(1, 2), "**": node.value}.get(node.op, 1)
     power, last = Fraction(given), node.args[-1] if node.args else node
     if node.op == "log" or (power < 0 and power.denominator > 1):
-        yield Claim(path, compare(last, ">"))
+        yield compare(last, ">")
     elif power.denominator > 1:
-        yield Claim(path, compare(last, ">="))
+        yield compare(last, ">=")
     elif power < 0 and not (last.op == "num" and last.value):
-        yield Claim(path, compare(last, "!="))
+        yield compare(last, "!=")

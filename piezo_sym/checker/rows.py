@@ -3,24 +3,22 @@
 Input: a `Spec` and the parsed ``proofs.json``.  Output: one (id, element, reason) per row, the
 reason empty where it is confirmed.  skew and casimir follow from the balances: the power of the
 co-states vanishes for all of them, and nothing but processes and inputs is in an entropy's rate.
+`program` is about printed text, which is not read here: it has to be stated.
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
+from . import laws
 from .certificate import check_certificate
 from .field import Field
-from .laws import KINKS, InputError, Node, compare, derivative, made, need, negated, num, put
-from .laws import sym, symbols, unkinked, walk
-from .numbers import CannotTell, NoValue, compute, exact, holds
-from .prover import Claim, Prover, partial
+from .laws import KINKS, InputError, Node, compare, made, need, negated, num, put, sym, symbols
+from .prover import Claim, Prover, needed, partial
 from .spec import Element, Spec
 from .system import check_system
 
 Row = tuple[str, str, str]
-MOVING = ("z", "x", "T")
+MOVING, OWN = ("z", "x", "T"), ("domain", "system")  # rows that are not stated by the package
 
 
 def audit(spec: Spec, proofs: Mapping[str, Any]) -> Iterator[Row]:
@@ -32,6 +30,7 @@ class _Audit:
     def __init__(self, spec: Spec, proofs: Mapping[str, Any]) -> None:
         self.spec, self.done = spec, dict[tuple[str, str], str]()
         self.stated: dict[tuple[str, str], list[Mapping[str, Any]]] = {}
+        need(isinstance(proofs, dict), "the proofs are no table")
         entries, system = proofs.get("obligations"), proofs.get("system")
         listed = isinstance(entries, list) and all(isinstance(e, dict) for e in entries)
         need(listed, "the proofs have no list of obligations")
@@ -47,182 +46,150 @@ class _Audit:
 
     def rows(self) -> Iterator[Row]:
         """Yield the rows, each after those that it rests on."""
-        reasons = self.found.reasons
-        yield self._row("domain", "", self._domain, listed=False)
-        yield self._row("system", "", self._system, listed=False)
+        reasons, system = self.found.reasons, [("system", "")]
+        divisors = [_true(tree, "!=") for tree in self.found.divisors]
+        yield self._row("domain", "", self._own_values())
+        yield self._row("system", "", divisors, why=reasons.get("system", ""))
         for body in self.spec.of("body"):
-            yield self._row("temperature", body.name, lambda body=body: self._temperature(body))
-        if self._good("temperature"):
+            law = body.laws["temperature"]
+            slope = laws.derivative(law, ("x", body.name))
+            claims = [*partial(law), *partial(slope), _true(law, ">"), _true(slope, ">")]
+            yield self._row("temperature", body.name, claims)
+        if not any(self.done[key] for key in self.done if key[0] == "temperature"):
             warm = tuple(compare(sym(("T", b.name)), ">") for b in self.spec.of("body"))
             self.prover = Prover((*self.conditions, *warm), self.ties)
-        for name in ("skew", "energy"):
-            yield self._row(name, "", lambda: reasons.get("energy", "") or self._of("system"))
-        for name in ("casimir", "entropy"):
-            yield self._row(name, "", lambda: self._of("system"))
+        for name in ("skew", "casimir", "energy", "entropy"):
+            why = reasons.get("energy", "") if name in ("skew", "energy") else ""
+            yield self._row(name, "", (), system, why)
         domain = [claim for tree in self.conditions for claim in partial(tree)]
         if domain or ("welldef", "") in self.stated:
-            yield self._row("welldef", "", lambda: self._all(domain) or self._of("system"))
+            yield self._row("welldef", "", domain, system)
         for element in self.spec.elements.values():
             yield from self._element(element)
-        yield from self._balances()
-        yield self._row("units", "", lambda: next(iter(self.spec.faults), ""))
-        yield self._row("program", "", lambda: "")
-        yield from self._others()
+        heat = [key for key in self.done if key[0] in ("domain", "temperature", "passive")]
+        yield self._row("sigma", "", (), heat)
+        cooled = [claim for e in self.spec.of("ambient") for claim in _cooling(e)]
+        for name in ("exergy", "environment") if cooled else ():
+            yield self._row(name, "", cooled, [("sigma", ""), ("energy", "")])
+        yield self._row("units", why=next(iter(self.spec.faults), ""))
+        yield self._row("program")
+        for key, entries in self.stated.items():
+            claimed = any(e.get("verdict") == "PROVED" or e.get("required", True) for e in entries)
+            if claimed and key not in self.done:
+                yield self._information(*key)
 
-    def _row(self, name: str, element: str, check: Callable[[], str], listed: bool = True) -> Row:
-        """Return a row: stated as PROVED, and found to be so."""
-        stated = self.stated.get((name, element), [])
+    def _row(
+        self, name: str, element: str = "", claims: Any = (), rests: Any = (), why: str = ""
+    ) -> Row:
+        """Return a row: stated as PROVED, its claims follow, and what it rests on is confirmed."""
+        stated, listed = self.stated.get((name, element), []), name not in OWN
         verdicts = {str(entry.get("verdict")) for entry in stated} - {"PROVED"}
-        reason = f"stated as {min(verdicts)}" if listed and verdicts else ""
-        reason = "missing" if listed and not stated else reason
+        prover = self.prover if name != "domain" else Prover(())
         try:
-            reason = reason or check()
-        except (InputError, ArithmeticError, RecursionError) as error:
+            need(not listed or bool(stated), "missing")
+            need(not listed or not verdicts, f"stated as {min(verdicts, default='')}")
+            need(not why, why)
+            for key in rests:
+                need(not self.done[key], f"it rests on {' '.join(key)}, which is not confirmed")
+            for path, claim in dict.fromkeys(claims):
+                names = ", ".join(str(name[1]) for name in symbols(claim))
+                need(
+                    prover.proves(claim, path),
+                    f"a comparison ({claim.value}) of {names[:80]} does not follow",
+                )
+            reason = ""
+        except (InputError, ArithmeticError, RuntimeError) as error:
             reason = str(error) or type(error).__name__
         self.done[name, element] = reason
         return name, element, reason
 
-    def _of(self, name: str, element: str = "") -> str:
-        """Return why a row that another rests on is not confirmed."""
-        reason = self.done.get((name, element), "")
-        return f"it rests on {name} {element}: {reason}" if reason else ""
-
-    def _good(self, *names: str) -> bool:
-        return not any(reason for (name, _), reason in self.done.items() if name in names)
-
-    def _all(self, claims: Iterable[Claim]) -> str:
-        """Return the first claim that does not follow."""
-        for path, claim in dict.fromkeys(claims):
-            if not self.prover.proves(claim, path):
-                text = f"{_spelled(claim.args[0])} {claim.value} {_spelled(claim.args[1])}"
-                return f"{text[:100]} does not follow"
-        return ""
-
-    # The rows
-
-    def _domain(self) -> str:
-        """Return why the spec's own values may be outside of its domain."""
-        words = {("u", name): [value] for name, value in self.spec.inputs.items()}
-        words |= {("p", name): list(values) for name, values in self.spec.parameters.items()}
-
-        def at(lane: int) -> dict[Any, Any]:
-            return {name: exact(values[lane % len(values)]) for name, values in words.items()}
-
-        for name in self.spec.states.values():
-            starts = self.spec.initial.get(name, (num(0),))
-            lanes = max(len(starts), *(len(words[s]) for tree in starts for s in symbols(tree)), 1)
-            words["x", name] = [compute(starts[n % len(starts)], at(n)) for n in range(lanes)]
-        for body in self.spec.of("body"):
-            words["T", body.name] = [compute(body.laws["temperature"], at(0))]
-        for text, tree in self.spec.conditions:
-            lanes = max((len(words[s]) for s in symbols(tree)), default=1)
-            if not all(holds(tree, at(lane)) for lane in range(lanes)):
-                return f"the spec's own values are not in {text!r}"
-        return ""
-
-    def _system(self) -> str:
-        divisors = [Claim((), compare(tree, "!=")) for tree in self.found.divisors]
-        return self.found.reasons.get("system", "") or self._all(divisors)
-
-    def _temperature(self, body: Element) -> str:
-        law = body.laws["temperature"]
-        slope = derivative(law, ("x", body.name))
-        claims = [*partial(law), *partial(slope)]
-        return self._all([*claims, *(Claim((), compare(tree, ">")) for tree in (law, slope))])
+    def _own_values(self) -> Iterator[Claim]:
+        """Yield that the spec's own values, in each lane, are in its domain."""
+        spec = self.spec
+        own = {("u", name): [num(value)] for name, value in spec.inputs.items()}
+        own |= {("p", n): [num(value) for value in v] for n, v in spec.parameters.items()}
+        own |= {("x", n): [*spec.initial.get(n, [num(0)])] for n in spec.states.values()}
+        own |= {("T", b.name): [b.laws["temperature"]] for b in spec.of("body")}
+        for lane in range(max(map(len, own.values()))):
+            here = [compare(sym(n), "=", found[lane % len(found)]) for n, found in own.items()]
+            yield from (Claim(tuple(here), tree) for tree in self.conditions)
 
     def _element(self, element: Element) -> Iterator[Row]:
-        trees = [tree for tree in (element.costate, element.law) if tree] or [*element.laws.values()]
+        own, name = tuple(tree for tree in (element.costate, element.law) if tree), element.name
+        trees = own or tuple(element.laws.values())
         claims = [claim for tree in trees for claim in partial(tree)]
-        moving = [tree for tree in trees if _moves(tree)]
         if claims or element.law:
-            yield self._row("welldef", element.name, lambda: self._all(claims))
+            yield self._row("welldef", name, claims)
+        moving = [tree for tree in trees if _moves(tree)]
         if moving and not element.jumps:
-            yield self._row("continuous", element.name, lambda: self._continuous(moving))
+            yield self._row("continuous", name, _continuous(moving))
         if element.law:
-            yield self._row("passive", element.name, lambda: self._passive(element))
+            yield self._row("passive", name, self._passive(element), [("welldef", name)])
         elif element.kind.form == "conduction":
-            flows = [*claims, Claim((), compare(trees[0], ">="))]
-            yield self._row("passive", element.name, lambda: self._all(flows))
+            yield self._row("passive", name, [*claims, _true(trees[0], ">=")])
 
-    def _continuous(self, trees: list[Node]) -> str:
-        for tree in trees:
-            closed = _Closed()
-            relaxed = closed.tree(tree, ())
-            same = [Claim(tuple(closed.where), compare(relaxed, "=", tree))] * (relaxed != tree)
-            if reason := self._all([*closed.claims, *same]):
-                return reason
-        return ""
-
-    def _passive(self, element: Element) -> str:
-        """Return why a law may give power: its certificate, if it has one, else cvc5."""
+    def _passive(self, element: Element) -> Iterator[Claim]:
+        """Yield that a law takes power in, after its certificate if it has one."""
         law, z = element.law or num(0), sym(("z", element.name))
-        given = [e["certificate"] for e in self.stated["passive", element.name] if e.get("certificate")]
-        if given:
-            reason = check_certificate(self.spec, element, given[0], self.prover)
-        else:
-            sides = ((">", ">="), ("<", "<="))
-            reason = self._all([Claim((compare(z, s),), compare(law, op)) for s, op in sides])
-        return reason or self._of("welldef", element.name)
+        given = [entry.get("certificate") for entry in self.stated["passive", element.name]]
+        for certificate in filter(None, given):
+            check_certificate(self.spec, element, certificate, self.prover)
+        for side in "<>" if not any(given) else "":
+            yield Claim((compare(z, side),), compare(law, side + "="))
 
-    def _balances(self) -> Iterator[Row]:
-        good = self._good("temperature", "passive", "domain")
-        yield self._row("sigma", "", lambda: "" if good else "a row it rests on is not confirmed")
-        claims = []
-        for element in self.spec.of("ambient"):
-            law, hot = element.laws["conductance"], sym(("u", element.input))
-            claims += [*partial(law), *(Claim((), compare(*c)) for c in ((law, ">="), (hot, ">")))]
-        for name in ("exergy", "environment") if claims else ():
-            rests = self._of("sigma") or self._of("energy")
-            yield self._row(name, "", lambda rests=rests: rests or self._all(claims))
+    def _information(self, name: str, owner: str) -> Row:
+        """Return a row that is looked at where it is claimed."""
+        element = self.spec.elements.get(owner)
+        if name == "odd" and element and element.law:
+            turned = put(element.law, {("z", owner): made("-z", z=sym(("z", owner)))})
+            claim = Claim((), compare(turned, "=", made("-x", x=element.law)))
+            return self._row(name, owner, [claim], [("welldef", owner)])
+        if name == "invariant" and element and element.kind.form == "body":
+            return self._row(name, owner, self._invariant(element), [("sigma", "")])
+        return self._row(name, owner, why="the checker knows no such row")
 
-    # Information, where it is claimed
-
-    def _others(self) -> Iterator[Row]:
-        for (name, owner), entries in self.stated.items():
-            claimed = any(e.get("verdict") == "PROVED" or e.get("required", True) for e in entries)
-            element = self.spec.elements.get(owner)
-            if (name, owner) in self.done or not claimed:
-                continue
-            check: Callable[[], str] = lambda: "the checker knows no such row"  # noqa: E731
-            if name == "odd" and element and element.law:
-                check = lambda element=element: self._odd(element)  # noqa: E731
-            elif name == "invariant" and element and element.kind.form == "body":
-                check = lambda element=element: self._invariant(element)  # noqa: E731
-            yield self._row(name, owner, check)
-
-    def _odd(self, element: Element) -> str:
-        law, z = element.law or num(0), ("z", element.name)
-        turned, minus = put(law, {z: Node("neg", (sym(z),))}), Node("neg", (law,))
-        if not Field().same(turned, minus):
-            return self._all([Claim((), compare(turned, "=", minus))])
-        return self._of("welldef", element.name)
-
-    def _invariant(self, body: Element) -> str:
-        """Return why a body may cool below its floor: T > floor, T <= m < T_e."""
-        T, m, claims, cold = sym(("T", body.name)), sym(("m", "")), list[Claim](), False
-        for element in self.spec.of("ambient", "conduction"):
-            if body.name not in element.bodies:
-                continue
-            lam = element.laws["conductance"]
-            if element.kind.form == "conduction":
-                other = next(sym(("T", b)) for b in element.bodies if b != body.name)
-                gain = made("lam*(a/T - 1)", lam=lam, a=other, T=T)
-                claims.append(Claim((compare(T, "<=", other),), compare(gain, ">=")))
-                continue
-            hot, cold = sym(("u", element.input)), True
+    def _invariant(self, body: Element) -> Iterator[Claim]:
+        """Yield that a body does not cool below its floor: T > floor, T <= m < T_e."""
+        T, m = sym(("T", body.name)), sym(("m", ""))
+        around = [e for e in self.spec.of("ambient", "conduction") if body.name in e.bodies]
+        for e in around:
+            lam, others = e.laws["conductance"], [b for b in e.bodies if b != body.name]
+            hot = sym(("T", others[0]) if others else ("u", e.input))
             gains = [made("lam*(a/T - 1)", lam=lam, a=hot, T=x) for x in (T, m)]
             between = (compare(T, "<=", m), compare(m, "<", hot))
-            wanted = (compare(gains[0], ">=", gains[1]), compare(gains[1], ">="))
-            claims += [Claim(between, claim) for claim in wanted]
-        above = {">": 0, "<": 1}
-        floors = [c for c in self.conditions if c.value in above and c.args[above[c.value]] == T]
-        need(cold and bool(floors), "no floor of T, or no environment")
-        return self._all(claims) or self._of("sigma")
+            if others:
+                yield Claim((compare(T, "<=", hot),), compare(gains[0], ">="))
+            else:
+                yield Claim(between, compare(gains[0], ">=", gains[1]))
+                yield Claim(between, compare(gains[1], ">="))
+        floors = [c for c in self.conditions if T in (c.args[:1] if c.value == ">" else c.args[1:])]
+        strict = any(c.value in "<>" for c in floors) and any(e.input for e in around)
+        need(strict, "no floor of T, or no environment")
+
+
+def _continuous(trees: list[Node]) -> Iterator[Claim]:
+    """Yield that laws do not jump where their choices meet."""
+    for tree in trees:
+        closed = _Closed()
+        relaxed = closed.tree(tree, ())
+        yield from closed.claims
+        if relaxed != tree:
+            yield Claim(tuple(closed.where), compare(relaxed, "=", tree))
+
+
+def _cooling(element: Element) -> list[Claim]:
+    """Return what heat exchange needs: a conductance that is not negative, T_e above zero."""
+    law = element.laws["conductance"]
+    return [*partial(law), _true(law, ">="), _true(sym(("u", element.input)), ">")]
+
+
+def _true(left: Node, operator: str) -> Claim:
+    return Claim((), compare(left, operator))
 
 
 def _moves(tree: Node) -> bool:
     """Return whether a law has a choice or kink in its letter, a state or a temperature."""
-    choosers = (n.args[0] if n.op == "if" else n for n in walk(tree) if n.op in ("if", *KINKS))
+    choosers = (n.args[0] if n.op == "if" else n for n in laws.walk(tree) if n.op in ("if", *KINKS))
     return any(role in MOVING for chooser in choosers for role, _ in symbols(chooser))
 
 
@@ -240,15 +207,11 @@ class _Closed:
     def tree(self, node: Node, path: tuple[Node, ...]) -> Node:
         """Return a law in choices of sides; book what is needed for it to have a value."""
         if node.op == "sign":
-            return self.tree(unkinked(node), path)
+            return self.tree(laws.unkinked(node), path)
         if node.op != "if":
-            made = Node(node.op, tuple(self.tree(arg, path) for arg in node.args), node.value)
-            bare = Node(node.op, tuple(sym(("part", str(n))) for n in range(len(made.args))), node.value)
-            inner = {("part", str(n)): arg for n, arg in enumerate(made.args)}
-            if node.op != "/" or made.args[1].op != "num" or not made.args[1].value:
-                own = [put(claim, inner) for _, claim in partial(bare)]
-                self.claims += [Claim((*self.where, *path), claim) for claim in own]
-            return made
+            here = Node(node.op, tuple(self.tree(arg, path) for arg in node.args), node.value)
+            self.claims += [Claim((*self.where, *path), c) for c in needed(here)]
+            return here
         left, right = (self.tree(arg, path) for arg in node.args[0].args)
         side = Node("cmp", (left, right), node.args[0].value)
         if any(role in MOVING for role, _ in symbols(node.args[0])):
@@ -260,7 +223,8 @@ class _Closed:
         """Return the comparison b > 0 (or b <= 0) that stands for left above (below) right."""
         difference = made("x - z", x=condition.args[0], z=condition.args[1])
         key = self.field.scaled([self.field.of(difference)])[1][0]
-        turned, above = key.negative, condition.value in (">", ">=")
+        turned = key != 0 and key.top.leading_coefficient() < 0
+        above = condition.value in (">", ">=")
         key, difference = (-key, Node("neg", (difference,))) if turned else (key, difference)
         chosen = compare(sym(("side", f"{key.top}/{key.bottom}")), ">")
         edge = Node("if", (chosen, difference, Node("neg", (difference,))))
@@ -268,9 +232,3 @@ class _Closed:
             edge = Node("if", (step, edge, num(0)))
         self.where.append(compare(edge, ">="))
         return chosen if above != turned else negated(chosen)
-
-
-def _spelled(node: Node) -> str:
-    if node.op in ("num", "sym"):
-        return str(node.value if node.op == "num" else ".".join(map(str, node.value)))
-    return f"{node.op}({', '.join(map(_spelled, node.args))})"

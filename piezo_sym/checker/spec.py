@@ -6,23 +6,19 @@ Symbols are pairs: ("p", parameter), ("u", input), ("x", element) its state, ("z
 letter of its dissipative law, ("T", body).
 """
 
-from __future__ import annotations
-
 import re
 import tomllib
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from typing import Any, NamedTuple
 
+from . import laws
 from .kinds import GIVES, KINDS, LETTERS, REFERENCES, STATES, Kind
-from .laws import FUNCTIONS, InputError, Node, compare, made, need, num, number, parse
-from .laws import replaced, sym, symbols, walk
+from .laws import InputError, Node, compare, made, need, num, parse, sym, symbols, walk
 from .units import Dimension, check, unit
 
-NAME = re.compile(r"[A-Za-z](?:[A-Za-z0-9_]*[A-Za-z0-9])?")
-QUOTED = re.compile(r'"(?:\\.|[^"\\\n])*"|\'[^\'\n]*\'|#[^\n]*')
-MAX_BYTES, MAX_NESTING, MAX_DOTS, MAX_ELEMENTS, MAX_COUNT = 500_000, 20, 8, 300, 1_000_000
-RESERVED = {"i", "v", "f", "T", "np", "if", "else", "sum", *FUNCTIONS}
+DOTTED = re.compile(r"(\s*\.\s*[\w\"'-]+){9}")
+MAX_BYTES, MAX_ELEMENTS, MAX_COUNT = 500_000, 300, 1_000_000
 TABLES = ("model", "parameters", "inputs", "domain", "initial", "elements")
 Symbol = tuple[str, str]
 
@@ -46,7 +42,7 @@ class Element(NamedTuple):
     across: bool
     bodies: tuple[str, ...]
     input: str
-    count: int | None
+    lanes: int | None
     jumps: bool
 
 
@@ -73,21 +69,11 @@ class Spec(NamedTuple):
 
 
 def read_spec(text: str) -> Spec:
-    """Return what a spec says.
-
-    Raises
-    ------
-    InputError
-        If it is no spec that the checker knows; one line says why.
-    """
-    bare, depths = QUOTED.sub("", text[: MAX_BYTES + 1]), [0]
-    for c in bare:
-        depths.append(depths[-1] + (c in "[{") - (c in "]}"))
-    dots = max(part.count(".") for part in re.split(r"[=,{}\[\]\n]", bare))
-    need(len(text) <= MAX_BYTES, "the spec is too large")
-    need(max(depths) <= MAX_NESTING and dots <= MAX_DOTS, "the spec is nested too deeply")
+    """Return what a spec says; raises `InputError` if it is none that the checker knows."""
+    small = len(text) <= MAX_BYTES and not DOTTED.search(text)
+    need(small, "the spec is too large, or nested too deeply")
     try:
-        data = tomllib.loads(text, parse_float=number)
+        data = tomllib.loads(text, parse_float=laws.number)
     except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
         raise InputError(f"not TOML: {str(error)[:100]}") from None
     need(not set(data) - set(TABLES), "the spec has an unknown table")
@@ -125,14 +111,11 @@ class _Reader:
     def spec(self) -> Spec:
         domains = dict(REFERENCES)
         for element in self.elements.values():
-            for pair, domain in zip(element.pairs, element.kind.domains, strict=True):
-                for node in pair:
-                    same = domains.setdefault(node, domain) == domain
-                    need(same, f"node {node!r} is in two domains")
-        texts: dict[Node, str] = {}
-        for text, tree in self._conditions():
-            texts.setdefault(tree, text)
-        conditions = tuple((text, tree) for tree, text in texts.items())
+            for pair, own in zip(element.pairs, element.kind.domains, strict=True):
+                same = all(domains.setdefault(node, own) == own for node in pair)
+                need(same, f"a node of {element.name} is in two domains")
+        texts = {tree: text for text, tree in [*self._conditions()][::-1]}
+        conditions = tuple((text, tree) for tree, text in texts.items())[::-1]
         lists, initial = dict(self._lists(conditions)), dict(self._initial())
         tables = (self.parameters, lists, self.inputs, self.elements, self.states, self.words)
         return Spec(*tables, conditions, initial, tuple(self.faults))
@@ -142,7 +125,8 @@ class _Reader:
         for name, entry in self.tables[table].items():
             where = f"{table}.{name}"
             unknown = set(_a(dict, entry, where)) - {field, "unit", "doc"}
-            need(not unknown and (field in entry or role == "u"), f"{where} has a wrong key")
+            complete = not unknown and (field in entry or role == "u") and name.isidentifier()
+            need(complete, f"{where} has a wrong key, or no name")
             given = entry.get(field, 0)
             scale = unit(_a(str, entry.get("unit"), f"{where}.unit"))
             values = given if isinstance(given, list) and given and role == "p" else [given]
@@ -152,7 +136,7 @@ class _Reader:
 
     def _kind(self, name: str, entry: dict[str, Any]) -> Kind:
         kind = KINDS.get(str(entry.get("kind")))
-        if kind is None or not NAME.fullmatch(name):
+        if kind is None or not name.isidentifier():
             raise InputError(f"elements.{name[:60]}: unknown kind, or no name")
         fields = {"kind", *kind.nodes, *kind.laws, *kind.others}
         needed = {field for field in fields if not field.endswith("?")}
@@ -162,26 +146,24 @@ class _Reader:
 
     def _words(self, raw: dict[str, dict[str, Any]]) -> dict[str, Symbol]:
         """Return what each name of the domain means; a name has one meaning."""
-        words, found = dict[str, Symbol](), [(name, ("p", name)) for name in self.parameters]
-        found += [(name, ("u", name)) for name in self.inputs]
+        words, found = dict[str, Symbol](), [(n, ("p", n)) for n in self.parameters]
+        found += [(n, ("u", n)) for n in self.inputs]
         for name, kind in self.kinds.items():
-            if kind.letter:
-                state = raw[name].get("state", f"{kind.letter}_{name}")
+            for letter in (s for _, own in kind.laws.values() for s in own if s in STATES):
+                state = raw[name].get("state", f"{letter}_{name}")
                 found.append((_a(str, state, f"elements.{name}.state"), ("x", name)))
-                self.units["x", name] = unit(LETTERS[kind.letter]).dimension
-        one = len(self.bodies) == 1
-        heat = {("T" if one else f"T_{name}"): ("T", name) for name in self.bodies}
+                self.units["x", name] = unit(LETTERS[letter]).dimension
+        heat = {("T" if len(self.bodies) == 1 else f"T_{n}"): ("T", n) for n in self.bodies}
         self.units |= dict.fromkeys(heat.values(), unit("K").dimension)
         for word, meaning in found:
-            free = word not in words and word not in heat and word not in RESERVED
-            need(free and bool(NAME.fullmatch(word)), f"{word[:60]!r} is taken, or no name")
+            need(word not in words and word not in heat, f"{word[:60]!r} is taken")
             words[word] = meaning
         return words | heat
 
     def _resolved(self, tree: Node, words: Mapping[str, Symbol], where: str) -> Node:
         for name in symbols(tree):
             need(name in words, f"{where}: unknown name {str(name)[:60]!r}")
-        return replaced(tree, lambda name: sym(words[name]))
+        return laws.replaced(tree, lambda name: sym(words[name]))
 
     # Elements
 
@@ -193,39 +175,30 @@ class _Reader:
         source, count = _a(str, entry.get("input", ""), where), entry.get("count")
         if "input" in kind.others:
             need(source in self.inputs, f"{where}: {source[:60]!r} is no input")
-            given = GIVES[kind.domains, kind.across] if kind.form == "source" else "K"
-            fits = self.units["u", source] == unit(given).dimension
-            self.faults += [] if fits else [f"{where}.input is not in {given}"]
+            row = GIVES[kind.domains, kind.across] if kind.form == "source" else "K"
+            fits = self.units["u", source] == unit(row).dimension
+            self.faults += [] if fits else [f"{where}.input is not in {row}"]
         if count is not None:
             need(1 <= _a(int, count, where) <= MAX_COUNT, f"{where}.count is out of range")
         need(kind.form != "law" or len(laws) == 1, f"{where} needs exactly one law")
         field, dissipates = next(reversed(laws), ""), kind.form in ("law", "hysteron")
         parts = {"rest": num(0), **laws, "x": sym(("x", name))}
-        return Element(
-            name=name,
-            kind=kind,
-            laws=laws,
-            state=next((word for word, owner in self.states.items() if owner == name), ""),
-            costate=made(kind.costate, **parts) if kind.costate else None,
-            law=laws[field] if dissipates else None,
-            letter=fields[field][1][0] if dissipates else "",
-            pairs=tuple(self._pair(entry[key], f"{where}.{key}") for key in kind.nodes),
-            across=kind.across and (kind.form != "law" or field in ("voltage", "velocity")),
-            bodies=bodies,
-            input=source,
-            count=count,
-            jumps=_a(bool, entry.get("discontinuous", False), where),
-        )
+        costate = made(kind.costate, **parts) if kind.costate else None
+        law, letter = (laws[field], fields[field][1][0]) if dissipates else (None, "")
+        pairs = tuple(self._pair(entry[key], f"{where}.{key}") for key in kind.nodes)
+        across = kind.across and (kind.form != "law" or field in ("voltage", "velocity"))
+        jumps = _a(bool, entry.get("discontinuous", False), where)
+        state = next((word for word, owner in self.states.items() if owner == name), "")
+        given = (pairs, across, bodies, source, count, jumps)
+        return Element(name, kind, laws, state, costate, law, letter, *given)
 
-    def _law(
-        self, text: Any, name: str, bodies: tuple[str, ...], needed: str, letters: tuple[str, ...]
-    ) -> Node:
+    def _law(self, text: Any, name: str, bodies: Any, needed: str, letters: Any) -> Node:
         words: dict[str, Symbol] = {p: ("p", p) for p in self.parameters}
         across = GIVES.get((self.kinds[name].domains, True), "1")
         for letter in letters:
             if letter == "T":
                 owner = bodies or (tuple(self.bodies) if len(self.bodies) == 1 else ())
-                words |= {"T": ("T", body) for body in owner[:1]}
+                words |= dict(zip("T", [("T", body) for body in owner], strict=False))
                 continue
             words[letter] = ("x" if letter in STATES else "z", name)
             self.units[words[letter]] = unit(LETTERS.get(letter, across)).dimension
@@ -234,8 +207,8 @@ class _Reader:
         return law
 
     def _bodies_of(self, entry: dict[str, Any], kind: Kind, where: str) -> tuple[str, ...]:
-        named = ("heats", "body") if kind.form == "body" else ("heats", "temperature", "body")
-        given = [entry[f] for f in named if f in entry and kind.form != "body"]
+        fields = ("heats", "body", "temperature") if kind.form != "body" else ()
+        given = [entry[field] for field in fields if field in entry]
         if kind.form == "conduction":
             given = _a(list, entry["between"], where)
             need(len(given) == 2 and given[0] != given[1], f"{where} names no two bodies")
@@ -260,7 +233,11 @@ class _Reader:
             places.append((text, tree))
         yield from places
         for name, element in self.elements.items():
-            for required in _required(element):
+            first = next(iter(element.laws.values()), num(1))
+            body = [sym(symbol) for symbol in symbols(first) if symbol[0] == "p"]
+            for required in (
+                body if element.kind.form == "body" else [first] * bool(element.costate)
+            ):
                 yield f"{name}: its kind requires > 0", compare(required, ">")
             places += [(name, law) for law in element.laws.values()]
         places += [(f"initial.{n}", tree) for n, starts in self._initial() for tree in starts]
@@ -272,29 +249,29 @@ class _Reader:
                     yield f"{where}: a width is >= 0", compare(width, ">=")
 
     def _initial(self) -> Iterator[tuple[str, tuple[Node, ...]]]:
-        words = {word: meaning for word, meaning in self.words.items() if meaning[0] in "pu"}
         for state, given in self.tables["initial"].items():
             where, owner = f"initial.{state}", self.states.get(state, "")
             need(owner in self.elements, f"{where}: no such state")
-            listed = isinstance(given, list)
-            fits = not listed or len(given) == self.elements[owner].count
+            fits = not isinstance(given, list) or len(given) == self.elements[owner].lanes
             need(fits, f"{where} has a list of another length")
-            starts = []
-            for value in given if listed else [given]:
-                if not isinstance(value, str):
-                    starts.append(num(_value(value, where)))
-                    continue
-                starts.append(self._resolved(parse(value, compares=False), words, where))
-                self.faults += check(starts[-1], self.units, self.units["x", owner], where)
-            yield owner, tuple(starts)
+            starts = given if isinstance(given, list) else [given]
+            yield owner, tuple(self._start(start, where, owner) for start in starts)
+
+    def _start(self, given: Any, where: str, owner: str) -> Node:
+        if not isinstance(given, str):
+            return num(_value(given, where))
+        words = {word: meaning for word, meaning in self.words.items() if meaning[0] in "pu"}
+        tree = self._resolved(parse(given, compares=False), words, where)
+        self.faults += check(tree, self.units, self.units["x", owner], where)
+        return tree
 
     def _lists(self, conditions: tuple[tuple[str, Node], ...]) -> Iterator[tuple[str, str]]:
         """Yield the bank of each list; refuse those that are not of one bank's laws alone."""
-        owner: dict[Symbol, str] = {("x", n): n for n, e in self.elements.items() if e.count}
+        owner: dict[Symbol, str] = {("x", n): n for n, e in self.elements.items() if e.lanes}
         for name, values in self.parameters.items():
             if isinstance(self.tables["parameters"][name]["value"], list):
                 laws = [(e, law) for e in self.elements.values() for law in e.laws.values()]
-                users = {e.name: e.count for e, law in laws if ("p", name) in symbols(law)}
+                users = {e.name: e.lanes for e, law in laws if ("p", name) in symbols(law)}
                 good = [*users.values()] == [len(values)]
                 need(good, f"parameters.{name}: a list, but no bank of its length")
                 owner["p", name] = next(iter(users))
@@ -302,11 +279,3 @@ class _Reader:
         for text, tree in conditions:
             banks = {owner[symbol] for symbol in symbols(tree) if symbol in owner}
             need(len(banks) < 2, f"{text!r} mixes lanes of two banks")
-
-
-def _required(element: Element) -> Iterator[Node]:
-    """Yield what an element's kind requires to be positive."""
-    if element.kind.form == "body":
-        yield from (sym(s) for s in symbols(element.laws["temperature"]) if s[0] == "p")
-    elif element.costate:
-        yield next(iter(element.laws.values()))

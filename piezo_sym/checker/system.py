@@ -8,13 +8,12 @@ rates have sums over lanes with coefficients that no count is in, and products o
 none, concerns three lanes at once at most: it holds for every count if it does for 1, 2 and 3.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
+from . import laws
 from .field import Field, Ratio, constant
-from .laws import KINKS, InputError, Node, derivative, need, num, parse, replaced, sym, symbols, walk
+from .laws import KINKS, InputError, Node, need, num, parse, sym, symbols, walk
 from .network import Flows, SingularError, exchange, flows
 from .spec import Element, Spec
 
@@ -65,8 +64,8 @@ class _Published:
         own = [self.sums(arg, depth) for arg in node.args]
         found = sum(own) if node.op == "*" else max(own, default=0) + (node.op == "sum")
         whole = node.op == "**" and node.value > 0 and node.value.denominator == 1
-        plain = whole or node.op not in ("/", "**") or not own[-1]
         found = found * int(node.value) if whole else found
+        plain = whole or node.op not in ("/", "**") or not own[-1]
         need(plain, "a published divisor or root has a sum over lanes")
         need(found <= MOST_SUMS, f"more than {MOST_SUMS} published sums over lanes are multiplied")
         return found if node.op in PLAIN else 0
@@ -77,12 +76,13 @@ class _Comparison:
 
     def __init__(self, spec: Spec, text: _Published, count: int, finding: Finding) -> None:
         self.spec, self.text, self.finding, self.one = spec, text, finding, constant(1)
-        self.counts = {e.name: count for e in spec.of("hysteron") if e.count is not None}
+        self.counts = {e.name: count for e in spec.of("hysteron") if e.lanes is not None}
         self.field, self.known = Field(), dict[Any, Ratio]()
 
     # What symbols stand for
 
-    def symbol(self, role: str, owner: str, lane: int) -> Ratio:
+    def symbol(self, meaning: tuple[str, str], lane: int) -> Ratio:
+        role, owner = meaning
         lists = {"p": self.spec.lists, "x": self.counts, "E": self.counts}
         per_lane = owner in lists.get(role, ())
         need(lane > 0 or not per_lane, f"{owner!r} is of a lane, and stands outside of lanes")
@@ -90,13 +90,14 @@ class _Comparison:
 
     def law(self, element: Element, field: str, lane: int, letter: Ratio | None = None) -> Ratio:
         tree = element.law if field == "law" else element.laws.get(field, element.costate)
-        own = letter or constant(0)
-        return self.field.of(
-            tree or num(0), lambda name: own if name[0] == "z" else self.symbol(*name, lane)
-        )
+
+        def word(name: tuple[str, str]) -> Ratio:
+            return letter if letter and name[0] == "z" else self.symbol(name, lane)
+
+        return self.field.of(tree or num(0), word)
 
     def given(self, role: str, owner: str, lane: int) -> Ratio:
-        return self.symbol(role, self.spec.elements[owner].input if role == "u" else owner, lane)
+        return self.symbol((role, self.spec.elements[owner].input if role == "u" else owner), lane)
 
     def state(self, element: Element, lane: int) -> Ratio:
         return self.given("T" if element.kind.form == "body" else "E", element.name, lane)
@@ -120,16 +121,17 @@ class _Comparison:
         if name not in self.text.names:
             role, owner = self.spec.words.get(name, ("T", ""))
             need(role != "T", f"unknown published name {name[:60]!r}")
-            return self.symbol(role, owner, bound.get(self.spec.lists.get(owner, owner), 0))
+            bank = self.spec.lists.get(owner, "") if role == "p" else owner
+            return self.symbol((role, owner), bound.get(bank, 0))
         element, role, bank = self.text.names[name]
         lane = bound.get(bank, 0) if bank else 0
         need(lane > 0 or not bank, f"{name!r} is of a lane, and stands outside of lanes")
         if (name, lane) not in self.known:
             found = self.published(self.text.laws[name], {bank: lane} if bank else {})
-            owner = self.spec.elements.get(element)
-            if role in ("costate", "temperature") and owner is not None and owner.costate:
-                self._equal("system", found, self.law(owner, "costate", lane), name)
-                found = self.state(owner, lane)
+            store = self.spec.elements.get(element)
+            if role in ("costate", "temperature") and store is not None and store.costate:
+                self._equal("system", found, self.law(store, "costate", lane), name)
+                found = self.state(store, lane)
             self.known[name, lane] = found
         return self.known[name, lane]
 
@@ -163,18 +165,17 @@ class _Comparison:
         for pivot in own.pivots:
             determinant = determinant * pivot
         for tree in self.field.factors(determinant):
-            spelled = replaced(tree, lambda key: sym(key if key[2] else key[:2]))
+            spelled = laws.replaced(tree, lambda key: sym(key if key[2] else key[:2]))
             self.finding.divisors[spelled] = None
         for (name, _), form in own.forms.items():
-            terms = [self._term(name, label, factor) for label, factor in form.items()]
-            known = tuple(term for term in terms if term)
-            if known and len(known) == len(terms):
-                self.finding.letters[name] = Node("+", known)
+            terms = [self._term(name, *term) for term in form.items()]
+            if all(terms):
+                self.finding.letters[name] = Node("+", (num(0), *filter(None, terms)))
 
     def _term(self, name: str, label: Any, factor: Ratio) -> Node | None:
         """Return a term of a letter as a tree, if it is one of its own lane."""
         source = self.spec.elements[label[1]]
-        foreign = source.count is not None and source.name != name
+        foreign = source.lanes is not None and source.name != name
         if label[0] == "W" or foreign or factor.number is None:
             return None
         of = sym(("u", source.input)) if label[0] == "u" else source.costate or num(0)
@@ -194,14 +195,14 @@ class _Comparison:
                 inner = term.args[0] if term.op == "sum" else term
                 bound = {term.value: 1} if term.op == "sum" else {}
                 if state in symbols(inner):
-                    total = total + self.published(derivative(inner, state), bound)
+                    total = total + self.published(laws.derivative(inner, state), bound)
             own = self.law(self.spec.elements[name], "costate", 1 if name in self.counts else 0)
             self._equal("energy", total, own, f"dU/d{state}")
 
 
 def check_system(spec: Spec, system: Mapping[str, Any]) -> Finding:
     """Return what is found of a published system."""
-    finding, banks = Finding({}, {}, {}), {e.name for e in spec.elements.values() if e.count}
+    finding, banks = Finding({}, {}, {}), {e.name for e in spec.elements.values() if e.lanes}
     try:
         text = _Published(spec, system)
         expected = [(s, name, name if name in banks else None) for s, name in spec.states.items()]

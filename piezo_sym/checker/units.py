@@ -4,8 +4,6 @@ Input: texts such as ``N*s/m``, and trees with the dimension of every symbol.  O
 the faults that a tree has.  pint knows the units; the grammar is the checker's own.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
@@ -15,7 +13,10 @@ from typing import Any, NamedTuple
 from .laws import InputError, Node, need
 
 TERM = re.compile(r"([*/]|^)([A-Za-z]+|1)(?:(?:\*\*|\^)(-?[1-9]))?(?![A-Za-z0-9^]|\*\*)")
-BASES = [f"[{w}]" for w in "mass length time current temperature substance luminosity".split()]
+BASES = [
+    f"[{w}]"
+    for w in ["mass", "length", "time", "current", "temperature", "substance", "luminosity"]
+]
 Dimension = tuple[Fraction, ...]
 NONE: Dimension = (Fraction(0),) * len(BASES)
 PURE = ("exp", "log", "sin", "cos", "tanh")
@@ -90,6 +91,7 @@ def _dimension(node: Node, units: Mapping[Any, Dimension]) -> Dimension | None:
     if node.op in (*PURE, "sign") or (node.op == "**" and node.value == 0):
         return NONE
     if node.op in "*/":
-        return _times(*known, 1 if node.op == "*" else -1) if len(known) == 2 else None
+        sign = 1 if node.op == "*" else -1
+        return _times(known[0], known[1], sign) if len(known) == 2 else None
     power = {"**": node.value, "sqrt": Fraction(1, 2)}.get(node.op, 1)
     return _times(NONE, known[0], power) if known else None

@@ -1,7 +1,5 @@
 """``piezo-sym bench [SPEC]``: speed and error beside what one would otherwise use."""
 
-from __future__ import annotations
-
 from dataclasses import asdict
 from json import dumps
 from pathlib import Path

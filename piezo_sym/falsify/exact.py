@@ -15,8 +15,8 @@ from flint import arb, ctx, fmpq
 
 from piezo_sym.checker import InputError, read_spec
 from piezo_sym.checker.network import SingularError
-from piezo_sym.checker.numbers import exact
 from piezo_sym.falsify.claims import Claim
+from piezo_sym.falsify.numbers import exact
 from piezo_sym.falsify.point import Point, evaluate
 from piezo_sym.falsify.space import Array, Space
 from piezo_sym.iphs import IPHS

@@ -15,8 +15,8 @@ from flint import arb, ctx, fmpq
 
 from piezo_sym.checker.laws import InputError, Node, derivative, num, symbols
 from piezo_sym.checker.network import Flows, SingularError, flows
-from piezo_sym.checker.numbers import CannotTell, NoValue, compute, exact, holds
 from piezo_sym.checker.spec import Element, Spec
+from piezo_sym.falsify.numbers import CannotTell, NoValue, compute, exact, holds
 
 PRECISIONS = (128, 512, 2048, 8192)
 MAX_LANES = 64
@@ -91,7 +91,7 @@ class _Evaluation:
     def __init__(self, spec: Spec, counts: Mapping[str, int]) -> None:
         self.spec, self.one, self.rational = spec, exact(1), True
         self.untold, self.undefined = False, dict[str, None]()
-        self.counts = {e.name: e.count for e in spec.of("hysteron") if e.count} | dict(counts)
+        self.counts = {e.name: e.lanes for e in spec.of("hysteron") if e.lanes} | dict(counts)
         if max(self.counts.values(), default=0) > MAX_LANES:
             raise InputError(f"a point is computed for banks of {MAX_LANES} lanes at most")
         self.known: dict[Any, list[Any]] = {}
@@ -109,7 +109,7 @@ class _Evaluation:
             self.known["x", owner] = list(told) if given is None else _list(given)
         for body in self.spec.of("body"):
             T = self.told(body.laws["temperature"], body.name)
-            self.known["T", body.name] = [T if T != 0 else arb(0)]  # W*z/T is then no number
+            self.known["T", body.name] = [arb(0) if T == 0 else T]  # W*z/T is then no number
 
     def words(self, lane: int) -> dict[Any, Any]:
         """Return the values of names in one lane."""

@@ -10,11 +10,15 @@ from __future__ import annotations
 
 from piezo_sym.algebra.linear import SingularError
 from piezo_sym.algebra.symbols import SymbolTable
-from piezo_sym.network.inverse import turn
+from piezo_sym.errors import NetworkError
+from piezo_sym.network.inverse import FIELDS, turn
 from piezo_sym.network.kirchhoff import Laws
 from piezo_sym.network.refusals import refusal
 from piezo_sym.spec.circuit import Circuit, Placed
 from piezo_sym.spec.elements.ports import Resistor
+
+#: Laws turned round, times branches of the network: about half a minute.
+MOST_WORK = 1_000_000
 
 
 def causal(circuit: Circuit, symbols: SymbolTable) -> Laws:
@@ -39,6 +43,13 @@ def causal(circuit: Circuit, symbols: SymbolTable) -> Laws:
             raise refusal(laws, contradiction)
         placed, port = found
         turned.add(placed.element)
+        if len(turned) * len(laws.edges) > MOST_WORK:
+            field = FIELDS[port.domain, port.letter]
+            what = f"more than {len(turned) - 1} laws have to be turned round, one after the other"
+            remedy = (
+                f"give {field} = '...' of {port.letter} for '{placed.element}' and those like it"
+            )
+            raise NetworkError(what, "network", remedy=remedy)
         circuit = circuit.replaced(placed, port)
 
 

@@ -16,7 +16,15 @@ from typing import Any, final
 import sympy as sp
 from sympy.polys.domains import QQ
 
-from piezo_sym.algebra.linear import Equation, Form, SingularError, accumulate, combine, solve
+from piezo_sym.algebra.linear import (
+    Equation,
+    Form,
+    LongError,
+    SingularError,
+    accumulate,
+    combine,
+    solve,
+)
 from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import NetworkError
 from piezo_sym.network.nodes import is_inner, is_reference
@@ -32,6 +40,9 @@ from piezo_sym.spec.elements.ports import (
     Storage,
     Variable,
 )
+
+#: Coefficients to combine in a solution times the ratios in each: about half a minute.
+MOST_WORK = 20_000_000
 
 #: An answer: the part that is the same for every lane, and that of the branch's own lane.
 Answer = tuple[Form, Form]
@@ -69,7 +80,7 @@ class Laws:
     """The junction laws of one circuit on their way to a solution."""
 
     def __init__(self, circuit: Circuit, symbols: SymbolTable) -> None:
-        self.circuit = circuit
+        self.circuit, self.symbols = circuit, symbols
         self.banks = tuple(symbols.counts)
         couplings = [port for _, port in circuit.of(Coupling)]
         letters = [_letter(n) for n in range(len(couplings))]
@@ -177,7 +188,7 @@ class Laws:
         for equation in equations:  # shared nodes are given, for a lane
             for label in [label for label in equation.left if label not in unknowns]:
                 accumulate(equation.right, label, -equation.left.pop(label))
-        return solve(equations, unknowns, self.divisors)
+        return self._solved(equations, unknowns)
 
     def _solve_shared(self, lanes: dict[str, dict[Any, Form]]) -> dict[Any, Form]:
         """Return the shared unknowns in terms of shared givens and of sums over lanes."""
@@ -194,7 +205,18 @@ class Laws:
             e.unknown for e in self.edges if e.placed.bank is None and e.imposes is Variable.ACROSS
         ]
         unknowns += [("t", port.name) for port in self.ratio if not port.gyrates]
-        return solve(equations, unknowns, self.divisors)
+        return self._solved(equations, unknowns)
+
+    def _solved(self, equations: list[Equation], unknowns: list[Any]) -> dict[Any, Form]:
+        """Return the solution of some of the laws; refuse those that take too long."""
+        try:
+            return solve(equations, unknowns, self.divisors, MOST_WORK // (len(self.ratio) + 3))
+        except LongError as error:
+            what = f"the laws of {len(self.edges)} branches and {len(self.ratio)} couplings"
+            remedy = "leave elements out, or put masses and capacitors between levers and the like"
+            raise NetworkError(
+                f"{what} take too long to solve", "network", remedy=remedy
+            ) from error
 
     def _summed(self, bank: str, row: Equation, solution: dict[Any, Form]) -> Form:
         """Return what all lanes together draw from a shared node, as sums of their givens."""

@@ -47,7 +47,8 @@ def published(iphs: IPHS) -> dict[str, object]:
         },
         "energy": write(add(*stored), STYLE),
         "outputs": {
-            slot.label: write(tree(y), STYLE) for slot, y in zip(system.ports, system.y, strict=True)
+            slot.label: write(tree(y), STYLE)
+            for slot, y in zip(system.ports, system.y, strict=True)
         },
     }
 
@@ -74,12 +75,12 @@ def _names(iphs: IPHS, tree: _Trees) -> Iterator[tuple[str, dict[str, str | None
     for share, value in iphs.junction.shares:
         yield entry(share.name, "", "share", tree(value))
     for (placed, process), z in zip(processes, iphs.system.z, strict=True):
-        hot = {"T": Sym(iphs.circuit.body(heated(process)).temperature)}
+        heat: dict[str, Expr] = {"T": Sym(iphs.circuit.body(heated(process)).temperature)}
         if isinstance(process, Conductor):
             first = Sym(iphs.circuit.body(process.first).temperature)
             law = div(mul(process.conductance, tree(z)), first)
         else:
-            law = replace(process.law, {process.letter: tree(z), **hot})
+            law = replace(process.law, {process.letter: tree(z), **heat})
         yield entry(process.output, placed.element, "output", law)
 
 
@@ -137,4 +138,6 @@ class _Trees:
         if not rest:
             return self(value)
         left, right = self(condition.args[0]), self(condition.args[1])
-        return If(self(value), Cmp(COMPARISONS[type(condition)], left, right), self._choice(tuple(rest)))
+        return If(
+            self(value), Cmp(COMPARISONS[type(condition)], left, right), self._choice(tuple(rest))
+        )

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, TypeVar, final, overload
 
 from piezo_sym.spec.elements.ports import (
@@ -86,13 +87,17 @@ class Circuit:
 
     def body(self, element: str) -> Body:
         """Return the body of a thermal mass."""
-        return next(port for placed, port in self.of(Body) if placed.element == element)
+        return self._bodies[element]
+
+    @cached_property
+    def _bodies(self) -> dict[str, Body]:
+        return {placed.element: port for placed, port in self.of(Body)}
 
 
 def circuit_of(model: Model) -> Circuit:
     """Return the circuit of a model, its quantities named apart from every name of the spec."""
-    symbols = {word for word, _ in temperatures(model).items()}
-    taken = symbols | {*model.parameters, *model.inputs, *model.elements}
+    heat = {body: word for word, body in temperatures(model).items()}
+    taken = {*heat.values(), *model.parameters, *model.inputs, *model.elements}
     taken |= {f"{bank}_count" for bank in banks(model)}
     placed = [
         Placed(name, name if element.is_bank else None, port)
@@ -102,7 +107,7 @@ def circuit_of(model: Model) -> Circuit:
     taken |= {p.port.state for p in placed if isinstance(p.port, Storage | Body)}
     named = []
     for entry in placed:
-        port = _named(entry, taken, {body: word for word, body in temperatures(model).items()})
+        port = _named(entry, taken, heat)
         named.append(replace(entry, port=port))
     return Circuit(model, tuple(named), frozenset(taken))
 

@@ -6,7 +6,7 @@ order is the same too (states follow the order of elements).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import ItemsView, Iterator, Mapping
 from typing import Any, Generic, TypeVar, final, get_args
 
 from pydantic import GetCoreSchemaHandler
@@ -31,6 +31,10 @@ class Table(Mapping[str, Value], Generic[Value]):
     def __iter__(self) -> Iterator[str]:
         """Iterate over the names in order."""
         return iter(self._items)
+
+    def items(self) -> ItemsView[str, Value]:
+        """Return the names and values in order; the mapping's own is several times slower."""
+        return self._items.items()
 
     def __len__(self) -> int:
         """Return the number of names."""

@@ -5,8 +5,6 @@ The grammar knows names, ``*``, ``/``, and whole powers up to 9 (``m**2``); ``1`
 the unit of a pure number.  pint never sees anything else.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from fractions import Fraction
@@ -77,7 +75,6 @@ def raised(name: str, power: Fraction | int) -> str:
     return f"{name}**{power}" if Fraction(power).denominator == 1 else f"{name}**({power})"
 
 
-@lru_cache(maxsize=1024)
 def parse_unit(text: str, where: str = "unit", value: float | None = None) -> Unit:
     """Return the unit that `text` names; `value` is what is given in it, for the message.
 
@@ -86,6 +83,18 @@ def parse_unit(text: str, where: str = "unit", value: float | None = None) -> Un
     SpecError
         If the text is not of the grammar, names no unit, or a unit with an offset (degC).
     """
+    try:
+        return _known(text)
+    except SpecError:  # say it again, of the place where it stands
+        return _read(text, where, value)
+
+
+@lru_cache(maxsize=1024)
+def _known(text: str) -> Unit:
+    return _read(text, "unit", None)
+
+
+def _read(text: str, where: str, value: float | None) -> Unit:
     factor, dimension = Fraction(1), [Fraction(0)] * len(BASES)
     terms = [(_named(name, where, value), power) for name, power in _terms(text, where)]
     for unit, power in terms:

@@ -11,21 +11,23 @@ from collections.abc import Callable, Mapping
 from fractions import Fraction
 
 from piezo_sym.translation.field import Field, Generator, NotShownError, Value
+from piezo_sym.translation.functions import call, power
+from piezo_sym.translation.signs import compare, sign_of
 
 
 def put(value: Value, new: Mapping[int, Value]) -> Value:
-    """Return a value with names replaced, also in functions; sums keep the lane that they bind."""
+    """Return a value with generators replaced, in functions too; sums keep the lane they bind."""
     field = value.field
-    if value.names.isdisjoint(new):
+    if value.parts.isdisjoint(new):
         return value
     path, field.path = field.path, None
     parts = []
     for mono, c in value.terms.items():
         term = field.number(c)
         for g, e in mono:
-            same = field.gens[g].names.isdisjoint(new)
+            same = field.gens[g].parts.isdisjoint(new)
             factor = Value(field, {((g, e),): 1}) if same else None
-            term = term * (factor or field.power(_put(field, g, new), Fraction(e)))
+            term = term * (factor or power(_put(field, g, new), Fraction(e)))
         parts.append(term)
     field.path = path
     return field.total(parts)
@@ -33,7 +35,7 @@ def put(value: Value, new: Mapping[int, Value]) -> Value:
 
 def _put(field: Field, g: int, new: Mapping[int, Value]) -> Value:
     gen = field.gens[g]
-    if gen.arg is None:
+    if g in new or gen.arg is None:
         return new[g]
     if gen.kind == "sum":
         bank = str(gen.mark)
@@ -46,17 +48,17 @@ def _put(field: Field, g: int, new: Mapping[int, Value]) -> Value:
         return arg
     if gen.kind == "sign":
         op = {1: ">", 0: "==", -1: "<"}[int(str(gen.mark))]
-        return field.compare(op, arg, field.zero)
-    return field.call(gen.kind, arg)
+        return compare(op, arg, field.zero)
+    return call(gen.kind, arg)
 
 
 def moved(value: Value, bank: str, lane: int) -> Value:
     """Return a value of a row's lane of a bank (0) in a column's (1), or the other way round."""
     field, new = value.field, {}
-    for g in value.names:
+    for g in value.parts:
         mark = field.gens[g].mark
         if isinstance(mark, tuple) and mark[1:] == (bank, 1 - lane):
-            new[g] = field.name(mark[0], bank, lane, field.sign_of(g))
+            new[g] = field.name(mark[0], bank, lane, sign_of(field, g))
     return put(value, new)
 
 
@@ -92,23 +94,25 @@ def across(value: Value, state: int, lane: int) -> Value:
 def _chain(value: Value, state: int, own: Value, of_sum: Inner) -> Value:
     """Return a derivative, given that of the name itself and that of sums over lanes."""
     field, parts = value.field, list[Value]()
-    if state not in value.names:
+    if state not in value.parts:
         return field.zero
     gens = {g: _slope(field, g, state, own, of_sum) for g in value.generators()}
     for mono, c in value.terms.items():
         for n, (g, e) in enumerate(mono):
             if gens[g].terms:
-                rest = (*mono[:n], (g, e - 1), *mono[n + 1 :]) if e != 1 else mono[:n] + mono[n + 1 :]
+                rest = (
+                    (*mono[:n], (g, e - 1), *mono[n + 1 :]) if e != 1 else mono[:n] + mono[n + 1 :]
+                )
                 parts.append(Value(field, {rest: c * e}) * gens[g])
     return field.total(parts)
 
 
 def _slope(field: Field, g: int, state: int, own: Value, of_sum: Inner) -> Value:
     """Return the derivative of a generator."""
-    gen, same = field.gens[g], Value(field, {((g, 1),): 1})
+    gen, same = field.gens[g], field.raised(g, 1)
     if gen.arg is None:
         return own if g == state else field.zero
-    if state not in gen.names or gen.kind == "sign":
+    if state not in gen.parts or gen.kind == "sign":
         return field.zero
     if gen.kind == "sum":
         return of_sum(gen)
@@ -119,9 +123,9 @@ def _slope(field: Field, g: int, state: int, own: Value, of_sum: Inner) -> Value
         case "exp":
             return same * inner
         case "log":
-            return field.power(gen.arg, Fraction(-1)) * inner
+            return power(gen.arg, Fraction(-1)) * inner
         case "sin":
-            return field.call("cos", gen.arg) * inner
+            return call("cos", gen.arg) * inner
         case "cos":
-            return -(field.call("sin", gen.arg) * inner)
+            return -(call("sin", gen.arg) * inner)
     return (field.one - same * same) * inner  # tanh

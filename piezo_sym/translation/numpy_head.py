@@ -17,7 +17,7 @@ from piezo_sym.spec.tables import banks, condition_text, conditions, lane_parame
 from piezo_sym.translation.field import NotShownError
 from piezo_sym.translation.numpy_reader import ARGUMENTS
 
-_HELPERS = '''
+_HELPERS = """
 from dataclasses import dataclass
 from typing import NamedTuple
 import numpy as np
@@ -60,7 +60,7 @@ def rhs(x, u, p, /):
         part = slice(first, first + step)
         _rates(x[:, part], u[:, part] if u.ndim == 2 else u, p, out[:, part])
     return out
-'''
+"""
 
 
 def numpy_functions(text: str, iphs: IPHS) -> Mapping[str, ast.FunctionDef]:
@@ -76,10 +76,17 @@ def numpy_functions(text: str, iphs: IPHS) -> Mapping[str, ast.FunctionDef]:
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         raise NotShownError(f"the NumPy module cannot be parsed: {error}") from error
     slots = iphs.system.states
-    size = [str(sum(s.bank is None for s in slots)), *(f"p.{s.bank}_count" for s in slots if s.bank)]
+    size = [
+        str(sum(s.bank is None for s in slots)),
+        *(f"p.{s.bank}_count" for s in slots if s.bank),
+    ]
     helpers = _HELPERS.format(size=" + ".join(size), inputs=len(iphs.model.inputs))
     left = [_bare(node) for node in ast.parse(helpers).body]
-    left = left if banks(iphs.model) else [n for n in left if "_Lanes =" not in n and "_lanes(" not in n]
+    left = (
+        left
+        if banks(iphs.model)
+        else [n for n in left if "_Lanes =" not in n and "_lanes(" not in n]
+    )
     tables = _tables(iphs)
     functions: dict[str, ast.FunctionDef] = {}
     for node in module.body[1:]:
@@ -127,8 +134,9 @@ def _literal(node: ast.expr) -> object:
             return -value
         case ast.Tuple(parts):
             return tuple(map(_literal, parts))
-        case ast.Call(ast.Name("Record"), [name, _, _, *bank], []):
-            return (_literal(name), _literal(bank[0]) if bank else None)
+        case ast.Call(ast.Name("Record"), [_, _, _, *_] as parts, []):
+            name, _, _, *bank = map(_literal, parts)
+            return (name, bank[0] if bank else None)
         case ast.Call(ast.Name("Condition"), [text, strict], []):
             return _literal(text), _literal(strict)
     raise NotShownError("a table of the NumPy module is no list of constants")

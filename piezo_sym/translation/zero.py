@@ -15,15 +15,18 @@ from math import ceil
 
 from piezo_sym.translation.change import put
 from piezo_sym.translation.field import Field, NotShownError, Value
+from piezo_sym.translation.functions import power
 from piezo_sym.translation.possible import impossible
+from piezo_sym.translation.signs import has_sign, sign
 
 MOST_CASES = 500
+MOST_STEPS = 12
 Sides = Mapping[Value, int]
 Case = tuple[Value, dict[Value, int]]
 
 
 def is_zero(value: Value, *, inside: bool = False) -> bool:
-    """Return whether a value is shown to be zero; with `inside`, where no difference is zero."""
+    """Return whether a value is shown to be zero; with `inside`, inside the branches of states."""
     if not value.terms:
         return True
     parts = _apart(value)
@@ -109,7 +112,7 @@ def _common(cases: list[Case]) -> Value | None:
     """Return what a value is in every case that can be, or None if it is not the same in all."""
     while cases:
         (base, sides), *rest = cases
-        wrong = [case for case in rest if not is_zero(_at_edges(case[0] - base, case[1]))]
+        wrong = [case for case in rest if _differs(base, case)]
         if all(impossible(case[1]) for case in wrong):
             return base
         if not impossible(sides):
@@ -134,7 +137,7 @@ def _cases(
         return
     d = max(found, key=lambda d: found[d])
     assert d is not None
-    for side in (1, -1) if inside else (1, -1, 0):
+    for side in (1, -1) if inside and d.parts & field.states else (1, -1, 0):
         if _possible(d, side) and not any(_never(d, side, e, s) for e, s in sides.items()):
             here = {**sides, d: side}
             yield from _cases(field.at(value, {d: side}), here, left, inside=inside)
@@ -161,7 +164,7 @@ def _chosen_by(value: Value, group: Sequence[Value]) -> Value:
 
 def _possible(d: Value, side: int) -> bool:
     """Return whether the domain leaves a sign to a difference."""
-    above, below = d.field.sign(d), d.field.sign(-d)
+    above, below = sign(d), sign(-d)
     return above <= (2 if side > 0 else 1 if side == 0 else 0) and below <= (
         2 if side < 0 else 1 if side == 0 else 0
     )
@@ -169,12 +172,12 @@ def _possible(d: Value, side: int) -> bool:
 
 def _contradict(first: Value, s: int, second: Value, t: int) -> bool:
     """Return whether two differences cannot have these signs: a sum of theirs has another one."""
-    field, number = first.field, first.field.number
+    number = first.field.number
     for scale, turns in product(_scales(first, second), product((1, -1), repeat=2)):
         signs = turns[0] * s, turns[1] * t
         if max(signs) <= 0:
             total = first * scale * number(turns[0]) + second * number(turns[1])
-            if field.sign(total) > (0 if min(signs) < 0 else 1):
+            if sign(total) > (0 if min(signs) < 0 else 1):
                 return True
     return False
 
@@ -185,37 +188,70 @@ def _scales(first: Value, second: Value) -> Iterator[Value]:
     for m, n in product(first.terms, second.terms):
         below = Value(field, {tuple((g, -e) for g, e in m): 1})
         scale = below * Value(field, {n: 1})
-        if scale not in found and field.sign(scale) == 2:
+        if scale not in found and sign(scale) == 2:
             found.add(scale)
             yield scale
 
 
-def _at_edges(value: Value, sides: Sides) -> Value:
-    """Return a value where the differences of sign 0 are zero, one of their names put in."""
-    edges = [d for d, side in sides.items() if side == 0]
+def _differs(base: Value, case: Case) -> bool:
+    """Return whether a case that can be has not been shown to have the value `base`."""
+    value, edges = case[0] - base, {d: side for d, side in case[1].items() if side == 0}
+    others = {d: side for d, side in case[1].items() if side}
     while edges:
-        d = edges.pop(0)
+        d, _ = edges.popitem()
         new = _solved(d)
-        value = put(value, new)
-        edges = [put(other, new) for other in edges]
+        value = put(value, new) if new else _remainder(value, d)
+        edges = {put(other, new): 0 for other in edges}
+        others = {put(other, new): side for other, side in others.items()}
+        if not all(_possible(other, side) for other, side in (*edges.items(), *others.items())):
+            return False
+    return not is_zero(value)
+
+
+def _remainder(value: Value, d: Value) -> Value:
+    """Return a value where d = 0, powers put in of a generator that d has a power of."""
+    field, value = d.field, cleared(value)
+    for g in sorted(d.generators()):
+        powers = {mono: dict(mono).get(g, 0) for mono in d.terms}
+        top = max(powers.values())
+        head = Value(field, {mono: c for mono, c in d.terms.items() if powers[mono] == top})
+        factor = head * Value(field, {((g, -top),): 1})
+        if min(powers.values()) < 0 or not has_sign(factor):
+            continue
+        lift = max([0, *(-e for mono in value.terms for n, e in mono if n == g)])
+        value, below = value * Value(field, {((g, lift),): 1}), _inverse(head)
+        for _ in range(MOST_STEPS):
+            high = {m: c for m, c in value.terms.items() if dict(m).get(g, 0) >= top}
+            if not high:
+                return value
+            value = value - Value(field, high) * below * d
     return value
 
 
 def _solved(d: Value) -> dict[int, Value]:
-    """Return what a name is where d = 0, if d is linear in one by a factor that is not zero."""
+    """Return what a generator is where d = 0, if d is linear in it by a factor that is not zero."""
     field = d.field
-    for g in sorted(d.generators(), key=lambda g: not field.gens[g].lanes):
+    for g in sorted(
+        d.generators(), key=lambda g: (field.gens[g].kind != "name", not field.gens[g].lanes)
+    ):
         gen = field.gens[g]
-        if gen.kind != "name" or (d.lanes and not gen.lanes):
-            continue
         own = {mono: c for mono, c in d.terms.items() if g in dict(mono)}
-        (mono, c), *more = own.items()
-        factor = Value(field, {tuple(p for p in mono if p[0] != g): c})
+        powers = {dict(mono)[g] for mono in own}
+        if len(powers) > 1 or gen.kind == "sum" or (d.lanes and not gen.lanes):
+            continue
         rest = d - Value(field, own)
-        linear = not more and dict(mono)[g] == 1 and g not in factor.names | rest.names
-        if linear and max(field.sign(factor), field.sign(-factor)) == 2:
-            path, field.path = field.path, None
-            found = -(rest * field.power(factor, Fraction(-1)))
-            field.path = path
-            return {g: found}
+        factor = Value(field, {tuple(p for p in m if p[0] != g): c for m, c in own.items()})
+        if g in factor.parts | rest.parts or (powers != {1} and (rest.terms or min(powers) < 0)):
+            continue
+        if not has_sign(factor):
+            continue
+        found = -(rest * _inverse(factor))
+        return {g: found}
     return {}
+
+
+def _inverse(value: Value) -> Value:
+    path, value.field.path = value.field.path, None
+    found = power(value, Fraction(-1))
+    value.field.path = path
+    return found

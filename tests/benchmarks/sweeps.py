@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,8 +18,9 @@ from piezo_sym.run.adaptive import adaptive
 from piezo_sym.run.discrete import METHOD
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.sweeps.plan import Plan
+from piezo_sym.sweeps.pool import threads_for
 from piezo_sym.sweeps.read import Asked, read_plan
-from piezo_sym.sweeps.sweep import in_threads
+from piezo_sym.sweeps.sweep import run_missing, sink_of
 from tests.benchmarks.family import family_of
 from tests.benchmarks.peers import PEERS
 from tests.benchmarks.report import Part
@@ -29,6 +30,7 @@ from tests.benchmarks.tuning import tuned
 if TYPE_CHECKING:
     from piezo_sym.bench.problem import Problem
     from piezo_sym.run.checks import FloatArray
+    from piezo_sym.run.module import GeneratedModule
     from tests.benchmarks.family import Family
     from tests.benchmarks.peers import Peer
     from tests.benchmarks.peers.peer import Solver
@@ -80,6 +82,14 @@ def swept(family: Family, threads: int = 1, *, side_by_side: bool = True) -> Sol
         return np.concatenate(parts, axis=1)
 
     return solve
+
+
+def in_threads(plan: Plan, module: GeneratedModule, count: int) -> Any:
+    """Return the Dataset of a plan run in threads of our own, without warnings."""
+    plan, sink = sink_of(plan, module, None, count)
+    with threads_for(plan, module, count) as (submit, at_once):
+        run_missing(sink, submit, at_once, False, plan.size)
+    return sink.dataset()
 
 
 def _plan(family: Family, rtol: float) -> Plan:

@@ -19,10 +19,11 @@ def main():
     parser.add_argument("--out", type=Path, default=Path("search.jsonl"))
     parser.add_argument("--specs", type=int, default=SPECS, help="specs of a slice")
     parser.add_argument("--limit", type=float, default=60, help="seconds of a spec")
+    parser.add_argument("--stage", choices=("decide", "verify"), default="decide")
     asked = parser.parse_args()
     done = {record["slice"] for record in records(asked.out)}
     first, last = map(int, asked.slices.split(":"))
-    prover = Prover(asked.limit)
+    prover = Prover(asked.limit, asked.stage)
     try:
         for number in range(first, last):
             if number not in done:

@@ -7,12 +7,13 @@ edges of the law and by descent; exact arithmetic decides.
 import numpy as np
 
 from tests.search.laws import edges, names
-from tests.search.points import certain, filled, joined, onto
-from tests.search.reading import moving
+from tests.search.points import Points, certain, filled, joined, onto
+from tests.search.reading import moving, total
 from tests.search.values import DoubtError, NoValueError, exact, floats, rational, sign
 
 MOST = 4
-STEPS = (24, 48)
+#: How many points a descent keeps, copies of each it moves, and by how much.
+KEPT, COPIES, WIDTHS = 16, 5, (1, 0.3, 0.1, 0.02, 1e-3, 1e-5)
 #: How near two points are at which a law may jump; the law's own scales are far above.
 NEAR = tuple(rational(1) / 2**n for n in (100, 200))
 GAPS = (2.0**-42, 2.0**-30, 2.0**-18)
@@ -29,6 +30,7 @@ def counterexample(claim, points):
 def fails(claim, point, spec):
     """Return whether a claim certainly fails at an exact point of the domain."""
     warm = claim.id != "temperature"
+    spec = total(spec) if claim.id == "domain" else spec
     return certain(point, spec, warm) and FAILS[claim.id](claim, point, spec)
 
 
@@ -40,13 +42,12 @@ def _edge_points(claim, points):
     return joined([points.values, *found])
 
 
-def _descended(objective, at, points):
+def _descended(objective, at, points, names):
     """Return points at which an objective is small: the best ones, moved by smaller steps."""
-    found, best = [], _best(objective, at, STEPS[0])
-    for width in (1, 0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4, 1e-6):
-        tried = {n: np.repeat(v, 1 + STEPS[1] // STEPS[0] * 2) for n, v in best.items()}
-        tried = joined([best, points.around(tried, width)])
-        best = _best(objective, tried, STEPS[0])
+    found, best = [], _best(objective, at, KEPT)
+    for width in WIDTHS:
+        tried = {n: np.repeat(v, COPIES) for n, v in best.items()}
+        best = _best(objective, joined([best, points.around(tried, width, names)]), KEPT)
         found.append(best)
     return joined(found)
 
@@ -67,10 +68,10 @@ def _passive(claim, points):
         return floats(law, at) / floats(letter, at)
 
     at = _edge_points(claim, points)
-    found = _confirmed(claim, points, at, power(at))
+    found, beside = _confirmed(claim, points, at, power(at)), points.beside(law, letter)
     for objective in (slope, power):
         if found is None:
-            lower = _descended(objective, at, points)
+            lower = _descended(objective, at, points, beside)
             found = _confirmed(claim, points, lower, power(lower))
     return found
 
@@ -98,10 +99,10 @@ def _welldef(claim, points):
     found = None
     for law in claim.trees:
         found = found or _missing(claim, law, points, at)
-        ends = [edge for kind, edge in edges(law) if kind == "end"]
-        for end in dict.fromkeys(ends[:6]):
+        ends = [(kind, edge) for kind, edge in edges(law) if kind in {"end", "pole"}]
+        for kind, end in dict.fromkeys(ends[:6]):
             if found is None:
-                found = _ended(claim, law, end, points, at)
+                found = _ended(claim, law, (kind, end), points, at)
     return found
 
 
@@ -116,16 +117,16 @@ def _missing(claim, law, points, at):
     return None
 
 
-def _ended(claim, law, end, points, at):
-    """Return a point where an argument ends, found by descent or exactly on the end."""
-    lower = _descended(lambda at: np.abs(floats(end, at)), at, points)
+def _ended(claim, law, edge, points, at):
+    """Return a point past the end of a root or logarithm, or on what a law divides by."""
+    kind, end = edge
+    near = np.abs if kind == "pole" else np.positive
+    lower = _descended(lambda at: near(floats(end, at)), at, points, points.beside(end))
     size = np.abs(np.broadcast_to(floats(end, lower), lower[points.spec.free[0]].shape))
     for n in np.argsort(size, kind="stable")[:MOST]:
-        if size[n] < 1e-6 * (1 + max(abs(float(v[n])) for v in lower.values())):
-            point = onto(end, points.exactly(n, lower), points.spec)
-            if point is not None and fails(claim, point, points.spec):
-                return point
-    lower = _descended(lambda at: floats(end, at), at, points)
+        point = onto(end, points.exactly(n, lower), points.spec) if size[n] < 1 else None
+        if point is not None and fails(claim, point, points.spec):
+            return point
     return _missing(claim, law, points, lower)
 
 
@@ -147,20 +148,20 @@ def has_value(law, at):
 
 def _continuous(claim, points):
     for law in claim.trees:
-        jumping = [edge for kind, edge in edges(law) if kind != "bend"]
+        jumping = [edge for kind, edge in edges(law) if kind == "jump"]
         for edge in dict.fromkeys(jumping[:8]):
             for name in points.free_names(edge):
-                found = name in moving(points.spec) and _jump(claim, law, edge, name, points)
+                found = name in moving(points.spec) and _jump(law, edge, name, points)
                 if found:
                     return found
     return None
 
 
-def _jump(claim, law, edge, name, points, most=48):
+def _jump(law, edge, name, points, most=48):
     """Return a point at an edge next to which a law jumps along a name."""
     pick = points.random.integers(0, points.count, most)
     at = {n: points.values[n][pick] for n in points.spec.free}
-    root = points.root(edge, name, at)
+    root = points.root(edge, name, at, 8)
     scale = np.where(root == 0, 1, np.abs(root))
     gaps = []
     for gap in GAPS:
@@ -244,7 +245,7 @@ def _temperature(claim, points):
         return value / step
 
     for objective in (lambda at: floats(law, at), rise):
-        for tried in (at, _descended(objective, at, points)):
+        for tried in (at, _descended(objective, at, points, points.beside(law))):
             found = _confirmed(claim, points, tried, objective(tried))
             if found:
                 return found
@@ -278,14 +279,51 @@ def _sinks(law, point, spec, name, side):
     return bool(rises[1] < 0) or bool(rises[1] * 2**20 < rises[0])
 
 
+def _odd(claim, points):
+    law = claim.trees[0]
+    at = _edge_points(claim, points)
+    size = np.abs(np.broadcast_to(floats(law, at), at[points.spec.free[0]].shape))
+    return _confirmed(claim, points, at, -size)
+
+
+def _is_not_odd(claim, point, spec):
+    try:
+        return sign(exact(claim.trees[0], filled(point, spec))) != 0
+    except (NoValueError, DoubtError):
+        return False
+
+
+def _undefined(claim, points):
+    wider = Points(total(points.spec), points.random)
+    return _welldef(claim, wider) if claim.trees and wider.count else None
+
+
+def _lacks(claim, point, spec):
+    """Return whether a condition certainly has no value where those before it hold."""
+    at = filled(point, spec)
+    for condition in claim.trees:
+        try:
+            if not exact(condition, at):
+                return False
+        except NoValueError:
+            return True
+        except DoubtError:
+            return False
+    return False
+
+
 SEARCHES = {
     "passive": _passive,
+    "odd": _odd,
+    "domain": _undefined,
     "welldef": _welldef,
     "continuous": _continuous,
     "temperature": _temperature,
 }
 FAILS = {
     "passive": _is_negative,
+    "odd": _is_not_odd,
+    "domain": _lacks,
     "welldef": _has_no_value,
     "continuous": _jumps_at,
     "temperature": _is_cold,

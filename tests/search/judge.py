@@ -109,7 +109,7 @@ def witness_fault(claim, witness, points):
         tried = list(_completed(at, points)) if at is not None else []
         if any(fails(claim, point, spec) for point in tried):
             return "loose REFUTED" * loose
-    known = at is not None and set(points.free_names(*claim.trees)) <= set(at)
+    known = at is not None and set(names(*claim.trees)) <= set(at)
     inside = known and any(certain(point, spec) for point in tried)
     broken = at is not None and _outside(at, spec)
     return "false REFUTED" if inside or broken else "unconfirmed REFUTED"

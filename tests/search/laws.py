@@ -7,6 +7,7 @@ Nothing of the package is used.
 
 import ast
 from fractions import Fraction
+from functools import lru_cache
 
 BINARY = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
 COMPARE = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
@@ -96,6 +97,7 @@ def walk(node):
         yield from walk(part)
 
 
+@lru_cache(maxsize=20_000)
 def names(*nodes):
     """Return the names in trees, each once."""
     return tuple(dict.fromkeys(n[1] for node in nodes for n in walk(node) if n[0] == "name"))
@@ -127,7 +129,8 @@ def paths(node, before=()):
 def edges(node):
     """Yield (kind, difference): where it is zero, a law may bend, jump or end.
 
-    The kind is "jump" where a branch changes, "bend" at a kink, "end" where a value may be missing.
+    The kind is "jump" where a branch changes, "bend" at a kink, "pole" for what a law divides by,
+    "end" where a root or a logarithm ends.
     """
     for part in walk(node):
         match part:
@@ -142,10 +145,14 @@ def edges(node):
             case ("deadzone" | "saturate", z, w):
                 yield "bend", ("-", z, w)
                 yield "bend", ("+", z, w)
-            case ("/", _, z) | ("sqrt" | "log", z) if names(z):
+            case ("/", _, z) if names(z):
+                yield "pole", z
+            case ("sqrt" | "log", z) if names(z):
                 yield "end", z
-            case ("**", z, exponent) if names(z) and (exponent < 0 or exponent.denominator > 1):
+            case ("**", z, exponent) if names(z) and exponent.denominator > 1:
                 yield "end", z
+            case ("**", z, exponent) if names(z) and exponent < 0:
+                yield "pole", z
 
 
 def widths(node):

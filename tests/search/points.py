@@ -21,6 +21,8 @@ class Points:
 
     def __init__(self, spec, random, size=SIZE):
         self.spec, self.random = spec, random
+        self.depends = [set(self.free_names(condition)) for condition in spec.domain]
+        self.found = {}
         self.values = self.inside(self._repaired(self._drawn(size)))
         self.count = len(self.values[spec.free[0]])
 
@@ -32,13 +34,14 @@ class Points:
                 at[name] = np.broadcast_to(floats(law, at), at[self.spec.free[0]].shape)
         return at
 
-    def inside(self, free):
-        """Return the points that lie in the domain, with all variables."""
+    def inside(self, free, moved=None):
+        """Return the points that lie in the domain, with all variables; `moved`: what changed."""
         at = self.whole(free)
         kept = np.ones(at[self.spec.free[0]].shape, bool)
         with np.errstate(all="ignore"):
-            for condition in self.spec.domain:
-                kept &= np.broadcast_to(floats(condition, at) > 0, kept.shape)
+            for condition, depends in zip(self.spec.domain, self.depends, strict=True):
+                if moved is None or moved & depends:
+                    kept &= np.broadcast_to(floats(condition, at) > 0, kept.shape)
         return {name: values[kept] for name, values in at.items()}
 
     def _drawn(self, size):
@@ -91,20 +94,30 @@ class Points:
                 found |= dict.fromkeys(names(law))
         return [name for name in found if name in self.spec.own]
 
-    def root(self, difference, name, at):
-        """Return the values of a name where a difference may vanish: Newton's way, two steps."""
+    def root(self, difference, name, at, steps=2):
+        """Return the values of a name where a difference may vanish, by secants."""
+
+        def value(x):
+            return floats(difference, self.whole({**at, name: x}))
+
         here = at[name]
+        other = here + 1 + np.abs(here)
         with np.errstate(all="ignore"):
-            for _ in range(2):
-                step = 1 + np.abs(here)
-                value = floats(difference, self.whole({**at, name: here}))
-                other = floats(difference, self.whole({**at, name: here + step}))
-                moved = here - value * step / (other - value)
-                here = np.where(np.isfinite(moved), moved, here)
+            ends = value(other), value(here)
+            for step in range(steps):
+                moved = here - ends[1] * (here - other) / (ends[1] - ends[0])
+                moved = np.where(np.isfinite(moved), moved, here)
+                other, here = here, moved
+                ends = ends[1], value(here) if step + 1 < steps else 0
         return here
 
     def near(self, difference, most=24):
         """Return points of the domain at and around the zeros of a difference."""
+        if difference not in self.found:
+            self.found[difference] = self._near(difference, most)
+        return self.found[difference]
+
+    def _near(self, difference, most):
         found = []
         if not self.count:
             return self.values
@@ -118,15 +131,21 @@ class Points:
                     found[-1][name] = np.where(root == 0, nudge, found[-1][name])
         return self.inside(joined(found)) if found else self.values
 
-    def around(self, at, width):
-        """Return points of the domain around some: each name is moved or left."""
+    def around(self, at, width, moved):
+        """Return points of the domain around some: each name of `moved` is moved or left."""
         size = len(at[self.spec.free[0]])
-        moved = {}
-        for name in self.spec.free:
+        tried = dict(at)
+        for name in moved:
             v = at[name]
             step = width * self.random.standard_normal(size) * np.where(v == 0, 1, np.abs(v))
-            moved[name] = np.where(self.random.random(size) < 0.4, v + step, v)
-        return self.inside(moved)
+            tried[name] = np.where(self.random.random(size) < 0.5, v + step, v)
+        return self.inside({name: tried[name] for name in self.spec.free}, set(moved))
+
+    def beside(self, *trees):
+        """Return the free names of trees, and those that a condition of the domain ties to them."""
+        own = set(self.free_names(*trees))
+        tied = set().union(*(depends for depends in self.depends if depends & own))
+        return sorted(own | (tied if len(tied) < 8 else set()))
 
     def exactly(self, n, at=None):
         """Return one point exactly: its floats, moved onto the equalities of the domain."""

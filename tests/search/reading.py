@@ -6,7 +6,7 @@ variable of its own, else it is a law of its state.  A letter is a co-state, or 
 """
 
 import tomllib
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from tests.search.laws import ONE, ZERO, edges, names, put, read, widths
@@ -80,12 +80,16 @@ def spec_of(text):
     spec.hot = {b: "T" if len(bodies) == 1 else f"T_{b}" for b in bodies}
     assumed = [read(part) for part in spec.data.get("domain", {}).get("assume", [])]
     needed = [c for name, e in elements.items() for c in _needs(spec, name, e)]
+    needed += [(">=", width, ZERO) for condition in assumed for width in widths(condition)]
     spec.domain = list(dict.fromkeys([*assumed, *needed]))
     used = set(names(*spec.domain))
     for name, element in elements.items():
         _add_state(spec, name, element, used)
     for name, element in elements.items():
         _add_claims(spec, name, element)
+    partial = [c for c in spec.domain if {"end", "pole"} & {kind for kind, _ in edges(c)}]
+    spec.claims["welldef", ""] = Claim("domain", "", tuple(partial))
+    spec.words[""] = {}
     return spec
 
 
@@ -176,6 +180,8 @@ def _add_claims(spec, name, element):
         words[word] = letter
         trees.append(put(read(element[key]), words))
         spec.claims["passive", name] = Claim("passive", name, (trees[-1],), letter)
+        turned = put(read(element[key]), {**words, word: ("neg", letter)})
+        spec.claims["odd", name] = Claim("odd", name, (("+", trees[-1], turned),), letter)
     if kind in {"transducer", "ambient", "conduction"}:
         trees.append(put(read(element.get("ratio", element.get("conductance"))), words))
     if kind == "conduction":
@@ -209,6 +215,7 @@ def moving(spec):
     return [name for name in spec.free if name not in spec.fixed]
 
 
-def branches(claim):
-    """Return where the laws of a claim may bend, jump or end."""
-    return list(dict.fromkeys(edge for tree in claim.trees for edge in edges(tree)))
+def total(spec):
+    """Return a spec with the conditions only that always have a value."""
+    partial = spec.claims["welldef", ""].trees
+    return replace(spec, domain=[c for c in spec.domain if c not in partial])

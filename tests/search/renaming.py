@@ -37,7 +37,10 @@ def words(data, new):
     for name, element in elements.items():
         other = new[1].get(name, name)
         if element["kind"] in STORES or element["kind"] == "thermal_mass":
-            moved = {**element, **({"state": found[element["state"]]} if "state" in element else {})}
+            moved = {
+                **element,
+                **({"state": found[element["state"]]} if "state" in element else {}),
+            }
             found[state_of(name, element)] = state_of(other, moved)
         if element["kind"] == "thermal_mass":
             found[f"T_{name}"] = f"T_{other}"
@@ -80,4 +83,3 @@ def _element(element, new, found, law):
         if key in element:
             made[key] = found[element[key]]
     return made
-

@@ -11,6 +11,7 @@ import tomli_w
 from tests.search.grammar import Grammar
 from tests.search.laws import ZERO, read, text, widths
 from tests.search.names import ELEMENTS, NODES, SYMBOLS
+from tests.search.points import filled
 from tests.search.reading import spec_of
 from tests.search.values import DoubtError, NoValueError, exact, rational
 
@@ -45,7 +46,7 @@ class Draft:
             {name.lower(): name for name in random.sample(ELEMENTS, len(ELEMENTS))}.values()
         )
         self.nodes = random.sample(NODES, len(NODES))
-        self.elements, self.labels, self.inputs = {}, {}, {}
+        self.elements, self.labels, self.inputs, self.paired = {}, {}, {}, ""
         self.depths = random.choice(DEPTHS)
         self.parameters = {}
         self.above = [self.parameter(ABOVE) for _ in range(3)]
@@ -67,7 +68,7 @@ class Draft:
     def add(self, element):
         """Put an element in, under a name drawn, its state's symbol too at times."""
         name = self.names.pop()
-        if self.random.random() < 0.15 and "state" in STATEFUL.get(element["kind"], ()):
+        if element["kind"] in STATEFUL and "state" not in element and self.random.random() < 0.15:
             element["state"] = self.symbols.pop()
         self.elements[name] = element
         return name
@@ -123,8 +124,7 @@ class Draft:
         return [a, b] if self.random.random() < 0.7 else [b, a]
 
 
-STATEFUL = {k: ("state",) for k in ("mass", "spring", "inductor", "capacitor", "hysteron")}
-STATEFUL["thermal_mass"] = ("state",)
+STATEFUL = {"mass", "spring", "inductor", "capacitor", "hysteron", "thermal_mass"}
 
 
 def _mass(draft, count):
@@ -141,11 +141,19 @@ def _mass(draft, count):
 def _hysterons(draft, count):
     node = draft.nodes.pop()
     draft.add({"kind": "voltage_source", "between": [node, "gnd"], "input": draft.input()})
-    for _ in range(count):
+    for n in range(count):
         more = {"inductance": draft.size("phi")}
         if draft.random.random() < 0.35:
             more["count"] = draft.random.randint(1, 3)
         if draft.random.random() < 0.1:
+            more["state"] = draft.symbols.pop()
+        first = next((name for name in draft.names if f"{name}_j" in draft.names), "")
+        if n == 0 and first and draft.random.random() < 0.4:  # a bank, and one called as its lane
+            others = [name for name in draft.names if name not in {first, f"{first}_j"}]
+            draft.names = [*others, f"{first}_j", first]
+            more = {"inductance": draft.size(""), "count": 2, "state": f"phi_{first}"}
+            draft.paired = f"phi_{first}**2 < {more['inductance']}"
+        if draft.names[-1].endswith("_j"):
             more["state"] = draft.symbols.pop()
         draft.dissipate("hysteron", "voltage", "i", draft.turned(node, "gnd"), **more)
 
@@ -198,7 +206,7 @@ def _contact(draft):
 def _domain(draft):
     """Return conditions: what the grammar counts on, and more that hold at the values given."""
     base = [f"{n} > 0" for n in draft.above] + [f"{n} >= 0" for n in draft.least]
-    more = []
+    more = [draft.paired] if draft.paired and draft.random.random() < 0.7 else []
     made = {"parameters": draft.parameters, "inputs": draft.inputs, "elements": draft.elements}
     spec = spec_of(tomli_w.dumps({**made, "domain": {"assume": base}}))
     for _ in range(draft.random.choice((0, 0, 0, 1, 1, 2, 3))):
@@ -225,11 +233,10 @@ def _condition(draft, spec):
 
 
 def _holds(condition, spec):
+    """Return whether a condition holds at the values given, its half widths not negative."""
     try:
-        at = {name: rational(value) for name, value in spec.own.items()}
-        for name, law in spec.derived.items():
-            at[name] = exact(law, at)
-        return exact(read(condition), at)
+        at, tree = filled({n: rational(v) for n, v in spec.own.items()}, spec), read(condition)
+        return exact(tree, at) and all(exact((">=", width, ZERO), at) for width in widths(tree))
     except (NoValueError, DoubtError, KeyError):
         return False
 

@@ -189,7 +189,20 @@ EXACT = {
 def digits(node, at):
     """Return the value to 60 digits by mpmath: a second opinion on an enclosure."""
     with mpmath.workdps(60):
-        return _digits(node, {n: mpmath.mpf(int(v.p)) / int(v.q) for n, v in at.items()})
+        return _digits(node, {n: _number(v) for n, v in at.items()})
+
+
+def _number(value):
+    if isinstance(value, arb):
+        return mpmath.mpf(value.mid().str(70, radius=False))
+    return mpmath.mpf(int(value.p)) / int(value.q)
+
+
+def _real(value):
+    """Return a value that is real, not the complex one of a root or logarithm."""
+    if isinstance(value, mpmath.mpc):
+        raise ValueError(value)
+    return value
 
 
 def _digits(node, at):
@@ -201,8 +214,9 @@ def _digits(node, at):
     if head == "if":
         return _digits(node[1] if _digits(node[2], at) else node[3], at)
     if head == "**":
-        return _digits(node[1], at) ** (mpmath.mpf(node[2].numerator) / node[2].denominator)
-    return MPMATH[head](*[_digits(part, at) for part in node[1:]])
+        exponent = mpmath.mpf(node[2].numerator) / node[2].denominator
+        return _real(_digits(node[1], at) ** exponent)
+    return _real(MPMATH[head](*[_digits(part, at) for part in node[1:]]))
 
 
 MPMATH = {

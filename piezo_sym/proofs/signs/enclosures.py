@@ -9,7 +9,7 @@ most of the cancellation that intervals suffer from.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import final
 
@@ -108,25 +108,19 @@ def _sum(parts: list[Enclosure]) -> Enclosure:
 
 
 def _cancelled(total: Enclosure, tree: Expr, x: Enclosure) -> Enclosure:
-    """Return a sum whose terms cancel exactly at the left end, or at the one point, as zero there.
-
-    A tree that `vanishes` has no jump there, so that its limit is its value.
-    """
-    if x.left and _vague(total.left) and _vanishes(tree, x.left[0]):
+    """Return a sum as zero at its left end or one point if its terms cancel and none jumps."""
+    if x.left and _cancels(total.left, tree, x.left[0]):
         left = (iv.NOUGHT, *total.left[1:])
         return Enclosure(_sharpened(total.inner, left, total.right), left, total.right)
-    if not x.left and _vague(total.inner) and _vanishes(tree, x.inner[0]):
+    if not x.left and _cancels(total.inner, tree, x.inner[0]):
         return Enclosure((iv.NOUGHT,))
     return total
 
 
-def _vague(jet: Jet) -> bool:
-    """Return whether a limit may be zero but is not known to be."""
-    return bool(jet) and jet[0].exact is None and jet[0].lo <= 0 <= jet[0].hi
-
-
-def _vanishes(tree: Expr, at: Interval) -> bool:
-    return at.exact is not None and vanishes(tree, at.exact)
+def _cancels(jet: Jet, tree: Expr, at: Interval) -> bool:
+    """Return whether a limit that may be zero is exactly zero."""
+    vague = jet and jet[0].exact is None and jet[0].lo <= 0 <= jet[0].hi
+    return bool(vague) and at.exact is not None and vanishes(tree, at.exact)
 
 
 def _each(operation: Callable[..., Jet], *parts: Enclosure) -> Enclosure:
@@ -221,8 +215,7 @@ def _call(function: str, args: list[Enclosure]) -> Enclosure:
 
 
 def _minus(a: Enclosure) -> Enclosure:
-    found = _each(jets.minus, a)
-    return Enclosure(found.inner, found.left, found.right, a.growth)
+    return replace(_each(jets.minus, a), growth=a.growth)
 
 
 def _nought(like: Enclosure) -> Enclosure:

@@ -103,11 +103,7 @@ class Setting:
 def reductions(law: Expr, letter: str, positive: Positive) -> list[Reduction]:
     """Return the ways of a law to a function of its letter alone, least in front first.
 
-    Parameters
-    ----------
-    law : a tree.
-    letter : the variable, which may take every real value.
-    positive : whether a tree without the letter is positive.
+    The letter may take every real value; `positive` says if a tree without it is positive.
     """
     plain, divided, single = settings(law, letter, positive)
     made = [_reduction(law, setting) for setting in (plain, *divided, *single)]
@@ -173,10 +169,8 @@ def _arguments(node: Node) -> tuple[Expr, ...]:
     match node:
         case Call(_, args):
             return args
-        case Pow(base, _):
-            return (base,)
-        case Div():
-            return (node,)
+        case Pow(part, _) | (Div() as part):
+            return (part,)
     return ()
 
 
@@ -292,9 +286,8 @@ def _tree(a: Product) -> Expr:
     if not factors:
         return Num(a.number)
     tree = factors[0] if len(factors) == 1 else Mul(*factors)
-    if a.number == 1:
-        return tree
-    return Neg(tree) if a.number == -1 else Mul(Num(a.number), tree)
+    signed = Neg(tree) if a.number == -1 else Mul(Num(a.number), tree)
+    return tree if a.number == 1 else signed
 
 
 def _product(powers: Powers) -> Expr:

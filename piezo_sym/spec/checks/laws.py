@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 
 from piezo_sym.errors import SpecError, listing, nearest, quote
-from piezo_sym.spec.elements import KINDS, Conduction
+from piezo_sym.spec.elements import KINDS, Conduction, Element
 from piezo_sym.spec.expressions import Node, names
 from piezo_sym.spec.names import NAME
 from piezo_sym.spec.parse import parse_law
@@ -27,11 +27,11 @@ def check_references(spec: Tables) -> None:
     """Check that there are elements, and that inputs and bodies they name are declared."""
     if not spec.elements:
         raise SpecError("has no elements", "elements", "at least one", f"kinds: {listing(KINDS)}")
+    known = {"thermal_mass": dict.fromkeys(bodies(spec)), "input": spec.inputs}
     for name, element in spec.elements.items():
         for field, to, given in references(element):
-            known = bodies(spec) if to == "thermal_mass" else tuple(spec.inputs)
-            if given not in known:
-                raise _unknown_reference(f"elements.{name}.{field}", to, given, known)
+            if given not in known[to]:
+                raise _unknown_reference(f"elements.{name}.{field}", to, given, tuple(known[to]))
         if isinstance(element, Conduction) and len({*element.between}) == 1:
             what = f"both ends are at body {quote(element.between[0])}"
             remedy = "name another thermal_mass"
@@ -52,29 +52,31 @@ def _unknown_reference(where: str, to: str, given: str, known: tuple[str, ...]) 
 
 def check_laws(spec: Tables) -> None:
     """Parse every law, initial value and condition, and check the names in them."""
+    one_body = len(bodies(spec)) == 1
     for name, element in spec.elements.items():
         for law in law_fields(name, element):
             _check_words(spec, law.tree, law.where, law.letters, spec.parameters, name)
-            _check_body(spec, name, law)
+            if "T" in names(law.tree) and not one_body:
+                _check_body(element, law)
     _check_initial(spec)
-    words = [*spec.parameters, *spec.inputs, *states(spec), *temperatures(spec)]
+    words = dict.fromkeys([*spec.parameters, *spec.inputs, *states(spec), *temperatures(spec)])
+    sizes = banks(spec)
+    lanes = {symbol: name for symbol, name in states(spec).items() if name in sizes}
     for condition in conditions(spec):
         _check_words(spec, condition.tree, condition.where, (), words)
-        _check_banks(spec, condition)
+        _check_banks(condition, lanes)
 
 
-def _check_body(spec: Tables, name: str, law: LawField) -> None:
-    """Refuse a temperature in a law of an element that names no body, unless there is just one."""
-    named = any(to == "thermal_mass" for _, to, _ in references(spec.elements[name]))
-    if "T" in names(law.tree) and not named and len(bodies(spec)) != 1:
+def _check_body(element: Element, law: LawField) -> None:
+    """Refuse a temperature in a law of an element that names no body."""
+    if all(to != "thermal_mass" for _, to, _ in references(element)):
         remedy = "add to the element: temperature = '<name of a thermal_mass>'"
         raise SpecError("'T' is the temperature of no body", law.where, "a body named", remedy)
 
 
-def _check_banks(spec: Tables, condition: Condition) -> None:
+def _check_banks(condition: Condition, lanes: Mapping[str, str]) -> None:
     """Refuse a condition on the states of two banks, whose lanes have nothing in common."""
-    elements, sizes = states(spec), banks(spec)
-    mixed = {elements[word] for word in names(condition.tree) if elements.get(word) in sizes}
+    mixed = {lanes[word] for word in names(condition.tree) if word in lanes}
     if len(mixed) > 1:
         what = f"mixes states of the banks {listing(sorted(mixed))}"
         raise SpecError(what, condition.where, "states of one bank", "write a condition for each")
@@ -82,6 +84,7 @@ def _check_banks(spec: Tables, condition: Condition) -> None:
 
 def _check_initial(spec: Tables) -> None:
     known, sizes = states(spec), banks(spec)
+    words = {**spec.parameters, **spec.inputs}
     for symbol, start in spec.initial.items():
         where = f"initial.{symbol}"
         if symbol not in known:
@@ -96,7 +99,7 @@ def _check_initial(spec: Tables) -> None:
         for part in start if isinstance(start, tuple) else (start,):
             if isinstance(part, str):
                 tree = parse_law(part, where)
-                _check_words(spec, tree, where, (), [*spec.parameters, *spec.inputs])
+                _check_words(spec, tree, where, (), words)
 
 
 def _check_words(

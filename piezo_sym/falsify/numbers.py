@@ -12,7 +12,7 @@ from typing import Any
 
 from flint import arb, fmpq, fmpz
 
-from .laws import KINKS, Node, made, unkinked
+from piezo_sym.checker.laws import KINKS, Node, made, unkinked
 
 MAX_BITS = 40_000
 HUGE = {"exp": 2**34, "tanh": 2**34, "sin": 2**4096, "cos": 2**4096}
@@ -55,7 +55,9 @@ def compute(node: Node, words: Mapping[Any, Any]) -> Any:
     if node.op == "if":
         return compute(node.args[1 if holds(node.args[0], words) else 2], words)
     if node.op in KINKS and node.op not in ("min", "max"):
-        return compute(unkinked(node) if node.op != "abs" else made("max(x, -x)", x=node.args[0]), words)
+        return compute(
+            unkinked(node) if node.op != "abs" else made("max(x, -x)", x=node.args[0]), words
+        )
     args = [compute(arg, words) for arg in node.args]
     found = sum(args[1:], args[0]) if node.op == "+" else _operation(node, args[0], args[-1])
     if isinstance(found, fmpq):
