@@ -11,22 +11,22 @@ from fractions import Fraction
 from itertools import chain
 from operator import itemgetter
 from types import ModuleType
-from typing import Any, final
+from typing import final
 
 import numpy as np
 
 from piezo_sym.checker import InputError
 from piezo_sym.errors import ContradictionError
 from piezo_sym.falsify.claims import TOLERANCE, Claim, claim_of
+from piezo_sym.falsify.columns import pairs, positive
 from piezo_sym.falsify.exact import Exact
 from piezo_sym.falsify.points import FEW, STAGES, Draw, Roots, warmed
 from piezo_sym.falsify.probe import probe_of
 from piezo_sym.falsify.space import EXTREME, LARGEST, LEAST, Array, Mask, Seen, Space
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.elements.ports import Body
-from piezo_sym.spec.expressions import Cmp, Num, Sym, names
-from piezo_sym.spec.tables import conditions, greater
-from piezo_sym.spec.units import parse_unit
+from piezo_sym.spec.expressions import names
+from piezo_sym.spec.tables import conditions
 
 POINTS = 100_000
 #: Lanes that points have; of those of the spec, so many are looked at.
@@ -89,6 +89,7 @@ class Track:
         """Return the least number of the claim relative to its scale, 2 where it has none."""
         least: Array = np.full(says.shape, 2.0)
         for _, value, scale, strict in self.claim.at(seen):
+            value, scale = np.asarray(value, dtype=float), np.asarray(scale, dtype=float)
             if not self.claim.climbs and not (value < -TOLERANCE * scale).any():
                 continue
             ratio = np.clip(value / scale, -1, 1)
@@ -142,7 +143,9 @@ class Hunt:
         most = min(MOST_LANES, max(sizes.values(), default=1))
         known = [self.space.own(lane) for lane in range(0, most, LANES)]
         known += [self._hinted(hint) for hint in hints]
-        self.draw = Draw(self.space, np.concatenate(known, axis=1), self._positive(), self._pairs())
+        self.draw = Draw(
+            self.space, np.concatenate(known, axis=1), positive(iphs, self.space), pairs(self.space)
+        )
 
     def attacks(self) -> tuple[Attack, ...]:
         """Return what became of each row.
@@ -280,22 +283,6 @@ class Hunt:
         row = f"{claim.id} of {claim.element}" if claim.element else claim.id
         what = f"a proof and a number disagree: {row} is PROVED, but {value} at {at}"
         return ContradictionError(what, self.iphs.model.name, remedy="report it with the spec")
-
-    def _positive(self) -> Mask:
-        """Return which columns the domain keeps from being negative."""
-        found = set()
-        for condition in conditions(self.iphs.model):
-            match greater(condition.tree):
-                case Cmp(_, Sym(name), Num(value)) if value >= 0:
-                    found.add(name)
-        return np.array([name in found for name, _ in self.space.columns])
-
-    def _pairs(self) -> Any:
-        """Return pairs of columns of equal dimension."""
-        units = {f.name: parse_unit(f.unit).dimension for f in self.space.fields}
-        columns = [(n, units[name]) for n, (name, _) in enumerate(self.space.columns)]
-        pairs = [(a, b) for a, one in columns for b, other in columns if a != b and one == other]
-        return np.array(pairs, dtype=np.int64).reshape(-1, 2)
 
     def _hinted(self, hint: Mapping[str, object]) -> Array:
         """Return the spec's own point with the values of a hint; a temperature sets the entropy."""
