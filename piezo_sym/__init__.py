@@ -31,11 +31,11 @@ if TYPE_CHECKING:
     from piezo_sym.build import generate
     from piezo_sym.derivation import derive
     from piezo_sym.errors import PiezoError
-    from piezo_sym.proofs import verify
     from piezo_sym.run import chirp, ramp, samples, samples_from_csv, sine, step, triangle
     from piezo_sym.spec.load import load
     from piezo_sym.spec.model import Model
     from piezo_sym.sweeps import sweep
+    from piezo_sym.verification import verify
 
 _HOME = {
     "Model": "spec.model",
@@ -57,7 +57,7 @@ _HOME = {
     "step": "run",
     "sweep": "sweeps",
     "triangle": "run",
-    "verify": "proofs",
+    "verify": "verification",
 }
 
 __all__ = [

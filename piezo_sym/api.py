@@ -6,29 +6,52 @@ what that returns for the module.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
+from functools import update_wrapper
+from inspect import signature
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeAlias, TypeVar
+
+from numpy.typing import ArrayLike
 
 from piezo_sym.analysis import branches, steady
 from piezo_sym.modules import module_of
 from piezo_sym.run import simulate as run
+from piezo_sym.run.inputs import InputValue
+from piezo_sym.run.parameters import LaneValue
 from piezo_sym.run.stepper import Stepper as Steps
 from piezo_sym.sweeps.progress import watch_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-    from pathlib import Path
-
     import xarray
-    from numpy.typing import ArrayLike
 
-    from piezo_sym.analysis.stroboscope import Driven
-    from piezo_sym.run.inputs import InputValue
-    from piezo_sym.run.parameters import LaneValue
     from piezo_sym.spec.model import Model
+
+Spec: TypeAlias = "str | Path | Model"
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def of_spec(run: Callable[Concatenate[Any, P], R]) -> Callable[Concatenate[Spec, P], R]:
+    """Return a function of a generated module as one of a spec: a name, a path or a `Model`."""
+
+    def call(model: Spec, *args: P.args, **given: P.kwargs) -> R:
+        return run(module_of(model), *args, **given)
+
+    made: Any = update_wrapper(call, run)
+    first, *others = signature(run).parameters.values()
+    first = first.replace(name="model", annotation=Spec)
+    made.__signature__ = signature(run).replace(parameters=[first, *others])
+    return call  # type: ignore[return-value]  # the model may be given by name, too
+
+
+periodic_steady_state = of_spec(steady.periodic_steady_state)
+periodic_steady_states = of_spec(steady.periodic_steady_states)
+steady_branches = of_spec(branches.steady_branches)
 
 
 def simulate(
-    model: str | Path | Model,
+    model: Spec,
     *,
     inputs: Mapping[str, InputValue] | None = None,
     duration: float,
@@ -93,7 +116,7 @@ def simulate(
 
 
 def Stepper(
-    model: str | Path | Model,
+    model: Spec,
     *,
     step: float,
     parameters: Mapping[str, LaneValue] | None = None,
@@ -132,121 +155,3 @@ def Stepper(
         If an option is wrong, there is no compiler, or the start is outside the domain.
     """
     return Steps(module_of(model), step=step, parameters=parameters, initial=initial, inputs=inputs)
-
-
-def periodic_steady_state(
-    model: str | Path | Model,
-    *,
-    inputs: Mapping[str, InputValue],
-    frequency: float,
-    parameters: Mapping[str, LaneValue] | None = None,
-    initial: Mapping[str, LaneValue] | None = None,
-    temperatures: tuple[float, float] | None = None,
-    rtol: float = steady.RTOL,
-) -> steady.SteadyState:
-    """Return the periodic steady state that a driven model settles in.
-
-    >>> from piezo_sym import periodic_steady_state, sine
-    >>> periodic_steady_state("piezo_stack", inputs={"V_in": sine(100, 50)}, frequency=50)
-    SteadyState(354.085 K at 50 Hz, stable)
-
-    Parameters
-    ----------
-    model : the name of a shipped spec, the path of a spec file, or a `Model`, with one body.
-    inputs : as for `simulate`; they repeat with `frequency` [Hz], and one of them moves.
-    parameters, initial : as for `simulate`.
-    temperatures : where to look [K], least and greatest; from the start to 20 times it when left
-        out.
-    rtol : accuracy of the states at t = 0, as a part of their sizes.
-
-    Returns
-    -------
-    SteadyState
-        With ``.temperature``, ``.coldest``, ``.hottest`` of the body [K], ``.loss`` a period [J],
-        ``.stable``, ``.multiplier``, ``.residual``, ``.initial`` (as `simulate` takes it) and
-        ``.orbit``, one period as a Dataset; see `piezo_sym.analysis.steady.SteadyState`.
-
-    Raises
-    ------
-    UsageError, RunError
-        If an option is wrong, or there is no steady state in the range.
-    """
-    return steady.periodic_steady_state(
-        module_of(model),
-        inputs=inputs,
-        frequency=frequency,
-        parameters=parameters,
-        initial=initial,
-        temperatures=temperatures,
-        rtol=rtol,
-    )
-
-
-def periodic_steady_states(
-    model: str | Path | Model,
-    *,
-    inputs: Mapping[str, InputValue],
-    frequency: float,
-    parameters: Mapping[str, LaneValue] | None = None,
-    initial: Mapping[str, LaneValue] | None = None,
-    temperatures: tuple[float, float] | None = None,
-    rtol: float = steady.RTOL,
-) -> tuple[steady.SteadyState, ...]:
-    """Return all periodic steady states of a driven model, stable or not, coldest first.
-
-    Parameters, errors and what each one holds: as for `periodic_steady_state`.
-    """
-    return steady.periodic_steady_states(
-        module_of(model),
-        inputs=inputs,
-        frequency=frequency,
-        parameters=parameters,
-        initial=initial,
-        temperatures=temperatures,
-        rtol=rtol,
-    )
-
-
-def steady_branches(
-    model: str | Path | Model,
-    *,
-    inputs: Driven,
-    frequencies: tuple[float, float],
-    parameters: Mapping[str, LaneValue] | None = None,
-    initial: Mapping[str, LaneValue] | None = None,
-    temperatures: tuple[float, float] | None = None,
-) -> branches.Branches:
-    """Return the periodic steady states of a model over a range of frequencies, and the jumps.
-
-    >>> from piezo_sym import sine, steady_branches
-    >>> options = {"frequencies": (20, 60), "temperatures": (298.15, 400)}
-    >>> steady_branches("piezo_stack", inputs=lambda f: {"V_in": sine(10, f)}, **options)
-    Branches(curves: 1, points: 14, jumps: none)
-
-    Parameters
-    ----------
-    model : the name of a shipped spec, the path of a spec file, or a `Model`, with one body.
-    inputs : function of the frequency [Hz] to inputs as for `simulate`, which repeat with it.
-    frequencies, temperatures : least and greatest [Hz], [K].
-    parameters, initial : as for `simulate`; see `piezo_sym.analysis.branches.steady_branches`.
-
-    Returns
-    -------
-    Branches
-        With ``.table()``, columns by name (frequency, temperature, stable, jumps_to, ...), a row a
-        point; ``.jumps``, each with ``.frequency`` [Hz], ``.upward``, ``.temperature`` and
-        ``.lands`` [K]; and ``.curves``, tuples of points.
-
-    Raises
-    ------
-    UsageError
-        If an option is wrong, or an input does not repeat with each frequency of the range.
-    """
-    return branches.steady_branches(
-        module_of(model),
-        inputs=inputs,
-        frequencies=frequencies,
-        parameters=parameters,
-        initial=initial,
-        temperatures=temperatures,
-    )

@@ -25,10 +25,11 @@ from piezo_sym.codegen import (
 from piezo_sym.derivation import derive
 from piezo_sym.errors import DriftError
 from piezo_sym.files import folder_entries, path_of, path_text, read_bytes, write_together
-from piezo_sym.proofs import Report, Verdict, proofs_json, smt2, verify
+from piezo_sym.proofs import Report, Verdict, proofs_json, smt2
 from piezo_sym.spec.load import load
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.source import shipped
+from piezo_sym.verification import verify
 from piezo_sym.version import VERSION
 
 MISSING, DIFFERS, ENDS = "is missing", "differs from its spec", "has other line ends than \\n"
@@ -57,8 +58,16 @@ def shipped_models() -> tuple[Model, ...]:
     return tuple(load(name) for name in shipped())
 
 
-def render(model: Model, *, allow_unproved: bool = False) -> dict[str, str]:
+def render(
+    model: Model, *, allow_unproved: bool = False, report: Report | None = None
+) -> dict[str, str]:
     """Return the text of each generated file of a model, by its path below the output folder.
+
+    Parameters
+    ----------
+    model : from `load`, or made in Python.
+    allow_unproved : render even if a required property is not proved.
+    report : its verdicts, if they are known already.
 
     Raises
     ------
@@ -68,7 +77,7 @@ def render(model: Model, *, allow_unproved: bool = False) -> dict[str, str]:
         If the model cannot be derived.
     """
     iphs = derive(model)
-    report = verify(iphs)
+    report = report or verify(iphs)
     if not allow_unproved:
         report.raise_if_not_proved()
     program = lower(iphs, verdict_line(report))

@@ -1,17 +1,14 @@
 """Every error a user can meet: one clear line that says what, where, what was expected, what to do.
 
 Input: the four parts.  Output: an exception whose ``str`` is one printable line, and whose
-``exit_code`` is the command line's answer (1: not proved or drifted, 2: spec or command wrong).
+``exit_code`` is the command line's answer (1: not proved or drifted, 2: spec or command wrong,
+3: a proof and a number disagree).
 """
 
-from __future__ import annotations
-
+from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
-from typing import TYPE_CHECKING, ClassVar, final
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
+from typing import ClassVar, final
 
 MAX_QUOTE = 60
 MAX_PLACE = 200
@@ -82,6 +79,13 @@ class ProofError(PiezoError):
     """A required property that is refuted or open."""
 
     exit_code: ClassVar[int] = 1
+
+
+@final
+class ContradictionError(PiezoError):
+    """A proved row, and a point at which exact arithmetic finds it false: a fault of ours."""
+
+    exit_code: ClassVar[int] = 3
 
 
 @final

@@ -3,8 +3,6 @@
 Input: a path and its text.  Output: the file, or one `FileError`.
 """
 
-from __future__ import annotations
-
 import atexit
 import os
 import shutil

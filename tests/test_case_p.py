@@ -15,7 +15,7 @@ STATE = {
 SCALES = {"q": 2e-3, "p": 5e-3, "Q_C": 5e-4, "phi": 6e-3, "S": 5e-2}
 
 
-@pytest.mark.parametrize("method", ["LSODA", "Radau"])
+@pytest.mark.parametrize("method", ["LSODA", pytest.param("Radau", marks=pytest.mark.long)])
 def test_state_after_ten_periods(method):
     run = simulate(
         "piezo_stack",

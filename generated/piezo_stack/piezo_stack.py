@@ -2,7 +2,7 @@
 
 Source:  Caballeria, Ramirez, Le Gorrec (2021), eqs. (9)-(13), Table 1
 Model:   piezo_stack, spec sha256 9c0235a60e02072bc451611ffa723f273272c8e4536a3089081866f47c89389c
-Proofs:  skew, casimir, temperature, energy, entropy, welldef, continuous, passive, odd, sigma, exergy, environment, invariant, units PROVED
+Proofs:  skew, casimir, temperature, energy, entropy, welldef, continuous, passive, odd, sigma, exergy, environment, invariant, units, program PROVED
 
 Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
 Arrays have shape (n, *batch); values are in SI units.
@@ -133,13 +133,13 @@ def _inputs(u):
 
 
 def _lanes(value, count, ndim):
-    """Return a bank's parameter: a number, or a value a lane with shape (count, 1, ...)."""
+    """Return a bank's parameter: a number, or values of shape (count,) or (count, *batch)."""
     if np.ndim(value) == 0:
         return value
     value = np.asarray(value, dtype=float)
-    if value.shape != (count,):
-        raise ValueError(f"a parameter of a bank of {count} lanes has {value.size} values")
-    return value.reshape(count, *(1,) * (ndim - 1))
+    if len(value) != count or value.ndim > ndim:
+        raise ValueError(f"a parameter of a bank of {count} lanes has {len(value)} values")
+    return value.reshape(*value.shape, *(1,) * (ndim - value.ndim))
 
 
 def initial_state(u, p_, /):
@@ -471,13 +471,13 @@ def margins(x, u, p_, /):
     out[0] = T_minus_T_0
     out[1] = T_e - T_0
     out[2] = d
-    out[3] = np.min(rho)
-    out[4] = np.min(i_0)
+    out[3] = np.min(rho, axis=0)
+    out[4] = np.min(i_0, axis=0)
     out[5] = lam
     out[6] = k
     out[7] = M
     out[8] = C
-    out[9] = np.min(L)
+    out[9] = np.min(L, axis=0)
     out[10] = T_0
     out[11] = c_0
     return out

@@ -65,6 +65,7 @@
 (assert (> T_0 0))
 (assert (> c_0 0))
 (assert (= T (* T_0 exp_1)))
+(assert (not (= c_0 0)))
 (assert (= (* exp_argument_1 c_0) S))
 (assert (> exp_1 0))
 (assert (>= exp_1 (+ 1 exp_argument_1)))
@@ -88,6 +89,7 @@
 (assert (> T_0 0))
 (assert (> c_0 0))
 (assert (= T (* T_0 exp_1)))
+(assert (not (= c_0 0)))
 (assert (= (* exp_argument_1 c_0) S))
 (assert (> exp_1 0))
 (assert (>= exp_1 (+ 1 exp_argument_1)))
@@ -171,6 +173,15 @@
 (assert (<= i i_0))
 (assert (>= i (- i_0)))
 (assert (not (not (= (+ T (- T_0)) 0))))
+(check-sat)
+(pop 1)
+
+; welldef of hysteron: T - T_0 != 0: the branches cover all points
+(push 1)
+(declare-const i_0 Real)
+(declare-const i Real)
+(assert (>= i_0 0))
+(assert (not (>= (+ (ite (> i i_0) 1 0) (ite (<= i i_0) (ite (< i (- i_0)) 1 0) 0) (ite (<= i i_0) (ite (>= i (- i_0)) 1 0) 0)) 1)))
 (check-sat)
 (pop 1)
 
@@ -360,6 +371,15 @@
 (check-sat)
 (pop 1)
 
+; continuous of hysteron: V_hysteron has no jump where its branches meet: the branches cover all points
+(push 1)
+(declare-const i_0 Real)
+(declare-const i Real)
+(assert (>= i_0 0))
+(assert (not (>= (+ (ite (> i i_0) 1 0) (ite (<= i i_0) (ite (< i (- i_0)) 1 0) 0) (ite (<= i i_0) (ite (>= i (- i_0)) 1 0) 0)) 1)))
+(check-sat)
+(pop 1)
+
 ; passive of hysteron: V_hysteron*i >= 0 where i > i_0
 (push 1)
 (declare-const rho Real)
@@ -375,6 +395,7 @@
 (assert (> T_0 0))
 (assert (> T 0))
 (assert (> i i_0))
+(assert (not (= (+ T (- T_0)) 0)))
 (assert (not (>= (* rho (+ i (- i_0)) i (+ T (- T_0))) 0)))
 (check-sat)
 (pop 1)
@@ -395,6 +416,7 @@
 (assert (> T 0))
 (assert (<= i i_0))
 (assert (< i (- i_0)))
+(assert (not (= (+ T (- T_0)) 0)))
 (assert (not (>= (* rho (+ i i_0) i (+ T (- T_0))) 0)))
 (check-sat)
 (pop 1)
@@ -415,7 +437,17 @@
 (assert (> T 0))
 (assert (<= i i_0))
 (assert (>= i (- i_0)))
+(assert (not (= (+ T (- T_0)) 0)))
 (assert (not (>= 0 0)))
+(check-sat)
+(pop 1)
+
+; passive of hysteron: V_hysteron*i >= 0: the branches cover all points
+(push 1)
+(declare-const i_0 Real)
+(declare-const i Real)
+(assert (>= i_0 0))
+(assert (not (>= (+ (ite (> i i_0) 1 0) (ite (<= i i_0) (ite (< i (- i_0)) 1 0) 0) (ite (<= i i_0) (ite (>= i (- i_0)) 1 0) 0)) 1)))
 (check-sat)
 (pop 1)
 

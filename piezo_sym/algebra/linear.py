@@ -7,7 +7,7 @@ elements at fault.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator, Mapping
+from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass, field
 from heapq import heapify, heappop, heappush
 from typing import Any, final
@@ -80,21 +80,32 @@ def solve(
         If it takes more than `most`.
     """
     rows = [Equation(dict(row.left), dict(row.right)) for row in equations]
+    users = _users(rows)
     most -= sum(len(row.left) + len(row.right) for row in rows)
-    queue = _Queue(rows)
+    waiting = {n: _difficulty(row) for n, row in enumerate(rows)}
+    queue = [(difficulty, n) for n, difficulty in waiting.items()]
+    heapify(queue)
     done: list[tuple[Any, Equation]] = []
     relations: list[Form] = []
-    for n in queue:
+    while waiting:
+        difficulty, n = heappop(queue)
+        if waiting.get(n) != difficulty:  # the row is done, or has changed and stands here anew
+            continue
+        del waiting[n]
         row = rows[n]
         if not row.left:
             relations += [row.right] if row.right else []
             continue
         pivot = _pivot(row, divisors)
         _normalise(row, pivot)
-        for other in queue.users.pop(pivot) - {n}:
-            most -= len(row.left) + len(row.right)
+        for other in users.pop(pivot) - {n}:
             _eliminate(rows[other], row, pivot)
-            queue.changed(other, row.left)
+            most -= len(row.left) + len(row.right)
+            for label in row.left:
+                (users[label].add if label in rows[other].left else users[label].discard)(other)
+            if other in waiting:
+                waiting[other] = _difficulty(rows[other])
+                heappush(queue, (waiting[other], other))
         if most < 0:
             raise LongError
         done.append((pivot, row))
@@ -103,6 +114,15 @@ def solve(
     if relations or undetermined:
         raise SingularError(relations, undetermined)
     return {pivot: row.right for pivot, row in solved.items()}
+
+
+def _users(rows: list[Equation]) -> dict[Any, set[int]]:
+    """Return the rows in which each unknown stands."""
+    users: dict[Any, set[int]] = {}
+    for n, row in enumerate(rows):
+        for label in row.left:
+            users.setdefault(label, set()).add(n)
+    return users
 
 
 def is_number(coefficient: Any) -> bool:
@@ -114,36 +134,6 @@ def is_number(coefficient: Any) -> bool:
 def _difficulty(row: Equation) -> tuple[bool, int]:
     """Order rows: those with a number to divide by first, then short ones."""
     return bool(row.left) and not any(map(is_number, row.left.values())), len(row.left)
-
-
-@final
-class _Queue:
-    """Rows to come, the easiest first, and which rows use which unknown."""
-
-    def __init__(self, rows: list[Equation]) -> None:
-        self.rows, self.users = rows, dict[Any, set[int]]()
-        for n, row in enumerate(rows):
-            for label in row.left:
-                self.users.setdefault(label, set()).add(n)
-        self.waiting = dict(enumerate(map(_difficulty, rows)))
-        self.heap = [(difficulty, n) for n, difficulty in self.waiting.items()]
-        heapify(self.heap)
-
-    def __iter__(self) -> Iterator[int]:
-        """Take out row by row, in the order of what they are by then."""
-        while self.waiting:
-            difficulty, n = heappop(self.heap)
-            if self.waiting.get(n) == difficulty:  # else done, or changed and there anew
-                del self.waiting[n]
-                yield n
-
-    def changed(self, n: int, labels: Iterable[Label]) -> None:
-        """Take note that a row has changed, in no unknowns but `labels` and the one it lost."""
-        for label in labels:
-            (self.users[label].add if label in self.rows[n].left else self.users[label].discard)(n)
-        if n in self.waiting:
-            self.waiting[n] = _difficulty(self.rows[n])
-            heappush(self.heap, (self.waiting[n], n))
 
 
 def _pivot(row: Equation, divisors: list[Any]) -> Any:

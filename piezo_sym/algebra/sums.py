@@ -15,6 +15,28 @@ from sympy.core.symbol import Str
 from sympy.printing.precedence import PRECEDENCE
 
 
+class LaneSymbol(sp.Symbol):  # type: ignore[misc]
+    """A quantity of a bank's lane j, spelled ``<quantity>_j``.
+
+    It is never equal to a symbol of the same spelling: its quantity and its bank belong to it.
+    """
+
+    __slots__ = ("bank", "quantity")
+
+    def __new__(cls, quantity: str, bank: str, **assumptions: bool) -> LaneSymbol:
+        """Return the symbol of a quantity in lane j of a bank."""
+        made: LaneSymbol = sp.Symbol.__xnew__(cls, f"{quantity}_j", **assumptions)
+        made.quantity, made.bank = quantity, bank
+        return made
+
+    def __getnewargs_ex__(self) -> tuple[tuple[str, str], dict[str, bool]]:
+        """Return what makes the symbol again in another process."""
+        return (self.quantity, self.bank), dict(self._assumptions_orig)
+
+    def _hashable_content(self) -> tuple[Any, ...]:
+        return (self.quantity, self.bank, *super()._hashable_content())
+
+
 class LaneSum(sp.Expr):  # type: ignore[misc]
     """The sum of its first argument over the lanes j = 1..r of the bank named by its second."""
 
@@ -50,7 +72,7 @@ def outside_sums(expr: sp.Basic) -> frozenset[sp.Symbol]:
 class Lanes:
     """What sums over lanes need to know: the bank of each lane symbol, the size of each bank."""
 
-    banks: Mapping[sp.Symbol, str]
+    banks: Mapping[LaneSymbol, str]
     counts: Mapping[str, sp.Symbol]
 
     def sum(self, expr: sp.Expr, bank: str) -> sp.Expr:
@@ -73,13 +95,13 @@ class Lanes:
             parts[lane].append(factor)
         return sp.Mul(*parts[0]), sp.Mul(*parts[1])
 
-    def symbols(self, bank: str) -> tuple[sp.Symbol, ...]:
+    def symbols(self, bank: str) -> tuple[LaneSymbol, ...]:
         """Return the lane symbols of `bank`."""
         return tuple(symbol for symbol, own in self.banks.items() if own == bank)
 
     def at(self, expr: sp.Expr, bank: str, lane: int) -> sp.Expr:
         """Return `expr` in lane number `lane` of `bank`: ``phi_j`` becomes ``phi_<lane>``."""
-        names = {s: _numbered(s, lane) for s in self.symbols(bank)}
+        names = {symbol: _numbered(symbol, lane) for symbol in self.symbols(bank)}
         return expr.xreplace(names)
 
     def expand(self, expr: sp.Expr, counts: Mapping[str, int]) -> sp.Expr:
@@ -93,5 +115,5 @@ class Lanes:
         return expr.replace(LaneSum, written).xreplace(sizes)
 
 
-def _numbered(symbol: sp.Symbol, lane: int) -> sp.Symbol:
-    return sp.Symbol(f"{symbol.name.removesuffix('_j')}_{lane}", **symbol.assumptions0)
+def _numbered(symbol: LaneSymbol, lane: int) -> sp.Symbol:
+    return sp.Symbol(f"{symbol.quantity}_{lane}", **symbol.assumptions0)

@@ -14,7 +14,7 @@ from typing import Any, final
 
 import sympy as sp
 
-from piezo_sym.algebra.sums import LaneSum
+from piezo_sym.algebra.sums import LaneSum, LaneSymbol
 from piezo_sym.errors import SpecError, quote
 from piezo_sym.spec.circuit import Circuit
 from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, Resistor, Storage
@@ -44,13 +44,13 @@ class SymbolTable:
 
     Attributes
     ----------
-    symbols : every name's symbol; a lane's is spelled ``<name>_j``.
+    symbols : the symbol of every name; that of a bank's quantity is a `LaneSymbol`.
     banks : the bank of each lane symbol.
     counts : the size symbol of each bank.
     """
 
     symbols: Mapping[str, sp.Symbol]
-    banks: Mapping[sp.Symbol, str]
+    banks: Mapping[LaneSymbol, str]
     counts: Mapping[str, sp.Symbol]
 
     def __getitem__(self, name: str) -> sp.Symbol:
@@ -88,7 +88,7 @@ def symbol_table(circuit: Circuit) -> SymbolTable:
                 per_lane[name] = placed.bank
         if isinstance(port, Body):
             signs[port.temperature] = {"positive": True}
-    table = {name: _symbol(name, name in per_lane, signs.get(name)) for name in names}
+    table = {name: _symbol(name, per_lane.get(name), signs.get(name)) for name in names}
     counts = {
         bank: sp.Symbol(f"{bank}_count", integer=True, positive=True) for bank in banks(model)
     }
@@ -109,8 +109,9 @@ def _quantities(port: Storage | Resistor | Coupling | Body | Conductor) -> tuple
             return (port.temperature,)
 
 
-def _symbol(name: str, lane: bool, sign: Mapping[str, bool] | None) -> sp.Symbol:
-    return sp.Symbol(f"{name}_j" if lane else name, **(sign or {"real": True}))
+def _symbol(name: str, bank: str | None, sign: Mapping[str, bool] | None) -> sp.Symbol:
+    known = sign or {"real": True}
+    return sp.Symbol(name, **known) if bank is None else LaneSymbol(name, bank, **known)
 
 
 def _signs(model: Model) -> dict[str, dict[str, bool]]:

@@ -13,25 +13,19 @@ The settled state is found by Newton's method on the fast rows, with Broyden's u
 without damping (a current that circulates in a dead zone) is left as it is.
 """
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, TypeAlias, final
+from typing import TypeAlias, final
 
 import numpy as np
 
-from piezo_sym.analysis.stroboscope import FLOOR
+from piezo_sym.analysis.stroboscope import FLOOR, Period, Stroboscope
 from piezo_sym.errors import RunError
-from piezo_sym.run.checks import span_of
+from piezo_sym.run.checks import FloatArray, span_of
 
-if TYPE_CHECKING:
-    from piezo_sym.analysis.stroboscope import Period, Stroboscope
-    from piezo_sym.run.checks import FloatArray
-
-    Rows: TypeAlias = np.ndarray[tuple[int], np.dtype[np.bool_]]
+Rows: TypeAlias = np.ndarray[tuple[int], np.dtype[np.bool_]]
 
 HOTTEST = 20.0  # times the temperature at the start: how far is looked, if nothing is said
 NUDGE = 1e-4  # of a state's size: the difference that a derivative is taken over

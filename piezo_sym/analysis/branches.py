@@ -10,29 +10,20 @@ A stable part ends in a fold, where it meets an unstable one. Who moves the freq
 the temperature jump: it runs away to another branch, or falls back to one.
 """
 
-from __future__ import annotations
-
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, final
+from typing import final
 
 import numpy as np
 
 from piezo_sym.analysis.balance import grid, scan, settled, temperature_range, zeros
 from piezo_sym.analysis.curves import Point, folds, traced, with_folds
-from piezo_sym.analysis.repeating import refuse_not_following
+from piezo_sym.analysis.repeating import Driven, refuse_not_following
 from piezo_sym.analysis.stroboscope import Stroboscope, stroboscope
-from piezo_sym.run.checks import span_of
-from piezo_sym.run.module import checked
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from piezo_sym.analysis.stroboscope import Driven
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.module import GeneratedModule
-    from piezo_sym.run.parameters import LaneValue
+from piezo_sym.run.checks import FloatArray, span_of
+from piezo_sym.run.module import GeneratedModule, checked
+from piezo_sym.run.parameters import LaneValue
 
 STEPS = 256  # a period
 SAME = 1e-3  # zeros nearer than this in log T are one
@@ -114,7 +105,12 @@ def steady_branches(
     initial: Mapping[str, LaneValue] | None = None,
     temperatures: tuple[float, float] | None = None,
 ) -> Branches:
-    """Return the periodic steady states of a model over a range of frequencies.
+    """Return the periodic steady states of a model over a range of frequencies, and the jumps.
+
+    >>> from piezo_sym import sine, steady_branches
+    >>> options = {"frequencies": (20, 60), "temperatures": (298.15, 400)}
+    >>> steady_branches("piezo_stack", inputs=lambda f: {"V_in": sine(10, f)}, **options)
+    Branches(curves: 1, points: 14, jumps: none)
 
     Parameters
     ----------

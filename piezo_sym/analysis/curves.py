@@ -8,21 +8,17 @@ A step goes along the last chord, and then across it, by secants, to where the d
 so a curve is followed around its folds, where it is vertical over the frequency.
 """
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, final
+from typing import final
 
 import numpy as np
 
 from piezo_sym.analysis.balance import Settled, SteadyWarning, settled
+from piezo_sym.analysis.stroboscope import Stroboscope
 from piezo_sym.errors import RunError
-
-if TYPE_CHECKING:
-    from piezo_sym.analysis.stroboscope import Stroboscope
-    from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.checks import FloatArray
 
 LONGEST, SHORTEST = 0.12, 1e-4  # step along a curve, in log f and log T
 SHARP = 0.2  # rad: a curve may turn so much in a step

@@ -5,17 +5,11 @@ Input: a `Stroboscope`, a frequency, a state x (n,) nearby.  Output: dP/dx, and 
     P(x; f) = x
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from piezo_sym.analysis.balance import NUDGE, solved
-
-if TYPE_CHECKING:
-    from piezo_sym.analysis.stroboscope import Stroboscope
-    from piezo_sym.run.checks import FloatArray
+from piezo_sym.analysis.stroboscope import Stroboscope
+from piezo_sym.run.checks import FloatArray
 
 MOST_MOVES = 12
 

@@ -4,23 +4,18 @@ Input: the inputs of a module by name, their frequency.  Output: a refusal of wh
 the number of steps a period between which every input is nearly a straight line.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
+from typing import TypeAlias
 
 import numpy as np
 
 from piezo_sym.errors import UsageError, quote
-from piezo_sym.run.inputs import as_signal, read_inputs
+from piezo_sym.run.inputs import InputValue, as_signal, read_inputs
+from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.samples import Samples
+from piezo_sym.run.signals import Signal
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from piezo_sym.analysis.stroboscope import Driven
-    from piezo_sym.run.inputs import InputValue
-    from piezo_sym.run.module import GeneratedModule
-    from piezo_sym.run.signals import Signal
+Driven: TypeAlias = Callable[[float], Mapping[str, InputValue]]
 
 CLOSE = 1e-6  # of an input's size: what repeats
 GOLDEN = 0.6180339887498949

@@ -103,6 +103,10 @@ def periodic_steady_state(
     That is the first zero of the heat balance in the direction in which the body's temperature
     drifts at the start, all else settled. Where heat is not the slowest motion, compare with a run.
 
+    >>> from piezo_sym import periodic_steady_state, sine
+    >>> periodic_steady_state("piezo_stack", inputs={"V_in": sine(100, 50)}, frequency=50)
+    SteadyState(354.085 K at 50 Hz, stable)
+
     Parameters
     ----------
     module : a generated module; `piezo_sym.periodic_steady_state` also takes a model, name, path.
@@ -145,7 +149,7 @@ def periodic_steady_states(
     """Return all periodic steady states in a range of temperatures, stable or not, coldest first.
 
     Two that are closer together than a hundredth of their temperature may be missed, and so may
-    states whose period is a multiple of the inputs'. Parameters and errors: see
+    states whose period is a multiple of the inputs'. Parameters and errors are as for
     `periodic_steady_state`; none found is no error.
     """
     strobe, f = _read(module, inputs, frequency, parameters, initial)

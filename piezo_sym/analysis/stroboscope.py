@@ -13,30 +13,31 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING, Any, TypeAlias, final
+from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 
-from piezo_sym.analysis.repeating import refuse_unperiodic, steps_needed
+from piezo_sym.analysis.repeating import Driven, refuse_unperiodic, steps_needed
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run import simulate
 from piezo_sym.run.checks import known_keys
-from piezo_sym.run.discrete import METHOD
+from piezo_sym.run.compiled import check_inputs
+from piezo_sym.run.discrete import METHOD, fixed
 from piezo_sym.run.engine import compiled
+from piezo_sym.run.guard import check_start
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.module import checked, rows
 from piezo_sym.run.parameters import read_initial, read_parameters
+from piezo_sym.run.system import System
 
 if TYPE_CHECKING:
     import xarray
 
     from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.inputs import InputValue
+    from piezo_sym.run.engine import Engine
     from piezo_sym.run.module import GeneratedModule
     from piezo_sym.run.parameters import LaneValue
-
-    Driven: TypeAlias = Callable[[float], Mapping[str, InputValue]]
 
 LOOKS = 16  # times in a period at which sizes and the mean temperature are taken
 FLOOR = 1e-15  # so that no size is 0
@@ -74,15 +75,35 @@ class Stroboscope:
         ------
         RunError : the run leaves the domain.
         """
-        accuracy = {"step": 1 / frequency / self.steps} if self.compiled else {"rtol": FINE}
-        run = self.run(x, frequency, times=LOOKS + 1, **accuracy)
-        states = self.states_of(run)
+        states = self._period(x, frequency)
         size = np.maximum(np.max(np.abs(states), axis=1), FLOOR)
         for part in rows(self.module.STATES, self.values):
             size[part] = np.max(size[part])
-        T = self.temperature_of(run)
+        T = np.asarray(self.module.temperatures(states, self.values))[0]
         mean = float((T[0] + T[-1]) / 2 + T[1:-1].sum()) / LOOKS
         return Period(states[:, -1], size, mean, float(T.min()), float(T.max()))
+
+    def _period(self, x: FloatArray, frequency: float) -> FloatArray:
+        """Return the states (n, LOOKS + 1) of one period; in C, nothing else is made of the run."""
+        if self.engine is None:
+            return self.states_of(self.run(x, frequency, times=LOOKS + 1, rtol=FINE))
+        system, step = self._driven(frequency), 1 / frequency / self.steps
+        check_start(system, x)
+        times = np.linspace(0.0, 1 / frequency, LOOKS + 1)
+        return fixed([system], self.engine, x[None], times, step).trajectory(0).states
+
+    @cached_property
+    def _driven(self) -> Callable[[float], System]:
+        """The model with its inputs at a frequency, which are looked at once."""
+
+        @lru_cache(maxsize=8)
+        def at(frequency: float) -> System:
+            inputs = read_inputs(self.module, self.inputs(frequency), 1 / frequency)
+            system = System(self.module, self.values, inputs)
+            check_inputs(system, self.start(frequency), np.array([0.0, 1 / frequency]))
+            return system
+
+        return at
 
     def run(self, x: FloatArray, frequency: float, **accuracy: Any) -> xarray.Dataset:
         """Return a run of one period from the state x (n,)."""
@@ -92,7 +113,7 @@ class Stroboscope:
             duration=1 / frequency,
             parameters=self.parameters,
             initial=self.named(x),
-            method=METHOD if self.compiled else "LSODA",
+            method=METHOD if self.engine else "LSODA",
             **accuracy,
         )
 
@@ -112,9 +133,9 @@ class Stroboscope:
         return {r.name: x[part] if r.bank else float(x[part.start]) for r, part in parts}
 
     @cached_property
-    def compiled(self) -> bool:
-        """Whether the module runs in C; if not, LSODA follows a period to 1e-9, slowly."""
-        return compiled(self.module) is not None
+    def engine(self) -> Engine | None:
+        """The module in C; where nothing compiles it, LSODA follows a period to 1e-9, slowly."""
+        return compiled(self.module)
 
     @cached_property
     def values(self) -> Any:
@@ -191,5 +212,6 @@ def stroboscope(
     steps = steps_needed(inputs(frequency), frequency, steps)
     known_keys(initial, [record.name for record in module.STATES], "periodic_steady_state.initial")
     strobe = Stroboscope(module, inputs, parameters or {}, initial or {}, steps)
-    strobe.look(strobe.start(frequency), frequency)
+    accuracy = {"step": 1 / frequency / steps} if strobe.engine else {"rtol": FINE}
+    strobe.run(strobe.start(frequency), frequency, times=2, **accuracy)  # its errors say why
     return strobe

@@ -1,27 +1,25 @@
 """Things that are compared: each a call, and the error of what it computes.
 
-Input: contestants, paired.  Output: rows with times taken in turns.
+Input: contestants, paired.  Output: rows with times taken in turns, and their cells as text.
 """
-
-from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import final
 
-from piezo_sym.bench.rows import Row, Spread
-from piezo_sym.bench.timing import Times, interleaved
+from piezo_sym.bench.timing import Spread, Times, interleaved
+
+COLUMNS = ("group", "compared with", "time", "error", "ours", "time", "error", "ratio", "quartiles")
+UNITS = ((1.0, "s"), (1e-3, "ms"), (1e-6, "us"), (1e-9, "ns"))
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class Contestant:
-    """A call to be timed.
+    """A call to be timed, which computes `per` results.
 
     Attributes
     ----------
-    name : in the report.
-    call : what is timed; it computes `per` results.
     error : of a result, where there is a measure.
     note : tolerance, time of compilation.
     """
@@ -42,33 +40,76 @@ class Pair:
     ours: Contestant
 
 
+@final
+@dataclass(frozen=True)
+class Row:
+    """One benchmark: this package against something else that does the same.
+
+    Attributes
+    ----------
+    other_time, ours_time : seconds per result; `other_time` is absent where there is nothing to
+        compare with.
+    ratio : of the times, measured in turns: above 1, ours is faster.
+    other_error, ours_error : in units of the scale that `measure` names; absent without one.
+    """
+
+    group: str
+    other: str
+    ours: str
+    other_time: Spread | None
+    ours_time: Spread
+    ratio: Spread | None
+    other_error: float | None = None
+    ours_error: float | None = None
+    measure: str = ""
+    note: str = ""
+
+    @property
+    def cells(self) -> tuple[str, ...]:
+        """Its cells as text, in the order of `COLUMNS`."""
+        ratio = self.ratio
+        return (
+            *(self.group, self.other or "-"),
+            *(_duration(self.other_time), _error(self.other_error)),
+            *(self.ours, _duration(self.ours_time), _error(self.ours_error)),
+            *(f"{ratio.median:.3g}" if ratio else "-",),
+            f"{ratio.low:.3g} - {ratio.high:.3g}" if ratio else "-",
+        )
+
+
 def compared(group: str, pairs: Sequence[Pair], rounds: int, measure: str = "") -> tuple[Row, ...]:
     """Return a row for each pair, every contestant timed in every round."""
     everyone = dict.fromkeys(c for pair in pairs for c in (pair.other, pair.ours) if c)
-    times = interleaved([contestant.call for contestant in everyone], rounds)
-    one = {c: per(t, c.per) for c, t in zip(everyone, times, strict=True)}
-    return tuple(_row(group, pair, one, measure) for pair in pairs)
-
-
-def per(times: Times, number: int) -> Times:
-    """Return the times of one result."""
-    return Times(tuple(seconds / number for seconds in times.seconds))
+    found = zip(everyone, interleaved([c.call for c in everyone], rounds), strict=True)
+    times = {c: Times(tuple(seconds / c.per for seconds in one.seconds)) for c, one in found}
+    return tuple(_row(group, pair, times, measure) for pair in pairs)
 
 
 def _row(group: str, pair: Pair, times: dict[Contestant, Times], measure: str) -> Row:
     other, ours = pair.other, pair.ours
-    ratio: Spread | None = times[other].over(times[ours]) if other else None
     sides = (("its", other), ("our", ours))
-    notes = [f"{whose} {side.note}" for whose, side in sides if side and side.note]
     return Row(
         group=group,
         other=other.name if other else "",
         ours=ours.name,
         other_time=times[other].spread if other else None,
         ours_time=times[ours].spread,
-        ratio=ratio,
+        ratio=times[other].over(times[ours]) if other else None,
         other_error=other.error if other else None,
         ours_error=ours.error,
         measure=measure,
-        note="; ".join(notes),
+        note="; ".join(f"{whose} {side.note}" for whose, side in sides if side and side.note),
     )
+
+
+def _duration(spread: Spread | None) -> str:
+    """Return a median time in the unit that fits it."""
+    if spread is None:
+        return "-"
+    size, unit = next((pair for pair in UNITS if spread.median >= pair[0]), UNITS[-1])
+    return f"{spread.median / size:.3g} {unit}"
+
+
+def _error(value: float | None) -> str:
+    """Return an error in one digit, for more would mean nothing."""
+    return "-" if value is None else f"{value:.0e}"

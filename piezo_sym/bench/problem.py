@@ -2,15 +2,15 @@
 
 Input: a `Model` and its inputs.  Output: a `Problem`
 
-    dx/dt = f(t, x),  x(0) given,      z = x/scale for solvers with one tolerance for all states
+    dx/dt = f(t, x),  x(0) given
 
-with banks written out, parameters and inputs put in.  Nothing in it is tied to any model.
+with banks written out, parameters and inputs put in.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from math import pi
 from typing import TYPE_CHECKING, Any, final
@@ -18,7 +18,6 @@ from typing import TYPE_CHECKING, Any, final
 import numpy as np
 import sympy as sp
 
-from piezo_sym.bench.case_p import case_p
 from piezo_sym.derivation import derive
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.modules import module_of
@@ -27,6 +26,7 @@ from piezo_sym.run.module import lanes
 from piezo_sym.run.parameters import read_initial, read_parameters
 from piezo_sym.run.signals import Constant, Signal, Sine
 from piezo_sym.run.system import System
+from piezo_sym.spec.load import load
 
 if TYPE_CHECKING:
     from piezo_sym.run.checks import FloatArray
@@ -35,6 +35,10 @@ if TYPE_CHECKING:
     from piezo_sym.spec.model import Model
 
 TIME = sp.Symbol("t", real=True)
+#: When the rates of many states are computed, so that an input in motion is one number.
+INSTANT = 1.25e-3
+#: The shipped actuator rests without a voltage: given no inputs, it is driven with this one.
+SHIPPED, DRIVEN = "piezo_stack", {"V_in": Sine(100.0, 100.0, 0.0, 0.0)}
 
 
 @final
@@ -44,8 +48,7 @@ class Problem:
 
     Attributes
     ----------
-    model, module : the spec, and its generated module.
-    inputs, duration : what drives it, and for how long [s].
+    inputs, duration : what drives the module, and for how long [s].
     counts : sizes of banks other than the spec's, as parameters of the module.
     states, rates : symbols of x, and dx/dt as expressions of `TIME` and x alone.
     start, scale : x(0) (n,), and by what the error of each state is measured (n,).
@@ -68,21 +71,14 @@ class Problem:
         return System(self.module, values, read_inputs(self.module, self.inputs, self.duration))
 
     @cached_property
-    def scaled(self) -> tuple[sp.Expr, ...]:
-        """The rates of z = x/scale as expressions of z, whose symbols are `states` as well."""
-        pairs = zip(self.states, self.scale, strict=True)
-        change = {state: sp.Float(size) * state for state, size in pairs}
-        rates = zip(self.rates, self.scale, strict=True)
-        return tuple(rate.xreplace(change) / sp.Float(size) for rate, size in rates)
+    def at_instant(self) -> tuple[sp.Expr, ...]:
+        """The rates at `INSTANT`."""
+        return tuple(rate.xreplace({TIME: sp.Float(INSTANT)}) for rate in self.rates)
 
     def error(self, x: FloatArray, exact: FloatArray) -> float:
         """Return the largest error of a state in units of its scale; infinite where not finite."""
         worst = float(np.max(np.abs(np.asarray(x) - exact) / self.scale))
         return worst if np.isfinite(worst) else np.inf
-
-    def over(self, duration: float) -> Problem:
-        """Return the same problem over another length of time."""
-        return replace(self, duration=duration)
 
 
 def problem_of(
@@ -91,12 +87,11 @@ def problem_of(
     duration: float,
     sizes: Mapping[str, int] | None = None,
 ) -> Problem:
-    """Return a model as a problem, its scale 1 wherever no other is known.
+    """Return a model as a problem, its scale 1.
 
     Parameters
     ----------
-    inputs : those left out keep the spec's defaults; the paper's actuator, given none, is driven
-        as in its case P.
+    inputs : those left out keep the spec's defaults.
     sizes : of banks, where not the spec's.
 
     Raises
@@ -104,8 +99,8 @@ def problem_of(
     UsageError
         If an input is neither a constant nor a sine.
     """
-    driven = case_p(model.sha256, inputs)
-    given = driven.inputs if driven else inputs
+    shipped = not inputs and model.sha256 == load(SHIPPED).sha256
+    given: Mapping[str, InputValue] = DRIVEN if shipped else inputs
     counts = {f"{bank}_count": size for bank, size in (sizes or {}).items()}
     module: Any = module_of(model)
     values = read_parameters(module, counts)
@@ -114,8 +109,8 @@ def problem_of(
     banks = {bank: lanes(values, bank) for bank in module.BANKS}
     names = [record.name for record in module.INPUTS]
     states, rates = explicit(model, dict(zip(names, signals.signals, strict=True)), banks)
-    scale = driven.scale(values.hysteron_count) if driven else np.ones(start.size)
-    return Problem(model, module, given, duration, counts, states, rates, start, scale)
+    ones = np.ones(start.size)
+    return Problem(model, module, given, duration, counts, states, rates, start, ones)
 
 
 def explicit(
@@ -135,7 +130,7 @@ def explicit(
 
 
 def as_expression(signal: Signal, name: str) -> sp.Expr:
-    """Return a signal as an expression of `TIME`; peers are given no other kinds."""
+    """Return a signal as an expression of `TIME`; competitors are given no other kinds."""
     match signal:
         case Constant(value):
             return sp.Float(value)

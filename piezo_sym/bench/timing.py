@@ -1,7 +1,7 @@
 """Times of calls, taken in turns so that all of them meet the same noise.
 
-Input: calls without arguments.  Output: one `Times` a call; medians with quartiles, and ratios of
-times that were taken one after the other.
+Input: calls without arguments.  Output: one `Times` per call; medians with quartiles, and ratios
+of times that were taken one after the other.
 """
 
 from __future__ import annotations
@@ -13,8 +13,6 @@ from typing import final
 
 import numpy as np
 
-from piezo_sym.bench.rows import Spread
-
 #: A measurement lasts at least so long [s]: shorter calls are repeated within it.
 SHORTEST = 0.004
 #: A call that has taken so long in all [s] is not measured again.
@@ -23,8 +21,18 @@ PATIENCE = 20.0
 
 @final
 @dataclass(frozen=True)
+class Spread:
+    """A median with its quartiles."""
+
+    median: float
+    low: float
+    high: float
+
+
+@final
+@dataclass(frozen=True)
 class Times:
-    """Seconds a call, one for each round in which it was measured."""
+    """Seconds per call, one for each round in which it was measured."""
 
     seconds: tuple[float, ...]
 
@@ -59,11 +67,6 @@ def interleaved(
             if not times or (sum(times) + times[-1]) * number <= patience:
                 times.append(_seconds(call, number))
     return tuple(Times(tuple(times)) for times in found)
-
-
-def seconds(call: Callable[[], object]) -> float:
-    """Return the seconds of one call."""
-    return _seconds(call, 1)
 
 
 def _seconds(call: Callable[[], object], number: int) -> float:

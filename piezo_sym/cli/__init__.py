@@ -4,8 +4,6 @@ Input: the words of a command line.  Output: text, files, and an exit code: 0 go
 property is not proved or a file drifted, 2 the spec or the command is wrong.
 """
 
-from __future__ import annotations
-
 import sys
 from typing import Annotated, Any
 

@@ -1,7 +1,5 @@
 """``piezo-sym new NAME``: a first spec, to run and then to edit."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 from typing import Annotated

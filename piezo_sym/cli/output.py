@@ -1,7 +1,5 @@
 """How commands print: one console, plain tables that also read well in a log."""
 
-from __future__ import annotations
-
 import sys
 import warnings
 from collections.abc import Iterator, Sequence

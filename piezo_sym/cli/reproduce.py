@@ -1,18 +1,13 @@
 """``piezo-sym reproduce``: the paper's figures, from the spec to files."""
 
-from __future__ import annotations
-
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from types import ModuleType
+from typing import Annotated, Any
 
 import typer
 
+from piezo_sym.analysis.figures import PaperFigure
 from piezo_sym.cli.output import progress, warnings_as_lines
-
-if TYPE_CHECKING:
-    from types import ModuleType
-
-    from piezo_sym.analysis.figures import PaperFigure
 
 
 def reproduce(

@@ -1,7 +1,5 @@
 """``piezo-sym schema``: what an editor needs to complete and check specs."""
 
-from __future__ import annotations
-
 import json
 
 import typer

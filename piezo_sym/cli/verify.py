@@ -12,7 +12,7 @@ from rich.text import Text
 from piezo_sym.cli.junit import junit_xml
 from piezo_sym.cli.output import STYLES, about, console, table
 from piezo_sym.cli.output import row as add_row
-from piezo_sym.errors import PiezoError, ProofError
+from piezo_sym.errors import ContradictionError, PiezoError, ProofError
 from piezo_sym.files import write_text
 
 if TYPE_CHECKING:
@@ -24,17 +24,18 @@ def verify(
     as_json: Annotated[bool, typer.Option("--json", help="Print the rows as JSON.")] = False,
     junit: Annotated[Path | None, typer.Option(help="Also write JUnit XML to this file.")] = None,
     recheck: Annotated[
-        bool, typer.Option("--recheck", help="Ask cvc5 every query too, and compare.")
+        bool, typer.Option("--recheck", help="Check every row by a second program too.")
     ] = False,
 ) -> None:
     """Prove the physics of specs, or show by numbers where it fails.
 
     Each property is PROVED for every state, input and parameter value in the domain and for banks
     of any size, REFUTED with a witness, or OPEN with the reason.  Exit code 0 if every required
-    property is proved, 1 if one is not (or cvc5 does not agree), 2 if a spec is wrong; the others
-    are looked at all the same.
+    property is proved, 1 if one is not (or the second program does not confirm it), 2 if a spec is
+    wrong; the others are looked at all the same.  Exit code 3: a proof and a number disagree.
     """
-    reports, errors = _reports(specs)
+    found, errors = _reports(specs)
+    reports = list(found.values())
     if as_json:
         rows = [row.as_dict(report.model) for report in reports for row in report.rows]
         typer.echo(json.dumps(rows, indent=2))
@@ -44,7 +45,7 @@ def verify(
     if junit is not None:
         write_text(junit, junit_xml(reports, errors))
     if recheck:
-        errors += _rechecked(reports)
+        errors += _rechecked(found)
     for error in errors[:-1]:
         typer.echo(f"piezo-sym: {error}", err=True)
     if errors:
@@ -53,53 +54,60 @@ def verify(
         raise typer.Exit(1)
 
 
-def _reports(specs: list[str]) -> tuple[list[Report], list[PiezoError]]:
+def _reports(specs: list[str]) -> tuple[dict[str, Report], list[PiezoError]]:
     """Return the verdicts on the specs that are right, and the errors of the others."""
-    from piezo_sym.derivation import derive
-    from piezo_sym.proofs import verify as prove
     from piezo_sym.spec.load import load
+    from piezo_sym.verification.process import examined_model
 
-    reports, errors = [], []
+    reports: dict[str, Report] = {}
+    errors: list[PiezoError] = []
     for spec in specs:
         try:
             with about(spec):
-                reports.append(prove(derive(load(spec))))
+                reports[spec] = examined_model(load(spec))
+        except ContradictionError:
+            raise
         except PiezoError as error:
             errors.append(error)
     return reports, errors
 
 
-def _rechecked(reports: list[Report]) -> list[PiezoError]:
-    """Return an error for each model on which cvc5 does not say the same; print the others."""
-    from piezo_sym.proofs import recheck as compare
+def _rechecked(reports: dict[str, Report]) -> list[PiezoError]:
+    """Return an error for each spec that the second program does not confirm, and print why."""
+    from piezo_sym.proofs import proofs_json
+    from piezo_sym.spec.load import load
+    from piezo_sym.spec.source import find, read
+    from piezo_sym.verification.recheck import recheck
 
     errors: list[PiezoError] = []
-    for report in reports:
-        asked, found = compare(report)
-        agreed = f"cvc5 agrees on {asked - len(found)} of {asked} queries"
-        whole = sum(row.method == "intervals" for row in report.rows)
-        agreed += f"; rows decided by intervals, without a query: {whole}" if whole else ""
-        typer.echo(f"{report.model}: {agreed}", err=True)
-        if found:
-            first = found[0]
-            said = f"z3 says {first.answers[0]}, cvc5 says {first.answers[1]}"
-            errors.append(ProofError(f"{said}: {first.label}", report.model))
+    for spec, report in reports.items():
+        text = read(find(spec))
+        confirmed, said = recheck(text, proofs_json(report, load(spec), ""))
+        typer.echo(f"{report.model}, by a second program:\n{said}", err=True)
+        if not confirmed:
+            first = next((line for line in said.splitlines() if line.startswith("not")), said)
+            errors.append(ProofError(first, report.model))
     return errors
 
 
 def _print(report: Report) -> None:
     columns = table(
-        f"{report.model}: {report.summary()}", "property", "element", "statement", "verdict"
+        f"{report.model}: {report.summary()}",
+        *("property", "element", "statement", "points", "verdict"),
     )
     for row in report.rows:
         verdict = Text(row.verdict.value, style=STYLES[row.verdict.value])
         if not row.required:
             verdict = Text(f"{row.verdict.value} (information)", style="dim")
-        add_row(columns, row.id, row.element, row.statement, verdict)
+        add_row(columns, row.id, row.element, row.statement, _count(row.points), verdict)
     console().print(columns)
     for row in report.rows:
         if row.reason:
             console().print(_why(row), markup=False, highlight=False)
+
+
+def _count(points: int) -> str:
+    return f"{points:,}" if points else ""
 
 
 def _why(row: Row) -> str:

@@ -3,8 +3,6 @@
 Input: what a user typed.  Output: names and values, or an error that names the option.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable
 from pathlib import Path

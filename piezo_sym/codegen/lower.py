@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from piezo_sym.codegen.differences import sharp_program
 from piezo_sym.codegen.functions import functions_of, limits_of
 from piezo_sym.codegen.jacobian import jacobian_of
-from piezo_sym.codegen.program import Field, Program
+from piezo_sym.codegen.program import Field, Function, Jacobian, Limit, Program
 from piezo_sym.codegen.quantities import Quantities
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.circuit import Placed
@@ -19,6 +19,8 @@ from piezo_sym.spec.elements.ports import Body, Exchange, Source, Storage
 from piezo_sym.spec.fields import Input, Parameter
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import banks, lane_parameters
+
+NO_JACOBIAN = Jacobian("", ())
 
 
 def lower(iphs: IPHS, verdict: str) -> Program:
@@ -36,6 +38,19 @@ def lower(iphs: IPHS, verdict: str) -> Program:
     lanes = {**lane_parameters(model), **{s.name: s.bank for s in states if s.bank}}
     rates = next(function for function in functions if function.name == "rhs").rows
     jacobian = jacobian_of(rates, states, lanes, q)
+    return program_of(iphs, q, functions, jacobian, limits, verdict)
+
+
+def program_of(
+    iphs: IPHS,
+    q: Quantities,
+    functions: tuple[Function, ...],
+    jacobian: Jacobian = NO_JACOBIAN,
+    limits: tuple[Limit, ...] = (),
+    verdict: str = "",
+) -> Program:
+    """Return a program of some functions of a system's quantities, which are all defined by now."""
+    model = iphs.model
     program = Program(
         name=model.name,
         title=model.model.title,
@@ -44,7 +59,7 @@ def lower(iphs: IPHS, verdict: str) -> Program:
         verdict=verdict,
         parameters=tuple(_parameters(model)),
         inputs=tuple(Field(n, i.dimension.si, i.doc) for n, i in model.inputs.items()),
-        states=states,
+        states=tuple(_state(placed, port) for placed, port in q.stores),
         outputs=tuple(_output(placed) for placed in q.ports),
         processes=tuple(_processes(iphs)),
         bodies=tuple(Field(n, "K", f"temperature of thermal_mass '{n}'") for n in q.bodies),

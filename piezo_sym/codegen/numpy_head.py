@@ -53,13 +53,13 @@ def _inputs(u):
 LANES_TYPE = "_Lanes = float | tuple[float, ...]  # a bank's parameter: one value, or one a lane"
 
 LANES = '''def _lanes(value, count, ndim):
-    """Return a bank's parameter: a number, or a value a lane with shape (count, 1, ...)."""
+    """Return a bank's parameter: a number, or values of shape (count,) or (count, *batch)."""
     if np.ndim(value) == 0:
         return value
     value = np.asarray(value, dtype=float)
-    if value.shape != (count,):
-        raise ValueError(f"a parameter of a bank of {count} lanes has {value.size} values")
-    return value.reshape(count, *(1,) * (ndim - 1))'''
+    if len(value) != count or value.ndim > ndim:
+        raise ValueError(f"a parameter of a bank of {count} lanes has {len(value)} values")
+    return value.reshape(*value.shape, *(1,) * (ndim - value.ndim))'''
 
 
 #: The public right-hand side: allocates, and goes through a large batch part by part.

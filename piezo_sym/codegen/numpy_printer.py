@@ -104,14 +104,15 @@ class _Printer:
         roots = [limit.margin for limit in limits]
         lines = self._opening("margins", ("x", "u", "p"), doc, None, roots)
         lines.append(f"{self.out} = np.empty(({len(limits)}, *{self.x}.shape[1:]))")
-        parameters = {field.name for field in self.program.parameters}
+        parameters = {field.name for field in self.program.parameters if field.bank}
         for n, limit in enumerate(limits):
             text = numpy_text(limit.margin)
-            if {*names(limit.margin)} <= parameters:
-                text = f"np.min({text})" if bank_of(limit.margin, self.lanes) else text
-            elif bank_of(limit.margin, self.lanes):
-                text = f"np.min({self._laned(limit.margin)}, axis=0)"
-            lines += self._assign(f"{self.out}[{n}]", text, limit.margin)
+            if bank_of(limit.margin, self.lanes):
+                own = {*names(limit.margin)} <= parameters
+                text = f"np.min({text if own else self._laned(limit.margin)}, axis=0)"
+                lines.append(f"{self.out}[{n}] = {text}")
+            else:
+                lines += self._assign(f"{self.out}[{n}]", text, limit.margin)
         return _body([*lines, f"return {self.out}"])
 
     # Parts of a function

@@ -14,15 +14,15 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import groupby
 
-from piezo_sym.errors import UsageError, quote
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs import balances, bodies, laws
 from piezo_sym.proofs.continuity import continuous
 from piezo_sym.proofs.divisors import divisors
+from piezo_sym.proofs.domain import defined, not_shown
 from piezo_sym.proofs.ground import Ground, Law, ground_of, on_warm_bodies
 from piezo_sym.proofs.obligations import Obligation
-from piezo_sym.proofs.prove import nothing_inside, prove
-from piezo_sym.proofs.recheck import recheck
+from piezo_sym.proofs.prove import prove
+from piezo_sym.proofs.published import published
 from piezo_sym.proofs.record import proofs_json, smt2
 from piezo_sym.proofs.report import Report, Row, Verdict
 from piezo_sym.proofs.solvers import opinions
@@ -33,55 +33,37 @@ __all__ = [
     "Report",
     "Row",
     "Verdict",
+    "decide",
     "obligations",
     "proofs_json",
     "prove",
-    "recheck",
     "smt2",
-    "verify",
 ]
 
 
-def verify(iphs: IPHS) -> Report:
-    """Return the verdict on every property of an irreversible port-Hamiltonian system.
+def decide(iphs: IPHS) -> Report:
+    """Return what is proved, refuted or open of a system, by algebra, solvers and intervals alone.
 
-    Parameters
-    ----------
-    iphs : from `derive`.
-
-    Returns
-    -------
-    Report
-        ``.rows``, one a property, and ``.raise_if_not_proved()``.  A verdict is PROVED only for all
-        states, inputs and parameters in the domain and for every size of every bank; REFUTED
-        comes with a witness; all else is OPEN, and says why.
+    `piezo_sym.verify` calls a row PROVED only after more than this: see `verification`.
     """
     rows: list[Row] = []
     found, asked = obligations(iphs), opinions()
-    empty = nothing_inside(ground_of(iphs), asked) if found else ""
+    empty = not_shown(iphs, ground_of(iphs), asked) if found else ""
     for obligation in found:
         left = replace(obligation, open_because=empty) if empty else obligation
         rows.append(prove(left, iphs, rows, asked))
-    return Report(iphs.model.name, (*rows, *units(iphs)), found)
+    return Report(iphs.model.name, (*rows, *units(iphs)), found, published(iphs))
 
 
 def obligations(iphs: IPHS) -> tuple[Obligation, ...]:
-    """Return what has to be shown of a system, in an order in which each rests on earlier ones.
-
-    Raises
-    ------
-    UsageError
-        If `iphs` is no `IPHS`.
-    """
-    if not isinstance(iphs, IPHS):
-        remedy = "derive it first: verify(derive(load('piezo_stack')))"
-        raise UsageError(f"{quote(iphs)} is no IPHS", "verify", remedy=remedy)
+    """Return what has to be shown of a system, in an order in which each rests on earlier ones."""
     ground = ground_of(iphs)
     return tuple(on_warm_bodies(made.smooth(), ground) for made in _obligations(iphs, ground))
 
 
 def _obligations(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
     yield from (balances.skew(iphs), balances.casimir(iphs))
+    yield from defined(iphs, ground)
     yield from bodies.temperature(iphs, ground)
     yield from divisors(iphs, ground)
     yield from (balances.energy(iphs), balances.entropy(iphs))

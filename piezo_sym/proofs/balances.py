@@ -8,13 +8,15 @@ sums over lanes: zero proves it for every state, input, parameter and every r.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import sympy as sp
 
 from piezo_sym.algebra.lanes import LaneMatrix
 from piezo_sym.iphs import IPHS
+from piezo_sym.proofs.branches import TooManyBranchesError
 from piezo_sym.proofs.ground import Ground
-from piezo_sym.proofs.laws import ask
+from piezo_sym.proofs.laws import valued
 from piezo_sym.proofs.obligations import Obligation, Question, Residual
 from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, Resistor, Source, Storage
 from piezo_sym.spec.expressions import ZERO, Cmp, Sym
@@ -90,16 +92,16 @@ def exergy(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
     rate = (system.y.T @ system.u)[0, 0] - common * (system.dS.T @ system.rhs)[0, 0]
     lost = sum(lam * (T - common) ** 2 / T for lam, T, _ in _exchanges(iphs))
     residual = (rate + common * system.sigma).xreplace(fixed) + lost.xreplace(fixed)
-    yield Obligation(
+    made = Obligation(
         "exergy",
         "",
         "d(U - T_e S)/dt <= 0 where other inputs are 0, T_e constant",
         r"\frac{d}{dt}(U - T_e S) = -T_e\,\sigma - \lambda (T - T_e)^2/T \le 0",
         ground.texts,
         residuals=(Residual("d(U - T_e S)/dt + T_e sigma + lam (T - T_e)^2/T", residual),),
-        questions=tuple(_cooling(iphs, ground)),
         rests_on=(("sigma", ""),),
     )
+    yield _with_cooling(made, iphs, ground)
 
 
 def environment(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
@@ -111,16 +113,16 @@ def environment(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
     crossed = sum(lam * (T_e - T) ** 2 / (T * T_e) for lam, T, T_e in _exchanges(iphs))
     total = (system.dS.T @ system.rhs)[0, 0] - taken - system.sigma - crossed
     residual = Residual("dS/dt + dS_e/dt - sigma - lam (T_e - T)^2/(T T_e)", total)
-    yield Obligation(
+    made = Obligation(
         "environment",
         "",
         "sigma + lam (T_e - T)^2/(T T_e) >= 0, environment counted",
         r"\sigma + \lambda (T_e - T)^2/(T\,T_e) \ge 0",
         ground.texts,
         residuals=(residual,),
-        questions=tuple(_cooling(iphs, ground)),
         rests_on=(("sigma", ""),),
     )
+    yield _with_cooling(made, iphs, ground)
 
 
 def _exchanges(iphs: IPHS) -> Iterator[tuple[sp.Expr, sp.Symbol, sp.Symbol]]:
@@ -131,13 +133,19 @@ def _exchanges(iphs: IPHS) -> Iterator[tuple[sp.Expr, sp.Symbol, sp.Symbol]]:
         yield conductance, iphs.symbols[temperature], iphs.symbols[port.input]
 
 
+def _with_cooling(made: Obligation, iphs: IPHS, ground: Ground) -> Obligation:
+    try:
+        return replace(made, questions=tuple(_cooling(iphs, ground)))
+    except TooManyBranchesError:
+        reason = "a conductance has too many branches; use fewer kinks"
+        return replace(made, open_because=reason)
+
+
 def _cooling(iphs: IPHS, ground: Ground) -> Iterator[Question]:
     """Yield what heat exchange needs: a conductance that is not negative, a T_e above zero."""
     for placed, port in iphs.circuit.of(Exchange):
         warm, conducts = Cmp(">", Sym(port.input), ZERO), Cmp(">=", port.conductance, ZERO)
-        found: list[Question] = []
-        ask(found, port.conductance, ground.where, ground)
-        yield from found
+        yield from valued(port.conductance, ground)
         label = f"{spell(port.conductance)} >= 0 ({placed.element})"
         yield Question(label, ground.order, ground.where, conducts, conducts)
         yield Question(f"{port.input} > 0", ground.order, ground.where, warm, warm)

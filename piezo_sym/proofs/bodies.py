@@ -9,9 +9,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from piezo_sym.iphs import IPHS
-from piezo_sym.proofs.branches import TooManyBranchesError, branches, choices, with_choices
+from piezo_sym.proofs.branches import TooManyBranchesError
 from piezo_sym.proofs.ground import Ground
-from piezo_sym.proofs.laws import ask
+from piezo_sym.proofs.laws import on_branches, valued
 from piezo_sym.proofs.obligations import Obligation, Question
 from piezo_sym.spec.calculus import add, derivative, div, mul, neg
 from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, Resistor
@@ -27,38 +27,32 @@ def temperature(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
     for placed, port in iphs.circuit.of(Body):
         law = rename(port.law, {port.letter: port.state})
         here = Cmp("=", Sym(port.temperature), law)
-        known = port.temperature in _names(domain) and not choices(with_choices(law))
-        where = (*domain, here) if known else domain
+        where = (*domain, here) if port.temperature in _names(domain) else domain
+        within = replace(ground, where=where)
         statement, latex = "T > 0 and dT/dS > 0", r"T > 0,\quad \partial T/\partial S > 0"
         made = Obligation("temperature", placed.element, statement, latex, ground.texts)
-        values: list[Question] = []
         slope = derivative(law, port.state)
         try:
-            for branch in (*branches(law), *branches(slope)):
-                within = where
-                for condition in branch.conditions:
-                    within = (*ask(values, condition, within, ground), condition)
-                ask(values, branch.value, within, ground)
             questions = (
-                *dict.fromkeys(values),
-                *_positive("T > 0", law, where, ground),
-                *_positive("dT/dS > 0", slope, where, ground),
+                *valued(law, within),
+                *valued(slope, within),
+                *_positive("T > 0", law, within),
+                *_positive("dT/dS > 0", slope, within),
             )
         except TooManyBranchesError:
             yield replace(made, open_because="the law has too many branches; use fewer kinks")
             continue
-        yield replace(made, questions=questions)
+        asked = {(question.where, question.claim): question for question in reversed(questions)}
+        yield replace(made, questions=tuple(reversed(asked.values())))
 
 
 def _names(trees: tuple[Cmp, ...]) -> set[str]:
     return {name for tree in trees for name in names(tree)}
 
 
-def _positive(label: str, law: Expr, where: tuple[Cmp, ...], ground: Ground) -> Iterator[Question]:
-    original = Cmp(">", law, ZERO)
-    for branch in branches(law):
-        claim = Cmp(">", branch.value, ZERO)
-        yield Question(label, ground.order, (*where, *branch.conditions), claim, original)
+def _positive(label: str, law: Expr, ground: Ground) -> tuple[Question, ...]:
+    claim = Cmp(">", law, ZERO)
+    return on_branches(law, Question(label, ground.order, ground.where, claim, claim))
 
 
 def invariant(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:

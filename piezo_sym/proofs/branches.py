@@ -6,7 +6,7 @@ law is that tree; together they cover every point.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
@@ -15,12 +15,15 @@ from piezo_sym.spec.calculus import add, neg
 from piezo_sym.spec.expressions import (
     ONE,
     ZERO,
+    Add,
     Call,
     Cmp,
+    Div,
     Expr,
     If,
     Node,
     Num,
+    Pow,
     children,
     rebuild,
     walk,
@@ -40,6 +43,12 @@ class Branch:
     conditions: tuple[Cmp, ...]
     value: Expr
 
+    @property
+    def path(self) -> tuple[Cmp, ...]:
+        """What holds where the branch is taken and has a value, in the order of evaluation."""
+        steps = ((*partial(part), part) for part in self.conditions)
+        return (*(claim for step in steps for claim in step), *partial(self.value))
+
 
 @final
 @dataclass(eq=False)
@@ -47,8 +56,12 @@ class TooManyBranchesError(Exception):
     """A law has more branches than anybody wants to wait for."""
 
 
-def branches(law: Expr) -> tuple[Branch, ...]:
+def branches(law: Expr, known: Iterable[Cmp] = ()) -> tuple[Branch, ...]:
     """Return the branches of a law.
+
+    Parameters
+    ----------
+    known : comparisons that hold wherever the branches are used, such as those of a domain.
 
     Raises
     ------
@@ -56,18 +69,31 @@ def branches(law: Expr) -> tuple[Branch, ...]:
         If there are more than `MOST`.
     """
     found: list[Branch] = []
-    for branch in _pieces(with_choices(law), ()):
+    for branch in _pieces(settled(law, known), ()):
         found.append(branch)
         if len(found) > MOST:
             raise TooManyBranchesError
     return tuple(found)
 
 
-def smooth_clauses(condition: Cmp) -> Iterator[tuple[Cmp, ...]]:
-    """Yield a comparison of laws with kinks as clauses of smooth ones, one a branch."""
-    for branch in branches(Call("together", (condition.left, condition.right))):
-        left, right = parts(branch)
-        yield (*map(opposite, branch.conditions), Cmp(condition.op, left, right))
+def settled(law: Expr, known: Iterable[Cmp]) -> Expr:
+    """Return a law with choices for its kinks, those taken that `known` comparisons decide."""
+    holding = frozenset(condition for condition in known if condition.op in OPPOSITE)
+    facts = {opposite(condition): False for condition in holding}
+    return decided(with_choices(law, holding), facts | dict.fromkeys(holding, True))
+
+
+def cover(found: tuple[Branch, ...]) -> Cmp:
+    """Return the claim that at every point the conditions of one of the branches hold."""
+    inside = [_indicator(branch.conditions) for branch in found]
+    return Cmp(">=", Add(tuple(inside)) if len(inside) > 1 else inside[0], ONE)
+
+
+def _indicator(conditions: tuple[Cmp, ...]) -> Expr:
+    """Return a law that is 1 where all comparisons hold, in the order of evaluation, else 0."""
+    if not conditions:
+        return ONE
+    return If(_indicator(conditions[1:]), conditions[0], ZERO)
 
 
 def parts(branch: Branch) -> tuple[Expr, ...]:
@@ -78,15 +104,15 @@ def parts(branch: Branch) -> tuple[Expr, ...]:
     return branch.value.args
 
 
-def with_choices(node: Expr) -> Expr:
-    """Return a law with each function that has kinks written as choices."""
-    inner = rebuild(node, with_choices)
+def with_choices(node: Expr, known: Container[Cmp] = ()) -> Expr:
+    """Return a law with each function that has kinks written as choices; `known` ones hold."""
+    inner = rebuild(node, lambda part: with_choices(part, known))
     if isinstance(inner, Call) and inner.function in KINKED:
-        return _choices(inner.function, inner.args[0], inner.args[-1])
+        return _choices(inner.function, inner.args[0], inner.args[-1], known)
     return inner
 
 
-def _choices(function: str, z: Expr, w: Expr) -> Expr:
+def _choices(function: str, z: Expr, w: Expr, known: Container[Cmp] = ()) -> Expr:
     """Return a function with kinks as choices; the edges are those of the contracts' formulas."""
     match function:
         case "abs":
@@ -97,10 +123,19 @@ def _choices(function: str, z: Expr, w: Expr) -> Expr:
             return If(z, Cmp("<=", z, w), w)
         case "max":
             return If(z, Cmp(">=", z, w), w)
-        case "deadzone":  # its width is >= 0: the domain says so
-            low = If(add(z, w), Cmp("<", z, neg(w)), ZERO)
-            return If(add(z, neg(w)), Cmp(">", z, w), low)
-    return If(w, Cmp(">", z, w), If(neg(w), Cmp("<", z, neg(w)), z))  # saturate
+    above, below = Cmp(">", z, w), Cmp("<", z, neg(w))
+    if function == "deadzone":
+        inside = If(add(z, neg(w)), above, If(add(z, w), below, ZERO))
+    else:
+        inside = If(w, above, If(neg(w), below, z))
+    wide = Cmp(">=", w, ZERO)  # there, and only there, the formula has these three branches
+    if wide in known or (isinstance(w, Num) and w.value >= 0):
+        return inside
+    if function == "deadzone":
+        general = add(If(add(z, neg(w)), above, ZERO), If(add(z, w), below, ZERO))
+    else:
+        general = _choices("min", _choices("max", z, neg(w)), w)
+    return If(inside, wide, general)
 
 
 def choices(node: Node) -> tuple[Cmp, ...]:
@@ -133,10 +168,31 @@ def _pieces(law: Expr, path: tuple[Cmp, ...]) -> Iterator[Branch]:
 
 
 def _next_choice(law: Expr) -> Cmp | None:
-    """Return a comparison to decide next: the first one whose sides have no choice in them."""
-    for node in walk(law):
-        if isinstance(node, If):
-            inner = children(node.condition)
-            if not any(isinstance(part, If) for side in inner for part in walk(side)):
-                return node.condition
-    return None
+    """Return the comparison that is decided first where a law is evaluated.
+
+    It is outside all branches: what guards a branch is decided before anything inside it.
+    """
+    if isinstance(law, If):
+        return _first_choice(children(law.condition)) or law.condition
+    return _first_choice(children(law))
+
+
+def _first_choice(parts: Iterable[Node]) -> Cmp | None:
+    found = (_next_choice(part) for part in parts if not isinstance(part, Cmp))
+    return next((choice for choice in found if choice is not None), None)
+
+
+def partial(node: Node) -> Iterator[Cmp]:
+    """Yield what must hold for a smooth tree to have a value, inner parts first."""
+    for part in reversed(tuple(walk(node))):
+        match part:
+            case Div(_, right) if not isinstance(right, Num) or right == ZERO:
+                yield Cmp("!=", right, ZERO)
+            case Pow(base, exponent) if exponent.denominator != 1:
+                yield Cmp(">=" if exponent > 0 else ">", base, ZERO)
+            case Pow(base, exponent) if exponent < 0:
+                yield Cmp("!=", base, ZERO)
+            case Call("sqrt", (arg,)):
+                yield Cmp(">=", arg, ZERO)
+            case Call("log", (arg,)):
+                yield Cmp(">", arg, ZERO)

@@ -16,14 +16,16 @@ from piezo_sym.proofs.branches import (
     Branch,
     TooManyBranchesError,
     branches,
+    choices,
     opposite,
+    settled,
     with_choices,
 )
 from piezo_sym.proofs.ground import Ground, Law
 from piezo_sym.proofs.laws import ask, too_many
 from piezo_sym.proofs.obligations import Meeting, Obligation, Question
 from piezo_sym.spec.calculus import add, neg
-from piezo_sym.spec.expressions import Cmp
+from piezo_sym.spec.expressions import Cmp, names
 from piezo_sym.spec.text import spell
 
 #: More branches than these are not compared, each with each.
@@ -32,27 +34,43 @@ RELAXED = {"<": "<=", ">": ">="}
 
 
 def continuous(law: Law, ground: Ground) -> Obligation | None:
-    """State that a law has no jump; None if it has one branch only, or jumps on purpose."""
+    """State that a law has no jump; None if it has no edge to jump at, or jumps on purpose.
+
+    An edge is where states, inputs or temperatures choose another branch: a branch chosen by
+    parameters alone is the same throughout a run.
+    """
     statement = f"{law.name} has no jump where its branches meet"
     latex = r"W_k(z^-) = W_k(z^+)"
     made = Obligation("continuous", law.element, statement, latex, ground.texts)
+    ground = ground.about(law)
     try:
-        found = branches(law.tree)
+        found = branches(law.tree, ground.where)
     except TooManyBranchesError:
         return None if law.jumps else replace(made, open_because=too_many(law))
-    if law.jumps or len(found) < 2:
+    edges = [c for c in choices(with_choices(law.tree)) if not {*names(c)} <= ground.fixed]
+    if law.jumps or not edges:
         return None
     if len(found) > MOST:
         reason = f"the law of {law.element} has {len(found)} branches, too many to compare in pairs"
         return replace(made, open_because=f"{reason}; use fewer kinks")
-    ground, tree = ground.about(law), with_choices(law.tree)
+    tree = settled(law.tree, ground.where)
     questions = [
         question
         for one, other in combinations(found, 2)
-        if one.value != other.value
+        if one.value != other.value and not _apart(one, other, ground)
         for question in _meeting(Meeting(tree, (one, other), ground.where), ground)
     ]
-    return replace(made, questions=tuple(dict.fromkeys(questions)))
+    whole = Cmp("=", law.tree, law.tree)
+    covered = Question(statement, ground.order, ground.where, whole, whole).covered(found)
+    return replace(made, questions=(*dict.fromkeys(questions), *([covered] * (len(found) > 1))))
+
+
+def _apart(one: Branch, other: Branch, ground: Ground) -> bool:
+    """Return whether two branches are chosen by parameters alone, so that they never meet."""
+    return any(
+        opposite(condition) in other.conditions and {*names(condition)} <= ground.fixed
+        for condition in one.conditions
+    )
 
 
 def _meeting(meeting: Meeting, ground: Ground) -> Iterator[Question]:

@@ -13,9 +13,9 @@ import sympy as sp
 from piezo_sym.algebra.coefficients import coefficient
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import heated
-from piezo_sym.proofs.branches import TooManyBranchesError, branches
+from piezo_sym.proofs.branches import TooManyBranchesError
 from piezo_sym.proofs.ground import Ground
-from piezo_sym.proofs.laws import ask
+from piezo_sym.proofs.laws import on_branches, valued
 from piezo_sym.proofs.obligations import Obligation, Question
 from piezo_sym.spec.elements.ports import Conductor, Coupling, Resistor
 from piezo_sym.spec.expressions import ZERO, Cmp, Expr, Neg, rename
@@ -40,12 +40,11 @@ def _obligation(divisor: sp.Expr, words: Mapping[str, Expr], ground: Ground) -> 
     statement = f"{short} != 0: the junction laws divide by it"
     latex = r"\det \ne 0"
     made = Obligation("welldef", "", statement, latex, ground.texts)
-    found: list[Question] = []
+    law = put(form, words)
+    claim = Cmp("!=", law, ZERO)
+    question = Question(f"{short} != 0", ground.order, ground.where, claim, claim)
     try:
-        for branch in branches(put(form, words)):
-            where = ask(found, branch.value, (*ground.where, *branch.conditions), ground)
-            claim = Cmp("!=", branch.value, ZERO)
-            found.append(Question(f"{short} != 0", ground.order, where, claim, claim))
+        found = (*valued(law, ground), *on_branches(law, question))
     except TooManyBranchesError:
         return replace(made, open_because=f"{short} has too many branches; use fewer kinks")
     return replace(made, questions=tuple(dict.fromkeys(found)))

@@ -29,6 +29,8 @@ from piezo_sym.spec.expressions import (
 )
 
 DIGITS = 40
+#: Beyond this the argument of a function is not looked at, nor a rational power of more bits.
+LARGEST_ARGUMENT, MOST_BITS = 10**6, 10**5
 
 #: Whether a comparison holds, by the sign of left - right; proofs also use = and !=.
 OUTCOMES: Mapping[str, Callable[[int], bool]] = {
@@ -44,7 +46,7 @@ OUTCOMES: Mapping[str, Callable[[int], bool]] = {
 @final
 @dataclass(eq=False)
 class TooCloseError(ArithmeticError):
-    """A sign that 40 digits do not tell."""
+    """A sign that 40 digits do not tell, or a number too large to be looked at."""
 
 
 Value = Any  # Fraction, or an interval of mpmath
@@ -145,7 +147,10 @@ def _quotient(a: Value, b: Value) -> Value:
 
 def _power(base: Value, exponent: Fraction) -> Value:
     if exponent.denominator == 1:
-        whole = base ** abs(exponent.numerator)
+        size = abs(exponent.numerator)
+        if isinstance(base, Fraction) and size * _bits(base) > MOST_BITS:
+            base = _interval(base)
+        whole = base**size
         one = Fraction(1) if isinstance(base, Fraction) else iv.mpf(1)
         return whole if exponent > 0 else _quotient(one, whole)
     sign = _certain(base)
@@ -157,8 +162,21 @@ def _power(base: Value, exponent: Fraction) -> Value:
     return iv.exp(iv.log(_interval(base)) * _interval(exponent))
 
 
+def _bits(value: Fraction) -> int:
+    return max(value.numerator.bit_length(), value.denominator.bit_length())
+
+
+def _large(z: Value) -> bool:
+    """Return whether a number is, or may be, too large for a function."""
+    if isinstance(z, Fraction):
+        return abs(z) > LARGEST_ARGUMENT
+    return not (z.a >= -LARGEST_ARGUMENT and z.b <= LARGEST_ARGUMENT)
+
+
 def _call(function: str, args: list[Value]) -> Value:
     z, w = args[0], args[-1]
+    if function in {"exp", "sin", "cos", "tanh"} and _large(z):
+        return _far(function, _interval(z))
     if function in {"exp", "log", "sin", "cos", "tanh"} and isinstance(z, Fraction):
         at_zero = {"exp": (0, 1), "sin": (0, 0), "cos": (0, 1), "tanh": (0, 0), "log": (1, 0)}
         special, result = at_zero[function]
@@ -183,6 +201,20 @@ def _call(function: str, args: list[Value]) -> Value:
     return _kinked(function, z, w)
 
 
+def _far(function: str, z: Value) -> Value:
+    """Return bounds on a function of a large number; exp has no upper one."""
+    if function in {"sin", "cos"}:
+        return iv.mpf([-1, 1])
+    edge = iv.exp(iv.mpf(-LARGEST_ARGUMENT)).b
+    if function == "tanh" and abs(z).a > LARGEST_ARGUMENT:
+        return iv.mpf([1 - iv.mpf(edge), 1]) if z.a > 0 else iv.mpf([-1, iv.mpf(edge) - 1])
+    if function == "tanh":
+        return iv.mpf([-1, 1])
+    if z.b < -LARGEST_ARGUMENT:
+        return iv.mpf([0, edge])
+    raise TooCloseError
+
+
 def _kinked(function: str, z: Value, w: Value) -> Value:
     """Return a function with kinks: the branch is chosen by signs that are certain."""
     match function:
@@ -194,9 +226,10 @@ def _kinked(function: str, z: Value, w: Value) -> Value:
             return w if _above(z, w) else z
         case "max":
             return z if _above(z, w) else w
-        case "deadzone":
-            return minus(z, _kinked("saturate", z, w))
-    return w if _above(z, w) else -w if _above(-w, z) else z  # saturate
+        case "deadzone":  # as the contracts have it, whatever the sign of w
+            above = _kinked("max", minus(z, w), Fraction(0))
+            return minus(above, _kinked("max", minus(-w, z), Fraction(0)))
+    return _kinked("min", _kinked("max", z, -w), w)  # saturate
 
 
 def _above(a: Value, b: Value) -> bool:

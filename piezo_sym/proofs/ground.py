@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 from typing import final
 
 from piezo_sym.iphs import IPHS
-from piezo_sym.proofs.branches import TooManyBranchesError
 from piezo_sym.proofs.obligations import Obligation
 from piezo_sym.spec.elements.ports import Body, Storage
 from piezo_sym.spec.expressions import ZERO, Call, Cmp, Div, Expr, Mul, Sym, names, rename
@@ -50,12 +49,14 @@ class Ground:
     order : names, in the order in which a witness should be simple.
     texts : the domain, as text.
     warm : each temperature, and the obligation that it is positive.
+    fixed : names that have one value throughout a run: the parameters.
     """
 
     where: tuple[Cmp, ...]
     order: tuple[str, ...]
     texts: tuple[str, ...]
     warm: tuple[tuple[str, tuple[str, str]], ...] = ()
+    fixed: frozenset[str] = frozenset()
 
     def about(self, *laws: Law) -> Ground:
         """Return the ground for questions about laws, whose letters are names too."""
@@ -79,7 +80,8 @@ def ground_of(iphs: IPHS) -> Ground:
         for _, port in placed
         if port.state in used or not _is_exponential(port.law)
     )
-    return Ground((*trees, *warm, *ties), order, tuple(map(condition_text, trees)), rows)
+    texts, fixed = tuple(map(condition_text, trees)), frozenset(iphs.model.parameters)
+    return Ground((*trees, *warm, *ties), order, texts, rows, fixed)
 
 
 def _is_exponential(law: Expr) -> bool:
@@ -94,11 +96,6 @@ def on_warm_bodies(obligation: Obligation, ground: Ground) -> Obligation:
     """Return an obligation that rests on the temperatures its questions speak of."""
     if obligation.id == "temperature":
         return obligation
-    used: set[str] = set()
-    for question in obligation.questions:
-        try:
-            used |= {*question.query().variables}
-        except TooManyBranchesError:
-            used |= {word for word, _ in ground.warm}
+    used = {name for question in obligation.questions for name in question.query().variables}
     rows = tuple(row for word, row in ground.warm if word in used)
     return replace(obligation, rests_on=(*obligation.rests_on, *rows))

@@ -11,11 +11,7 @@ from dataclasses import replace
 
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name
-from piezo_sym.proofs.branches import (
-    MOST,
-    TooManyBranchesError,
-    branches,
-)
+from piezo_sym.proofs.branches import MOST, TooManyBranchesError, branches, partial
 from piezo_sym.proofs.ground import Ground, Law
 from piezo_sym.proofs.obligations import Obligation, Question, SignOf
 from piezo_sym.proofs.reflection import reflected
@@ -34,14 +30,11 @@ from piezo_sym.spec.expressions import (
     ZERO,
     Call,
     Cmp,
-    Div,
+    Expr,
     Node,
-    Num,
-    Pow,
     Sym,
     names,
     rename,
-    walk,
 )
 from piezo_sym.spec.tables import condition_text, conditions
 from piezo_sym.spec.text import spell
@@ -53,10 +46,10 @@ def _forces(iphs: IPHS) -> Iterator[tuple[str, Cmp]]:
     A current phi/L takes every value; it needs no tie, unless the domain speaks of phi.
     """
     used = {name for c in conditions(iphs.model) for name in names(c.tree)}
-    stores = {costate_name(port): port for _, port in iphs.circuit.of(Storage, Body)}
+    stores = {iphs.symbols[costate_name(p)]: p for _, p in iphs.circuit.of(Storage, Body)}
     processes = iphs.circuit.of(Resistor, Conductor)
     for (placed, port), force in zip(processes, iphs.system.drive, strict=True):
-        store = stores.get(str(getattr(force, "name", "")).removesuffix("_j"))
+        store = stores.get(force)
         if isinstance(port, Resistor) and isinstance(store, Storage):
             bent = store.letter in names(derivative(store.law, store.letter))
             if bent or store.state in used:
@@ -101,47 +94,52 @@ def welldef(laws: tuple[Law, ...], ground: Ground) -> Obligation | None:
     statement = f"{named}: a real value everywhere"
     element, latex = laws[0].element, r"W_k \in \mathbb{R}"
     made = Obligation("welldef", element, statement, latex, ground.texts)
-    found: list[Question] = []
     ground = ground.about(*laws)
     try:
-        for branch in (branch for law in laws for branch in branches(law.tree)):
-            where: tuple[Cmp, ...] = ground.where
-            for condition in branch.conditions:
-                where = (*ask(found, condition, where, ground), condition)
-            ask(found, branch.value, where, ground)
+        found = [question for law in laws for question in valued(law.tree, ground)]
     except TooManyBranchesError:
         return replace(made, open_because=too_many(laws[0]))
-    questions = tuple(dict.fromkeys(found))
-    needed = questions or any(law.letter for law in laws)
-    return replace(made, questions=questions) if needed else None
+    needed = found or any(law.letter for law in laws)
+    return replace(made, questions=tuple(dict.fromkeys(found))) if needed else None
+
+
+def valued(law: Expr | Cmp, ground: Ground) -> tuple[Question, ...]:
+    """Return the questions whether a law, or both sides of a comparison, have a value everywhere.
+
+    Each part is asked about where it is evaluated: under the conditions around it alone.
+
+    Raises
+    ------
+    TooManyBranchesError
+        If the law has too many branches.
+    """
+    tree = Call("together", (law.left, law.right)) if isinstance(law, Cmp) else law
+    pieces = branches(tree, ground.where)
+    found: list[Question] = []
+    for branch in pieces:
+        where = ground.where
+        for part in (*branch.conditions, branch.value):
+            where = ask(found, part, where, ground, law)
+            where = (*where, part) if isinstance(part, Cmp) else where
+    if found and len(pieces) > 1:
+        found.append(replace(found[0], where=ground.where, branch=()).covered(pieces))
+    return tuple(dict.fromkeys(found))
 
 
 def ask(
-    found: list[Question], node: Node, where: tuple[Cmp, ...], ground: Ground
+    found: list[Question],
+    node: Node,
+    where: tuple[Cmp, ...],
+    ground: Ground,
+    law: Expr | Cmp | None = None,
 ) -> tuple[Cmp, ...]:
     """Add the questions whether `node` has a value; return what is then known."""
     for claim in partial(node):
         label = f"{spell(claim.left)} {claim.op} 0"
-        branch = tuple(c for c in where if c not in ground.where)
-        found.append(Question(label, ground.order, where, claim, claim, branch))
+        branch = where[len(ground.where) :]
+        found.append(Question(label, ground.order, where, claim, claim, branch, law=law))
         where = (*where, claim)
     return where
-
-
-def partial(node: Node) -> Iterator[Cmp]:
-    """Yield what must hold for a smooth tree to have a value, inner parts first."""
-    for part in reversed(tuple(walk(node))):
-        match part:
-            case Div(_, right) if not isinstance(right, Num) or right == ZERO:
-                yield Cmp("!=", right, ZERO)
-            case Pow(base, exponent) if exponent.denominator != 1:
-                yield Cmp(">=" if exponent > 0 else ">", base, ZERO)
-            case Pow(base, exponent) if exponent < 0:
-                yield Cmp("!=", base, ZERO)
-            case Call("sqrt", (arg,)):
-                yield Cmp(">=", arg, ZERO)
-            case Call("log", (arg,)):
-                yield Cmp(">", arg, ZERO)
 
 
 def passive(law: Law, ground: Ground) -> Obligation:
@@ -155,27 +153,40 @@ def passive(law: Law, ground: Ground) -> Obligation:
         r"W_k z_k \ge 0",
         ground.texts,
         rests_on=(("welldef", law.element),),
-        sign=SignOf(law.tree, law.letter),
+        sign=SignOf(law.tree, law.letter, ground.where),
     )
-    original = Cmp(">=", mul(law.tree, Sym(law.letter)), ZERO)
+    claim = Cmp(">=", mul(law.tree, Sym(law.letter)), ZERO)
+    question = Question(f"{power} >= 0", ground.order, ground.where, claim, claim)
+    return replace(made, questions=on_branches(law.tree, question, law.letter))
+
+
+def on_branches(law: Expr, question: Question, letter: str = "") -> tuple[Question, ...]:
+    """Return a question on each branch of a law, and whether they cover all points.
+
+    The claim compares the law, or its product with `letter`, with zero; where there are too many
+    branches it stays as it is.
+    """
+    plain = question.claim.op in {">=", "="}  # a branch that is zero has nothing to show
     try:
-        questions = tuple(
-            Question(
-                f"{power} >= 0{_under(branch.conditions)}",
-                ground.order,
-                (*ground.where, *branch.conditions),
-                Cmp(">=", mul(branch.value, Sym(law.letter)), ZERO),
-                original,
-                branch.conditions,
-            )
-            for branch in branches(law.tree)
-            if branch.value != ZERO
-        )
+        pieces = branches(law, question.where)
     except TooManyBranchesError:
-        return replace(made, open_because=too_many(law))
-    except ZeroDivisionError:
-        return replace(made, open_because=f"the law of {law.element} divides by zero")
-    return replace(made, questions=questions)
+        return (question,)
+    found = [
+        replace(
+            question,
+            label=f"{question.label}{_under(branch.conditions)}",
+            where=(*question.where, *branch.path),
+            claim=Cmp(
+                question.claim.op,
+                mul(branch.value, Sym(letter)) if letter else branch.value,
+                ZERO,
+            ),
+            branch=branch.path,
+        )
+        for branch in pieces
+        if not (plain and branch.value == ZERO)
+    ]
+    return (*found, question.covered(pieces)) if len(pieces) > 1 else tuple(found)
 
 
 def conducts(law: Law, ground: Ground) -> Obligation:
@@ -184,9 +195,11 @@ def conducts(law: Law, ground: Ground) -> Obligation:
     question = Question(f"{spell(law.tree)} >= 0", ground.order, ground.where, claim, claim)
     statement = f"{spell(law.tree)} >= 0: heat flows from warm to cold"
     made = Obligation("passive", law.element, statement, r"\lambda \ge 0", ground.texts)
-    found: list[Question] = []
-    ask(found, law.tree, ground.where, ground)
-    return replace(made, questions=(*found, question))
+    try:
+        found = valued(law.tree, ground)
+    except TooManyBranchesError:
+        return replace(made, open_because=too_many(law))
+    return replace(made, questions=(*found, *on_branches(law.tree, question)))
 
 
 def odd(law: Law, ground: Ground) -> Obligation:
@@ -206,24 +219,12 @@ def odd(law: Law, ground: Ground) -> Obligation:
         turned = reflected(law.tree, law.letter)
         twice = reflected(turned, law.letter)  # signs then stand alike in both
         total = ZERO if twice == neg(turned) else add(twice, turned)
-        claim = Cmp("=", law.tree, neg(turned))
-        questions = tuple(
-            Question(
-                f"{made.statement}{_under(branch.conditions)}",
-                ground.order,
-                (*ground.where, *branch.conditions),
-                Cmp("=", branch.value, ZERO),
-                claim,
-                branch.conditions,
-            )
-            for branch in (branches(total) if total != ZERO else ())
-            if branch.value != ZERO
-        )
-    except TooManyBranchesError:
-        return replace(made, open_because=too_many(law))
     except ZeroDivisionError:
         return replace(made, open_because=f"the law of {law.element} divides by zero")
-    return replace(made, questions=questions)
+    claim = Cmp("=", total, ZERO)
+    original = Cmp("=", law.tree, neg(turned))
+    question = Question(made.statement, ground.order, ground.where, claim, original)
+    return replace(made, questions=on_branches(total, question) if total != ZERO else ())
 
 
 def _under(where: tuple[Cmp, ...]) -> str:

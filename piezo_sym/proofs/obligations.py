@@ -15,16 +15,16 @@ from typing import final
 import sympy as sp
 
 from piezo_sym.proofs.branches import (
-    MOST,
     Branch,
     TooManyBranchesError,
     branches,
+    cover,
     parts,
-    smooth_clauses,
+    settled,
 )
 from piezo_sym.proofs.query import Query, connected, query
-from piezo_sym.proofs.rational import cleared, parts_of
-from piezo_sym.spec.expressions import Call, Cmp, Expr, names
+from piezo_sym.proofs.rational import cleared, implied, parts_of
+from piezo_sym.spec.expressions import Call, Cmp, Expr, Num, Sym, names
 
 
 @final
@@ -49,19 +49,21 @@ class Meeting:
 @final
 @dataclass(frozen=True)
 class Question:
-    """A claim on smooth laws, for every real number where some comparisons hold.
+    """A claim for all real numbers where some comparisons hold.
 
     Attributes
     ----------
     label : the claim in words.
     order : names, in the order in which a witness should be simple.
-    where : what is assumed.
-    claim : what should follow, on one branch of a law.
+    where : what is assumed; comparisons may have kinks and functions.
+    claim : what should follow, as a rule on one branch of a law.
     original : the same on the law as the spec has it; a witness is checked on this.
     branch : the part of `where` that says which branch it is.
     meeting : for a question on the border of two branches, these; a witness must show a jump.
+    law : for a question whether a law has a value, that law; at a witness it must have none.
     whole : whether all that is assumed goes into the query, as a counterexample needs; a proof
         needs what is connected to the claim by names.
+    split : whether the claim is asked on each of its branches.
     """
 
     label: str
@@ -71,54 +73,65 @@ class Question:
     original: Cmp
     branch: tuple[Cmp, ...] = ()
     meeting: Meeting | None = None
+    law: Expr | Cmp | None = None
     whole: bool = False
+    split: bool = True
 
     def query(self) -> Query:
-        """Return the question in polynomials, for a solver.
-
-        Raises
-        ------
-        TooManyBranchesError
-            If a condition of the domain has too many branches.
-        """
+        """Return the question in polynomials and choices, for a solver."""
         return self._query
 
     @cached_property
     def _query(self) -> Query:
         about = {*names(self.claim), *self._about()}
         kept = self.where if self.whole else connected(self.where, about)
-        assumed = [clause for condition in kept for clause in smooth_clauses(condition)]
-        conditions = [*(part for clause in assumed for part in clause), self.claim]
-        sides = [side for c in conditions for side in (c.left, c.right)]
-        taken = frozenset(name for side in sides for name in names(side))
-        known = parts_of(sides, taken)
+        given = tuple(_settled(condition, kept) for condition in kept)
+        claim = _settled(self.claim, kept)
+        words = (*about, *(name for condition in kept for name in names(condition)))
+        sides = [side for c in (*given, claim) for side in (c.left, c.right)]
+        known = parts_of(sides, frozenset((*words, *self.order)))
 
         def plain(condition: Cmp) -> Cmp:
             left, right = map(known.without_functions, (condition.left, condition.right))
-            return cleared(Cmp(condition.op, left, right))
+            return Cmp(condition.op, left, right)
 
-        given = [tuple(map(plain, clause)) for clause in assumed]
-        words = (*about, *(name for condition in kept for name in names(condition)))
-        return query(
-            self.label, self.order, [*given, *known.facts()], plain(self.claim), about=words
-        )
+        signed = frozenset(map(_signed, given))
+        clauses = [implied(plain(condition), signed) for condition in given]
+        given_facts = [*clauses, *known.facts(signed)]
+        return query(self.label, self.order, given_facts, cleared(plain(claim)), about=words)
 
     def smooth(self) -> tuple[Question, ...]:
         """Return the question, or if its claim has kinks, the same on each branch of it.
 
-        Raises
-        ------
-        TooManyBranchesError
-            If there are too many.
+        Where there are several branches, one more question says that they cover all points; where
+        there are too many, the claim stays as it is.
         """
-        found = branches(Call("together", (self.claim.left, self.claim.right)))
-        if len(found) == 1:
+        if not self.split:
             return (self,)
-        claims = [Cmp(self.claim.op, *parts(branch)) for branch in found]
-        return tuple(
-            replace(self, where=(*self.where, *b.conditions), claim=claim, branch=b.conditions)
-            for b, claim in zip(found, claims, strict=True)
+        try:
+            found = branches(Call("together", (self.claim.left, self.claim.right)), self.where)
+        except TooManyBranchesError:
+            return (self,)
+        if len(found) == 1:
+            return (replace(self, claim=Cmp(self.claim.op, *parts(found[0]))),)
+        return (
+            *(
+                replace(
+                    self,
+                    where=(*self.where, *branch.conditions),
+                    claim=Cmp(self.claim.op, *parts(branch)),
+                    branch=(*self.branch, *branch.conditions),
+                )
+                for branch in found
+            ),
+            self.covered(found),
         )
+
+    def covered(self, found: tuple[Branch, ...]) -> Question:
+        """Return the question whether branches cover all points."""
+        label, claim = f"{self.label}: the branches cover all points", cover(found)
+        plain = replace(self, meeting=None, law=None, split=False)
+        return replace(plain, label=label, claim=claim, original=claim)
 
     def _about(self) -> Iterator[str]:
         """Yield the names that a witness needs: of the law, and of what says where it is."""
@@ -126,15 +139,38 @@ class Question:
             yield from names(condition)
         if self.meeting:
             yield from names(self.meeting.law)
+        if self.law and self.whole:
+            yield from names(self.law)
+
+
+def _settled(condition: Cmp, known: tuple[Cmp, ...]) -> Cmp:
+    """Return a comparison with choices for its kinks; other comparisons decide some of them."""
+    others = tuple(other for other in known if other != condition)
+    left, right = (settled(side, others) for side in (condition.left, condition.right))
+    return Cmp(condition.op, left, right)
+
+
+def _signed(condition: Cmp) -> str:
+    """Return the name that a comparison says is not zero, or nothing."""
+    match condition:
+        case Cmp("<" | ">", Sym(name), Num(value)) if value == 0:
+            return name
+    return ""
 
 
 @final
 @dataclass(frozen=True)
 class SignOf:
-    """The sign of a law times its letter, for methods that look at the law as a whole."""
+    """The sign of a law times its letter, for methods that look at the law as a whole.
+
+    Attributes
+    ----------
+    where : what is assumed at every point: the domain, and what ties names; no branch's conditions.
+    """
 
     law: Expr
     letter: str
+    where: tuple[Cmp, ...] = ()
 
 
 @final
@@ -171,10 +207,6 @@ class Obligation:
     open_because: str = ""
 
     def smooth(self) -> Obligation:
-        """Return the obligation with questions on smooth claims only."""
-        try:
-            questions = tuple(part for q in self.questions for part in q.smooth())
-        except TooManyBranchesError:
-            reason = f"its claims have more than {MOST} branches; use fewer kinks"
-            return replace(self, questions=(), open_because=reason)
-        return replace(self, questions=questions)
+        """Return the obligation with its claims split into smooth ones."""
+        questions = dict.fromkeys(part for q in self.questions for part in q.smooth())
+        return replace(self, questions=tuple(questions))

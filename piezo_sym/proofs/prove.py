@@ -14,15 +14,15 @@ from fractions import Fraction
 import sympy as sp
 
 from piezo_sym.iphs import IPHS
-from piezo_sym.proofs.branches import TooManyBranchesError
-from piezo_sym.proofs.exactly import holds, value_of
-from piezo_sym.proofs.ground import Ground
+from piezo_sym.proofs.asked import Asked, tried
+from piezo_sym.proofs.exactly import TooCloseError, holds, value_of
 from piezo_sym.proofs.jumps import jumps
-from piezo_sym.proofs.obligations import Obligation, Question, Residual
+from piezo_sym.proofs.obligations import Obligation, Question, Residual, SignOf
 from piezo_sym.proofs.report import Row, Verdict
+from piezo_sym.proofs.signs import Case
 from piezo_sym.proofs.solvers import Answer, Asks, opinions
 from piezo_sym.proofs.total import negative_total
-from piezo_sym.proofs.whole import tried, whole_sign
+from piezo_sym.proofs.whole import whole_sign
 from piezo_sym.spec.expressions import ONE, ZERO, Cmp, Expr
 from piezo_sym.spec.text import spell
 
@@ -34,7 +34,7 @@ TRIES = (1, 2, 3)
 MOST_OPEN = 4
 
 Found = tuple[Verdict, Mapping[str, str] | None, str]
-Decided = tuple[Verdict, Mapping[str, str] | None, str, str]
+Decided = tuple[Verdict, Mapping[str, str] | None, str, str, tuple[Case, ...]]
 
 
 def prove(
@@ -49,12 +49,9 @@ def prove(
     before : the verdicts so far, with those of what it rests on; without them it stays open.
     solver : for its questions; z3, and cvc5 where z3 does not know, if none is given.
     """
-    try:
-        asked = solver or opinions()
-        verdict, witness, reason, method = _decide(obligation, iphs, tuple(before), asked)
-    except TooManyBranchesError:
-        reason = "the domain or a law has too many branches; use fewer kinks"
-        verdict, witness, method = Verdict.OPEN, None, "branches"
+    asked = solver or opinions()
+    decided = _decide(obligation, iphs, tuple(before), asked)
+    verdict, witness, reason, method, certificate = decided
     return Row(
         obligation.id,
         obligation.element,
@@ -64,40 +61,30 @@ def prove(
         reason,
         obligation.required,
         method,
+        certificate=tuple(case.as_data() for case in certificate),
     )
-
-
-def nothing_inside(ground: Ground, solver: Asks) -> str:
-    """Return what to say of a domain that no point is in; everything would be true there."""
-    never = Cmp("<", ONE, ZERO)
-    question = Question("the domain is empty", ground.order, ground.where, never, never, whole=True)
-    try:
-        empty = solver.ask(question.query()).result == "unsat"
-    except TooManyBranchesError:
-        return ""
-    conditions = ", ".join(ground.texts)
-    return f"no point is in the domain, where all is true: {conditions}" if empty else ""
 
 
 def _decide(obligation: Obligation, iphs: IPHS, before: tuple[Row, ...], solver: Asks) -> Decided:
     """Return the first thing that fails, or that nothing does, and the method that says so."""
     if obligation.open_because:
-        return Verdict.OPEN, None, obligation.open_because, "branches"
+        return Verdict.OPEN, None, obligation.open_because, "branches", ()
     for residual in obligation.residuals:
         failed = _vanishes(residual, iphs)
         if failed:
-            return *failed, "algebra"
-    method = "branches" if obligation.questions else "algebra"
+            return *failed, "algebra", ()
+    method, certificate = "branches" if obligation.questions else "algebra", tuple[Case, ...]()
     failed = _asked(obligation.questions, solver)
     if failed and failed[0] is Verdict.OPEN and obligation.sign:
-        method, failed = "intervals", _as_a_whole(obligation, failed, solver)
+        method = "intervals"
+        failed, certificate = _as_a_whole(obligation, obligation.sign, failed, solver)
     if failed and failed[0] is Verdict.OPEN and obligation.letter:
         failed = _by_numbers(obligation, solver) or failed
     proved: Found = (Verdict.PROVED, None, "")
     failed = failed or _grounded(obligation, before)
     if failed and obligation.id == "sigma":
         failed = _total(iphs, before, solver) or failed
-    return *(failed or proved), method
+    return *(failed or proved), method, () if failed else certificate
 
 
 def _asked(questions: Iterable[Question], solver: Asks) -> Found | None:
@@ -113,23 +100,27 @@ def _asked(questions: Iterable[Question], solver: Asks) -> Found | None:
     return left[0] if left else None
 
 
-def _as_a_whole(obligation: Obligation, still_open: Found, solver: Asks) -> Found | None:
-    """Return None if the law is shown to be passive as a whole, else how it fails or is open."""
-    found = whole_sign(obligation, solver)
+def _as_a_whole(
+    obligation: Obligation, sign: SignOf, still_open: Found, solver: Asks
+) -> tuple[Found | None, tuple[Case, ...]]:
+    """Return how a law fails to be passive as a whole, or its certificate if it is shown to be."""
+    question = obligation.questions[0]
+    found = whole_sign(sign, question.order, solver)
     if found is None:
-        return still_open
-    verdict, numbers, reason = found
-    if verdict is Verdict.PROVED:
-        return None
-    if verdict is Verdict.REFUTED and numbers is not None:
-        return _broken(obligation.questions[0], numbers)
-    return Verdict.OPEN, None, f"{obligation.statement}: {reason}"
+        return still_open, ()
+    if found.verdict is Verdict.PROVED:
+        return None, found.certificate
+    if found.numbers is not None:
+        return _broken(question, found.numbers), ()
+    return (Verdict.OPEN, None, f"{obligation.statement}: {found.reason}"), ()
 
 
 def _by_numbers(obligation: Obligation, solver: Asks) -> Found | None:
     """Return the refutation of a claim by simple numbers, or None."""
     question = obligation.questions[0]
-    numbers = tried(question, obligation.letter, solver)
+    domain = question.where[: len(question.where) - len(question.branch)]
+    asked = Asked(domain, question.order, solver)
+    numbers = tried(question.original, obligation.letter, asked)
     return _broken(question, numbers) if numbers else None
 
 
@@ -176,7 +167,10 @@ def _nonzero(iphs: IPHS, expr: sp.Expr) -> tuple[dict[str, str], sp.Expr] | None
     sizes = {symbol.name: str(counts[bank]) for bank, symbol in lanes.counts.items()}
     for start in TRIES:
         values = {s: sp.Integer(start + n % len(TRIES)) for n, s in enumerate(symbols)}
-        value = written.xreplace(values)
+        try:
+            value = written.xreplace(values)
+        except TypeError:  # it compares what has no real value there
+            continue
         if value.is_number and value.is_zero is False:
             return {**sizes, **{s.name: str(v) for s, v in values.items()}}, value
     return None
@@ -184,10 +178,7 @@ def _nonzero(iphs: IPHS, expr: sp.Expr) -> tuple[dict[str, str], sp.Expr] | None
 
 def _answered(question: Question, solver: Asks) -> Found | None:
     """Return None if the claim follows, else how it fails or why it is open."""
-    try:
-        answer = solver.ask(question.query())
-    except TooManyBranchesError:
-        return Verdict.OPEN, None, f"{question.label}: the domain has too many branches"
+    answer = solver.ask(question.query())
     if answer.result == "unsat" or _never_meet(question, solver):
         return None
     if answer.result == "sat":
@@ -219,6 +210,8 @@ def _refuted(question: Question, answer: Answer, shown: tuple[str, ...]) -> Foun
         inside = all(holds(condition, values) for condition in question.where)
         if question.meeting:
             broken = inside and jumps(question.meeting, values)
+        elif question.law is not None:
+            broken = inside and _has_no_value(question.law, values)
         else:
             broken = inside and not holds(question.original, values)
     except (ArithmeticError, ValueError, KeyError):
@@ -227,6 +220,18 @@ def _refuted(question: Question, answer: Answer, shown: tuple[str, ...]) -> Foun
         reason = f"{question.label}: bounds on the functions in it do not decide it"
         return Verdict.OPEN, None, reason
     return _broken(question, {name: value for name, value in values.items() if name in shown})
+
+
+def _has_no_value(law: Expr | Cmp, values: Mapping[str, Fraction]) -> bool:
+    """Return whether a law, or a side of a comparison, certainly has no value."""
+    try:
+        for side in (law.left, law.right) if isinstance(law, Cmp) else (law,):
+            value_of(side, values)
+    except TooCloseError:
+        return False
+    except (ArithmeticError, ValueError):
+        return True
+    return False
 
 
 def _broken(question: Question, values: Mapping[str, Fraction]) -> Found:

@@ -1,7 +1,8 @@
 """Questions to solvers, and their text: what is assumed, and what should follow.
 
-Input: comparisons of polynomials.  Output: a `Query`, and its text in SMT-LIB 2, which z3 and cvc5
-both read.  A query asserts the opposite of its claim: `unsat` proves the claim.
+Input: comparisons of polynomials, which may have choices.  Output: a `Query`, and its text in
+SMT-LIB 2, which z3 and cvc5 both read.  A query asserts the opposite of its claim: `unsat` proves
+the claim.
 """
 
 from __future__ import annotations
@@ -11,8 +12,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
-from piezo_sym.proofs.rational import Clause
-from piezo_sym.spec.expressions import Add, Cmp, Expr, Mul, Neg, Num, Pow, Sym, names
+from piezo_sym.proofs.facts import Clause
+from piezo_sym.spec.expressions import Add, Cmp, Expr, If, Mul, Neg, Num, Pow, Sym, names
 
 #: Words of SMT-LIB that a spec may use as names; they are written between bars.
 WORDS = frozenset(
@@ -99,6 +100,8 @@ def _term(node: Expr) -> str:
             return f"(- {_term(arg)})"
         case Add(terms):
             return f"(+ {' '.join(_term(term) for term in terms)})"
+        case If(then, condition, other):
+            return f"(ite {_comparison(condition)} {_term(then)} {_term(other)})"
         case Mul():
             return f"(* {' '.join(_term(factor) for factor in _factors(node))})"
         case Pow(base, exponent) if exponent.denominator == 1 and exponent > 0:

@@ -1,10 +1,13 @@
-"""Smooth laws as quotients of polynomials: what solvers of real arithmetic understand.
+"""Laws as quotients of polynomials and choices: what solvers of real arithmetic understand.
 
-Input: smooth trees.  Output: the same trees with every function and root replaced by a symbol of
-its own (`Part`), what is known of that symbol (`facts`), and quotients without division (`Ratio`).
+Input: trees without kinked functions; choices stay.  Output: the same trees with every function and
+root replaced by a symbol of its own (`Part`), what is known of that symbol (`facts`), and quotients
+without division: cleared (`Ratio`), or by a symbol each where the tree has choices.
 
-Facts are bounds that hold for every argument; they say less than the function does.  A claim that
-follows from them is a theorem; a counterexample to them has to be confirmed on the law itself.
+A fact is a clause that is true for all real numbers: the function's own domain implies it, never a
+branch on which the function happens to stand.  Where a function is not defined its symbol is free.
+A claim that follows from facts is a theorem; a counterexample to them has to be confirmed on the
+law itself.
 """
 
 from __future__ import annotations
@@ -14,6 +17,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
+from piezo_sym.proofs.facts import Clause, facts_on
 from piezo_sym.spec.calculus import add, mul, neg, power
 from piezo_sym.spec.expressions import (
     ONE,
@@ -23,6 +27,7 @@ from piezo_sym.spec.expressions import (
     Cmp,
     Div,
     Expr,
+    If,
     Mul,
     Neg,
     Node,
@@ -33,9 +38,6 @@ from piezo_sym.spec.expressions import (
     walk,
 )
 from piezo_sym.spec.names import fresh
-
-#: One of these comparisons holds.
-Clause = tuple[Cmp, ...]
 
 
 @final
@@ -50,12 +52,13 @@ class Ratio:
 @final
 @dataclass(frozen=True)
 class Part:
-    """A function or root in a law, by a name of its own.
+    """A function, root or quotient in a law, by a name of its own.
 
     Attributes
     ----------
     name, argument : symbols; the argument's value is `value`, free of functions.
-    function : ``exp``, ..., or ``root`` for the power `exponent` of the argument.
+    function : ``exp``, ..., ``root`` for the power `exponent` of the argument, or ``quotient``,
+        whose value is the argument's.
     """
 
     name: str
@@ -77,17 +80,26 @@ class Parts:
         """Return a law with each function replaced by its symbol."""
         return _replaced(law, dict(self.words))
 
-    def facts(self) -> Iterator[Clause]:
-        """Yield what is known of the parts."""
+    def facts(self, nonzero: frozenset[str] = frozenset()) -> Iterator[Clause]:
+        """Yield what is known of the parts, as clauses that are true for all real numbers.
+
+        Parameters
+        ----------
+        nonzero : names that are known not to be zero; products of them need no premise.
+        """
         for part in self.parts:
-            if part.argument != part.value.top or part.value.bottom != ONE:
-                product = mul(part.argument, part.value.bottom)
-                yield (Cmp("=", product, part.value.top),)
-            yield from _facts(part)
+            bottom = part.value.bottom
+            if part.argument != part.value.top or bottom != ONE:
+                undefined = () if _product_of(bottom, nonzero) else (Cmp("=", bottom, ZERO),)
+                yield (*undefined, Cmp("=", mul(part.argument, bottom), part.value.top))
+            yield from facts_on(part.function, part.exponent, part.argument, Sym(part.name))
 
 
 def parts_of(laws: Iterable[Expr], taken: frozenset[str]) -> Parts:
-    """Return the functions in some smooth laws; their names are not in `taken`."""
+    """Return the functions in some laws, and the quotients in those with choices.
+
+    Their names are not in `taken`.
+    """
     words: dict[Node, Sym] = {}
     found: list[Part] = []
     used = set(taken)
@@ -98,18 +110,34 @@ def parts_of(laws: Iterable[Expr], taken: frozenset[str]) -> Parts:
         return new
 
     for law in laws:
-        for node in reversed(tuple(walk(law))):  # inner ones first
-            known = _function(node)
+        nodes = tuple(walk(law))
+        chooses = any(isinstance(node, If) for node in nodes)
+        for node in reversed(nodes):  # inner ones first
+            known = _function(node) or (_quotient(node) if chooses else None)
             if known is None or node in words:
                 continue
             function, given, exponent = known
             value = ratio(_replaced(given, words))
+            made = Sym(name(f"{function}_{len(found) + 1}"))
             simple = isinstance(value.top, Sym | Num) and value.bottom == ONE
             argument = value.top if simple else Sym(name(f"{function}_argument_{len(found) + 1}"))
-            made = Sym(name(f"{function}_{len(found) + 1}"))
+            if function == "quotient":
+                argument = made
             found.append(Part(made.name, function, argument, value, exponent))
             words[node] = made
     return Parts(tuple(found), tuple(words.items()))
+
+
+def _quotient(node: Node) -> tuple[str, Expr, Fraction] | None:
+    """Return a quotient that is not by a number as (name, itself, 1), else None."""
+    match node:
+        case Div(_, Num(value)) if value != 0:
+            return None
+        case Div():
+            return "quotient", node, Fraction(1)
+        case Pow(_, exponent) if exponent.denominator == 1 and exponent < 0:
+            return "quotient", node, Fraction(1)
+    return None
 
 
 def _function(node: Node) -> tuple[str, Expr, Fraction] | None:
@@ -153,8 +181,18 @@ def ratio(law: Expr) -> Ratio:
             a, size = ratio(base), abs(exponent)
             top, bottom = power(a.top, size), power(a.bottom, size) if a.bottom != ONE else ONE
             return Ratio(top, bottom) if exponent > 0 else Ratio(bottom, top)
+        case If(then, Cmp(op, left, right), other):  # its quotients have symbols of their own
+            return Ratio(If(_whole(then), Cmp(op, _whole(left), _whole(right)), _whole(other)))
     msg = f"{type(law).__name__} is not rational"
     raise TypeError(msg)
+
+
+def _whole(law: Expr) -> Expr:
+    """Return a law that divides by numbers only, without those divisions."""
+    value = ratio(law)
+    if value.bottom != ONE:
+        raise TypeError("a choice divides, and the quotient has no symbol")
+    return value.top
 
 
 def _total(parts: list[Ratio]) -> Ratio:
@@ -178,6 +216,32 @@ def _sum(a: Ratio, b: Ratio) -> Ratio:
     )
 
 
+def implied(condition: Cmp, nonzero: frozenset[str]) -> Clause:
+    """Return what a comparison of rational sides says where it is defined, as a clause.
+
+    Parameters
+    ----------
+    nonzero : names that are known not to be zero; products of them need no premise.
+    """
+    bottoms = (ratio(side).bottom for side in (condition.left, condition.right))
+    undefined = (Cmp("=", b, ZERO) for b in bottoms if not _product_of(b, nonzero))
+    return (*dict.fromkeys(undefined), cleared(condition))
+
+
+def _product_of(tree: Expr, known: frozenset[str]) -> bool:
+    """Return whether a tree is a product of powers of some names, and numbers other than zero."""
+    match tree:
+        case Num(value):
+            return value != 0
+        case Sym(name):
+            return name in known
+        case Mul(left, right):
+            return _product_of(left, known) and _product_of(right, known)
+        case Pow(base, _) | Neg(base):
+            return _product_of(base, known)
+    return False
+
+
 def cleared(condition: Cmp) -> Cmp:
     """Return a comparison of rational sides as one of polynomials.
 
@@ -194,55 +258,3 @@ def cleared(condition: Cmp) -> Cmp:
 def signed(value: Ratio) -> Expr:
     """Return a polynomial of the sign of a quotient: top times bottom."""
     return value.top if value.bottom == ONE else mul(value.top, value.bottom)
-
-
-def _number(value: int | Fraction) -> Num:
-    return Num(Fraction(value))
-
-
-def _facts(part: Part) -> Iterator[Clause]:
-    """Yield bounds on y = f(x) that hold for every real x (for a root or log: where it is real)."""
-    x, y = part.argument, Sym(part.name)
-    above, below = Cmp(">", x, ZERO), Cmp("<", x, ZERO)
-    plus, minus = Cmp(">=", y, ZERO), Cmp("<=", y, ZERO)
-    match part.function:
-        case "root":  # y >= 0, y**q = x**p: all there is to say
-            yield (plus,)
-            root = power(y, Fraction(part.exponent.denominator))
-            inside = power(x, abs(Fraction(part.exponent.numerator)))
-            sides = (root, inside) if part.exponent > 0 else (mul(root, inside), ONE)
-            yield (Cmp("=", *sides),)
-        case "exp":  # convex: above its tangents at 0; 1/exp(x) = exp(-x) >= 1 - x
-            yield (Cmp(">", y, ZERO),)
-            yield (Cmp(">=", y, add(ONE, x)),)
-            half = mul(_number(Fraction(1, 2)), power(x, Fraction(2)))
-            yield (below, Cmp(">=", y, add(ONE, x, half)))
-            yield (Cmp(">=", x, ONE), Cmp("<=", mul(y, add(ONE, neg(x))), ONE))
-        case "log":  # below its tangent at 1, and log(x) = -log(1/x)
-            yield (Cmp("<=", y, add(x, neg(ONE))),)
-            yield (Cmp(">=", mul(y, x), add(x, neg(ONE))),)
-        case "tanh":  # x/(1 + |x|) lies between 0 and tanh(x), and that below x
-            yield (Cmp("<", y, ONE),)
-            yield (Cmp(">", y, neg(ONE)),)
-            yield (below, Cmp("<=", y, x))
-            yield (below, Cmp(">=", mul(y, add(ONE, x)), x))
-            yield (above, Cmp(">=", y, x))
-            yield (above, Cmp("<=", mul(y, add(ONE, neg(x))), x))
-        case "sin":  # |sin x| <= |x|, its sign up to 3 < pi, x - x**3/6 <= sin x for x >= 0
-            cubic = add(x, neg(mul(_number(Fraction(1, 6)), power(x, Fraction(3)))))
-            yield from _within_one(y)
-            yield (below, Cmp("<=", y, x))
-            yield (above, Cmp(">=", y, x))
-            yield (below, Cmp(">=", y, cubic))
-            yield (above, Cmp("<=", y, cubic))
-            yield (below, Cmp(">", x, _number(3)), plus)
-            yield (above, Cmp("<", x, _number(-3)), minus)
-        case "cos":  # 1 - x**2/2 <= cos x
-            half = mul(_number(Fraction(1, 2)), power(x, Fraction(2)))
-            yield from _within_one(y)
-            yield (Cmp(">=", y, add(ONE, neg(half))),)
-
-
-def _within_one(y: Expr) -> Iterator[Clause]:
-    yield (Cmp("<=", y, ONE),)
-    yield (Cmp(">=", y, neg(ONE)),)

@@ -10,7 +10,6 @@ import json
 from collections.abc import Iterator
 from itertools import zip_longest
 
-from piezo_sym.proofs.branches import TooManyBranchesError
 from piezo_sym.proofs.obligations import Obligation
 from piezo_sym.proofs.query import Query
 from piezo_sym.proofs.report import Report, Row
@@ -48,10 +47,7 @@ def smt2(report: Report, made: str) -> str:
 def queries(obligation: Obligation) -> Iterator[Query]:
     """Yield the queries of an obligation."""
     for question in obligation.questions:
-        try:
-            yield question.query()
-        except TooManyBranchesError:  # the obligation is open for it
-            continue
+        yield question.query()
 
 
 def proofs_json(report: Report, model: Model, made: str) -> str:
@@ -61,6 +57,7 @@ def proofs_json(report: Report, model: Model, made: str) -> str:
         "made": made,
         "model": report.model,
         "spec_sha256": model.sha256,
+        "system": report.system,
         "obligations": [_entry(row, obligation) for row, obligation in entries],
     }
     return json.dumps(content, indent=1) + "\n"
@@ -76,6 +73,8 @@ def _entry(row: Row, obligation: Obligation | None) -> dict[str, object]:
         "witness": dict(row.witness) if row.witness else None,
         "reason": row.reason or None,
         "method": row.method,
+        "points": row.points,
+        "certificate": list(row.certificate) or None,
     }
     if obligation:
         entry["latex"] = obligation.latex

@@ -6,7 +6,7 @@ Input: rows.  Output: a `Report` to look at, to print, or to raise from.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from typing import final
 
@@ -38,6 +38,8 @@ class Row:
     reason : for REFUTED what fails there, for OPEN what is missing.
     required : whether `generate` insists on it; else it is information.
     method : what decided it: algebra, branches (queries), or intervals (the law as a whole).
+    points : at how many points of the domain numbers tried to contradict it, and did not.
+    certificate : for intervals, what a second program needs to check them; see `signs`.
     """
 
     id: str
@@ -48,6 +50,8 @@ class Row:
     reason: str = ""
     required: bool = True
     method: str = "algebra"
+    points: int = 0
+    certificate: tuple[Mapping[str, object], ...] = ()
 
     def as_dict(self, model: str) -> dict[str, object]:
         """Return the row as plain data, as ``verify --json`` prints it."""
@@ -71,11 +75,13 @@ class Report:
     model : its name.
     rows : the verdicts.
     obligations : what they are about, in the same order; units have none.
+    system : the system as text, for a second program to check; see `published`.
     """
 
     model: str
     rows: tuple[Row, ...]
     obligations: tuple[Obligation, ...] = ()
+    system: Mapping[str, object] = field(default_factory=dict)
 
     @property
     def failures(self) -> tuple[Row, ...]:
@@ -115,7 +121,10 @@ class Report:
         lines = [f"{self.model}: {self.summary()}"]
         for row in self.rows:
             at = ", ".join(f"{name} = {value}" for name, value in (row.witness or {}).items())
-            lines.append(f"  {row.verdict.value:8} {row.id:12} {row.element:12} {row.statement}")
+            attacked = f" ({row.points:,} points)" if row.points else ""
+            lines.append(
+                f"  {row.verdict.value:8} {row.id:12} {row.element:12} {row.statement}{attacked}"
+            )
             lines += [f"           {row.reason}{f' at {at}' if at else ''}"] if row.reason else []
         return "\n".join(lines)
 

@@ -25,8 +25,6 @@ from piezo_sym.proofs.query import Query
 PATIENCE = 20.0
 #: The most seconds to wait for a second opinion, which is asked for only where there is no first.
 LESS_PATIENCE = 5.0
-#: Answers that are kept: a query is asked again when a file is checked or a bank is written out.
-MOST_KNOWN = 10_000
 RESULTS = frozenset({"unsat", "sat", "unknown"})
 
 
@@ -62,31 +60,21 @@ class Solver:
         self.name, self.command, self.patience = name, command, patience
         self._process: subprocess.Popen[str] | None = None
         self._lock = threading.Lock()
-        self._known: dict[str, Answer] = {}
 
     def ask(self, query: Query) -> Answer:
         """Return the answer to a query; never raises for what the solver does."""
         request = json.dumps({"text": query.text(), "order": query.variables})
         with self._lock:
-            if request not in self._known:
-                try:
-                    answer = _read(self._exchange(request))
-                except (
-                    BaseException
-                ):  # an answer that comes later would be taken for the next one's
-                    self.close()
-                    raise
-                if answer is None:
-                    self.close()
-                    reason = f"{self.name} stopped, or took more than {self.patience:g} s"
-                    return Answer("unknown", reason=reason)
-                self._keep(request, answer)
-            return self._known[request]
-
-    def _keep(self, request: str, answer: Answer) -> None:
-        self._known[request] = answer
-        if len(self._known) > MOST_KNOWN:
-            self._known.pop(next(iter(self._known)))
+            try:
+                answer = _read(self._exchange(request))
+            except BaseException:  # an answer that comes later would be taken for the next one's
+                self.close()
+                raise
+            if answer is None:
+                self.close()
+                reason = f"{self.name} stopped, or took more than {self.patience:g} s"
+                return Answer("unknown", reason=reason)
+            return answer
 
     def close(self) -> None:
         """Stop the process; the next question starts another."""

@@ -12,6 +12,8 @@ from fractions import Fraction
 
 import sympy as sp
 
+from piezo_sym.algebra.sums import LaneSymbol
+from piezo_sym.errors import PiezoError
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.exactly import holds
 from piezo_sym.proofs.ground import ground_of
@@ -29,11 +31,14 @@ Found = tuple[dict[str, str], sp.Rational]
 def negative_total(iphs: IPHS, rows: Iterable[Row], solver: Asks) -> Found | None:
     """Return numbers at which sigma < 0, found from the laws that are refuted."""
     sizes = dict.fromkeys(banks(iphs.model), 1)
-    single = iphs.expand(sizes) if sizes else iphs
+    try:
+        single = iphs.expand(sizes) if sizes else iphs
+    except PiezoError:  # a lane's name is taken; a law that is refuted says enough
+        return None
     for row in rows:
         if row.id == "passive" and row.verdict is Verdict.REFUTED and row.witness:
             lane = "_1" if row.element in sizes else ""
-            given = {_in_lane(n, lane, single): Fraction(v) for n, v in row.witness.items()}
+            given = {_in_lane(n, iphs): Fraction(v) for n, v in row.witness.items()}
             found = _driven(single, f"{row.element}{lane}", given, solver)
             if found:
                 counts = {f"{bank}_count": "1" for bank in sizes}
@@ -41,9 +46,9 @@ def negative_total(iphs: IPHS, rows: Iterable[Row], solver: Asks) -> Found | Non
     return None
 
 
-def _in_lane(name: str, lane: str, iphs: IPHS) -> str:
+def _in_lane(name: str, iphs: IPHS) -> str:
     """Return what a name of a bank's law is called in its first lane."""
-    return name + lane if name + lane in iphs.symbols.symbols else name
+    return f"{name}_1" if isinstance(iphs.symbols.symbols.get(name), LaneSymbol) else name
 
 
 def _driven(iphs: IPHS, element: str, given: Values, solver: Asks) -> Found | None:
@@ -58,13 +63,21 @@ def _driven(iphs: IPHS, element: str, given: Values, solver: Asks) -> Found | No
     rest = dict.fromkeys(_drives(iphs), sp.S.Zero)
     named = {iphs.symbols[n]: sp.Rational(v.numerator, v.denominator) for n, v in known.items()}
     fixed = {symbol: value for symbol, value in named.items() if symbol not in rest}
-    z = _named(iphs, iphs.system.z[k, 0]).xreplace(fixed)
+    z = _value(_named(iphs, iphs.system.z[k, 0]), fixed)
     for drive in _one_drive(z, rest, given.get(getattr(port, "letter", ""))):
         values = {**fixed, **rest, **drive}
-        value = sigma.xreplace(values)
+        value = _value(sigma, values)
         if value.is_Rational and value < 0 and _allowed(iphs, sigma, values):
             return {s.name: str(v) for s, v in values.items() if s in sigma.free_symbols}, value
     return None
+
+
+def _value(expr: sp.Expr, values: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
+    """Return an expression at a point; nan where it has no real value to compare."""
+    try:
+        return expr.xreplace(dict(values))
+    except TypeError:
+        return sp.nan
 
 
 def _named(iphs: IPHS, expr: sp.Expr) -> sp.Expr:
@@ -107,7 +120,7 @@ def _one_drive(
         yield {}
         return
     for symbol in (symbol for symbol in rest if symbol in z.free_symbols):
-        share = z.xreplace({**rest, symbol: sp.S.One}) - z.xreplace(dict(rest))
+        share = _value(z, {**rest, symbol: sp.S.One}) - _value(z, rest)
         if share.is_Rational and share != 0:
             yield {symbol: sp.Rational(value.numerator, value.denominator) / share}
 

@@ -1,135 +1,213 @@
 """The sign of a law as a whole, where its branches in polynomials were not enough.
 
-Input: an `Obligation` that names a law, and a solver.  Output: a verdict with its witness, or None.
+Input: a `SignOf` with the domain it is stated in, the order of names, and a solver.  Output: an
+`Outcome`: a verdict with its witness or its certificate, or None where the law has too many cases.
 
-A law that reduces to ``prefactors * f(s)``, its letter being a positive scale times s, has the sign
-of both: the solver looks at the prefactors, interval arithmetic at ``f(s)*s``.  A sum is passive if
-each term is.  Where nothing is proved, simple numbers are tried in the law itself.
+A law is split by the choices that its parameters make; each case assumes the domain and its own
+guards.  A law that reduces to ``prefactors * f(s)``, its letter being a positive scale times s, has
+the sign of both: the solver looks at the prefactors, interval arithmetic at ``f(s)*s``.  A sum is
+passive if each term is.  Where nothing is proved, simple numbers are tried in the law itself.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import reduce as fold
+from typing import final
 
-from piezo_sym.proofs.exactly import holds
-from piezo_sym.proofs.obligations import Obligation, Question, SignOf
+from piezo_sym.proofs.asked import Asked, Numbers, moved, tried
+from piezo_sym.proofs.obligations import SignOf
 from piezo_sym.proofs.report import Verdict
-from piezo_sym.proofs.signs import Reduction, decide_sign, reduce
+from piezo_sym.proofs.signs import (
+    Case,
+    Reduction,
+    Term,
+    balanced,
+    cases,
+    choice_outside,
+    decide_sign,
+    grouped,
+    opposite,
+    reductions,
+    summands,
+)
 from piezo_sym.proofs.solvers import Asks
 from piezo_sym.spec.calculus import mul
-from piezo_sym.spec.expressions import ONE, ZERO, Add, Cmp, Expr, Neg, Sym, names
-from piezo_sym.spec.tables import greater
-
-#: Values of a letter that are tried against a law, in this order.
-TRIED = tuple(
-    sign * size
-    for size in map(Fraction, ("1", "2", "3", "1/2", "5", "4", "10", "1/10", "20", "100"))
-    for sign in (1, -1)
+from piezo_sym.spec.expressions import (
+    ONE,
+    ZERO,
+    Add,
+    Cmp,
+    Expr,
+    If,
+    Mul,
+    Neg,
+    Num,
+    Sym,
+    names,
 )
 
-Numbers = Mapping[str, Fraction]
-Outcome = tuple[Verdict, Numbers | None, str]
+#: Functions of one variable that may fail before the search stops.
+MOST_FAILED = 12
 
 
-def whole_sign(obligation: Obligation, solver: Asks) -> Outcome | None:
-    """Return the verdict on the law of an obligation, with the numbers that refute it."""
-    sign = obligation.sign
-    if sign is None or not obligation.questions:
+@final
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """A verdict: for REFUTED with the numbers, for OPEN why, for PROVED with its certificate."""
+
+    verdict: Verdict
+    numbers: Numbers | None = None
+    reason: str = ""
+    certificate: tuple[Case, ...] = ()
+
+
+def whole_sign(sign: SignOf, order: tuple[str, ...], solver: Asks) -> Outcome | None:
+    """Return the verdict on ``law*letter >= 0`` in a domain.
+
+    Parameters
+    ----------
+    sign : the law, its letter, and the domain.
+    order : names, in the order in which a witness should be simple.
+    solver : for the signs of what stands in front of a function of the letter alone.
+    """
+    claim = Cmp(">=", mul(sign.law, Sym(sign.letter)), ZERO)
+    asked = Asked(sign.where, order, solver)
+    if numbers := tried(claim, sign.letter, asked):
+        return Outcome(Verdict.REFUTED, numbers)
+    split = cases(sign.law, sign.letter, asked.positive)
+    if split is None:
         return None
-    question = obligation.questions[0]
-    numbers = tried(question, sign.letter, solver)
-    if numbers:
-        return Verdict.REFUTED, numbers, ""
-    return _decided(sign.law, sign, question, solver)
+    shown: list[Case] = []
+    reasons: list[str] = []
+    for guards, law in split:
+        search = Search(law, sign.letter, asked.within(*guards))
+        terms = search.terms(law)
+        if terms is not None:
+            shown.append(Case(guards, terms))
+        elif not search.asked.empty():
+            if numbers := search.witness(claim):
+                return Outcome(Verdict.REFUTED, numbers)
+            reasons += search.reasons[:1] or ["bounds on the functions in it do not decide it"]
+    if not reasons:
+        return Outcome(Verdict.PROVED, certificate=tuple(shown))
+    if numbers := moved(claim, sign.letter, asked):
+        return Outcome(Verdict.REFUTED, numbers)
+    return Outcome(Verdict.OPEN, reason=reasons[0])
 
 
-def _decided(law: Expr, sign: SignOf, question: Question, solver: Asks) -> Outcome | None:
-    """Return the verdict on a law, or on a sum from its terms."""
-    reduction = reduce(law, sign.letter, _positive(question))
-    if reduction is not None:
-        return _of_reduction(reduction, question, solver)
-    if not isinstance(law, Add):
+@final
+@dataclass(frozen=True)
+class Search:
+    """The search for what shows that a law has the sign of its letter.
+
+    Attributes
+    ----------
+    law, letter : the law of one case, and its letter.
+    asked : the solver, in the domain and the guards of a case.
+    reasons : what is still open, filled as the search goes on.
+    negative : where a reduced law has the wrong sign: the reduction, its sign, and s.
+    """
+
+    law: Expr
+    letter: str
+    asked: Asked
+    reasons: list[str] = field(default_factory=list)
+    negative: list[tuple[Reduction, int, Fraction]] = field(default_factory=list)
+
+    def terms(self, law: Expr) -> tuple[Term, ...] | None:
+        """Return summands that are shown to be passive and make up a law, or None."""
+        if law == ZERO:
+            return ()
+        law = choice_outside(law)
+        if (term := self._term(law)) is not None:
+            return term
+        match law:
+            case Add(parts) if (found := _joined(map(self.terms, parts))) is not None:
+                return found
+            case If(then, condition, other):
+                sides = ((then, condition), (other, opposite(condition)))
+                return _joined(self._where(side, where) for side, where in sides)
+        groups = grouped(summands(law), self.letter, self.asked.positive)
+        if not groups or len(groups) == 1:
+            return self._polynomial(law)
+        if (found := _joined(map(self._term, groups))) is not None:
+            return found
+        groups = balanced(groups, self.letter, self.asked.positive)
+        return None if groups is None else _joined(map(self._term, groups))
+
+    def _where(self, law: Expr, condition: Cmp) -> tuple[Term, ...] | None:
+        """Return the terms of a law that counts where a condition holds and is zero elsewhere."""
+        found = () if law == ZERO else self._term(If(law, condition, ZERO))
+        if found is None and (inner := self.terms(law)) is not None:
+            return tuple(term.where(condition) for term in inner)
+        return found
+
+    def _term(self, law: Expr) -> tuple[Term] | None:
+        """Return a law that comes down to one variable and is shown to be passive, or None."""
+        for reduction in reductions(law, self.letter, self.asked.positive):
+            for sign in (1, -1):
+                if len(self.reasons) + len(self.negative) >= MOST_FAILED:
+                    return None
+                power = Mul(reduction.f, Sym(self.letter))
+                decision = decide_sign(power if sign > 0 else Neg(power), self.letter)
+                if decision.witness is not None:
+                    self.negative.append((reduction, sign, decision.witness))
+                elif decision.verdict is not Verdict.PROVED:
+                    self.reasons.append(decision.reason)
+                elif self._keeps(reduction.prefactors, sign):
+                    front = fold(Mul, reduction.prefactors) if reduction.prefactors else ONE
+                    units, f = reduction.units, reduction.f
+                    return (Term(law, self.letter, front, sign, units, f, decision.rays),)
         return None
-    found = [_decided(term, sign, question, solver) for term in law.terms]
-    if all(outcome is not None and outcome[0] is Verdict.PROVED for outcome in found):
-        return Verdict.PROVED, None, ""
-    return None
 
-
-def _of_reduction(reduction: Reduction, question: Question, solver: Asks) -> Outcome | None:
-    """Return the verdict on ``prefactors * f(s) * s``."""
-    start: Expr = ONE
-    front = fold(mul, reduction.prefactors, start)
-    power = mul(reduction.f, Sym(reduction.name))
-    if not _follows(question, Cmp(">=", front, ZERO), solver):
-        if not _follows(question, Cmp("<=", front, ZERO), solver):
+    def _polynomial(self, law: Expr) -> tuple[Term] | None:
+        """Return a part of the law that the solver shows to be passive, or None."""
+        power = mul(law, Sym(self.letter))
+        if law == self.law or not self.asked.follows(Cmp(">=", power, ZERO)):
             return None
-        front, power = Neg(front), Neg(power)
-    decision = decide_sign(power, reduction.name)
-    if decision.verdict is not Verdict.REFUTED or decision.witness is None:
-        return decision.verdict, None, decision.reason
-    needed = {*names(question.original), *(name for name, _ in reduction.units)}
-    point = _model(question, Cmp("<=", front, ZERO), solver, needed)
-    if point is None:
+        return (Term(law, self.letter, power),)
+
+    def _keeps(self, factors: Sequence[Expr], sign: int) -> bool:
+        """Return whether a product is shown to keep to one side of zero in the domain."""
+        left = [factor for factor in factors if not self.asked.plain(factor)]
+        if not left:
+            return sign > 0
+        start: Expr = Num(Fraction(sign))
+        if self.asked.follows(Cmp(">=", fold(mul, left, start), ZERO)):
+            return True
+        return len(left) > 1 and self._signs(left) == sign
+
+    def _signs(self, factors: Sequence[Expr]) -> int:
+        """Return the product of the signs that each of some factors keeps; 0 if one keeps none."""
+        total = 1
+        for factor in factors:
+            if not self._keeps([factor], 1):
+                total = -total if self._keeps([factor], -1) else 0
+        return total
+
+    def witness(self, claim: Cmp) -> Numbers | None:
+        """Return numbers at which a reduced law that has the wrong sign breaks the claim."""
+        for n, (reduction, sign, value) in enumerate(self.negative):
+            start: Expr = Num(Fraction(sign))
+            front = Cmp("<=", fold(mul, reduction.prefactors, start), ZERO)
+            wanted = self.asked.near((*names(claim), *names(reduction.scale)))
+            found = None if n else self.asked.point(front, wanted)
+            for point in (*self.asked.samples, *((found,) if found else ())):
+                letter = reduction.back(value, point)
+                numbers = {**point, self.letter: letter or Fraction(0)}
+                if letter is not None and self.asked.breaks(claim, numbers):
+                    return {name: value for name, value in numbers.items() if name in wanted}
         return None
-    numbers = {**point, reduction.name: reduction.back(decision.witness, point)}
-    return (Verdict.REFUTED, numbers, "") if _breaks(question, numbers) else None
 
 
-def _positive(question: Question) -> frozenset[str]:
-    """Return the names that the domain says are positive."""
-    return frozenset(
-        c.left.name
-        for c in map(greater, question.where)
-        if c.op == ">" and isinstance(c.left, Sym) and c.right == ZERO
-    )
-
-
-def _domain(question: Question) -> tuple[Cmp, ...]:
-    """Return what is assumed of a question besides the conditions of its branch."""
-    return question.where[: len(question.where) - len(question.branch)]
-
-
-def _follows(question: Question, claim: Cmp, solver: Asks) -> bool:
-    made = Question("", question.order, _domain(question), claim, claim)
-    answers = (solver.ask(part.query()).result for part in made.smooth())
-    return claim.left == ONE or all(answer == "unsat" for answer in answers)
-
-
-def _model(question: Question, claim: Cmp, solver: Asks, wanted: set[str]) -> Numbers | None:
-    """Return simple numbers in the domain at which a claim is false, or None."""
-    about = tuple(name for name in question.order if name in wanted)
-    original = Cmp(">=", Add((claim.left, *map(Sym, about))), ZERO)  # all of their names
-    made = Question("", question.order, _domain(question), claim, original)
-    for part in made.smooth():
-        answer = solver.ask(part.query())
-        if answer.result == "sat":
-            found = answer.model.items()
-            return {name: value for name, value in found if name in question.order}
-    return None
-
-
-def tried(question: Question, letter: str, solver: Asks) -> Numbers | None:
-    """Return the first simple numbers at which the law breaks its claim."""
-    point = _model(question, Cmp("<", ONE, ZERO), solver, {*names(question.original)})
-    for value in TRIED if point is not None else ():
-        numbers = {**(point or {}), letter: value}
-        if _breaks(question, numbers):
-            return numbers
-    return None
-
-
-def _breaks(question: Question, numbers: Numbers) -> bool:
-    """Return whether numbers lie in the domain and break the claim in the law itself."""
-    try:
-        return all(_holding(question, numbers)) and not holds(question.original, numbers)
-    except (ArithmeticError, ValueError):
-        return False
-
-
-def _holding(question: Question, numbers: Numbers) -> Iterator[bool]:
-    for condition in _domain(question):
-        if {*names(condition)} <= numbers.keys():
-            yield holds(condition, numbers)
+def _joined(parts: Iterable[tuple[Term, ...] | None]) -> tuple[Term, ...] | None:
+    """Return all terms, or None at the first part that has none."""
+    found: list[Term] = []
+    for part in parts:
+        if part is None:
+            return None
+        found += part
+    return tuple(found)

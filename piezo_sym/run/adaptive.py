@@ -7,28 +7,20 @@ decides how finely an interval is divided; here it gets its inputs, and an inter
 many steps is cut into parts.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, final
+from collections.abc import Sequence
+from typing import final
 
 import numpy as np
+from numpy.typing import NDArray
 
-from piezo_sym.run.discrete import CHUNK, Run, Runs, stopped
+from piezo_sym.errors import RunError
+from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.discrete import CHUNK, Run, Runs, Watch, stopped
+from piezo_sym.run.engine import Engine
 from piezo_sym.run.engine.march import coarser, finest, steps_at, twice
-from piezo_sym.run.mesh import blocks
+from piezo_sym.run.mesh import Block, blocks
 from piezo_sym.run.scales import shared
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from piezo_sym.errors import RunError
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.discrete import Watch
-    from piezo_sym.run.engine import Engine
-    from piezo_sym.run.mesh import Block
-    from piezo_sym.run.system import System
+from piezo_sym.run.system import System
 
 #: How often a user's function is asked between two calls of C: what is asked too early is lost.
 ASKED = 300

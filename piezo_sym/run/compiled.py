@@ -5,30 +5,22 @@ step.  Output: a `Trajectory` whose samples lie in the domain, and the attribute
 `RunError` that says which condition of the domain the state leaves, when, and with which values.
 """
 
-from __future__ import annotations
-
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.adaptive import adaptive
-from piezo_sym.run.discrete import METHOD, fixed
+from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.discrete import METHOD, Runs, Watch, fixed
+from piezo_sym.run.engine import Engine
 from piezo_sym.run.guard import NAME, crossing, depth, domain_error
+from piezo_sym.run.inputs import Segment
 from piezo_sym.run.integrate import Batch, Tolerance, batches
-from piezo_sym.run.ledger import record
+from piezo_sym.run.ledger import Trajectory, record
 from piezo_sym.run.scales import magnitudes
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.discrete import Runs, Watch
-    from piezo_sym.run.engine import Engine
-    from piezo_sym.run.inputs import Segment
-    from piezo_sym.run.ledger import Trajectory
-    from piezo_sym.run.system import System
+from piezo_sym.run.system import System
 
 FINEST = (
     "those of the finest run, exact: supplied_*, heat_*, produced_*, entropy_exchanged_*, "

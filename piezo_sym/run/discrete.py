@@ -5,26 +5,20 @@ Output: `Runs`.  If asked to, the first step after a jump of the inputs is made 
 quarters.  What runs with a tolerance have in common with these is here, too.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias, final
+from typing import TypeAlias, final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from piezo_sym.errors import RunError
+from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.engine import Engine
 from piezo_sym.run.engine.march import Batch, Way, steps_at
 from piezo_sym.run.ledger import Trajectory
 from piezo_sym.run.mesh import Block, blocks, inputs_at
-from piezo_sym.run.system import Systems
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.engine import Engine
-    from piezo_sym.run.system import System
+from piezo_sym.run.system import System, Systems
 
 METHOD = "discrete_gradient"
 #: Numbers of state that are stepped in one call: memory stays small, and a run can be stopped.

@@ -5,21 +5,15 @@ the time and the values that break it.  A condition holds when its margin (left 
 is > 0 if it is strict, >= 0 otherwise; nan holds nowhere.
 """
 
-from __future__ import annotations
-
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
 from piezo_sym.errors import RunError, listing
+from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.module import row_name
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.system import System
+from piezo_sym.run.system import System
 
 NAME = re.compile(r"[A-Za-z_]\w*")
 MOST_VALUES = 4

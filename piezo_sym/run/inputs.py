@@ -5,31 +5,24 @@ Input: a mapping of names to numbers, (t, values), functions or signals.  Output
 are the limit from the right, at its end the limit from the left.
 """
 
-from __future__ import annotations
-
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from math import inf, nextafter
-from typing import TYPE_CHECKING, TypeAlias, final
+from typing import TypeAlias, final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.run.checks import FloatArray, is_number, known_keys, number
 from piezo_sym.run.jumps import jumps
-from piezo_sym.run.module import others
+from piezo_sym.run.module import GeneratedModule, others
 from piezo_sym.run.samples import Samples, read_samples
 from piezo_sym.run.signals import Constant, Signal, inside
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from numpy.typing import ArrayLike
-
-    from piezo_sym.run.module import GeneratedModule
-
-    InputValue: TypeAlias = float | Signal | tuple[ArrayLike, ArrayLike] | Callable[[float], float]
+InputValue: TypeAlias = float | Signal | tuple[ArrayLike, ArrayLike] | Callable[[float], float]
 
 FUNCTION_STEPS = 500  # a function of t says nothing about itself: so many steps at least
 CLOSE = 1e-12  # of the duration: breaks nearer than this are one

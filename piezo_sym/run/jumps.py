@@ -5,17 +5,12 @@ to the last digit, so that steps may end there.  A pulse shorter than the time b
 is seen only by chance.
 """
 
-from __future__ import annotations
-
+from collections.abc import Callable, Iterator
 from math import nextafter
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.checks import FloatArray
 
 #: How often the function is asked before a run.
 QUESTIONS = 2000

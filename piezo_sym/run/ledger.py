@@ -10,23 +10,18 @@ at the sample times, by Gauss-Legendre quadrature on the interpolants between an
 Batches pass through one at a time, so memory grows with the samples, not with the steps.
 """
 
-from __future__ import annotations
-
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, final
+from typing import final
 
 import numpy as np
 
+from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.guard import crossing, domain_error, rate_error
+from piezo_sym.run.inputs import Segment
+from piezo_sym.run.integrate import Batch, Stretch
 from piezo_sym.run.module import exchanges
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.inputs import Segment
-    from piezo_sym.run.integrate import Batch, Stretch
-    from piezo_sym.run.system import System
+from piezo_sym.run.system import System
 
 NODES = 4  # exact to degree 7: above every interpolant's own order
 

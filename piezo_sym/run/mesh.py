@@ -9,18 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, final
+from typing import final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from piezo_sym.errors import RunError
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.inputs import Segment
-    from piezo_sym.run.system import System
+from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.inputs import Segment
+from piezo_sym.run.system import System
 
 #: A run of more intervals would take days, and lengths below round-off.
 MOST_INTERVALS = 1e12

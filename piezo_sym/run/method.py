@@ -8,8 +8,6 @@ hand or changed in Python, is run by LSODA; so is one whose C cannot be compiled
 warning.  A method or a step that was named is never replaced: without an engine it is refused.
 """
 
-from __future__ import annotations
-
 import ctypes
 import os
 import warnings
@@ -17,7 +15,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, final
+from typing import final
 
 from piezo_sym.errors import EngineError, UsageError, listing, one_line, quote
 from piezo_sym.files import path_text
@@ -26,9 +24,7 @@ from piezo_sym.run.engine import Engine, EngineWarning
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.engine.library import cache_folder
 from piezo_sym.run.integrate import METHODS
-
-if TYPE_CHECKING:
-    from piezo_sym.run.module import GeneratedModule
+from piezo_sym.run.module import GeneratedModule
 
 OFFERED = (METHOD, *METHODS)
 FALLBACK = "LSODA"

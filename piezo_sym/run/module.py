@@ -4,18 +4,13 @@ Input: a module object from generated/<model>/<model>.py.  Output: the same obje
 every name of the interface, and the rows that each of its records takes in an array.
 """
 
-from __future__ import annotations
+from collections.abc import Callable, Sequence
+from typing import Any, Protocol, TypeVar
 
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from numpy.typing import ArrayLike
 
 from piezo_sym.errors import UsageError, listing, quote
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from numpy.typing import ArrayLike
-
-    from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.checks import FloatArray
 
 
 class Record(Protocol):

@@ -8,14 +8,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any, TypeAlias, final, overload
+from typing import Any, TypeAlias, final, overload
 
 import numpy as np
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-Column: TypeAlias = "Sequence[Any] | NDArray[Any]"
+Column: TypeAlias = Sequence[Any] | NDArray[Any]
 
 
 @final

@@ -4,10 +4,9 @@ Input: mappings of names to numbers, or for a bank to lists of one number a lane
 the module's frozen `Parameters`, the state x (n,) at t = 0, and the times (nt,) of the samples.
 """
 
-from __future__ import annotations
-
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -22,14 +21,9 @@ from piezo_sym.run.checks import (
     vector,
     whole,
 )
-from piezo_sym.run.module import lanes, others, rows
+from piezo_sym.run.module import GeneratedModule, lanes, others, rows
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from piezo_sym.run.module import GeneratedModule
-
-    LaneValue: TypeAlias = float | Sequence[float] | FloatArray
+LaneValue: TypeAlias = float | Sequence[float] | FloatArray
 
 #: Of the duration: a sample nearer to the end than this is the end.
 CLOSE = 1e-12

@@ -3,25 +3,20 @@
 Input: times [s] and values, or a delimited text file with a header.  Output: a frozen `Samples`.
 """
 
-from __future__ import annotations
-
 import csv
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
+from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, final
+from typing import final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from piezo_sym.errors import FileError, UsageError, listing, nearest, quote
 from piezo_sym.run.checks import FloatArray, increasing, vector
 from piezo_sym.run.signals import MOST_CORNERS, Signal, inside
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from os import PathLike
-
-    from numpy.typing import ArrayLike
 
 DELIMITERS = ",;\t"
 SLACK = 1e-9  # of the duration: a last sample may fall short by rounding

@@ -4,24 +4,18 @@ Input: a `System` and the state x (n,) at t = 0.  Output: the largest magnitude 
 the evaluations this took.  The coarse run never fails: where it stops, what it met counts.
 """
 
-from __future__ import annotations
-
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
 from itertools import islice
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from piezo_sym.errors import PiezoError
+from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.inputs import Segment
 from piezo_sym.run.integrate import Tolerance, accepted
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.inputs import Segment
-    from piezo_sym.run.system import System
+from piezo_sym.run.system import System
 
 FLOOR = 1e-15  # so that no tolerance is 0
 RTOL, ATOL = 1e-3, 1e-2  # of the coarse run; ATOL is a part of the scale known so far

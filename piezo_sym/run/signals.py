@@ -3,20 +3,16 @@
 Input: a waveform's numbers (SI; frequencies in Hz).  Output: a frozen `Signal`, callable on t.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
+from collections.abc import Iterable
 from dataclasses import dataclass
 from math import inf, pi
-from typing import TYPE_CHECKING, final
+from typing import final
 
 import numpy as np
 
 from piezo_sym.errors import UsageError
 from piezo_sym.run.checks import FloatArray, number, positive
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
 
 MOST_CORNERS = 1000
 STEPS_PER_PERIOD = 8
@@ -33,17 +29,17 @@ class Signal(ABC):
     def __call__(self, t: FloatArray | float) -> FloatArray:
         """Return the values at the times t [s]; shape of t."""
 
-    @abstractmethod
-    def breaks(self, duration: float) -> tuple[float, ...]:
-        """Return the times in (0, duration) [s] where the signal or its slope jumps, in order.
+    def breaks(self, duration: float) -> tuple[float, ...]:  # noqa: ARG002
+        """Return the times in (0, duration) [s] where the signal or its slope jumps: here none.
 
         Corners without a jump are left out when there are more than 1000 of them; `max_step`
         resolves the signal then.
         """
+        return ()
 
-    @abstractmethod
-    def max_step(self, duration: float) -> float:
-        """Return the longest step [s] that resolves the signal between its breaks."""
+    def max_step(self, duration: float) -> float:  # noqa: ARG002
+        """Return the longest step [s] that resolves the signal between its breaks: here any."""
+        return inf
 
 
 @final
@@ -56,14 +52,6 @@ class Constant(Signal):
     def __call__(self, t: FloatArray | float) -> FloatArray:
         """Return the values at the times t; shape of t."""
         return np.full(np.shape(t), self.value)[()]
-
-    def breaks(self, duration: float) -> tuple[float, ...]:  # noqa: ARG002
-        """Return no time."""
-        return ()
-
-    def max_step(self, duration: float) -> float:  # noqa: ARG002
-        """Return infinity."""
-        return inf
 
 
 @final
@@ -80,10 +68,6 @@ class Sine(Signal):
         """Return the values at the times t; shape of t."""
         angle = 2 * pi * self.frequency * t + self.phase
         return np.asarray(self.amplitude * np.sin(angle) + self.offset)[()]
-
-    def breaks(self, duration: float) -> tuple[float, ...]:  # noqa: ARG002
-        """Return no time: a sine is smooth."""
-        return ()
 
     def max_step(self, duration: float) -> float:  # noqa: ARG002
         """Return an eighth of a period."""
@@ -107,10 +91,6 @@ class Step(Signal):
         """Return the time of the jump."""
         return inside((self.time,), duration)
 
-    def max_step(self, duration: float) -> float:  # noqa: ARG002
-        """Return infinity."""
-        return inf
-
 
 @final
 @dataclass(frozen=True)
@@ -130,10 +110,6 @@ class Ramp(Signal):
     def breaks(self, duration: float) -> tuple[float, ...]:
         """Return the times of the two corners."""
         return inside((self.start, self.stop), duration)
-
-    def max_step(self, duration: float) -> float:  # noqa: ARG002
-        """Return infinity."""
-        return inf
 
 
 @final

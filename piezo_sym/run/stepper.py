@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import ctypes
 import struct
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, final
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, final
 
 import numpy as np
 
 from piezo_sym.errors import PiezoError, RunError, UsageError, listing, quote
-from piezo_sym.run.checks import number, positive, vector
+from piezo_sym.run.checks import FloatArray, number, positive, vector
 from piezo_sym.run.compiled import input_conditions
 from piezo_sym.run.dataset import ledger
 from piezo_sym.run.engine.engine import engine_of
@@ -24,17 +24,10 @@ from piezo_sym.run.engine.records import Model, Path, at
 from piezo_sym.run.guard import check_start, domain_error
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.ledger import Trajectory
-from piezo_sym.run.module import checked, row_names
-from piezo_sym.run.parameters import read_initial, read_parameters
+from piezo_sym.run.module import GeneratedModule, checked, row_names
+from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
 from piezo_sym.run.signals import Constant
 from piezo_sym.run.system import System
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.module import GeneratedModule
-    from piezo_sym.run.parameters import LaneValue
 
 
 class Tick(ctypes.Structure):

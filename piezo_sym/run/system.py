@@ -5,21 +5,16 @@ Input: a generated module, `Parameters`, `Inputs`.  Output: `System`; of many ru
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, final, overload
+from typing import Any, final, overload
 
 import numpy as np
 
-from piezo_sym.run.module import exchanges, rows
+from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.inputs import Inputs, Segment
+from piezo_sym.run.module import GeneratedModule, Record, exchanges, rows
 from piezo_sym.run.parameter_table import Table
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.inputs import Inputs, Segment
-    from piezo_sym.run.module import GeneratedModule, Record
 
 
 @final

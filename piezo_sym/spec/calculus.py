@@ -5,8 +5,6 @@ Constant factors are folded as exact rationals, so that the text does not depend
 any algebra system.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 from piezo_sym.spec.expressions import (

@@ -14,8 +14,6 @@ rule asks for is one linear equation.  The rules:
 The literal 0 fits any unit, and so does what is 0 times something; other literals have none.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction

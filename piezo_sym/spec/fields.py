@@ -4,8 +4,6 @@ Input: TOML data or Python arguments.  Output: `Header`, `Parameter`, `Input`, `
 of an element, each right in itself; what must hold between them is `check`'s.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Annotated, Any, Union, final
 

@@ -3,8 +3,6 @@
 Input: a tree and a name.  Output: a tree, or None where there is none of a simple form.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 from math import comb
 

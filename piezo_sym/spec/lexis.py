@@ -3,8 +3,6 @@
 Input: a stranger's text.  Output: nothing, or a `RefusedError` that says what is wrong with it.
 """
 
-from __future__ import annotations
-
 import re
 
 from piezo_sym.errors import quote

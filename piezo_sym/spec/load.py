@@ -4,8 +4,6 @@ Input: a path, the name of a shipped spec, or text.  Output: a `Model`, or one e
 name.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from piezo_sym.errors import PiezoError

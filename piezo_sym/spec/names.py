@@ -6,8 +6,6 @@ characters, no keyword of a language a user exports to, and no name the law lang
 A trailing underscore is kept for the generator, so that `fresh` never meets a user's name.
 """
 
-from __future__ import annotations
-
 import keyword
 import re
 from collections.abc import Collection

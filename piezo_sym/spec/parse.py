@@ -6,8 +6,6 @@ then Python's own parser reads it, and only the nodes of the law language pass. 
 from the source text as exact rationals.  Nothing is ever evaluated by Python.
 """
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Callable
 from fractions import Fraction

@@ -4,8 +4,6 @@ Input: the tables of a spec.  Output: a `Place` each: the tree, the dimension of
 and the dimension that it must have.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import final

@@ -4,8 +4,6 @@ Input: a `ValidationError` and the data it is about.  Output: the first fault, w
 dotted path, what was expected there and, for unknown words, the nearest known one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from typing import Any
 

@@ -5,8 +5,6 @@ every run, that accepts every spec which `load` accepts and refuses unknown keys
 values of the wrong type.  What holds between tables (names, laws, units) is left to `load`.
 """
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Mapping
 from typing import Any

@@ -5,8 +5,6 @@ function with kinks is written as its branches: a short text can stand for more 
 ends with.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ Input: a path, or the name of a shipped spec.  Output: text, or the data TOML gi
 needs the spec's types, so that a run can compare a module with its spec at little cost.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import tomllib

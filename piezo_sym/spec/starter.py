@@ -3,8 +3,6 @@
 Input: a name.  Output: the text of ``starter.toml``, which lies beside this file, under that name.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from piezo_sym.errors import SpecError, quote

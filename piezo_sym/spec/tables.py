@@ -4,8 +4,6 @@ Input: the tables of a spec (`Tables`, which `Model` satisfies).  Output: its st
 laws and conditions, in declaration order.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Protocol, final

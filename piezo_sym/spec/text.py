@@ -5,8 +5,6 @@ it writes numbers, powers, calls, choices, comparisons and names.  `SPEC` writes
 itself, so that parsing what it writes gives the tree back.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction

@@ -4,8 +4,6 @@ Input: a dimension.  Output: text such as ``A/K`` or ``a voltage [V]``.  A unit 
 product and quotient of at most three common units, the shortest first, else in base units.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from fractions import Fraction
 from functools import cache

@@ -5,8 +5,6 @@ The grammar knows names, ``*``, ``/``, and whole powers up to 9 (``m**2``); ``1`
 the unit of a pure number.  pint never sees anything else.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from fractions import Fraction

@@ -4,8 +4,6 @@ Input: plain data of a spec, as TOML gives it.  Output: text, or a SHA-256.  Not
 spec's types, so that a run can compare a module with its spec without loading them.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Mapping

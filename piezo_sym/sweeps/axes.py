@@ -8,16 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias, final
+from typing import Any, TypeAlias, final
 
 import numpy as np
 
 from piezo_sym.errors import UsageError, listing, quote
 from piezo_sym.run.checks import is_number, number
+from piezo_sym.run.module import GeneratedModule
 from piezo_sym.sweeps.targets import Target, find, read_values
-
-if TYPE_CHECKING:
-    from piezo_sym.run.module import GeneratedModule
 
 WHERE = "sweep.over"
 EXPECTED = "a list or array of values, or a mapping of labels to values"

@@ -4,18 +4,14 @@ Input: a `Plan` and the hash of its spec.  Output: SHA-256 as text.  Functions c
 and what they hold, are bound to or find by name, so that one that was edited is another.
 """
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from types import CodeType, ModuleType
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from piezo_sym.sweeps.plan import Plan
+from piezo_sym.sweeps.plan import Plan
 
 #: How boxes are cut, and who runs them, says nothing about what runs.
 LEFT_OUT = ("most", "together", "engine", "side_by_side")

@@ -4,31 +4,25 @@ Input: a `Plan`, its module, points of the grid.  Output: a `Group`.  What a run
 t = 0 is its error, in the words of a single run.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, final
+from typing import Any, final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from piezo_sym.errors import PiezoError, RunError
+from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.engine import Engine
 from piezo_sym.run.engine.members import Members
 from piezo_sym.run.guard import check_start
 from piezo_sym.run.inputs import Inputs
-from piezo_sym.run.module import rows
+from piezo_sym.run.module import GeneratedModule, rows
 from piezo_sym.run.parameter_table import Column, Table
 from piezo_sym.run.parameters import own_initial, read_parameters
 from piezo_sym.run.signals import Constant, Signal
 from piezo_sym.run.system import Systems
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.engine import Engine
-    from piezo_sym.run.module import GeneratedModule
-    from piezo_sym.sweeps.plan import Plan
-    from piezo_sym.sweeps.targets import Target
+from piezo_sym.sweeps.plan import Plan
+from piezo_sym.sweeps.targets import Target
 
 
 @final

@@ -11,20 +11,17 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import prod
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, final
+from typing import Any, Literal, TypeAlias, final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.discrete import METHOD
+from piezo_sym.run.parameters import LaneValue
 from piezo_sym.run.signals import Signal
 from piezo_sym.sweeps.axes import Axis
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from piezo_sym.run.parameters import LaneValue
-    from piezo_sym.sweeps.targets import Target
+from piezo_sym.sweeps.targets import Target
 
 Reduction: TypeAlias = Literal["last", "mean"] | Callable[[Any], object]
 

@@ -4,8 +4,6 @@ Input: what a user said of `progress`.  Output: a function told how many runs ar
 a run has reached.
 """
 
-from __future__ import annotations
-
 import sys
 import time
 from collections.abc import Callable, Iterator

@@ -4,29 +4,21 @@ Input: a `Group` and the trajectories that it left in C, or one `Trajectory` aft
 by name a `Quantity` (runs, time, [lanes]), with names, order and units of a single run's Dataset.
 """
 
-from __future__ import annotations
-
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, TypeAlias, final
+from typing import Any, TypeAlias, final
 
 import numpy as np
+from numpy.typing import NDArray
 
+from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.dataset import variables
+from piezo_sym.run.discrete import Runs
+from piezo_sym.run.engine import Engine
 from piezo_sym.run.engine.members import Members
 from piezo_sym.run.ledger import Trajectory, row_counts
-from piezo_sym.run.module import exchanges
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.discrete import Runs
-    from piezo_sym.run.engine import Engine
-    from piezo_sym.run.module import Record
-    from piezo_sym.run.system import System
+from piezo_sym.run.module import Record, exchanges
+from piezo_sym.run.system import System
 
 
 @final

@@ -3,20 +3,20 @@
 Input: the arguments of `sweep`.  Output: a `Plan`, or an error of one line.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from math import prod
-from typing import TYPE_CHECKING, Any, final
+from typing import Any, final
+
+from numpy.typing import ArrayLike
 
 from piezo_sym.errors import PiezoError, UsageError, listing, quote
-from piezo_sym.run.checks import positive
+from piezo_sym.run.checks import FloatArray, positive
 from piezo_sym.run.discrete import METHOD
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.method import checked_method, way_of
-from piezo_sym.run.module import lanes
+from piezo_sym.run.module import GeneratedModule, lanes
 from piezo_sym.run.parameters import (
     own_initial,
     read_initial,
@@ -25,7 +25,7 @@ from piezo_sym.run.parameters import (
     sample_times,
 )
 from piezo_sym.run.simulate import read_rtol, refuse_step
-from piezo_sym.sweeps.axes import read_axes, single_numbers
+from piezo_sym.sweeps.axes import Axis, read_axes, single_numbers
 from piezo_sym.sweeps.plan import (
     ENOUGH_BOXES,
     MOST_BY_SCIPY,
@@ -35,13 +35,6 @@ from piezo_sym.sweeps.plan import (
     Plan,
     largest_banks,
 )
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.module import GeneratedModule
-    from piezo_sym.sweeps.axes import Axis
 
 WAYS = ("run", "chunk")
 REDUCTIONS = ("last", "mean")

@@ -139,14 +139,6 @@ def sweep(
     return found
 
 
-def in_threads(plan: Plan, module: GeneratedModule, count: int) -> xarray.Dataset:
-    """Return the Dataset of a plan run in threads of our own, silently: for measurements."""
-    plan, sink = sink_of(plan, module, None, count)
-    with threads_for(plan, module, count) as (submit, at_once):
-        run_missing(sink, submit, at_once, False, plan.size)
-    return sink.dataset()
-
-
 def run_missing(sink: Sink, submit: Submit, at_once: int, progress: object, total: int) -> None:
     """Run what a sink misses, and hand it the results as they come."""
     boxes = list(sink.missing())

@@ -8,23 +8,19 @@ A plain name is enough where only one thing has it; else "parameters.x", "inputs
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, final
+from typing import Any, Literal, TypeAlias, final
 
 import numpy as np
 
 from piezo_sym.errors import UsageError, nearest, quote
 from piezo_sym.run.checks import FloatArray, is_number, number, whole
 from piezo_sym.run.inputs import Function, read_signal
+from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.parameters import lane_value
 from piezo_sym.run.samples import Samples
 from piezo_sym.run.signals import Signal
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from piezo_sym.run.module import GeneratedModule
 
 Kind: TypeAlias = Literal["parameters", "inputs", "initial"]
 Value: TypeAlias = float | int | tuple[float, ...] | Signal

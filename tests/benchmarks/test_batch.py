@@ -8,12 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from test_rhs import best_times, states_and_inputs
 
 from piezo_sym.modules import load_module
 from piezo_sym.run.engine.compiler import FLAGS, build, compilers
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.engine.structure import Layout
+from tests.benchmarks.test_rhs import best_times, states_and_inputs
 
 HERE = Path(__file__).parent
 FOLDER = HERE.parents[1] / "generated" / "piezo_stack"

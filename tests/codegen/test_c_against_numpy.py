@@ -7,7 +7,6 @@ import shutil
 from pathlib import Path
 
 import numpy as np
-import platformdirs
 import pytest
 from hypothesis import assume, given, settings
 
@@ -22,15 +21,6 @@ from .c_compilers import COMPILERS
 from .test_numpy_against_sympy import MODULE, SIZES, TOLERANCE, assert_close, exact, mp, points
 
 PLAIN = {"energy", "entropy", "temperatures"}
-
-
-@pytest.fixture(scope="module", autouse=True)
-def cache(tmp_path_factory):
-    """A cache of our own: nothing is taken from a user's."""
-    folder = tmp_path_factory.mktemp("cache")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(platformdirs, "user_cache_dir", lambda name: str(folder / name))
-        yield folder
 
 
 @pytest.fixture(scope="module", params=COMPILERS)

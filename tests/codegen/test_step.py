@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from piezo_sym import derive, load, verify
+from piezo_sym import derive, load
 from piezo_sym.codegen.newton import start_of, step_of
 from piezo_sym.modules import module_of
-from piezo_sym.proofs import Verdict
+from piezo_sym.proofs import Verdict, decide
 from tests.codegen.evaluated import newton, value
 
 STORES = {"spring", "mass", "capacitor", "inductor", "hysteron"}
@@ -21,7 +21,7 @@ class Stepped:
     def __init__(self, model):
         self.model = model
         self.iphs = derive(model)
-        rows = verify(self.iphs).rows
+        rows = decide(self.iphs).rows
         odd = {r.element for r in rows if r.id == "odd" and r.verdict is Verdict.PROVED}
         self.step = step_of(self.iphs, frozenset(odd))
         self.start = start_of(self.iphs)

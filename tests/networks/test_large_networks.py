@@ -95,6 +95,7 @@ def test_a_long_chain_is_solved_link_by_link():
     assert entries == wanted | {(column, row): -e for (row, column), e in wanted.items()}
 
 
+@pytest.mark.long
 def test_the_time_to_solve_a_chain_grows_with_its_length():
     circuits = [circuit_of(parse(chain(count))) for count in (300, 1200)]
     tables = [symbol_table(circuit) for circuit in circuits]

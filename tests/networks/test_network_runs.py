@@ -6,7 +6,6 @@ from collections import Counter
 from pathlib import Path
 
 import numpy as np
-import platformdirs
 import pytest
 from agreement import point
 from hypothesis import HealthCheck, assume, given, settings
@@ -25,15 +24,6 @@ SPECS = sorted(Path(__file__).with_name("specs").glob("*.toml"))
 #: What a run is asked for, and how far its states may be from the reference.
 ACCURACIES = ((("rtol", 1e-6), 2e-5), (("rtol", 1e-8), 2e-7), (("step", 1e-3), 1e-3))
 FINISHED, STOPPED = "finished", "stopped"
-
-
-@pytest.fixture(scope="module", autouse=True)
-def cache(tmp_path_factory):
-    """A cache of our own: nothing is taken from a user's."""
-    folder = tmp_path_factory.mktemp("cache")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(platformdirs, "user_cache_dir", lambda name: str(folder / name))
-        yield folder
 
 
 def initial(module, x):
@@ -162,8 +152,8 @@ def test_a_run_never_takes_entropy_even_of_a_model_that_would(accuracy, tmp_path
 
 
 def test_networks():
-    outcomes = explore(8)
-    assert outcomes[FINISHED] >= 4
+    outcomes = explore(5)
+    assert outcomes[FINISHED] >= 3
 
 
 @pytest.mark.long

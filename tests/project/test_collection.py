@@ -1,23 +1,17 @@
 """Every test file is collected: no folder has a name that the test runner passes over."""
 
-import subprocess
-import sys
+from fnmatch import fnmatch
 from pathlib import Path
 
 TESTS = Path(__file__).parents[1]
 
 
-def test_every_test_file_is_collected():
-    words = [
-        sys.executable,
-        "-m",
-        "pytest",
-        "--collect-only",
-        "-q",
-        "-m",
-        "long or not long",
-        TESTS,
-    ]
-    listed = subprocess.run(words, capture_output=True, text=True, cwd=TESTS.parent, check=True)
-    found = {Path(line.partition("::")[0]).name for line in listed.stdout.splitlines()}
-    assert {path.name for path in TESTS.rglob("test_*.py")} <= found
+def test_every_test_file_is_collected(pytestconfig):
+    passed_over = pytestconfig.getini("norecursedirs")
+    assert "build" in passed_over
+    assert pytestconfig.getini("python_files") == ["test_*.py", "*_test.py"]
+    files = list(TESTS.rglob("test_*.py"))
+    assert Path(__file__) in files
+    for path in files:
+        for part in path.relative_to(TESTS).parts[:-1]:
+            assert not any(fnmatch(part, pattern) for pattern in passed_over), path

@@ -11,6 +11,8 @@ from hypothesis import strategies as st
 from piezo_sym.proofs.signs import intervals as iv
 from piezo_sym.proofs.signs.enclosures import Window, enclose, value
 from piezo_sym.proofs.signs.recentre import recentred
+from piezo_sym.proofs.signs.vanish import vanishes
+from piezo_sym.spec.expressions import Add, Call, Neg, Num
 from tests.proofs.sign_laws import law, laws, numbers, precise, steady
 
 PLACES = st.sampled_from([0.0, 0.25, 0.3, 1.0, 2.5, 7.0, 1e3, 1e6])
@@ -175,3 +177,31 @@ def test_branches_that_are_not_told_apart_are_all_held():
 @pytest.mark.parametrize("text", ["1/(1 - x)", "1/(1 if x < 0.5 else 0)", "log(1 - x)"])
 def test_what_is_zero_at_the_far_end_is_not_divided_by(text):
     assert enclose(law(text), Window(0.0, 1.0, 2)).inner == ()
+
+
+CANCELS = (
+    "log(1 + exp(x)) - log(2); exp(x - 1) - exp(-1); cos(x)*exp(2) - exp(x + 2); abs(x - 2) - 2"
+)
+REMAINS = "log(1 + exp(x)) - log(3); sign(x)*exp(1) - exp(1); 1/x - 1/x; x**(-1); sin(x) + 1e-30"
+
+
+@pytest.mark.parametrize("text", CANCELS.split("; "))
+def test_terms_that_cancel_at_a_number_are_zero_there(text):
+    assert vanishes(law(text), Fraction(0))
+    assert value(law(text), Fraction(0)).exact == 0
+    jet = enclose(law(text), Window(0.0, 0.5, 2)).left
+    assert jet[0].exact == 0
+
+
+@pytest.mark.parametrize("text", REMAINS.split("; "))
+def test_what_jumps_or_does_not_cancel_is_not_zero(text):
+    assert not vanishes(law(text), Fraction(0))
+
+
+@steady
+@given(laws(), numbers())
+def test_what_vanishes_is_zero(tree, at):
+    for f in (tree, Add((tree, Neg(tree))), Add((tree, Call("exp", (tree,)), Num(Fraction(-1))))):
+        exact = precise(f, at, DIGITS)
+        if vanishes(f, at) and exact is not None:
+            assert abs(exact) < 1e-40

@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 import sympy as sp
 
-from piezo_sym import PiezoError, derive, load, verify
-from piezo_sym.proofs import Verdict
+from piezo_sym import PiezoError, derive, load
+from piezo_sym.proofs import Verdict, decide
 from piezo_sym.spec.load import parse
 
 
@@ -20,7 +20,7 @@ def with_system(iphs, **changes):
 
 
 def verdicts(iphs):
-    return {row.id: row.verdict for row in verify(iphs).rows}
+    return {row.id: row.verdict for row in decide(iphs).rows}
 
 
 def changed(matrix, row, col, factor):
@@ -34,7 +34,7 @@ def changed(matrix, row, col, factor):
 
 
 def test_the_paper_is_proved(iphs):
-    report = verify(iphs)
+    report = decide(iphs)
     assert {row.id for row in report.rows} == {
         "skew",
         "casimir",
@@ -62,7 +62,7 @@ def test_the_written_out_lanes_are_proved_too(iphs, r):
 
 def test_a_transducer_with_two_ratios_is_no_skew_structure(iphs):
     broken = with_system(iphs, J0=changed(iphs.system.J0, "p", "Q_C", 2))
-    report = verify(broken)
+    report = decide(broken)
     skew, energy = report.rows[0], next(row for row in report.rows if row.id == "energy")
     assert skew.verdict is Verdict.REFUTED
     assert "(J0 + J0^T)[p, Q_C]" in skew.reason
@@ -73,7 +73,7 @@ def test_a_transducer_with_two_ratios_is_no_skew_structure(iphs):
 
 def test_the_witness_of_a_refutation_makes_the_residual_nonzero(iphs):
     broken = with_system(iphs, J0=changed(iphs.system.J0, "Q_C", "phi", 3))
-    row = next(row for row in verify(broken).rows if row.id == "energy")
+    row = next(row for row in decide(broken).rows if row.id == "energy")
     values = {sp.Symbol(name): sp.Rational(value) for name, value in row.witness.items()}
     system = broken.system
     balance = (system.E.T @ system.rhs - system.y.T @ system.u)[0, 0]
@@ -130,13 +130,13 @@ def test_a_temperature_that_falls_below_zero_is_refuted():
     kind = "thermal_mass"
     temperature = "T_0 + b*S"
     """
-    row = next(row for row in verify(derive(parse(text))).rows if row.id == "temperature")
+    row = next(row for row in decide(derive(parse(text))).rows if row.id == "temperature")
     assert row.verdict is Verdict.REFUTED
     assert row.reason == "T_0 + b*S_body = 0"
     assert row.witness == {"T_0": "1", "b": "1", "S_body": "-1"}
 
 
 def test_rows_as_data(iphs):
-    rows = [row.as_dict("piezo_stack") for row in verify(iphs).rows]
+    rows = [row.as_dict("piezo_stack") for row in decide(iphs).rows]
     assert set(rows[0]) == {"model", "id", "element", "verdict", "witness", "reason"}
     assert [row["element"] for row in rows if row["id"] == "temperature"] == ["body"]

@@ -103,3 +103,47 @@ def test_a_comparison_is_decided_as_by_mpmath_or_not_at_all(left, right, op, val
         assert holds(Cmp(op, left, right), values) == wanted
     except (ArithmeticError, ValueError):
         return
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "exp(exp(exp(exp(exp(x)))))",
+        "-x*exp(exp(1e9*x))",
+        "exp(1e7*x) - exp(1e6*x)",
+        "1/sin(exp(exp(9*x)))",
+    ],
+)
+def test_numbers_too_large_to_be_looked_at_are_not_told(text):
+    with pytest.raises(TooCloseError):
+        value_of(parse_law(text, "test"), {"x": Fraction(3)})
+
+
+@pytest.mark.parametrize(
+    ("text", "low", "high"),
+    [
+        ("exp(-1e12*x)", 0, 1e-300),
+        ("1 + exp(-1e12*x)", 1, 1 + 1e-15),
+        ("1 - tanh(1e12*x)", 0, 1e-15),
+        ("1 + tanh(-1e12*x)", 0, 1e-15),
+        ("tanh(1e12*sin(x))", 1 - 1e-15, 1),
+        ("sin(1e30*x)", -1, 1),
+        ("tanh(exp(1e5*x))", 1 - 1e-15, 1),
+        ("log(exp(1e5*x))", 3e5 - 1e-9, 3e5 + 1e-9),
+    ],
+)
+def test_functions_of_large_numbers_have_bounds(text, low, high):
+    found = value_of(parse_law(text, "test"), {"x": Fraction(3)})
+    assert low <= found.a <= found.b <= high
+
+
+NEGATIVE = st.fractions(-9, 9, max_denominator=4)
+
+
+@steady
+@given(NEGATIVE, NEGATIVE)
+def test_a_width_may_have_any_sign(z, w):
+    """The formulas are the contracts'; deadzone is z - saturate only for a width >= 0."""
+    at = {"z": z, "w": w}
+    assert value_of(parse_law("saturate(z, w)", "test"), at) == min(max(z, -w), w)
+    assert value_of(parse_law("deadzone(z, w)", "test"), at) == max(z - w, 0) + min(z + w, 0)

@@ -12,8 +12,8 @@ import cvc5
 import pytest
 import z3
 
-from piezo_sym import derive, load, verify
-from piezo_sym.proofs import Verdict, proofs_json, smt2
+from piezo_sym import derive, load
+from piezo_sym.proofs import Verdict, decide, proofs_json, smt2
 from piezo_sym.proofs.record import queries
 from piezo_sym.spec.load import parse
 
@@ -21,14 +21,15 @@ ROOT = Path(__file__).parents[2]
 COMMITTED = ROOT / "generated" / "piezo_stack"
 SPECS = sorted((ROOT / "tests" / "networks" / "specs").glob("*.toml"))
 ENTRY = {"id", "element", "statement", "required", "verdict", "witness", "reason", "method"}
+ENTRY |= {"points", "certificate"}
 OF_AN_OBLIGATION = {"latex", "assumptions", "rests_on", "queries"}
 IDS = {"skew", "casimir", "energy", "entropy", "temperature", "welldef", "continuous", "passive",
-       "odd", "sigma", "exergy", "environment", "units", "invariant"}  # fmt: skip
+       "odd", "sigma", "exergy", "environment", "units", "invariant", "program"}  # fmt: skip
 
 
 @cache
 def report_of(spec):
-    return verify(derive(load(str(spec))))
+    return decide(derive(load(str(spec))))
 
 
 def by_z3(text):
@@ -83,7 +84,7 @@ def test_the_file_has_every_query_of_the_report_in_its_order(spec):
 
 def test_a_claim_that_is_false_is_sat_in_the_file():
     text = (ROOT / "piezo_sym/models/piezo_stack.toml").read_text().replace('"d >= 0", ', "")
-    written = smt2(verify(derive(parse(text))), "x")
+    written = smt2(decide(derive(parse(text))), "x")
     answers = dict(zip(comments(written), by_z3(written), strict=True))
     assert answers == dict(zip(comments(written), by_cvc5(written), strict=True))
     false = [claim for claim, answer in answers.items() if answer == "sat"]
@@ -110,7 +111,7 @@ body = { kind = "thermal_mass", temperature = "T_0*exp(S/c)" }
 
 
 def test_what_intervals_prove_is_said_and_not_asked():
-    report = verify(derive(parse(INTERVALS)))
+    report = decide(derive(parse(INTERVALS)))
     assert report.proved
     written = smt2(report, "x")
     assert "; passive of load is PROVED by intervals" in written
@@ -125,15 +126,16 @@ def test_the_json_has_a_true_entry_a_row(spec):
     text = (COMMITTED / "proofs.json").read_text() if spec is None else proofs_json(
         report, model, "made")  # fmt: skip
     content = json.loads(text)
-    assert list(content) == ["made", "model", "spec_sha256", "obligations"]
+    assert list(content) == ["made", "model", "spec_sha256", "system", "obligations"]
     assert (content["model"], content["spec_sha256"]) == (report.model, model.sha256)
     entries = content["obligations"]
-    assert [(e["id"], e["element"] or "", e["verdict"]) for e in entries] == [
+    proved = [e for e in entries if e["id"] != "program"]  # that row is not the prover's
+    assert [(e["id"], e["element"] or "", e["verdict"]) for e in proved] == [
         (r.id, r.element, r.verdict.value) for r in report.rows
     ]
     for entry in entries:
         assert entry.keys() in (ENTRY, ENTRY | OF_AN_OBLIGATION)
-        assert (entry.keys() == ENTRY) == (entry["id"] == "units")
+        assert (entry.keys() == ENTRY) == (entry["id"] in {"units", "program"})
         assert entry["id"] in IDS
         assert entry["verdict"] in {v.value for v in Verdict}
         assert (entry["witness"] is not None) == (entry["verdict"] == "REFUTED")
@@ -145,12 +147,12 @@ def test_the_json_has_a_true_entry_a_row(spec):
 
 RECORDS = """
 from pathlib import Path
-from piezo_sym import derive, load, verify
-from piezo_sym.proofs import proofs_json, smt2
+from piezo_sym import derive, load
+from piezo_sym.proofs import decide, proofs_json, smt2
 import sys
 for spec in sys.argv[1:]:
     model = load(spec)
-    report = verify(derive(model))
+    report = decide(derive(model))
     print(smt2(report, "x"), proofs_json(report, model, "x"))
 """
 

@@ -7,12 +7,26 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from piezo_sym.errors import SpecError
-from piezo_sym.proofs.signs.reduce import Reduction, reduce
-from piezo_sym.spec.expressions import Mul, Sym, evaluate, names
+from piezo_sym.proofs.signs.reduce import Reduction, reductions
+from piezo_sym.proofs.signs.sums import balanced, choice_outside, grouped, summands
+from piezo_sym.spec.expressions import Cmp, Div, If, Mul, Neg, Sym, evaluate, names
 from piezo_sym.spec.text import spell
 from tests.proofs.sign_laws import law, steady
 
 POSITIVE = frozenset({"i_0", "i_1", "R", "T", "T_0", "V_T", "n", "q_e", "k_B", "v_s", "F_c"})
+
+
+def positive(part):
+    """Return what is known of a tree: some names, and those in sums and products of them."""
+    return bool(names(part)) and {*names(part)} <= POSITIVE and "-" not in spell(part)
+
+
+def reduce(tree, letter):
+    """Return the first way in which all in front is free of the letter, or None."""
+    found = reductions(tree, letter, positive)
+    return next((r for r in found if all(letter not in names(p) for p in r.prefactors)), None)
+
+
 #: law: prefactors, f, scale
 CASES = {
     "R*tanh(i/i_1)": ("R", "tanh(i)", "i_1"),
@@ -44,7 +58,7 @@ CASES = {
 
 @pytest.mark.parametrize("text", CASES)
 def test_a_law_is_brought_down_to_one_variable(text):
-    found = reduce(law(text), "i", POSITIVE)
+    found = reduce(law(text), "i")
     prefactors, f, scale = CASES[text]
     assert [spell(part) for part in found.prefactors] == prefactors.split("; ") * bool(prefactors)
     assert (spell(found.f), found.name, spell(found.scale)) == (f, "i", scale)
@@ -63,7 +77,7 @@ def test_a_law_is_brought_down_to_one_variable(text):
     ],
 )
 def test_what_does_not_come_down_is_none(text):
-    assert reduce(law(text), "i", POSITIVE) is None
+    assert reduce(law(text), "i") is None
 
 
 PARTS = st.sampled_from(
@@ -91,7 +105,7 @@ def test_the_reduced_law_has_the_same_value(text, positive, a, s):
         tree = law(text)
     except SpecError:  # a constant part without a value
         assume(False)
-    found = reduce(tree, "i", POSITIVE)
+    found = reduce(tree, "i")
     if found is None:
         return
     assert isinstance(found, Reduction)
@@ -111,7 +125,66 @@ def test_the_reduced_law_has_the_same_value(text, positive, a, s):
 
 
 def test_the_value_comes_back_in_the_letters_unit():
-    found = reduce(law("R*(exp(i/(n*V_T)) - 2)"), "i", POSITIVE)
+    found = reduce(law("R*(exp(i/(n*V_T)) - 2)"), "i")
     values = {"n": Fraction(2), "V_T": Fraction(1, 40)}
     assert found.back(Fraction(1, 2), values) == Fraction(1, 40)
     assert found.scale == Mul(Sym("n"), Sym("V_T"))
+
+
+def test_a_factor_of_another_scale_stands_in_front():
+    found = reductions(law("R*tanh(i/i_1)*(a + exp(-(i/i_0)**2))"), "i", positive)[0]
+    assert [spell(part) for part in found.prefactors] == ["R", "a + exp(-(i/i_0)**2)"]
+    assert (spell(found.f), spell(found.scale)) == ("tanh(i)", "i_1")
+
+
+def test_a_negative_name_counts_as_minus_a_positive_one():
+    found = reductions(law("b*tanh(i/b)"), "i", lambda part: part == Neg(Sym("b")))[0]
+    assert [spell(part) for part in found.prefactors] == ["b"]
+    assert (spell(found.f), spell(found.scale)) == ("tanh(-i)", "-b")
+
+
+SUMS = {
+    "R*(exp(i/i_1) - 1) - T*(exp(-i/i_0) - 1)": [
+        "R*exp(i/i_1) + R*(-1)",
+        "-T*exp((-i)/i_0) - T*(-1)",
+    ],
+    "R*i + R*i_1*sin(i/i_1) + a*tanh(i/i_0)": ["R*i + R*i_1*sin(i/i_1)", "a*tanh(i/i_0)"],
+    "R*(tanh(i/i_1) + a*tanh(i/i_0))": ["R*tanh(i/i_1)", "R*(a*tanh(i/i_0))"],
+    "R*tanh(i/i_1) + a": None,
+}
+
+
+@pytest.mark.parametrize("text", SUMS)
+def test_a_sum_comes_apart_by_scale_and_factor(text):
+    found = grouped(summands(law(text)), "i", positive)
+    assert (found and [spell(part) for part in found]) == SUMS[text]
+
+
+def test_constants_that_cancel_go_to_the_terms_that_need_them():
+    one, other = balanced([law("R*exp(i/i_1)"), law("-R*exp(-i/i_0)")], "i", positive)
+    assert (spell(one), spell(other)) == ("R*exp(i/i_1) + (-1)*R", "(-R)*exp((-i)/i_0) + 1*R")
+    for other in ("-T*exp(-i/i_0)", "-R*R*exp(-i/i_0)", "-2*R*exp(-i/i_0)", "-R*exp(a - i/i_0)"):
+        assert balanced([law("R*exp(i/i_1)"), law(other)], "i", positive) is None
+
+
+@steady
+@given(TEXTS, TEXTS, st.fixed_dictionaries({n: VALUES for n in sorted(POSITIVE)}), SIGNED, SIGNED)
+def test_parts_of_a_sum_add_up_to_it(first, second, known, a, i):
+    """Multiplied out, in groups, balanced, or with its choices outside, a law keeps its value."""
+    try:
+        tree = law(f"R*({first}) - ({second})")
+        at = {name: float(value) for name, value in (known | {"a": a, "i": i}).items()}
+        before = evaluate(tree, at)
+    except (SpecError, ArithmeticError, ValueError):
+        return
+    groups = grouped(summands(tree), "i", positive)
+    even = balanced(groups, "i", positive) if groups else None
+    for parts in filter(None, (summands(tree), groups, even)):
+        assert sum(evaluate(part, at) for part in parts) == pytest.approx(
+            before, rel=1e-9, abs=1e-9
+        )
+    factor = If(Sym("i"), Cmp(">", Sym("i"), Sym("a")), Sym("R"))
+    outside = choice_outside(Neg(Div(Mul(tree, factor), Sym("T"))))
+    assert isinstance(outside, If)
+    wanted = -before * evaluate(factor, at) / at["T"]
+    assert evaluate(outside, at) == pytest.approx(wanted, rel=1e-9, abs=1e-9)

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from piezo_sym import derive, load, verify
-from piezo_sym.proofs import Verdict
+from piezo_sym import derive, load
+from piezo_sym.proofs import Verdict, decide
 from piezo_sym.spec.load import parse
 
 SHIPPED = Path(__file__).parents[2] / "piezo_sym" / "models" / "piezo_stack.toml"
@@ -25,7 +25,7 @@ def changed(*pairs):
 
 
 def row(model, name, element=""):
-    rows = verify(derive(model)).rows
+    rows = decide(derive(model)).rows
     return next(r for r in rows if (r.id, r.element) == (name, element))
 
 
@@ -114,14 +114,14 @@ def test_a_law_may_jump_if_its_spec_says_so():
     assumed = ('"d >= 0"', '"d >= 0", "F_c >= 0"')
     assert row(changed(text, added, assumed), "continuous", "damper").verdict is Verdict.REFUTED
     told = (text[0], text[1] + "\ndiscontinuous = true")
-    report = verify(derive(changed(told, added, assumed)))
+    report = decide(derive(changed(told, added, assumed)))
     assert ("continuous", "damper") not in {(r.id, r.element) for r in report.rows}
     report.raise_if_not_proved()
 
 
 def test_a_law_that_is_not_odd_is_no_fault():
     law = "rho/(T - T_0)*(i if i > 0 else 2*i)"
-    report = verify(derive(changed((DEAD_ZONE, law))))
+    report = decide(derive(changed((DEAD_ZONE, law))))
     odd = next(r for r in report.rows if (r.id, r.element) == ("odd", "hysteron"))
     assert odd.verdict is Verdict.REFUTED
     assert not odd.required
@@ -129,5 +129,5 @@ def test_a_law_that_is_not_odd_is_no_fault():
 
 
 def test_everything_of_the_paper_is_proved():
-    rows = verify(derive(load("piezo_stack"))).rows
+    rows = decide(derive(load("piezo_stack"))).rows
     assert {r.verdict for r in rows} == {Verdict.PROVED}

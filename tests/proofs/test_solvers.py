@@ -12,8 +12,8 @@ from fractions import Fraction
 
 import pytest
 
-from piezo_sym import derive, load, verify
-from piezo_sym.proofs import Verdict, obligations, proofs_json, prove, solvers
+from piezo_sym import derive, load
+from piezo_sym.proofs import Verdict, decide, obligations, proofs_json, prove, solvers
 from piezo_sym.proofs.query import Query
 from piezo_sym.proofs.rational import cleared
 from piezo_sym.proofs.solvers import Answer, Opinions, Solver, solver
@@ -292,7 +292,7 @@ def test_verify_asks_cvc5_where_z3_does_not_know(monkeypatch):
     mute = Says(*KNOWS_NOT)
     real = solver("cvc5", solvers.LESS_PATIENCE)
     monkeypatch.setattr(solvers, "solver", lambda name, *_: mute if name == "z3" else real)
-    rows = verify(derive(load("piezo_stack"))).rows
+    rows = decide(derive(load("piezo_stack"))).rows
     assert {row.verdict for row in rows} == {Verdict.PROVED}
     assert mute.asked > 10
 
@@ -303,8 +303,8 @@ def test_without_cvc5_z3_is_asked_alone(monkeypatch):
 
 
 def test_a_report_does_not_depend_on_the_process():
-    first = verify(derive(load("piezo_stack")))
+    first = decide(derive(load("piezo_stack")))
     solver("z3").close()
-    second = verify(derive(load("piezo_stack")))
+    second = decide(derive(load("piezo_stack")))
     model = load("piezo_stack")
     assert json.loads(proofs_json(first, model, "")) == json.loads(proofs_json(second, model, ""))

@@ -2,8 +2,8 @@
 
 import pytest
 
-from piezo_sym import derive, verify
-from piezo_sym.proofs import Verdict
+from piezo_sym import derive
+from piezo_sym.proofs import Verdict, decide
 from piezo_sym.spec.load import parse
 
 WHERE = {("welldef", ""), ("temperature", "body")}
@@ -27,7 +27,7 @@ lever = {{ kind = "lever", first = ["a", "wall"], second = ["b", "wall"], ratio 
 
 
 def rows(assume="", ratio="n", law="T_0*exp(S/c)"):
-    report = verify(derive(parse(LEVER.format(assume=assume, ratio=ratio, law=law))))
+    report = decide(derive(parse(LEVER.format(assume=assume, ratio=ratio, law=law))))
     return {row.id: row for row in reversed(report.rows) if (row.id, row.element) in WHERE}
 
 

@@ -7,8 +7,8 @@ from fractions import Fraction
 
 import pytest
 
-from piezo_sym import derive, verify
-from piezo_sym.proofs import Verdict
+from piezo_sym import derive
+from piezo_sym.proofs import Verdict, decide
 from piezo_sym.spec.load import parse
 from tests.proofs.test_refuted import DEAD_ZONE, branches, changed
 
@@ -43,7 +43,7 @@ def damper(n, force, between='["tip", "wall"]'):
 
 def row(elements, assume="", temperature=EXPONENTIAL, name="sigma", element=""):
     text = HEAD.replace("ASSUME", assume).replace("TEMPERATURE", temperature) + elements
-    rows = verify(derive(parse(text))).rows
+    rows = decide(derive(parse(text))).rows
     return next(r for r in rows if (r.id, r.element) == (name, element))
 
 
@@ -115,7 +115,7 @@ def test_an_input_that_may_not_be_zero_refutes_nothing():
     )
     text = HEAD.replace('unit = "V" }', 'unit = "V", default = 2.0 }')
     text = text.replace("ASSUME", '"R > 0", "V > 1"').replace("TEMPERATURE", EXPONENTIAL)
-    rows = {r.id: r for r in verify(derive(parse(text + elements))).rows if r.id == "sigma"}
+    rows = {r.id: r for r in decide(derive(parse(text + elements))).rows if r.id == "sigma"}
     assert rows["sigma"].verdict is Verdict.OPEN
 
 
@@ -147,7 +147,7 @@ BANKS = [
 
 @pytest.mark.parametrize(("pairs", "law"), BANKS)
 def test_a_bank_is_refuted_by_one_lane(pairs, law):
-    rows = verify(derive(changed(*pairs))).rows
+    rows = decide(derive(changed(*pairs))).rows
     at = numbers(next(r for r in rows if r.id == "sigma"))
     assert at["hysteron_count"] == 1
     i, v = at["i_hysteron_1"], at["v_mass"]
@@ -156,7 +156,7 @@ def test_a_bank_is_refuted_by_one_lane(pairs, law):
 
 
 def test_what_rests_on_it_is_open():
-    rows = verify(derive(changed(('"d >= 0", ', "")))).rows
+    rows = decide(derive(changed(('"d >= 0", ', "")))).rows
     found = {r.id: r for r in rows if r.id in {"exergy", "environment"}}
     assert {r.verdict for r in found.values()} == {Verdict.OPEN}
     assert {r.reason for r in found.values()} == {"it rests on sigma, which is REFUTED"}

@@ -1,4 +1,4 @@
-"""Runs keep no memory: a hundred thousand calls in C, and hundreds of whole runs, leave none.
+"""Runs keep no memory: fifty thousand calls in C, and hundreds of whole runs, leave none.
 
 Memory is what the operating system counts; sixteen bytes a call would be seen.
 """
@@ -19,9 +19,9 @@ from piezo_sym.run.engine import march
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.stepper import Stepper
 
-CALLS, ROUNDS = 100_000, 4
+CALLS, ROUNDS = 50_000, 3
 #: What a round may take for good [bytes]: less than 4 a call of a run in C.
-MOST = 400_000
+MOST = 200_000
 STATM = Path("/proc/self/statm")
 U = (0.0, 50.0, 298.15)
 

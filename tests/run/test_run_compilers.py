@@ -11,7 +11,6 @@ import sys
 from pathlib import Path
 
 import numpy as np
-import platformdirs
 import pytest
 
 from piezo_sym import load, sine
@@ -39,21 +38,14 @@ def name_of(path):
     return Path(path).stem
 
 
-@pytest.fixture(params=MODELS, ids=name_of)
-def module(request, tmp_path):
+@pytest.fixture(params=MODELS, ids=name_of, scope="module")
+def module(request, tmp_path_factory):
     """A module in a folder of its own, so that no other compiler's library is used."""
-    model = load(request.param)
+    model, folder = load(request.param), tmp_path_factory.mktemp("made")
     for name, text in render(model).items():
-        (tmp_path / name).parent.mkdir(exist_ok=True)
-        (tmp_path / name).write_text(text, encoding="utf-8")
-    return load_module(tmp_path / model.name / f"{model.name}.py")
-
-
-@pytest.fixture
-def cache(tmp_path, monkeypatch):
-    """A cache of our own, empty."""
-    monkeypatch.setattr(platformdirs, "user_cache_dir", lambda name: str(tmp_path / "cache" / name))
-    return tmp_path / "cache"
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_text(text, encoding="utf-8")
+    return load_module(folder / model.name / f"{model.name}.py")
 
 
 @pytest.mark.parametrize("compiler", COMPILERS)
@@ -65,7 +57,6 @@ def test_the_whole_driver_has_no_warning(module, compiler, tmp_path):
     assert called([*COMPILERS[compiler], *flags, "-c", "driver.c"], tmp_path) == ""
 
 
-@pytest.mark.usefixtures("cache")
 @pytest.mark.parametrize("compiler", COMPILERS)
 @pytest.mark.parametrize("accuracy", [{"rtol": 1e-6}, {"step": 1e-5}], ids=str)
 def test_runs_are_the_same_whoever_compiles(module, compiler, accuracy, monkeypatch):
@@ -96,10 +87,11 @@ import platformdirs
 platformdirs.user_cache_dir = lambda name: sys.argv[2]
 from piezo_sym.modules import load_module
 from piezo_sym.run import simulate
-from piezo_sym.run.engine import records
+from piezo_sym.run.engine import library, records
 from piezo_sym.run.engine.engine import OFFERED, engine_of
 from piezo_sym.run.stepper import Stepper
 
+library.FLAGS = [["-O1", *flags[1:]] for flags in library.FLAGS]  # sanitized, -O3 takes minutes
 records.GAP = 4
 module = load_module(Path(sys.argv[1]))
 inputs = {"V_in": lambda t: 100 * np.sin(628 * t)} if module.NAME == "piezo_stack" else {}
@@ -152,7 +144,7 @@ def python(compiler, *words):
 @pytest.mark.parametrize(
     ("module", "compiler"),
     [
-        (model, name)
+        pytest.param(model, name, marks=[pytest.mark.long] if model in MODELS[1:-1] else [])
         for name in SANITIZING
         for model in (MODELS if name == SANITIZING[0] else MODELS[:1])
     ],

@@ -1,12 +1,33 @@
 """Signs of laws that solvers of polynomials cannot decide: one real variable, rigorous intervals.
 
-stage       from -> to                          in
-reduce      law -> prefactors * f(s)            a letter in units of parameters
-decide      f -> PROVED | REFUTED | OPEN        windows, Taylor series at zeros, both ends
-enclosures  tree, window -> interval and jet    intervals, jets, recentre
+stage       from -> to                            in
+cases       law -> guards and laws                choices that parameters make
+sums        law -> terms of one scale each        products of sums multiplied out
+reduce      term -> prefactors * f(s)             a letter in units of parameters
+decide      f -> PROVED | REFUTED | OPEN          windows, Taylor series at zeros, both ends
+enclosures  tree, window -> interval and jet      intervals, jets, recentre, vanish
+certificate what was shown, as data               for a checker
 """
 
+from piezo_sym.proofs.signs.cases import Positive, cases, opposite
+from piezo_sym.proofs.signs.certificate import Case, Term
 from piezo_sym.proofs.signs.decide import Decision, Domain, decide_sign
-from piezo_sym.proofs.signs.reduce import Reduction, reduce
+from piezo_sym.proofs.signs.reduce import Reduction, reductions
+from piezo_sym.proofs.signs.sums import balanced, choice_outside, grouped, summands
 
-__all__ = ["Decision", "Domain", "Reduction", "decide_sign", "reduce"]
+__all__ = [
+    "Case",
+    "Decision",
+    "Domain",
+    "Positive",
+    "Reduction",
+    "Term",
+    "balanced",
+    "cases",
+    "choice_outside",
+    "decide_sign",
+    "grouped",
+    "opposite",
+    "reductions",
+    "summands",
+]

@@ -3,8 +3,8 @@
 Input: a tree in one name and a domain.  Output: a `Decision`.  The domain is cut at zero and at its
 ends; from each of these points c, rays x = c + t and x = c - t, t > 0, are cut into windows until
 an enclosure shows f >= 0 on each, a window to infinity among them.  Near a zero of f at c the jets
-there are exact: that is Taylor's theorem.  Work is counted in windows, not in seconds: the same law
-gives the same decision everywhere.
+there are exact: that is Taylor's theorem.  Work is counted in derivatives on windows, not in
+seconds: the same law gives the same decision everywhere.
 """
 
 from __future__ import annotations
@@ -13,18 +13,18 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from importlib.util import find_spec
 from itertools import pairwise
 from typing import final
 
 from piezo_sym.proofs.report import Verdict
+from piezo_sym.proofs.signs.certificate import Windows
 from piezo_sym.proofs.signs.enclosures import Window, enclose, value
 from piezo_sym.proofs.signs.intervals import INF
 from piezo_sym.proofs.signs.recentre import recentred
 from piezo_sym.spec.expressions import Expr, LaneSum, names, walk
 
-#: Windows looked at before a decision is left open.
-BUDGET = 1500
+#: Derivatives on windows that are looked at before a decision is left open.
+BUDGET = 1000
 #: Orders of derivatives tried on each window, and more of them at both ends of a ray.
 ORDERS, MORE_ORDERS = (0, 2), (0, 2, 8)
 #: What is meant by the ends of a ray, as values of t.
@@ -42,11 +42,12 @@ PINCHES = 12
 @final
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """What was found: for REFUTED where f is negative, for OPEN why."""
+    """What was found: for REFUTED where f is negative, for OPEN why, for PROVED the windows."""
 
     verdict: Verdict
     witness: Fraction | None = None
     reason: str = ""
+    rays: tuple[Windows, ...] = ()
 
 
 @final
@@ -95,21 +96,21 @@ def decide_sign(f: Expr, name: str, domain: Domain = REALS, budget: int = BUDGET
     Parameters
     ----------
     f : a tree whose only name is `name`.
-    budget : windows to look at.
+    budget : derivatives on windows to look at.
 
     Returns
     -------
     Decision
         PROVED is a theorem.  REFUTED gives a rational number in the domain at which f < 0.
     """
-    if find_spec("flint") is None:
-        reason = "python-flint is missing: pip install 'piezo_sym[proof]'"
-        return Decision(Verdict.OPEN, reason=reason)
     if others := [other for other in names(f) if other != name]:
         return Decision(Verdict.OPEN, reason=f"depends on {', '.join(others)} too")
     if any(isinstance(node, LaneSum) for node in walk(f)):
         return Decision(Verdict.OPEN, reason="sums over lanes")
-    return _at_points(f, domain) or _on_rays(f, name, domain, budget)
+    try:
+        return _at_points(f, domain) or _on_rays(f, name, domain, budget)
+    except (ArithmeticError, RecursionError) as error:
+        return Decision(Verdict.OPEN, reason=f"has no bounds: {error}")
 
 
 def _at_points(f: Expr, domain: Domain) -> Decision | None:
@@ -139,6 +140,7 @@ def _simple_numbers(domain: Domain) -> Iterator[Fraction]:
 def _on_rays(f: Expr, name: str, domain: Domain, budget: int) -> Decision:
     """Cut the domain into rays and prove f >= 0 on each, and at the points where they start."""
     reasons: list[str] = []
+    shown: list[Windows] = []
     left = budget
     for point in (point for point in _starts(domain) if point in domain):
         found = value(f, point)
@@ -149,7 +151,10 @@ def _on_rays(f: Expr, name: str, domain: Domain, budget: int) -> Decision:
         if decision.verdict is Verdict.REFUTED:
             return decision
         reasons += [decision.reason] if decision.verdict is Verdict.OPEN else []
-    return Decision(Verdict.OPEN, reason=reasons[0]) if reasons else Decision(Verdict.PROVED)
+        shown += decision.rays
+    if reasons:
+        return Decision(Verdict.OPEN, reason=reasons[0])
+    return Decision(Verdict.PROVED, rays=tuple(shown))
 
 
 def _starts(domain: Domain) -> list[Fraction]:
@@ -184,12 +189,16 @@ def _search(f: Expr, name: str, ray: Ray, budget: int) -> tuple[Decision, int]:
     """Return the decision on one ray and what is left of the budget."""
     pieces = [(0.0, ray.length)]
     undecided: list[str] = []
+    shown: list[tuple[float, float, int]] = []
+    others: list[Windows] = []
     while pieces and len(undecided) < MOST_UNDECIDED:
         if budget <= 0:
             return Decision(Verdict.OPEN, reason="needs more work than the budget allows"), 0
         a, b = pieces.pop()
-        budget -= 1
-        if _nonnegative(ray.tree, a, b):
+        order, work = _order(ray.tree, a, b)
+        budget -= work
+        if order is not None:
+            shown.append((a, b, order))
             continue
         x = ray.point(_simplest(a, b))
         found = value(f, x)
@@ -198,20 +207,26 @@ def _search(f: Expr, name: str, ray: Ray, budget: int) -> tuple[Decision, int]:
         if not _narrow(a, b):
             middle = _middle(a, b)
             pieces += [(middle, b), (a, middle)]
-        elif a == 0 or b == INF or not _pinched(f, ray, a, b):
+        elif a > 0 and b < INF and (pinched := _pinched(f, ray, a, b)) is not None:
+            others += pinched
+        else:
             undecided.append(f"is not told from zero near {name} = {float(x):.9g}")
-    reason = undecided[0] if undecided else ""
-    return Decision(Verdict.OPEN if undecided else Verdict.PROVED, reason=reason), budget
+    if undecided:
+        return Decision(Verdict.OPEN, reason=undecided[0]), budget
+    rays = (Windows(ray.centre, ray.side, tuple(shown)), *others)
+    return Decision(Verdict.PROVED, rays=rays), budget
 
 
-def _nonnegative(tree: Expr, a: float, b: float) -> bool:
-    """Return whether f >= 0 is shown on a < t <= b."""
+def _order(tree: Expr, a: float, b: float) -> tuple[int | None, int]:
+    """Return how many derivatives show f >= 0 on a < t <= b, if any do, and how many were tried."""
     at_an_end = (a == 0 and b <= NEAR) or (a >= FAR and b == INF)
+    work = 0
     for order in MORE_ORDERS if at_an_end else ORDERS:
+        work += order + 1
         found = enclose(tree, Window(a, b, order)).inner
         if found and found[0].lo >= 0:
-            return True
-    return False
+            return order, work
+    return None, work
 
 
 def _narrow(a: float, b: float) -> bool:
@@ -222,32 +237,40 @@ def _middle(a: float, b: float) -> float:
     return max(1.0, 2 * a) if b == INF else a + (b - a) / 2
 
 
-def _pinched(f: Expr, ray: Ray, a: float, b: float) -> bool:
-    """Return whether f >= 0 is shown from the simplest number in a <= t <= b, to both sides.
+def _pinched(f: Expr, ray: Ray, a: float, b: float) -> tuple[Windows, ...] | None:
+    """Return how f >= 0 is shown from the simplest number in a <= t <= b to both sides, or None.
 
     Where f touches zero at that number, the jets there are exact.
     """
     middle = ray.point(_simplest(a, b))
     found = value(f, middle)
     if found is None or found.lo < 0:
-        return False
+        return None
     ends = sorted((ray.point(Fraction(a)), ray.point(Fraction(b))))
-    return all(
-        end == middle or _germ(recentred(f, middle, side), _not_below(abs(end - middle)))
+    shown = [
+        _germ(f, middle, side, _not_below(abs(end - middle)))
         for side, end in ((-1, ends[0]), (1, ends[1]))
-    )
+        if end != middle
+    ]
+    both = tuple(windows for windows in shown if windows is not None)
+    return both if len(both) == len(shown) else None
 
 
-def _germ(tree: Expr, length: float) -> bool:
-    """Return whether f >= 0 is shown on 0 < t <= length, after a few cuts at most."""
+def _germ(f: Expr, centre: Fraction, side: int, length: float) -> Windows | None:
+    """Return how f >= 0 is shown on 0 < t <= length, after a few cuts at most, or None."""
+    tree = recentred(f, centre, side)
     pieces = [(0.0, length)]
+    shown: list[tuple[float, float, int]] = []
     for _ in range(PINCHES):
         a, b = pieces.pop()
-        if not _nonnegative(tree, a, b):
+        order, _ = _order(tree, a, b)
+        if order is None:
             pieces += [(_middle(a, b), b), (a, _middle(a, b))]
+        else:
+            shown.append((a, b, order))
         if not pieces:
-            return True
-    return False
+            return Windows(centre, side, tuple(shown))
+    return None
 
 
 def _simplest(a: float, b: float) -> Fraction:

@@ -9,7 +9,7 @@ most of the cancellation that intervals suffer from.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import final
 
@@ -17,6 +17,7 @@ from piezo_sym.proofs.signs import intervals as iv
 from piezo_sym.proofs.signs import jets
 from piezo_sym.proofs.signs.intervals import INF, Interval
 from piezo_sym.proofs.signs.jets import Jet
+from piezo_sym.proofs.signs.vanish import vanishes
 from piezo_sym.spec.expressions import Add, Call, Cmp, Div, Expr, If, Mul, Neg, Num, Pow, Sym
 
 
@@ -84,7 +85,7 @@ def _enclose(node: Expr, x: Enclosure, order: int) -> Enclosure:
         case Neg(arg):
             return _minus(of(arg))
         case Add(terms):
-            return _sum([of(term) for term in terms])
+            return _cancelled(_sum([of(term) for term in terms]), node, x)
         case Mul(left, right):
             return _product(of(left), of(right))
         case Div(left, right):
@@ -104,6 +105,22 @@ def _sum(parts: list[Enclosure]) -> Enclosure:
     for part in parts[1:]:
         total = _each(jets.plus, total, part)
     return total
+
+
+def _cancelled(total: Enclosure, tree: Expr, x: Enclosure) -> Enclosure:
+    """Return a sum as zero at its left end or one point if its terms cancel and none jumps."""
+    if x.left and _cancels(total.left, tree, x.left[0]):
+        left = (iv.NOUGHT, *total.left[1:])
+        return Enclosure(_sharpened(total.inner, left, total.right), left, total.right)
+    if not x.left and _cancels(total.inner, tree, x.inner[0]):
+        return Enclosure((iv.NOUGHT,))
+    return total
+
+
+def _cancels(jet: Jet, tree: Expr, at: Interval) -> bool:
+    """Return whether a limit that may be zero is exactly zero."""
+    vague = jet and jet[0].exact is None and jet[0].lo <= 0 <= jet[0].hi
+    return bool(vague) and at.exact is not None and vanishes(tree, at.exact)
 
 
 def _each(operation: Callable[..., Jet], *parts: Enclosure) -> Enclosure:
@@ -198,8 +215,7 @@ def _call(function: str, args: list[Enclosure]) -> Enclosure:
 
 
 def _minus(a: Enclosure) -> Enclosure:
-    found = _each(jets.minus, a)
-    return Enclosure(found.inner, found.left, found.right, a.growth)
+    return replace(_each(jets.minus, a), growth=a.growth)
 
 
 def _nought(like: Enclosure) -> Enclosure:

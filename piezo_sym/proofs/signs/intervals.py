@@ -40,7 +40,8 @@ class Interval:
 
     def __post_init__(self) -> None:
         """Refuse an empty interval and NaN: a sound computation never gives either."""
-        if not (self.lo <= self.hi and self.lo < INF and self.hi > -INF):
+        ordered = self.lo <= self.hi and self.lo < INF and self.hi > -INF
+        if not ordered or (self.nonzero and self.lo == self.hi == 0):
             raise ArithmeticError(f"[{self.lo}, {self.hi}] is no interval")
 
 
@@ -52,19 +53,21 @@ def interval(lo: float, hi: float, nonzero: bool = False) -> Interval:
 
 def rational(value: Fraction) -> Interval:
     """Return the interval of one exact number."""
-    if max(value.numerator.bit_length(), value.denominator.bit_length()) > EXACT_BITS:
-        return Interval(_nearest(value, down=True), _nearest(value, down=False), value != 0)
-    return Interval(_nearest(value, down=True), _nearest(value, down=False), value != 0, value)
+    long = max(value.numerator.bit_length(), value.denominator.bit_length()) > EXACT_BITS
+    return Interval(*_ends(value), value.numerator != 0, None if long else value)
 
 
-def _nearest(value: Fraction, *, down: bool) -> float:
+def _ends(value: Fraction) -> tuple[float, float]:
+    """Return the doubles next to a number, below and above; whole numbers compare faster."""
+    top, bottom = value.numerator, value.denominator
     try:
-        near = float(value)
+        near = top / bottom
     except OverflowError:
-        near = INF if value > 0 else -INF
-    if down:
-        return near if near <= value else math.nextafter(near, -INF)
-    return near if near >= value else math.nextafter(near, INF)
+        return (math.nextafter(INF, 0), INF) if top > 0 else (-INF, math.nextafter(-INF, 0))
+    up, down = near.as_integer_ratio()
+    left, right = up * bottom, top * down
+    low = near if left <= right else math.nextafter(near, -INF)
+    return low, near if left >= right else math.nextafter(near, INF)
 
 
 EVERYTHING = Interval(-INF, INF)
@@ -109,6 +112,8 @@ def _sum(x: float, y: float, outward: float) -> float:
 
 def times(a: Interval, b: Interval) -> Interval:
     """Return a*b."""
+    if a.lo == a.hi == 0 or b.lo == b.hi == 0:
+        return NOUGHT
     if a.exact is not None and b.exact is not None:
         return rational(a.exact * b.exact)
     corners = [(x, y) for x in (a.lo, a.hi) for y in (b.lo, b.hi)]

@@ -1,9 +1,10 @@
 """A law with parameters, reduced to a function of one real variable.
 
-Input: a law, its letter, and the names that are positive.  Output: a `Reduction`, or None.  The
-letter is measured in units of positive parameters, i = i_1*s; the law is written as a product in
-which all that does not depend on s stands in front: ``R*i + R*i_1*sin(i/i_1)`` is
-``R*i_1*(s + sin(s))``.  Both agree wherever the law is defined.
+Input: a law, its letter, and what is positive.  Output: `Reduction` records.  The letter is
+measured in units of positive parameters, i = i_1*s; the law is written as a product in which all
+that does not depend on s stands in front: ``R*i + R*i_1*sin(i/i_1)`` is ``R*i_1*(s + sin(s))``.  A
+factor that depends on s and on other parameters stands in front too.  Both agree wherever the law
+is defined.
 """
 
 from __future__ import annotations
@@ -13,6 +14,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
+from piezo_sym.proofs.exactly import value_of
+from piezo_sym.proofs.signs.cases import Positive
 from piezo_sym.spec.calculus import power
 from piezo_sym.spec.expressions import (
     ONE,
@@ -25,6 +28,7 @@ from piezo_sym.spec.expressions import (
     If,
     Mul,
     Neg,
+    Node,
     Num,
     Pow,
     Sym,
@@ -47,27 +51,29 @@ class Reduction:
 
     Attributes
     ----------
-    prefactors : factors free of the letter; their signs are not looked at here.
-    f : the rest, a tree whose only name is `name`.
+    prefactors : the other factors; their signs are not looked at here.
+    f : a tree whose only name is `name`.
     name : the letter, which stands for s in `f`.
-    units : the positive names, and their powers, whose product is the scale.
+    units : the positive parts, and their powers, whose product is the scale.
     """
 
     prefactors: tuple[Expr, ...]
     f: Expr
     name: str
-    units: tuple[tuple[str, int], ...]
+    units: tuple[tuple[Expr, Fraction], ...]
 
     @property
     def scale(self) -> Expr:
         """The positive factor from s to the letter, as a tree."""
-        return _product({Sym(name): Fraction(e) for name, e in self.units})
+        return _product(dict(self.units))
 
-    def back(self, value: Fraction, values: Mapping[str, Fraction]) -> Fraction:
-        """Return the letter's value for a value of s and of the parameters."""
-        for name, exponent in self.units:
-            value *= values[name] ** exponent
-        return value
+    def back(self, value: Fraction, values: Mapping[str, Fraction]) -> Fraction | None:
+        """Return the letter's value for a value of s and of the parameters, if it is rational."""
+        try:
+            size = value_of(self.scale, values)
+        except (ArithmeticError, ValueError, KeyError):
+            return None
+        return value * size if isinstance(size, Fraction) else None
 
 
 @final
@@ -83,62 +89,104 @@ class Product:
 @final
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """What the letter is called, what it is measured in, and which names are positive."""
+    """What the letter is called, what it is measured in, and what is positive."""
 
     letter: str
     scale: Powers
-    positive: frozenset[str]
+    positive: Positive
 
     def is_positive(self, powers: Powers) -> bool:
         """Return whether a product of powers is positive because each base is."""
-        return all(isinstance(base, Sym) and base.name in self.positive for base in powers)
+        return all(map(self.positive, powers))
 
 
-def reduce(law: Expr, letter: str, positive: frozenset[str]) -> Reduction | None:
-    """Return a law as prefactors times a function of its letter alone, if it can be so written.
+def reductions(law: Expr, letter: str, positive: Positive) -> list[Reduction]:
+    """Return the ways of a law to a function of its letter alone, least in front first.
 
-    Parameters
-    ----------
-    law : a tree.
-    letter : the variable, which may take every real value.
-    positive : parameters, and a temperature, that are positive.
+    The letter may take every real value; `positive` says if a tree without it is positive.
     """
-    for scale in _scales(law, letter, positive - {letter}):
-        found = _factored(law, Setting(letter, scale, positive - {letter}))
-        if set(names(found.bound)) <= {letter}:
-            f = _tree(Product(found.number, {}, found.bound))
-            prefactors = tuple(power(base, e) for base, e in found.free.items())
-            units = tuple((names(base)[0], int(e)) for base, e in scale.items())
-            return Reduction(prefactors, f, letter, units)
-    return None
+    plain, divided, single = settings(law, letter, positive)
+    made = [_reduction(law, setting) for setting in (plain, *divided, *single)]
+    found = {reduction: outside for reduction, outside in made if reduction}
+    return sorted(found, key=lambda reduction: found[reduction])
 
 
-def _scales(law: Expr, letter: str, positive: frozenset[str]) -> Iterator[Powers]:
-    """Yield what the letter may be measured in: nothing, what it is divided by, one parameter."""
-    yield {}
+def _reduction(law: Expr, setting: Setting) -> tuple[Reduction | None, int]:
+    """Return a law as far as it comes down in one unit, and how many factors do not."""
+    inside = Product(Fraction(1), {})
+    front, outside = list[Expr](), list[Expr]()
+    for factor in _factors(law):
+        if names(factor) and setting.letter not in names(factor):
+            front.append(factor)
+            continue
+        part = factored(factor, setting)
+        if {*names(part.bound)} <= {setting.letter}:
+            inside = _times(inside, part)
+        else:
+            outside.append(factor)
+    f = _tree(Product(inside.number, {}, inside.bound))
+    if outside and setting.letter not in names(f):
+        return None, 0
+    free = (power(base, e) for base, e in inside.free.items())
+    prefactors = (*front, *free, *outside)
+    units = tuple(setting.scale.items())
+    return Reduction(prefactors, f, setting.letter, units), len(outside)
+
+
+def _factors(node: Expr) -> Iterator[Expr]:
+    """Yield the factors of a product, divisors as powers."""
+    match node:
+        case Neg(arg):
+            yield Num(Fraction(-1))
+            yield from _factors(arg)
+        case Mul(left, right):
+            yield from _factors(left)
+            yield from _factors(right)
+        case Div(left, right) if right != ZERO:
+            yield from _factors(left)
+            yield from (Pow(part, Fraction(-1)) for part in _factors(right))
+        case _:
+            yield node
+
+
+def settings(
+    law: Expr, letter: str, positive: Positive
+) -> tuple[Setting, list[Setting], list[Setting]]:
+    """Return what the letter may be measured in: nothing, what it is divided by, one parameter."""
     plain = Setting(letter, {}, positive)
-    for node in walk(law):
-        for arg in node.args if isinstance(node, Call) else ():
-            found = _factored(arg, plain)
-            whole = all(e.denominator == 1 for e in found.free.values())
-            if found.bound == Sym(letter) and whole and plain.is_positive(found.free):
-                yield {base: -e for base, e in found.free.items()}
-    for name in names(law):
-        if name in positive:
-            yield {Sym(name): Fraction(1)}
+    divided: list[Powers] = []
+    for arg in (arg for node in walk(law) for arg in _arguments(node)):
+        found = factored(arg, plain)
+        if found.bound == Sym(letter) and found.free and plain.is_positive(found.free):
+            scale = {base: -e for base, e in found.free.items()}
+            divided += [scale] if scale not in divided else []
+    free = (Sym(name) for name in names(law) if name != letter)
+    single = [Setting(letter, {name: Fraction(1)}, positive) for name in free if positive(name)]
+    return plain, [Setting(letter, scale, positive) for scale in divided], single
 
 
-def _factored(node: Expr, setting: Setting) -> Product:
+def _arguments(node: Node) -> tuple[Expr, ...]:
+    match node:
+        case Call(_, args):
+            return args
+        case Pow(part, _) | (Div() as part):
+            return (part,)
+    return ()
+
+
+def factored(node: Expr, setting: Setting) -> Product:
     """Return a tree as a product."""
 
     def of(part: Expr) -> Product:
-        return _factored(part, setting)
+        return factored(part, setting)
 
     match node:
         case Num(value):
             return Product(value, {})
         case Sym(name) if name == setting.letter:
             return Product(Fraction(1), setting.scale, node)
+        case Sym() if setting.positive(Neg(node)):
+            return Product(Fraction(-1), {Neg(node): Fraction(1)})
         case Neg(arg):
             return _times(Product(Fraction(-1), {}), of(arg))
         case Mul(left, right):
@@ -147,6 +195,8 @@ def _factored(node: Expr, setting: Setting) -> Product:
             return _times(of(left), _raised(below, Fraction(-1), setting))
         case Pow(base, exponent) if (inner := of(base)).number:
             return _raised(inner, exponent, setting)
+    if not names(node):
+        return Product(Fraction(1), {}, node)
     if setting.letter not in names(node):
         return Product(Fraction(1), {node: Fraction(1)})
     match node:
@@ -186,10 +236,9 @@ def _raised(a: Product, exponent: Fraction, setting: Setting) -> Product:
     inside = {base: e for base, e in a.free.items() if base not in outside}
     free = {base: e * exponent for base, e in outside.items()}
     root = Pow(_tree(Product(a.number, inside, a.bound)), exponent)
-    if setting.letter in names(root):
-        return Product(Fraction(1), free, root)
-    whole = root == Pow(ONE, exponent)
-    return Product(Fraction(1), free if whole else _joined(free, {root: Fraction(1)}))
+    if setting.letter in names(root) or not names(root):
+        return Product(Fraction(1), free, ONE if root == Pow(ONE, exponent) else root)
+    return Product(Fraction(1), _joined(free, {root: Fraction(1)}))
 
 
 def _sum(terms: list[Product]) -> Product:
@@ -237,9 +286,8 @@ def _tree(a: Product) -> Expr:
     if not factors:
         return Num(a.number)
     tree = factors[0] if len(factors) == 1 else Mul(*factors)
-    if a.number == 1:
-        return tree
-    return Neg(tree) if a.number == -1 else Mul(Num(a.number), tree)
+    signed = Neg(tree) if a.number == -1 else Mul(Num(a.number), tree)
+    return tree if a.number == 1 else signed
 
 
 def _product(powers: Powers) -> Expr:

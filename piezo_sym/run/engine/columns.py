@@ -4,17 +4,13 @@ Input: a function of a library, arrays (rows, columns) as NumPy has them, parame
 rows (rows, columns), put into an array.
 """
 
-from __future__ import annotations
-
 import ctypes
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.engine.records import LONG, at
-
-if TYPE_CHECKING:
-    from piezo_sym.run.checks import FloatArray
 
 
 def one_by_one(function: Any, x: FloatArray, u: FloatArray, p: Any, out: FloatArray) -> None:

@@ -4,8 +4,6 @@ Input: the environment.  Output: `Compiler` records in the order in which they a
 cc, gcc, clang, then the one of the `zig` extra; and libraries, built from one source file.
 """
 
-from __future__ import annotations
-
 import os
 import shlex
 import shutil

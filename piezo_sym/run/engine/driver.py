@@ -4,8 +4,6 @@ Input: a model's name, and whether it has a dissipative step.  Output: text.  A 
 columns lie one after another.
 """
 
-from __future__ import annotations
-
 from piezo_sym.run.engine.texts import STEPS, texts
 
 #: Functions of (x, u, p) and of (x, p), and those that give one number.

@@ -12,25 +12,21 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, final
+from typing import Any, final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from piezo_sym.errors import EngineError, FileError
 from piezo_sym.files import path_text, read_text
+from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.engine.columns import at_once, one_by_one
 from piezo_sym.run.engine.driver import DRIVEN, PLAIN, SCALARS
 from piezo_sym.run.engine.library import EngineWarning, Made, Sources, library
 from piezo_sym.run.engine.rates import WIDE
 from piezo_sym.run.engine.records import at
 from piezo_sym.run.engine.structure import Layout
-from piezo_sym.run.module import lanes
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.module import GeneratedModule, Record
+from piezo_sym.run.module import GeneratedModule, Record, lanes
 
 #: From so many columns on, all vectors of a library are full.
 FEWEST = 16

@@ -5,8 +5,6 @@ all that it depends on (texts, flags, compiler, processor), is built aside and m
 one step: any number of processes may ask at once, and none ever sees half a file.
 """
 
-from __future__ import annotations
-
 import hashlib
 import os
 import sys

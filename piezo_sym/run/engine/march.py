@@ -5,24 +5,18 @@ way through one mesh, with what they leave at samples.  Arrays live as long as t
 them.
 """
 
-from __future__ import annotations
-
 import ctypes
+from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, final
+from typing import Any, Literal, final
 
 import numpy as np
+from numpy.typing import NDArray
 
+from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.engine.engine import Engine
 from piezo_sym.run.engine.records import LONG, PATHS, POINTER, Intervals, Member, at, room_of
 from piezo_sym.run.engine.structure import record_of
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from numpy.typing import NDArray
-
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.engine.engine import Engine
 
 #: Members of more states are computed one by one: then the lanes of their banks fill the vectors.
 MOST_STATES = 32

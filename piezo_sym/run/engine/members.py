@@ -4,22 +4,16 @@ Input: an `Engine`, states (runs, k, n), parameters.  Output: rows (runs, k, row
 to run, for arrays lie there as it wants them.
 """
 
-from __future__ import annotations
-
 import ctypes
-from typing import TYPE_CHECKING, Any, final
+from collections.abc import Sequence
+from typing import Any, final
 
 import numpy as np
+from numpy.typing import NDArray
 
+from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.engine.engine import Engine
 from piezo_sym.run.engine.records import LONG, POINTER, at
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.engine.engine import Engine
 
 
 @final

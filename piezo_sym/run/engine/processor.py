@@ -3,8 +3,6 @@
 Input: nothing.  Output: text that differs between processors with different instructions.
 """
 
-from __future__ import annotations
-
 import platform
 import subprocess
 import sys

@@ -4,8 +4,6 @@ Input: the texts of a module's .h and .c.  Output: the file to compile for array
 The source has no conditions of C there, and parameters are the same for all states of a call.
 """
 
-from __future__ import annotations
-
 import re
 
 from piezo_sym.errors import EngineError

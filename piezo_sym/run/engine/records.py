@@ -4,22 +4,18 @@ Input: sizes.  Output: `Model`, `Path`, `Member`, `Intervals` as C has them, and
 numbers a member, and which part of it each pointer of its record points to.
 """
 
-from __future__ import annotations
-
 import ctypes
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import accumulate
 from math import prod
-from typing import TYPE_CHECKING, Any, final
+from typing import Any, final
 
 import numpy as np
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.checks import FloatArray
 
 POINTER, LONG, DOUBLE = ctypes.c_void_p, ctypes.c_long, ctypes.c_double
 NUMBER, WORD = ctypes.sizeof(DOUBLE), ctypes.sizeof(POINTER)

@@ -5,25 +5,19 @@ after another: numbers, then a pointer for each parameter of a bank to one numbe
 order of the spec, then the sizes of banks.
 """
 
-from __future__ import annotations
-
 import ctypes
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, final
+from typing import Any, final
 from weakref import WeakKeyDictionary
 
 import numpy as np
+from numpy.typing import NDArray
 
-from piezo_sym.run.module import lanes
+from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.module import GeneratedModule, lanes
 from piezo_sym.run.parameter_table import Column, Table
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.module import GeneratedModule
 
 #: Structures kept: of the runs that go through C alone, which are asked for again and again.
 REMEMBERED = 256

@@ -3,8 +3,6 @@
 Input: their names.  Output: one text.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from pathlib import Path
 

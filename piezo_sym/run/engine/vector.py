@@ -5,8 +5,6 @@ The step's part of the source has no conditions of C and no constants without ty
 holds for vectors as it stands; here its numbers get the vector's type, its functions other names.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass

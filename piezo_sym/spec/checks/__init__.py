@@ -3,8 +3,6 @@
 Input: the tables of a spec, each right in itself.  Output: nothing, or one `SpecError`.
 """
 
-from __future__ import annotations
-
 from piezo_sym.spec.checks.laws import check_laws, check_references
 from piezo_sym.spec.checks.names import check_model_name, check_names
 from piezo_sym.spec.checks.values import check_values

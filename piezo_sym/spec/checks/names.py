@@ -1,7 +1,5 @@
 """Names of a spec: well formed, not taken, and not twice."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator
 from fractions import Fraction

@@ -3,8 +3,6 @@
 Adding a kind is a file beside this one, its class in `KINDS`, and a test.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from piezo_sym.spec.elements.ambient import Ambient

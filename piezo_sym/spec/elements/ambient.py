@@ -1,7 +1,5 @@
 """Ambient: heat exchange of a body with an environment of given temperature."""
 
-from __future__ import annotations
-
 from typing import Annotated, Literal, final
 
 from piezo_sym.spec.elements.base import BodyName, Element, InputName, Law, Letters

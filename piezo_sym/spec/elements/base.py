@@ -4,8 +4,6 @@ Input: the fields of one ``[elements.<name>]`` table.  Output: `Port` records.  
 class in a file of its own, with one row in the registry (`elements/__init__.py`).
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Conduction: heat flow between two bodies in contact."""
 
-from __future__ import annotations
-
 from typing import Annotated, Literal, final
 
 from piezo_sym.spec.elements.base import BodyName, Element, Law, Letters

@@ -1,7 +1,5 @@
 """Current source: an input that pushes a current from its second node into its first."""
 
-from __future__ import annotations
-
 from typing import Literal, final
 
 from piezo_sym.spec.elements.base import Element, InputName, Pair

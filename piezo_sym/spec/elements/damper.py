@@ -1,7 +1,5 @@
 """Damper: turns mechanical power into heat."""
 
-from __future__ import annotations
-
 from typing import Annotated, ClassVar, Literal, final
 
 from piezo_sym.spec.elements.base import BodyName, Element, Jumps, Law, Letters, Pair

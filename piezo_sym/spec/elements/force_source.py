@@ -1,7 +1,5 @@
 """Force source: an input that pushes a node."""
 
-from __future__ import annotations
-
 from typing import Literal, final
 
 from piezo_sym.spec.elements.base import Element, InputName, Node

@@ -1,7 +1,5 @@
 """Hysteron: an inductor and a nonlinear resistor in series, alone or as a bank in parallel."""
 
-from __future__ import annotations
-
 from typing import Annotated, ClassVar, Literal, final
 
 from pydantic import Field, StrictInt

@@ -1,7 +1,5 @@
 """Inductor: stores magnetic energy."""
 
-from __future__ import annotations
-
 from typing import Annotated, ClassVar, Literal, final
 
 from piezo_sym.spec.elements.base import (

@@ -1,7 +1,5 @@
 """Spring: stores elastic energy."""
 
-from __future__ import annotations
-
 from typing import Annotated, ClassVar, Literal, final
 
 from piezo_sym.spec.calculus import add, neg

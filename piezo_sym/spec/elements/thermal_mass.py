@@ -1,7 +1,5 @@
 """Thermal mass: a body that stores heat."""
 
-from __future__ import annotations
-
 from typing import Annotated, ClassVar, Literal, final
 
 from piezo_sym.spec.elements.base import (

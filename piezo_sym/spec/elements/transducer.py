@@ -1,7 +1,5 @@
 """Transducer: the power-preserving coupling of an electrical and a mechanical pair of nodes."""
 
-from __future__ import annotations
-
 from typing import Annotated, Literal, final
 
 from piezo_sym.spec.elements.base import BodyName, Element, Law, Letters, Pair, Refers

@@ -1,7 +1,5 @@
 """Transformer: the power-preserving coupling of two electrical pairs of nodes."""
 
-from __future__ import annotations
-
 from typing import Annotated, Literal, final
 
 from piezo_sym.spec.elements.base import Element, Law, Letters, Pair

@@ -1,7 +1,5 @@
 """Velocity source: an input that moves a node."""
 
-from __future__ import annotations
-
 from typing import Literal, final
 
 from piezo_sym.spec.elements.base import Element, InputName, Node

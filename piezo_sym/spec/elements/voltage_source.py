@@ -1,7 +1,5 @@
 """Voltage source: an input that sets the voltage between two nodes."""
 
-from __future__ import annotations
-
 from typing import Literal, final
 
 from piezo_sym.spec.elements.base import Element, InputName, Pair

@@ -1,0 +1,231 @@
+"""The groups of `piezo-sym bench`: rates of one state and of many, and whole runs at equal error.
+
+Input: a `Model`, and what drives it.  Output: a `Report`.  Rates are compared with SymPy's in 30
+digits, in units of each row's largest; ends of runs with an own tight run, which another confirms,
+in units of the largest that each state becomes.  All is measured in one process, in turns, so
+that its ratios hold on a busy machine too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from functools import partial
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, final
+
+import numpy as np
+import sympy as sp
+
+from piezo_sym.bench.contest import Contestant, Pair, Row, compared
+from piezo_sym.bench.lambdified import batch, field, solver
+from piezo_sym.bench.problem import INSTANT, Problem, problem_of
+from piezo_sym.errors import EngineError, PiezoError, RunError, UsageError, nearest, quote
+from piezo_sym.run import simulate
+from piezo_sym.run.discrete import METHOD
+from piezo_sym.run.engine.engine import engine_of
+from piezo_sym.run.scales import shared
+
+if TYPE_CHECKING:
+    from piezo_sym.run.checks import FloatArray
+    from piezo_sym.run.inputs import InputValue
+    from piezo_sym.spec.model import Model
+
+MANY, CHECKED, DIGITS = 10_000, 8, 30
+#: The error that runs are tuned to, the tolerances that are tried, and for how long [s].
+TARGET, LADDER, PATIENCE = 1e-6, tuple(float(f"1e-{n}") for n in range(2, 13)), 60.0
+#: Two runs, of which the first is taken for the truth; the others where no step is small enough.
+OWN, SCIPY = ((METHOD, 1e-9), ("LSODA", 1e-10)), (("LSODA", 1e-12), ("LSODA", 1e-10))
+MEASURE = "of a rate, against 30 digits, in units of the row's largest"
+
+
+@final
+@dataclass(frozen=True)
+class Report:
+    """Rows, and what was left out, each with its reason."""
+
+    model: str
+    rows: tuple[Row, ...] = ()
+    left_out: tuple[str, ...] = ()
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What errors are, tolerances, and what was left out, one line each."""
+        measures = {f"errors of {row.group}: {row.measure}": None for row in self.rows}
+        noted = {f"{row.group}, {row.other}: {row.note}": None for row in self.rows if row.note}
+        return (*measures, *noted, *(f"left out: {line}" for line in self.left_out))
+
+
+def bench(
+    model: Model,
+    *,
+    inputs: Mapping[str, InputValue] | None = None,
+    duration: float = 0.1,
+    only: Sequence[str] = (),
+    rounds: int = 5,
+    say: Callable[[str], None] = lambda _: None,
+) -> Report:
+    """Measure a model, and return the report.
+
+    Parameters
+    ----------
+    inputs : constants and sines; the spec's defaults where nothing is said, but 100 V at 100 Hz
+        for the shipped actuator.
+    duration : of a run [s].
+    only : names of groups; all when empty.
+    rounds : how often every call is timed.
+    say : told which group is being measured.
+
+    Raises
+    ------
+    UsageError
+        If a group is unknown, or an input is neither a constant nor a sine.
+    """
+    names = tuple(dict.fromkeys(only)) or tuple(GROUPS)
+    for name in names:
+        if name not in GROUPS:
+            raise UsageError(f"no group {quote(name)}", "--only", remedy=nearest(name, GROUPS))
+    problem = problem_of(model, inputs or {}, duration)
+    rows: list[Row] = []
+    left_out: list[str] = []
+    for name in names:
+        say(name)
+        try:
+            rows += GROUPS[name](problem, rounds, left_out)
+        except (EngineError, RunError) as error:
+            left_out.append(f"{name}: {error}")
+    return Report(model.name, tuple(rows), tuple(left_out))
+
+
+def _rhs(problem: Problem, rounds: int, left_out: list[str]) -> tuple[Row, ...]:
+    x = _path(problem, ("LSODA", 1e-5), 201)[:, 100]
+    usual = {
+        "lambdified SymPy (numpy)": partial(field(problem), INSTANT),
+        "lambdified SymPy (math, cse)": partial(field(problem, "math", cse=True), INSTANT),
+    }
+    return _rates("rhs", problem, x, usual, rounds, left_out)
+
+
+def _batch(problem: Problem, rounds: int, left_out: list[str]) -> tuple[Row, ...]:
+    path = _path(problem, ("LSODA", 1e-5), 201)
+    x = path[:, np.random.default_rng(0).integers(path.shape[1], size=MANY)]
+    usual = {"lambdified SymPy (numpy)": batch(problem)}
+    return _rates(f"batch of {MANY}", problem, x, usual, rounds, left_out)
+
+
+def _rates(
+    group: str,
+    problem: Problem,
+    x: FloatArray,
+    usual: Mapping[str, Callable[[FloatArray], object]],
+    rounds: int,
+    left_out: list[str],
+) -> tuple[Row, ...]:
+    """Return the rows of rates of x (n,) or (n, columns): ours against the usual ones."""
+    u = np.array([float(signal(INSTANT)) for signal in problem.system.inputs.signals])
+    ours: dict[str, Any] = {"generated NumPy": problem.module.rhs}
+    try:
+        ours["generated C"] = engine_of(problem.module).rhs
+    except EngineError as error:
+        left_out.append(f"{group}, generated C: {error}")
+    columns = x.reshape(len(x), -1)
+    exact = np.array([_precise(problem, column) for column in columns.T[:CHECKED]]).T
+    every = problem.module.rhs(columns, u, problem.system.parameters)
+    size = np.max(np.abs(every), axis=1, keepdims=True)
+
+    def contestant(name: str, call: Callable[[], object]) -> Contestant:
+        found = np.asarray(call()).reshape(columns.shape)[:, :CHECKED]
+        error = float(np.max(np.abs(found - exact) / np.where(size > 0, size, 1.0)))
+        return Contestant(name, call, columns.shape[1], error)
+
+    p = problem.system.parameters
+    mine = [contestant(name, partial(rhs, x, u, p)) for name, rhs in ours.items()]
+    others = [contestant(name, partial(rates, x)) for name, rates in usual.items()]
+    return compared(group, [Pair(o, m) for o in others for m in mine], rounds, MEASURE)
+
+
+def _precise(problem: Problem, x: FloatArray) -> list[float]:
+    """Return the rates of one state, computed in 30 digits."""
+    values = zip(problem.states, x, strict=True)
+    known = {state: sp.Float(float(value), DIGITS) for state, value in values}
+    return [float(rate.xreplace(known).evalf(DIGITS)) for rate in problem.at_instant]
+
+
+def _run(problem: Problem, rounds: int, left_out: list[str]) -> tuple[Row, ...]:
+    """Return the rows of whole runs, each at the loosest tolerance that reaches `TARGET`."""
+    problem, exact, measure = reference_of(problem)
+    usual = (("LSODA", "numpy", False), ("RK45", "numpy", False), ("LSODA", "math", True))
+    solvers: dict[str, Callable[[float], FloatArray]] = {
+        "simulate()": lambda rtol: _path(problem, (METHOD, rtol), [problem.duration])[:, -1]
+    }
+    for method, modules, cse in usual:
+        name = f"{method} on lambdified SymPy{', math and cse' if cse else ''}"
+        solvers[name] = solver(method, modules, cse, problem)
+    error = partial(problem.error, exact=exact)
+    found = [tuned(name, solve, error) for name, solve in solvers.items()]
+    left_out += [f"run, {reason}" for reason in found if isinstance(reason, str)]
+    ours, *others = (one for one in found if isinstance(one, Contestant))
+    if isinstance(found[0], str):
+        return ()
+    return compared("run", [Pair(other, ours) for other in others], rounds, measure)
+
+
+def reference_of(problem: Problem) -> tuple[Problem, FloatArray, str]:
+    """Return a problem with its scale, its state (n,) at the end, and how far that is known."""
+    how = OWN
+    try:
+        path = _path(problem, how[0], 201)
+    except RunError:
+        how = SCIPY
+        path = _path(problem, how[0], 201)
+    scaled = replace(problem, scale=shared(problem.system, np.max(np.abs(path), axis=1)))
+    good = scaled.error(_path(problem, how[1], [problem.duration])[:, -1], path[:, -1])
+    (method, rtol), (other, looser) = how
+    line = f"at the end, against {method} at rtol {rtol:g}, "
+    return scaled, path[:, -1], f"{line}good to {good:.0e} by {other} at {looser:g}"
+
+
+def tuned(
+    name: str,
+    solve: Callable[[float], FloatArray],
+    error: Callable[[FloatArray], float],
+) -> Contestant | str:
+    """Return a solver at the loosest tolerance that reaches the target with the next tighter one.
+
+    One that fails is off; the reason where there is no such tolerance.
+    """
+    start, good = perf_counter(), None
+    for rtol in LADDER:
+        found = np.inf
+        with suppress(ArithmeticError, RuntimeError, ValueError, PiezoError):
+            found = error(solve(rtol))
+        if found <= TARGET and good:
+            return good
+        call = partial(solve, rtol)
+        good = Contestant(name, call, 1, found, f"rtol {rtol:g}") if found <= TARGET else None
+        if perf_counter() - start > PATIENCE:
+            break
+    return good or f"{name}: does not reach an error of {TARGET:g} in {PATIENCE:g} s"
+
+
+def _path(problem: Problem, how: tuple[str, float], times: Any) -> FloatArray:
+    """Return the states (n, nt) of a run by a method with an rtol."""
+    found = simulate(
+        problem.module,
+        inputs=problem.inputs,
+        duration=problem.duration,
+        parameters=problem.counts,
+        method=how[0],
+        rtol=how[1],
+        times=times,
+    )
+    names = [record.name for record in problem.module.STATES]
+    return np.concatenate([np.atleast_2d(found[name].values.T) for name in names])
+
+
+GROUPS: Mapping[str, Callable[[Problem, int, list[str]], Sequence[Row]]] = {
+    "rhs": _rhs,
+    "batch": _batch,
+    "run": _run,
+}

@@ -1,0 +1,44 @@
+"""The checker's command: ``python -I piezo_sym/checker SPEC.toml PROOFS.json``.
+
+Input: two files.  Output: a line per row, a count; exit 0 if all are confirmed, 1 if not, 2 if the
+input is bad.
+"""
+
+import json
+import resource
+import sys
+from importlib import import_module, util
+from pathlib import Path
+
+SECONDS, BYTES = 900, 6 * 2**30
+
+
+def main(arguments: list[str]) -> int:
+    """Print what is confirmed of a spec; return the exit status."""
+    resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS))
+    resource.setrlimit(resource.RLIMIT_AS, (BYTES, BYTES))
+    if not __package__:  # run as a folder: it becomes a package, and hides no other module
+        folder = Path(__file__).parent
+        sys.path[:] = [path for path in sys.path if path != str(folder)]
+        found = util.spec_from_file_location("checker", folder / "__init__.py")
+        assert found is not None
+        assert found.loader is not None
+        sys.modules["checker"] = util.module_from_spec(found)
+        found.loader.exec_module(sys.modules["checker"])
+    checker, rows = (import_module((__package__ or "checker") + name) for name in ("", ".rows"))
+    try:
+        texts = [Path(path).read_text(encoding="utf-8-sig") for path in arguments]
+        found_rows = list(rows.audit(checker.read_spec(texts[0]), json.loads(texts[1])))
+    except (checker.InputError, OSError, ValueError, IndexError, RecursionError) as error:
+        print(f"bad input: {str(error).partition(chr(10))[0][:200]}", file=sys.stderr)  # noqa: T201
+        return 2
+    for name, element, why in found_rows:
+        line = f"{'not ' * bool(why)}confirmed {name} {element}".rstrip() + f": {why}" * bool(why)
+        print("".join(c if c.isprintable() else "?" for c in line))  # noqa: T201
+    good = sum(not why for _, _, why in found_rows)
+    print(f"{good} of {len(found_rows)} rows confirmed")  # noqa: T201
+    return int(good < len(found_rows))
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,214 @@
+"""Kirchhoff's and Newton's laws of a spec as one tableau, solved in any field.
+
+Input: a `Spec`, the size of each bank, and the algebra in which the laws are written, numbers or
+rational functions: its `one`, `law(element, field, lane, letter)` ("law" the dissipative one) and
+`given(role, owner, lane)` of an input "u", a co-state "E" or a temperature "T".  Output: `Flows`:
+letters, outputs, rates.  Every branch's through variable and every node's potential is an
+unknown; a law that is linear in its letter is an equation, in either causality.
+"""
+
+from collections.abc import Mapping
+from functools import cache
+from typing import Any, NamedTuple
+
+from .field import Field
+from .kinds import REFERENCES
+from .laws import Node, made, put, sym
+from .spec import Element, Spec
+
+Form = dict[Any, Any]
+Slot = tuple[str, int]
+
+
+class Part(NamedTuple):
+    """A branch: its element and lane, what stands in it, its nodes, what it imposes."""
+
+    element: str
+    lane: int
+    role: str
+    nodes: tuple[Any, Any]
+    across: bool
+
+
+class SingularError(Exception):
+    """The laws have no single solution."""
+
+
+class Flows(NamedTuple):
+    """A network solved, by (element, lane); `forms` says what each letter is a combination of."""
+
+    letters: dict[Slot, Any]
+    outputs: dict[Slot, Any]
+    rates: dict[Slot, Any]
+    conjugates: dict[str, Any]
+    forms: dict[Slot, Form]
+    pivots: list[Any]
+
+
+def _parts(spec: Spec, counts: Mapping[str, int]) -> list[Part]:
+    """Return every branch, those of a bank once per lane."""
+    found = []
+    for e in spec.of("store", "law", "source", "coupling", "hysteron"):
+        for lane in range(1, counts[e.name] + 1) if e.lanes is not None else (0,):
+            if e.kind.form == "hysteron":
+                (a, b), inner = e.pairs[0], (e.name, lane)
+                found.append(Part(e.name, lane, "store", (a, inner), False))
+                found.append(Part(e.name, lane, "law", (inner, b), True))
+                continue
+            roles = "01" if e.kind.form == "coupling" else (e.kind.form,)
+            pairs = zip(roles, e.pairs, strict=True)
+            found += [Part(e.name, lane, role, pair, e.across) for role, pair in pairs]
+    return found
+
+
+def flows(spec: Spec, counts: Mapping[str, int], algebra: Any) -> Flows:
+    """Return what flows in a network.
+
+    Raises
+    ------
+    SingularError
+        If its laws have no, or more than one, solution, or a loop of laws that are not linear.
+    """
+    found = _parts(spec, counts)
+    answers, pivots = _solved(spec, found, algebra)
+    made = Flows({}, {}, {}, {}, {}, pivots)
+
+    def total(form: Form) -> Any:
+        terms = algebra.one - algebra.one
+        for (role, name, lane), factor in form.items():
+            if role == "W" and (name, lane) not in made.outputs:
+                raise SingularError("laws that are not linear depend on each other")
+            value = made.outputs[name, lane] if role == "W" else algebra.given(role, name, lane)
+            terms = terms + factor * value
+        return terms
+
+    for part in sorted((p for p in found if p.role == "law"), key=lambda p: _is_equation(spec, p)):
+        slot = part.element, part.lane
+        made.forms[slot], made.letters[slot] = answers[part], total(answers[part])
+        element = spec.elements[part.element]
+        made.outputs[slot] = algebra.law(element, "law", part.lane, made.letters[slot])
+    for part in found:
+        if part.role == "store":
+            made.rates[part.element, part.lane] = total(answers[part])
+        elif part.role == "source":
+            y = total(answers[part])
+            made.conjugates[part.element] = -y if part.across else y
+    _heat(spec, algebra, made)
+    return made
+
+
+def _heat(spec: Spec, algebra: Any, made: Flows) -> None:
+    """Add the rates of entropies: what processes produce, and what is exchanged."""
+    heat = {body.name: algebra.given("T", body.name, 0) for body in spec.of("body")}
+    rates = {body: algebra.one - algebra.one for body in heat}
+    for (name, lane), W in made.outputs.items():
+        body = spec.elements[name].bodies[0]
+        rates[body] = rates[body] + W * made.letters[name, lane] / heat[body]
+    for e in spec.of("conduction", "ambient"):
+        first = e.bodies[0]
+        if e.kind.form == "ambient":
+            rates[first] = rates[first] + exchange(e, algebra)
+            made.conjugates[e.name] = heat[first]
+            continue
+        power = algebra.law(e, "conductance", 0) * (heat[first] - heat[e.bodies[1]])
+        for body, share in zip(e.bodies, (-power, power), strict=True):
+            rates[body] = rates[body] + share / heat[body]
+    made.rates.update({(body, 0): rate for body, rate in rates.items()})
+
+
+def exchange(element: Element, algebra: Any) -> Any:
+    """Return the entropy that an environment brings, lam*(T_e/T - 1)."""
+    hot, T = algebra.given("u", element.name, 0), algebra.given("T", element.bodies[0], 0)
+    return algebra.law(element, "conductance", 0) * (hot / T - algebra.one)
+
+
+def _is_equation(spec: Spec, part: Part) -> bool:
+    law = spec.elements[part.element].law
+    return law is not None and is_linear(law, ("z", part.element))
+
+
+def _solved(spec: Spec, found: list[Part], algebra: Any) -> tuple[dict[Any, Form], list[Any]]:
+    """Return for each branch the variable that it does not impose, and the pivots."""
+    rows, one, balances = list[Form](), algebra.one, dict[Any, Form]()
+    for n, part in enumerate(found):
+        for node, sign in zip(part.nodes, (one, -one), strict=True):
+            if node not in REFERENCES:
+                balances.setdefault(node, {})[part] = sign
+        rows.append(_law(spec, part, found[n - 1], found[(n + 1) % len(found)], algebra))
+    unknowns, pivots = _eliminated([*balances.values(), *rows], len(balances) + len(found))
+    answers: dict[Any, Form] = {part: {} for part in found}
+    for part in found:
+        for label, factor in ({part: one} if part.across else _potential(part.nodes, one)).items():
+            answers[part] = _added(answers[part], unknowns[label], factor)
+    return answers, pivots
+
+
+def _law(spec: Spec, part: Part, before: Part, after: Part, algebra: Any) -> Form:
+    """Return the equation of one branch, a form that vanishes."""
+    element, one, own = spec.elements[part.element], algebra.one, {part: algebra.one}
+    across = _potential(part.nodes, one)
+    if part.role == "1":  # through_2 = -ratio * (through_1 or across_1)
+        n = algebra.law(element, "ratio", 0)
+        return own | ({before: n} if element.across else _potential(before.nodes, n))
+    if part.role == "0":  # across_1 = ratio * across_2, or through_1 = ratio * across_2
+        other = _potential(after.nodes, -algebra.law(element, "ratio", 0))
+        return _added(across if element.across else own, other, one)
+    if part.role == "law" and _is_equation(spec, part):
+        slope = algebra.law(element, "law", part.lane, one)
+        return across | {part: -slope} if part.across else own | _potential(part.nodes, -slope)
+    given = {"store": "E", "law": "W", "source": "u"}[part.role], part.element, part.lane
+    sign = one if part.role == "source" and not part.across else -one
+    return (across if part.across else own) | {given: sign}
+
+
+def _potential(nodes: tuple[Any, Any], factor: Any) -> Form:
+    pairs = zip(nodes, (factor, -factor), strict=True)
+    return {("e", node): sign for node, sign in pairs if node not in REFERENCES}
+
+
+def _added(left: Form, right: Form, factor: Any) -> Form:
+    total = dict(left)
+    for label, value in right.items():
+        total[label] = factor * value + total[label] if label in total else factor * value
+    return {label: value for label, value in total.items() if (value == 0) is not True}
+
+
+def _is_given(label: Any) -> bool:
+    return not isinstance(label, Part) and label[0] != "e"
+
+
+def _eliminated(left: list[Form], size: int) -> tuple[dict[Any, Form], list[Any]]:
+    """Return each unknown as a form of the givens, by Gauss and Jordan; plain pivots first."""
+    solved, pivots = dict[Any, Form](), list[Any]()
+    while left:
+        choices = [
+            ((value not in (1, -1), len(row), n), label)
+            for n, row in enumerate(left)
+            for label, value in row.items()
+            if not (_is_given(label) or value == 0)
+        ]
+        if not choices:
+            break
+        (_, _, n), label = min(choices, key=lambda choice: choice[0])
+        row = left.pop(n)
+        pivots.append(pivot := row.pop(label))
+        row = {key: -value / pivot for key, value in row.items()}
+        left = [_without(other, label, row) for other in left]
+        solved = {key: _without(other, label, row) for key, other in solved.items()} | {label: row}
+    open_ = any(not _is_given(key) for row in solved.values() for key in row)
+    if left or len(solved) != size or open_:
+        raise SingularError("the laws of the network have no single solution")
+    return solved, pivots
+
+
+def _without(form: Form, label: Any, row: Form) -> Form:
+    if label not in form:
+        return form
+    return _added({k: v for k, v in form.items() if k != label}, row, form[label])
+
+
+@cache
+def is_linear(law: Node, letter: Any) -> bool:
+    """Return whether a law is proportional to its letter: rational, with f(2z) = 2f(z)."""
+    doubled = put(law, {letter: made("2*z", z=sym(letter))})
+    return Field().same(doubled, made("2*x", x=law))

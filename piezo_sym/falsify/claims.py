@@ -1,0 +1,149 @@
+"""What each row says, as numbers that are negative where it is false; in floats or exactly.
+
+Input: a row and a `View`, which gives quantities by element as (value, size) pairs, one per lane or
+body.  Output: (value, scale, strict) triples: the row says value >= 0, strictly > 0; scale is the
+size of what cancels in the value, 0 for exact numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Protocol, final
+
+from piezo_sym.iphs import IPHS
+from piezo_sym.spec.circuit import Circuit
+from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, Port, Resistor, Source
+
+#: Of the sum of absolute terms; a balance that is off by less is rounding.
+TOLERANCE = 1e-9
+BALANCES = {
+    "exergy": "the exergy lost",
+    "environment": "the production",
+    "invariant": "the entropy gained, times T",
+}
+#: What is looked at where a law is: at its value and at its size.
+Pair = tuple[Any, Any]
+
+
+class View(Protocol):
+    """Quantities at one point, or at many."""
+
+    def get(self, what: str, name: str) -> list[Pair]:
+        """Return heat, production, temperature, slope, conductance, rate or input of an element."""
+
+
+@final
+@dataclass(frozen=True)
+class Claim:
+    """A row that numbers say something of.
+
+    Attributes
+    ----------
+    id, element : of the row.
+    port : the element's, its last.
+    circuit : of the system.
+    """
+
+    id: str
+    element: str
+    port: Port | None
+    circuit: Circuit
+
+    @property
+    def climbs(self) -> bool:
+        """Whether value over scale is smooth, so that going downhill leads anywhere."""
+        return self.id in {"passive", "conductance", "temperature"}
+
+    @property
+    def numbers(self) -> bool:
+        """Whether the row is about numbers; else about whether, or how, laws have values."""
+        return self.id not in {"welldef", "continuous"}
+
+    def at(self, view: View) -> Iterator[tuple[str, Any, Any, bool]]:
+        """Yield what must not be negative, by name, its scale, whether it must not be zero."""
+        match self.id:
+            case "passive" | "conductance":
+                what = "heat" if isinstance(self.port, Resistor) else "conductance"
+                yield from ((what, *pair, False) for pair in view.get(what, self.element))
+            case "temperature":
+                for what in ("temperature", "slope"):
+                    yield from ((what, *pair, True) for pair in view.get(what, self.element))
+            case "sigma":
+                pairs = view.get("production", "")
+                yield "sigma", _sum(v for v, _ in pairs), _sum(size for _, size in pairs), False
+            case "exergy" | "environment" | "invariant":
+                yield BALANCES[self.id], *self._balance(view), False
+        if self.id == "invariant":
+            for placed, port in self.circuit.of(Exchange):
+                if port.body == self.element:
+                    yield "conductance", *view.get("conductance", placed.element)[0], False
+
+    def _balance(self, view: View) -> Pair:
+        """Return exergy lost, production with the environments', or what a coldest body gains."""
+        alone = self.id == "invariant"
+        bodies = [
+            b.element for b, _ in self.circuit.of(Body) if not alone or b.element == self.element
+        ]
+        ((factor, _),) = view.get("temperature", bodies[0])[:1]
+        exchanges = [(p, x) for p, x in self.circuit.of(Exchange) if x.body in bodies]
+        if self.id == "exergy":
+            ((factor, _),) = view.get("input", exchanges[0][1].input)
+        factor = 1 if self.id == "environment" else factor
+        rates = [pair for body in bodies for pair in view.get("rate", body)]
+        produced = _sum(size for _, size in view.get("production", ""))
+        total = factor * _sum(rate for rate, _ in rates)
+        scale = abs(factor) * (_sum(size for _, size in rates) + produced)
+        for placed, port in exchanges:
+            ((outside, _),), ((hot, _),) = (
+                view.get("input", port.input),
+                view.get("temperature", port.body),
+            )
+            ((lam, size),) = view.get("conductance", placed.element)
+            share = 1 / outside if self.id == "environment" else 1
+            total = total - share * (lam * (outside - hot))
+            reach = size * (hot + abs(outside))
+            scale = scale + abs(share) * reach + abs(factor) * (reach / hot)
+        return total, scale
+
+    def says(self, view: View) -> Any:
+        """Return where the row says something: `invariant` of a body that is coldest."""
+        if self.id != "invariant":
+            return True
+        ((hot, _),) = view.get("temperature", self.element)
+        cold: Any = True
+        for _, port in self.circuit.of(Exchange):
+            if port.body == self.element:
+                cold = cold & (hot < view.get("input", port.input)[0][0])
+        for _, contact in self.circuit.of(Conductor):
+            ends = (contact.first, contact.second)
+            for own, other in (ends, ends[::-1]):
+                if own == self.element:
+                    cold = cold & (hot <= view.get("temperature", other)[0][0])
+        return cold
+
+    def rest(self) -> tuple[tuple[str, ...], tuple[str, ...]] | None:
+        """Return for `exergy` the inputs that are zero, and those that are one temperature."""
+        if self.id != "exergy":
+            return None
+        outside = tuple(port.input for _, port in self.circuit.of(Exchange))
+        sources = (port.input for _, port in self.circuit.of(Source))
+        return tuple(name for name in sources if name not in outside), outside
+
+
+def claim_of(iphs: IPHS, id_: str, element: str) -> Claim | None:
+    """Return the claim of a row, or None if numbers say nothing of it."""
+    ports = [placed.port for placed in iphs.circuit.ports if placed.element == element]
+    claim = Claim(id_, element, ports[-1] if ports else None, iphs.circuit)
+    match id_, claim.port:
+        case (("passive" | "conductance"), (Resistor() | Conductor() | Exchange())):
+            return claim
+        case (("temperature" | "invariant"), Body()):
+            return claim
+        case (("sigma" | "exergy" | "environment" | "welldef" | "continuous"), _):
+            return claim
+    return None
+
+
+def _sum(parts: Iterator[Any]) -> Any:
+    return sum(parts, start=0)

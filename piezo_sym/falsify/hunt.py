@@ -1,0 +1,298 @@
+"""The attack itself: points block by block, the worst of each row kept, followed and confirmed.
+
+Input: an `IPHS`, its module, rows.  Output: an `Attack` per row, or a `ContradictionError`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from itertools import chain
+from operator import itemgetter
+from types import ModuleType
+from typing import final
+
+import numpy as np
+
+from piezo_sym.checker import InputError
+from piezo_sym.errors import ContradictionError
+from piezo_sym.falsify.claims import TOLERANCE, Claim, claim_of
+from piezo_sym.falsify.columns import pairs, positive
+from piezo_sym.falsify.exact import Exact
+from piezo_sym.falsify.points import FEW, STAGES, Draw, Roots, warmed
+from piezo_sym.falsify.probe import probe_of
+from piezo_sym.falsify.space import EXTREME, LARGEST, LEAST, Array, Mask, Seen, Space
+from piezo_sym.iphs import IPHS
+from piezo_sym.spec.elements.ports import Body
+from piezo_sym.spec.expressions import names
+from piezo_sym.spec.tables import conditions
+
+POINTS = 100_000
+#: Lanes that points have; of those of the spec, so many are looked at.
+LANES, MOST_LANES = 2, 512
+KEPT, CHECKED, CHILDREN, DESCENTS = 8, 4, 24, 8
+#: Of a law's size; between neighbouring floats it may change by less than this.
+JUMP = 1e-6
+#: Off a jump by so many times the distance of two floats, a law has not changed by more.
+OFF_A_JUMP = (10, 100)
+#: Stands for a zero where a row says > 0: not negative, but to be looked at exactly.
+ZERO = -1e-300
+
+
+@final
+@dataclass(frozen=True)
+class Attack:
+    """What became of a row.
+
+    Attributes
+    ----------
+    id, element : of the row.
+    points : inside the domain at which it held, at least; one digit, for another processor's
+        last bits decide on some points otherwise, and the number is published.
+    worst : a point at which the module's number breaks it, by name, though the exact one does not.
+    rounding : whether there is one.
+    """
+
+    id: str
+    element: str
+    points: int
+    worst: Mapping[str, str] | None = None
+    rounding: bool = False
+
+
+@final
+@dataclass(eq=False)
+class Track:
+    """What is kept of a claim: how many points, and the worst, by the way they were found."""
+
+    claim: Claim
+    points: int = 0
+    worst: dict[str, list[tuple[float, Space, Array]]] = field(default_factory=dict)
+    lost: tuple[Space, Array] | None = None
+
+    def see(self, kind: str, seen: Seen) -> None:
+        """Take in points that are inside the domain."""
+        with np.errstate(all="ignore"):
+            says = np.broadcast_to(self.claim.says(seen), seen.x.shape[1:])
+            self.points += int(says.sum())
+            if self.claim.id == "welldef":
+                key = np.where(seen.holed(self.claim.element), -1.0, 1.0)
+            elif self.claim.numbers:
+                key = self._least(seen, says)
+            else:
+                return
+        if self.claim.climbs or (key < 0).any():
+            self._keep(kind, seen, np.where((key < 0) & seen.extreme, key / 1000, key))
+
+    def _least(self, seen: Seen, says: Mask) -> Array:
+        """Return the least number of the claim relative to its scale, 2 where it has none."""
+        least: Array = np.full(says.shape, 2.0)
+        for _, value, scale, strict in self.claim.at(seen):
+            value, scale = np.asarray(value, dtype=float), np.asarray(scale, dtype=float)
+            if not self.claim.climbs and not (value < -TOLERANCE * scale).any():
+                continue
+            ratio = np.clip(value / scale, -1, 1)
+            odd = np.isnan(ratio)
+            if odd.any():
+                lost = np.isnan(value)
+                ratio = np.where(odd, np.where(lost, 2, np.sign(value)), ratio)
+                self._lose(seen, lost & says)
+            if not self.claim.climbs:
+                ratio = np.where(ratio < -TOLERANCE, ratio, 1)
+            least = np.minimum(least, np.where(value == 0, ZERO if strict else 2, ratio))
+        return np.where(says, least, 2)
+
+    def _keep(self, kind: str, seen: Seen, key: Array) -> None:
+        """Keep the worst points of their kind."""
+        known = self.worst.setdefault(kind, [])
+        place = np.flatnonzero(key < (known[-1][0] if len(known) == KEPT else np.inf))
+        first = place[np.argsort(key[place], kind="stable")[:KEPT]]
+        known += [(float(key[n]), seen.space, seen.points[:, n]) for n in first]
+        known.sort(key=itemgetter(0))
+        del known[KEPT:]
+
+    def _lose(self, seen: Seen, lost: Mask) -> None:
+        """Note a point where a law is nan though nothing overflowed."""
+        if self.claim.climbs and self.lost is None and lost.any():
+            place = np.flatnonzero(lost & ~seen.extreme & ~np.isinf(seen.laws).any(axis=0))
+            self.lost = (seen.space, seen.points[:, place[0]]) if len(place) else None
+
+
+@final
+class Hunt:
+    """An attack on the rows of one model."""
+
+    def __init__(
+        self,
+        iphs: IPHS,
+        module: ModuleType,
+        claims: tuple[tuple[str, str], ...],
+        hints: tuple[Mapping[str, object], ...],
+        points: int,
+    ) -> None:
+        self.iphs, self.wanted = iphs, points
+        spec, probe = module.Parameters(), probe_of(iphs)
+        sizes = {bank: getattr(spec, f"{bank}_count") for bank in module.BANKS}
+        self.spec = Space(module, probe, sizes)
+        self.space = Space(module, probe, dict.fromkeys(sizes, LANES))
+        found = (claim_of(iphs, *row) for row in claims)
+        self.tracks = [Track(claim) for claim in found if claim]
+        trees = [condition.tree for condition in conditions(iphs.model)]
+        self.conditioned = {name for tree in trees for name in names(tree)}
+        most = min(MOST_LANES, max(sizes.values(), default=1))
+        known = [self.space.own(lane) for lane in range(0, most, LANES)]
+        known += [self._hinted(hint) for hint in hints]
+        self.draw = Draw(
+            self.space, np.concatenate(known, axis=1), positive(iphs, self.space), pairs(self.space)
+        )
+
+    def attacks(self) -> tuple[Attack, ...]:
+        """Return what became of each row.
+
+        Raises
+        ------
+        ContradictionError
+            If one is false.
+        """
+        for kind, space, points in self._blocks():
+            for n in range(0, points.shape[1], space.block):
+                self._see(kind, space, points[:, n : n + space.block])
+        try:
+            exact = Exact(self.iphs)
+        except InputError:  # nothing could be confirmed, so that nothing was attacked
+            return tuple(Attack(t.claim.id, t.claim.element, 0) for t in self.tracks)
+        return tuple(self._judged(track, exact) for track in self.tracks)
+
+    def _see(self, kind: str, space: Space, points: Array) -> None:
+        seen = space.at(points)
+        for track in self.tracks:
+            rest = track.claim.rest()
+            if rest is None:
+                track.see(kind, seen)
+                continue
+            changed, rows = points.copy(), space.places["INPUTS"]
+            for name in rest[0]:
+                changed[space.inputs_at + rows[name].start] = 0
+            for name in rest[1]:
+                changed[space.inputs_at + rows[name].start] = seen.u[rows[rest[1][0]].start]
+            bound = self.conditioned.isdisjoint({*rest[0], *rest[1][1:]})
+            track.see(kind, space.at(changed if bound else self.draw.inside(changed)))
+
+    def _blocks(self) -> Iterator[tuple[str, Space, Array]]:
+        """Yield points inside the domain, and how they were found."""
+        draw, own = self.draw, self.spec.own()
+        yield "own", self.spec, own[:, self.spec.at(own).inside]
+        total = draw.inside(draw.known)
+        draw.known = total if total.shape[1] else draw.known
+        yield "own", self.space, total
+        for kind, most in STAGES:
+            found = draw.kinks(draw.known[:, -20:], most)
+            draw.learn(found)
+            yield kind, self.space, found
+            total = np.concatenate([total, found], axis=1)
+        count = total.shape[1]
+        for _ in range(4 * self.wanted // self.space.block + 4):
+            if count >= self.wanted:
+                break
+            new = draw.inside(draw.drawn(self.space.block))
+            count += new.shape[1]
+            total = total if total.shape[1] > FEW else np.concatenate([total, new], axis=1)
+            yield "drawn", self.space, new
+        yield "walked", self.space, draw.walked(total, self.wanted - count)
+        yield from self._descended()
+
+    def _descended(self) -> Iterator[tuple[str, Space, Array]]:
+        """Yield steps from the worst points of each row, from where they led, and so on."""
+        for n in range(DESCENTS):
+            starts = [
+                point
+                for track in self.tracks
+                if track.claim.climbs
+                for _, space, point in sorted(chain(*track.worst.values()), key=itemgetter(0))[
+                    :KEPT
+                ]
+                if space is self.space
+            ]
+            if starts:
+                moved = self.draw.moved(np.array(starts).T, CHILDREN, 1.0 + n)
+                yield "descended", self.space, self.draw.inside(moved)
+
+    def _judged(self, track: Track, exact: Exact) -> Attack:
+        """Return what became of a row, its suspicious points evaluated exactly."""
+        claim, rounding = track.claim, None
+        most = CHECKED if claim.numbers else KEPT
+        for key, space, point in chain(*(worst[:most] for worst in track.worst.values())):
+            value = exact.broken(claim, space, point) if key < 0 else None
+            if value:
+                raise self._contradiction(claim, value, space.words(point))
+            plain = not space.at(point[:, None]).extreme[0]  # else underflow, which is none either
+            told = key < ZERO and claim.numbers and plain
+            rounding = rounding or ((space, point) if told else None)
+        if track.lost and rounding is None and exact.has_value(claim, *track.lost):
+            rounding = track.lost
+        if claim.id == "continuous":
+            self._jumps(claim, exact)
+        worst = rounding[0].words(rounding[1]) if rounding else None
+        points = int(str(track.points)[0]) * 10 ** (len(str(track.points)) - 1)
+        return Attack(claim.id, claim.element, points, worst, rounding is not None)
+
+    def _jumps(self, claim: Claim, exact: Exact) -> None:
+        """Look at a law on both sides of the kinks that states and inputs reach."""
+        sizes = [row.stop - row.start for row in self.space.edge_rows]
+        kinks = np.repeat([edge.kink for edge in self.space.probe.edges], sizes)
+        for roots in self.draw.roots:
+            near = kinks[roots.edge] & (roots.column >= self.space.inputs_at)
+            near &= np.abs(roots.high) < EXTREME
+            beyond = roots.high + (roots.high - roots.low)  # on an edge itself either branch may be
+            ends = [self.space.at(roots.at(value)) for value in (roots.low, beyond)]
+            near &= ends[0].inside & ends[1].inside & ~self.space.at(roots.base).extreme
+            for what in ("law", "output"):
+                row = self.space.law_rows.get((claim.element, what), slice(0))
+                leap, size = self._leap(row, roots, ends)
+                big = np.where(near, leap / size, 0)
+                for n in np.argsort(-big, kind="stable")[:2]:
+                    pair = (ends[0].points[:, n], ends[1].points[:, n])
+                    if big[n] <= JUMP:
+                        break
+                    value = exact.jump(
+                        claim, self.space, *pair, leap[n] if leap[n] < LARGEST else 0
+                    )
+                    if value:
+                        raise self._contradiction(claim, value, self.space.words(pair[1]))
+
+    def _leap(self, row: slice, roots: Roots, ends: list[Seen]) -> tuple[Array, Array]:
+        """Return by how much a law changes, 0 if farther off it changes more, and its size."""
+        low, high = (end.laws[row] for end in ends)
+        with np.errstate(all="ignore"):
+            leap = np.nan_to_num(np.abs(high - low), nan=0, posinf=LARGEST)
+            size = np.minimum(ends[0].sizes[row] + ends[1].sizes[row], LARGEST)
+            for off in OFF_A_JUMP:
+                step = off * (roots.high - roots.low)
+                for value, other in ((roots.low - step, high), (roots.high + step, low)):
+                    there = self.space.at(roots.at(value)).laws[row]
+                    far = np.nan_to_num(np.abs(there - other), nan=LARGEST, posinf=LARGEST)
+                    leap = np.where(far > 1.25 * leap, 0, leap)
+        most = leap.max(axis=0, initial=0)
+        return most, np.where(leap == most, size, 0).max(axis=0, initial=LEAST)
+
+    def _contradiction(
+        self, claim: Claim, value: str, words: Mapping[str, str]
+    ) -> ContradictionError:
+        at = ", ".join(f"{name} = {text}" for name, text in words.items())
+        row = f"{claim.id} of {claim.element}" if claim.element else claim.id
+        what = f"a proof and a number disagree: {row} is PROVED, but {value} at {at}"
+        return ContradictionError(what, self.iphs.model.name, remedy="report it with the spec")
+
+    def _hinted(self, hint: Mapping[str, object]) -> Array:
+        """Return the spec's own point with the values of a hint; a temperature sets the entropy."""
+        point = self.space.own()
+        for n, (name, lane) in enumerate(self.space.columns):
+            given = hint.get(f"{name}_{lane + 1}", hint.get(name))
+            point[n] = point[n] if given is None else float(Fraction(str(given)))
+        for row, (_, port) in enumerate(self.iphs.circuit.of(Body)):
+            if port.temperature in hint and port.state not in hint:
+                column = self.space.states_at + self.space.places["STATES"][port.state].start
+                wanted = float(Fraction(str(hint[port.temperature])))
+                point[column] = warmed(self.space, point, column, row, wanted)
+        return point

@@ -1,0 +1,287 @@
+"""Points to attack at: the same ones everywhere, for a fixed seed and no clock decide.
+
+Input: a `Space`, points known to matter (the spec's own, hints).  Output: points inside the domain
+by the way they were found: `kinks` (bisected to neighbouring floats on an edge, and steps off it),
+`corners` (kinks of kinks), `drawn` (logarithmic ranges, near-equalities, own values scaled),
+`walked` (from points inside, where drawing finds few).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import final
+
+import numpy as np
+import numpy.typing as npt
+
+from piezo_sym.falsify.space import LARGEST, LEAST, Array, Space
+
+Index = npt.NDArray[np.int64]
+
+#: Fewer points inside than these are too few to say anything; then one walks.
+FEW = 1000
+WALKS = 40
+#: Zero is bracketed by this, since a product of less may be zero.
+TINY = 1e-280
+TABLE = 8192
+#: Edges are solved for from points known, then from points on edges; so often each.
+STAGES = (("kinks", 16), ("corners", 12))
+FAR = (-290, -100, -30, -15, -9, -6)
+DECADES = (*FAR, -4, -3, -2, -1, -0.3, 0, 0.3, 1, 2, 3, 4, 6, 9, 15, 30, 100)
+LADDER = np.array([-(10.0**e) for e in DECADES[::-1]] + [0.0] + [10.0**e for e in DECADES])
+OFF = np.array([0, *(s * 10.0**-e for e in (12, 9, 6, 5, 4, 3, 2, 1) for s in (1, -1))])
+POWERS = np.array([float(f"1e{n}") for n in range(-300, 302)])
+SIMPLE = np.array([0, 1, -1, 2, -2, 3, -3, 4, 0.5, -0.5, 0.25, 8, 10, -10, 1.5, 5])
+
+
+@final
+@dataclass(eq=False)
+class Roots:
+    """Where an edge changes sign along one column: neighbouring floats `low` and `high`."""
+
+    edge: Index
+    column: Index
+    base: Array
+    low: Array
+    high: Array
+
+    def at(self, value: Array) -> Array:
+        """Return the points that have these values in their columns."""
+        points = self.base.copy()
+        points[self.column, np.arange(len(value))] = value
+        return points
+
+
+@final
+@dataclass(eq=False)
+class Draw:
+    """A source of points of a space.
+
+    Attributes
+    ----------
+    space : whose points.
+    known : points inside the domain, to start from; the first is the spec's own.
+    positive : columns that the domain keeps from being negative.
+    pairs : columns of equal dimension.
+    """
+
+    space: Space
+    known: Array
+    positive: npt.NDArray[np.bool_]
+    pairs: Index
+    rng: np.random.Generator = field(default_factory=lambda: np.random.default_rng(16))
+    roots: list[Roots] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        """Note scales of each column: its known values, those of equal dimension, 1."""
+        scales = [[1.0, *row] for row in np.abs(self.known).tolist()]
+        for one, other in self.pairs.tolist():
+            scales[one] += np.abs(self.known[other]).tolist()
+        self.scales = [sorted({s for s in row if s > 0})[:24] for row in scales]
+
+    def inside(self, points: Array) -> Array:
+        """Return those of some points that lie in the domain."""
+        step = self.space.block
+        parts = [points[:, n : n + step] for n in range(0, points.shape[1], step)]
+        kept = [part[:, self.space.at(part).inside] for part in parts]
+        return np.concatenate([points[:, :0], *kept], axis=1)
+
+    # Kinks
+
+    def kinks(self, bases: Array, most: int) -> Array:
+        """Return points on edges and next to them, found along one column from each base."""
+        roots = self._bisected(self._crossed(bases, most))
+        self.roots.append(roots)
+        points = np.concatenate([roots.at(v) for v in self._near(roots)], axis=1)
+        return self.inside(_normal(points))
+
+    def _near(self, roots: Roots) -> Iterator[Array]:
+        for value in (roots.low, roots.high):
+            yield from (value, np.nextafter(value, np.inf), np.nextafter(value, -np.inf))
+        yield np.where(np.abs(roots.high) <= TINY, 0, roots.high)
+        largest = np.array([row[-1] for row in self.scales])[roots.column]
+        size = np.where(roots.high == 0, largest, roots.high)
+        for off in OFF[1:].tolist():
+            yield _bounded(roots.high + off * size)
+
+    def _crossed(self, bases: Array, most: int) -> Roots:
+        """Return brackets of sign changes of edges, along a ladder of values of each column."""
+        count = bases.shape[1]
+        steps = [
+            np.unique(_bounded(np.multiply.outer(row[-3:], LADDER).ravel())) for row in self.scales
+        ]
+        found: list[tuple[Index, Index, Index, Array, Array]] = []
+        for column, ladder in enumerate(steps):
+            points = np.repeat(bases, len(ladder), axis=1)
+            points[column] = np.tile(ladder, count)
+            signs = np.sign(self.space.at(points).edges).reshape(-1, count, len(ladder))
+            first, second = signs[..., :-1], signs[..., 1:]
+            edge, base, step = np.nonzero((first != second) & np.isfinite(first * second))
+            rising = first[edge, base, step] != 0
+            low = np.where(rising, ladder[step], ladder[step + 1])
+            high = np.where(rising, ladder[step + 1], ladder[step])
+            found.append((edge, np.full_like(edge, column), base, low, high))
+        edges, columns, at, lows, highs = map(np.concatenate, zip(*found, strict=True))
+        order = np.argsort(self.rng.random(len(edges)) - 0.5 * (columns >= self.space.inputs_at))
+        order = order[np.argsort(edges[order], kind="stable")]
+        rank = np.arange(len(order)) - np.searchsorted(edges[order], edges[order])
+        kept = order[rank < most]
+        return Roots(edges[kept], columns[kept], bases[:, at[kept]], lows[kept], highs[kept])
+
+    def _bisected(self, roots: Roots) -> Roots:
+        """Return brackets narrowed to neighbouring floats."""
+        here = np.arange(len(roots.edge))
+        low, high = _key(roots.low), _key(roots.high)
+        sign = np.sign(self.space.at(roots.at(roots.low)).edges[roots.edge, here])
+        for _ in range(64):
+            middle = _middle(low, high)
+            if ((middle == low) | (middle == high)).all():
+                break
+            seen = self.space.at(roots.at(_float(middle))).edges[roots.edge, here]
+            same = np.sign(seen) == sign
+            low, high = np.where(same, middle, low), np.where(same, high, middle)
+        ends = np.array([_float(low), _float(high)])
+        ends = np.where(np.abs(ends).max(axis=0) < LEAST, [[-TINY], [TINY]], ends)
+        return Roots(roots.edge, roots.column, roots.base, *ends)
+
+    # Drawing
+
+    def learn(self, points: Array) -> None:
+        """Take values that lie on edges as scales, and some points as ones to start from."""
+        roots = self.roots[-1]
+        for column, value in zip(roots.column.tolist(), np.abs(roots.high).tolist(), strict=True):
+            if 1e-100 < value < 1e100 and len(self.scales[column]) < 64:
+                self.scales[column].append(value)
+        chosen = self.rng.integers(0, max(1, points.shape[1]), min(256, points.shape[1]))
+        self.known = np.concatenate([self.known, points[:, chosen]], axis=1)
+        anywhere = self.inside(self.drawn(256))
+        plain = anywhere[:, ~self.space.at(anywhere).extreme]
+        self.known = np.concatenate([self.known, plain[:, :10]], axis=1)
+
+    @cached_property
+    def table(self) -> Array:
+        """Values to draw from per column, twice in a row; made when scales are learnt."""
+        fixed = self._one_sided(self.known[:, -32:])
+        once = np.array([self._values(column, fixed[column]) for column in range(len(self.scales))])
+        return np.concatenate([once, once], axis=1)
+
+    def _one_sided(self, bases: Array) -> list[bool]:
+        """Return for which columns no point stays inside with that column's sign turned."""
+        found = []
+        for column in range(len(bases)):
+            turned = bases.copy()
+            turned[column] *= -1
+            found.append(not self.space.at(turned).inside.any())
+        return found
+
+    def _values(self, column: int, fixed: bool) -> Array:
+        """Return values to draw: scales times factors near 1, moderate, wide; simple numbers."""
+        u, v = self.rng.random((2, TABLE))
+        kind = np.arange(TABLE) % 16
+        exponent = np.select([kind < 6, kind < 9], [4 * u - 2, 18 * u - 9], 600 * u - 300)
+        near = 1 + np.where(v < 0.5, 1, -1) * _power(-16 * u)
+        factor = np.where((kind >= 9) & (kind < 14), near, _power(exponent))
+        scale = np.array(self.scales[column])[self.rng.integers(0, len(self.scales[column]), TABLE)]
+        sign = np.where(self.rng.random(TABLE) < (0.02 if fixed else 0.5), -1, 1)
+        sign = -sign if fixed and self.known[column, 0] < 0 else sign
+        simple = SIMPLE[self.rng.integers(0, len(SIMPLE), TABLE)]
+        with np.errstate(over="ignore"):
+            values = _bounded(np.where(kind == 14, simple, sign * scale * factor))
+        values[np.abs(values) < LEAST] = 0
+        return np.abs(values) if self.positive[column] else values
+
+    def drawn(self, count: int) -> Array:
+        """Return points known, with some or all columns drawn anew from the table."""
+        rng, columns = self.rng, len(self.scales)
+        first = np.where(rng.random(count) < 0.3, 0, rng.integers(0, self.known.shape[1], count))
+        share = np.array([1.5 / columns, 4 / columns, 0.5, 1.0])[rng.integers(0, 4, count)]
+        anew = rng.integers(0, 256, (columns, count), dtype=np.uint8) < np.int16(256 * share)
+        points = self.known[:, first]
+        for column, start in enumerate(rng.integers(0, TABLE, columns).tolist()):
+            drawn = self.table[column, start : start + count]
+            np.copyto(points[column], drawn, where=anew[column])
+        return self._paired(points)
+
+    def _paired(self, points: Array) -> Array:
+        """Set some columns to others of equal dimension, or near them."""
+        count = points.shape[1]
+        if len(self.pairs):
+            place = np.flatnonzero(self.rng.random(count) < 0.2)
+            one, other = self.pairs[self.rng.integers(0, len(self.pairs), len(place))].T
+            off = OFF[self.rng.integers(0, len(OFF), len(place))]
+            sign = np.where((self.rng.random(len(place)) < 0.2) & ~self.positive[one], -1, 1)
+            points[one, place] = sign * points[other, place] * (1 + off)
+        return points
+
+    def moved(self, points: Array, each: int, finest: float) -> Array:
+        """Return steps from points: two columns changed, relatively, down to 10**-finest."""
+        rng, points = self.rng, np.repeat(points, each, axis=1)
+        count = points.shape[1]
+        size = _power(np.multiply(-finest, rng.random(count)))
+        for _ in range(2):
+            place = (rng.integers(0, len(points), count), np.arange(count))
+            drawn = self.table[place[0], rng.integers(0, TABLE, count)]
+            step = (
+                size
+                * (2 * rng.random(count) - 1)
+                * np.where(points[place] == 0, drawn, points[place])
+            )
+            points[place] = np.where(rng.random(count) < 0.1, drawn, points[place] + step)
+        return _normal(points)
+
+    def walked(self, points: Array, wanted: int) -> Array:
+        """Return new points inside, found by steps from points inside."""
+        first = points.shape[1]
+        for n in range(WALKS if first else 0):
+            if points.shape[1] - first >= wanted:
+                break
+            start = points[:, self.rng.integers(0, points.shape[1], 512)]
+            new = self.inside(self.moved(start, max(1, min(16, wanted // 512)), 2.0 + n % 12))
+            points = np.concatenate([points, new], axis=1)
+        return points[:, first:]
+
+
+def warmed(space: Space, point: Array, column: int, row: int, wanted: float) -> Array:
+    """Return the entropy in `column` at which the temperature in `row` reaches a value."""
+    low, high = _key(np.array([-LARGEST])), _key(np.array([LARGEST]))
+    for _ in range(64):
+        middle = _middle(low, high)
+        points = point.copy()
+        points[column] = _float(middle)
+        above = space.at(points).temperatures[row] >= wanted
+        low, high = np.where(above, low, middle), np.where(above, middle, high)
+    return _float(high)
+
+
+def _normal(points: Array) -> Array:
+    """Return those of some points with no value so small that arithmetic loses its digits."""
+    size = np.abs(points)
+    return points[:, ((size == 0) | (size >= LEAST)).all(axis=0)]
+
+
+def _bounded(values: Array) -> Array:
+    return np.clip(values, -LARGEST, LARGEST)
+
+
+def _power(exponents: Array) -> Array:
+    """Return about 10**exponents, by exact products alone, so that it is the same everywhere."""
+    whole = np.floor(exponents)
+    return POWERS[whole.astype(np.int64) + 300] * (1 + 9 * (exponents - whole))
+
+
+def _key(values: Array) -> Index:
+    """Return whole numbers in the order of floats, neighbours next to each other."""
+    bits = values.view(np.int64)
+    return np.where(bits < 0, np.iinfo(np.int64).min - bits, bits)
+
+
+def _middle(low: Index, high: Index) -> Index:
+    middle: Index = (low >> 1) + (high >> 1) + (low & high & 1)
+    return middle
+
+
+def _float(keys: Index) -> Array:
+    bits = np.where(keys < 0, np.iinfo(np.int64).min - keys, keys)
+    return np.ascontiguousarray(bits).view(np.float64)

@@ -1,0 +1,287 @@
+"""What an attack looks at besides the module: laws one by one, and where they turn or vanish.
+
+Input: an `IPHS`.  Output: a `Probe`, a module of functions printed like any other: `laws` (values),
+`sizes` (the same with every sum taken of absolute values, so that value/size tells cancellation
+from a change of sign) and `edges`.  An edge is an expression whose zeros are places to look at:
+sides of a comparison, bounds of the domain, divisors, arguments of roots, sums, equal quantities.
+"""
+
+from __future__ import annotations
+
+import importlib.abc
+import importlib.util
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import reduce
+from types import ModuleType
+from typing import final
+
+from piezo_sym.algebra.lanes import Slot
+from piezo_sym.codegen import numpy_module
+from piezo_sym.codegen.functions import limits_of
+from piezo_sym.codegen.lower import program_of
+from piezo_sym.codegen.program import Function, Row, bank_of
+from piezo_sym.codegen.quantities import Quantities
+from piezo_sym.iphs import IPHS
+from piezo_sym.iphs.definitions import costate_name
+from piezo_sym.spec.calculus import add, derivative, mul, neg
+from piezo_sym.spec.elements.ports import (
+    Body,
+    Conductor,
+    Coupling,
+    Domain,
+    Resistor,
+    Source,
+    Storage,
+    Variable,
+)
+from piezo_sym.spec.expressions import (
+    ONE,
+    ZERO,
+    Add,
+    Call,
+    Cmp,
+    Div,
+    Expr,
+    If,
+    LaneSum,
+    Mul,
+    Neg,
+    Node,
+    Num,
+    Pow,
+    Sym,
+    children,
+    rename,
+    walk,
+)
+from piezo_sym.spec.tables import lane_parameters
+from piezo_sym.spec.units import parse_unit
+
+PAIRED = frozenset({"min", "max", "deadzone", "saturate"})
+SCALED = frozenset({"exp", "expm1", "log", "sin", "cos", "tanh"})
+UNITS = {
+    (Domain.ELECTRICAL, Variable.ACROSS): "V",
+    (Domain.ELECTRICAL, Variable.THROUGH): "A",
+    (Domain.MECHANICAL, Variable.ACROSS): "m/s",
+    (Domain.MECHANICAL, Variable.THROUGH): "N",
+}
+MOST_EDGES = 400
+
+
+@final
+@dataclass(frozen=True)
+class Edge:
+    """An expression whose zeros are looked for; at a `kink` a law changes branches."""
+
+    tree: Expr
+    kink: bool = False
+
+
+@final
+@dataclass(frozen=True)
+class Probe:
+    """A module of its own, and what its rows are.
+
+    Attributes
+    ----------
+    module : with functions `laws`, `sizes` and `edges`.
+    laws : (element, what) of each row; what is law, effort, output, slope or hole (where > 0, the
+        element's laws have no value).
+    edges : the edges, row by row.
+    slots : of the rows of `laws` and of `edges`.
+    states : the state of each body, by element.
+    """
+
+    module: ModuleType
+    laws: tuple[tuple[str, str], ...]
+    edges: tuple[Edge, ...]
+    slots: tuple[tuple[Slot, ...], tuple[Slot, ...]]
+    states: dict[str, str]
+
+
+@final
+class _Text(importlib.abc.InspectLoader):
+    """Loads a module from the text that was generated for it."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+
+    def get_source(self, fullname: str) -> str:
+        """Return the text."""
+        del fullname
+        return self.text
+
+
+def module_from(text: str, name: str = "attacked") -> ModuleType:
+    """Return a fresh module made of generated text, which no file and no import knows."""
+    spec = importlib.util.spec_from_loader(name, loader := _Text(text))
+    if spec is None:
+        raise ImportError(name)
+    module = importlib.util.module_from_spec(spec)
+    loader.exec_module(module)
+    return module
+
+
+def probe_of(iphs: IPHS) -> Probe:
+    """Return the probe of a system."""
+    q = Quantities(iphs)
+    limits = limits_of(iphs.model, q)
+    known = {quantity.name: quantity.value for quantity in q.defined}
+    laws = (*_laws(q), *_holes(iphs, q, known))
+    banks = {quantity.name: quantity.bank for quantity in q.defined}
+    banks |= {port.state: placed.bank for placed, port in q.stores}
+    lanes = lane_parameters(iphs.model) | {name: bank for name, bank in banks.items() if bank}
+    trees = [quantity.value for quantity in q.defined] + [limit.margin for limit in limits]
+    trees += [tree for _, what, tree in laws if what != "hole"]
+    found = [edge for tree in trees for edge in _edges(tree)]
+    found += [Edge(limit.margin) for limit in limits] + [Edge(tree) for tree in _equal(iphs, q)]
+    edges = tuple(dict.fromkeys(e for e in found if not isinstance(e.tree, Num)))[:MOST_EDGES]
+    values = [(tree, bank_of(tree, lanes)) for _, _, tree in laws]
+    sizes = [
+        (ONE if what in {"effort", "hole"} else _size(_own(tree, known)), bank)
+        for (_, what, _), (tree, bank) in zip(laws, values, strict=True)
+    ]
+    functions = (
+        _function("laws", values),
+        _function("sizes", sizes),
+        _function("edges", [(edge.tree, bank_of(edge.tree, lanes)) for edge in edges]),
+    )
+    program = program_of(iphs, q, functions)
+    states = {name: port.state for name, port in q.bodies.items()}
+    slots = tuple(tuple(row.slot for row in function.rows) for function in functions)
+    named = tuple((element, what) for element, what, _ in laws)
+    return Probe(module_from(numpy_module(program)), named, edges, (slots[0], slots[2]), states)
+
+
+def _function(name: str, rows: list[tuple[Expr, str | None]]) -> Function:
+    made = tuple(Row(Slot("", bank), tree) for tree, bank in rows)
+    return Function(name, name, ("x", "u", "p"), made)
+
+
+def _own(tree: Expr, known: dict[str, Expr]) -> Expr:
+    """Return what a name stands for."""
+    return known.get(tree.name, tree) if isinstance(tree, Sym) else tree
+
+
+def _laws(q: Quantities) -> Iterator[tuple[str, str, Expr]]:
+    """Yield every law by its name, with the effort of dissipative ones, and slopes of bodies."""
+    forces = iter(zip(q.forces, q.outputs, strict=True))
+    for placed in q.circuit.ports:
+        element, port = placed.element, placed.port
+        match port:
+            case Storage() | Body():
+                yield element, "law", Sym(costate_name(port))
+                if isinstance(port, Body):
+                    law = rename(port.law, {port.letter: port.state})
+                    yield element, "slope", derivative(law, port.state)
+            case Coupling():
+                yield element, "law", Sym(port.name)
+            case Source():
+                continue
+            case Resistor():
+                force, output = next(forces)
+                yield from ((element, "output", output), (element, "effort", force))
+            case _:
+                if not hasattr(port, "input"):
+                    next(forces)
+                yield element, "law", port.conductance
+
+
+def _size(node: Expr) -> Expr:
+    """Return an expression with each sum taken of absolute values."""
+    match node:
+        case Add(terms):
+            return add(*map(_size, terms))
+        case Neg(arg):
+            return _size(arg)
+        case Mul(left, right):
+            return mul(_size(left), _size(right))
+        case Div(left, right):
+            return Div(_size(left), _absolute(right))
+        case Pow(base, exponent) if exponent > 0 and exponent.denominator == 1:
+            return Pow(_size(base), exponent)
+        case If(then, condition, other):
+            return If(_size(then), condition, _size(other))
+    return _absolute(node)
+
+
+def _absolute(node: Expr) -> Expr:
+    return Num(abs(node.value)) if isinstance(node, Num) else Call("abs", (node,))
+
+
+def _holes(iphs: IPHS, q: Quantities, known: dict[str, Expr]) -> Iterator[tuple[str, str, Expr]]:
+    """Yield where the laws of each element, and of the junction, have no value."""
+    found: dict[str, list[Expr]] = {}
+    for element, what, tree in _laws(q):
+        if what != "effort":
+            found.setdefault(element, []).append(_hole(_own(tree, known)))
+    junction = [known[str(symbol.name)] for symbol, _ in (*iphs.slopes, *iphs.shares)]
+    for element, parts in {**found, "": [_hole(tree) for tree in junction]}.items():
+        yield element, "hole", _any(parts)
+
+
+def _hole(node: Node) -> Expr:
+    """Return an expression that is > 0 where a law has no value, on the branches taken."""
+    match node:
+        case If(then, condition, other):
+            inside = If(_hole(then), condition, _hole(other))
+            return _any(
+                [_hole(condition), inside if {inside.then, inside.other} != {ZERO} else ZERO]
+            )
+        case Div(_, bottom) if not isinstance(bottom, Num):
+            own: Cmp | None = Cmp("<=", _absolute(bottom), ZERO)
+        case Pow(base, exponent) if exponent.denominator != 1:
+            own = Cmp("<" if exponent > 0 else "<=", base, ZERO)
+        case Pow(base, exponent) if exponent < 0:
+            own = Cmp("<=", _absolute(base), ZERO)
+        case Call("sqrt" | "log" as function, (arg,)):
+            own = Cmp("<" if function == "sqrt" else "<=", arg, ZERO)
+        case _:
+            own = None
+    return _any([If(ONE, own, ZERO) if own else ZERO, *map(_hole, children(node))])
+
+
+def _any(parts: list[Expr]) -> Expr:
+    """Return the largest of some expressions that are not negative."""
+    kept = [part for part in dict.fromkeys(parts) if part != ZERO]
+    return reduce(lambda one, other: Call("max", (one, other)), kept) if kept else ZERO
+
+
+def _edges(tree: Node) -> Iterator[Edge]:
+    """Yield the edges of a law, outermost first."""
+    for node in walk(tree):
+        match node:
+            case LaneSum() | Num() | Sym():
+                continue
+            case Cmp(_, left, right):
+                yield Edge(add(left, neg(right)), kink=True)
+            case Call(function, (z, w)) if function in PAIRED:
+                yield Edge(add(z, neg(w)), kink=True)
+                if function in {"deadzone", "saturate"}:
+                    yield Edge(add(z, w), kink=True)
+            case Call("abs" | "sign", (z,)):
+                yield Edge(z, kink=True)
+            case Call("sqrt", (z,)) | Pow(z, _) | Div(_, z):
+                yield Edge(z)
+            case Call(function, (z,)) if function in SCALED:
+                yield from (Edge(z), Edge(add(z, neg(ONE))), Edge(add(z, ONE)))
+            case Add():
+                yield Edge(node)
+
+
+def _equal(iphs: IPHS, q: Quantities) -> Iterator[Expr]:
+    """Yield differences and sums of a quantity and a parameter or input of equal dimension."""
+    units = [(name, p.dimension.dimension) for name, p in iphs.model.parameters.items()]
+    units += [(name, u.dimension.dimension) for name, u in iphs.model.inputs.items()]
+    quantities: list[tuple[Expr, str]] = []
+    for _, store in q.stores:
+        unit = "K" if isinstance(store, Body) else store.units[1]
+        quantities.append((Sym(costate_name(store)), unit))
+    for force, (_, process) in zip(q.forces, iphs.circuit.of(Resistor, Conductor), strict=True):
+        if isinstance(process, Resistor):
+            quantities.append((force, UNITS[process.domain, process.imposes.other]))
+    for tree, unit in dict.fromkeys(quantities):
+        for name, dimension in units:
+            if parse_unit(unit).dimension == dimension:
+                yield from (add(tree, neg(Sym(name))), add(tree, Sym(name)))

@@ -1,0 +1,193 @@
+"""Points of a model as columns of one array, and what its module and its probe say at them.
+
+Input: a module, a probe, bank sizes.  Output: a `Space`; points are arrays of shape (columns, n),
+their columns every parameter, input and state, a bank's one per lane.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import accumulate, pairwise
+from types import ModuleType
+from typing import Any, final
+
+import numpy as np
+import numpy.typing as npt
+
+from piezo_sym.falsify.probe import Probe
+
+Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
+
+#: No value of a point is smaller or larger, but for zero; beyond EXTREME products overflow.
+LEAST, LARGEST, EXTREME = 1e-300, 1e300, 1e30
+#: Numbers of a state array worked on together; the module's `rhs` splits what is larger.
+BLOCK = 100_000
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Space:
+    """The points of a module with given bank sizes."""
+
+    module: ModuleType
+    probe: Probe
+    counts: Mapping[str, int]
+
+    @cached_property
+    def fields(self) -> tuple[Any, ...]:
+        """The records of parameters, inputs and states, in the order of columns."""
+        return (*self.module.PARAMETERS, *self.module.INPUTS, *self.module.STATES)
+
+    @cached_property
+    def columns(self) -> tuple[tuple[str, int], ...]:
+        """Name and lane of each column; lane 0 where there is no bank."""
+        return tuple((f.name, lane) for f in self.fields for lane in range(self.lanes(f.bank)))
+
+    @cached_property
+    def inputs_at(self) -> int:
+        """The first column of the inputs."""
+        return sum(self.lanes(field.bank) for field in self.module.PARAMETERS)
+
+    @cached_property
+    def states_at(self) -> int:
+        """The first column of the states."""
+        return self.inputs_at + len(self.module.INPUTS)
+
+    @cached_property
+    def block(self) -> int:
+        """How many points are worked on together."""
+        return max(1, min(8192, BLOCK // max(1, len(self.columns) - self.states_at)))
+
+    def lanes(self, bank: str | None) -> int:
+        """Return how many lanes a bank has, 1 for none."""
+        return self.counts[bank] if bank else 1
+
+    @cached_property
+    def places(self) -> Mapping[str, Mapping[str, slice]]:
+        """The rows of each record of a module's tables in a result with a row per lane."""
+        tables = ("PARAMETERS", "INPUTS", "STATES", "PROCESSES", "BODIES")
+        records = {table: getattr(self.module, table) for table in tables}
+        return {
+            table: dict(zip([f.name for f in found], self.slices(found), strict=True))
+            for table, found in records.items()
+        }
+
+    @cached_property
+    def law_rows(self) -> Mapping[tuple[str, str], slice]:
+        """The rows of the probe's laws, by element and what they are."""
+        return dict(zip(self.probe.laws, self.slices(self.probe.slots[0]), strict=True))
+
+    @cached_property
+    def edge_rows(self) -> tuple[slice, ...]:
+        """The rows of the probe's edges."""
+        return self.slices(self.probe.slots[1])
+
+    def slices(self, parts: Iterable[Any]) -> tuple[slice, ...]:
+        """Return the rows of records or slots."""
+        ends = [0, *accumulate(self.lanes(part.bank) for part in parts)]
+        return tuple(slice(a, b) for a, b in pairwise(ends))
+
+    @cached_property
+    def _given(self) -> Mapping[str, Array]:
+        """The spec's own values, by name, one per lane."""
+        spec, u = self.module.Parameters(), np.asarray(self.module.INPUT_DEFAULTS, dtype=float)
+        full = Space(self.module, self.probe, {b: getattr(spec, f"{b}_count") for b in self.counts})
+        sizes = [full.lanes(field.bank) for field in self.fields]
+        values = [getattr(spec, field.name) for field in self.module.PARAMETERS]
+        spread = [np.broadcast_to(v, n) for v, n in zip(values, sizes, strict=False)]
+        point = np.concatenate([*spread, u, self.module.initial_state(u, spec)])
+        names, parts = (f.name for f in self.fields), np.split(point, np.cumsum(sizes)[:-1])
+        return dict(zip(names, parts, strict=True))
+
+    def own(self, first: int = 0) -> Array:
+        """Return the spec's own values as one point, of a bank's lanes those from `first` on."""
+        parts = ((self._given[name], lane) for name, lane in self.columns)
+        return np.array([[part[(first + lane) % len(part)]] for part, lane in parts])
+
+    def at(self, points: Array) -> Seen:
+        """Return what is seen at points."""
+        return Seen(self, points)
+
+    def split(self, points: Array) -> tuple[Array, Array, Any]:
+        """Return points as states, inputs and parameters of the module."""
+        values: dict[str, Any] = {f"{bank}_count": count for bank, count in self.counts.items()}
+        for field in self.module.PARAMETERS:
+            rows = self.places["PARAMETERS"][field.name]
+            values[field.name] = points[rows] if field.bank else points[rows.start]
+        p = self.module.Parameters(**values)
+        return points[self.states_at :], points[self.inputs_at : self.states_at], p
+
+    def words(self, point: Array) -> dict[str, str]:
+        """Return a point as text, value by value, each float such that it reads back exactly."""
+        single = {field.name for field in self.fields if field.bank is None}
+        return {
+            name if name in single else f"{name}[{lane + 1}]": repr(float(value))
+            for (name, lane), value in zip(self.columns, point, strict=True)
+        }
+
+
+@final
+class Seen:
+    """What the functions of a module and its probe give at points, each computed when asked for."""
+
+    def __init__(self, space: Space, points: Array) -> None:
+        self.space = space
+        self.points = points
+        self.x, self.u, self.p = space.split(points)
+
+    def __getattr__(self, name: str) -> Array:
+        """Return the result of a function of the module or the probe, and keep it."""
+        home = self.space.probe.module if name in PROBED else self.space.module
+        arguments = (self.x, self.p) if name == "temperatures" else (self.x, self.u, self.p)
+        with np.errstate(all="ignore"):
+            value: Array = getattr(home, name)(*arguments)
+        setattr(self, name, value)
+        return value
+
+    def get(self, what: str, name: str) -> list[tuple[Any, Any]]:
+        """Return quantities of an element as rows with their sizes."""
+        space = self.space
+        if what in ("heat", "production"):
+            row = space.places["PROCESSES"][name] if name else slice(None)
+            if what == "production":
+                return [(value, np.abs(value)) for value in self.entropy_production[row]]
+            law, effort = space.law_rows[name, "output"], space.law_rows[name, "effort"]
+            return [*zip(self.heat[row], self.sizes[law] * np.abs(self.laws[effort]), strict=True)]
+        if what == "input":
+            return [(value, 0) for value in self.u[space.places["INPUTS"][name]]]
+        law = space.law_rows[name, "slope" if what == "slope" else "law"]
+        if what == "rate":
+            rows = self.rhs[space.places["STATES"][space.probe.states[name]]]
+            return [(value, np.abs(value)) for value in rows]
+        values = (
+            self.temperatures[space.places["BODIES"][name]]
+            if what == "temperature"
+            else self.laws[law]
+        )
+        return [*zip(values, self.sizes[law], strict=True)]
+
+    @property
+    def inside(self) -> Mask:
+        """Which points lie in the domain."""
+        floors = [[0.0] if c.strict else [-np.nextafter(0, 1)] for c in self.space.module.DOMAIN]
+        found: Mask = np.all(self.margins > np.reshape(floors, (-1, 1)), axis=0)
+        return found
+
+    @cached_property
+    def extreme(self) -> Mask:
+        """Which points have a value so large or small that products of it overflow."""
+        size = np.abs(self.points)
+        found: Mask = np.any((size > EXTREME) | ((size > 0) & (size < 1 / EXTREME)), axis=0)
+        return found
+
+    def holed(self, element: str) -> Mask:
+        """Return where an element's laws have no value; for none, what the junction divides by."""
+        row = self.space.law_rows.get((element, "hole"), slice(0))
+        found: Mask = np.any(self.laws[row] > 0, axis=0)
+        return found
+
+
+PROBED = frozenset({"laws", "sizes", "edges"})

@@ -1,0 +1,225 @@
+"""What a solver says of parameters in a domain, and simple numbers tried against a claim.
+
+Input: a domain, the order of names in a witness, and a solver.  Output: whether claims follow, a
+point of the domain, and numbers in the domain that break a claim.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from functools import cached_property
+from itertools import product
+from typing import final
+
+from piezo_sym.proofs.branches import TooManyBranchesError
+from piezo_sym.proofs.exactly import holds
+from piezo_sym.proofs.obligations import Question
+from piezo_sym.proofs.query import connected
+from piezo_sym.proofs.solvers import Answer, Asks
+from piezo_sym.spec.expressions import (
+    ONE,
+    ZERO,
+    Add,
+    Call,
+    Cmp,
+    Div,
+    Expr,
+    Mul,
+    Neg,
+    Num,
+    Pow,
+    Sym,
+    names,
+)
+from piezo_sym.spec.tables import greater
+
+#: Values of a letter that are tried against a law, in this order.
+TRIED = tuple(
+    sign * size
+    for size in map(Fraction, ("1", "2", "3", "1/2", "5", "4", "10", "1/10", "20", "100"))
+    for sign in (1, -1)
+)
+#: Of these, how many are tried where a parameter is moved too; how (factor, summand) it is moved.
+FEW = 8
+MOVES = tuple((Fraction(a), Fraction(b)) for a, b in ((10, 0), (-1, 0), (1, 1), (1, -1)))
+MOVES += ((Fraction(1, 10), Fraction(0)),)
+
+#: Questions on one law before no more are asked, and how many of them may have no answer.
+MOST_ASKED, MOST_UNKNOWN = 60, 4
+NEVER = Cmp("<", ONE, ZERO)
+
+Numbers = Mapping[str, Fraction]
+
+
+@final
+@dataclass(frozen=True)
+class Asked:
+    """What a solver says of parameters in a domain.
+
+    Attributes
+    ----------
+    where : the domain.
+    order : names, in the order in which a witness should be simple.
+    solver : whom to ask.
+    known : answers on what is positive.
+    results : the solver's answers so far, on all cases of one law.
+    """
+
+    where: tuple[Cmp, ...]
+    order: tuple[str, ...]
+    solver: Asks
+    known: dict[Expr, bool] = field(default_factory=dict)
+    results: list[str] = field(default_factory=list)
+
+    def within(self, *guards: Cmp) -> Asked:
+        """Return the same in a part of the domain."""
+        return replace(self, where=(*self.where, *guards), known={})
+
+    def positive(self, part: Expr) -> bool:
+        """Return whether a tree is shown to be positive."""
+        if part not in self.known:
+            self.known[part] = self._positive(part)
+        return self.known[part]
+
+    def _positive(self, part: Expr) -> bool:
+        match part:
+            case Num(value):
+                return value > 0
+            case Call("exp", _):
+                return True
+            case Neg(arg) if self.positive(arg):
+                return False
+            case Sym() if Cmp(">", part, ZERO) in map(greater, self.where):
+                return True
+            case Mul(a, b) | Div(a, b) if self.positive(a) and self.positive(b):
+                return True
+            case Pow(base, _) | Call("sqrt" | "abs", (base,)) if self.positive(base):
+                return True
+            case Add(terms) if all(map(self.plain, terms)) and any(map(self.positive, terms)):
+                return True
+        return self.follows(Cmp(">", part, ZERO))
+
+    def plain(self, part: Expr) -> bool:
+        """Return whether a tree is seen to be nowhere negative, wherever it has a value."""
+        match part:
+            case Sym() | Num():
+                return self.positive(part)
+            case Call("exp" | "abs" | "sqrt", _):
+                return True
+            case Pow(base, e):
+                return e.denominator != 1 or e % 2 == 0 or self.plain(base)
+            case Add(parts):
+                return all(map(self.plain, parts))
+            case Mul(left, right) | Div(left, right):
+                return self.plain(left) and self.plain(right)
+        return False
+
+    def follows(self, claim: Cmp) -> bool:
+        """Return whether a claim holds in all of the domain."""
+        if any(_broken((claim,), sample) for sample in self.samples):
+            return False
+        return all(answer.result == "unsat" for answer in self._answers(claim, claim))
+
+    @cached_property
+    def samples(self) -> tuple[Numbers, ...]:
+        """A few points of the domain, at which most claims that do not follow are false."""
+        first = self.point(NEVER, self.order)
+        if first is None:
+            return ()
+        others = (
+            {**first, name: first[name] * factor + step}
+            for name, (factor, step) in product(first, MOVES)
+        )
+        return (first, *(point for point in others if _broken(self.where, point) is False))
+
+    def empty(self) -> bool:
+        """Return whether no point is in the domain."""
+        made = Question("", self.order, self.where, NEVER, NEVER, whole=True)
+        return self._answer(made).result == "unsat"
+
+    def point(self, claim: Cmp, wanted: Iterable[str]) -> Numbers | None:
+        """Return simple numbers in the domain at which a claim is false, or None."""
+        about = self.near((*wanted, *names(claim)))
+        named = tuple(Sym(name) for name in self.order if name in about)
+        for answer in self._answers(claim, Cmp(">=", Add((ZERO, *named)), ZERO)):
+            if answer.result == "sat":
+                return {n: value for n, value in answer.model.items() if n in self.order}
+        return None
+
+    def near(self, words: Iterable[str]) -> set[str]:
+        """Return some names and those that conditions join to them."""
+        known = {*words}
+        return known.union(*(names(condition) for condition in connected(self.where, known)))
+
+    def _answers(self, claim: Cmp, original: Cmp) -> Iterator[Answer]:
+        made = Question("", self.order, self.where, claim, original)
+        try:
+            parts = made.smooth()
+        except TooManyBranchesError:
+            return iter((Answer("unknown"),))
+        return map(self._answer, parts)
+
+    def _answer(self, question: Question) -> Answer:
+        """Return the answer to a question, or none if enough has been asked."""
+        results = self.results
+        if len(results) >= MOST_ASKED or results.count("unknown") >= MOST_UNKNOWN:
+            return Answer("unknown")
+        try:
+            answer = self.solver.ask(question.query())
+        except TooManyBranchesError:
+            answer = Answer("unknown")
+        results.append(answer.result)
+        return answer
+
+    def breaks(self, claim: Cmp, numbers: Numbers) -> bool:
+        """Return whether numbers lie in the domain and break a claim, which is evaluated exactly.
+
+        Conditions on other names have nothing to do with it.
+        """
+        near = connected(self.where, names(claim))
+        return _broken(near, numbers) is False and _broken((claim,), numbers) is True
+
+
+def _broken(conditions: Iterable[Cmp], numbers: Numbers) -> bool | None:
+    """Return whether a comparison is false at exact numbers; None if that cannot be told."""
+    try:
+        return not all(holds(condition, numbers) for condition in conditions)
+    except (ArithmeticError, ValueError, KeyError):
+        return None
+
+
+def tried(claim: Cmp, letter: str, asked: Asked) -> Numbers | None:
+    """Return the first simple numbers in the domain at which a claim is broken, or None."""
+    placed = _placed(claim, letter, asked, asked.point(NEVER, names(claim)))
+    return next((numbers for numbers in placed if asked.breaks(claim, numbers)), None)
+
+
+def _placed(claim: Cmp, letter: str, asked: Asked, point: Numbers | None) -> Iterator[Numbers]:
+    """Yield a point with values for the letter; where a state gives it, with that state's too."""
+    if point is None:
+        return
+    if not _tied(letter, asked):
+        yield from ({**point, letter: value} for value in TRIED)
+        return
+    for value in TRIED[:FEW]:
+        found = asked.within(Cmp("=", Sym(letter), Num(value))).point(NEVER, names(claim))
+        yield from () if found is None else (found,)
+
+
+def _tied(letter: str, asked: Asked) -> bool:
+    return any(c.op == "=" for c in connected(asked.where, {letter}))
+
+
+def moved(claim: Cmp, letter: str, asked: Asked) -> Numbers | None:
+    """Return simple numbers that break a claim, one parameter moved away from the simplest."""
+    point = asked.point(NEVER, names(claim))
+    if point is None or _tied(letter, asked):
+        return None
+    for name, (factor, step) in product(names(claim), MOVES):
+        for value in TRIED[:FEW] if name != letter else ():
+            numbers = {**point, name: point[name] * factor + step, letter: value}
+            if asked.breaks(claim, numbers):
+                return numbers
+    return None

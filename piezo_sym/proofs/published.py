@@ -1,0 +1,143 @@
+"""A system as text that a second program can check: rates, U, y, and what each name stands for.
+
+Input: an `IPHS`.  Output: the "system" part of ``proofs.json``, in the law grammar of specs and
+``sum(bank, law)``.  Names of a bank stand without index: they are those of the row's own lane, or
+of the lane that the enclosing sum runs over.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace as changed
+from fractions import Fraction
+
+import sympy as sp
+
+from piezo_sym.algebra.sums import LaneSum as SymbolicSum
+from piezo_sym.iphs import IPHS
+from piezo_sym.iphs.definitions import costate_name, heated
+from piezo_sym.spec.calculus import add, div, mul, power
+from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, Resistor, Storage
+from piezo_sym.spec.expressions import ONE, Call, Cmp, Expr, If, LaneSum, Num, Sym, rename, replace
+from piezo_sym.spec.text import ATOM, SPEC, write
+
+#: The law language, and sums over the lanes of a bank.
+STYLE = changed(SPEC, lane_sum=lambda arg, bank: (f"sum({bank}, {arg[0]})", ATOM))
+COMPARISONS = {sp.Lt: "<", sp.Le: "<=", sp.Gt: ">", sp.Ge: ">="}
+FUNCTIONS = (sp.exp, sp.log, sp.sin, sp.cos, sp.tanh)
+HALF = sp.Rational(1, 2)
+
+
+def published(iphs: IPHS) -> dict[str, object]:
+    """Return the states, names, rates, energy and outputs of a system as text, in order."""
+    system = iphs.system
+    slots = list(zip(system.states, iphs.circuit.of(Storage, Body), strict=True))
+    tree = _Trees(iphs)
+    energies = zip(system.states, iphs.energies, strict=True)
+    stored = [LaneSum(law, slot.bank) if slot.bank else law for slot, law in energies]
+    return {
+        "states": [
+            {"name": slot.label, "element": placed.element, "bank": slot.bank}
+            for slot, (placed, _) in slots
+        ],
+        "names": dict(_names(iphs, tree)),
+        "rates": {
+            slot.label: write(tree(rate), STYLE)
+            for slot, rate in zip(system.states, system.rhs, strict=True)
+        },
+        "energy": write(add(*stored), STYLE),
+        "outputs": {
+            slot.label: write(tree(y), STYLE)
+            for slot, y in zip(system.ports, system.y, strict=True)
+        },
+    }
+
+
+def _names(iphs: IPHS, tree: _Trees) -> Iterator[tuple[str, dict[str, str | None]]]:
+    """Yield each name of a system: whose it is, what it is, and its law."""
+
+    def entry(name: str, element: str, role: str, law: Expr) -> tuple[str, dict[str, str | None]]:
+        bank = iphs.symbols.banks.get(iphs.symbols[name]) if name in iphs.symbols.symbols else None
+        return name, {"element": element, "role": role, "bank": bank, "law": write(law, STYLE)}
+
+    for placed, store in iphs.circuit.of(Storage, Body):
+        role = "temperature" if isinstance(store, Body) else "costate"
+        law = rename(store.law, {store.letter: store.state})
+        yield entry(costate_name(store), placed.element, role, law)
+    for placed, port in iphs.circuit.of(Coupling):
+        hot = {"T": iphs.circuit.body(port.body).temperature} if port.body else {}
+        yield entry(port.name, placed.element, "ratio", rename(port.ratio, hot))
+    processes = tuple(iphs.circuit.of(Resistor, Conductor))
+    for slope in iphs.junction.slopes:
+        placed, process = processes[slope.process]
+        hot = {"T": iphs.circuit.body(heated(process)).temperature}
+        yield entry(slope.symbol.name, placed.element, "slope", rename(slope.law, hot))
+    for share, value in iphs.junction.shares:
+        yield entry(share.name, "", "share", tree(value))
+    for (placed, process), z in zip(processes, iphs.system.z, strict=True):
+        heat: dict[str, Expr] = {"T": Sym(iphs.circuit.body(heated(process)).temperature)}
+        if isinstance(process, Conductor):
+            first = Sym(iphs.circuit.body(process.first).temperature)
+            law = div(mul(process.conductance, tree(z)), first)
+        else:
+            law = replace(process.law, {process.letter: tree(z), **heat})
+        yield entry(process.output, placed.element, "output", law)
+
+
+class _Trees:
+    """SymPy expressions to trees, in an order of our own: it does not depend on SymPy's."""
+
+    def __init__(self, iphs: IPHS) -> None:
+        self.names: Mapping[sp.Symbol, str] = {s: n for n, s in iphs.symbols.symbols.items()}
+        self.sizes = {symbol: bank for bank, symbol in iphs.symbols.counts.items()}
+
+    def __call__(self, expr: sp.Expr) -> Expr:
+        """Return the tree of an expression."""
+        match expr:
+            case sp.Rational():
+                return Num(Fraction(int(expr.p), int(expr.q)))
+            case sp.Symbol():
+                bank = self.sizes.get(expr)
+                return LaneSum(ONE, bank) if bank else Sym(self.names.get(expr, str(expr.name)))
+            case SymbolicSum():
+                return LaneSum(self(expr.args[0]), str(expr.args[1]))
+            case sp.Add():
+                return add(*self._ordered(expr.args))
+            case sp.Mul():
+                return self._product(expr)
+            case sp.Pow():
+                return self._power(expr.base, expr.exp)
+            case sp.Piecewise():
+                return self._choice(expr.args)
+        if isinstance(expr, FUNCTIONS):
+            return Call(type(expr).__name__, (self(expr.args[0]),))
+        msg = f"{type(expr).__name__} is nothing that a system has"
+        raise TypeError(msg)
+
+    def _ordered(self, args: tuple[sp.Expr, ...]) -> list[Expr]:
+        return sorted(map(self, args), key=lambda tree: write(tree, STYLE))
+
+    def _product(self, expr: sp.Mul) -> Expr:
+        top, bottom = sp.fraction(expr)
+        if bottom != 1:
+            return div(self(top), self(bottom))
+        total: Expr = ONE
+        for factor in self._ordered(expr.args):
+            total = mul(total, factor)
+        return total
+
+    def _power(self, base: sp.Expr, exponent: sp.Expr) -> Expr:
+        if exponent == HALF:
+            return Call("sqrt", (self(base),))
+        if exponent == -1:
+            return div(ONE, self(base))
+        return power(self(base), Fraction(int(exponent.p), int(exponent.q)))
+
+    def _choice(self, cases: tuple[tuple[sp.Expr, sp.Basic], ...]) -> Expr:
+        (value, condition), *rest = cases
+        if not rest:
+            return self(value)
+        left, right = self(condition.args[0]), self(condition.args[1])
+        return If(
+            self(value), Cmp(COMPARISONS[type(condition)], left, right), self._choice(tuple(rest))
+        )

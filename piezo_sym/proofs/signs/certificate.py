@@ -1,0 +1,108 @@
+"""What was shown of a law by intervals, as data that a second program can check.
+
+Input: nothing; these are the types.  Output: `Case` records, and plain JSON of them (`as_data`).
+Texts are in the law language; ``s`` stands for the letter of `f`.
+
+A certificate claims that law*letter >= 0 in the domain.  Its cases cover the domain: at each of its
+points all guards of one case hold, and the law is then the sum of the laws of that case's terms,
+wherever it is defined.  A law of zero has no terms.  A guard has no letter in it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import final
+
+from piezo_sym.proofs.signs.intervals import INF
+from piezo_sym.spec.expressions import ZERO, Cmp, Expr, If, rename
+from piezo_sym.spec.text import spell
+
+#: The letter of f in a certificate.
+LETTER = "s"
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Windows:
+    """Some t on each of which a function of x = centre + side*t is shown to be >= 0.
+
+    Attributes
+    ----------
+    centre, side : a rational number, and 1 or -1.
+    windows : (lo, hi, order) for lo < t <= hi; hi may be infinite; order is how many derivatives
+        were used.  A window at lo = 0 says nothing of t = 0, the centre, where the function was
+        evaluated by itself.
+    """
+
+    centre: Fraction
+    side: int
+    windows: tuple[tuple[float, float, int], ...]
+
+    def as_data(self) -> dict[str, object]:
+        """Return plain data; numbers are exact, as text."""
+        windows = [[_number(lo), _number(hi), order] for lo, hi, order in self.windows]
+        return {"centre": str(self.centre), "side": self.side, "windows": windows}
+
+
+def _number(end: float) -> str:
+    return "inf" if end == INF else str(Fraction(end))
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Term:
+    """One summand: ``law = prefactor*f(s)`` wherever the law is defined, ``letter = scale*s``.
+
+    Attributes
+    ----------
+    law : in the letter.
+    letter : its name.
+    prefactor : may hold the letter; ``sign*prefactor >= 0`` follows from the domain and the guards,
+        for every value of the letter, wherever the prefactor is defined.
+    sign : 1 or -1.
+    scale : (base, power); each base is free of the letter and > 0 by the domain and the guards.
+    f : a tree in the letter's name alone, which stands for s: f is defined and ``sign*f(s)*s >= 0``
+        for all real s.  None says that the prefactor is law*letter itself.
+    rays : where that was shown; every real s is a centre of these or lies in one of their windows.
+    """
+
+    law: Expr
+    letter: str
+    prefactor: Expr
+    sign: int = 1
+    scale: tuple[tuple[Expr, Fraction], ...] = ()
+    f: Expr | None = None
+    rays: tuple[Windows, ...] = ()
+
+    def where(self, condition: Cmp) -> Term:
+        """Return the term that counts where a condition holds and is zero elsewhere."""
+        law, prefactor = (If(part, condition, ZERO) for part in (self.law, self.prefactor))
+        return replace(self, law=law, prefactor=prefactor)
+
+    def as_data(self) -> dict[str, object]:
+        """Return plain data; a power that is not whole is text such as 1/2."""
+        scale = {spell(b): int(e) if e.denominator == 1 else str(e) for b, e in self.scale}
+        f = None if self.f is None else spell(rename(self.f, {self.letter: LETTER}))
+        return {
+            "law": spell(self.law),
+            "prefactor": spell(self.prefactor),
+            "sign": self.sign,
+            "scale": scale,
+            "f": f,
+            "rays": [ray.as_data() for ray in self.rays],
+        }
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Case:
+    """The law where all `guards` hold: the sum of the terms' laws."""
+
+    guards: tuple[Cmp, ...]
+    terms: tuple[Term, ...]
+
+    def as_data(self) -> dict[str, object]:
+        """Return plain data."""
+        guards = [f"{spell(c.left)} {c.op} {spell(c.right)}" for c in self.guards]
+        return {"guards": guards, "terms": [term.as_data() for term in self.terms]}

@@ -1,0 +1,131 @@
+"""Values with names replaced, moved to another lane, and differentiated.
+
+Input: values.  Output: values of the same field.  A derivative by the state of a bank's lane has
+two parts: `derivative` in the lane itself, and `across`, by way of sums over lanes, for every lane.
+Signs have the derivative 0: what is said of derivatives holds inside the branches of a law.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+
+from piezo_sym.translation.field import Field, Generator, NotShownError, Value
+from piezo_sym.translation.functions import call, power
+from piezo_sym.translation.signs import compare, sign_of
+
+
+def put(value: Value, new: Mapping[int, Value]) -> Value:
+    """Return a value with generators replaced, in functions too; sums keep the lane they bind."""
+    field = value.field
+    if value.parts.isdisjoint(new):
+        return value
+    path, field.path = field.path, None
+    parts = []
+    for mono, c in value.terms.items():
+        term = field.number(c)
+        for g, e in mono:
+            same = field.gens[g].parts.isdisjoint(new)
+            factor = Value(field, {((g, e),): 1}) if same else None
+            term = term * (factor or power(_put(field, g, new), Fraction(e)))
+        parts.append(term)
+    field.path = path
+    return field.total(parts)
+
+
+def _put(field: Field, g: int, new: Mapping[int, Value]) -> Value:
+    gen = field.gens[g]
+    if g in new or gen.arg is None:
+        return new[g]
+    if gen.kind == "sum":
+        bank = str(gen.mark)
+        new = {n: v for n, v in new.items() if (bank, 0) not in field.gens[n].lanes}
+        if any((bank, 0) in v.lanes for v in new.values()):
+            raise NotShownError("a lane's name comes into a sum over lanes")
+        return field.lane_sum(put(gen.arg, new), bank)
+    arg = put(gen.arg, new)
+    if gen.kind == "power":
+        return arg
+    if gen.kind == "sign":
+        op = {1: ">", 0: "==", -1: "<"}[int(str(gen.mark))]
+        return compare(op, arg, field.zero)
+    return call(gen.kind, arg)
+
+
+def moved(value: Value, bank: str, lane: int) -> Value:
+    """Return a value of a row's lane of a bank (0) in a column's (1), or the other way round."""
+    field, new = value.field, {}
+    for g in value.parts:
+        mark = field.gens[g].mark
+        if isinstance(mark, tuple) and mark[1:] == (bank, 1 - lane):
+            new[g] = field.name(mark[0], bank, lane, sign_of(field, g))
+    return put(value, new)
+
+
+Inner = Callable[[Generator], Value]
+
+
+def derivative(value: Value, state: int) -> Value:
+    """Return the derivative by a name, sums over the name's own bank left aside."""
+    field = value.field
+    bank = next(iter(field.gens[state].lanes), ("", 0))[0]
+
+    def of_sum(gen: Generator) -> Value:
+        if gen.mark == bank or gen.arg is None:
+            return field.zero
+        return field.lane_sum(derivative(gen.arg, state), str(gen.mark))
+
+    return _chain(value, state, field.one, of_sum)
+
+
+def across(value: Value, state: int, lane: int) -> Value:
+    """Return the derivative by a name of a lane, by way of sums over its bank alone."""
+    field = value.field
+    bank = next(iter(field.gens[state].lanes))[0]
+
+    def of_sum(gen: Generator) -> Value:
+        if gen.mark != bank or gen.arg is None:
+            return field.zero
+        return moved(derivative(gen.arg, state), bank, lane)
+
+    return _chain(value, state, field.zero, of_sum)
+
+
+def _chain(value: Value, state: int, own: Value, of_sum: Inner) -> Value:
+    """Return a derivative, given that of the name itself and that of sums over lanes."""
+    field, parts = value.field, list[Value]()
+    if state not in value.parts:
+        return field.zero
+    gens = {g: _slope(field, g, state, own, of_sum) for g in value.generators()}
+    for mono, c in value.terms.items():
+        for n, (g, e) in enumerate(mono):
+            if gens[g].terms:
+                rest = (
+                    (*mono[:n], (g, e - 1), *mono[n + 1 :]) if e != 1 else mono[:n] + mono[n + 1 :]
+                )
+                parts.append(Value(field, {rest: c * e}) * gens[g])
+    return field.total(parts)
+
+
+def _slope(field: Field, g: int, state: int, own: Value, of_sum: Inner) -> Value:
+    """Return the derivative of a generator."""
+    gen, same = field.gens[g], field.raised(g, 1)
+    if gen.arg is None:
+        return own if g == state else field.zero
+    if state not in gen.parts or gen.kind == "sign":
+        return field.zero
+    if gen.kind == "sum":
+        return of_sum(gen)
+    inner = _chain(gen.arg, state, own, of_sum)
+    if gen.kind == "power" or not inner.terms:
+        return inner
+    match gen.kind:
+        case "exp":
+            return same * inner
+        case "log":
+            return power(gen.arg, Fraction(-1)) * inner
+        case "sin":
+            return call("cos", gen.arg) * inner
+        case "cos":
+            return -(call("sin", gen.arg) * inner)
+    return (field.one - same * same) * inner  # tanh

@@ -1,0 +1,238 @@
+"""Expressions of printed text, Python's or C's, as values in normal form.
+
+Input: a tree of Python's `ast`, into which `c_reader` parses C too, and what names stand for.
+Output: a value and its shape.  Nothing is executed; what is not in the grammar is refused.
+
+    sum, difference, product, quotient, negative, rational power, comparison, ``a or b``,
+    ``a if test else b``, and calls of the functions below.
+
+Identities, for all real numbers: expm1(z) = exp(z) - 1; fabs, sign, minimum, maximum and clip by
+their cases, clip(x, a, b) = min(max(x, a), b); copysign(w, z) = |w| sign(z), of z = 0 nothing is
+known.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import final
+
+from piezo_sym.translation.field import Field, NotShownError, Value
+from piezo_sym.translation.functions import call, power, size_of
+from piezo_sym.translation.signs import choose, compare, side_of
+
+MOST_MAGNITUDE = 300
+MOST_WHOLE = 2**31 - 1
+_ARGUMENTS = {"pow": 2, "copysign": 2, "minimum": 2, "maximum": 2, "clip": 3}
+_OPERATORS = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
+
+
+@final
+@dataclass(frozen=True)
+class Shape:
+    """What kind of value a text has.
+
+    Attributes
+    ----------
+    kind : "" for a number of one state, "whole" for an integer, "test" for a condition; for arrays
+        "maybe" (lanes, if the parameters of a bank are lists), "lanes", "row" and "column" (lanes
+        of the one or other axis of a matrix) and "pair".
+    bank, other : of the lanes; of a pair, the row's and the column's.
+    """
+
+    kind: str = ""
+    bank: str = ""
+    other: str = ""
+
+    @property
+    def is_array(self) -> bool:
+        """Whether there is an axis of lanes, or may be."""
+        return bool(self.bank)
+
+
+PLAIN, WHOLE, TEST = Shape(), Shape("whole"), Shape("test")
+Read = tuple[Value, Shape]
+Leaf = Callable[[ast.expr], Read]
+
+
+@final
+@dataclass(frozen=True)
+class Expressions:
+    """Reads expressions.
+
+    Attributes
+    ----------
+    field : of the values.
+    numbers : see `Proved.numbers`.
+    leaf : reads what the language or its names give a meaning: names, subscripts, other calls.
+    functions : the name of each function in the text, and what it is.
+    whole_division : whether a quotient of integers is an integer, as in C.
+    """
+
+    field: Field
+    numbers: Mapping[float, Fraction]
+    leaf: Leaf
+    functions: Mapping[str, str]
+    whole_division: bool
+
+    def __call__(self, node: ast.expr) -> Read:
+        """Return an expression's value and shape.
+
+        Raises
+        ------
+        NotShownError
+            If it is outside the grammar.
+        """
+        match node:
+            case ast.Constant(number):
+                return self._number(number)
+            case ast.UnaryOp(ast.USub(), arg):
+                value, shape = self.numeric(arg)
+                return -value, shape
+            case ast.BinOp(left, operator, right):
+                return self._operation(self.numeric(left), operator, self.numeric(right), node)
+            case ast.Compare(left, [operator], [right]) if type(operator) in _OPERATORS:
+                first, second = self.numeric(left), self.numeric(right)
+                joined(first[1], second[1], node)
+                op = _OPERATORS[type(operator)]
+                return compare(op, first[0], second[0]), TEST
+            case ast.BoolOp(ast.Or(), [left, right]):
+                one, tests = self.field.one, (self.test(left), self.test(right))
+                return one - (one - tests[0]) * (one - tests[1]), TEST
+            case ast.IfExp(test, then, other):
+                return self.choice(test, then, other)
+            case ast.Call(function, args, []) if ast.unparse(function) in self.functions:
+                return self._call(self.functions[ast.unparse(function)], args, node)
+        return self.leaf(node)
+
+    def numeric(self, node: ast.expr) -> Read:
+        """Return an expression that is no condition."""
+        value, shape = self(node)
+        if shape == TEST:
+            raise refused(node, "a condition as a number")
+        return value, shape
+
+    def whole(self, node: ast.expr) -> Value:
+        """Return an integer: an index or a size."""
+        value, shape = self(node)
+        if shape != WHOLE:
+            raise refused(node, "no integer")
+        return value
+
+    def test(self, node: ast.expr) -> Value:
+        """Return a condition: 1 where it holds."""
+        value, shape = self(node)
+        if shape != TEST:
+            raise refused(node, "a number as a condition")
+        return value
+
+    def choice(self, condition: ast.expr, then: ast.expr, other: ast.expr) -> Read:
+        """Return one value or the other; each is needed only where it is chosen."""
+        field, test, parts = self.field, self.test(condition), list[Read]()
+        path, one = field.path, field.one
+        for chosen, node in ((test, then), (one - test, other)):
+            field.path = path and path * chosen
+            parts.append(self.numeric(node))
+        field.path = path
+        (first, shape), (second, shape_of_other) = parts
+        shape = joined(
+            joined(shape, shape_of_other, condition), self.shape_of(condition), condition
+        )
+        return choose(test, first, second), shape
+
+    def shape_of(self, condition: ast.expr) -> Shape:
+        """Return the shape of the numbers that a condition compares."""
+        if isinstance(condition, ast.Compare):
+            sides = self.numeric(condition.left)[1], self.numeric(condition.comparators[0])[1]
+            return joined(joined(*sides, condition), PLAIN, condition)
+        return PLAIN
+
+    def _number(self, value: object) -> Read:
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise NotShownError(f"{str(value)[:20]!r} is no number")
+        if value and not 10.0**-MOST_MAGNITUDE <= abs(value) <= 10**MOST_MAGNITUDE:
+            raise NotShownError("a number is too large")
+        if isinstance(value, int):
+            return self.field.number(value), WHOLE
+        return self.field.number(self.numbers.get(value) or Fraction(repr(value))), PLAIN
+
+    def _operation(self, left: Read, operator: ast.operator, right: Read, node: ast.expr) -> Read:
+        shape = joined(left[1], right[1], node)
+        match operator:
+            case ast.Add():
+                return left[0] + right[0], shape
+            case ast.Sub():
+                return left[0] - right[0], shape
+            case ast.Mult():
+                made = left[0] * right[0]
+                if shape == WHOLE and abs(made.constant or Fraction(0)) > MOST_WHOLE:
+                    raise refused(node, "an integer that is too large")
+                return made, shape
+            case ast.Div() if shape != WHOLE or not self.whole_division:
+                shape = PLAIN if shape == WHOLE else shape
+                return left[0] * power(right[0], Fraction(-1)), shape
+            case ast.Pow() if right[0].constant is not None and not self.whole_division:
+                return power(left[0], right[0].constant), left[1]
+        raise refused(node, "an operator")
+
+    def _call(self, function: str, nodes: list[ast.expr], node: ast.expr) -> Read:
+        if function == "choice" and len(nodes) == 3:
+            return self.choice(*nodes)
+        read = [self.numeric(arg) for arg in nodes]
+        shape = PLAIN
+        for _, own in read:
+            shape = joined(shape, own, node)
+        args = [value for value, _ in read]
+        if len(args) != _ARGUMENTS.get(function, 1):
+            raise refused(node, "a call")
+        return self.apply(function, args), joined(shape, PLAIN, node)
+
+    def apply(self, function: str, args: list[Value]) -> Value:
+        """Return a function of values."""
+        field, z, w = self.field, args[0], args[-1]
+        match function:
+            case "expm1":
+                return call("exp", z) - field.one
+            case "sqrt":
+                return power(z, Fraction(1, 2))
+            case "abs":
+                return size_of(z)
+            case "sign":
+                return side_of(z)
+            case "minimum":
+                return choose(compare("<=", z, w), z, w)
+            case "maximum":
+                return choose(compare(">=", z, w), z, w)
+            case "clip":
+                return self.apply("minimum", [self.apply("maximum", args[:2]), w])
+            case "pow":
+                exponent = w.constant
+                if exponent is None:
+                    raise NotShownError("a power with an exponent that is no number")
+                return power(z, exponent)
+            case "copysign":
+                unknown = field.generator("unknown", None, (f"copysign {len(field.gens)}", None, 0))
+                of_zero = compare("==", w, field.zero) * unknown
+                return size_of(z) * (side_of(w) + of_zero)
+        return call(function, z)
+
+
+def refused(node: ast.AST, what: str) -> NotShownError:
+    """Return that a piece of text is refused, to be raised."""
+    return NotShownError(f"{what} outside the grammar: {ast.unparse(node)[:60]}")
+
+
+def joined(left: Shape, right: Shape, node: ast.AST) -> Shape:
+    """Return the shape of what is made of two shapes."""
+    if left == right:
+        return left
+    if not left.is_array or not right.is_array:
+        return left if left.is_array else right if right.is_array else PLAIN
+    kinds = {left.kind: left, right.kind: right}
+    if kinds.keys() == {"maybe", "lanes"} and left.bank == right.bank:
+        return kinds["lanes"]
+    if kinds.keys() == {"row", "column"}:
+        return Shape("pair", kinds["row"].bank, kinds["column"].bank)
+    raise refused(node, "lanes of two banks")

@@ -1,0 +1,294 @@
+"""A printed NumPy module, read back: rows of its functions as values in normal form.
+
+Input: the text of ``<model>.py`` and what it may name.  Output: values by function and row, and
+what they are divided by.  The grammar is that of straight code: each name is assigned once, from
+parameters, parts of x and u, or an expression; rows of `out` are written once.  Tables, parameters
+and the helpers of a module have to be word for word what is expected.  Nothing is executed.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Mapping, Sequence
+from typing import final
+
+from piezo_sym.algebra.lanes import Slot
+from piezo_sym.translation.change import moved
+from piezo_sym.translation.expressions import PLAIN, WHOLE, Expressions, Read, Shape, refused
+from piezo_sym.translation.field import NotShownError, Value
+from piezo_sym.translation.known import ALL, LEAST, SAME, Key, Proved
+from piezo_sym.translation.rows import Rows, slot_at
+
+ARGUMENTS = dict.fromkeys(
+    ["jacobian", "margins", "outputs", "supply", "heat", "entropy_production"], "x u p"
+) | {"initial_state": "u p", "_rates": "x u p out", "temperatures": "x p"}
+ARGUMENTS |= {"energy": "x p", "entropy": "x p"}
+KEPT = ("np", "_states", "_inputs", "_lanes")
+CALLS = {f"np.{name}": name for name in ("exp", "expm1", "log", "sqrt", "sin", "cos", "tanh")}
+CALLS |= {"np.abs": "abs", "np.sign": "sign", "np.minimum": "minimum", "np.maximum": "maximum"}
+CALLS |= {"np.clip": "clip"}
+
+
+def read_numpy(functions: Mapping[str, ast.FunctionDef], known: Proved) -> dict[Key, Value]:
+    """Return every row that the functions of a module write; see `head` for the rest of it.
+
+    Raises
+    ------
+    NotShownError
+        If something is outside the grammar; it says what.
+    """
+    rows: dict[Key, Value] = {}
+    for name, words in ARGUMENTS.items():
+        if name not in functions:
+            raise NotShownError(f"there is no function {name}")
+        rows |= _Function(functions[name], words.split(), known).rows()
+    return rows
+
+
+@final
+class _Function:
+    """Reads one function; names stand for values, arguments (`roles`) or index arrays (`lanes`)."""
+
+    def __init__(self, node: ast.FunctionDef, words: Sequence[str], known: Proved) -> None:
+        self.node, self.known, self.field = node, known, known.field
+        self.name = node.name.replace("_rates", "rhs")
+        given = node.args
+        arguments = [arg.arg for arg in given.posonlyargs]
+        others = {**vars(given), "posonlyargs": [], "returns": node.returns}
+        noted = [arg.annotation for arg in given.posonlyargs if arg.annotation]
+        if node.decorator_list or len(arguments) != len(words) or any(others.values()) or noted:
+            raise refused(node, "the arguments of a function")
+        self.words = dict(zip(words, arguments, strict=True))
+        self.x = self.words.get("x", "")
+        self.unchecked = {"x", "u"} & {*words} if node.name != "_rates" else set()
+        self.roles = {a: w for w, a in self.words.items() if w not in self.unchecked}
+        self.values: dict[str, Read] = {}
+        self.lanes: dict[str, tuple[Value, Value]] = {}
+        self.written = Rows(known, self.name)
+        self.field.derived = self.name == "jacobian"
+        self.read = Expressions(self.field, known.numbers, self._leaf, CALLS, False)
+
+    def rows(self) -> dict[Key, Value]:
+        """Return the rows that the function writes."""
+        doc, *body = self.node.body
+        last = body.pop() if "out" not in self.words and body else None
+        for statement in body:
+            self._statement(statement)
+        if not (isinstance(doc, ast.Expr) and isinstance(doc.value, ast.Constant)):
+            raise refused(doc, "a function without docstring")
+        if "x" in self.unchecked:
+            raise refused(doc, "a function that takes states of any shape")
+        if isinstance(last, ast.Return) and last.value:
+            self._return(last.value)
+        elif last:
+            raise refused(last, "a last statement")
+        if self.name == "initial_state":  # made of zeros
+            found = self.written.found
+            left = {*range(len(self.written.slots))} - {key[1] for key in found}
+            found |= {(self.name, n): self.field.zero for n in left}
+        return self.written.found
+
+    def _return(self, value: ast.expr) -> None:
+        if self.written.slots != (Slot(""),):
+            if not isinstance(value, ast.Name) or self.roles.get(value.id) != "out":
+                raise refused(value, "what is returned")
+            return
+        match value:
+            case ast.Call(ast.Attribute(name, "copy"), [], []):
+                value = name
+            case ast.Call() if ast.unparse(value) == f"np.zeros({self.x}.shape[1:])":
+                value = ast.Constant(0)
+        self.written.keep((self.name, 0), self._of(value))
+
+    def _statement(self, node: ast.stmt) -> None:
+        match node:
+            case ast.Assign([ast.Name(name)], value):
+                self._assign(name, value)
+            case ast.Assign([ast.Subscript(ast.Name(out), place)], value) if self._is_out(out):
+                self._write(place, value, added=False)
+            case ast.AugAssign(ast.Subscript(ast.Name(out), place), ast.Add(), value) if (
+                self._is_out(out)
+            ):
+                self._write(place, value, added=True)
+            case _:
+                raise refused(node, "a statement")
+
+    def _is_out(self, name: str) -> bool:
+        return self.roles.get(name) == "out"
+
+    def _assign(self, name: str, value: ast.expr) -> None:
+        p, u = self.words["p"], self.words.get("u", "")
+        checks = {(self.x, f"_states({self.x}, {p})"): "x", (u, f"_inputs({u})"): "u"}
+        role = checks.get((name, ast.unparse(value)))
+        kept = {
+            "np",
+            "_states",
+            "_inputs",
+            "_lanes",
+            *self.words.values(),
+            *self.values,
+            *self.roles,
+        }
+        if role in self.unchecked:
+            self.unchecked.remove(str(role))
+            self.roles[name] = str(role)
+        elif isinstance(value, ast.Call) and ast.unparse(value.func) == "np.arange":
+            if name in kept or len(value.args) != 2 or value.keywords:
+                raise refused(value, "an index array")
+            first, last = value.args
+            self.lanes[name] = self.read.whole(first), self.read.whole(last)
+        elif name in kept or name in self.lanes:
+            raise NotShownError(f"{name} is assigned twice")
+        elif isinstance(value, ast.Call) and ast.unparse(value.func) in {"np.empty", "np.zeros"}:
+            self._allocate(value)
+            self.roles[name] = "out"
+        else:
+            self.values[name] = self.read.numeric(value)
+
+    def _allocate(self, value: ast.Call) -> None:
+        """Read how the result is made: with zeros, rows may be left out."""
+        zeros, shape = ast.unparse(value.func) == "np.zeros", next(iter(value.args), value)
+        square = f"({self.x}.shape[0], *{self.x}.shape)"
+        match shape:
+            case ast.Tuple([size, ast.Starred() as rest]) if not zeros:
+                right = ast.unparse(rest) == f"*{self.x}.shape[1:]"
+                right = right and self.read.whole(size) == self.written.places[-1]
+            case ast.Tuple():
+                right = zeros and ast.unparse(shape) == square and self.name == "jacobian"
+            case _:
+                right = self.read.whole(shape) == self.written.places[-1]
+                right = right and zeros and self.name == "initial_state"
+        if not right or len(value.args) != 1 or value.keywords or "out" in self.roles.values():
+            raise refused(value, "an array")
+        self.written.zeros = zeros
+
+    # Rows
+
+    def _write(self, place: ast.expr, value: ast.expr, *, added: bool) -> None:
+        if self.name == "jacobian":
+            self._entry(place, value, added=added)
+            return
+        n, bank = self._row(place, self.written.slots)
+        if isinstance(value, ast.Tuple) and bank and self.name == "initial_state":
+            for lane, part in enumerate(value.elts):
+                self.written.keep((self.name, n, lane), self._of(part), added=added)
+        elif self.name == "margins" and (least := self._least(value)):
+            self.written.keep((self.name, n, LEAST), least, added=added)
+        else:
+            shapes = [Shape("lanes", bank), Shape("maybe", bank)] if bank else []
+            self.written.keep((self.name, n), self._of(value, shapes), added=added)
+
+    def _entry(self, place: ast.expr, value: ast.expr, *, added: bool) -> None:
+        if not isinstance(place, ast.Tuple) or len(place.elts) != 2:
+            raise refused(place, "a place in a matrix")
+        slots, shapes = self.written.slots, list[Shape]()
+        equal = [_first(part) in self.lanes for part in place.elts]
+        if all(equal):
+            (row, rows), (col, cols) = map(self._index_array, place.elts)
+            if rows != cols:
+                raise refused(place, "equal lanes of two banks")
+        else:
+            (row, rows), (col, cols) = (self._row(part, slots) for part in place.elts)
+        if rows and cols and not all(equal):
+            shapes = [Shape("row", rows), Shape("column", cols), Shape("pair", rows, cols)]
+        elif bank := rows or cols:
+            shapes = [Shape("lanes", bank), Shape("maybe", bank)]
+        key = ("jacobian", row, col, SAME if all(equal) else ALL)
+        self.written.keep(key, self._of(value, shapes), added=added)
+
+    def _of(self, node: ast.expr, shapes: Sequence[Shape] = ()) -> Value:
+        """Return an expression that has one of some shapes, or the same value for all lanes."""
+        value, shape = self.read.numeric(node)
+        if shape.bank and shape not in shapes:
+            raise refused(node, "an array of another shape")
+        return value
+
+    def _least(self, node: ast.expr) -> Value | None:
+        """Return what the least over the lanes is taken of, if it is."""
+        match node:
+            case ast.Call(ast.Attribute(ast.Name("np"), "min"), [arg], [axis]):
+                value, shape = self.read.numeric(arg)
+                names = (part.id for part in ast.walk(arg) if isinstance(part, ast.Name))
+                own = all(self.values.get(n, (0, shape))[1] == shape for n in names)
+                right = shape.kind == "lanes" or (shape.kind == "maybe" and own)
+                return value if right and ast.unparse(axis) == "axis=0" else None
+        return None
+
+    # Places
+
+    def _row(self, node: ast.expr, slots: tuple[Slot, ...]) -> tuple[int, str | None]:
+        """Return the slot of an index or of a slice, and its bank."""
+        places = self.known.places(slots)
+        if not isinstance(node, ast.Slice):
+            return slot_at(slots, places, self.read.whole(node), bank=False), None
+        if node.lower is None or node.upper is None or node.step is not None:
+            raise refused(node, "a slice")
+        n = slot_at(slots, places, self.read.whole(node.lower), bank=True)
+        if self.read.whole(node.upper) != places[n + 1]:
+            raise refused(node, "a slice")
+        return n, slots[n].bank
+
+    def _index_array(self, node: ast.expr) -> tuple[int, str | None]:
+        """Return the slot of ``lanes`` or of ``lanes + (second - (first))``, and its bank."""
+        shift = self.field.zero
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+            shift, node = self.read.whole(node.right), node.left
+        slots, places = self.written.slots, self.written.places
+        first, last = self.lanes[_first(node)]
+        n = slot_at(slots, places, first + shift, bank=True)
+        if not isinstance(node, ast.Name) or last + shift != places[n + 1]:
+            raise refused(node, "lanes of another bank")
+        return n, slots[n].bank
+
+    # Names
+
+    def _leaf(self, node: ast.expr) -> Read:
+        match node:
+            case ast.Name(name) if name in self.values:
+                return self.values[name]
+            case ast.Attribute(ast.Name(p), name) if self.roles.get(p) == "p":
+                value, whole = self.known.parameter(name)
+                return value, WHOLE if whole else PLAIN
+            case ast.Subscript(ast.Name(x), place) if self.roles.get(x) in {"x", "u"}:
+                slots = self.known.slots["rhs"] if self.roles[x] == "x" else self.known.inputs
+                n, bank = self._row(place, slots)
+                return self.known.names[slots[n].label], Shape("lanes", bank) if bank else PLAIN
+            case ast.Subscript(arg, place):
+                kind = {"(:, None)": "row", "None": "column"}.get(ast.unparse(place))
+                value, shape = self.read.numeric(arg)
+                if kind and shape.kind == "lanes":
+                    value = moved(value, shape.bank, 1) if kind == "column" else value
+                    return value, Shape(kind, shape.bank)
+            case ast.Call(ast.Name("_lanes"), [ast.Attribute(ast.Name(p), name), size, axes], []):
+                bank = self.known.banks.get(name, "")
+                dimensions = f"{self.x}.ndim" if self.x else "1"
+                known = name in self.known.parameters and self.roles.get(p) == "p"
+                known = known and ast.unparse(axes) == dimensions
+                if bank and known and self.read.whole(size) == self.field.count(bank):
+                    return self.known.names[name], Shape("maybe", bank)
+            case ast.Call(ast.Attribute(ast.Name("np"), name), args, keywords):
+                return self._array_call(name, args, [ast.unparse(word) for word in keywords], node)
+        raise refused(node, "an expression")
+
+    def _array_call(
+        self, name: str, args: list[ast.expr], words: list[str], node: ast.expr
+    ) -> Read:
+        match name, args, words:
+            case "where", [test, then, other], []:
+                return self.read.choice(test, then, other)
+            case "sum", [arg], ["axis=0"]:
+                value, shape = self.read.numeric(arg)
+                if shape.kind == "lanes":
+                    return self.field.lane_sum(value, shape.bank), PLAIN
+            case "ones", [ast.Tuple([size, rest])], []:
+                banks = {self.field.count(bank): bank for bank in self.known.counts.values()}
+                bank = banks.get(self.read.whole(size), "")
+                if bank and ast.unparse(rest) == f"*(1,) * ({self.x}.ndim - 1)":
+                    return self.field.one, Shape("lanes", bank)
+        raise refused(node, "a call")
+
+
+def _first(node: ast.expr) -> str:
+    """Return the name that stands first in a sum of two."""
+    name = node.left if isinstance(node, ast.BinOp) else node
+    return name.id if isinstance(name, ast.Name) else ""

@@ -1,0 +1,130 @@
+"""The row `program`: that printed modules compute the proved system.
+
+Input: an `IPHS`, and the text of its NumPy module and C file.  Output: a row.  PROVED if every
+function, read back, is the proved one for all real numbers of the domain, on every branch and for
+every size of every bank, and divides by nothing more than the laws do; REFUTED with numbers at
+which a row differs; OPEN with what was not understood or not shown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from piezo_sym.iphs import IPHS
+from piezo_sym.proofs.report import Row, Verdict
+from piezo_sym.translation.c_reader import read_c
+from piezo_sym.translation.change import moved
+from piezo_sym.translation.field import Need, NotShownError, Value
+from piezo_sym.translation.known import Key, Proved
+from piezo_sym.translation.numpy_head import numpy_functions
+from piezo_sym.translation.numpy_reader import read_numpy
+from piezo_sym.translation.reference import proved
+from piezo_sym.translation.signs import compare
+from piezo_sym.translation.witness import witness
+from piezo_sym.translation.zero import is_zero
+
+STATEMENT = "the printed NumPy and C modules are the proved system (real arithmetic)"
+MOST_TEXT = 4_000_000
+#: So many rows that are not shown to be right are looked at for numbers at which they are wrong.
+MOST_TRIED = 4
+_ENOUGH = {
+    "nonzero": ({"nonzero"}, {"positive"}),
+    "nonnegative": ({"nonnegative"}, {"positive"}),
+    "positive": ({"positive"},),
+}
+
+
+def program_rows(iphs: IPHS, numpy_text: str, c_text: str) -> tuple[Row, ...]:
+    """Return the row `program` of a system and its printed modules.
+
+    Parameters
+    ----------
+    iphs : from `derive`.
+    numpy_text : from `numpy_module`.
+    c_text : from `c_source`, without the step.
+    """
+    try:
+        known = proved(iphs)
+        found = [*different("NumPy", numpy_text, iphs, known), *different("C", c_text, iphs, known)]
+    except (NotShownError, RecursionError) as error:
+        found = [_open(str(error))]
+    refuted = (row for row in found if row.verdict is Verdict.REFUTED)
+    return (next(refuted, (*found, Row("program", "", STATEMENT, Verdict.PROVED))[0]),)
+
+
+def _open(reason: str) -> Row:
+    return Row("program", "", STATEMENT, Verdict.OPEN, reason=reason)
+
+
+def different(language: str, text: str, iphs: IPHS, known: Proved) -> tuple[Row, ...]:
+    """Return a row on what differs in the NumPy or C text, if anything does."""
+    try:
+        if len(text) > MOST_TEXT:
+            raise NotShownError("the text is too long")
+        known.field.needs.clear()
+        known.field.path = known.field.one  # whatever a refusal before has left
+        if language == "C":
+            rows = read_c(text, iphs.model.name, known)
+        else:
+            rows = read_numpy(numpy_functions(text, iphs), known)
+        needs = tuple(known.field.needs)
+        found = list(_differences(language, rows, iphs, known))
+        found += [_open(f"{language} {text}") for text in _unmet(needs, known)]
+    except (NotShownError, RecursionError) as error:
+        found = [_open(f"{language}: {error}")]
+    return tuple(sorted(found, key=lambda row: row.verdict is not Verdict.REFUTED)[:1])
+
+
+def _differences(
+    language: str, rows: Mapping[Key, Value], iphs: IPHS, known: Proved
+) -> Iterator[Row]:
+    """Yield for each row that is not shown to be the proved one what is wrong with it."""
+    tried = 0
+    for key in dict.fromkeys((*known.values, *rows)):
+        printed, wanted = (table.get(key, known.field.zero) for table in (rows, known.values))
+        matrix = key[0] == "jacobian"
+        place = f"{language} {key[0]}{[_label(key, n, known) for n in range(1, len(key))]}"
+        if not matrix and (key not in rows or key not in known.values):
+            yield _open(f"{place} is not written")
+        elif not is_zero(printed - wanted, inside=matrix):
+            tried += 1
+            at = witness(printed, wanted, known, iphs) if tried <= MOST_TRIED else None
+            reason = f"{place} is not shown to be the proved one"
+            if at:
+                reason = f"{place} is {at.printed}, and {at.proved} is proved"
+            verdict = Verdict.REFUTED if at else Verdict.OPEN
+            yield Row("program", "", STATEMENT, verdict, at.point if at else None, reason)
+            if at:
+                return
+
+
+def _label(key: Key, n: int, known: Proved) -> str:
+    slots = known.slots[str(key[0])]
+    part = key[n]
+    is_slot = isinstance(part, int) and (n == 1 or key[0] == "jacobian") and part < len(slots)
+    return slots[int(part)].label if is_slot else str(part)
+
+
+def _unmet(needs: tuple[Need, ...], known: Proved) -> Iterator[str]:
+    """Yield what printed code divides by, or takes roots of, and laws do not."""
+    field = known.field
+    for need in needs:
+        value = _in_first_lane(need.value)
+        op = {"nonzero": "==", "nonnegative": "<"}.get(need.kind, "<=")
+        fails = compare(op, value, field.zero)
+        left = _in_first_lane(need.path) * fails
+        for given in known.needs:
+            fits = {given.kind} in _ENOUGH[need.kind] and (need.derived or not given.derived)
+            if fits and given.value == value:
+                left = left * (field.one - given.path)
+        if not is_zero(left, inside=need.derived):
+            where = "jacobian" if need.derived else "code"
+            yield f"{where} needs a value to be {need.kind} that is not shown to be so"
+
+
+def _in_first_lane(value: Value) -> Value:
+    """Return a value of a column's lane in a row's."""
+    for bank, lane in value.lanes:
+        if lane == 1 and (bank, 0) not in value.lanes:
+            value = moved(value, bank, 0)
+    return value

@@ -1,0 +1,171 @@
+"""Numbers at which a printed row is not the proved one.
+
+Input: the difference of both in normal form.  Output: a point of the domain, with two lanes a bank
+at least, at which interval arithmetic shows that the difference is not zero; or none.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import islice
+from typing import Any, final
+
+from mpmath.ctx_iv import MPIntervalContext
+
+from piezo_sym.iphs import IPHS
+from piezo_sym.translation.field import Value
+from piezo_sym.translation.known import Proved
+
+POINTS = 30
+#: Terms that are worked out at all points together.
+MOST_TERMS = 3_000
+PRECISION = 160
+MOST_EXPONENT = 10_000
+#: A smaller part of the proved value could come from the rounding of printed numbers.
+LEAST_SHARE = 1e-12
+FACTORS = tuple(map(Fraction, ("1/2", "3/4", "1", "5/4", "2")))
+
+
+@final
+@dataclass(frozen=True)
+class Witness:
+    """A point, as text, and what is printed and proved there."""
+
+    point: Mapping[str, str]
+    printed: str
+    proved: str
+
+
+class UndecidedError(Exception):
+    """A value is not defined at a point, or the intervals are too wide."""
+
+
+def witness(printed: Value, wanted: Value, known: Proved, iphs: IPHS) -> Witness | None:
+    """Return a point of the domain at which two values differ."""
+    difference = printed - wanted
+    size = len(difference.terms) + len(printed.terms) + len(wanted.terms)
+    for point in islice(_points(known, iphs), max(2, min(POINTS, MOST_TERMS // size))):
+        try:
+            if not all(_inside(margin, point, strict) for margin, strict in known.margins):
+                continue
+            found = point.value(difference, {})
+            one, other = point.value(printed, {}), point.value(wanted, {})
+        except UndecidedError:
+            continue
+        if 0 not in found and abs(found).a > LEAST_SHARE * abs(other).b:
+            return Witness(point.texts(), f"{float(one.mid):.9g}", f"{float(other.mid):.9g}")
+    return None
+
+
+def _inside(margin: Value, point: Point, strict: bool) -> bool:
+    lanes = [{}] if not margin.lanes else [{bank: n} for bank, _ in margin.lanes for n in (0, 1)]
+    least = (point.value(margin, lane).a for lane in lanes)
+    return all(a > 0 if strict else a >= 0 for a in least)
+
+
+def _points(known: Proved, iphs: IPHS) -> Iterator[Point]:
+    """Yield points: the spec's numbers and others near, states of every size."""
+    model, chance = iphs.model, random.Random(0)
+    given = {n: e.si for table in (model.parameters, model.inputs) for n, e in table.items()}
+    for n in range(POINTS):
+        numbers: dict[str, tuple[Fraction, ...]] = {}
+        for name in known.names:
+            values = given.get(name)
+            listed = values if isinstance(values, tuple) else (values,)
+            lanes = range(max(2, len(listed)) if name in known.banks else 1)
+            numbers[name] = tuple(_number(listed[j % len(listed)], n, chance) for j in lanes)
+        yield Point(known, numbers)
+
+
+def _number(value: float | None, n: int, chance: random.Random) -> Fraction:
+    """Return a number of a state (no value), or one like a parameter's or an input's."""
+    if value is None or (value == 0 and n % 2):
+        return Fraction(f"{chance.choice((1, 1, -1)) * 10 ** chance.uniform(-4, 2):.3g}")
+    exact = Fraction(repr(float(value)))
+    return exact * chance.choice(FACTORS) if n % 2 else exact
+
+
+@final
+class Point:
+    """Numbers for names, one a lane where they have lanes; values at them, as intervals."""
+
+    def __init__(self, known: Proved, numbers: Mapping[str, Sequence[Fraction]]) -> None:
+        self.known, self.numbers, self.gens = known, numbers, known.field.gens
+        self.interval: Any = MPIntervalContext()
+        self.interval.prec = PRECISION
+        self.found: dict[tuple[object, ...], Any] = {}
+        self.size = max(map(len, numbers.values()), default=2)
+        self.size = max(self.size, 2)
+
+    def texts(self) -> dict[str, str]:
+        """Return the point as text."""
+        return {name: ", ".join(map(str, values)) for name, values in self.numbers.items()}
+
+    def value(self, value: Value, lanes: Mapping[str, int]) -> Any:
+        """Return an interval around a value; a row's lane is the first, a column's the second."""
+        total = self.exact(Fraction(0))
+        for mono, c in value.terms.items():
+            term = self.exact(Fraction(c)) if c != 1 else self.interval.one
+            for g, e in mono:
+                own = self._generator(g, lanes)
+                term = term * (own if e == 1 else self._power(own, Fraction(e)))
+            total = total + term
+        return total
+
+    def exact(self, value: Fraction) -> Any:
+        """Return a rational number as an interval."""
+        return self.interval.mpf(value.numerator) / value.denominator
+
+    def _power(self, base: Any, e: Fraction) -> Any:
+        if e < 0 and 0 in base:
+            raise UndecidedError
+        if e.denominator == 1:
+            return base**e.numerator
+        if base.a <= 0:
+            raise UndecidedError
+        return self._exp(self.exact(e) * self.interval.log(base))
+
+    def _exp(self, arg: Any) -> Any:
+        if abs(arg).b > MOST_EXPONENT:
+            raise UndecidedError
+        return self.interval.exp(arg)
+
+    def _generator(self, g: int, lanes: Mapping[str, int]) -> Any:
+        """Return an interval around a generator, kept for the lanes on which it depends."""
+        banks = {bank for bank, _ in self.gens[g].lanes}
+        key = g, *sorted((bank, n) for bank, n in lanes.items() if bank in banks)
+        if key not in self.found:
+            self.found[key] = self._made(g, lanes)
+        return self.found[key]
+
+    def _made(self, g: int, lanes: Mapping[str, int]) -> Any:
+        gen = self.gens[g]
+        if gen.arg is None:
+            assert isinstance(gen.mark, tuple)
+            name, bank, lane = gen.mark
+            if lane == -1:
+                return self.exact(Fraction(self.size))
+            if name not in self.numbers:
+                raise UndecidedError
+            values = self.numbers[name]
+            return self.exact(values[lanes.get(bank, lane) % len(values) if bank else 0])
+        if gen.kind == "sum":
+            bank = str(gen.mark)
+            return sum(self.value(gen.arg, {**lanes, bank: n}) for n in range(self.size))
+        arg = self.value(gen.arg, lanes)
+        if gen.kind == "sign":
+            side = 1 if arg.a > 0 else -1 if arg.b < 0 else 0
+            if not side and arg.a != arg.b:
+                raise UndecidedError
+            return self.exact(Fraction(int(side == gen.mark)))
+        if gen.kind == "power":
+            return arg
+        if gen.kind == "log" and arg.a <= 0:
+            raise UndecidedError
+        if gen.kind in {"exp", "tanh"}:
+            made = self._exp(arg)
+            return made if gen.kind == "exp" else (made - 1 / made) / (made + 1 / made)
+        return getattr(self.interval, gen.kind)(arg)

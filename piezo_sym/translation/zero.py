@@ -1,0 +1,257 @@
+"""Whether a value is zero for all values of its names, on every branch and every lane.
+
+Input: a `Value`.  Output: yes, or not shown.  Where signs choose, every choice that does not
+contradict itself is looked at; where a difference is zero, that is put in.  What stands under a
+fraction is multiplied out.  A sum over lanes is zero if its terms are.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+from itertools import product
+from math import ceil
+
+from piezo_sym.translation.change import put
+from piezo_sym.translation.field import Field, NotShownError, Value
+from piezo_sym.translation.functions import power
+from piezo_sym.translation.possible import impossible
+from piezo_sym.translation.signs import has_sign, sign
+
+MOST_CASES = 500
+MOST_STEPS = 12
+Sides = Mapping[Value, int]
+Case = tuple[Value, dict[Value, int]]
+
+
+def is_zero(value: Value, *, inside: bool = False) -> bool:
+    """Return whether a value is shown to be zero; with `inside`, inside the branches of states."""
+    if not value.terms:
+        return True
+    parts = _apart(value)
+    if len(parts) > 1 or parts[0] is not value:
+        return all(is_zero(part, inside=inside) for part in parts)
+    groups = _groups(value)
+    if not groups:
+        return not cleared(value).terms
+    if _by_cases(value, groups, inside=inside):
+        return True
+    together = [tuple(d for group in groups for d in group)]
+    return len(groups) > 1 and _by_cases(value, together, inside=inside)
+
+
+def cleared(value: Value) -> Value:
+    """Return a value times the sums that it is divided by."""
+    field = value.field
+    while True:
+        least: dict[int, Fraction] = {}
+        for mono in value.terms:
+            for g, e in mono:
+                if e < 0 and field.gens[g].kind == "power":
+                    least[g] = min(least.get(g, Fraction(0)), Fraction(e))
+        if not least:
+            return value
+        g, e = next(iter(least.items()))
+        value = value * Value(field, {((g, ceil(-e)),): 1})  # still a power where e is no number
+
+
+def _apart(value: Value) -> list[Value]:
+    """Return a value's sums over lanes, those with equal factors in the lane joined, and the rest.
+
+    The value is the sum of the rest and, for each of the others, of its sum over lanes.
+    """
+    field, rest = value.field, []
+    sums: dict[tuple[str, Value], list[Value]] = {}
+    for mono, c in value.terms.items():
+        found = next((n for n, (g, e) in enumerate(mono) if _is_sum(field, g) and e == 1), None)
+        if found is None:
+            rest.append(Value(field, {mono: c}))
+            continue
+        gen = field.gens[mono[found][0]]
+        other = mono[:found] + mono[found + 1 :]
+        own = tuple(p for p in other if (gen.mark, 0) in field.gens[p[0]].lanes)
+        free = Value(field, {tuple(p for p in other if p not in own): c})
+        assert gen.arg is not None
+        sums.setdefault((str(gen.mark), Value(field, {own: 1})), []).append(free * gen.arg)
+    if not sums:
+        return [value]
+    return [field.total(rest), *map(field.total, sums.values())]
+
+
+def _is_sum(field: Field, g: int) -> bool:
+    return field.gens[g].kind == "sum"
+
+
+def _groups(value: Value) -> list[tuple[Value, ...]]:
+    """Return the differences whose signs choose, those that stand in one product together."""
+    field, groups = value.field, list[set[Value]]()
+    for mono in value.terms:
+        gens = (field.gens[g] for g, _ in mono)
+        here = {gen.arg for gen in gens if gen.kind == "sign" and gen.arg}
+        joined = [group for group in groups if group & here]
+        groups = [group for group in groups if not group & here]
+        if here:
+            groups.append(here.union(*joined))
+    return [tuple(sorted(group, key=lambda d: sorted(d.terms))) for group in groups]
+
+
+def _by_cases(value: Value, groups: Sequence[tuple[Value, ...]], *, inside: bool) -> bool:
+    """Return whether a value is zero, each group of choices looked at by itself."""
+    left = value
+    for group in groups:
+        here = _chosen_by(value, group)
+        base = _common(list(_cases(here, {}, [MOST_CASES], inside=inside)))
+        if base is None:
+            return False
+        left = left - here + base
+    return is_zero(left)
+
+
+def _common(cases: list[Case]) -> Value | None:
+    """Return what a value is in every case that can be, or None if it is not the same in all."""
+    while cases:
+        (base, sides), *rest = cases
+        wrong = [case for case in rest if _differs(base, case)]
+        if all(impossible(case[1]) for case in wrong):
+            return base
+        if not impossible(sides):
+            return None
+        cases = rest
+    return None
+
+
+def _cases(
+    value: Value, sides: dict[Value, int], left: list[int], *, inside: bool
+) -> Iterator[Case]:
+    """Yield what a value is in each case that does not contradict itself, and the signs there."""
+    field = value.field
+    found = Counter(
+        gen.arg for mono in value.terms for g, _ in mono if (gen := field.gens[g]).kind == "sign"
+    )
+    if not found:
+        left[0] -= 1
+        if left[0] < 0:
+            raise NotShownError("too many branches meet in one row")
+        yield value, sides
+        return
+    d = max(found, key=lambda d: found[d])
+    assert d is not None
+    for side in (1, -1) if inside and d.parts & field.states else (1, -1, 0):
+        if _possible(d, side) and not any(_never(d, side, e, s) for e, s in sides.items()):
+            here = {**sides, d: side}
+            yield from _cases(field.at(value, {d: side}), here, left, inside=inside)
+
+
+def _never(first: Value, s: int, second: Value, t: int) -> bool:
+    """Return whether two differences cannot have these signs; what was found is kept."""
+    field, key = first.field, (first, s, second, t)
+    if key not in field.never:
+        field.never[key] = _contradict(*key)
+    return field.never[key]
+
+
+def _chosen_by(value: Value, group: Sequence[Value]) -> Value:
+    """Return the terms in which differences of a group choose."""
+    gens = value.field.gens
+    terms = {
+        mono: c
+        for mono, c in value.terms.items()
+        if any(gens[g].kind == "sign" and gens[g].arg in group for g, _ in mono)
+    }
+    return Value(value.field, terms)
+
+
+def _possible(d: Value, side: int) -> bool:
+    """Return whether the domain leaves a sign to a difference."""
+    above, below = sign(d), sign(-d)
+    return above <= (2 if side > 0 else 1 if side == 0 else 0) and below <= (
+        2 if side < 0 else 1 if side == 0 else 0
+    )
+
+
+def _contradict(first: Value, s: int, second: Value, t: int) -> bool:
+    """Return whether two differences cannot have these signs: a sum of theirs has another one."""
+    number = first.field.number
+    for scale, turns in product(_scales(first, second), product((1, -1), repeat=2)):
+        signs = turns[0] * s, turns[1] * t
+        if max(signs) <= 0:
+            total = first * scale * number(turns[0]) + second * number(turns[1])
+            if sign(total) > (0 if min(signs) < 0 else 1):
+                return True
+    return False
+
+
+def _scales(first: Value, second: Value) -> Iterator[Value]:
+    """Yield positive factors that make a term of one value like a term of the other."""
+    field, found = first.field, set[Value]()
+    for m, n in product(first.terms, second.terms):
+        below = Value(field, {tuple((g, -e) for g, e in m): 1})
+        scale = below * Value(field, {n: 1})
+        if scale not in found and sign(scale) == 2:
+            found.add(scale)
+            yield scale
+
+
+def _differs(base: Value, case: Case) -> bool:
+    """Return whether a case that can be has not been shown to have the value `base`."""
+    value, edges = case[0] - base, {d: side for d, side in case[1].items() if side == 0}
+    others = {d: side for d, side in case[1].items() if side}
+    while edges:
+        d, _ = edges.popitem()
+        new = _solved(d)
+        value = put(value, new) if new else _remainder(value, d)
+        edges = {put(other, new): 0 for other in edges}
+        others = {put(other, new): side for other, side in others.items()}
+        if not all(_possible(other, side) for other, side in (*edges.items(), *others.items())):
+            return False
+    return not is_zero(value)
+
+
+def _remainder(value: Value, d: Value) -> Value:
+    """Return a value where d = 0, powers put in of a generator that d has a power of."""
+    field, value = d.field, cleared(value)
+    for g in sorted(d.generators()):
+        powers = {mono: dict(mono).get(g, 0) for mono in d.terms}
+        top = max(powers.values())
+        head = Value(field, {mono: c for mono, c in d.terms.items() if powers[mono] == top})
+        factor = head * Value(field, {((g, -top),): 1})
+        if min(powers.values()) < 0 or not has_sign(factor):
+            continue
+        lift = max([0, *(-e for mono in value.terms for n, e in mono if n == g)])
+        value, below = value * Value(field, {((g, lift),): 1}), _inverse(head)
+        for _ in range(MOST_STEPS):
+            high = {m: c for m, c in value.terms.items() if dict(m).get(g, 0) >= top}
+            if not high:
+                return value
+            value = value - Value(field, high) * below * d
+    return value
+
+
+def _solved(d: Value) -> dict[int, Value]:
+    """Return what a generator is where d = 0, if d is linear in it by a factor that is not zero."""
+    field = d.field
+    for g in sorted(
+        d.generators(), key=lambda g: (field.gens[g].kind != "name", not field.gens[g].lanes)
+    ):
+        gen = field.gens[g]
+        own = {mono: c for mono, c in d.terms.items() if g in dict(mono)}
+        powers = {dict(mono)[g] for mono in own}
+        if len(powers) > 1 or gen.kind == "sum" or (d.lanes and not gen.lanes):
+            continue
+        rest = d - Value(field, own)
+        factor = Value(field, {tuple(p for p in m if p[0] != g): c for m, c in own.items()})
+        if g in factor.parts | rest.parts or (powers != {1} and (rest.terms or min(powers) < 0)):
+            continue
+        if not has_sign(factor):
+            continue
+        found = -(rest * _inverse(factor))
+        return {g: found}
+    return {}
+
+
+def _inverse(value: Value) -> Value:
+    path, value.field.path = value.field.path, None
+    found = power(value, Fraction(-1))
+    value.field.path = path
+    return found

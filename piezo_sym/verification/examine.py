@@ -1,0 +1,76 @@
+"""A system examined: proved, its printed modules read back, and attacked by numbers.
+
+Input: an `IPHS`.  Output: reports, each more complete than the one before; the last one is whole.
+A row is PROVED in the last one only if it was proved and no number contradicts it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from piezo_sym.codegen import c_source, lower, numpy_module
+from piezo_sym.falsify import POINTS, Attack, falsify, module_from
+from piezo_sym.iphs import IPHS
+from piezo_sym.proofs import Report, Row, Verdict, decide
+from piezo_sym.translation import program_rows
+
+#: Rows that say something at every point of the domain, and so can be attacked by numbers.
+ATTACKED = frozenset(
+    {"passive", "temperature", "welldef", "continuous", "sigma", "exergy", "environment"}
+    | {"invariant"}
+)
+
+
+def examine(iphs: IPHS, points: int = POINTS) -> Iterator[Report]:
+    """Yield what is known of a system, the verdicts that were not attacked yet among the first.
+
+    Parameters
+    ----------
+    points : how many points the attack takes; fewer in tests of many small networks alone.
+    """
+    proved = decide(iphs)
+    yield proved
+    program = lower(iphs, "")
+    numpy_text = numpy_module(program)
+    rows = (*proved.rows, *program_rows(iphs, numpy_text, c_source(program)))
+    yield replace(proved, rows=rows)
+    proofs = (row for row in rows if row.id in ATTACKED and row.verdict is Verdict.PROVED)
+    claims = tuple((row.id, row.element) for row in proofs)
+    attacks = falsify(iphs, module_from(numpy_text), claims, points=points)
+    found = {(attack.id, attack.element): attack for attack in attacks}
+    attacked = (_attacked(row, found.get((row.id, row.element))) for row in rows)
+    rounding = (_rounding(attack) for attack in attacks if attack.rounding)
+    yield replace(proved, rows=(*attacked, *rounding))
+
+
+def unfinished(report: Report, reason: str) -> Report:
+    """Return a report whose proved rows were not all attacked: those are open."""
+    rows = (
+        replace(row, verdict=Verdict.OPEN, reason=reason)
+        if row.id in ATTACKED and row.verdict is Verdict.PROVED
+        else row
+        for row in report.rows
+    )
+    program = Row("program", "", "the printed modules are the proved system", Verdict.OPEN)
+    missing = () if any(r.id == "program" for r in report.rows) else (program,)
+    return replace(report, rows=(*rows, *(replace(row, reason=reason) for row in missing)))
+
+
+def _attacked(row: Row, attack: Attack | None) -> Row:
+    """Return a row with the number of points that it was attacked at; without any it is open."""
+    if row.id not in ATTACKED or row.verdict is not Verdict.PROVED:
+        return row
+    if attack is None or attack.points == 0:
+        reason = "no point of the domain was found at which numbers could contradict it"
+        return replace(row, verdict=Verdict.OPEN, reason=reason)
+    return replace(row, points=attack.points)
+
+
+def _rounding(attack: Attack) -> Row:
+    name = f"{attack.id} of {attack.element}" if attack.element else attack.id
+    statement = f"{name}: the generated module rounds to the other side"
+    reason = "doubles cannot tell it from zero there; the exact value does not contradict it"
+    return Row(
+        "rounding", attack.element, statement, Verdict.OPEN, attack.worst, reason, required=False
+    )

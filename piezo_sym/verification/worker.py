@@ -1,0 +1,38 @@
+"""The process in which systems are examined: ``python -m piezo_sym.verification.worker``.
+
+Input: subjects on stdin, each after its length.  Output: messages on stdout in the same form, until
+``end``.  What is written to stdout by anything else goes to stderr.
+"""
+
+from __future__ import annotations
+
+import pickle
+import resource
+import signal
+import sys
+
+from piezo_sym.verification.process import answer, read, write
+
+#: Bytes of address space: far more than any system needs that is decided in time.
+MEMORY = 8 << 30
+
+
+def main() -> None:
+    """Answer until stdin ends; Ctrl-C is for who asks, and ends stdin."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    _, most = resource.getrlimit(resource.RLIMIT_AS)
+    limit = MEMORY if most == resource.RLIM_INFINITY else min(MEMORY, most)
+    resource.setrlimit(resource.RLIMIT_AS, (limit, most))
+    given, out = sys.stdin.buffer, sys.stdout.buffer
+    sys.stdout = sys.stderr
+    while True:
+        try:
+            subject = pickle.loads(read(given))
+        except EOFError:
+            return
+        for message in answer(subject):
+            write(out, pickle.dumps(message))
+
+
+if __name__ == "__main__":
+    main()
