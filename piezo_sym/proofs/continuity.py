@@ -58,7 +58,7 @@ def continuous(law: Law, ground: Ground) -> Obligation | None:
         question
         for one, other in combinations(found, 2)
         if one.value != other.value and not _apart(one, other, ground)
-        for question in _meeting(Meeting(tree, (one, other), ground.where), ground)
+        for question in _meeting(Meeting(tree, (one, other), ground.where, ground.fixed), ground)
     ]
     whole = Cmp("=", law.tree, law.tree)
     covered = Question(statement, ground.order, ground.where, whole, whole).covered(found)

@@ -41,9 +41,9 @@ def _other(side: Branch, meeting: Meeting, at: Value, values: Numbers) -> bool:
     except TooCloseError:
         return False
     except (ArithmeticError, ValueError):
-        ways = _ways(side, meeting.domain, values)
+        ways = _ways(side, meeting, values)
         return any(_grows([_size(meeting.law, point) for point in way]) for way in ways)
-    return bool(apart) and any(True for _ in _ways(side, meeting.domain, values))
+    return bool(apart) and any(True for _ in _ways(side, meeting, values))
 
 
 def _size(law: Expr, values: Numbers) -> float:
@@ -58,13 +58,16 @@ def _grows(sizes: list[float]) -> bool:
     return sizes[0] > 0 and all(later > GROWTH * before for before, later in pairwise(sizes))
 
 
-def _ways(side: Branch, domain: tuple[Cmp, ...], values: Numbers) -> Iterator[list[Numbers]]:
-    """Yield points of a branch nearer and nearer to a point, one direction after the other."""
-    for way in _directions(tuple(values)):
+def _ways(side: Branch, meeting: Meeting, values: Numbers) -> Iterator[list[Numbers]]:
+    """Yield points of a branch nearer and nearer to a point, one direction after the other.
+
+    Parameters stay where they are: a jump along them is none that a run could see.
+    """
+    for way in _directions(tuple(name for name in values if name not in meeting.fixed)):
         points: list[Numbers] = [
             {n: v + step * way.get(n, 0) for n, v in values.items()} for step in STEPS
         ]
-        if all(_within((*domain, *side.conditions), point) for point in points):
+        if all(_within((*meeting.domain, *side.conditions), point) for point in points):
             yield points
 
 

@@ -49,12 +49,13 @@ def _forces(iphs: IPHS) -> Iterator[tuple[str, Cmp]]:
     stores = {iphs.symbols[costate_name(p)]: p for _, p in iphs.circuit.of(Storage, Body)}
     processes = iphs.circuit.of(Resistor, Conductor)
     for (placed, port), force in zip(processes, iphs.system.drive, strict=True):
-        store = stores.get(force)
+        store = stores.get(force) or stores.get(-force)
         if isinstance(port, Resistor) and isinstance(store, Storage):
             bent = store.letter in names(derivative(store.law, store.letter))
             if bent or store.state in used:
                 law = rename(store.law, {store.letter: store.state})
-                yield placed.element, Cmp("=", Sym(port.letter), law)
+                given = law if force in stores else neg(law)  # an element may be turned round
+                yield placed.element, Cmp("=", Sym(port.letter), given)
 
 
 def laws_of(iphs: IPHS) -> tuple[Law, ...]:

@@ -39,11 +39,12 @@ class Residual:
 @final
 @dataclass(frozen=True)
 class Meeting:
-    """Two branches of a law that must agree where they meet."""
+    """Two branches that must agree where they meet; `fixed` names do not change in a run."""
 
     law: Expr
     sides: tuple[Branch, Branch]
     domain: tuple[Cmp, ...]
+    fixed: frozenset[str] = frozenset()
 
 
 @final
