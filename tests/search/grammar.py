@@ -137,7 +137,8 @@ class Grammar:
             guard = f"{self.guard(depth)} {self.one('>', '>=', '<', '<=')} 0"
             jumps = None if self.moves(guard) else True
         if form == "{a} if {c} else {b}":  # a choice of parameters alone is no jump
-            return known(f"{a.text} if {guard} else {b.text}", a, b, continuous=jumps, passive=True)
+            made = f"({a.text}) if {guard} else ({b.text})"
+            return known(made, a, b, continuous=jumps, passive=True)
         if "{h}" in form:
             w = replace(self, letter="", hot="").least_of(1).text
         made = form.format(

@@ -11,7 +11,7 @@ import numpy as np
 
 from tests.search.attack import counterexample, fails
 from tests.search.laws import names, text
-from tests.search.points import Points, certain, filled, onto
+from tests.search.points import Points, bisected, certain, filled, onto
 from tests.search.reading import moving, spec_of
 from tests.search.values import DoubtError, NoValueError, digits, exact, rational
 
@@ -156,7 +156,11 @@ def _tied(name, point, value, fixed, spec):
     law = spec.derived[name]
     state = {n for n in names(law) if n in moving(spec) and n not in fixed}
     number = ("num", Fraction(int(value.p), int(value.q)))
-    return onto(("-", law, number), point, spec, state) or point
+    difference, wide = ("-", law, number), rational(2.0**40)
+    found = onto(difference, point, spec, state)
+    for one in () if found else state:
+        found = found or bisected(difference, one, point, spec, (-wide, wide))
+    return found or point
 
 
 def _agrees(name, point, value, spec):

@@ -17,7 +17,7 @@ from tests.search.values import DoubtError, NoValueError, exact, rational
 
 LAWS = 20
 #: Depths of the laws of one spec; the deep ones cost the prover most.
-DEPTHS = ((0, 0, 0, 1), (0, 0, 1, 1), (0, 0, 1, 1), (0, 1, 1, 2, 3))
+DEPTHS = ((0,), (0, 0, 0, 1), (0, 0, 0, 1), (0, 0, 1, 1), (0, 1, 1, 2))
 #: Letters of states: in the law of a store they are not the parameter of that name.
 LETTERS = frozenset({"p", "q", "Q", "S", "phi"})
 ABOVE = (0.5, 1.0, 2.0, 0.25, 4.0, 3.0)
@@ -78,7 +78,7 @@ class Draft:
 
     def body(self):
         T, c, x = self.random.choices(self.above, k=3)
-        laws = [f"{T}*exp(S/{c})"] * 9
+        laws = [f"{T}*exp(S/{c})"] * 60
         laws += [f"{T}*(1 + S/{c})", f"{T}*exp(S/{c}) + {x}", f"{T}*exp(S/{c}) - {x}"]
         laws += [f"{T}*exp(S/{c})*(sqrt({x}/{c}) if {x} > {c} else 1)", f"{T}*(1 + (S/{c})**2)"]
         return {"kind": "thermal_mass", "temperature": self.random.choice(laws)}

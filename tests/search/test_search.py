@@ -164,9 +164,6 @@ class Silent:
         Silent.asked += 1
         return {"rows": [], "text": text}
 
-    def cpu(self):
-        return 0.0
-
     def close(self):
         pass
 
