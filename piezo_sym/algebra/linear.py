@@ -80,11 +80,8 @@ def solve(
         If it takes more than `most`.
     """
     rows = [Equation(dict(row.left), dict(row.right)) for row in equations]
-    users: dict[Any, set[int]] = {}
+    users = _users(rows)
     most -= sum(len(row.left) + len(row.right) for row in rows)
-    for n, row in enumerate(rows):
-        for label in row.left:
-            users.setdefault(label, set()).add(n)
     waiting = {n: _difficulty(row) for n, row in enumerate(rows)}
     queue = [(difficulty, n) for n, difficulty in waiting.items()]
     heapify(queue)
@@ -117,6 +114,15 @@ def solve(
     if relations or undetermined:
         raise SingularError(relations, undetermined)
     return {pivot: row.right for pivot, row in solved.items()}
+
+
+def _users(rows: list[Equation]) -> dict[Any, set[int]]:
+    """Return the rows in which each unknown stands."""
+    users: dict[Any, set[int]] = {}
+    for n, row in enumerate(rows):
+        for label in row.left:
+            users.setdefault(label, set()).add(n)
+    return users
 
 
 def is_number(coefficient: Any) -> bool:

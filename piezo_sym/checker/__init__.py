@@ -3,7 +3,7 @@
 Run as ``python -I piezo_sym/checker SPEC.toml PROOFS.json``.
 """
 
-from .laws import InputError, need
+from .laws import InputError
 from .spec import Spec, read_spec
 
-__all__ = ["InputError", "Spec", "need", "read_spec"]
+__all__ = ["InputError", "Spec", "read_spec"]

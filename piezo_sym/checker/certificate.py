@@ -25,17 +25,17 @@ from .spec import Element, Spec
 BITS, ORDER, MOST_WINDOWS, MOST_CASES, FARTHEST = 192, 10, 3000, 64, 2**12
 NARROWEST = Fraction(1, 2**20)
 S, TANH = sym("s"), "1 - 2/(exp(2*x) + 1)"
-SERIES = {"*": operator.mul, "/": operator.truediv, "neg": operator.neg}
+SERIES: dict[str, Any] = {"*": operator.mul, "/": operator.truediv, "neg": operator.neg}
 SERIES |= {"+": lambda *terms: sum(terms[1:], terms[0])}
 
 
-def check_certificate(spec: Spec, element: Element, cases: Any, prover: Prover) -> str:
-    """Return why a certificate does not show that a law takes power in, or nothing."""
+def check_certificate(spec: Spec, element: Element, cases: Any, prover: Prover) -> None:
+    """Refuse a certificate that does not show that a law takes power in."""
     before, ctx.prec, ctx.cap = (ctx.prec, ctx.cap), BITS, ORDER + 1
     try:
-        return _Certificate(spec, element, prover).check(cases)
+        _Certificate(spec, element, prover).check(cases)
     except (KeyError, TypeError, AttributeError, ValueError, ArithmeticError) as error:
-        return f"its certificate cannot be read: {type(error).__name__} {error}"
+        raise InputError(f"its certificate cannot be read: {error}") from None
     finally:
         ctx.prec, ctx.cap = before
 
@@ -50,18 +50,20 @@ class _Certificate:
     def read(self, text: str) -> Node:
         """Return a text of the certificate in the symbols of the spec."""
         tree = laws.parse(text)
-        unknown = [name for name in symbols(tree) if name not in self.words]
-        need(not unknown, f"its certificate has the unknown name {str(unknown)[:40]}")
+        need(all(name in self.words for name in symbols(tree)), "its certificate has other names")
         return put(tree, self.words)
 
-    def check(self, cases: Any) -> str:
-        few = isinstance(cases, list) and len(cases) <= MOST_CASES
-        guards = [tuple(self.read(text) for text in case["guards"]) for case in cases if few]
+    def check(self, cases: Any) -> None:
+        need(len(cases) <= MOST_CASES, "its certificate has too many cases")
+        guards = [tuple(self.read(text) for text in case["guards"]) for case in cases]
         free = all(g.op == "cmp" and self.letter not in symbols(g) for own in guards for g in own)
-        if not (few and free and self._cover(guards, ())):
-            return "its cases are not shown to cover the domain"
-        reasons = (self._case(own, case["terms"]) for own, case in zip(guards, cases, strict=True))
-        return next(filter(None, reasons), "")
+        need(free and self._cover(guards, ()), "its cases are not shown to cover the domain")
+        for own, case in zip(guards, cases, strict=True):
+            parts = [self.read(term["law"]) for term in case["terms"]]
+            same = self._same(self.law, Node("+", (num(0), *parts)), own)
+            need(same, "its terms are not shown to make up the law")
+            for law, term in zip(parts, case["terms"], strict=True):
+                self._term(law, term, own)
 
     def _cover(self, guards: list[tuple[Node, ...]], missed: tuple[Node, ...]) -> bool:
         """Return whether nowhere a guard of each case is missed."""
@@ -70,34 +72,15 @@ class _Certificate:
         rest = guards[1:]
         return bool(guards) and all(self._cover(rest, (*missed, negated(g))) for g in guards[0])
 
-    def _case(self, guards: tuple[Node, ...], terms: Any) -> str:
-        laws = [self.read(term["law"]) for term in terms]
-        total = Node("+", (num(0), *laws))
-        if not self._same(self.law, total, guards):
-            return "its terms are not shown to make up the law"
-        reasons = (self._term(law, term, guards) for law, term in zip(laws, terms, strict=True))
-        return next(filter(None, reasons), "")
-
     def _same(self, one: Node, other: Node, guards: tuple[Node, ...]) -> bool:
         """Return whether two laws are the same function where guards hold."""
         names = {s for tree in (one, other) for s in symbols(tree)} - {self.letter, "s"}
         positive = {s for s in names if self.prover.proves(compare(sym(s), ">"), guards)}
-        return Field(positive).same(self._decided(one, guards), self._decided(other, guards))
+        settled = [self._settled(tree, self.prover, guards, names) for tree in (one, other)]
+        return Field(positive).same(*settled)
 
-    def _decided(self, tree: Node, guards: tuple[Node, ...]) -> Node:
-        """Return a tree without the choices of parameters that guards decide."""
-        free = not {self.letter, "s"} & set(symbols(tree.args[0] if tree.op == "if" else tree))
-        if tree.op in KINKS and free:
-            return self._decided(laws.unkinked(tree), guards)
-        args = tuple(self._decided(arg, guards) for arg in tree.args)
-        for branch in (1, 2) if tree.op == "if" and free else ():
-            side = tree.args[0] if branch == 1 else negated(tree.args[0])
-            if self.prover.proves(side, guards):
-                return args[branch]
-        return Node(tree.op, args, tree.value)
-
-    def _term(self, law: Node, term: Mapping[str, Any], guards: tuple[Node, ...]) -> str:
-        """Return why law*letter >= 0 is not shown of one summand."""
+    def _term(self, law: Node, term: Mapping[str, Any], guards: tuple[Node, ...]) -> None:
+        """Refuse a summand of which law*letter >= 0 is not shown."""
         front, f, way = self.read(term["prefactor"]), laws.parse(term["f"]), term["sign"]
         scale, valued = num(1), [*partial(front)]
         need(not set(symbols(f)) - {"s"} and way in (1, -1), "f is not of s alone, or has no sign")
@@ -107,30 +90,46 @@ class _Certificate:
             valued += [*partial(base), Claim((), compare(base, ">"))]
             scale = Node("*", (scale, Node("**", (base,), Fraction(power))))
         letter = {self.letter: Node("*", (scale, S))}
-        if not self._same(put(law, letter), put(Node("*", (front, f)), letter), guards):
-            return "a term is not shown to be prefactor*f(s)"
+        same = self._same(put(law, letter), put(Node("*", (front, f)), letter), guards)
+        need(same, "a term is not shown to be prefactor*f(s)")
         valued.append(Claim((), compare(front, ">=" if way > 0 else "<=")))
-        if not all(self.prover.proves(claim, (*guards, *path)) for path, claim in valued):
-            return "the sign of a prefactor or scale is not shown"
-        return self._rays(Node("*", (num(way), f)), term["rays"])
+        shown = all(self.prover.proves(claim, (*guards, *path)) for path, claim in valued)
+        need(shown, "the sign of a prefactor or scale is not shown")
+        self._rays(Node("*", (num(way), f)), term["rays"])
+
+    def _settled(self, tree: Node, prover: Prover, where: tuple[Node, ...], free: set[Any]) -> Node:
+        """Return a tree without the choices that are settled somewhere.
+
+        Kinks stay if they are of symbols that are not free.
+        """
+        wide = tree.op in ("abs", "min", "max")  # both branches are equal at the edge
+        if tree.op in KINKS and set(symbols(tree)) <= free:
+            tree = laws.unkinked(tree)
+        for branch in (1, 2) if tree.op == "if" else ():
+            side = tree.args[0] if branch == 1 else negated(tree.args[0])
+            value = side.value[0] + "=" if wide else side.value
+            if prover.proves(Node("cmp", side.args, value), where):
+                return self._settled(tree.args[branch], prover, where, free)
+        args = tuple(self._settled(arg, prover, where, free) for arg in tree.args)
+        return Node(tree.op, args, tree.value)
 
     # f(s)*s on the whole line
 
-    def _rays(self, f: Node, rays: Any) -> str:
-        """Return why f(s)*s >= 0 is not shown for all real s: on windows that cover them."""
+    def _rays(self, f: Node, rays: Any) -> None:
+        """Refuse f if f(s)*s >= 0 is not shown for all real s: on windows that cover them."""
         covered: list[tuple[Any, Any]] = []
         for ray in rays:
             centre, side = Fraction(ray["centre"]), ray["side"]
             covered.append((centre, centre))
-            if side not in (1, -1) or not self._at(f, centre):
-                return f"f is not shown to have its sign at {centre}"
+            good = side in (1, -1) and self._at(f, centre)
+            need(good, f"f is not shown to have its sign at {centre}")
             for lo, hi, _ in ray["windows"]:
                 ends = Fraction(lo), None if hi == "inf" else Fraction(hi)
-                if not self._window(f, centre, side, ends):
-                    return f"f is not shown to have its sign from {lo} to {hi} of {centre}"
+                shown = self._window(f, centre, side, ends)
+                need(shown, f"f is not shown to have its sign from {lo} to {hi} of {centre}")
                 moved = [None if t is None else centre + side * t for t in ends]
                 covered.append((moved[0], moved[1]) if side > 0 else (moved[1], moved[0]))
-        return "" if _is_line(covered) else "the windows do not cover the line"
+        need(bool(covered) and _is_line(covered), "the windows do not cover the line")
 
     def _window(self, f: Node, centre: Fraction, side: int, ends: tuple[Fraction, Any]) -> bool:
         """Return whether f(s)*s >= 0 for s = centre + side*t, t in a window, its ends included."""
@@ -145,7 +144,8 @@ class _Certificate:
             if b is None and a > abs(centre) and self.tails.proves(signed, (far,)):
                 continue
             if b is not None and self._at(f, centre + side * a):
-                tree = self._smooth(moved, (compare(S, ">", a), compare(S, "<=", b)))
+                inside = compare(S, ">", a), compare(S, "<=", b)
+                tree = self._settled(moved, self.tails, inside, {"s"})
                 if _shown(tree, s, a, b):
                     continue
             if a >= FARTHEST or (b is not None and b - a < NARROWEST * max(b, 1)):
@@ -156,32 +156,18 @@ class _Certificate:
 
     def _at(self, f: Node, s: Fraction) -> bool:
         """Return whether f(s)*s >= 0 at a number."""
-        tree = self._smooth(put(f, {"s": num(s)}), ())
+        tree = self._settled(put(f, {"s": num(s)}), self.tails, (), {"s"})
         return s == 0 or bool(_exact(s) * _series(tree, arb_series([0]))[0] >= 0)
-
-    def _smooth(self, tree: Node, window: tuple[Node, ...]) -> Node:
-        """Return a tree without the choices that a window settles."""
-        wide = tree.op in ("abs", "min", "max")  # both branches are equal at the edge
-        tree = laws.unkinked(tree) if tree.op in KINKS else tree
-        for branch in (1, 2) if tree.op == "if" else ():
-            side = tree.args[0] if branch == 1 else negated(tree.args[0])
-            value = side.value[0] + "=" if wide else side.value
-            if self.tails.proves(Node("cmp", side.args, value), window):
-                return self._smooth(tree.args[branch], window)
-        return Node(tree.op, tuple(self._smooth(arg, window) for arg in tree.args), tree.value)
 
 
 def _is_line(covered: list[tuple[Any, Any]]) -> bool:
     """Return whether closed intervals (None: infinity) cover the real line."""
-    covered = sorted(covered, key=lambda c: (c[0] is not None, c[0] or 0))
-    if not covered or covered[0][0] is not None:
-        return False
-    reached = covered[0][1]
-    for lo, hi in covered[1:]:
-        if reached is None or (lo is not None and lo > reached):
-            break
-        reached = None if hi is None else max(reached, hi)
-    return reached is None
+    ends = sorted(((lo is not None, lo or 0), (hi is None, hi or 0)) for lo, hi in covered)
+    good, reached = not ends[0][0][0], ends[0][1]
+    for (_, lo), hi in ends[1:]:
+        good &= reached[0] or lo <= reached[1]
+        reached = max(reached, hi)
+    return good and reached[0]
 
 
 def _shown(f: Node, s: Node, lo: Fraction, hi: Fraction) -> bool:

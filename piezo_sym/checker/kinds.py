@@ -45,11 +45,6 @@ class Kind(NamedTuple):
     others: tuple[str, ...]
     costate: str
 
-    @property
-    def letter(self) -> str:
-        """The letter of its state, or nothing."""
-        return next((s for _, own in self.laws.values() for s in own if s in STATES), "")
-
 
 def _kind(row: str) -> tuple[str, Kind]:
     name, form, domains, nodes, across, laws, others, costate = map(str.strip, row.split("|"))

@@ -173,7 +173,9 @@ def parse(text: Any, length: int = MAX_LENGTH, compares: bool | None = None) -> 
     """
     plain = isinstance(text, str) and len(text) <= length and text.isascii()
     need(plain, f"{str(text)[:60]!r} is no law of plain text, or too long")
-    tree = _Parser(text, sums=length > MAX_LENGTH).whole()
+    parser = _Parser(text, sums=length > MAX_LENGTH)
+    tree = parser.expression(0)
+    parser.need(parser.tokens == [""])
     need(compares in (None, tree.op == "cmp"), f"{text[:60]!r} is a comparison, or should be one")
     _terms(tree, MAX_TERMS * length // MAX_LENGTH)
     return tree
@@ -197,11 +199,6 @@ class _Parser:
     def take(self, *wanted: str) -> str:
         self.need(self.tokens[-1] in wanted)
         return self.tokens.pop()
-
-    def whole(self) -> Node:
-        tree = self.expression(0)
-        self.need(self.tokens == [""])
-        return tree
 
     def made(self, op: str, *args: Node, value: Any = None) -> Node:
         chosen = [arg.op == "cmp" for arg in args]
@@ -254,18 +251,15 @@ class _Parser:
             self.take(",")
         while not args or self.take(",", ")") == ",":
             args.append(self.expression(0))
-        known = len(args) == (FUNCTIONS.get(function) if bank is None else 1)
-        self.need(known, f"calls {function[:20]} in a way that laws do not have")
+        count = FUNCTIONS.get(function) if bank is None else 1
+        self.need(len(args) == count, "calls what laws do not have")
         return self.made(function, *args, value=bank)
 
     def exponent(self, node: Node) -> Fraction:
-        sign = 1
-        while node.op == "neg":
-            sign, node = -sign, node.args[0]
-        parts = [arg.value if arg.op == "num" else None for arg in node.args] or [node.value, 1]
-        good = node.op in ("num", "/") and None not in parts and parts[1] != 0
-        self.need(good, "has a power that is no number")
-        value = sign * Fraction(parts[0]) / parts[1]
-        small = max(abs(value.numerator), value.denominator) <= MAX_POWER
-        self.need(small, "has a power beyond small rationals")
-        return value
+        """Return the value of an exponent written with numbers, - and /."""
+        parts = [self.exponent(arg) for arg in node.args]
+        self.need(node.op in ("num", "neg", "/") and parts[1:] != [0], "has no rational power")
+        value = parts[0] / parts[1] if node.op == "/" else -parts[0] if parts else node.value
+        size = max(abs(value.numerator), value.denominator)
+        self.need(size <= MAX_POWER, "has a power beyond small rationals")
+        return Fraction(value)

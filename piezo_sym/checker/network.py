@@ -82,8 +82,7 @@ def flows(spec: Spec, counts: Mapping[str, int], algebra: Any) -> Flows:
             terms = terms + factor * value
         return terms
 
-    laws = [part for part in found if part.role == "law"]
-    for part in sorted(laws, key=lambda p: _is_equation(spec, p)):
+    for part in sorted((p for p in found if p.role == "law"), key=lambda p: _is_equation(spec, p)):
         slot = part.element, part.lane
         made.forms[slot], made.letters[slot] = answers[part], total(answers[part])
         element = spec.elements[part.element]

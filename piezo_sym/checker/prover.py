@@ -14,7 +14,7 @@ import cvc5
 
 from .laws import KINKS, Node, compare, made, negated, num, symbols, unkinked
 
-EFFORT, MILLISECONDS, SECONDS, MOST_PAIRS = 150_000, 6000, 300, 12
+EFFORT, MILLISECONDS, SECONDS, MOST_PAIRS = 100_000, 8000, 300, 12
 OPERATIONS = {"+": "+", "*": "*", "neg": "-", "if": "ite"}
 #: What is known of y = f(x), and of two values y and b of f at x and a: "premise: fact".
 FACTS = {
@@ -56,9 +56,6 @@ class _Query:
         self.known: dict[Node, str] = {}
         self.calls: dict[str, list[tuple[Node, Node]]] = {}
 
-    def say(self, term: str) -> None:
-        self.lines.append(f"(assert {term})")
-
     def holds(self, condition: Node) -> str:
         left, right = map(self.term, condition.args)
         if condition.value == "!=":
@@ -95,11 +92,11 @@ class _Query:
             parts = (self.holds(arg) if arg.op == "cmp" else self.term(arg) for arg in args)
             return f"({OPERATIONS[node.op]} {' '.join(parts)})"
         if node.op in ("**", "sqrt"):
-            return self.term(
-                self._power(args[0], Fraction(1, 2) if node.op == "sqrt" else node.value)
-            )
+            return self.term(self._power(args[0], node.value or Fraction(node.op == "sqrt", 2)))
         if node.op == "/" and args[1].op == "num" and args[1].value:
             return self.term(Node("*", (num(1 / args[1].value), args[0])))
+        if node.op == "/" and args[0].op == "neg":  # -(a/b), for a/b may be known
+            return self.term(made("-(x/z)", x=args[0].args[0], z=args[1]))
         y = self._fresh(node)
         if node.op == "/":
             product = compare(Node("*", (y, args[1])), "=", args[0])
@@ -109,7 +106,8 @@ class _Query:
         return self.term(y)
 
     def _know(self, fact: Node, *premises: Node) -> None:
-        self.say(f"(=> {' '.join(map(self.holds, premises))} {self.holds(fact)})")
+        terms = " ".join(map(self.holds, (*premises, fact)))
+        self.lines.append(f"(assert (=> {terms}))")
 
     def _power(self, x: Node, exponent: Fraction) -> Node:
         """Return x**(p/q) in products, by y with x >= 0 -> y >= 0 and y**q = x."""
@@ -124,10 +122,9 @@ class _Query:
 
     def _function(self, name: str, x: Node, y: Node) -> None:
         """Assert what is known of exp, log, sin, cos or tanh, alone and of two values of one."""
-        if (name, x.op) == ("log", "exp"):
-            self.say(self.holds(compare(y, "=", x.args[0])))
-        if (name, x.op) == ("exp", "log"):
-            self._know(compare(y, "=", x.args[0]), compare(x.args[0], ">"))
+        if (name, x.op) in (("log", "exp"), ("exp", "log")):  # log(exp(a)) = a; a > 0 for the other
+            inside = compare(x.args[0], ">") if name == "exp" else compare(num(1), ">")
+            self._know(compare(y, "=", x.args[0]), inside)
         others = self.calls.setdefault(name, [])
         self._facts(FACTS[name], x=x, y=y)
         for a, b in others[:MOST_PAIRS]:
@@ -137,7 +134,7 @@ class _Query:
     def _facts(self, texts: str, **words: Node) -> None:
         for text in texts.split(";"):
             *premises, fact = (made(part.strip(), **words) for part in text.split(":"))
-            self._know(fact, *premises) if premises else self.say(self.holds(fact))
+            self._know(fact, compare(num(1), ">"), *premises)
 
     def answer(self) -> str:
         """Return sat, unsat or unknown."""
@@ -175,9 +172,8 @@ class Prover:
 
     def _follows(self, claim: Node, where: tuple[Node, ...]) -> bool:
         query = _Query()
-        for condition in where:
-            query.say(query.holds(condition))
-        query.say(f"(not {query.holds(claim)})")
+        terms = [*map(query.holds, where), f"(not {query.holds(claim)})"]
+        query.lines += [f"(assert {term})" for term in terms]
         return monotonic() < self.deadline and query.answer() == "unsat"
 
 

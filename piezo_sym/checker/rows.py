@@ -3,10 +3,10 @@
 Input: a `Spec` and the parsed ``proofs.json``.  Output: one (id, element, reason) per row, the
 reason empty where it is confirmed.  skew and casimir follow from the balances: the power of the
 co-states vanishes for all of them, and nothing but processes and inputs is in an entropy's rate.
+`program` is about printed text, which is not read here: it has to be stated.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from functools import partial as bind
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from . import laws
@@ -18,7 +18,7 @@ from .spec import Element, Spec
 from .system import check_system
 
 Row = tuple[str, str, str]
-MOVING = ("z", "x", "T")
+MOVING, OWN = ("z", "x", "T"), ("domain", "system")  # rows that are not stated by the package
 
 
 def audit(spec: Spec, proofs: Mapping[str, Any]) -> Iterator[Row]:
@@ -30,6 +30,7 @@ class _Audit:
     def __init__(self, spec: Spec, proofs: Mapping[str, Any]) -> None:
         self.spec, self.done = spec, dict[tuple[str, str], str]()
         self.stated: dict[tuple[str, str], list[Mapping[str, Any]]] = {}
+        need(isinstance(proofs, dict), "the proofs are no table")
         entries, system = proofs.get("obligations"), proofs.get("system")
         listed = isinstance(entries, list) and all(isinstance(e, dict) for e in entries)
         need(listed, "the proofs have no list of obligations")
@@ -45,170 +46,141 @@ class _Audit:
 
     def rows(self) -> Iterator[Row]:
         """Yield the rows, each after those that it rests on."""
-        reasons = self.found.reasons
-        yield self._row("domain", "", self._domain, listed=False)
-        yield self._row("system", "", self._system, listed=False)
+        reasons, system = self.found.reasons, [("system", "")]
+        divisors = [_true(tree, "!=") for tree in self.found.divisors]
+        yield self._row("domain", "", self._own_values())
+        yield self._row("system", "", divisors, why=reasons.get("system", ""))
         for body in self.spec.of("body"):
-            yield self._row("temperature", body.name, lambda body=body: self._temperature(body))
-        if self._good("temperature"):
+            law = body.laws["temperature"]
+            slope = laws.derivative(law, ("x", body.name))
+            claims = [*partial(law), *partial(slope), _true(law, ">"), _true(slope, ">")]
+            yield self._row("temperature", body.name, claims)
+        if not any(self.done[key] for key in self.done if key[0] == "temperature"):
             warm = tuple(compare(sym(("T", b.name)), ">") for b in self.spec.of("body"))
             self.prover = Prover((*self.conditions, *warm), self.ties)
-        for name in ("skew", "energy"):
-            yield self._row(name, "", lambda: reasons.get("energy", "") or self._of("system"))
-        for name in ("casimir", "entropy"):
-            yield self._row(name, "", lambda: self._of("system"))
+        for name in ("skew", "casimir", "energy", "entropy"):
+            why = reasons.get("energy", "") if name in ("skew", "energy") else ""
+            yield self._row(name, "", (), system, why)
         domain = [claim for tree in self.conditions for claim in partial(tree)]
         if domain or ("welldef", "") in self.stated:
-            yield self._row("welldef", "", lambda: self._all(domain) or self._of("system"))
+            yield self._row("welldef", "", domain, system)
         for element in self.spec.elements.values():
             yield from self._element(element)
-        yield from self._balances()
-        yield self._row("units", "", lambda: next(iter(self.spec.faults), ""))
-        yield self._row("program", "", lambda: "")
-        yield from self._others()
+        heat = [key for key in self.done if key[0] in ("domain", "temperature", "passive")]
+        yield self._row("sigma", "", (), heat)
+        cooled = [claim for e in self.spec.of("ambient") for claim in _cooling(e)]
+        for name in ("exergy", "environment") if cooled else ():
+            yield self._row(name, "", cooled, [("sigma", ""), ("energy", "")])
+        yield self._row("units", why=next(iter(self.spec.faults), ""))
+        yield self._row("program")
+        for key, entries in self.stated.items():
+            claimed = any(e.get("verdict") == "PROVED" or e.get("required", True) for e in entries)
+            if claimed and key not in self.done:
+                yield self._information(*key)
 
-    def _row(self, name: str, element: str, check: Callable[[], str], listed: bool = True) -> Row:
-        """Return a row: stated as PROVED, and found to be so."""
-        stated = self.stated.get((name, element), [])
+    def _row(
+        self, name: str, element: str = "", claims: Any = (), rests: Any = (), why: str = ""
+    ) -> Row:
+        """Return a row: stated as PROVED, its claims follow, and what it rests on is confirmed."""
+        stated, listed = self.stated.get((name, element), []), name not in OWN
         verdicts = {str(entry.get("verdict")) for entry in stated} - {"PROVED"}
-        reason = f"stated as {min(verdicts)}" if listed and verdicts else ""
-        reason = "missing" if listed and not stated else reason
+        prover = self.prover if name != "domain" else Prover(())
         try:
-            reason = reason or check()
-        except (InputError, ArithmeticError, RecursionError) as error:
+            need(not listed or bool(stated), "missing")
+            need(not listed or not verdicts, f"stated as {min(verdicts, default='')}")
+            need(not why, why)
+            for key in rests:
+                need(not self.done[key], f"it rests on {' '.join(key)}, which is not confirmed")
+            for path, claim in dict.fromkeys(claims):
+                names = ", ".join(str(name[1]) for name in symbols(claim))
+                need(
+                    prover.proves(claim, path),
+                    f"a comparison ({claim.value}) of {names[:80]} does not follow",
+                )
+            reason = ""
+        except (InputError, ArithmeticError, RuntimeError) as error:
             reason = str(error) or type(error).__name__
         self.done[name, element] = reason
         return name, element, reason
 
-    def _of(self, name: str, element: str = "") -> str:
-        """Return why a row that another rests on is not confirmed."""
-        reason = self.done.get((name, element), "")
-        return f"it rests on {name} {element}: {reason}" if reason else ""
-
-    def _good(self, *names: str) -> bool:
-        return not any(reason for (name, _), reason in self.done.items() if name in names)
-
-    def _all(self, claims: Iterable[Claim], prover: Prover | None = None) -> str:
-        """Return the first claim that does not follow."""
-        for path, claim in dict.fromkeys(claims):
-            if not (prover or self.prover).proves(claim, path):
-                names = ", ".join(str(name[1]) for name in symbols(claim))
-                return f"a comparison ({claim.value}) of {names[:80]} does not follow"
-        return ""
-
-    # The rows
-
-    def _domain(self) -> str:
-        """Return why the spec's own values, in each lane, may be outside of its domain."""
-        spec, claims = self.spec, list[Claim]()
+    def _own_values(self) -> Iterator[Claim]:
+        """Yield that the spec's own values, in each lane, are in its domain."""
+        spec = self.spec
         own = {("u", name): [num(value)] for name, value in spec.inputs.items()}
         own |= {("p", n): [num(value) for value in v] for n, v in spec.parameters.items()}
         own |= {("x", n): [*spec.initial.get(n, [num(0)])] for n in spec.states.values()}
         own |= {("T", b.name): [b.laws["temperature"]] for b in spec.of("body")}
         for lane in range(max(map(len, own.values()))):
             here = [compare(sym(n), "=", found[lane % len(found)]) for n, found in own.items()]
-            claims += [Claim(tuple(here), tree) for tree in self.conditions]
-        return self._all(claims, Prover(()))
-
-    def _system(self) -> str:
-        divisors = [_true(tree, "!=") for tree in self.found.divisors]
-        return self.found.reasons.get("system", "") or self._all(divisors)
-
-    def _temperature(self, body: Element) -> str:
-        law = body.laws["temperature"]
-        slope = laws.derivative(law, ("x", body.name))
-        claims = [*partial(law), *partial(slope), _true(law, ">"), _true(slope, ">")]
-        return self._all(claims)
+            yield from (Claim(tuple(here), tree) for tree in self.conditions)
 
     def _element(self, element: Element) -> Iterator[Row]:
-        own = tuple(tree for tree in (element.costate, element.law) if tree)
+        own, name = tuple(tree for tree in (element.costate, element.law) if tree), element.name
         trees = own or tuple(element.laws.values())
         claims = [claim for tree in trees for claim in partial(tree)]
-        moving = [tree for tree in trees if _moves(tree)]
         if claims or element.law:
-            yield self._row("welldef", element.name, lambda: self._all(claims))
+            yield self._row("welldef", name, claims)
+        moving = [tree for tree in trees if _moves(tree)]
         if moving and not element.jumps:
-            yield self._row("continuous", element.name, lambda: self._continuous(moving))
+            yield self._row("continuous", name, _continuous(moving))
         if element.law:
-            yield self._row("passive", element.name, lambda: self._passive(element))
+            yield self._row("passive", name, self._passive(element), [("welldef", name)])
         elif element.kind.form == "conduction":
-            flows = [*claims, _true(trees[0], ">=")]
-            yield self._row("passive", element.name, lambda: self._all(flows))
+            yield self._row("passive", name, [*claims, _true(trees[0], ">=")])
 
-    def _continuous(self, trees: list[Node]) -> str:
-        claims: list[Claim] = []
-        for tree in trees:
-            closed = _Closed()
-            relaxed = closed.tree(tree, ())
-            same = Claim(tuple(closed.where), compare(relaxed, "=", tree))
-            claims += [*closed.claims, same] if relaxed != tree else closed.claims
-        return self._all(claims)
-
-    def _passive(self, element: Element) -> str:
-        """Return why a law may give power: its certificate, if it has one, else cvc5."""
+    def _passive(self, element: Element) -> Iterator[Claim]:
+        """Yield that a law takes power in, after its certificate if it has one."""
         law, z = element.law or num(0), sym(("z", element.name))
-        given = (entry.get("certificate") for entry in self.stated["passive", element.name])
-        if certificate := next(filter(None, given), None):
-            reason = check_certificate(self.spec, element, certificate, self.prover)
-        else:
-            reason = self._all([Claim((compare(z, s),), compare(law, s + "=")) for s in "<>"])
-        return reason or self._of("welldef", element.name)
+        given = [entry.get("certificate") for entry in self.stated["passive", element.name]]
+        for certificate in filter(None, given):
+            check_certificate(self.spec, element, certificate, self.prover)
+        for side in "<>" if not any(given) else "":
+            yield Claim((compare(z, side),), compare(law, side + "="))
 
-    def _balances(self) -> Iterator[Row]:
-        good = self._good("temperature", "passive", "domain")
-        yield self._row("sigma", "", lambda: "" if good else "a row it rests on is not confirmed")
-        claims = []
-        for element in self.spec.of("ambient"):
-            law, hot = element.laws["conductance"], sym(("u", element.input))
-            claims += [*partial(law), _true(law, ">="), _true(hot, ">")]
-        for name in ("exergy", "environment") if claims else ():
-            rests = self._of("sigma") or self._of("energy")
-            yield self._row(name, "", lambda rests=rests: rests or self._all(claims))
+    def _information(self, name: str, owner: str) -> Row:
+        """Return a row that is looked at where it is claimed."""
+        element = self.spec.elements.get(owner)
+        if name == "odd" and element and element.law:
+            turned = put(element.law, {("z", owner): made("-z", z=sym(("z", owner)))})
+            claim = Claim((), compare(turned, "=", made("-x", x=element.law)))
+            return self._row(name, owner, [claim], [("welldef", owner)])
+        if name == "invariant" and element and element.kind.form == "body":
+            return self._row(name, owner, self._invariant(element), [("sigma", "")])
+        return self._row(name, owner, why="the checker knows no such row")
 
-    # Information, where it is claimed
-
-    def _others(self) -> Iterator[Row]:
-        for (name, owner), entries in self.stated.items():
-            claimed = any(e.get("verdict") == "PROVED" or e.get("required", True) for e in entries)
-            checks = {"odd": self._odd, "invariant": self._invariant}
-            if claimed and (name, owner) not in self.done:
-                check = bind(checks.get(name, self._unknown), self.spec.elements.get(owner))
-                yield self._row(name, owner, check)
-
-    def _unknown(self, _: Element | None) -> str:
-        return "the checker knows no such row"
-
-    def _odd(self, element: Element | None) -> str:
-        if element is None or element.law is None:
-            return self._unknown(element)
-        z = ("z", element.name)
-        turned = put(element.law, {z: made("-z", z=sym(z))})
-        claim = Claim((), compare(turned, "=", made("-x", x=element.law)))
-        return self._all([claim]) or self._of("welldef", element.name)
-
-    def _invariant(self, body: Element | None) -> str:
-        """Return why a body may cool below its floor: T > floor, T <= m < T_e."""
-        if body is None or body.kind.form != "body":
-            return self._unknown(body)
-        T, m, claims, cold = sym(("T", body.name)), sym(("m", "")), list[Claim](), False
-        for element in self.spec.of("ambient", "conduction"):
-            if body.name not in element.bodies:
-                continue
-            lam = element.laws["conductance"]
-            if element.kind.form == "conduction":
-                other = next(sym(("T", b)) for b in element.bodies if b != body.name)
-                gain = made("lam*(a/T - 1)", lam=lam, a=other, T=T)
-                claims.append(Claim((compare(T, "<=", other),), compare(gain, ">=")))
-                continue
-            hot, cold = sym(("u", element.input)), True
+    def _invariant(self, body: Element) -> Iterator[Claim]:
+        """Yield that a body does not cool below its floor: T > floor, T <= m < T_e."""
+        T, m = sym(("T", body.name)), sym(("m", ""))
+        around = [e for e in self.spec.of("ambient", "conduction") if body.name in e.bodies]
+        for e in around:
+            lam, others = e.laws["conductance"], [b for b in e.bodies if b != body.name]
+            hot = sym(("T", others[0]) if others else ("u", e.input))
             gains = [made("lam*(a/T - 1)", lam=lam, a=hot, T=x) for x in (T, m)]
             between = (compare(T, "<=", m), compare(m, "<", hot))
-            wanted = (compare(gains[0], ">=", gains[1]), compare(gains[1], ">="))
-            claims += [Claim(between, claim) for claim in wanted]
-        above = {">": 0, "<": 1}
-        floors = [c for c in self.conditions if c.value in above and c.args[above[c.value]] == T]
-        need(cold and bool(floors), "no floor of T, or no environment")
-        return self._all(claims) or self._of("sigma")
+            if others:
+                yield Claim((compare(T, "<=", hot),), compare(gains[0], ">="))
+            else:
+                yield Claim(between, compare(gains[0], ">=", gains[1]))
+                yield Claim(between, compare(gains[1], ">="))
+        floors = [c for c in self.conditions if T in (c.args[:1] if c.value == ">" else c.args[1:])]
+        strict = any(c.value in "<>" for c in floors) and any(e.input for e in around)
+        need(strict, "no floor of T, or no environment")
+
+
+def _continuous(trees: list[Node]) -> Iterator[Claim]:
+    """Yield that laws do not jump where their choices meet."""
+    for tree in trees:
+        closed = _Closed()
+        relaxed = closed.tree(tree, ())
+        yield from closed.claims
+        if relaxed != tree:
+            yield Claim(tuple(closed.where), compare(relaxed, "=", tree))
+
+
+def _cooling(element: Element) -> list[Claim]:
+    """Return what heat exchange needs: a conductance that is not negative, T_e above zero."""
+    law = element.laws["conductance"]
+    return [*partial(law), _true(law, ">="), _true(sym(("u", element.input)), ">")]
 
 
 def _true(left: Node, operator: str) -> Claim:

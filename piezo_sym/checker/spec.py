@@ -114,10 +114,8 @@ class _Reader:
             for pair, own in zip(element.pairs, element.kind.domains, strict=True):
                 same = all(domains.setdefault(node, own) == own for node in pair)
                 need(same, f"a node of {element.name} is in two domains")
-        texts: dict[Node, str] = {}
-        for text, tree in self._conditions():
-            texts.setdefault(tree, text)
-        conditions = tuple((text, tree) for tree, text in texts.items())
+        texts = {tree: text for text, tree in [*self._conditions()][::-1]}
+        conditions = tuple((text, tree) for tree, text in texts.items())[::-1]
         lists, initial = dict(self._lists(conditions)), dict(self._initial())
         tables = (self.parameters, lists, self.inputs, self.elements, self.states, self.words)
         return Spec(*tables, conditions, initial, tuple(self.faults))
@@ -127,7 +125,8 @@ class _Reader:
         for name, entry in self.tables[table].items():
             where = f"{table}.{name}"
             unknown = set(_a(dict, entry, where)) - {field, "unit", "doc"}
-            need(not unknown and (field in entry or role == "u"), f"{where} has a wrong key")
+            complete = not unknown and (field in entry or role == "u") and name.isidentifier()
+            need(complete, f"{where} has a wrong key, or no name")
             given = entry.get(field, 0)
             scale = unit(_a(str, entry.get("unit"), f"{where}.unit"))
             values = given if isinstance(given, list) and given and role == "p" else [given]
@@ -137,8 +136,8 @@ class _Reader:
 
     def _kind(self, name: str, entry: dict[str, Any]) -> Kind:
         kind = KINDS.get(str(entry.get("kind")))
-        if kind is None:
-            raise InputError(f"elements.{name[:60]}: unknown kind")
+        if kind is None or not name.isidentifier():
+            raise InputError(f"elements.{name[:60]}: unknown kind, or no name")
         fields = {"kind", *kind.nodes, *kind.laws, *kind.others}
         needed = {field for field in fields if not field.endswith("?")}
         unknown = set(entry) - {field.rstrip("?") for field in fields}
@@ -147,15 +146,14 @@ class _Reader:
 
     def _words(self, raw: dict[str, dict[str, Any]]) -> dict[str, Symbol]:
         """Return what each name of the domain means; a name has one meaning."""
-        words, found = dict[str, Symbol](), [(name, ("p", name)) for name in self.parameters]
-        found += [(name, ("u", name)) for name in self.inputs]
+        words, found = dict[str, Symbol](), [(n, ("p", n)) for n in self.parameters]
+        found += [(n, ("u", n)) for n in self.inputs]
         for name, kind in self.kinds.items():
-            if kind.letter:
-                state = raw[name].get("state", f"{kind.letter}_{name}")
+            for letter in (s for _, own in kind.laws.values() for s in own if s in STATES):
+                state = raw[name].get("state", f"{letter}_{name}")
                 found.append((_a(str, state, f"elements.{name}.state"), ("x", name)))
-                self.units["x", name] = unit(LETTERS[kind.letter]).dimension
-        one = len(self.bodies) == 1
-        heat = {("T" if one else f"T_{name}"): ("T", name) for name in self.bodies}
+                self.units["x", name] = unit(LETTERS[letter]).dimension
+        heat = {("T" if len(self.bodies) == 1 else f"T_{n}"): ("T", n) for n in self.bodies}
         self.units |= dict.fromkeys(heat.values(), unit("K").dimension)
         for word, meaning in found:
             need(word not in words and word not in heat, f"{word[:60]!r} is taken")
@@ -235,7 +233,11 @@ class _Reader:
             places.append((text, tree))
         yield from places
         for name, element in self.elements.items():
-            for required in _required(element):
+            first = next(iter(element.laws.values()), num(1))
+            body = [sym(symbol) for symbol in symbols(first) if symbol[0] == "p"]
+            for required in (
+                body if element.kind.form == "body" else [first] * bool(element.costate)
+            ):
                 yield f"{name}: its kind requires > 0", compare(required, ">")
             places += [(name, law) for law in element.laws.values()]
         places += [(f"initial.{n}", tree) for n, starts in self._initial() for tree in starts]
@@ -247,21 +249,21 @@ class _Reader:
                     yield f"{where}: a width is >= 0", compare(width, ">=")
 
     def _initial(self) -> Iterator[tuple[str, tuple[Node, ...]]]:
-        words = {word: meaning for word, meaning in self.words.items() if meaning[0] in "pu"}
         for state, given in self.tables["initial"].items():
             where, owner = f"initial.{state}", self.states.get(state, "")
             need(owner in self.elements, f"{where}: no such state")
-            listed = isinstance(given, list)
-            fits = not listed or len(given) == self.elements[owner].lanes
+            fits = not isinstance(given, list) or len(given) == self.elements[owner].lanes
             need(fits, f"{where} has a list of another length")
-            starts = []
-            for value in given if listed else [given]:
-                if not isinstance(value, str):
-                    starts.append(num(_value(value, where)))
-                    continue
-                starts.append(self._resolved(parse(value, compares=False), words, where))
-                self.faults += check(starts[-1], self.units, self.units["x", owner], where)
-            yield owner, tuple(starts)
+            starts = given if isinstance(given, list) else [given]
+            yield owner, tuple(self._start(start, where, owner) for start in starts)
+
+    def _start(self, given: Any, where: str, owner: str) -> Node:
+        if not isinstance(given, str):
+            return num(_value(given, where))
+        words = {word: meaning for word, meaning in self.words.items() if meaning[0] in "pu"}
+        tree = self._resolved(parse(given, compares=False), words, where)
+        self.faults += check(tree, self.units, self.units["x", owner], where)
+        return tree
 
     def _lists(self, conditions: tuple[tuple[str, Node], ...]) -> Iterator[tuple[str, str]]:
         """Yield the bank of each list; refuse those that are not of one bank's laws alone."""
@@ -277,11 +279,3 @@ class _Reader:
         for text, tree in conditions:
             banks = {owner[symbol] for symbol in symbols(tree) if symbol in owner}
             need(len(banks) < 2, f"{text!r} mixes lanes of two banks")
-
-
-def _required(element: Element) -> list[Node]:
-    """Return what an element's kind requires to be positive."""
-    first = next(iter(element.laws.values()), num(1))
-    if element.kind.form == "body":
-        return [sym(symbol) for symbol in symbols(first) if symbol[0] == "p"]
-    return [first] if element.costate else []

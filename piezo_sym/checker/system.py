@@ -64,8 +64,8 @@ class _Published:
         own = [self.sums(arg, depth) for arg in node.args]
         found = sum(own) if node.op == "*" else max(own, default=0) + (node.op == "sum")
         whole = node.op == "**" and node.value > 0 and node.value.denominator == 1
-        plain = whole or node.op not in ("/", "**") or not own[-1]
         found = found * int(node.value) if whole else found
+        plain = whole or node.op not in ("/", "**") or not own[-1]
         need(plain, "a published divisor or root has a sum over lanes")
         need(found <= MOST_SUMS, f"more than {MOST_SUMS} published sums over lanes are multiplied")
         return found if node.op in PLAIN else 0
@@ -168,10 +168,9 @@ class _Comparison:
             spelled = laws.replaced(tree, lambda key: sym(key if key[2] else key[:2]))
             self.finding.divisors[spelled] = None
         for (name, _), form in own.forms.items():
-            terms = [self._term(name, label, factor) for label, factor in form.items()]
-            known = tuple(term for term in terms if term)
-            if known and len(known) == len(terms):
-                self.finding.letters[name] = Node("+", known)
+            terms = [self._term(name, *term) for term in form.items()]
+            if all(terms):
+                self.finding.letters[name] = Node("+", (num(0), *filter(None, terms)))
 
     def _term(self, name: str, label: Any, factor: Ratio) -> Node | None:
         """Return a term of a letter as a tree, if it is one of its own lane."""

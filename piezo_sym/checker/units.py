@@ -91,6 +91,7 @@ def _dimension(node: Node, units: Mapping[Any, Dimension]) -> Dimension | None:
     if node.op in (*PURE, "sign") or (node.op == "**" and node.value == 0):
         return NONE
     if node.op in "*/":
-        return _times(*known, 1 if node.op == "*" else -1) if len(known) == 2 else None
+        sign = 1 if node.op == "*" else -1
+        return _times(known[0], known[1], sign) if len(known) == 2 else None
     power = {"**": node.value, "sqrt": Fraction(1, 2)}.get(node.op, 1)
     return _times(NONE, known[0], power) if known else None

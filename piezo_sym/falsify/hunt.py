@@ -24,7 +24,7 @@ from piezo_sym.falsify.probe import probe_of
 from piezo_sym.falsify.space import Array, Mask, Seen, Space
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.elements.ports import Body
-from piezo_sym.spec.expressions import Num, Sym, names
+from piezo_sym.spec.expressions import Cmp, Num, Sym, names
 from piezo_sym.spec.tables import conditions, greater
 from piezo_sym.spec.units import parse_unit
 
@@ -268,20 +268,15 @@ class Hunt:
         at = ", ".join(f"{name} = {text}" for name, text in words.items())
         row = f"{claim.id} of {claim.element}" if claim.element else claim.id
         what = f"a proof and a number disagree: {row} is PROVED, but {value} at {at}"
-        remedy = "this is a fault of piezo-sym: report it with the spec"
-        return ContradictionError(what, self.iphs.model.name, remedy=remedy)
-
-    # What the spec says of columns
+        return ContradictionError(what, self.iphs.model.name, remedy="report it with the spec")
 
     def _positive(self) -> Mask:
         """Return which columns the domain keeps from being negative."""
-        trees = [greater(condition.tree) for condition in conditions(self.iphs.model)]
-        floors = [(c.left, c.right) for c in trees]
-        found = {
-            left.name
-            for left, right in floors
-            if isinstance(left, Sym) and isinstance(right, Num) and right.value >= 0
-        }
+        found = set()
+        for condition in conditions(self.iphs.model):
+            match greater(condition.tree):
+                case Cmp(_, Sym(name), Num(value)) if value >= 0:
+                    found.add(name)
         return np.array([name in found for name, _ in self.space.columns])
 
     def _pairs(self) -> Any:

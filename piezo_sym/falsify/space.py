@@ -90,16 +90,22 @@ class Space:
         ends = [0, *accumulate(self.lanes(part.bank) for part in parts)]
         return tuple(slice(a, b) for a, b in pairwise(ends))
 
-    def own(self, first: int = 0) -> Array:
-        """Return the spec's own values as one point, of a bank's lanes those from `first` on."""
+    @cached_property
+    def _given(self) -> Mapping[str, Array]:
+        """The spec's own values, by name, one per lane."""
         spec, u = self.module.Parameters(), np.asarray(self.module.INPUT_DEFAULTS, dtype=float)
         full = Space(self.module, self.probe, {b: getattr(spec, f"{b}_count") for b in self.counts})
-        size = {field.name: full.lanes(field.bank) for field in self.fields}
-        names = [field.name for field in self.module.PARAMETERS]
-        values = [np.broadcast_to(getattr(spec, name), size[name]) for name in names]
-        point = np.concatenate([*values, u, self.module.initial_state(u, spec)])
-        at = dict(zip(full.columns, point, strict=True))
-        return np.array([[at[name, (first + lane) % size[name]]] for name, lane in self.columns])
+        sizes = [full.lanes(field.bank) for field in self.fields]
+        values = [getattr(spec, field.name) for field in self.module.PARAMETERS]
+        spread = [np.broadcast_to(v, n) for v, n in zip(values, sizes, strict=False)]
+        point = np.concatenate([*spread, u, self.module.initial_state(u, spec)])
+        names, parts = (f.name for f in self.fields), np.split(point, np.cumsum(sizes)[:-1])
+        return dict(zip(names, parts, strict=True))
+
+    def own(self, first: int = 0) -> Array:
+        """Return the spec's own values as one point, of a bank's lanes those from `first` on."""
+        parts = ((self._given[name], lane) for name, lane in self.columns)
+        return np.array([[part[(first + lane) % len(part)]] for part, lane in parts])
 
     def at(self, points: Array) -> Seen:
         """Return what is seen at points."""

@@ -80,7 +80,7 @@ class Laws:
     """The junction laws of one circuit on their way to a solution."""
 
     def __init__(self, circuit: Circuit, symbols: SymbolTable) -> None:
-        self.circuit = circuit
+        self.circuit, self.symbols = circuit, symbols
         self.banks = tuple(symbols.counts)
         couplings = [port for _, port in circuit.of(Coupling)]
         letters = [_letter(n) for n in range(len(couplings))]

@@ -101,11 +101,10 @@ def _inverse(element: str, port: Resistor) -> tuple[str, str]:
 
 def _couplings(laws: Laws, relation: Form) -> list[str]:
     """Return the couplings whose ratios stand in a relation, in the order of the spec."""
-    letters = {
+    found = {
         symbol for value in relation.values() for symbol in laws.expression(value).free_symbols
     }
-    named = {str(symbol) for symbol in letters}
-    return [placed.element for placed, port in laws.circuit.of(Coupling) if port.name in named]
+    return [p.element for p, port in laws.circuit.of(Coupling) if laws.symbols[port.name] in found]
 
 
 def _place(laws: Laws, names: list[str]) -> str:

@@ -75,12 +75,12 @@ def _names(iphs: IPHS, tree: _Trees) -> Iterator[tuple[str, dict[str, str | None
     for share, value in iphs.junction.shares:
         yield entry(share.name, "", "share", tree(value))
     for (placed, process), z in zip(processes, iphs.system.z, strict=True):
-        hot = {"T": Sym(iphs.circuit.body(heated(process)).temperature)}
+        heat: dict[str, Expr] = {"T": Sym(iphs.circuit.body(heated(process)).temperature)}
         if isinstance(process, Conductor):
             first = Sym(iphs.circuit.body(process.first).temperature)
             law = div(mul(process.conductance, tree(z)), first)
         else:
-            law = replace(process.law, {process.letter: tree(z), **hot})
+            law = replace(process.law, {process.letter: tree(z), **heat})
         yield entry(process.output, placed.element, "output", law)
 
 

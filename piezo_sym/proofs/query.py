@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
-from piezo_sym.proofs.rational import Clause
+from piezo_sym.proofs.facts import Clause
 from piezo_sym.spec.expressions import Add, Cmp, Expr, If, Mul, Neg, Num, Pow, Sym, names
 
 #: Words of SMT-LIB that a spec may use as names; they are written between bars.

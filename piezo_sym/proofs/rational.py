@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
+from piezo_sym.proofs.facts import Clause, facts_on
 from piezo_sym.spec.calculus import add, mul, neg, power
 from piezo_sym.spec.expressions import (
     ONE,
@@ -37,9 +38,6 @@ from piezo_sym.spec.expressions import (
     walk,
 )
 from piezo_sym.spec.names import fresh
-
-#: One of these comparisons holds.
-Clause = tuple[Cmp, ...]
 
 
 @final
@@ -94,7 +92,7 @@ class Parts:
             if part.argument != part.value.top or bottom != ONE:
                 undefined = () if _product_of(bottom, nonzero) else (Cmp("=", bottom, ZERO),)
                 yield (*undefined, Cmp("=", mul(part.argument, bottom), part.value.top))
-            yield from _facts(part)
+            yield from facts_on(part.function, part.exponent, part.argument, Sym(part.name))
 
 
 def parts_of(laws: Iterable[Expr], taken: frozenset[str]) -> Parts:
@@ -260,57 +258,3 @@ def cleared(condition: Cmp) -> Cmp:
 def signed(value: Ratio) -> Expr:
     """Return a polynomial of the sign of a quotient: top times bottom."""
     return value.top if value.bottom == ONE else mul(value.top, value.bottom)
-
-
-def _number(value: int | Fraction) -> Num:
-    return Num(Fraction(value))
-
-
-def _facts(part: Part) -> Iterator[Clause]:
-    """Yield bounds on y = f(x) that hold for every real x, each with the function's own domain."""
-    x, y = part.argument, Sym(part.name)
-    above, below = Cmp(">", x, ZERO), Cmp("<", x, ZERO)
-    plus, minus = Cmp(">=", y, ZERO), Cmp("<=", y, ZERO)
-    match part.function:
-        case "root":  # y >= 0, y**q = x**p: all there is to say
-            undefined = below if part.exponent > 0 else Cmp("<=", x, ZERO)
-            yield (undefined, plus)
-            root = power(y, Fraction(part.exponent.denominator))
-            inside = power(x, abs(Fraction(part.exponent.numerator)))
-            sides = (root, inside) if part.exponent > 0 else (mul(root, inside), ONE)
-            yield (undefined, Cmp("=", *sides))
-        case "exp":  # convex: above its tangents at 0; 1/exp(x) = exp(-x) >= 1 - x
-            yield (Cmp(">", y, ZERO),)
-            yield (Cmp(">=", y, add(ONE, x)),)
-            half = mul(_number(Fraction(1, 2)), power(x, Fraction(2)))
-            yield (below, Cmp(">=", y, add(ONE, x, half)))
-            yield (Cmp(">=", x, ONE), Cmp("<=", mul(y, add(ONE, neg(x))), ONE))
-        case "log":  # below its tangent at 1, and log(x) = -log(1/x)
-            undefined = Cmp("<=", x, ZERO)
-            yield (undefined, Cmp("<=", y, add(x, neg(ONE))))
-            yield (undefined, Cmp(">=", mul(y, x), add(x, neg(ONE))))
-        case "tanh":  # x/(1 + |x|) lies between 0 and tanh(x), and that below x
-            yield (Cmp("<", y, ONE),)
-            yield (Cmp(">", y, neg(ONE)),)
-            yield (below, Cmp("<=", y, x))
-            yield (below, Cmp(">=", mul(y, add(ONE, x)), x))
-            yield (above, Cmp(">=", y, x))
-            yield (above, Cmp("<=", mul(y, add(ONE, neg(x))), x))
-        case "sin":  # |sin x| <= |x|, its sign up to 3 < pi, x - x**3/6 <= sin x for x >= 0
-            cubic = add(x, neg(mul(_number(Fraction(1, 6)), power(x, Fraction(3)))))
-            yield from _within_one(y)
-            yield (below, Cmp("<=", y, x))
-            yield (above, Cmp(">=", y, x))
-            yield (below, Cmp(">=", y, cubic))
-            yield (above, Cmp("<=", y, cubic))
-            yield (below, Cmp(">", x, _number(3)), plus)
-            yield (above, Cmp("<", x, _number(-3)), minus)
-        case "cos":  # 1 - x**2/2 <= cos x
-            half = mul(_number(Fraction(1, 2)), power(x, Fraction(2)))
-            yield from _within_one(y)
-            yield (Cmp(">=", y, add(ONE, neg(half))),)
-
-
-def _within_one(y: Expr) -> Iterator[Clause]:
-    yield (Cmp("<=", y, ONE),)
-    yield (Cmp(">=", y, neg(ONE)),)

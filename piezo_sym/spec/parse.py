@@ -86,7 +86,7 @@ def _located(read: Callable[[str], Tree], text: str, where: str) -> Tree:
         raise SpecError(what, where, refused.expected, refused.remedy) from None
 
 
-@lru_cache(maxsize=4096)
+@lru_cache(maxsize=16384)
 def _law(text: str) -> Expr:
     body = _parsed(text)
     if isinstance(body, ast.Compare):
@@ -97,7 +97,7 @@ def _law(text: str) -> Expr:
     return tree
 
 
-@lru_cache(maxsize=4096)
+@lru_cache(maxsize=16384)
 def _condition(text: str) -> Cmp:
     body = _parsed(text)
     if not isinstance(body, ast.Compare):

@@ -42,8 +42,8 @@ class Tokens:
     """
 
     def __init__(self, text: str, model: str) -> None:
-        lines = [f'#include "{model}.h"\n', "#include <math.h>\n"]
-        for line in lines:
+        heads = [f'#include "{model}.h"\n', "#include <math.h>\n"]
+        for line in heads:
             if text.count(line) != 1:
                 raise NotShownError(f"the C file should have one line {line.strip()}")
             text = text.replace(line, "")
@@ -54,8 +54,8 @@ class Tokens:
         while place < len(text):
             match = _TOKEN.match(text, place)
             if match is None or "??" in match[0]:
-                line = text.count("\n", 0, place) + len(lines) + 1
-                raise NotShownError(f"line {line} of the C file is outside the grammar")
+                number = text.count("\n", 0, place) + len(heads) + 1
+                raise NotShownError(f"line {number} of the C file is outside the grammar")
             place = match.end()
             if match["pragma"] is not None:
                 self.sums.append(

@@ -11,6 +11,8 @@ from collections.abc import Callable, Mapping
 from fractions import Fraction
 
 from piezo_sym.translation.field import Field, Generator, NotShownError, Value
+from piezo_sym.translation.functions import call, power
+from piezo_sym.translation.signs import compare, sign_of
 
 
 def put(value: Value, new: Mapping[int, Value]) -> Value:
@@ -25,7 +27,7 @@ def put(value: Value, new: Mapping[int, Value]) -> Value:
         for g, e in mono:
             same = field.gens[g].parts.isdisjoint(new)
             factor = Value(field, {((g, e),): 1}) if same else None
-            term = term * (factor or field.power(_put(field, g, new), Fraction(e)))
+            term = term * (factor or power(_put(field, g, new), Fraction(e)))
         parts.append(term)
     field.path = path
     return field.total(parts)
@@ -46,8 +48,8 @@ def _put(field: Field, g: int, new: Mapping[int, Value]) -> Value:
         return arg
     if gen.kind == "sign":
         op = {1: ">", 0: "==", -1: "<"}[int(str(gen.mark))]
-        return field.compare(op, arg, field.zero)
-    return field.call(gen.kind, arg)
+        return compare(op, arg, field.zero)
+    return call(gen.kind, arg)
 
 
 def moved(value: Value, bank: str, lane: int) -> Value:
@@ -56,7 +58,7 @@ def moved(value: Value, bank: str, lane: int) -> Value:
     for g in value.parts:
         mark = field.gens[g].mark
         if isinstance(mark, tuple) and mark[1:] == (bank, 1 - lane):
-            new[g] = field.name(mark[0], bank, lane, field.sign_of(g))
+            new[g] = field.name(mark[0], bank, lane, sign_of(field, g))
     return put(value, new)
 
 
@@ -107,7 +109,7 @@ def _chain(value: Value, state: int, own: Value, of_sum: Inner) -> Value:
 
 def _slope(field: Field, g: int, state: int, own: Value, of_sum: Inner) -> Value:
     """Return the derivative of a generator."""
-    gen, same = field.gens[g], Value(field, {((g, 1),): 1})
+    gen, same = field.gens[g], field.raised(g, 1)
     if gen.arg is None:
         return own if g == state else field.zero
     if state not in gen.parts or gen.kind == "sign":
@@ -121,9 +123,9 @@ def _slope(field: Field, g: int, state: int, own: Value, of_sum: Inner) -> Value
         case "exp":
             return same * inner
         case "log":
-            return field.power(gen.arg, Fraction(-1)) * inner
+            return power(gen.arg, Fraction(-1)) * inner
         case "sin":
-            return field.call("cos", gen.arg) * inner
+            return call("cos", gen.arg) * inner
         case "cos":
-            return -(field.call("sin", gen.arg) * inner)
+            return -(call("sin", gen.arg) * inner)
     return (field.one - same * same) * inner  # tanh

@@ -17,11 +17,14 @@ import ast
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import NoReturn, final
+from typing import final
 
 from piezo_sym.translation.field import Field, NotShownError, Value
+from piezo_sym.translation.functions import call, power, size_of
+from piezo_sym.translation.signs import choose, compare, side_of
 
-MOST_MAGNITUDE = 400
+MOST_MAGNITUDE = 300
+MOST_WHOLE = 2**31 - 1
 _ARGUMENTS = {"pow": 2, "copysign": 2, "minimum": 2, "maximum": 2, "clip": 3}
 _OPERATORS = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
 
@@ -83,8 +86,8 @@ class Expressions:
             If it is outside the grammar.
         """
         match node:
-            case ast.Constant(value):
-                return self._number(value)
+            case ast.Constant(number):
+                return self._number(number)
             case ast.UnaryOp(ast.USub(), arg):
                 value, shape = self.numeric(arg)
                 return -value, shape
@@ -94,7 +97,7 @@ class Expressions:
                 first, second = self.numeric(left), self.numeric(right)
                 joined(first[1], second[1], node)
                 op = _OPERATORS[type(operator)]
-                return self.field.compare(op, first[0], second[0]), TEST
+                return compare(op, first[0], second[0]), TEST
             case ast.BoolOp(ast.Or(), [left, right]):
                 one, tests = self.field.one, (self.test(left), self.test(right))
                 return one - (one - tests[0]) * (one - tests[1]), TEST
@@ -108,14 +111,21 @@ class Expressions:
         """Return an expression that is no condition."""
         value, shape = self(node)
         if shape == TEST:
-            refuse(node, "a condition as a number")
+            raise refused(node, "a condition as a number")
         return value, shape
+
+    def whole(self, node: ast.expr) -> Value:
+        """Return an integer: an index or a size."""
+        value, shape = self(node)
+        if shape != WHOLE:
+            raise refused(node, "no integer")
+        return value
 
     def test(self, node: ast.expr) -> Value:
         """Return a condition: 1 where it holds."""
         value, shape = self(node)
         if shape != TEST:
-            refuse(node, "a number as a condition")
+            raise refused(node, "a number as a condition")
         return value
 
     def choice(self, condition: ast.expr, then: ast.expr, other: ast.expr) -> Read:
@@ -130,7 +140,7 @@ class Expressions:
         shape = joined(
             joined(shape, shape_of_other, condition), self.shape_of(condition), condition
         )
-        return field.choose(test, first, second), shape
+        return choose(test, first, second), shape
 
     def shape_of(self, condition: ast.expr) -> Shape:
         """Return the shape of the numbers that a condition compares."""
@@ -156,13 +166,16 @@ class Expressions:
             case ast.Sub():
                 return left[0] - right[0], shape
             case ast.Mult():
-                return left[0] * right[0], shape
+                made = left[0] * right[0]
+                if shape == WHOLE and abs(made.constant or Fraction(0)) > MOST_WHOLE:
+                    raise refused(node, "an integer that is too large")
+                return made, shape
             case ast.Div() if shape != WHOLE or not self.whole_division:
                 shape = PLAIN if shape == WHOLE else shape
-                return left[0] * self.field.power(right[0], Fraction(-1)), shape
+                return left[0] * power(right[0], Fraction(-1)), shape
             case ast.Pow() if right[0].constant is not None and not self.whole_division:
-                return self.field.power(left[0], right[0].constant), left[1]
-        refuse(node, "an operator")
+                return power(left[0], right[0].constant), left[1]
+        raise refused(node, "an operator")
 
     def _call(self, function: str, nodes: list[ast.expr], node: ast.expr) -> Read:
         if function == "choice" and len(nodes) == 3:
@@ -173,7 +186,7 @@ class Expressions:
             shape = joined(shape, own, node)
         args = [value for value, _ in read]
         if len(args) != _ARGUMENTS.get(function, 1):
-            refuse(node, "a call")
+            raise refused(node, "a call")
         return self.apply(function, args), joined(shape, PLAIN, node)
 
     def apply(self, function: str, args: list[Value]) -> Value:
@@ -181,34 +194,34 @@ class Expressions:
         field, z, w = self.field, args[0], args[-1]
         match function:
             case "expm1":
-                return field.call("exp", z) - field.one
+                return call("exp", z) - field.one
             case "sqrt":
-                return field.power(z, Fraction(1, 2))
+                return power(z, Fraction(1, 2))
             case "abs":
-                return field.size(z)
+                return size_of(z)
             case "sign":
-                return field.side(z)
+                return side_of(z)
             case "minimum":
-                return field.choose(field.compare("<=", z, w), z, w)
+                return choose(compare("<=", z, w), z, w)
             case "maximum":
-                return field.choose(field.compare(">=", z, w), z, w)
+                return choose(compare(">=", z, w), z, w)
             case "clip":
                 return self.apply("minimum", [self.apply("maximum", args[:2]), w])
             case "pow":
                 exponent = w.constant
                 if exponent is None:
                     raise NotShownError("a power with an exponent that is no number")
-                return field.power(z, exponent)
+                return power(z, exponent)
             case "copysign":
                 unknown = field.generator("unknown", None, (f"copysign {len(field.gens)}", None, 0))
-                of_zero = field.compare("==", w, field.zero) * unknown
-                return field.size(z) * (field.side(w) + of_zero)
-        return field.call(function, z)
+                of_zero = compare("==", w, field.zero) * unknown
+                return size_of(z) * (side_of(w) + of_zero)
+        return call(function, z)
 
 
-def refuse(node: ast.AST, what: str) -> NoReturn:
-    """Refuse a piece of text."""
-    raise NotShownError(f"{what} outside the grammar: {ast.unparse(node)[:60]}")
+def refused(node: ast.AST, what: str) -> NotShownError:
+    """Return that a piece of text is refused, to be raised."""
+    return NotShownError(f"{what} outside the grammar: {ast.unparse(node)[:60]}")
 
 
 def joined(left: Shape, right: Shape, node: ast.AST) -> Shape:
@@ -222,4 +235,4 @@ def joined(left: Shape, right: Shape, node: ast.AST) -> Shape:
         return kinds["lanes"]
     if kinds.keys() == {"row", "column"}:
         return Shape("pair", kinds["row"].bank, kinds["column"].bank)
-    refuse(node, "lanes of two banks")
+    raise refused(node, "lanes of two banks")

@@ -134,8 +134,9 @@ def _literal(node: ast.expr) -> object:
             return -value
         case ast.Tuple(parts):
             return tuple(map(_literal, parts))
-        case ast.Call(ast.Name("Record"), [name, _, _, *bank], []):
-            return (_literal(name), _literal(bank[0]) if bank else None)
+        case ast.Call(ast.Name("Record"), [_, _, _, *_] as parts, []):
+            name, _, _, *bank = map(_literal, parts)
+            return (name, bank[0] if bank else None)
         case ast.Call(ast.Name("Condition"), [text, strict], []):
             return _literal(text), _literal(strict)
     raise NotShownError("a table of the NumPy module is no list of constants")

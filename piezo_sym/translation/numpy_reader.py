@@ -9,36 +9,21 @@ and the helpers of a module have to be word for word what is expected.  Nothing 
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.translation.change import moved
-from piezo_sym.translation.expressions import (
-    PLAIN,
-    WHOLE,
-    Expressions,
-    Read,
-    Shape,
-    joined,
-    refuse,
-)
+from piezo_sym.translation.expressions import PLAIN, WHOLE, Expressions, Read, Shape, refused
 from piezo_sym.translation.field import NotShownError, Value
-from piezo_sym.translation.reference import ALL, LEAST, SAME, Key, Proved
+from piezo_sym.translation.known import ALL, LEAST, SAME, Key, Proved
+from piezo_sym.translation.rows import Rows, slot_at
 
-ARGUMENTS = {
-    "initial_state": "u p",
-    "_rates": "x u p out",
-    "jacobian": "x u p",
-    "margins": "x u p",
-    "outputs": "x u p",
-    "supply": "x u p",
-    "heat": "x u p",
-    "entropy_production": "x u p",
-    "energy": "x p",
-    "entropy": "x p",
-    "temperatures": "x p",
-}
+ARGUMENTS = dict.fromkeys(
+    ["jacobian", "margins", "outputs", "supply", "heat", "entropy_production"], "x u p"
+) | {"initial_state": "u p", "_rates": "x u p out", "temperatures": "x p"}
+ARGUMENTS |= {"energy": "x p", "entropy": "x p"}
+KEPT = ("np", "_states", "_inputs", "_lanes")
 CALLS = {f"np.{name}": name for name in ("exp", "expm1", "log", "sqrt", "sin", "cos", "tanh")}
 CALLS |= {"np.abs": "abs", "np.sign": "sign", "np.minimum": "minimum", "np.maximum": "maximum"}
 CALLS |= {"np.clip": "clip"}
@@ -62,222 +47,198 @@ def read_numpy(functions: Mapping[str, ast.FunctionDef], known: Proved) -> dict[
 
 @final
 class _Function:
-    """Reads one function.
-
-    Names stand for values (`values`), or for arguments and index arrays (`roles`).
-    """
+    """Reads one function; names stand for values, arguments (`roles`) or index arrays (`lanes`)."""
 
     def __init__(self, node: ast.FunctionDef, words: Sequence[str], known: Proved) -> None:
         self.node, self.known, self.field = node, known, known.field
         self.name = node.name.replace("_rates", "rhs")
         given = node.args
         arguments = [arg.arg for arg in given.posonlyargs]
-        others = (given.args, given.kwonlyargs, given.defaults, given.vararg, given.kwarg)
-        if len(arguments) != len(words) or any(others) or node.decorator_list:
-            refuse(node, "the arguments of a function")
+        others = {**vars(given), "posonlyargs": [], "returns": node.returns}
+        noted = [arg.annotation for arg in given.posonlyargs if arg.annotation]
+        if node.decorator_list or len(arguments) != len(words) or any(others.values()) or noted:
+            raise refused(node, "the arguments of a function")
         self.words = dict(zip(words, arguments, strict=True))
-        unchecked = {"x", "u"} if node.name != "_rates" else set()
-        self.roles = {a: w for w, a in self.words.items() if w not in unchecked}
+        self.x = self.words.get("x", "")
+        self.unchecked = {"x", "u"} & {*words} if node.name != "_rates" else set()
+        self.roles = {a: w for w, a in self.words.items() if w not in self.unchecked}
         self.values: dict[str, Read] = {}
         self.lanes: dict[str, tuple[Value, Value]] = {}
-        self.slots = known.slots[self.name]
-        self.places = [known.position(self.slots, n) for n in range(len(self.slots) + 1)]
-        self.filled = node.name == "_rates"
-        self.found: dict[Key, Value] = {}
+        self.written = Rows(known, self.name)
         self.field.derived = self.name == "jacobian"
         self.read = Expressions(self.field, known.numbers, self._leaf, CALLS, False)
 
     def rows(self) -> dict[Key, Value]:
         """Return the rows that the function writes."""
         doc, *body = self.node.body
-        if not (isinstance(doc, ast.Expr) and isinstance(doc.value, ast.Constant)):
-            refuse(doc, "a function without docstring")
-        last = body.pop() if self.node.name != "_rates" else None
+        last = body.pop() if "out" not in self.words and body else None
         for statement in body:
             self._statement(statement)
+        if not (isinstance(doc, ast.Expr) and isinstance(doc.value, ast.Constant)):
+            raise refused(doc, "a function without docstring")
+        if "x" in self.unchecked:
+            raise refused(doc, "a function that takes states of any shape")
         if isinstance(last, ast.Return) and last.value:
-            self._returned(last.value)
+            self._return(last.value)
         elif last:
-            refuse(last, "a last statement")
+            raise refused(last, "a last statement")
         if self.name == "initial_state":  # made of zeros
-            written = {key[1] for key in self.found}
-            left = (n for n in range(len(self.slots)) if n not in written)
-            self.found |= {(self.name, n): self.field.zero for n in left}
-        return self.found
+            found = self.written.found
+            left = {*range(len(self.written.slots))} - {key[1] for key in found}
+            found |= {(self.name, n): self.field.zero for n in left}
+        return self.written.found
 
-    def _returned(self, value: ast.expr) -> None:
-        if self.slots != (Slot(""),):
-            if not self.filled or ast.unparse(value) != "out" or self.roles.get("out") != "out":
-                refuse(value, "what is returned")
+    def _return(self, value: ast.expr) -> None:
+        if self.written.slots != (Slot(""),):
+            if not isinstance(value, ast.Name) or self.roles.get(value.id) != "out":
+                raise refused(value, "what is returned")
             return
         match value:
             case ast.Call(ast.Attribute(name, "copy"), [], []):
                 value = name
-            case ast.Call() if ast.unparse(value) == f"np.zeros({self.words['x']}.shape[1:])":
+            case ast.Call() if ast.unparse(value) == f"np.zeros({self.x}.shape[1:])":
                 value = ast.Constant(0)
-        self.found[self.name, 0] = self._plain(value)
+        self.written.keep((self.name, 0), self._of(value))
 
     def _statement(self, node: ast.stmt) -> None:
         match node:
             case ast.Assign([ast.Name(name)], value):
                 self._assign(name, value)
-            case ast.Assign([ast.Subscript(ast.Name(out), place)], value):
-                self._write(out, place, value, added=False)
-            case ast.AugAssign(ast.Subscript(ast.Name(out), place), ast.Add(), value):
-                self._write(out, place, value, added=True)
+            case ast.Assign([ast.Subscript(ast.Name(out), place)], value) if self._is_out(out):
+                self._write(place, value, added=False)
+            case ast.AugAssign(ast.Subscript(ast.Name(out), place), ast.Add(), value) if (
+                self._is_out(out)
+            ):
+                self._write(place, value, added=True)
             case _:
-                refuse(node, "a statement")
+                raise refused(node, "a statement")
+
+    def _is_out(self, name: str) -> bool:
+        return self.roles.get(name) == "out"
 
     def _assign(self, name: str, value: ast.expr) -> None:
-        text = ast.unparse(value)
-        x, u, p = (self.words.get(word, "") for word in "xup")
-        if (name, text) in {(x, f"_states({x}, {p})"), (u, f"_inputs({u})")}:
-            self.roles[name] = {x: "x", u: "u"}[name]
-        elif name in self.values or (name in self.roles and name not in self.lanes):
-            raise NotShownError(f"{name} is assigned twice")
-        elif name in {"np", "_states", "_inputs", "_lanes"} or name in (x, u, p):
-            raise NotShownError(f"{name} is assigned")
-        elif text.startswith("np.empty(") or text.startswith("np.zeros("):
-            self._allocate(name, value)
+        p, u = self.words["p"], self.words.get("u", "")
+        checks = {(self.x, f"_states({self.x}, {p})"): "x", (u, f"_inputs({u})"): "u"}
+        role = checks.get((name, ast.unparse(value)))
+        kept = {
+            "np",
+            "_states",
+            "_inputs",
+            "_lanes",
+            *self.words.values(),
+            *self.values,
+            *self.roles,
+        }
+        if role in self.unchecked:
+            self.unchecked.remove(str(role))
+            self.roles[name] = str(role)
         elif isinstance(value, ast.Call) and ast.unparse(value.func) == "np.arange":
+            if name in kept or len(value.args) != 2 or value.keywords:
+                raise refused(value, "an index array")
             first, last = value.args
-            self.lanes[name] = self._whole(first), self._whole(last)
-            self.roles[name] = "lanes"
+            self.lanes[name] = self.read.whole(first), self.read.whole(last)
+        elif name in kept or name in self.lanes:
+            raise NotShownError(f"{name} is assigned twice")
+        elif isinstance(value, ast.Call) and ast.unparse(value.func) in {"np.empty", "np.zeros"}:
+            self._allocate(value)
+            self.roles[name] = "out"
         else:
             self.values[name] = self.read.numeric(value)
 
-    def _allocate(self, name: str, value: ast.expr) -> None:
-        """Read how `out` is made; with zeros, rows may be left out."""
-        x = self.words.get("x", "")
-        square = f"np.zeros(({x}.shape[0], *{x}.shape))"
-        zeros = ast.unparse(value).startswith("np.zeros(")
-        match value:
-            case ast.Call(_, [ast.Tuple([size, ast.Starred() as rest])], []) if (
-                ast.unparse(rest) == f"*{x}.shape[1:]" and not zeros and x
-            ):
-                right = self._whole(size) == self.places[-1]
-            case ast.Call(_, [size], []) if self.name == "initial_state" and zeros:
-                right = self._whole(size) == self.places[-1]
+    def _allocate(self, value: ast.Call) -> None:
+        """Read how the result is made: with zeros, rows may be left out."""
+        zeros, shape = ast.unparse(value.func) == "np.zeros", next(iter(value.args), value)
+        square = f"({self.x}.shape[0], *{self.x}.shape)"
+        match shape:
+            case ast.Tuple([size, ast.Starred() as rest]) if not zeros:
+                right = ast.unparse(rest) == f"*{self.x}.shape[1:]"
+                right = right and self.read.whole(size) == self.written.places[-1]
+            case ast.Tuple():
+                right = zeros and ast.unparse(shape) == square and self.name == "jacobian"
             case _:
-                right = ast.unparse(value) == square and self.name == "jacobian"
-        if not right or self.filled or name != "out" and self.words.get("out"):
-            refuse(value, "an array")
-        self.filled, self.roles[name] = True, "out"
-        self.zeros = zeros
+                right = self.read.whole(shape) == self.written.places[-1]
+                right = right and zeros and self.name == "initial_state"
+        if not right or len(value.args) != 1 or value.keywords or "out" in self.roles.values():
+            raise refused(value, "an array")
+        self.written.zeros = zeros
 
     # Rows
 
-    def _write(self, out: str, place: ast.expr, value: ast.expr, *, added: bool) -> None:
-        if self.roles.get(out) != "out":
-            refuse(place, "an array that is written")
+    def _write(self, place: ast.expr, value: ast.expr, *, added: bool) -> None:
         if self.name == "jacobian":
             self._entry(place, value, added=added)
             return
-        n, bank = self._row(place)
+        n, bank = self._row(place, self.written.slots)
         if isinstance(value, ast.Tuple) and bank and self.name == "initial_state":
             for lane, part in enumerate(value.elts):
-                self._keep((self.name, n, lane), self._plain(part), added=added)
-        elif bank:
-            self._keep((self.name, n), self._of(value, {("lanes", bank), ("maybe", bank)}), added)
-        elif self.name == "margins" and "np.min(" in ast.unparse(value):
-            self._keep((self.name, n, LEAST), self._least(value), added)
+                self.written.keep((self.name, n, lane), self._of(part), added=added)
+        elif self.name == "margins" and (least := self._least(value)):
+            self.written.keep((self.name, n, LEAST), least, added=added)
         else:
-            self._keep((self.name, n), self._plain(value), added)
-
-    def _keep(self, key: Key, value: Value, added: bool) -> None:
-        if added or key in self.found:
-            raise NotShownError(f"{self.name}[{key[1]}] is written twice")
-        self.found[key] = value
+            shapes = [Shape("lanes", bank), Shape("maybe", bank)] if bank else []
+            self.written.keep((self.name, n), self._of(value, shapes), added=added)
 
     def _entry(self, place: ast.expr, value: ast.expr, *, added: bool) -> None:
         if not isinstance(place, ast.Tuple) or len(place.elts) != 2:
-            refuse(place, "a place in a matrix")
-        diagonal = [
-            isinstance(p, ast.Name | ast.BinOp) and _first_name(p) in self.lanes for p in place.elts
-        ]
-        if all(diagonal):
-            row, col = (self._index_array(part) for part in place.elts)
-            bank = self.slots[row].bank
-            if bank is None or bank != self.slots[col].bank:
-                refuse(place, "equal lanes of two banks")
-            key, shapes = ("jacobian", row, col, SAME), {("lanes", bank), ("maybe", bank)}
+            raise refused(place, "a place in a matrix")
+        slots, shapes = self.written.slots, list[Shape]()
+        equal = [_first(part) in self.lanes for part in place.elts]
+        if all(equal):
+            (row, rows), (col, cols) = map(self._index_array, place.elts)
+            if rows != cols:
+                raise refused(place, "equal lanes of two banks")
         else:
-            (row, rows), (col, cols) = (self._row(part) for part in place.elts)
-            key, bank = ("jacobian", row, col, ALL), rows or cols
-            shapes = {("lanes", bank), ("maybe", bank)} if bank else set()
-            if rows and cols:
-                shapes = {("row", rows), ("column", cols), ("pair", rows)}
-        made = self._of(value, shapes, cols if not all(diagonal) and rows else "")
-        before = self.found.get(key)
-        covered = before or (key[:3] + (ALL,)) in self.found or (key[:3] + (SAME,)) in self.found
-        if covered and not added:
-            raise NotShownError(f"jacobian[{row}, {col}] is written twice")
-        self.found[key] = made if before is None else before + made
+            (row, rows), (col, cols) = (self._row(part, slots) for part in place.elts)
+        if rows and cols and not all(equal):
+            shapes = [Shape("row", rows), Shape("column", cols), Shape("pair", rows, cols)]
+        elif bank := rows or cols:
+            shapes = [Shape("lanes", bank), Shape("maybe", bank)]
+        key = ("jacobian", row, col, SAME if all(equal) else ALL)
+        self.written.keep(key, self._of(value, shapes), added=added)
 
-    def _of(self, node: ast.expr, shapes: set[tuple[str, str]], cols: str | None = "") -> Value:
-        """Return an expression that has one of some shapes, or the same for all lanes."""
+    def _of(self, node: ast.expr, shapes: Sequence[Shape] = ()) -> Value:
+        """Return an expression that has one of some shapes, or the same value for all lanes."""
         value, shape = self.read.numeric(node)
-        fits = not shape.is_array or (shape.kind, shape.bank) in shapes
-        if not fits or (shape.kind == "pair" and shape.other != cols):
-            refuse(node, "an array of another shape")
+        if shape.bank and shape not in shapes:
+            raise refused(node, "an array of another shape")
         return value
 
-    def _plain(self, node: ast.expr) -> Value:
-        return self._of(node, set())
-
-    def _least(self, node: ast.expr) -> Value:
-        """Return what the least over the lanes is taken of."""
+    def _least(self, node: ast.expr) -> Value | None:
+        """Return what the least over the lanes is taken of, if it is."""
         match node:
-            case ast.Call(ast.Attribute(ast.Name("np"), "min"), [arg], keywords):
+            case ast.Call(ast.Attribute(ast.Name("np"), "min"), [arg], [axis]):
                 value, shape = self.read.numeric(arg)
                 names = (part.id for part in ast.walk(arg) if isinstance(part, ast.Name))
-                own = all(name in self.values and self.values[name][1] == shape for name in names)
-                axis = [ast.unparse(word) for word in keywords] == ["axis=0"]
-                if axis and (shape.kind == "lanes" or (shape.kind == "maybe" and own)):
-                    return value
-        refuse(node, "a least value")
+                own = all(self.values.get(n, (0, shape))[1] == shape for n in names)
+                right = shape.kind == "lanes" or (shape.kind == "maybe" and own)
+                return value if right and ast.unparse(axis) == "axis=0" else None
+        return None
 
     # Places
 
-    def _whole(self, node: ast.expr) -> Value:
-        value, shape = self.read.numeric(node)
-        if shape != WHOLE:
-            refuse(node, "an index")
-        return value
-
-    def _row(self, node: ast.expr, slots: Sequence[Slot] = ()) -> tuple[int, str | None]:
+    def _row(self, node: ast.expr, slots: tuple[Slot, ...]) -> tuple[int, str | None]:
         """Return the slot of an index or of a slice, and its bank."""
-        slots = slots or self.slots
-        places = [self.known.position(slots, n) for n in range(len(slots) + 1)]
-        if isinstance(node, ast.Slice):
-            if node.lower is None or node.upper is None or node.step is not None:
-                refuse(node, "a slice")
-            ends = self._whole(node.lower), self._whole(node.upper)
-            found = [
-                n
-                for n, slot in enumerate(slots)
-                if slot.bank and ends == (places[n], places[n + 1])
-            ]
-        else:
-            place = self._whole(node)
-            found = [n for n, slot in enumerate(slots) if not slot.bank and places[n] == place]
-        if not found:
-            refuse(node, "a place of another row")
-        return found[0], slots[found[0]].bank
+        places = self.known.places(slots)
+        if not isinstance(node, ast.Slice):
+            return slot_at(slots, places, self.read.whole(node), bank=False), None
+        if node.lower is None or node.upper is None or node.step is not None:
+            raise refused(node, "a slice")
+        n = slot_at(slots, places, self.read.whole(node.lower), bank=True)
+        if self.read.whole(node.upper) != places[n + 1]:
+            raise refused(node, "a slice")
+        return n, slots[n].bank
 
-    def _index_array(self, node: ast.expr) -> int:
-        """Return the slot of ``lanes`` or of ``lanes + (second - (first))``."""
+    def _index_array(self, node: ast.expr) -> tuple[int, str | None]:
+        """Return the slot of ``lanes`` or of ``lanes + (second - (first))``, and its bank."""
         shift = self.field.zero
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
-            shift, node = self._whole(node.right), node.left
-        first, last = (
-            self.lanes[_first_name(node)] if isinstance(node, ast.Name) else refuse(node, "lanes")
-        )
-        for n, slot in enumerate(self.slots):
-            ends = first + shift, last + shift
-            if slot.bank and ends == (self.places[n], self.places[n + 1]):
-                return n
-        refuse(node, "lanes of no bank")
+            shift, node = self.read.whole(node.right), node.left
+        slots, places = self.written.slots, self.written.places
+        first, last = self.lanes[_first(node)]
+        n = slot_at(slots, places, first + shift, bank=True)
+        if not isinstance(node, ast.Name) or last + shift != places[n + 1]:
+            raise refused(node, "lanes of another bank")
+        return n, slots[n].bank
 
     # Names
 
@@ -286,72 +247,48 @@ class _Function:
             case ast.Name(name) if name in self.values:
                 return self.values[name]
             case ast.Attribute(ast.Name(p), name) if self.roles.get(p) == "p":
-                return self._parameter(name, node)
+                value, whole = self.known.parameter(name)
+                return value, WHOLE if whole else PLAIN
             case ast.Subscript(ast.Name(x), place) if self.roles.get(x) in {"x", "u"}:
-                return self._part(self.roles[x], place)
+                slots = self.known.slots["rhs"] if self.roles[x] == "x" else self.known.inputs
+                n, bank = self._row(place, slots)
+                return self.known.names[slots[n].label], Shape("lanes", bank) if bank else PLAIN
             case ast.Subscript(arg, place):
-                return self._turned(arg, ast.unparse(place), node)
-            case ast.Call(
-                ast.Name("_lanes"), [ast.Attribute(ast.Name(p), name), count, axes], []
-            ) if self.roles.get(p) == "p":
+                kind = {"(:, None)": "row", "None": "column"}.get(ast.unparse(place))
+                value, shape = self.read.numeric(arg)
+                if kind and shape.kind == "lanes":
+                    value = moved(value, shape.bank, 1) if kind == "column" else value
+                    return value, Shape(kind, shape.bank)
+            case ast.Call(ast.Name("_lanes"), [ast.Attribute(ast.Name(p), name), size, axes], []):
                 bank = self.known.banks.get(name, "")
-                dimensions = f"{self.words['x']}.ndim" if "x" in self.words else "1"
-                right = name in self.known.names and ast.unparse(axes) == dimensions
-                if bank and right and self._whole(count) == self.field.count(bank):
+                dimensions = f"{self.x}.ndim" if self.x else "1"
+                known = name in self.known.parameters and self.roles.get(p) == "p"
+                known = known and ast.unparse(axes) == dimensions
+                if bank and known and self.read.whole(size) == self.field.count(bank):
                     return self.known.names[name], Shape("maybe", bank)
             case ast.Call(ast.Attribute(ast.Name("np"), name), args, keywords):
                 return self._array_call(name, args, [ast.unparse(word) for word in keywords], node)
-        refuse(node, "an expression")
-
-    def _parameter(self, name: str, node: ast.expr) -> Read:
-        counts = {f"{slot.bank}_count": slot.bank for slot in self.known.slots["rhs"] if slot.bank}
-        if name in counts:
-            return self.field.count(counts[name]), WHOLE
-        if name not in self.known.parameters or name in self.known.banks:
-            refuse(node, "a parameter")
-        return self.known.names[name], PLAIN
-
-    def _part(self, role: str, place: ast.expr) -> Read:
-        """Return a part of x or u."""
-        slots = self.known.slots["rhs"] if role == "x" else self.known.inputs
-        n, bank = self._row(place, slots)
-        return self.known.names[slots[n].label], Shape("lanes", bank) if bank else PLAIN
-
-    def _turned(self, arg: ast.expr, place: str, node: ast.expr) -> Read:
-        """Return lanes as those of a matrix's rows or columns."""
-        value, shape = self.read.numeric(arg)
-        kind = {
-            "(slice(None, None, None), None)": "row",
-            ":, None": "row",
-            "(:, None)": "row",
-            "None": "column",
-        }.get(place)
-        if shape.kind != "lanes" or kind is None:
-            refuse(node, "an index")
-        value = moved(value, shape.bank, 1) if kind == "column" else value
-        return value, Shape(kind, shape.bank)
+        raise refused(node, "an expression")
 
     def _array_call(
         self, name: str, args: list[ast.expr], words: list[str], node: ast.expr
     ) -> Read:
-        x = self.words.get("x", "")
-        if name == "where" and len(args) == 3 and not words:
-            return self.read.choice(*args)
-        if name == "sum" and len(args) == 1 and words == ["axis=0"]:
-            value, shape = self.read.numeric(args[0])
-            if shape.kind == "lanes":
-                return self.field.lane_sum(value, shape.bank), PLAIN
-        if name == "ones" and len(args) == 1 and isinstance(args[0], ast.Tuple) and not words:
-            count, *rest = args[0].elts
-            if [ast.unparse(part) for part in rest] == [f"*(1,) * ({x}.ndim - 1)"]:
-                slots = self.known.slots["rhs"]
-                banks = {self.field.count(s.bank): s.bank for s in slots if s.bank}
-                bank = banks.get(self._whole(count))
-                if bank:
+        match name, args, words:
+            case "where", [test, then, other], []:
+                return self.read.choice(test, then, other)
+            case "sum", [arg], ["axis=0"]:
+                value, shape = self.read.numeric(arg)
+                if shape.kind == "lanes":
+                    return self.field.lane_sum(value, shape.bank), PLAIN
+            case "ones", [ast.Tuple([size, rest])], []:
+                banks = {self.field.count(bank): bank for bank in self.known.counts.values()}
+                bank = banks.get(self.read.whole(size), "")
+                if bank and ast.unparse(rest) == f"*(1,) * ({self.x}.ndim - 1)":
                     return self.field.one, Shape("lanes", bank)
-        refuse(node, "a call")
+        raise refused(node, "a call")
 
 
-def _first_name(node: ast.expr) -> str:
+def _first(node: ast.expr) -> str:
+    """Return the name that stands first in a sum of two."""
     name = node.left if isinstance(node, ast.BinOp) else node
     return name.id if isinstance(name, ast.Name) else ""

@@ -10,12 +10,16 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
 from piezo_sym.proofs.query import query
-from piezo_sym.proofs.solvers import opinions
+from piezo_sym.proofs.solvers import solver
 from piezo_sym.spec.calculus import add, mul, neg, power
 from piezo_sym.spec.expressions import ONE, ZERO, Cmp, Expr, Num, Sym
 from piezo_sym.translation.field import Exponent, Field, Value
+from piezo_sym.translation.signs import sign_of
 
 MOST_ASKED = 60
+MOST_UNKNOWN = 3
+#: Seconds to wait for an answer.
+PATIENCE = 3.0
 MOST_TERMS = 60
 _OPS = {1: ">", 0: "=", -1: "<"}
 
@@ -24,14 +28,14 @@ def impossible(sides: Mapping[Value, int]) -> bool:
     """Return whether differences are shown not to have these signs, anywhere in the domain."""
     key = frozenset(sides.items())
     field = next(iter(sides)).field
-    if key not in field.asked and len(field.asked) < MOST_ASKED:
+    if key not in field.asked and len(field.asked) < MOST_ASKED and field.unknown < MOST_UNKNOWN:
         field.asked[key] = _impossible(sides)
     return field.asked.get(key, False)
 
 
 def _impossible(sides: Mapping[Value, int]) -> bool:
     field = next(iter(sides)).field
-    known = {value: sign for value, sign in field.signs.items() if value.constant is None}
+    known = {value: sign for value, sign in field.assumed.items() if value.constant is None}
     values = [*sides, *(v for v in known if len(v.terms) <= MOST_TERMS)]
     if any(len(value.terms) > MOST_TERMS for value in sides):
         return False
@@ -42,12 +46,14 @@ def _impossible(sides: Mapping[Value, int]) -> bool:
     signed |= {p for arg in inner if arg for mono in arg.terms for p in mono}
     given += [c for p in sorted(signed) for c in _of_generator(field, p)]
     asked = query("", (), [(part,) for part in given], Cmp("<", ZERO, ZERO))
-    return opinions().ask(asked).result == "unsat"
+    result = solver("z3", PATIENCE).ask(asked).result
+    field.unknown += result == "unknown"
+    return result == "unsat"
 
 
 def _of_generator(field: Field, part: tuple[int, Exponent]) -> Iterator[Cmp]:
     """Yield what is known of a generator's power: its sign, and what functions do with signs."""
-    sign, gen, symbol = field.sign_of(part[0]), field.gens[part[0]], _symbol(part)
+    sign, gen, symbol = sign_of(field, part[0]), field.gens[part[0]], _symbol(part)
     if sign:
         yield Cmp(">" if sign == 2 else ">=", symbol, ZERO)
     if gen.arg is None or len(gen.arg.terms) > MOST_TERMS:

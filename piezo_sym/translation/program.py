@@ -15,9 +15,11 @@ from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.translation.c_reader import read_c
 from piezo_sym.translation.change import moved
 from piezo_sym.translation.field import Need, NotShownError, Value
+from piezo_sym.translation.known import Key, Proved
 from piezo_sym.translation.numpy_head import numpy_functions
 from piezo_sym.translation.numpy_reader import read_numpy
-from piezo_sym.translation.reference import Key, Proved, proved
+from piezo_sym.translation.reference import proved
+from piezo_sym.translation.signs import compare
 from piezo_sym.translation.witness import witness
 from piezo_sym.translation.zero import is_zero
 
@@ -55,11 +57,12 @@ def _open(reason: str) -> Row:
 
 
 def different(language: str, text: str, iphs: IPHS, known: Proved) -> tuple[Row, ...]:
-    """Return a row on what differs in the NumPy or C text, if anything does: numbers if possible."""
+    """Return a row on what differs in the NumPy or C text, if anything does."""
     try:
         if len(text) > MOST_TEXT:
             raise NotShownError("the text is too long")
         known.field.needs.clear()
+        known.field.path = known.field.one  # whatever a refusal before has left
         if language == "C":
             rows = read_c(text, iphs.model.name, known)
         else:
@@ -107,16 +110,16 @@ def _unmet(needs: tuple[Need, ...], known: Proved) -> Iterator[str]:
     field = known.field
     for need in needs:
         value = _in_first_lane(need.value)
-        fails = field.compare(
-            {"nonzero": "==", "nonnegative": "<"}.get(need.kind, "<="), value, field.zero
-        )
+        op = {"nonzero": "==", "nonnegative": "<"}.get(need.kind, "<=")
+        fails = compare(op, value, field.zero)
         left = _in_first_lane(need.path) * fails
         for given in known.needs:
             fits = {given.kind} in _ENOUGH[need.kind] and (need.derived or not given.derived)
             if fits and given.value == value:
                 left = left * (field.one - given.path)
         if not is_zero(left, inside=need.derived):
-            yield f"{'jacobian' if need.derived else 'code'} needs a value to be {need.kind} that may not be"
+            where = "jacobian" if need.derived else "code"
+            yield f"{where} needs a value to be {need.kind} that is not shown to be so"
 
 
 def _in_first_lane(value: Value) -> Value:

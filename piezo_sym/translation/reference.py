@@ -10,8 +10,7 @@ co-states and laws of one lane, so they hold for lanes that differ.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import final
 
@@ -27,47 +26,12 @@ from piezo_sym.spec.parse import parse_law
 from piezo_sym.spec.tables import conditions, lane_parameters, law_fields, states
 from piezo_sym.translation.change import across, derivative
 from piezo_sym.translation.field import Field, Need, NotShownError, Value
+from piezo_sym.translation.functions import call, power, size_of
+from piezo_sym.translation.known import ALL, LEAST, SAME, Key, Proved
+from piezo_sym.translation.signs import assume, compare
 from piezo_sym.translation.zero import is_zero
 
-#: A function, its row, and for an entry its column and whether it is of equal lanes.
-Key = tuple[str | int, ...]
-LEAST, ALL, SAME = "least over lanes", "all lanes", "equal lanes"
 _RELATIONS = {sp.Gt: ">", sp.Ge: ">=", sp.Lt: "<", sp.Le: "<=", sp.Eq: "==", sp.Ne: "!="}
-
-
-@final
-@dataclass(frozen=True)
-class Proved:
-    """A system in normal form.
-
-    Attributes
-    ----------
-    field : of all values.
-    names : parameters, states and inputs, in lane 0 where they have one a lane.
-    banks : the bank of each of these that has.
-    slots : the rows of each function.
-    values : by function and row; what is not listed is zero.
-    needs : what the laws divide by, and take roots and logarithms of.
-    margins : of the conditions of the domain, and whether each is strict.
-    numbers : numbers of the spec that have to be rounded to be printed, by what they become.
-    parameters, inputs : the names that are parameters, the rows of u.
-    """
-
-    field: Field
-    names: Mapping[str, Value]
-    banks: Mapping[str, str]
-    slots: Mapping[str, tuple[Slot, ...]]
-    values: Mapping[Key, Value]
-    needs: tuple[Need, ...]
-    margins: tuple[tuple[Value, bool], ...]
-    numbers: Mapping[float, Fraction]
-    parameters: frozenset[str]
-    inputs: tuple[Slot, ...]
-
-    def position(self, slots: Sequence[Slot], n: int) -> Value:
-        """Return the place of slot n's first row, in sizes of banks."""
-        field = self.field
-        return field.total(field.count(slot.bank) if slot.bank else field.one for slot in slots[:n])
 
 
 def proved(iphs: IPHS) -> Proved:
@@ -113,6 +77,8 @@ class _Reader:
         if len({*iphs.symbols.symbols.values()}) < len(iphs.symbols.symbols):
             raise NotShownError("two names of the system have one symbol")
         self.names = {name: self._name(name, symbol) for name, symbol in symbols.items()}
+        own = (self.names[slot.label].parts for slot in system.states)
+        self.field.states = frozenset().union(*own)
         self.known = {symbols[name]: value for name, value in self.names.items()}
         self.known |= {s: self.field.count(bank) for bank, s in iphs.symbols.counts.items()}
         groups = (iphs.laws, iphs.shares, iphs.slopes, iphs.ratios, iphs.costates)
@@ -138,9 +104,9 @@ class _Reader:
             left, right = (self(self.iphs.symbols.law(t, {})) for t in (tree.left, tree.right))
             found.append(((left - right) * turn, "=" not in tree.op))
         for margin, strict in found:
-            self.field.assume(margin, 2 if strict else 1)
+            assume(margin, 2 if strict else 1)
         for _, port in self.iphs.circuit.of(Body):
-            self.field.assume(self(self.iphs.symbols[port.temperature]), 2)
+            assume(self(self.iphs.symbols[port.temperature]), 2)
         self.known = {s: v for s, v in self.known.items() if s not in self.definitions}
         return tuple(found)
 
@@ -218,10 +184,10 @@ class _Reader:
             below = [g for g, e in mono if e < 0]
             path = one
             for g, _ in mono:
-                path = path * Value(self.field, {((g, 1),): 1}) if gens[g].kind == "sign" else path
+                path = path * self.field.raised(g, 1) if gens[g].kind == "sign" else path
             for g in below:
                 arg = gens[g].arg if gens[g].kind == "power" else None
-                yield Need("nonzero", arg or Value(self.field, {((g, 1),): 1}), path, True)
+                yield Need("nonzero", arg or self.field.raised(g, 1), path, True)
 
     # Expressions
 
@@ -241,7 +207,7 @@ class _Reader:
         if isinstance(expr, LaneSum):
             return field.lane_sum(self(expr.args[0]), expr.args[1].name)
         if expr is sp.E:
-            return field.call("exp", field.one)
+            return call("exp", field.one)
         args = [self(arg) for arg in expr.args]
         if isinstance(expr, sp.Add):
             return field.total(args)
@@ -253,18 +219,17 @@ class _Reader:
         return self._function(expr, args)
 
     def _function(self, expr: sp.Expr, args: Sequence[Value]) -> Value:
-        field = self.field
         if isinstance(expr, sp.Pow):
             exponent = args[1].constant
             if exponent is not None:
-                return field.power(args[0], exponent)
-            return field.call("exp", args[1] * field.call("log", args[0]))
+                return power(args[0], exponent)
+            return call("exp", args[1] * call("log", args[0]))
         if isinstance(expr, sp.Abs):
-            return field.size(args[0])
+            return size_of(args[0])
         function = type(expr).__name__
         if function not in {"exp", "log", "sin", "cos", "tanh"}:
             raise NotShownError(f"{function} in the proved system")
-        return field.call(function, args[0])
+        return call(function, args[0])
 
     def _chosen(self, expr: sp.Piecewise) -> Value:
         field, path, left, parts = self.field, self.field.path, self.field.one, []
@@ -284,7 +249,7 @@ class _Reader:
             return field.number(int(bool(condition)))
         if type(condition) in _RELATIONS:
             left, right = map(self, condition.args)
-            return field.compare(_RELATIONS[type(condition)], left, right)
+            return compare(_RELATIONS[type(condition)], left, right)
         parts = [self._test(part) for part in condition.args]
         if not isinstance(condition, sp.And | sp.Or | sp.Not):
             raise NotShownError(f"{type(condition).__name__} in a condition of the proved system")

@@ -17,7 +17,7 @@ from mpmath.ctx_iv import MPIntervalContext
 
 from piezo_sym.iphs import IPHS
 from piezo_sym.translation.field import Value
-from piezo_sym.translation.reference import Proved
+from piezo_sym.translation.known import Proved
 
 POINTS = 30
 #: Terms that are worked out at all points together.
@@ -39,7 +39,7 @@ class Witness:
     proved: str
 
 
-class _UndecidedError(Exception):
+class UndecidedError(Exception):
     """A value is not defined at a point, or the intervals are too wide."""
 
 
@@ -53,20 +53,20 @@ def witness(printed: Value, wanted: Value, known: Proved, iphs: IPHS) -> Witness
                 continue
             found = point.value(difference, {})
             one, other = point.value(printed, {}), point.value(wanted, {})
-        except _UndecidedError:
+        except UndecidedError:
             continue
         if 0 not in found and abs(found).a > LEAST_SHARE * abs(other).b:
             return Witness(point.texts(), f"{float(one.mid):.9g}", f"{float(other.mid):.9g}")
     return None
 
 
-def _inside(margin: Value, point: _Point, strict: bool) -> bool:
+def _inside(margin: Value, point: Point, strict: bool) -> bool:
     lanes = [{}] if not margin.lanes else [{bank: n} for bank, _ in margin.lanes for n in (0, 1)]
     least = (point.value(margin, lane).a for lane in lanes)
     return all(a > 0 if strict else a >= 0 for a in least)
 
 
-def _points(known: Proved, iphs: IPHS) -> Iterator[_Point]:
+def _points(known: Proved, iphs: IPHS) -> Iterator[Point]:
     """Yield points: the spec's numbers and others near, states of every size."""
     model, chance = iphs.model, random.Random(0)
     given = {n: e.si for table in (model.parameters, model.inputs) for n, e in table.items()}
@@ -77,7 +77,7 @@ def _points(known: Proved, iphs: IPHS) -> Iterator[_Point]:
             listed = values if isinstance(values, tuple) else (values,)
             lanes = range(max(2, len(listed)) if name in known.banks else 1)
             numbers[name] = tuple(_number(listed[j % len(listed)], n, chance) for j in lanes)
-        yield _Point(known, numbers)
+        yield Point(known, numbers)
 
 
 def _number(value: float | None, n: int, chance: random.Random) -> Fraction:
@@ -89,7 +89,7 @@ def _number(value: float | None, n: int, chance: random.Random) -> Fraction:
 
 
 @final
-class _Point:
+class Point:
     """Numbers for names, one a lane where they have lanes; values at them, as intervals."""
 
     def __init__(self, known: Proved, numbers: Mapping[str, Sequence[Fraction]]) -> None:
@@ -121,16 +121,16 @@ class _Point:
 
     def _power(self, base: Any, e: Fraction) -> Any:
         if e < 0 and 0 in base:
-            raise _UndecidedError
+            raise UndecidedError
         if e.denominator == 1:
             return base**e.numerator
         if base.a <= 0:
-            raise _UndecidedError
+            raise UndecidedError
         return self._exp(self.exact(e) * self.interval.log(base))
 
     def _exp(self, arg: Any) -> Any:
         if abs(arg).b > MOST_EXPONENT:
-            raise _UndecidedError
+            raise UndecidedError
         return self.interval.exp(arg)
 
     def _generator(self, g: int, lanes: Mapping[str, int]) -> Any:
@@ -144,11 +144,12 @@ class _Point:
     def _made(self, g: int, lanes: Mapping[str, int]) -> Any:
         gen = self.gens[g]
         if gen.arg is None:
-            name, bank, lane = gen.mark  # type: ignore[misc]  # a name's mark
+            assert isinstance(gen.mark, tuple)
+            name, bank, lane = gen.mark
             if lane == -1:
                 return self.exact(Fraction(self.size))
             if name not in self.numbers:
-                raise _UndecidedError
+                raise UndecidedError
             values = self.numbers[name]
             return self.exact(values[lanes.get(bank, lane) % len(values) if bank else 0])
         if gen.kind == "sum":
@@ -158,12 +159,12 @@ class _Point:
         if gen.kind == "sign":
             side = 1 if arg.a > 0 else -1 if arg.b < 0 else 0
             if not side and arg.a != arg.b:
-                raise _UndecidedError
+                raise UndecidedError
             return self.exact(Fraction(int(side == gen.mark)))
         if gen.kind == "power":
             return arg
         if gen.kind == "log" and arg.a <= 0:
-            raise _UndecidedError
+            raise UndecidedError
         if gen.kind in {"exp", "tanh"}:
             made = self._exp(arg)
             return made if gen.kind == "exp" else (made - 1 / made) / (made + 1 / made)

@@ -15,7 +15,9 @@ from math import ceil
 
 from piezo_sym.translation.change import put
 from piezo_sym.translation.field import Field, NotShownError, Value
+from piezo_sym.translation.functions import power
 from piezo_sym.translation.possible import impossible
+from piezo_sym.translation.signs import has_sign, sign
 
 MOST_CASES = 500
 MOST_STEPS = 12
@@ -24,7 +26,7 @@ Case = tuple[Value, dict[Value, int]]
 
 
 def is_zero(value: Value, *, inside: bool = False) -> bool:
-    """Return whether a value is shown to be zero; with `inside`, where no difference is zero."""
+    """Return whether a value is shown to be zero; with `inside`, inside the branches of states."""
     if not value.terms:
         return True
     parts = _apart(value)
@@ -135,7 +137,7 @@ def _cases(
         return
     d = max(found, key=lambda d: found[d])
     assert d is not None
-    for side in (1, -1) if inside else (1, -1, 0):
+    for side in (1, -1) if inside and d.parts & field.states else (1, -1, 0):
         if _possible(d, side) and not any(_never(d, side, e, s) for e, s in sides.items()):
             here = {**sides, d: side}
             yield from _cases(field.at(value, {d: side}), here, left, inside=inside)
@@ -162,7 +164,7 @@ def _chosen_by(value: Value, group: Sequence[Value]) -> Value:
 
 def _possible(d: Value, side: int) -> bool:
     """Return whether the domain leaves a sign to a difference."""
-    above, below = d.field.sign(d), d.field.sign(-d)
+    above, below = sign(d), sign(-d)
     return above <= (2 if side > 0 else 1 if side == 0 else 0) and below <= (
         2 if side < 0 else 1 if side == 0 else 0
     )
@@ -170,12 +172,12 @@ def _possible(d: Value, side: int) -> bool:
 
 def _contradict(first: Value, s: int, second: Value, t: int) -> bool:
     """Return whether two differences cannot have these signs: a sum of theirs has another one."""
-    field, number = first.field, first.field.number
+    number = first.field.number
     for scale, turns in product(_scales(first, second), product((1, -1), repeat=2)):
         signs = turns[0] * s, turns[1] * t
         if max(signs) <= 0:
             total = first * scale * number(turns[0]) + second * number(turns[1])
-            if field.sign(total) > (0 if min(signs) < 0 else 1):
+            if sign(total) > (0 if min(signs) < 0 else 1):
                 return True
     return False
 
@@ -186,7 +188,7 @@ def _scales(first: Value, second: Value) -> Iterator[Value]:
     for m, n in product(first.terms, second.terms):
         below = Value(field, {tuple((g, -e) for g, e in m): 1})
         scale = below * Value(field, {n: 1})
-        if scale not in found and field.sign(scale) == 2:
+        if scale not in found and sign(scale) == 2:
             found.add(scale)
             yield scale
 
@@ -214,7 +216,7 @@ def _remainder(value: Value, d: Value) -> Value:
         top = max(powers.values())
         head = Value(field, {mono: c for mono, c in d.terms.items() if powers[mono] == top})
         factor = head * Value(field, {((g, -top),): 1})
-        if min(powers.values()) < 0 or max(field.sign(factor), field.sign(-factor)) < 2:
+        if min(powers.values()) < 0 or not has_sign(factor):
             continue
         lift = max([0, *(-e for mono in value.terms for n, e in mono if n == g)])
         value, below = value * Value(field, {((g, lift),): 1}), _inverse(head)
@@ -241,7 +243,7 @@ def _solved(d: Value) -> dict[int, Value]:
         factor = Value(field, {tuple(p for p in m if p[0] != g): c for m, c in own.items()})
         if g in factor.parts | rest.parts or (powers != {1} and (rest.terms or min(powers) < 0)):
             continue
-        if max(field.sign(factor), field.sign(-factor)) < 2:
+        if not has_sign(factor):
             continue
         found = -(rest * _inverse(factor))
         return {g: found}
@@ -250,6 +252,6 @@ def _solved(d: Value) -> dict[int, Value]:
 
 def _inverse(value: Value) -> Value:
     path, value.field.path = value.field.path, None
-    found = value.field.power(value, Fraction(-1))
+    found = power(value, Fraction(-1))
     value.field.path = path
     return found

@@ -33,8 +33,9 @@ def stated(text):
 
 
 def forged(text):
-    """Return the same, every row being called PROVED."""
+    """Return the same, every required row being called PROVED, without information."""
     proofs = stated(text)
+    proofs["obligations"] = [row for row in proofs["obligations"] if row["required"]]
     for row in proofs["obligations"]:
         row.update(verdict="PROVED", certificate=None)
     return proofs

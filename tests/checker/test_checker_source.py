@@ -43,7 +43,8 @@ def test_the_checker_stays_small():
 
 
 def test_lines_of_code_are_counted():
-    text = '"""One\ntwo."""\n\n# three\na = (\n    1,\n)\n\n\ndef f():\n    """Four."""\n    return a\n'
+    text = '"""One\ntwo."""\n\n# three\na = (\n    1,\n)\n\n\n'
+    text += 'def f():\n    """Four."""\n    return a\n'
     assert lines_of_code(text) == 5
 
 

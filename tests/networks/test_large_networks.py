@@ -10,8 +10,10 @@ from sympy.polys.matrices import DomainMatrix
 
 from piezo_sym import derive
 from piezo_sym.algebra.linear import Equation, LongError, SingularError, solve
+from piezo_sym.algebra.symbols import symbol_table
 from piezo_sym.errors import NetworkError
-from piezo_sym.network import causality, kirchhoff
+from piezo_sym.network import causality, junction_of, kirchhoff
+from piezo_sym.spec.circuit import circuit_of
 from piezo_sym.spec.load import parse
 
 HEAD = """
@@ -93,10 +95,12 @@ def test_a_long_chain_is_solved_link_by_link():
     assert entries == wanted | {(column, row): -e for (row, column), e in wanted.items()}
 
 
-def test_the_time_of_a_chain_grows_with_its_length():
-    short, long = (parse(chain(count)) for count in (400, 1600))
-    derive(short)
-    assert seconds(derive, long) < 8 * seconds(derive, short)
+def test_the_time_to_solve_a_chain_grows_with_its_length():
+    circuits = [circuit_of(parse(chain(count))) for count in (300, 1200)]
+    tables = [symbol_table(circuit) for circuit in circuits]
+    junction_of(circuits[0], tables[0])
+    short, long = (seconds(junction_of, *given) for given in zip(circuits, tables, strict=True))
+    assert long < 8 * short
 
 
 def test_couplings_that_take_too_long_are_refused(monkeypatch):

@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from piezo_sym.proofs.exactly import OUTCOMES
-from piezo_sym.proofs.rational import Part, Ratio, _facts, cleared, parts_of, ratio, signed
+from piezo_sym.proofs.facts import facts_on
+from piezo_sym.proofs.rational import Part, Ratio, cleared, parts_of, ratio, signed
 from piezo_sym.spec.expressions import ONE, Cmp, Div, Expr, Mul, Num, Pow, Sym, names, walk
 from piezo_sym.spec.parse import parse_law
 from piezo_sym.spec.text import spell
@@ -36,6 +37,10 @@ def points(part):
     within = [x for x in found if lowest is None or x > lowest]
     zero = part.function == "root" and part.exponent > 0
     return [*within, mpmath.mpf(0)] if zero else within
+
+
+def facts_of(part):
+    return facts_on(part.function, part.exponent, part.argument, Sym(part.name))
 
 
 def value_of(part, x):
@@ -64,7 +69,7 @@ def exact(tree):
 @pytest.mark.parametrize("part", PARTS, ids=lambda p: f"{p.function} {p.exponent}")
 def test_each_fact_holds_at_every_point(part):
     with mpmath.workdps(50):
-        for n, clause in enumerate(_facts(part)):
+        for n, clause in enumerate(facts_of(part)):
             sides = [(c.op, exact(c.left), exact(c.right)) for c in clause]
             made = [(op, compiled(left), compiled(right)) for op, left, right in sides]
             for x in points(part):
@@ -92,7 +97,7 @@ def test_the_facts_say_something(part):
     with mpmath.workdps(50):
         made = [
             [(c.op, compiled(exact(c.left)), compiled(exact(c.right))) for c in clause]
-            for clause in _facts(part)
+            for clause in facts_of(part)
         ]
         for factor in (mpmath.mpf("0.9"), mpmath.mpf("1.1")):
             assert any(
@@ -111,7 +116,9 @@ def fraction(tree, values):
 
 def _wrapped(text):
     exponents = re.sub(r"\*\*\((-?\d+)\)", r"**\1", text)
-    return re.sub(r"(?<![A-Za-z_0-9.*])(?<!\*\*-)(\d+\.?\d*(?:e[+-]?\d+)?)", r"F('\1')", exponents)
+    return re.sub(
+        r"(?<![A-Za-z_0-9.])(?<!\*\*)(?<!\*\*-)(\d+\.?\d*(?:e[+-]?\d+)?)", r"F('\1')", exponents
+    )
 
 
 def is_rational(tree):

@@ -21,9 +21,10 @@ ROOT = Path(__file__).parents[2]
 COMMITTED = ROOT / "generated" / "piezo_stack"
 SPECS = sorted((ROOT / "tests" / "networks" / "specs").glob("*.toml"))
 ENTRY = {"id", "element", "statement", "required", "verdict", "witness", "reason", "method"}
+ENTRY |= {"points", "certificate"}
 OF_AN_OBLIGATION = {"latex", "assumptions", "rests_on", "queries"}
 IDS = {"skew", "casimir", "energy", "entropy", "temperature", "welldef", "continuous", "passive",
-       "odd", "sigma", "exergy", "environment", "units", "invariant"}  # fmt: skip
+       "odd", "sigma", "exergy", "environment", "units", "invariant", "program"}  # fmt: skip
 
 
 @cache
@@ -125,15 +126,16 @@ def test_the_json_has_a_true_entry_a_row(spec):
     text = (COMMITTED / "proofs.json").read_text() if spec is None else proofs_json(
         report, model, "made")  # fmt: skip
     content = json.loads(text)
-    assert list(content) == ["made", "model", "spec_sha256", "obligations"]
+    assert list(content) == ["made", "model", "spec_sha256", "system", "obligations"]
     assert (content["model"], content["spec_sha256"]) == (report.model, model.sha256)
     entries = content["obligations"]
-    assert [(e["id"], e["element"] or "", e["verdict"]) for e in entries] == [
+    proved = [e for e in entries if e["id"] != "program"]  # that row is not the prover's
+    assert [(e["id"], e["element"] or "", e["verdict"]) for e in proved] == [
         (r.id, r.element, r.verdict.value) for r in report.rows
     ]
     for entry in entries:
         assert entry.keys() in (ENTRY, ENTRY | OF_AN_OBLIGATION)
-        assert (entry.keys() == ENTRY) == (entry["id"] == "units")
+        assert (entry.keys() == ENTRY) == (entry["id"] in {"units", "program"})
         assert entry["id"] in IDS
         assert entry["verdict"] in {v.value for v in Verdict}
         assert (entry["witness"] is not None) == (entry["verdict"] == "REFUTED")

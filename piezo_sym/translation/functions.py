@@ -1,0 +1,146 @@
+"""Powers, exponentials, logarithms, sine, cosine and tanh in normal form.
+
+Input: values.  Output: values.  What a function needs of its argument is noted in `Field.needs`.
+Identities used, and their premises:
+exp(a + b) = exp(a) exp(b); exp(c log x) = x**c; log(exp z) = z;
+log(a b) = log a + log b and (a b)**c = a**c b**c for a, b > 0; (x**(1/n))**n = x for x >= 0;
+(x**2)**(1/2) = abs(x); sin and tanh are odd, cos is even.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import partial
+
+from sympy import factorint
+
+from piezo_sym.translation.field import Exponent, Field, Need, NotShownError, Value
+from piezo_sym.translation.signs import factors, lifted, primitive, side_of, sign, sign_of
+
+MOST_FACTOR = 10**12
+
+
+def power(base: Value, exponent: Exponent) -> Value:
+    """Return a rational power."""
+    if exponent.denominator == 1 and exponent >= 0:
+        return base.field.whole_power(base, exponent.numerator)
+    q = exponent.numerator if exponent.denominator == 1 else exponent
+    return lifted(partial(_power, q), base)
+
+
+def _power(q: Exponent, base: Value) -> Value:
+    """Return a power of a value without signs, the exponent a fraction or negative."""
+    field, root = base.field, q.denominator != 1
+    size, common, rest = primitive(base, partly=root) if base.terms else (Fraction(1), (), base)
+    if not rest.terms:
+        return rest if q > 0 else _undefined(field, "nonzero")
+    made = _root(field, size, q)
+    for g, e in common:
+        made = made * field.raised(g, e * q)
+        if q < 0:
+            arg = field.gens[g].arg if field.gens[g].kind == "power" else None
+            _needs("nonzero", arg or field.raised(g, 1))
+    if root:
+        rest, even = _even(rest, q)
+        made = made * even
+        _needs("nonnegative", rest)
+    for factor, times in ([(rest, 1)] if rest != field.one else []) if root else factors(rest):
+        made = made * _generated(factor, times * q)
+        if q < 0:
+            _needs("nonzero", factor)
+    return made
+
+
+def _generated(arg: Value, q: Exponent) -> Value:
+    """Return a power of a sum as a generator."""
+    ((mono, _),) = arg.field.generator("power", arg).terms.items()
+    return arg.field.raised(mono[0][0], q) * arg.field.one
+
+
+def _root(field: Field, size: Fraction, q: Exponent) -> Value:
+    """Return a power of a number, positive if the exponent is a fraction."""
+    if q.denominator == 1:
+        return field.number(size**q.numerator)
+    if max(size.numerator, size.denominator) > MOST_FACTOR:
+        raise NotShownError("a root of a long number")
+    made = field.one
+    for part, turn in ((size.numerator, 1), (size.denominator, -1)):
+        for prime, times in factorint(part).items():
+            made = made * _generated(field.number(prime), turn * times * q)
+    return made
+
+
+def _even(value: Value, q: Exponent) -> tuple[Value, Value]:
+    """Return a value without factors such as x**2, and the root of those, such as ``abs(x)``."""
+    field, made = value.field, value.field.one
+    for g in value.generators():
+        e = min(dict(mono).get(g, 0) for mono in value.terms)
+        if e and e % 2 == 0 and (e * q).denominator == 1:
+            value = value * field.raised(g, -e)
+            made = made * power(size_of(field.raised(g, 1)), e * q)
+    return value, made
+
+
+def _needs(kind: str, value: Value) -> None:
+    field, enough = value.field, 2 if kind != "nonnegative" else 1
+    if field.path is not None and sign(value) < enough and sign(-value) < 2:
+        field.needs[Need(kind, value, field.path, field.derived)] = None
+
+
+def _undefined(field: Field, kind: str) -> Value:
+    """Return 1/0 or log(0): a name of which nothing is known; where it is chosen, it is missed."""
+    if field.path is not None:
+        field.needs[Need(kind, field.zero, field.path, field.derived)] = None
+    return field.generator("name", None, (f"not {kind}", None, 0))
+
+
+def call(function: str, arg: Value) -> Value:
+    """Return exp, log, sin, cos or tanh of a value."""
+    own = {"exp": _exp, "log": _log}.get(function)
+    return lifted(own or partial(_even_or_odd, function), arg)
+
+
+def _exp(arg: Value) -> Value:
+    field, made = arg.field, arg.field.one
+    for mono, c in arg.terms.items():
+        gen = field.gens[mono[0][0]] if len(mono) == 1 and mono[0][1] == 1 else None
+        if gen and gen.kind == "log" and gen.arg:
+            made = made * power(gen.arg, c)
+        else:
+            ((inner, _),) = field.generator("exp", Value(field, {mono: 1})).terms.items()
+            made = made * field.raised(inner[0][0], c)
+    return made
+
+
+def _log(arg: Value) -> Value:
+    field = arg.field
+    if not arg.terms:
+        return _undefined(field, "positive")
+    _needs("positive", arg)
+    (mono, c), *more = arg.terms.items()
+    if more or c <= 0 or any(sign_of(field, g) < 2 for g, _ in mono):
+        return field.generator("log", arg)
+    whole = ((Fraction(c).numerator, 1), (Fraction(c).denominator, -1))
+    parts = [field.generator("log", field.number(n)) * field.number(s) for n, s in whole if n != 1]
+    for g, e in mono:
+        gen = field.gens[g]
+        log = gen.arg if gen.kind == "exp" else field.generator("log", field.raised(g, 1))
+        parts += [log * field.number(e)] if log else []
+    return field.total(parts)
+
+
+def _even_or_odd(function: str, arg: Value) -> Value:
+    field = arg.field
+    if not arg.terms:
+        return field.one if function == "cos" else field.zero
+    if arg.lead > 0:
+        return field.generator(function, arg)
+    made = field.generator(function, -arg)
+    return made if function == "cos" else -made
+
+
+def size_of(value: Value) -> Value:
+    """Return the absolute value."""
+    if max(sign(value), sign(-value)) > 0:
+        return value if sign(value) else -value
+    return value * side_of(value)

@@ -1,0 +1,205 @@
+"""Signs of values: what is known of them, comparisons, and functions of values that signs choose.
+
+Input: values.  Output: values in which signs choose; a comparison is 1 where it holds, else 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+from functools import partial, reduce
+from itertools import product
+from math import prod
+from typing import Any
+
+from sympy import QQ
+from sympy.polys.orderings import lex
+from sympy.polys.rings import PolyRing
+
+from piezo_sym.translation.field import Exponent, Field, Mono, Value
+
+MOST_FACTORED = 40
+SIDES = {"<": (-1,), "<=": (-1, 0), ">": (1,), ">=": (1, 0), "==": (0,), "!=": (1, -1)}
+_POSSIBLE = {2: {1}, 1: {1, 0}, 0: {1, 0, -1}}
+
+
+def sign_of(field: Field, g: int) -> int:
+    """Return 2 if a generator is positive wherever it is defined, 1 if it is >= 0, else 0."""
+    if g not in field.signed:
+        gen = field.gens[g]
+        known = {"exp": 2, "sign": 1}.get(gen.kind, 0)
+        if gen.kind in {"power", "sum"} and gen.arg:
+            known = sign(gen.arg)
+        if not known:  # the domain may say more later
+            return field.assumed.get(field.raised(g, 1), 0)
+        field.signed[g] = known
+    return field.signed[g]
+
+
+def sign(value: Value) -> int:
+    """Return 2 if a value is positive in the domain, 1 if it is >= 0, 0 if that is not known."""
+    known = value.field.signs
+    if value not in known:
+        known[value] = _sign(value)
+    return known[value]
+
+
+def _sign(value: Value) -> int:
+    if value in value.field.assumed:
+        return value.field.assumed[value]
+    found = [_sign_of_term(value.field, mono, c) for mono, c in value.terms.items()]
+    if min(found) > 0:
+        return max(found)
+    rest = primitive(value, partly=True)[2] if len(value.terms) > 1 else value
+    return value.field.assumed.get(rest, 0)
+
+
+def _sign_of_term(field: Field, mono: Mono, c: Exponent) -> int:
+    known = 2 if c > 0 else 0
+    for g, e in mono:
+        even = e % 2 == 0 or Fraction(e).denominator != 1
+        known = min(known, max(sign_of(field, g), int(even)))
+    return known
+
+
+def has_sign(value: Value) -> bool:
+    """Return whether a value is known to be positive, or negative, all over the domain."""
+    return max(sign(value), sign(-value)) == 2
+
+
+def assume(value: Value, known: int) -> None:
+    """Take it that a value is positive (2) or not negative (1)."""
+    field = value.field
+    field.signs.clear()
+    field.forms.clear()
+    if value.constant is None:
+        rest = primitive(value, partly=True)[2]
+        field.assumed[rest] = max(known, field.assumed.get(rest, 0))
+        for g in rest.generators():  # of what is but a name, the name is marked itself
+            if rest == field.raised(g, 1) and field.gens[g].kind == "name":
+                field.signed[g] = max(known, field.signed.get(g, 0))
+
+
+def primitive(value: Value, *, partly: bool) -> tuple[Fraction, Mono, Value]:
+    """Return (number, common factors, rest) of a value, the leading coefficient of rest 1 or -1.
+
+    With `partly`, number and factors are positive, or not negative with a positive exponent.
+    """
+    field, least = value.field, dict[int, Exponent]()
+    monos = [dict(mono) for mono in value.terms]
+    for g in value.generators():
+        e, known = min(mono.get(g, 0) for mono in monos), sign_of(field, g)
+        if e and (not partly or known == 2 or (known == 1 and e > 0)):
+            least[g] = e
+    common = tuple(sorted(least.items()))
+    rest = value * Value(field, {tuple((g, -e) for g, e in common): 1}) if common else value
+    if not rest.terms:
+        return Fraction(1), (), rest
+    size = abs(rest.lead) if partly else rest.lead
+    return size, common, rest if size == 1 else rest * field.number(1 / size)
+
+
+def factors(value: Value) -> list[tuple[Value, int]]:
+    """Return the irreducible factors of a sum without common factors, and how often they occur."""
+    known = value.field.factors
+    if value not in known:
+        exponents = {Fraction(e).denominator for mono in value.terms for _, e in mono}
+        whole = 1 < len(value.terms) <= MOST_FACTORED and exponents == {1}
+        known[value] = _factored(value) if whole else [(value, 1)]
+    return known[value] if value != value.field.one else []
+
+
+def _factored(value: Value) -> list[tuple[Value, int]]:
+    field, numbers, table = value.field, sorted(value.generators()), dict[Any, Any]()
+    for mono, c in value.terms.items():
+        powers = dict(mono)
+        table[tuple(int(powers.get(g, 0)) for g in numbers)] = QQ(c.numerator, c.denominator)
+    found = []
+    ring = PolyRing([f"g{g}" for g in numbers], QQ, lex)
+    for factor, times in ring.from_dict(table).factor_list()[1]:
+        terms = {
+            tuple((g, e) for g, e in zip(numbers, powers, strict=True) if e): Fraction(
+                int(c.numerator), int(c.denominator)
+            )
+            for powers, c in factor.terms()
+        }
+        made = Value(field, terms)
+        found.append((made * field.number(1 / made.lead), times))
+    return found
+
+
+def compare(op: str, left: Value, right: Value) -> Value:
+    """Return 1 where a comparison holds, 0 elsewhere."""
+    return lifted(partial(_compared, SIDES[op]), left - right)
+
+
+def _compared(sides: tuple[int, ...], d: Value) -> Value:
+    field, number = d.field, d.constant
+    if number is None and not primitive(d, partly=False)[2].terms:
+        number = Fraction(0)
+    if number is not None:
+        return field.number(int((number > 0) - (number < 0) in sides))
+    possible = _POSSIBLE[sign(d)] & {-side for side in _POSSIBLE[sign(-d)]}
+    if possible <= {*sides}:
+        return field.one
+    forms, turn = _forms(d)
+    found = []
+    for chosen in product((1, 0, -1), repeat=len(forms)):
+        if prod(chosen) * turn in {*sides} & possible:
+            parts = (field.generator("sign", f, s) for f, s in zip(forms, chosen, strict=True))
+            found.append(reduce(field.times, parts, field.one))
+    return field.total(found)
+
+
+def _forms(d: Value) -> tuple[list[Value], int]:
+    """Return values whose signs, multiplied, are that of d times 1 or -1; which of both."""
+    field = d.field
+    if d not in field.forms:
+        size, common, rest = primitive(d, partly=False)
+        turn, forms = (1 if size > 0 else -1), list[Value]()
+        powers = [(field.raised(g, e if Fraction(e).denominator != 1 else 1), e) for g, e in common]
+        for factor, e in (*powers, *factors(rest)):
+            if sign(-factor) == 2:
+                turn = -turn if e % 2 else turn
+            elif sign(factor) < 2:
+                own, side = _bent(factor)
+                forms += own if e % 2 else own * 2
+                turn *= side if e % 2 else 1
+        field.forms[d] = forms, turn
+    return field.forms[d]
+
+
+def _bent(factor: Value) -> tuple[list[Value], int]:
+    """Return what `_forms` does of a factor: tanh has the sign of its argument."""
+    (mono, c), *more = factor.terms.items()
+    gen = factor.field.gens[mono[0][0]] if len(mono) == 1 and mono[0][1] == 1 else None
+    if not more and gen and gen.kind == "tanh" and gen.arg:
+        return _forms(gen.arg * factor.field.number(c))
+    return [factor * factor.field.number(1 / factor.lead)], 1 if factor.lead > 0 else -1
+
+
+def lifted(function: Callable[[Value], Value], value: Value) -> Value:
+    """Return a function of a value in which signs choose: of each choice."""
+    field = value.field
+    first = next((g for g in sorted(value.generators()) if field.gens[g].kind == "sign"), None)
+    form = field.gens[first].arg if first is not None else None
+    if form is None:
+        return function(value)
+    path, parts = field.path, []
+    for side in (1, 0, -1):
+        chosen = field.generator("sign", form, side)
+        field.path = path and path * chosen
+        parts.append(chosen * lifted(function, field.at(value, {form: side})))
+    field.path = path
+    return field.total(parts)
+
+
+def choose(test: Value, then: Value, other: Value) -> Value:
+    """Return one value where `test` is 1 and the other where it is 0."""
+    return test * then + (test.field.one - test) * other
+
+
+def side_of(value: Value) -> Value:
+    """Return 1, 0 or -1, the sign of a value."""
+    zero = value.field.zero
+    return compare(">", value, zero) - compare("<", value, zero)

@@ -1,0 +1,93 @@
+"""Laws that intervals decide: handmade certificates, whole and with one thing wrong."""
+
+import copy
+
+import pytest
+from stated import forged, mass, refused
+
+BOTH = [
+    {"centre": "0", "side": 1, "windows": [["0", "1/16", 8], ["1/16", "8", 2], ["8", "inf", 2]]},
+    {"centre": "0", "side": -1, "windows": [["0", "1", 8], ["1", "inf", 2]]},
+]
+
+
+def term(law, prefactor, f, sign=1, scale=None):
+    scale = {"v_1": 1} if scale is None else scale
+    parts = {"law": law, "prefactor": prefactor, "sign": sign, "scale": scale, "f": f}
+    return {**parts, "rays": copy.deepcopy(BOTH)}
+
+
+NEAR_ZERO = "F_1*v/v_1*(exp(v/v_1) - 2.7*v/v_1)"
+SOFTPLUS = "F_1*log(1 + exp(v/v_1)) - F_1*log(2)"
+GUARDED = f"{NEAR_ZERO} if a > 0 else -a*v*(2 + cos(v/v_1))"
+HOLDS = {
+    NEAR_ZERO: [{"guards": [], "terms": [term(NEAR_ZERO, "F_1", "s*(exp(s) - 2.7*s)")]}],
+    SOFTPLUS: [{"guards": [], "terms": [term(SOFTPLUS, "F_1", "log(1 + exp(s)) - log(2)")]}],
+    GUARDED: [
+        {"guards": ["a > 0"], "terms": [term(NEAR_ZERO, "F_1", "s*(exp(s) - 2.7*s)")]},
+        {
+            "guards": ["a <= 0"],
+            "terms": [term("-a*v*(2 + cos(v/v_1))", "a*v_1", "-s*(2 + cos(s))", sign=-1)],
+        },
+    ],
+}
+
+
+def checked(law, certificate):
+    """Return why the row is not confirmed, or nothing."""
+    text = mass(law)
+    proofs = forged(text)
+    for row in proofs["obligations"]:
+        if (row["id"], row["element"]) == ("passive", "damper"):
+            row["certificate"] = certificate
+    return refused(text, proofs).get(("passive", "damper"), "")
+
+
+@pytest.mark.parametrize("law", HOLDS)
+def test_a_certificate_confirms_its_law(law):
+    assert checked(law, HOLDS[law]) == ""
+
+
+FLAWS = {
+    "another law": (lambda t: t.update(law="F_1*v/v_1"), "make up the law"),
+    "another function": (lambda t: t.update(f="s*(exp(s) - 2.6*s)"), "prefactor*f(s)"),
+    "another prefactor": (lambda t: t.update(prefactor="2*F_1"), "prefactor*f(s)"),
+    "another scale": (lambda t: t.update(scale={"v_1": 2}), "prefactor*f(s)"),
+    "a scale that may be negative": (lambda t: t.update(scale={"a": 1}), "prefactor*f(s)"),
+    "the other sign": (lambda t: t.update(sign=-1), "sign of a prefactor"),
+    "one side alone": (lambda t: t["rays"].pop(), "cover the line"),
+    "no windows": (lambda t: t["rays"].clear(), "cover the line"),
+    "a gap": (lambda t: t["rays"][0]["windows"].pop(1), "cover the line"),
+    "no infinity": (lambda t: t["rays"][0]["windows"].pop(2), "cover the line"),
+    "no number": (lambda t: t["rays"][0].update(centre="here"), "cannot be read"),
+    "nothing": (lambda t: t.clear(), "cannot be read"),
+}
+
+
+@pytest.mark.parametrize("name", FLAWS)
+def test_a_flawed_certificate_confirms_nothing(name):
+    change, why = FLAWS[name]
+    certificate = copy.deepcopy(HOLDS[NEAR_ZERO])
+    change(certificate[0]["terms"][0])
+    assert why in checked(NEAR_ZERO, certificate)
+
+
+def test_cases_have_to_cover_the_domain():
+    assert "cover the domain" in checked(GUARDED, HOLDS[GUARDED][:1])
+    assert "cover the domain" in checked(NEAR_ZERO, [{"guards": ["v > 0"], "terms": []}])
+    assert "make up the law" in checked(
+        GUARDED, [{**case, "guards": []} for case in HOLDS[GUARDED]]
+    )
+
+
+@pytest.mark.parametrize("power", ["2.72", "2.75"])
+def test_a_function_that_gives_power_has_no_certificate(power):
+    law = f"F_1*v/v_1*(exp(v/v_1) - {power}*v/v_1)"
+    certificate = [{"guards": [], "terms": [term(law, "F_1", f"s*(exp(s) - {power}*s)")]}]
+    assert "not shown to have its sign" in checked(law, certificate)
+
+
+def test_a_prefactor_without_a_value_is_refused():
+    law, front = "F_1*v/v_1", "F_1*(a/a)"
+    certificate = [{"guards": [], "terms": [term(law, front, "s")]}]
+    assert "sign of a prefactor" in checked(law, certificate)

@@ -1,0 +1,88 @@
+"""Normal forms against plain numbers: an expression and its normal form have one value."""
+
+import ast
+import math
+from fractions import Fraction
+from types import SimpleNamespace
+
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from piezo_sym.translation.expressions import PLAIN, Expressions
+from piezo_sym.translation.field import Field
+from piezo_sym.translation.witness import Point, UndecidedError
+
+CALLS = ("exp", "log", "sqrt", "sin", "cos", "tanh", "abs", "sign", "expm1")
+TWO = ("minimum", "maximum")
+NAMES = {"a": 2, "b": 1, "x": 0, "y": 0}
+LEAVES = st.sampled_from([*NAMES, "2", "3", "0.5", "1"])
+
+
+def _grown(inner):
+    pairs = st.tuples(st.sampled_from("+-*/"), inner, inner)
+    return st.one_of(
+        pairs.map(lambda p: f"({p[1]} {p[0]} {p[2]})"),
+        st.tuples(st.sampled_from(CALLS), inner).map(lambda p: f"{p[0]}({p[1]})"),
+        st.tuples(st.sampled_from(TWO), inner, inner).map(lambda p: f"{p[0]}({p[1]}, {p[2]})"),
+        st.tuples(inner, st.sampled_from(["2", "3", "(-1)", "(1/2)", "(3/2)"])).map("**".join),
+        st.tuples(inner, inner, inner, inner).map(lambda p: "({} if {} > {} else {})".format(*p)),
+    )
+
+
+TEXTS = st.recursive(LEAVES, _grown, max_leaves=7)
+FUNCTIONS = {
+    name: getattr(math, name) for name in ("exp", "log", "sqrt", "sin", "cos", "tanh", "expm1")
+}
+FUNCTIONS |= {"abs": abs, "minimum": min, "maximum": max}
+FUNCTIONS["sign"] = lambda z: float((z > 0) - (z < 0))
+
+
+def reader():
+    field = Field()
+    names = {name: field.name(name, sign=sign) for name, sign in NAMES.items()}
+    calls = {name: name for name in (*CALLS, *TWO)}
+    leaf = lambda node: (names[node.id], PLAIN)  # noqa: E731
+    return field, Expressions(field, {}, leaf, calls, False)
+
+
+def number(node, at):
+    """Return the value of an expression at a point, by Python's own numbers."""
+    match node:
+        case ast.Constant(value):
+            return float(value)
+        case ast.Name(name):
+            return float(at[name])
+        case ast.UnaryOp(ast.USub(), arg):
+            return -number(arg, at)
+        case ast.BinOp(left, operator, right):
+            a, b = number(left, at), number(right, at)
+            symbol = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}.get(type(operator))
+            return (
+                {"+": a + b, "-": a - b, "*": a * b}[symbol]
+                if symbol in {"+", "-", "*"}
+                else (a / b if symbol else math.pow(a, b))
+            )
+        case ast.IfExp(ast.Compare(left, _, [right]), then, other):
+            return number(then if number(left, at) > number(right, at) else other, at)
+        case ast.Call(ast.Name(name), args):
+            return float(FUNCTIONS[name](*(number(arg, at) for arg in args)))
+    raise TypeError(node)
+
+
+@given(TEXTS, st.tuples(*[st.fractions(-4, 4, max_denominator=7)] * 4))
+def test_a_normal_form_has_the_value_of_its_text(text, point):
+    at = dict(zip(NAMES, point, strict=True)) | {"a": abs(point[0]) + 1, "b": abs(point[1])}
+    node = ast.parse(text, mode="eval").body
+    try:
+        wanted = number(node, at)
+    except (ArithmeticError, ValueError):
+        assume(False)
+    assume(abs(wanted) < 1e9)
+    field, read = reader()
+    try:
+        numbers = {name: (Fraction(value),) for name, value in at.items()}
+        found = Point(SimpleNamespace(field=field), numbers).value(read(node)[0], {})
+    except UndecidedError:
+        assume(False)
+    assert float(found.mid) == pytest.approx(wanted, rel=1e-6, abs=1e-6)

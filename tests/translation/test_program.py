@@ -1,0 +1,104 @@
+"""The row `program`: PROVED for what is printed, and for nothing else."""
+
+import random
+from collections import Counter
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from piezo_sym import derive, load
+from piezo_sym.codegen import c_source, lower, numpy_module
+from piezo_sym.proofs.report import Verdict
+from piezo_sym.spec.calculus import add, mul
+from piezo_sym.spec.expressions import LaneSum, Num
+from piezo_sym.translation import program_rows
+from piezo_sym.translation.program import different
+from piezo_sym.translation.reference import proved
+from tests.translation.mutants import mutants
+
+SPECS = Path(__file__).parents[1] / "networks" / "specs"
+ALL = ["piezo_stack", *sorted(path.name for path in SPECS.glob("*.toml"))]
+#: A lever, several bodies, conduction, a resistive loop with a bank, two banks.
+MUTATED = [
+    "piezo_stack",
+    "a1_two_bodies.toml",
+    "output_resistance_of_a_bank.toml",
+    "transducer_between_moving_nodes.toml",
+    "two_banks_heat_one_body.toml",
+]
+PRINT = {"NumPy": numpy_module, "C": c_source}
+
+
+def iphs_of(name):
+    return derive(load(str(SPECS / name) if name.endswith(".toml") else name))
+
+
+def verdict(iphs, known, language, text):
+    """Return the verdict on one text of a system."""
+    found = different(language, text, iphs, known)
+    return found[0].verdict if found else Verdict.PROVED
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_what_is_printed_is_proved(name):
+    iphs = iphs_of(name)
+    program = lower(iphs, "")
+    (row,) = program_rows(iphs, numpy_module(program), c_source(program))
+    assert (row.id, row.verdict) == ("program", Verdict.PROVED), row.reason
+
+
+def survivors(name, language, sample=None):
+    """Return the mutants that are proved, and how many are not, by verdict."""
+    iphs = iphs_of(name)
+    made = list(mutants(PRINT[language](lower(iphs, ""))))
+    made = random.Random(name).sample(made, sample) if sample else made
+    known, counts, alive = proved(iphs), Counter(), []
+    for n, (what, text) in enumerate(made):
+        known = proved(iphs) if n % 100 == 99 else known  # it grows by what is read
+        counts[found := verdict(iphs, known, language, text)] += 1
+        alive += [what] if found is Verdict.PROVED else []
+    return alive, counts
+
+
+@pytest.mark.parametrize("language", PRINT)
+@pytest.mark.parametrize("name", MUTATED[:3])
+def test_no_mutant_of_a_sample_is_proved(name, language):
+    alive, counts = survivors(name, language, sample=10)
+    assert alive == []
+    assert counts[Verdict.REFUTED] > 0
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("language", PRINT)
+@pytest.mark.parametrize("name", MUTATED)
+def test_no_mutant_is_proved(name, language):
+    alive, _ = survivors(name, language)
+    assert alive == []
+
+
+@pytest.mark.parametrize("language", PRINT)
+def test_a_change_of_a_quantity_before_it_is_printed_is_refuted(language):
+    iphs = iphs_of("piezo_stack")
+    program, known = lower(iphs, ""), proved(iphs)
+    for n in range(PRINT[language] is c_source, len(program.quantities), 4):
+        quantity = program.quantities[n]
+        value = quantity.value
+        inner = value.arg if isinstance(value, LaneSum) else value
+        inner = add(mul(Num(Fraction(-1)), inner), Num(Fraction(n % 3)))
+        changed = LaneSum(inner, value.bank) if isinstance(value, LaneSum) else inner
+        others = list(program.quantities)
+        others[n] = replace(quantity, value=changed)
+        text = PRINT[language](replace(program, quantities=tuple(others)))
+        assert verdict(iphs, known, language, text) is Verdict.REFUTED, quantity.name
+
+
+def test_a_refuted_row_has_numbers():
+    iphs = iphs_of("piezo_stack")
+    program = lower(iphs, "")
+    text = numpy_module(program).replace("V_in - V_capacitor - V_hys", "V_in + V_capacitor - V_hys")
+    (row,) = program_rows(iphs, text, c_source(program))
+    assert row.verdict is Verdict.REFUTED
+    assert "rhs['phi']" in row.reason
+    assert {*row.witness} >= {"q", "p", "Q_C", "phi", "S", "V_in", "C"}

@@ -1,0 +1,99 @@
+"""Text outside the grammar is not proved, and nothing in it is executed."""
+
+import pytest
+
+from piezo_sym import derive, load
+from piezo_sym.codegen import c_source, lower, numpy_module
+from piezo_sym.proofs.report import Verdict
+from piezo_sym.translation import program_rows
+from piezo_sym.translation.program import different
+from piezo_sym.translation.reference import proved
+
+NUMPY = {
+    "a name that the readers know": ("import numpy as np", "import numpy as np\nnp.exp = np.sin"),
+    "another module": ("import numpy as np", "import numpy as np, os"),
+    "a default that is computed": ("x, u, p_, out, /):", "x, u, p_, out=print(), /):"),
+    "an annotation": ("def energy(x, p_, /):", "def energy(x: print(), p_, /):"),
+    "a decorator": ("def energy(", "@print\ndef energy("),
+    "a table that is computed": ('Record("q", "m",', 'Record("q", open("x").read(),'),
+    "another order of states": ('Record("q", "m",', 'Record("p", "m",'),
+    "another parameter": ("k: float = 500000.0", "k: float = 500001.0"),
+    "a function twice": ("def energy(", "def entropy(x, p_, /):\n    return x[0]\n\n\ndef energy("),
+    "a helper that does more": ("    return x\n", "    x[0] = 0\n    return x\n"),
+    "states that are not checked": ("    x = _states(x, p_)\n", ""),
+    "a branch that is not reached": (
+        "out[0] = v_mass\n",
+        "out[0] = np.where(1 > 2, quit(), v_mass)\n",
+    ),
+    "a name twice": ("F_damper = d*v_mass\n", "F_damper = d*v_mass\n    v_mass = F_damper/d\n"),
+    "a result written over": ("out[0] = v_mass\n", "out[0] = v_mass\n    out[0] = v_mass\n"),
+    "a sum of what has no lanes": ("np.sum(i_hysteron, axis=0)", "np.sum(1/L, axis=0)"),
+    "a long number": ("out[0] = v_mass\n", "out[0] = v_mass*1e999\n"),
+    "a large power": ("out[0] = v_mass\n", "out[0] = (v_mass + q)**100000\n"),
+    "nested parentheses": ("out[0] = v_mass\n", f"out[0] = {'(' * 5000}v_mass{')' * 5000}\n"),
+    "no text": ("", None),
+    "NUL": ("out[0]", "out\0[0]"),
+}
+EXP = "static double exp(double z)\n{\n    return z;\n}"
+ZEROS = "    for (long j = 0; j < n*n; ++j) {\n        out[j] = 0.0;\n    }"
+C = {
+    "a macro": ("#include <math.h>\n", "#include <math.h>\n#define p q\n"),
+    "another header": ("#include <math.h>\n", '#include <math.h>\n#include "m.h"\n'),
+    "a function of the library": ("static double pick", f"{EXP}\n\nstatic double pick"),
+    "integers divided": ("a*T/T_0", "1/2*a*T/T_0"),
+    "a float": ("const double v_mass", "const float v_mass"),
+    "a double for an index": ("const long n = ", "const double n = "),
+    "a sum read in its loop": ("+= i_hysteron;", "+= i_hysteron + 0.0*sum_i_hysteron;"),
+    "a sum that a directive leaves out": ("(+:sum_i_hysteron, heat", "(+:heat"),
+    "a loop that starts late": ("long j = 0; j < hysteron_count", "long j = 1; j < hysteron_count"),
+    "a loop by twos": ("++j) {\n        const", "j += 2) {\n        const"),
+    "zeros that come too late": ("    out[1] = 1.0/M;", f"{ZEROS}\n    out[1] = 1.0/M;"),
+    "a line joined": ("out[0] = v_mass;", "out[0] = v_mass; \\\n"),
+    "a comment to the end": ("out[0] = v_mass;", "out[0] = v_mass; // \\\n"),
+    "a condition": ("out[0] = v_mass;", "if (q > 0.0) out[0] = v_mass;"),
+    "an octal number": ("power_2(p)/(2.0*M)", "power_2(p)/(010/4*M)"),
+    "another function's name": ("void piezo_stack_rhs(", "void rhs("),
+    "nested parentheses": ("out[0] = v_mass;", f"out[0] = {'(' * 5000}v_mass{')' * 5000};"),
+    "no text": ("", None),
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def made():
+    iphs = derive(load("piezo_stack"))
+    program = lower(iphs, "")
+    return {"NumPy": numpy_module(program), "C": c_source(program)}, iphs, proved(iphs)
+
+
+def row(made, language, old, new):
+    """Return the row on a text in which something is replaced, if it is not proved."""
+    texts, iphs, known = made
+    assert old in texts[language]
+    text = "" if new is None else texts[language].replace(old, new, 1)
+    return next(iter(different(language, text, iphs, known)), None)
+
+
+CASES = [*(("NumPy", case) for case in NUMPY), *(("C", case) for case in C)]
+
+
+@pytest.mark.parametrize(("language", "case"), CASES)
+def test_text_outside_the_grammar_is_open(made, language, case):
+    old, new = {"NumPy": NUMPY, "C": C}[language][case]
+    assert row(made, language, old, new).verdict is Verdict.OPEN
+
+
+@pytest.mark.parametrize("factor", ["q/q", "(q - 1)/(q - 1)", "np.sqrt(q)**2/q", "np.log(q)*0 + 1"])
+def test_what_only_the_print_divides_by_is_open(made, factor):
+    found = row(made, "NumPy", "out[0] = v_mass\n", f"out[0] = v_mass*({factor})\n")
+    assert found.verdict is Verdict.OPEN
+    assert "needs" in found.reason
+
+
+def test_a_quotient_is_needed_only_where_it_is_chosen(made):
+    chosen = "out[0] = np.where(S > 0, np.where(S > 0, v_mass*(S/S), S/S), v_mass)\n"
+    assert row(made, "NumPy", "out[0] = v_mass\n", chosen) is None
+
+
+def test_all_is_proved_without_a_change(made):
+    texts, iphs, _ = made
+    assert program_rows(iphs, *texts.values())[0].verdict is Verdict.PROVED
