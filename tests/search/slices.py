@@ -75,7 +75,9 @@ def verdicts(text, answer, counts, labels=None):
         return faults
     kind = answer["error"].split(":")[0]
     counts[kind] += 1
-    if kind in {"time", "died"} or (answer["stage"] != "verify" and kind != "crash"):
+    if kind in {"time", "died"}:
+        return [Fault(kind, "", "", answer["text"])]
+    if answer["stage"] != "verify" and kind != "crash":
         return []
     kind = "contradiction" if kind == "ContradictionError" else "crash"
     return [Fault(kind, "", "", f"{answer['error']}: {answer['text']}")]
