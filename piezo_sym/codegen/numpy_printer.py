@@ -110,7 +110,9 @@ class _Printer:
             if bank_of(limit.margin, self.lanes):
                 own = {*names(limit.margin)} <= parameters
                 text = f"np.min({text if own else self._laned(limit.margin)}, axis=0)"
-            lines += self._assign(f"{self.out}[{n}]", text, limit.margin)
+                lines.append(f"{self.out}[{n}] = {text}")
+            else:
+                lines += self._assign(f"{self.out}[{n}]", text, limit.margin)
         return _body([*lines, f"return {self.out}"])
 
     # Parts of a function

@@ -24,7 +24,7 @@ from piezo_sym.spec.elements.ports import Body
 
 BITS = 1024
 #: What has shrunk to this part of what it was is no jump.
-FADED = Fraction(1, 10**9)
+FADED = Fraction(1, 10**6)
 #: Two sides of a jump are brought together to these relative distances, and differ as before.
 NEAR, NEARER, SAME = Fraction(1, 10**40), Fraction(1, 10**80), Fraction(9, 10)
 #: A kink in floating point may lie beside the kink, by so much of its place.
@@ -97,7 +97,7 @@ class Exact:
         at = self._at(space, [Fraction(v) for v in point.tolist()])
         return at.inside is True and claim.element not in at.undefined
 
-    def jump(self, claim: Claim, space: Space, low: Array, high: Array) -> str | None:
+    def jump(self, claim: Claim, space: Space, low: Array, high: Array, leap: float) -> str | None:
         """Return the jump of a law between two points, or None if it fades as they meet."""
         point = [Fraction(v) for v in low.tolist()]
         column = int(np.flatnonzero(low != high)[0])
@@ -109,9 +109,10 @@ class Exact:
 
         for wider in WIDER:
             off = wider * max(abs(near), abs(far)) * (1 if far > near else -1)
-            gap = _narrowed(seen, near - off, far + off)
-            if gap:
-                return f"its values differ by {_text(gap)} at a distance of {float(NEARER):g}"
+            if _gap(seen(near - off), seen(far + off)) > Fraction(leap) / 10:
+                gap = _narrowed(seen, near - off, far + off)
+                text = f"its values differ by {_text(gap or 0)} at a distance of {float(NEARER):g}"
+                return text if gap else None
         return None
 
     def _at(self, space: Space, values: list[Fraction]) -> Point:
@@ -132,18 +133,24 @@ def _narrowed(
     """Return by how much values differ on two sides that come together, if it does not fade."""
     scale, gaps = max(abs(low), abs(high)), []
     one, other = seen(low), seen(high)
-    most = _gap(one, other)
+    gap = most = _gap(one, other)
     for limit in (NEAR, NEARER):
         while abs(high - low) > limit * scale:
             middle = (low + high) / 2
             value = seen(middle)
-            if value is None or _gap(one, other) <= FADED * most:
+            left, right = _gap(one, value), _gap(value, other)
+            if value is None or gap <= FADED * most:
                 return None
-            if _gap(one, value) >= _gap(value, other):
-                high, other = middle, value
+            calm = (
+                1000 * min(left, right) <= max(left, right) or max(left, right) > SAME * 3 * gap / 2
+            )
+            if limit == NEARER and not calm:  # no step and no pole, but a swing not yet resolved
+                return None
+            if left >= right:
+                high, other, gap = middle, value, left
             else:
-                low, one = middle, value
-        gaps.append(_gap(one, other))
+                low, one, gap = middle, value, right
+        gaps.append(gap)
     return gaps[1] if gaps[1] > SAME * gaps[0] else None
 
 

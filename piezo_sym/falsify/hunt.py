@@ -11,22 +11,22 @@ from fractions import Fraction
 from itertools import chain
 from operator import itemgetter
 from types import ModuleType
-from typing import Any, final
+from typing import final
 
 import numpy as np
 
 from piezo_sym.checker import InputError
 from piezo_sym.errors import ContradictionError
 from piezo_sym.falsify.claims import TOLERANCE, Claim, claim_of
+from piezo_sym.falsify.columns import pairs, positive
 from piezo_sym.falsify.exact import Exact
 from piezo_sym.falsify.points import FEW, STAGES, Draw, Roots, warmed
 from piezo_sym.falsify.probe import probe_of
-from piezo_sym.falsify.space import Array, Mask, Seen, Space
+from piezo_sym.falsify.space import EXTREME, LARGEST, LEAST, Array, Mask, Seen, Space
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.elements.ports import Body
-from piezo_sym.spec.expressions import Cmp, Num, Sym, names
-from piezo_sym.spec.tables import conditions, greater
-from piezo_sym.spec.units import parse_unit
+from piezo_sym.spec.expressions import names
+from piezo_sym.spec.tables import conditions
 
 POINTS = 100_000
 #: Lanes that points have; of those of the spec, so many are looked at.
@@ -34,8 +34,8 @@ LANES, MOST_LANES = 2, 512
 KEPT, CHECKED, CHILDREN, DESCENTS = 8, 4, 24, 8
 #: Of a law's size; between neighbouring floats it may change by less than this.
 JUMP = 1e-6
-#: Off a jump by so many times the distance of two floats, a law has changed by about as much.
-WIDE = 100
+#: Off a jump by so many times the distance of two floats, a law has not changed by more.
+OFF_A_JUMP = (10, 100)
 #: Stands for a zero where a row says > 0: not negative, but to be looked at exactly.
 ZERO = -1e-300
 
@@ -89,6 +89,7 @@ class Track:
         """Return the least number of the claim relative to its scale, 2 where it has none."""
         least: Array = np.full(says.shape, 2.0)
         for _, value, scale, strict in self.claim.at(seen):
+            value, scale = np.asarray(value, dtype=float), np.asarray(scale, dtype=float)
             if not self.claim.climbs and not (value < -TOLERANCE * scale).any():
                 continue
             ratio = np.clip(value / scale, -1, 1)
@@ -142,7 +143,9 @@ class Hunt:
         most = min(MOST_LANES, max(sizes.values(), default=1))
         known = [self.space.own(lane) for lane in range(0, most, LANES)]
         known += [self._hinted(hint) for hint in hints]
-        self.draw = Draw(self.space, np.concatenate(known, axis=1), self._positive(), self._pairs())
+        self.draw = Draw(
+            self.space, np.concatenate(known, axis=1), positive(iphs, self.space), pairs(self.space)
+        )
 
     def attacks(self) -> tuple[Attack, ...]:
         """Return what became of each row.
@@ -218,7 +221,8 @@ class Hunt:
     def _judged(self, track: Track, exact: Exact) -> Attack:
         """Return what became of a row, its suspicious points evaluated exactly."""
         claim, rounding = track.claim, None
-        for key, space, point in chain(*(worst[:CHECKED] for worst in track.worst.values())):
+        most = CHECKED if claim.numbers else KEPT
+        for key, space, point in chain(*(worst[:most] for worst in track.worst.values())):
             value = exact.broken(claim, space, point) if key < 0 else None
             if value:
                 raise self._contradiction(claim, value, space.words(point))
@@ -239,28 +243,38 @@ class Hunt:
         kinks = np.repeat([edge.kink for edge in self.space.probe.edges], sizes)
         for roots in self.draw.roots:
             near = kinks[roots.edge] & (roots.column >= self.space.inputs_at)
-            ends = [self.space.at(roots.at(value)) for value in (roots.low, roots.high)]
+            near &= np.abs(roots.high) < EXTREME
+            beyond = roots.high + (roots.high - roots.low)  # on an edge itself either branch may be
+            ends = [self.space.at(roots.at(value)) for value in (roots.low, beyond)]
             near &= ends[0].inside & ends[1].inside & ~self.space.at(roots.base).extreme
             for what in ("law", "output"):
                 row = self.space.law_rows.get((claim.element, what), slice(0))
-                big = np.where(near, self._leap(row, roots, ends), 0)
+                leap, size = self._leap(row, roots, ends)
+                big = np.where(near, leap / size, 0)
                 for n in np.argsort(-big, kind="stable")[:2]:
                     pair = (ends[0].points[:, n], ends[1].points[:, n])
-                    value = exact.jump(claim, self.space, *pair) if big[n] > JUMP else None
+                    if big[n] <= JUMP:
+                        break
+                    value = exact.jump(
+                        claim, self.space, *pair, leap[n] if leap[n] < LARGEST else 0
+                    )
                     if value:
                         raise self._contradiction(claim, value, self.space.words(pair[1]))
 
-    def _leap(self, row: slice, roots: Roots, ends: list[Seen]) -> Array:
-        """Return by how much of its size a law changes; 0 if farther off it changes more."""
-        low, high = ends
-        off = WIDE * (roots.high - roots.low)
-        wide = [self.space.at(roots.at(v)) for v in (roots.low - off, roots.high + off)]
+    def _leap(self, row: slice, roots: Roots, ends: list[Seen]) -> tuple[Array, Array]:
+        """Return by how much a law changes, 0 if farther off it changes more, and its size."""
+        low, high = (end.laws[row] for end in ends)
         with np.errstate(all="ignore"):
-            leap = np.abs(high.laws[row] - low.laws[row])
-            steep = np.abs(wide[1].laws[row] - wide[0].laws[row]) > 4 * leap
-            big = np.where(np.isinf(leap), 1, leap / (high.sizes[row] + low.sizes[row]))
-        found: Array = np.where(steep | np.isnan(big), 0, big).max(axis=0, initial=0)
-        return found
+            leap = np.nan_to_num(np.abs(high - low), nan=0, posinf=LARGEST)
+            size = np.minimum(ends[0].sizes[row] + ends[1].sizes[row], LARGEST)
+            for off in OFF_A_JUMP:
+                step = off * (roots.high - roots.low)
+                for value, other in ((roots.low - step, high), (roots.high + step, low)):
+                    there = self.space.at(roots.at(value)).laws[row]
+                    far = np.nan_to_num(np.abs(there - other), nan=LARGEST, posinf=LARGEST)
+                    leap = np.where(far > 1.25 * leap, 0, leap)
+        most = leap.max(axis=0, initial=0)
+        return most, np.where(leap == most, size, 0).max(axis=0, initial=LEAST)
 
     def _contradiction(
         self, claim: Claim, value: str, words: Mapping[str, str]
@@ -269,22 +283,6 @@ class Hunt:
         row = f"{claim.id} of {claim.element}" if claim.element else claim.id
         what = f"a proof and a number disagree: {row} is PROVED, but {value} at {at}"
         return ContradictionError(what, self.iphs.model.name, remedy="report it with the spec")
-
-    def _positive(self) -> Mask:
-        """Return which columns the domain keeps from being negative."""
-        found = set()
-        for condition in conditions(self.iphs.model):
-            match greater(condition.tree):
-                case Cmp(_, Sym(name), Num(value)) if value >= 0:
-                    found.add(name)
-        return np.array([name in found for name, _ in self.space.columns])
-
-    def _pairs(self) -> Any:
-        """Return pairs of columns of equal dimension."""
-        units = {f.name: parse_unit(f.unit).dimension for f in self.space.fields}
-        columns = [(n, units[name]) for n, (name, _) in enumerate(self.space.columns)]
-        pairs = [(a, b) for a, one in columns for b, other in columns if a != b and one == other]
-        return np.array(pairs, dtype=np.int64).reshape(-1, 2)
 
     def _hinted(self, hint: Mapping[str, object]) -> Array:
         """Return the spec's own point with the values of a hint; a temperature sets the entropy."""

@@ -62,7 +62,6 @@ class Row:
             "verdict": self.verdict.value,
             "witness": dict(self.witness) if self.witness else None,
             "reason": self.reason or None,
-            "points": self.points,
         }
 
 

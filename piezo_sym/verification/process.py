@@ -96,7 +96,11 @@ class Examiner:
                     watch.cancel()
             except EOFError:
                 self.close()
-                reason = f"not decided in {seconds:g} s" if late.is_set() else "ran out of memory"
+                reason = (
+                    f"not decided in {seconds:g} s"
+                    if late.is_set()
+                    else "not decided: the process ended, for want of memory or by a fault"
+                )
                 yield "late", reason
             except BaseException:  # an answer that comes later would be taken for the next one's
                 self.close()

@@ -156,6 +156,10 @@ def test_an_overflow_is_no_contradiction(tmp_path, law):
     "law",
     [
         "a*v if v < v_1 else 2*a*v",
+        "a*v if v > v_1 else 0",
+        "a*v*(v_1**2/v**2 if v > 0 else 1)",
+        "a*v_1**2/(v - v_1) if v > v_1 else 0",
+        "a*v if v <= -v_1 else 2*a*v",
         "a*v + F_1*sign(v)",
         "a*v if T < 1.5*T_0 else a*v*T/T_0",
         "a*v*(1 + 1e-5*sign(v - v_1))",
@@ -174,6 +178,8 @@ def test_a_jump_is_caught(tmp_path, law):
         "a*v if b > a_1 else 2*a*v",
         "F_1*sqrt(abs(v - v_1)/v_1)*sign(v - v_1)",
         "a*max(v, v_1) + a*min(v, 2*v_1)",
+        "F_1*abs(sin(1e60*v/v_1))",
+        "F_1*abs(sin(exp(exp(5*v/v_1)))) if v > v_1 else F_1*abs(sin(exp(exp(5))))",
     ],
 )
 def test_a_steep_law_and_a_choice_of_parameters_are_no_jumps(tmp_path, law):

@@ -95,11 +95,14 @@ def test_a_long_chain_is_solved_link_by_link():
     assert entries == wanted | {(column, row): -e for (row, column), e in wanted.items()}
 
 
+@pytest.mark.long
 def test_the_time_to_solve_a_chain_grows_with_its_length():
     circuits = [circuit_of(parse(chain(count))) for count in (300, 1200)]
     tables = [symbol_table(circuit) for circuit in circuits]
-    junction_of(circuits[0], tables[0])
-    short, long = (seconds(junction_of, *given) for given in zip(circuits, tables, strict=True))
+    short, long = (
+        min(seconds(junction_of, *given) for _ in range(3))
+        for given in zip(circuits, tables, strict=True)
+    )
     assert long < 8 * short
 
 

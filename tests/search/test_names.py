@@ -99,7 +99,9 @@ ADVERSARIES = {
 
 def verdicts(data, prover=of_laws):
     rows = prover(derive(parse(tomli_w.dumps(data))))
-    return [(row.id, row.element, row.verdict.value) for row in rows if row.id != "units"]
+    # information rows may stay open by the effort that a solver is given
+    needed = (row for row in rows if row.required and row.id != "units")
+    return [(row.id, row.element, row.verdict.value) for row in needed]
 
 
 @cache
@@ -135,7 +137,9 @@ def check(new, folder, prover=of_laws):
     np.testing.assert_allclose(rates(other, folder), rates(DATA, folder), rtol=1e-9, atol=1e-12)
 
 
-@pytest.mark.parametrize("name", ADVERSARIES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=[pytest.mark.long] * (n == "solvers")) for n in ADVERSARIES]
+)
 def test_verdicts_and_rates_do_not_depend_on_names(name, tmp_path):
     check(ADVERSARIES[name], tmp_path)
 

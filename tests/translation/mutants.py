@@ -20,7 +20,7 @@ WORDS = {
 FIXED = frozenset({"np", "p_", "p", "x", "u", "out", "for", "long", "const", "double", "return"})
 HEADS = ("def ", "void ", "double ", "long ", "static ")
 DEFINED = re.compile(r"\s+(?:const )?(?:double |long )?(?:\*?(?:restrict )?)?(\w+) = ")
-SAME = re.compile(r"\[[^]]*\+ 0\]|^\s*\(void\)|\(-1\)\*")
+SAME = re.compile(r"\[[^]]*\+ 0\]|^\s*\(void\)|\(-1\)\*|out\[j\*n \+ j\] \+=")
 
 
 def mutants(text):
@@ -40,7 +40,7 @@ def _of_line(lines, n, names, body):
     line = lines[n]
     for what, new in (*_changed(line, names), ("left out", None)):
         defined = DEFINED.match(line)
-        if defined and len(re.findall(rf"\b{defined[1]}\b", body)) == 1:
+        if defined and not re.search(rf"\b{defined[1]}\b", body.replace(line, "", 1)):
             continue
         changed = [*lines[:n], *([new] if new is not None else []), *lines[n + 1 :]]
         yield f"line {n + 1} {line.strip()!r}: {what}", "\n".join(changed)

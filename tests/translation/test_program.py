@@ -13,6 +13,7 @@ from piezo_sym.codegen import c_source, lower, numpy_module
 from piezo_sym.proofs.report import Verdict
 from piezo_sym.spec.calculus import add, mul
 from piezo_sym.spec.expressions import LaneSum, Num
+from piezo_sym.spec.load import parse
 from piezo_sym.translation import program_rows
 from piezo_sym.translation.program import different
 from piezo_sym.translation.reference import proved
@@ -102,3 +103,13 @@ def test_a_refuted_row_has_numbers():
     assert row.verdict is Verdict.REFUTED
     assert "rhs['phi']" in row.reason
     assert {*row.witness} >= {"q", "p", "Q_C", "phi", "S", "V_in", "C"}
+
+
+def test_a_long_condition_of_a_bank_is_printed_as_its_least_lane():
+    words = load("piezo_stack").to_toml()
+    sizes = " + ".join(f"{n}*L*i_0" for n in range(10, 20))
+    model = parse(words.replace('"lam >= 0"', f'"lam >= 0", "phi < {sizes}"'))
+    iphs = derive(model)
+    program = lower(iphs, "")
+    (row,) = program_rows(iphs, numpy_module(program), c_source(program))
+    assert row.verdict is Verdict.PROVED, row.reason
