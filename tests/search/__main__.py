@@ -5,6 +5,8 @@ A slice that FILE has is not run again; each adds one line of JSON, then the tot
 
 import argparse
 import json
+import signal
+import sys
 from collections import Counter
 from pathlib import Path
 
@@ -19,11 +21,12 @@ def main():
     parser.add_argument("--out", type=Path, default=Path("search.jsonl"))
     parser.add_argument("--specs", type=int, default=SPECS, help="specs of a slice")
     parser.add_argument("--limit", type=float, default=60, help="seconds of a spec")
-    parser.add_argument("--stage", choices=("decide", "verify"), default="decide")
+    parser.add_argument("--stage", choices=("laws", "decide", "verify"), default="laws")
     asked = parser.parse_args()
     done = {record["slice"] for record in records(asked.out)}
     first, last = map(int, asked.slices.split(":"))
     prover = Prover(asked.limit, asked.stage)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     try:
         for number in range(first, last):
             if number not in done:

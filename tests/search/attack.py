@@ -7,7 +7,7 @@ edges of the law and by descent; exact arithmetic decides.
 import numpy as np
 
 from tests.search.laws import edges, names
-from tests.search.points import Points, certain, filled, joined, onto
+from tests.search.points import Points, bisected, certain, filled, joined, onto
 from tests.search.reading import moving, total
 from tests.search.values import DoubtError, NoValueError, exact, floats, rational, sign
 
@@ -172,31 +172,14 @@ def _jump(law, edge, name, points, most=48):
     bad = np.flatnonzero(np.broadcast_to((gaps[0] > 0.3 * gaps[1]) & (gaps[0] > size), most))
     for n in bad[:MOST]:
         point = {k: rational(float(v[n])) for k, v in {**at, name: root}.items()}
-        point = onto(edge, point, points.spec, {name}) or _on_edge(edge, name, point, points.spec)
+        reach = (abs(point[name]) or rational(1)) / 2**36
+        ends = point[name] - reach, point[name] + reach
+        point = onto(edge, point, points.spec, {name}) or bisected(
+            edge, name, point, points.spec, ends
+        )
         if point is not None and _leaps(law, point, points.spec, {name: 1}):
             return point
     return None
-
-
-def _on_edge(edge, name, point, spec):
-    """Return a point moved along a name to 240 bits from a zero of a difference, or None."""
-
-    def side(x):
-        return sign(exact(edge, filled({**point, name: x}, spec)))
-
-    centre = point[name]
-    reach = (abs(centre) or rational(1)) / 2**36
-    low, high = centre - reach, centre + reach
-    try:
-        first, last = side(low), side(high)
-        if first * last >= 0:
-            return None
-        for _ in range(240):
-            middle = (low + high) / 2
-            low, high = (middle, high) if side(middle) == first else (low, middle)
-    except (NoValueError, DoubtError):
-        return None
-    return {**point, name: low}
 
 
 def _leaps(law, point, spec, way):
@@ -209,7 +192,9 @@ def _leaps(law, point, spec, way):
             if certain(moved, spec):
                 try:
                     values.append(exact(law, filled(moved, spec)))
-                except (NoValueError, DoubtError):
+                except NoValueError:
+                    continue
+                except DoubtError:
                     return False
         if len(values) < 2:
             return False

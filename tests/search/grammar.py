@@ -9,6 +9,18 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from random import Random
 
+from tests.search.forms import (
+    FALSE,
+    GUARDS,
+    JUMPING,
+    LACKING,
+    LEAST,
+    ODD,
+    PARTIAL,
+    PARTIAL_LEAST,
+    PASSIVE,
+    VALUES,
+)
 from tests.search.laws import ZERO, changed, paths, read, text
 
 SWAPS = {"<": ">", ">": "<", "<=": "<", ">=": ">", "min": "max", "max": "min", "exp": "tanh"}
@@ -137,7 +149,8 @@ class Grammar:
             guard = f"{self.guard(depth)} {self.one('>', '>=', '<', '<=')} 0"
             jumps = None if self.moves(guard) else True
         if form == "{a} if {c} else {b}":  # a choice of parameters alone is no jump
-            return known(f"{a.text} if {guard} else {b.text}", a, b, continuous=jumps, passive=True)
+            made = f"({a.text}) if {guard} else ({b.text})"
+            return known(made, a, b, continuous=jumps, passive=True)
         if "{h}" in form:
             w = replace(self, letter="", hot="").least_of(1).text
         made = form.format(
@@ -223,182 +236,3 @@ def known(made, *parts, continuous=True, passive=None):
     defined = all(part.defined for part in parts) or None
     smooth = all(part.continuous for part in parts) or None
     return Drawn(made, defined, smooth and continuous, passive)
-
-
-VALUES = (
-    "{a} + {b}",
-    "{a} - {b}",
-    "{a}*{b}",
-    "{a}/({p} + {b}**2)",
-    "-{a}",
-    "{a}**2",
-    "{a}**3",
-    "tanh{a}",
-    "sin{a}",
-    "cos({a}/{p})",
-    "exp(-{a}**2)",
-    "exp(tanh{a})",
-    "exp(saturate({a}, 3))",
-    "abs{a}",
-    "sign{a}",
-    "sqrt({a}**2 + {p})",
-    "sqrt(abs{a})",
-    "log(1 + {a}**2)",
-    "log({p} + abs{a})",
-    "({p} + {a}**2)**(1/3)",
-    "abs{a}**(3/2)",
-    "min({a}, {b})",
-    "max({a}, {k})",
-    "saturate({a}, {w})",
-    "deadzone({a}, {w})",
-    "{k}*{a}",
-    "guarded",
-    "guarded",
-    "guarded",
-    "guarded",
-)
-LEAST = (
-    "{a}**2",
-    "abs{a}",
-    "{a}**2 + {p}",
-    "exp(tanh{a})",
-    "exp(-{a}**2)",
-    "sqrt(abs{a})",
-    "1 + sin{a}",
-    "1 - tanh{a}",
-    "max({a}, 0)",
-    "exp{a} - {a} - 1",
-    "exp{a} - 2.7*{a}",
-    "log(1 + {g})",
-    "{g}/(1 + {a}**2)",
-    "{g} + {p}",
-    "{g}*{p}",
-    "sqrt{g}",
-    "{g}**(2/3)",
-    "guarded",
-    "guarded",
-    "guarded",
-)
-ODD = (
-    "{p}*{z}",
-    "{w}*{z}",
-    "{z}**3",
-    "tanh({z}/{p})",
-    "exp({z}) - 1",
-    "{z} - sin({z})",
-    "{z} + sin({z})",
-    "{z}/({p} + {z}**2)",
-    "{z}/sqrt({p}**2 + {z}**2)",
-    "deadzone({z}, {w})",
-    "saturate({z}, {w})",
-    "sign({z})*log(1 + abs({z})/{p})",
-    "{z}*abs({z})",
-    "max({p}*{z}, 0) + min({w}*{z}, 0)",
-    "exp({z}/{p}) - exp(-{z}/{p})",
-    "1 - exp(-{z}/{p})",
-    "{z}*exp(-({z}/{p})**2)",
-    "{z} if abs({z}) < {p} else {p}*sign({z})",
-    "{p}*({z} - {w}) if {z} > {w} else {p}*({z} + {w}) if {z} < -{w} else 0*{z}",
-)
-PASSIVE = (
-    "{a} + {b}",
-    "{a} + {b}",
-    "{g}*{a}",
-    "{g}*{a}",
-    "{g}*{a}",
-    "{a}*{g} + {b}",
-    "{a}/(1 + {g})",
-    "tanh{a}",
-    "exp{a} - 1",
-    "{a}**3",
-    "{a}*abs{b}",
-    "deadzone({a}, {w})",
-    "saturate({a}, {w})",
-    "deadzone({a}, {h})",
-    "saturate({a}, {h})",
-    "min({a}, {b})",
-    "max({a}, {b})",
-    "sign{a}*sqrt(abs{b})",
-    "{a} - 0.5*sin{a}",
-    "{a} if {c} else {b}",
-    "{a} if {c} else {b}",
-    "{a} if {c} else {b}",
-    "({a} if {c} else {b}) + {b}",
-)
-FALSE = (
-    "{a}*{s}",
-    "{a}*{s}",
-    "{s} if {a} > 0 else -{s}",
-    "{b} if {a} > 0 else -{s}",
-    "-{s} if {a} > {p} else {b}",
-    "{b} if {z} < {p} else -{s}",
-    "{s}*(({z} - {p})**2 - {k}*{p}**2)",
-    "{s}*({a}**2 - {k})",
-    "{s}*(abs({a} - {p}) - {k})",
-    "{s}*(({z}/{p} - 1)**2*(({z} + {a})**2 + {p}) - {k})",
-    "{z}**3 - 2*{p}*{z}*abs({z}) + {p}**2*{z}*(1 - {k})",
-    "{z}*(exp({z}/{p}) - 2.72*{z}/{p})",
-    "{z}*(exp({z}/{p}) - 2.7*{z}/{p}) if {a} > 0 else {z}*(exp({z}/{p}) - 2.72*{z}/{p})",
-    "{p}*{z}/{p}*(exp({z}/{p}) - 2.7*{z}/{p}) if {a} > 0 "
-    "else {z}/{p}*(exp({z}/{p} - 0.37) - 2.72*({z}/{p} - 0.37))",
-    "{z}*(exp({z}) - 1 - {z}) if {a} > {p} else {z}*(exp({z}) - 1.001 - {z})",
-    "tanh({z} - {k}*{p})",
-    "exp({z}/{p}) - 1 - {k}",
-    "{s}*(1 + 1.001*sin({z}*100))",
-    "deadzone({z}, {p}) - {k}*{z}",
-    "{z} + ({g})**2 + {k}",
-    "{z}*sign({a} - {p})",
-)
-LACKING = (
-    "{z}*sqrt({a})",
-    "{z}/{a}",
-    "{z}/{a}**2",
-    "{z}*log({p} + {a})**2",
-    "{z}*(1/{a} if {a} >= 0 else 1)**2",
-    "{z}*(sqrt({a} - {p}) if {a} > 0 else {p})",
-    "{z}*({g})/({z} - {p})**2",
-    "{z}*{a}**(-1/2)",
-    "{z}*(log({z}) if {z} >= 0 else 1)**2",
-    "{z}*((1 if sqrt({a} - 1) > 2 else 2) if {a} > 0.5 else 3)",
-    "{z}/({p} - {p}*exp({a}))",
-)
-JUMPING = (
-    "{z} if {z} > {p} else 2*{z}",
-    "{p}*sign({z})",
-    "{z} if abs({z} - {p}) < 1 else {z}**3",
-    "{z} if {z} > {a} else 0",
-    "(1 if -2*{z} < -{p} else 0)*{z}",
-    "{z}*(1/{z}**2 if {z} > 0 else 1)",
-)
-PARTIAL = (
-    "sqrt({x}/{p})",
-    "log({x})",
-    "log({x}/{p})",
-    "{p}/{x}",
-    "1/{x}**2",
-    "{x}**(-1/2)",
-    "{x}**(3/2)",
-    "{k}*sqrt({x})",
-    "1/(1 + sqrt({x}))",
-    "sqrt({x})/{x}",
-)
-PARTIAL_LEAST = (
-    "sqrt({x}/{p})",
-    "log({x})**2",
-    "{p}/{x}",
-    "1/{x}**2",
-    "{x}**(-1/2)",
-    "{x}**(3/2)",
-    "{k}*sqrt({x})",
-    "{k}/(1 + sqrt({x}))",
-    "log(1 + {x})",
-    "exp(-1/{x})",
-)
-GUARDS = (
-    "({inside} if {x} > 0 else {other})",
-    "({inside} if {x} > 0 else {other})",
-    "({inside} if 0 < {x} else {other})",
-    "({other} if {x} <= 0 else {inside})",
-    "({other} if 0 >= {x} else {inside})",
-    "(({inside} if {x} > 0 else {other}) if {x} < {p} else {other})",
-)

@@ -11,9 +11,9 @@ import numpy as np
 
 from tests.search.attack import counterexample, fails
 from tests.search.laws import names, text
-from tests.search.points import Points, certain, filled, onto
+from tests.search.points import Points, bisected, certain, filled, onto
 from tests.search.reading import moving, spec_of
-from tests.search.values import DoubtError, NoValueError, digits, exact, rational
+from tests.search.values import DoubtError, NoValueError, digits, exact, rational, sign
 
 ORDER = ("REFUTED", "OPEN", "PROVED")
 #: Points of the domain that are tried for what a witness leaves open.
@@ -111,7 +111,8 @@ def witness_fault(claim, witness, points):
             return "loose REFUTED" * loose
     known = at is not None and set(names(*claim.trees)) <= set(at)
     inside = known and any(certain(point, spec) for point in tried)
-    broken = at is not None and _outside(at, spec)
+    strict = _in_variables(claim, given, spec)
+    broken = strict is None or _outside(strict, spec) or _untied(strict, spec)
     return "false REFUTED" if inside or broken else "unconfirmed REFUTED"
 
 
@@ -123,6 +124,18 @@ def _outside(at, spec):
                 return True
         except (NoValueError, DoubtError):
             continue
+    return False
+
+
+def _untied(at, spec):
+    """Return whether a co-state or temperature certainly is not what the rest says it is."""
+    for name, law in spec.derived.items():
+        if name in at and set(names(law)) <= set(at):
+            try:
+                if sign(exact(law, at) - at[name]) != 0:
+                    return True
+            except (NoValueError, DoubtError):
+                continue
     return False
 
 
@@ -156,7 +169,11 @@ def _tied(name, point, value, fixed, spec):
     law = spec.derived[name]
     state = {n for n in names(law) if n in moving(spec) and n not in fixed}
     number = ("num", Fraction(int(value.p), int(value.q)))
-    return onto(("-", law, number), point, spec, state) or point
+    difference, wide = ("-", law, number), rational(2.0**40)
+    found = onto(difference, point, spec, state)
+    for one in () if found else state:
+        found = found or bisected(difference, one, point, spec, (-wide, wide))
+    return found or point
 
 
 def _agrees(name, point, value, spec):

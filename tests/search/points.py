@@ -9,7 +9,7 @@ near what a law's edges ask for.
 import numpy as np
 
 from tests.search.laws import names
-from tests.search.values import DoubtError, NoValueError, exact, floats, rational
+from tests.search.values import DoubtError, NoValueError, exact, floats, rational, sign
 
 SIMPLE = np.array([0, 1, -1, 2, -2, 3, -3, 0.5, -0.5, 4, -4, 0.25, 8, -8, 10, 100, -100])
 NUDGES = np.array([0, 0, 2.0**-40, -(2.0**-40), 2.0**-20, -(2.0**-20), 0.01, -0.01, 0.5, -0.5])
@@ -201,3 +201,22 @@ def onto(difference, point, spec, only=None):
         except (NoValueError, DoubtError):
             continue
     return None
+
+
+def bisected(difference, name, point, spec, ends):
+    """Return a point moved along a name to 270 bits from a zero of a difference, or None."""
+
+    def side(x):
+        return sign(exact(difference, filled({**point, name: x}, spec)))
+
+    low, high = ends
+    try:
+        first, last = side(low), side(high)
+        if first * last >= 0:
+            return None
+        for _ in range(270):
+            middle = (low + high) / 2
+            low, high = (middle, high) if side(middle) == first else (low, middle)
+    except (NoValueError, DoubtError):
+        return None
+    return {**point, name: low}

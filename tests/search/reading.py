@@ -217,5 +217,7 @@ def moving(spec):
 
 def total(spec):
     """Return a spec with the conditions only that always have a value."""
-    partial = spec.claims["welldef", ""].trees
-    return replace(spec, domain=[c for c in spec.domain if c not in partial])
+    partial, used = spec.claims["welldef", ""].trees, set(names(*spec.domain))
+    derived = {name: law for name, law in spec.derived.items() if name in used}
+    domain = [c for c in spec.domain if c not in partial]
+    return replace(spec, domain=domain, derived=derived, warm=[])

@@ -37,13 +37,11 @@ def slice_of(number, prover, specs=SPECS, laws=LAWS):
     """Return the record of a slice."""
     record = {"slice": number, "specs": 0, "laws": 0, "faults": [], "seconds": {}}
     counts, seconds = Counter(), Counter()
-    used = prover.cpu()
     for n in range(specs):
         found = _one(f"{number}.{n}", prover, laws, counts, seconds)
         record["specs"] += 1
         record["laws"] += laws
         record["faults"] += found
-    seconds["prove: processor"] = max(prover.cpu() - used, 0)  # anew where it was killed
     record["counts"] = dict(sorted(counts.items()))
     record["seconds"] = {name: round(value, 2) for name, value in seconds.items()}
     return record
@@ -58,6 +56,7 @@ def _one(seed, prover, laws, counts, seconds):
         clock = time.perf_counter()
         answer = prover.rows(made.text)
         seconds["prove: wall"] += time.perf_counter() - clock
+        seconds["prove"] += answer.get("seconds", 0)
         if answer.get("stage") not in {"load", "derive"} or "crash" in answer["error"]:
             break
         counts["refused"] += 1
@@ -76,7 +75,9 @@ def verdicts(text, answer, counts, labels=None):
         return faults
     kind = answer["error"].split(":")[0]
     counts[kind] += 1
-    if kind in {"time", "died"} or (answer["stage"] != "verify" and kind != "crash"):
+    if kind in {"time", "died"}:
+        return [Fault(kind, "", "", answer["text"])]
+    if answer["stage"] != "verify" and kind != "crash":
         return []
     kind = "contradiction" if kind == "ContradictionError" else "crash"
     return [Fault(kind, "", "", f"{answer['error']}: {answer['text']}")]
