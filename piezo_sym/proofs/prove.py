@@ -24,6 +24,7 @@ from piezo_sym.proofs.solvers import Answer, Asks, opinions
 from piezo_sym.proofs.total import negative_total
 from piezo_sym.proofs.whole import whole_sign
 from piezo_sym.spec.expressions import ONE, ZERO, Cmp, Expr
+from piezo_sym.spec.tables import condition_text
 from piezo_sym.spec.text import spell
 
 #: Lanes a refutation is written out for; one lane hides what couples two.
@@ -238,6 +239,8 @@ def _broken(question: Question, values: Mapping[str, Fraction]) -> Found:
     """Return the refutation of a claim by numbers that break it."""
     left, right = question.original.left, question.original.right
     reason = f"{spell(left)} = {_value(left, values)}"
+    if isinstance(question.law, Cmp):
+        reason += f", where {condition_text(question.law)} has no value"
     if question.original.op == "=":
         reason = f"{question.label} is false: {_value(left, values)} and {_value(right, values)}"
         reason += "; a law that jumps on purpose says discontinuous = true" * bool(question.meeting)

@@ -20,7 +20,7 @@ Exponent = int | Fraction
 Mono = tuple[tuple[int, Exponent], ...]
 Lane = tuple[str, int]  # a bank, and which of its lanes: 0 a row's, 1 a column's
 
-MOST_WORK = 400_000
+MOST_WORK = 10_000_000
 MOST_BITS = 20_000
 MOST_POWER = 64
 

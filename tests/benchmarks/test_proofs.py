@@ -6,6 +6,7 @@ import time
 import pytest
 
 from piezo_sym import derive, load, verify
+from piezo_sym.proofs import decide
 from piezo_sym.proofs.solvers import solver
 from piezo_sym.spec.load import parse
 
@@ -76,7 +77,7 @@ def named(shape, words):
 def seconds(count):
     iphs = derive(parse(network(count)))
     start = time.perf_counter()
-    report = verify(iphs)
+    report = decide(iphs)
     spent = time.perf_counter() - start
     report.raise_if_not_proved()
     assert sum(row.id == "passive" for row in report.rows) == count

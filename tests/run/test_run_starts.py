@@ -192,6 +192,7 @@ def written(folder, stiffness, start="q = 1.0"):
         'stiffness = "k"': f'stiffness = "{stiffness}"',
         "[parameters]": '[parameters]\nl = { value = 1.0, unit = "m" }',
         "q = 1.0": start,
+        'assume = ["d >= 0"]': 'assume = ["d >= 0", "l > 0"]',
     }
     for old, new in changes.items():
         assert text.count(old) == 1
@@ -236,7 +237,7 @@ c = { value = 1.0, unit = "J/K" }
 [inputs]
 I = { unit = "A" }
 [domain]
-assume = ["T_spare > T_0", "T_body > T_0", "r > 0"]
+assume = ["T_spare > T_0", "T_body > T_0", "r > 0", "l > 0"]
 [initial]
 S_spare = 0.3
 S_body = 0.6

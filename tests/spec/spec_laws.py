@@ -148,8 +148,8 @@ def namespace(lib, real):
         "sign": _sign,
         "min": lambda a, b: a if a <= b else b,
         "max": lambda a, b: a if a >= b else b,
-        "deadzone": lambda z, w: z - w if z > w else z + w if z < -w else real(0),
-        "saturate": lambda z, w: w if z > w else -w if z < -w else z,
+        "deadzone": lambda z, w: max(z - w, real(0)) + min(z + w, real(0)),
+        "saturate": lambda z, w: min(max(z, -w), w),
     }
 
 
