@@ -143,7 +143,7 @@ class Asked:
         """Return simple numbers in the domain at which a claim is false, or None."""
         about = self.near((*wanted, *names(claim)))
         named = tuple(Sym(name) for name in self.order if name in about)
-        for answer in self._answers(claim, Cmp(">=", Add((ZERO, *named)), ZERO)):
+        for answer in self._answers(claim, Cmp(">=", Add((ZERO, *named)), ZERO), witness=True):
             if answer.result == "sat":
                 return {n: value for n, value in answer.model.items() if n in self.order}
         return None
@@ -153,8 +153,8 @@ class Asked:
         known = {*words}
         return known.union(*(names(condition) for condition in connected(self.where, known)))
 
-    def _answers(self, claim: Cmp, original: Cmp) -> Iterator[Answer]:
-        made = Question("", self.order, self.where, claim, original)
+    def _answers(self, claim: Cmp, original: Cmp, *, witness: bool = False) -> Iterator[Answer]:
+        made = Question("", self.order, self.where, claim, original, witness=witness)
         try:
             parts = made.smooth()
         except TooManyBranchesError:

@@ -78,9 +78,18 @@ def branches(law: Expr, known: Iterable[Cmp] = ()) -> tuple[Branch, ...]:
 
 def settled(law: Expr, known: Iterable[Cmp]) -> Expr:
     """Return a law with choices for its kinks, those taken that `known` comparisons decide."""
+    if not bends(law):
+        return law
     holding = frozenset(condition for condition in known if condition.op in OPPOSITE)
     facts = {opposite(condition): False for condition in holding}
     return decided(with_choices(law, holding), facts | dict.fromkeys(holding, True))
+
+
+def bends(node: Node) -> bool:
+    """Return whether a tree has choices, or functions with kinks."""
+    return any(
+        isinstance(n, If) or (isinstance(n, Call) and n.function in KINKED) for n in walk(node)
+    )
 
 
 def cover(found: tuple[Branch, ...]) -> Cmp:

@@ -96,6 +96,6 @@ def on_warm_bodies(obligation: Obligation, ground: Ground) -> Obligation:
     """Return an obligation that rests on the temperatures its questions speak of."""
     if obligation.id == "temperature":
         return obligation
-    used = {name for question in obligation.questions for name in question.query().variables}
+    used = {name for question in obligation.questions for name in question.words}
     rows = tuple(row for word, row in ground.warm if word in used)
     return replace(obligation, rests_on=(*obligation.rests_on, *rows))

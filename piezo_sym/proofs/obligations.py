@@ -17,6 +17,7 @@ import sympy as sp
 from piezo_sym.proofs.branches import (
     Branch,
     TooManyBranchesError,
+    bends,
     branches,
     cover,
     parts,
@@ -65,6 +66,7 @@ class Question:
     whole : whether all that is assumed goes into the query, as a counterexample needs; a proof
         needs what is connected to the claim by names.
     split : whether the claim is asked on each of its branches.
+    witness : whether numbers that break the claim are wanted, as those of a counterexample are.
     """
 
     label: str
@@ -77,20 +79,30 @@ class Question:
     law: Expr | Cmp | None = None
     whole: bool = False
     split: bool = True
+    witness: bool = False
 
     def query(self) -> Query:
         """Return the question in polynomials and choices, for a solver."""
         return self._query
 
     @cached_property
+    def kept(self) -> tuple[Cmp, ...]:
+        """What of `where` goes into the query."""
+        return self.where if self.whole else connected(self.where, self._about())
+
+    @cached_property
+    def words(self) -> frozenset[str]:
+        """The model's own names in the query."""
+        found = (name for condition in self.kept for name in names(condition))
+        return frozenset((*self._about(), *found))
+
+    @cached_property
     def _query(self) -> Query:
-        about = {*names(self.claim), *self._about()}
-        kept = self.where if self.whole else connected(self.where, about)
+        kept = self.kept
         given = tuple(_settled(condition, kept) for condition in kept)
         claim = _settled(self.claim, kept)
-        words = (*about, *(name for condition in kept for name in names(condition)))
         sides = [side for c in (*given, claim) for side in (c.left, c.right)]
-        known = parts_of(sides, frozenset((*words, *self.order)))
+        known = parts_of(sides, self.words.union(self.order))
 
         def plain(condition: Cmp) -> Cmp:
             left, right = map(known.without_functions, (condition.left, condition.right))
@@ -99,7 +111,15 @@ class Question:
         signed = frozenset(map(_signed, given))
         clauses = [implied(plain(condition), signed) for condition in given]
         given_facts = [*clauses, *known.facts(signed)]
-        return query(self.label, self.order, given_facts, cleared(plain(claim)), about=words)
+        claim = cleared(plain(claim))
+        return query(
+            self.label,
+            self.order,
+            given_facts,
+            claim,
+            about=self.words,
+            witness=self.witness or self.whole,
+        )
 
     def smooth(self) -> tuple[Question, ...]:
         """Return the question, or if its claim has kinks, the same on each branch of it.
@@ -135,8 +155,8 @@ class Question:
         return replace(plain, label=label, claim=claim, original=claim)
 
     def _about(self) -> Iterator[str]:
-        """Yield the names that a witness needs: of the law, and of what says where it is."""
-        for condition in (self.original, *self.branch):
+        """Yield the names that a claim or a witness needs: of the law, and of where it is."""
+        for condition in (self.claim, self.original, *self.branch):
             yield from names(condition)
         if self.meeting:
             yield from names(self.meeting.law)
@@ -146,6 +166,8 @@ class Question:
 
 def _settled(condition: Cmp, known: tuple[Cmp, ...]) -> Cmp:
     """Return a comparison with choices for its kinks; other comparisons decide some of them."""
+    if not bends(condition):
+        return condition
     others = tuple(other for other in known if other != condition)
     left, right = (settled(side, others) for side in (condition.left, condition.right))
     return Cmp(condition.op, left, right)

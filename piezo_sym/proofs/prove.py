@@ -17,13 +17,14 @@ from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.asked import Asked, tried
 from piezo_sym.proofs.exactly import TooCloseError, holds, value_of
 from piezo_sym.proofs.jumps import jumps
+from piezo_sym.proofs.meetings import needed
 from piezo_sym.proofs.obligations import Obligation, Question, Residual, SignOf
 from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.proofs.signs import Case
 from piezo_sym.proofs.solvers import Answer, Asks, opinions
 from piezo_sym.proofs.total import negative_total
 from piezo_sym.proofs.whole import whole_sign
-from piezo_sym.spec.expressions import ONE, ZERO, Cmp, Expr
+from piezo_sym.spec.expressions import Cmp, Expr
 from piezo_sym.spec.tables import condition_text
 from piezo_sym.spec.text import spell
 
@@ -91,7 +92,7 @@ def _decide(obligation: Obligation, iphs: IPHS, before: tuple[Row, ...], solver:
 def _asked(questions: Iterable[Question], solver: Asks) -> Found | None:
     """Return the first question that is refuted, else the first that is open, else None."""
     left: list[Found] = []
-    for question in questions:
+    for question in needed(tuple(questions), solver):
         found = _answered(question, solver)
         if found and found[0] is Verdict.REFUTED:
             return found
@@ -180,7 +181,7 @@ def _nonzero(iphs: IPHS, expr: sp.Expr) -> tuple[dict[str, str], sp.Expr] | None
 def _answered(question: Question, solver: Asks) -> Found | None:
     """Return None if the claim follows, else how it fails or why it is open."""
     answer = solver.ask(question.query())
-    if answer.result == "unsat" or _never_meet(question, solver):
+    if answer.result == "unsat":
         return None
     if answer.result == "sat":
         shown = question.query().variables
@@ -190,18 +191,6 @@ def _answered(question: Question, solver: Asks) -> Found | None:
         if answer.result == "sat":
             return _refuted(question, answer, shown)
     return Verdict.OPEN, None, f"{question.label}: {answer.reason}"
-
-
-def _never_meet(question: Question, solver: Asks) -> bool:
-    """Return whether one of two branches that should agree is never taken."""
-    if question.meeting is None:
-        return False
-    domain, claim = question.meeting.domain, Cmp("<", ONE, ZERO)
-    taken = [
-        replace(question, where=(*domain, *side.conditions), claim=claim, branch=side.conditions)
-        for side in question.meeting.sides
-    ]
-    return any(solver.ask(made.query()).result == "unsat" for made in taken)
 
 
 def _refuted(question: Question, answer: Answer, shown: tuple[str, ...]) -> Found:

@@ -35,12 +35,14 @@ class Query:
     variables : names, in the order in which a witness should be simple.
     given : clauses, of each at least one comparison holds.
     claim : the comparison that should follow.
+    witness : whether numbers that break the claim are wanted; they cost more than the answer.
     """
 
     label: str
     variables: tuple[str, ...]
     given: tuple[Clause, ...]
     claim: Cmp
+    witness: bool = False
 
     def text(self) -> str:
         """Return the query in SMT-LIB 2, without ``check-sat``."""
@@ -69,13 +71,14 @@ def query(
     claim: Cmp,
     *,
     about: Iterable[str] = (),
+    witness: bool = False,
 ) -> Query:
     """Return a query; it declares every name in it, and those in `about`."""
     clauses = tuple(dict.fromkeys(given))
     used = {*names(claim), *about}
     used |= {name for clause in clauses for part in clause for name in names(part)}
     known = dict.fromkeys([*order, *sorted(used)])
-    return Query(label, tuple(name for name in known if name in used), clauses, claim)
+    return Query(label, tuple(name for name in known if name in used), clauses, claim, witness)
 
 
 def _clause(clause: Clause) -> str:

@@ -31,7 +31,7 @@ RESULTS = frozenset({"unsat", "sat", "unknown"})
 @final
 @dataclass(frozen=True)
 class Answer:
-    """What a solver says of a query: ``unsat`` proves its claim, ``sat`` comes with a model."""
+    """What a solver says of a query: ``unsat`` proves its claim; with ``sat`` comes the witness."""
 
     result: str
     model: Mapping[str, Fraction] = field(default_factory=dict)
@@ -63,7 +63,8 @@ class Solver:
 
     def ask(self, query: Query) -> Answer:
         """Return the answer to a query; never raises for what the solver does."""
-        request = json.dumps({"text": query.text(), "order": query.variables})
+        order = query.variables if query.witness else ()
+        request = json.dumps({"text": query.text(), "order": order})
         with self._lock:
             try:
                 answer = _read(self._exchange(request))

@@ -98,7 +98,7 @@ def _point(iphs: IPHS, port: Resistor | Conductor, given: Values, solver: Asks) 
     wanted = tuple(n for n in ground.order if n not in states(iphs.model))
     about = tuple(Cmp("=", Sym(n), Sym(n)) for n in wanted)
     claim = Cmp("<", ONE, ZERO)
-    made = Question("", ground.order, tuple(where), claim, claim, about)
+    made = Question("", ground.order, tuple(where), claim, claim, about, witness=True)
     answer = solver.ask(made.query())
     return {n: answer.model[n] for n in wanted} if answer.result == "sat" else None
 

@@ -32,7 +32,7 @@ Answer = dict[str, Any]
 
 
 def ask_z3(text: str, order: Sequence[str]) -> Answer:
-    """Return z3's answer; a model's values are made simple one after the other."""
+    """Return z3's answer, with values of the names in `order`, made simple one after the other."""
     import z3
 
     context = z3.Context()  # of its own: nothing that was asked before changes the answer
@@ -56,7 +56,11 @@ def _simplify(z3: Any, known: list[Any], model: Any, symbol: Any) -> Any:
 
     Each value is a question of its own: with push and pop z3 takes another way, minutes longer.
     """
+    own = model.evaluate(symbol, model_completion=True)
     for value in SIMPLE:
+        if z3.is_rational_value(own) and own.as_fraction() == value:
+            known.append(symbol == own)
+            return model
         fixed = symbol == z3.Q(value.numerator, value.denominator, symbol.ctx)
         solver = z3.Solver(ctx=symbol.ctx)
         solver.set("rlimit", SIMPLER_LIMIT)

@@ -11,44 +11,68 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import final
+from functools import lru_cache
+from typing import Any, TypeVar, cast, dataclass_transform, final
+
+Kind = TypeVar("Kind")
+
+
+class _Tree:
+    """What nodes have in common: trees are deep and keys of many tables, so a hash is kept."""
+
+    __slots__ = ("_hash",)
+
+
+@dataclass_transform(frozen_default=True)
+def _node(kind: type[Kind]) -> type[Kind]:
+    """Return a frozen dataclass whose hash is computed once."""
+    made: Any = dataclass(frozen=True, slots=True)(kind)
+    computed = made.__hash__
+
+    def kept(self: _Tree) -> int:
+        if not hasattr(self, "_hash"):
+            object.__setattr__(self, "_hash", computed(self))
+        return self._hash  # type: ignore[attr-defined, no-any-return]
+
+    made.__hash__ = kept
+    return cast(type[Kind], made)
 
 
 @final
-@dataclass(frozen=True, slots=True)
-class Num:
+@_node
+class Num(_Tree):
     """An exact rational number."""
 
     value: Fraction
 
 
 @final
-@dataclass(frozen=True, slots=True)
-class Sym:
+@_node
+class Sym(_Tree):
     """A name: a parameter, an input, a state, a law's letter, or a quantity of a program."""
 
     name: str
 
 
 @final
-@dataclass(frozen=True, slots=True)
-class Neg:
+@_node
+class Neg(_Tree):
     """Minus its argument."""
 
     arg: Expr
 
 
 @final
-@dataclass(frozen=True, slots=True)
-class Add:
+@_node
+class Add(_Tree):
     """A sum, its terms in the order in which they were written; a difference is a `Neg` term."""
 
     terms: tuple[Expr, ...]
 
 
 @final
-@dataclass(frozen=True, slots=True)
-class Mul:
+@_node
+class Mul(_Tree):
     """A product of two factors."""
 
     left: Expr
@@ -56,8 +80,8 @@ class Mul:
 
 
 @final
-@dataclass(frozen=True, slots=True)
-class Div:
+@_node
+class Div(_Tree):
     """A quotient."""
 
     left: Expr
@@ -65,8 +89,8 @@ class Div:
 
 
 @final
-@dataclass(frozen=True, slots=True)
-class Pow:
+@_node
+class Pow(_Tree):
     """A power with a small rational exponent."""
 
     base: Expr
@@ -74,8 +98,8 @@ class Pow:
 
 
 @final
-@dataclass(frozen=True, slots=True)
-class Call:
+@_node
+class Call(_Tree):
     """One of the functions of `FUNCTIONS` applied to its arguments."""
 
     function: str
@@ -83,8 +107,8 @@ class Call:
 
 
 @final
-@dataclass(frozen=True, slots=True)
-class Cmp:
+@_node
+class Cmp(_Tree):
     """One comparison: ``left op right`` with op one of < <= > >=."""
 
     op: str
@@ -93,8 +117,8 @@ class Cmp:
 
 
 @final
-@dataclass(frozen=True, slots=True)
-class If:
+@_node
+class If(_Tree):
     """``then if condition else other``."""
 
     then: Expr
@@ -103,8 +127,8 @@ class If:
 
 
 @final
-@dataclass(frozen=True, slots=True)
-class LaneSum:
+@_node
+class LaneSum(_Tree):
     """The sum of `arg` over the lanes j = 1..r of `bank`."""
 
     arg: Expr
@@ -145,6 +169,7 @@ def walk(node: Node) -> Iterator[Node]:
         stack.extend(reversed(children(top)))
 
 
+@lru_cache(1 << 14)
 def names(node: Node) -> tuple[str, ...]:
     """Return the names that occur in `node`, each once, in order of first appearance."""
     return tuple(dict.fromkeys(n.name for n in walk(node) if isinstance(n, Sym)))
@@ -263,8 +288,7 @@ def _evaluate(node: Expr, values: Mapping[str, float]) -> float:
         case If(then, condition, other):
             return _evaluate(then if holds(condition, values) else other, values)
         case LaneSum():
-            msg = "a sum over lanes has no value outside a program"
-            raise TypeError(msg)
+            raise TypeError("a sum over lanes has no value outside a program")
 
 
 def _power(base: float, exponent: Fraction) -> float:
