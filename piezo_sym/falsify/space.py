@@ -183,6 +183,16 @@ class Seen:
         found: Mask = np.any((size > EXTREME) | ((size > 0) & (size < 1 / EXTREME)), axis=0)
         return found
 
+    @cached_property
+    def lost(self) -> Mask:
+        """Which points are extreme, or have a temperature that is: what is lost there says nothing.
+
+        A temperature is an exponential as a rule, so that any entropy may make it so.
+        """
+        size = np.abs(self.temperatures)
+        found: Mask = self.extreme | np.any((size > EXTREME) | (size < 1 / EXTREME), axis=0)
+        return found
+
     def holed(self, element: str) -> Mask:
         """Return where an element's laws have no value; for none, what the junction divides by."""
         row = self.space.law_rows.get((element, "hole"), slice(0))

@@ -15,13 +15,8 @@ from typing import final
 from piezo_sym.proofs.facts import Clause
 from piezo_sym.spec.expressions import Add, Cmp, Expr, If, Mul, Neg, Num, Pow, Sym, names
 
-#: Words of SMT-LIB that a spec may use as names; they are written between bars.
-WORDS = frozenset(
-    {"and", "or", "not", "xor", "let", "par", "as", "assert", "exists", "forall", "true", "false"}
-    | {"distinct", "ite", "match", "pop", "push", "exit", "echo", "reset", "abs", "sin", "cos"}
-    | {"tan", "exp", "log", "sqrt", "div", "mod", "select", "store", "is_int", "to_int", "to_real"}
-    | {"pi", "real", "tanh"}
-)
+#: Stands before each name of a model in a query: no word of SMT-LIB or of a solver begins with it.
+MARK = "?"
 
 
 @final
@@ -46,7 +41,7 @@ class Query:
 
     def text(self) -> str:
         """Return the query in SMT-LIB 2, without ``check-sat``."""
-        lines = [f"(declare-const {_name(name)} Real)" for name in self.variables]
+        lines = [f"(declare-const {marked(name)} Real)" for name in self.variables]
         lines += [f"(assert {_clause(clause)})" for clause in self.given]
         lines.append(f"(assert (not {_comparison(self.claim)}))")
         return "\n".join(lines)
@@ -98,7 +93,7 @@ def _term(node: Expr) -> str:
         case Num(value):
             return _number(value)
         case Sym(name):
-            return _name(name)
+            return marked(name)
         case Neg(arg):
             return f"(- {_term(arg)})"
         case Add(terms):
@@ -125,5 +120,6 @@ def _number(value: Fraction) -> str:
     return f"(- {text})" if value < 0 else text
 
 
-def _name(name: str) -> str:
-    return f"|{name}|" if name in WORDS else name
+def marked(name: str) -> str:
+    """Return a name as it stands in a query, where it means nothing to a solver."""
+    return MARK + name

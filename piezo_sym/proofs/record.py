@@ -30,7 +30,7 @@ def smt2(report: Report, made: str) -> str:
         f"; {made}",
         f"; Claims on the laws of {report.model}.  Each query asserts the opposite of its claim:",
         "; `unsat` proves it, for all real numbers in the domain.  Functions such as exp stand",
-        "; as symbols, of which some bounds are given.",
+        "; as symbols, of which some bounds are given.  Names have a question mark before them.",
         *(f"; {row.id} of {row.element} is {row.verdict.value} by intervals" for row in whole),
         "(set-logic QF_NRA)",
     ]

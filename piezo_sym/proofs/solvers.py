@@ -19,7 +19,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Protocol, final
 
-from piezo_sym.proofs.query import Query
+from piezo_sym.proofs.query import MARK, Query, marked
 
 #: The most seconds to wait for one answer; far above what the solvers' own limits come to.
 PATIENCE = 20.0
@@ -63,7 +63,7 @@ class Solver:
 
     def ask(self, query: Query) -> Answer:
         """Return the answer to a query; never raises for what the solver does."""
-        order = query.variables if query.witness else ()
+        order = [marked(name) for name in query.variables] if query.witness else []
         request = json.dumps({"text": query.text(), "order": order})
         with self._lock:
             try:
@@ -118,7 +118,8 @@ def _read(line: str) -> Answer | None:
         return None
     try:
         found: dict[str, Any] = json.loads(line)
-        model = {str(name): Fraction(text) for name, text in found.get("model", {}).items()}
+        values: Mapping[str, str] = found.get("model", {})
+        model = {n.removeprefix(MARK): Fraction(text) for n, text in values.items()}
         answer = Answer(str(found["result"]), model, str(found.get("reason", "")))
     except (ValueError, TypeError, AttributeError, LookupError, ZeroDivisionError):
         return None

@@ -44,7 +44,7 @@ def ask_z3(text: str, order: Sequence[str]) -> Answer:
         return {"result": result, "reason": f"z3: {solver.reason_unknown()}"}
     if result == "unsat":
         return {"result": result}
-    model, known = solver.model(), list(solver.assertions())
+    model, known = solver.model(), [z3.And(*solver.assertions())]  # one is told sooner than many
     for name in order:
         model = _simplify(z3, known, model, z3.Real(name, context))
     values = {name: _exact(z3, model, z3.Real(name, context)) for name in order}

@@ -14,10 +14,10 @@ import pytest
 
 from piezo_sym import derive, load
 from piezo_sym.proofs import Verdict, decide, obligations, proofs_json, prove, solvers
-from piezo_sym.proofs.query import Query
+from piezo_sym.proofs.query import Query, query
 from piezo_sym.proofs.rational import cleared
 from piezo_sym.proofs.solvers import Answer, Opinions, Solver, solver
-from piezo_sym.spec.expressions import names
+from piezo_sym.spec.expressions import Cmp, Num, Sym, names
 from piezo_sym.spec.parse import parse_condition
 
 #: Each of them answers rightly from the second process on: the first one leaves a mark.
@@ -216,6 +216,15 @@ def test_no_solver_outlives_who_asked(last, stop):
     _, said = asking.communicate(timeout=30)
     assert gone(pid)
     assert said.count("Traceback") == (1 if stop == signal.SIGINT else 0)  # none of the worker
+
+
+@pytest.mark.parametrize("word", ["pi", "xor", "true", "ite", "Int", "e", "root-obj", "let"])
+@pytest.mark.parametrize("name", ["z3", "cvc5"])
+def test_a_word_of_the_solver_is_a_name_like_others(name, word):
+    order = Cmp(">=", Sym(word), Num(Fraction(4)))
+    below = Cmp("<", Sym(word), Num(Fraction(3)))
+    assert solver(name).ask(query("", (word,), ((order,),), below)).result == "sat"
+    assert solver(name).ask(query("", (word,), ((order,), (below,)), below)).result == "unsat"
 
 
 def test_work_is_limited_and_the_limit_is_said():
