@@ -77,7 +77,7 @@ def _meeting(meeting: Meeting, ground: Ground) -> Iterator[Question]:
     """Yield the questions whether two branches have values, and the same, where they meet."""
     one, other = meeting.sides
     found: list[Question] = []
-    where, border = ground.where, tuple(_border(one, other))
+    where, border = ground.where, tuple(_border(one, other, ground.fixed))
     for condition in border:
         where = (*ask(found, condition, where, ground), condition)
     where = ask(found, add(one.value, neg(other.value)), where, ground)
@@ -90,11 +90,16 @@ def _meeting(meeting: Meeting, ground: Ground) -> Iterator[Question]:
         yield replace(question, branch=border, meeting=meeting)
 
 
-def _border(one: Branch, other: Branch) -> Iterator[Cmp]:
-    """Yield what holds where the closed parts of two branches meet; one comparison is an edge."""
+def _border(one: Branch, other: Branch, fixed: frozenset[str]) -> Iterator[Cmp]:
+    """Yield what holds where the closed parts of two branches meet; one comparison is an edge.
+
+    What parameters alone decide stays as it is: they are the same on both sides of an edge.
+    """
     for condition in dict.fromkeys((*one.conditions, *other.conditions)):
         both = condition in one.conditions and opposite(condition) in other.conditions
         if both:
             yield Cmp("=", condition.left, condition.right)
         elif not (condition in other.conditions and opposite(condition) in one.conditions):
-            yield Cmp(RELAXED.get(condition.op, condition.op), condition.left, condition.right)
+            same = {*names(condition)} <= fixed
+            op = condition.op if same else RELAXED.get(condition.op, condition.op)
+            yield Cmp(op, condition.left, condition.right)

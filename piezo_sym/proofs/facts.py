@@ -16,6 +16,9 @@ from piezo_sym.spec.expressions import ONE, ZERO, Cmp, Expr, Num
 Clause = tuple[Cmp, ...]
 
 
+BELOW_E = Num(Fraction(271828, 100000))
+
+
 def _number(value: int | Fraction) -> Num:
     return Num(Fraction(value))
 
@@ -31,9 +34,10 @@ def facts_on(function: str, exponent: Fraction, x: Expr, y: Expr) -> Iterator[Cl
     plus, minus = Cmp(">=", y, ZERO), Cmp("<=", y, ZERO)
     yield from _where_defined(function, exponent, x, y)
     match function:
-        case "exp":  # convex: above its tangents at 0; 1/exp(x) = exp(-x) >= 1 - x
+        case "exp":  # convex: above its tangents at 0 and 1; 1/exp(x) = exp(-x) >= 1 - x
             yield (Cmp(">", y, ZERO),)
             yield (Cmp(">=", y, add(ONE, x)),)
+            yield (Cmp(">=", y, mul(BELOW_E, x)),)
             half = mul(_number(Fraction(1, 2)), power(x, Fraction(2)))
             yield (below, Cmp(">=", y, add(ONE, x, half)))
             yield (Cmp(">=", x, ONE), Cmp("<=", mul(y, add(ONE, neg(x))), ONE))
@@ -57,6 +61,27 @@ def facts_on(function: str, exponent: Fraction, x: Expr, y: Expr) -> Iterator[Cl
             half = mul(_number(Fraction(1, 2)), power(x, Fraction(2)))
             yield from _within_one(y)
             yield (Cmp(">=", y, add(ONE, neg(half))),)
+
+
+def facts_on_two(
+    function: str, exponent: Fraction, one: tuple[Expr, Expr], other: tuple[Expr, Expr]
+) -> Iterator[Clause]:
+    """Yield what relates the values of one function at two arguments.
+
+    Parameters
+    ----------
+    one, other : each an argument and its value.
+    """
+    (x, y), (a, b) = one, other
+    rising = function in {"exp", "tanh", "log"} or (function == "root" and exponent > 0)
+    op = "<=" if function == "log" else "<"
+    limited = function in {"log", "root"}
+    undefined = (Cmp(op, x, ZERO), Cmp(op, a, ZERO)) if limited else ()
+    if rising:
+        yield (*undefined, Cmp(">", x, a), Cmp("<=", y, b))
+        yield (*undefined, Cmp("<", x, a), Cmp(">=", y, b))
+    elif function != "root":
+        yield (Cmp("!=", x, a), Cmp("=", y, b))
 
 
 def _within_one(y: Expr) -> Iterator[Clause]:

@@ -15,9 +15,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import combinations
 from typing import final
 
-from piezo_sym.proofs.facts import Clause, facts_on
+from piezo_sym.proofs.facts import Clause, facts_on, facts_on_two
 from piezo_sym.spec.calculus import add, mul, neg, power
 from piezo_sym.spec.expressions import (
     ONE,
@@ -38,6 +39,9 @@ from piezo_sym.spec.expressions import (
     walk,
 )
 from piezo_sym.spec.names import fresh
+
+#: Of more functions than these nothing is said in pairs.
+MOST_ALIKE = 8
 
 
 @final
@@ -93,6 +97,11 @@ class Parts:
                 undefined = () if _product_of(bottom, nonzero) else (Cmp("=", bottom, ZERO),)
                 yield (*undefined, Cmp("=", mul(part.argument, bottom), part.value.top))
             yield from facts_on(part.function, part.exponent, part.argument, Sym(part.name))
+        alike = [p for p in self.parts if p.function != "quotient"]
+        for one, other in combinations(alike if len(alike) <= MOST_ALIKE else (), 2):
+            if (one.function, one.exponent) == (other.function, other.exponent):
+                pairs = ((p.argument, Sym(p.name)) for p in (one, other))
+                yield from facts_on_two(one.function, one.exponent, *pairs)
 
 
 def parts_of(laws: Iterable[Expr], taken: frozenset[str]) -> Parts:

@@ -29,6 +29,13 @@ CASES = [
     ("sqrt(i) if i > 0 else -sqrt(-i)", "", {P}),
     ("R*i if i < i_0 else R*i + 0.000001*R", "R > 0", {R}),
     ("log(1 + i) if i > 0 else i", "", {P}),
+    # a function has one value at equal arguments
+    ("exp(saturate(i, i_0))", "i_0 > 0", {P}),
+    ("tanh(saturate(deadzone(i, i_0), i_0*R))", "i_0 > 0, R > 0", {P}),
+    ("sin(i if i < i_0 else i_0)", "", {P}),
+    ("log(1 + (i if i > 0 else i**2))", "", {P}),
+    ("sqrt(i**4) if i > 0 else sqrt(i**6)", "", {P}),
+    ("exp(saturate(i, i_0)) if i < i_0 else exp(2*i_0)", "i_0 > 0", {R, O}),
 ]
 
 

@@ -26,6 +26,7 @@ CONTINUOUS = (
     "d*v if T > -T_0 else -d*v",
     "d*v if abs(v) <= w else (-d*w+2*d*(v+w) if v < -w else d*w+2*d*(v-w))",
     "d*v*(1/(n-1) if T < -T_0 else 1)",
+    "(d if n <= 3/2 else d/(n - 1.5))*saturate(v, w)",
 )
 JUMPING = (
     "d*v if abs(v) <= w else (2*d*v if v < -w else d*v)",
