@@ -3,6 +3,7 @@
 import random
 import re
 from fractions import Fraction
+from operator import eq, ge, gt, le, lt, ne
 
 import mpmath
 import pytest
@@ -10,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from piezo_sym.proofs.exactly import OUTCOMES
-from piezo_sym.proofs.facts import facts_on
+from piezo_sym.proofs.facts import facts_on, facts_on_two
 from piezo_sym.proofs.rational import Part, Ratio, cleared, parts_of, ratio, signed
 from piezo_sym.spec.expressions import ONE, Cmp, Div, Expr, Mul, Num, Pow, Sym, names, walk
 from piezo_sym.spec.parse import parse_law
@@ -18,6 +19,7 @@ from piezo_sym.spec.text import spell
 from tests.spec.spec_laws import laws, steady
 
 POINTS = 3000
+COMPARED = {"<": lt, ">": gt, "<=": le, ">=": ge, "=": eq, "!=": ne}
 X = Sym("x")
 ROOTS = [Fraction(n, d) for n, d in ((1, 2), (1, 3), (2, 3), (3, 2), (-1, 2), (-2, 3), (5, 4))]
 PARTS = [Part("y", f, X, Ratio(X)) for f in ("exp", "log", "tanh", "sin", "cos")]
@@ -75,6 +77,25 @@ def test_each_fact_holds_at_every_point(part):
             for x in points(part):
                 y = value_of(part, x)
                 assert any(near(op, left(x, y), right(x, y)) for op, left, right in made), (n, x)
+
+
+@pytest.mark.parametrize("part", PARTS, ids=lambda p: f"{p.function} {p.exponent}")
+def test_what_relates_two_values_holds_at_all_pairs(part):
+    two = (X, Sym("y")), (Sym("a"), Sym("b"))
+    clauses = list(facts_on_two(part.function, part.exponent, *two))
+    assert bool(clauses) == (part.exponent > 0)
+    draw, found = random.Random(1), points(part)
+    with mpmath.workdps(50):
+        pairs = [(draw.choice(found), draw.choice(found)) for _ in range(POINTS)]
+        for x, a in [*pairs, *((x, x) for x in found[:50])]:
+            named = {"x": x, "a": a, "y": value_of(part, x), "b": value_of(part, a)}
+            for clause in clauses:
+                assert any(
+                    COMPARED[c.op](
+                        *(named.get(getattr(s, "name", ""), 0) for s in (c.left, c.right))
+                    )
+                    for c in clause
+                ), (x, a)
 
 
 def compiled(text):
