@@ -51,7 +51,7 @@ def _killers(now: Said, what: list[str]) -> Iterator[str]:
         yield "checker"
     if now["rows"].get(("program", "")) != "PROVED":
         yield "program"
-    refuted = [key for key, verdict in now["rows"].items() if verdict == "REFUTED"]
+    refuted = [k for k, v in now["rows"].items() if v == "REFUTED" and k[0] != "program"]
     if "system" in " ".join(what) and refuted:
         yield f"own row {_words(refuted[0])}"
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import importlib
 import io
+import json
 import os
 import pickle
 import signal
@@ -61,10 +62,11 @@ def decided(text: str) -> Said:
 
     _answer_here()
     try:
-        report = decide(derive(parse(text)))
+        iphs = derive(parse(text))
     except PiezoError as error:
-        return {"rows": {}, "system": {}, "refused": str(error)}
-    return {"rows": _verdicts(report), "system": report.system}
+        return {"rows": {}, "system": (), "refused": str(error)}
+    report = decide(iphs)
+    return {"rows": _verdicts(report), "system": _system(iphs, report)}
 
 
 def mutated(text: str, mutant: Mutant) -> Said:
@@ -85,7 +87,7 @@ def mutated(text: str, mutant: Mutant) -> Said:
     module = numpy_module(program)
     rows = (*report.rows, *program_rows(iphs, module, c_source(program)))
     whole = Report(report.model, rows, report.obligations, report.system)
-    said = {"rows": _verdicts(whole), "system": report.system, "net": ""}
+    said = {"rows": _verdicts(whole), "system": _system(iphs, report), "net": ""}
     said["proofs"] = proofs_json(whole, iphs.model, "made by a test")
     claims = [key for key, verdict in said["rows"].items() if verdict == "PROVED"]
     try:
@@ -99,6 +101,12 @@ def mutated(text: str, mutant: Mutant) -> Said:
 
 def _verdicts(report: Any) -> dict[tuple[str, str], str]:
     return {(row.id, row.element): row.verdict.value for row in report.rows}
+
+
+def _system(iphs: Any, report: Any) -> tuple[str, ...]:
+    """Return what is published of a system, and what is shown of it."""
+    shown = (iphs.rhs, iphs.y, iphs.U, iphs.S, iphs.sigma)
+    return (json.dumps(report.system), *map(str, shown))
 
 
 def _answer_here() -> None:
