@@ -11,7 +11,7 @@ from __future__ import annotations
 import argparse
 import importlib
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from tests.mutants.mutant import Mutant
@@ -41,11 +41,16 @@ def main(arguments: list[str]) -> None:
         importlib.import_module(module)
     for name in given.lists:
         mutants = importlib.import_module(f"tests.mutants.{name}").MUTANTS
-        chosen = [m for m in mutants[:: given.every] if given.only in m.name]
-        for mutant, was, now in _said(name, chosen):
+        picked = chosen(mutants, given.every, given.only)
+        for mutant, was, now in _said(name, picked):
             print(f"{name} | {outcome(mutant, was, now)}", flush=True)
             if given.why:
                 _print(was, now)
+
+
+def chosen(mutants: Sequence[Mutant], every: int, only: str) -> list[Mutant]:
+    """Return one mutant of each `every`, if its name has `only` in it."""
+    return [mutant for mutant in mutants[::every] if only in mutant.name]
 
 
 def _said(name: str, mutants: list[Mutant]) -> Iterator[tuple[Mutant, Any, Any]]:

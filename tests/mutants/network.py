@@ -194,10 +194,6 @@ a process is over the first temperature
   - entries = {k: w / self.E[self.heats[k], 0] for k, w in enumerate(self.W)}
   + entries = {k: w / self.E[max(self.heats), 0] for k, w in enumerate(self.W)}
   = two_sources_on_one_input
-what inputs add to a force is left out
-  - return self.B.T @ self.E + self.D.T @ self.u
-  + return self.B.T @ self.E
-  = driven coil loop
 what inputs add to a force has the other sign
   - return self.bracket + self.D.T @ self.u
   + return self.bracket - self.D.T @ self.u
