@@ -140,7 +140,8 @@ a clause says all of its parts
   = -d*v*log(2 + v**2/v_1**2) | d > 0; v_1 > 0
 what is to be above zero may be zero
   - f"(assert (not {_comparison(self.claim)}))"
-  + f"(assert (not {_comparison(Cmp(self.claim.op.strip('=') + '=', self.claim.left, self.claim.right))}))"
+  + "(assert (not " + _comparison(Cmp(self.claim.op.strip("=") + "=",
+  +     self.claim.left, self.claim.right)) + "))"
   = d*v | d > 0; S >= 0 | heat=T_0*(S/c_0)**2
 a minus sign is not written
   - return f"(- {_term(arg)})"

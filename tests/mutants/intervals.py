@@ -22,6 +22,10 @@ tanh is at least what it is at the right end
   - max(-1.0, _down(_ball(a.lo).tanh()))
   + max(-1.0, _down(_ball(min(a.hi, 9.0)).tanh()))
   = F_1*(v/v_1)*(tanh(v/v_1) - 0.965) if v > 2*v_1 else F_1*v/v_1 | F_1 > 0; v_1 > 0
+log is at most what it is at the left end
+  - INF if a.hi == INF else _up(_ball(a.hi).log())
+  + INF if a.hi == INF else _up(_ball(max(a.lo, 1e-9)).log())
+  = F_1*(v/v_1)*(5.5 - log(1 + (v/v_1)**2)) if abs(v) <= 16*v_1 else F_1*v/v_1 | F_1 > 0; v_1 > 0
 one trough alone is not seen
   - return math.ceil(first) <= math.floor(last)
   + return math.ceil(first) < math.floor(last)

@@ -65,6 +65,7 @@ class _Loader(SourceFileLoader):
 
     def get_code(self, fullname: str) -> CodeType:
         """Return the code of the edited source, which no cache knows."""
+        del fullname
         text = self.get_data(self.path).decode("utf-8")
         return self.source_to_code(self.mutant.apply(text).encode("utf-8"), self.path)
 

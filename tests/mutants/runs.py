@@ -6,7 +6,6 @@ Input: a spec's text.  Output: plain data, made in a process of its own.
 from __future__ import annotations
 
 import contextlib
-import importlib
 import io
 import json
 import os
