@@ -117,6 +117,8 @@ class _Reader:
         outputs, inputs = [*self._rows(system.y)], [*self._rows(system.u)]
         works, drives = [*self._rows(system.W)], [*self._rows(system.drive)]
         made = zip(self._rows(system.R), self._rows(system.z), strict=True)
+        produced = (r * z for r, z in zip(system.R, system.z, strict=True))
+        self._tie("sigma", zip(produced, system.processes, strict=True), system.sigma)
         listed = {
             "rhs": rates,
             "outputs": outputs,
@@ -154,6 +156,8 @@ class _Reader:
         """Return the energy; its gradient is the co-states."""
         parts = []
         system = self.iphs.system
+        stored = (self.iphs.symbols.law(law, {}) for law in self.iphs.energies)
+        self._tie("U", zip(stored, system.states, strict=True), self.iphs.U)
         for slot, law, costate in zip(system.states, self.iphs.energies, system.E, strict=True):
             term = self(self.iphs.symbols.law(law, {}))
             (state,) = self.names[slot.label].parts
@@ -161,6 +165,13 @@ class _Reader:
                 raise NotShownError(f"dU/d{slot.label} is not shown to be the co-state")
             parts.append(self.field.lane_sum(term, slot.bank) if slot.bank else term)
         return self.field.total(parts)
+
+    def _tie(self, name: str, terms: Iterator[tuple[sp.Expr, Slot]], shown: sp.Expr) -> None:
+        """Refuse a total that is shown and is not that of its terms, a bank's summed over lanes."""
+        total = self.iphs.system.E.lanes.sum
+        parts = (total(term, slot.bank) if slot.bank else term for term, slot in terms)
+        if sp.expand(sp.Add(*parts) - shown) != 0:
+            raise NotShownError(f"{name} of the system is not that of its parts")
 
     def _jacobian(self, rates: Sequence[Value]) -> Iterator[tuple[Key, Value]]:
         slots = self.slots["rhs"]

@@ -1,0 +1,222 @@
+"""Faults in how claims are put to solvers: facts, quotients, SMT-LIB, branches."""
+
+from tests.mutants.mutant import mutants_of
+from tests.mutants.specs import spec_of
+
+MUTANTS = mutants_of(
+    r"""
+## proofs/facts
+exp: its quadratic bound for all x
+  - yield (below, Cmp(">=", y, add(ONE, x, half)))
+  + yield (Cmp(">=", y, add(ONE, x, half)),)
+  = F_1*(v/v_1)*(exp(v/v_1) - 1 - v/v_1 - (v/v_1)**2/2) | F_1 > 0; v_1 > 0
+exp: a tangent that is too steep
+  - yield (Cmp(">=", y, add(ONE, x)),)
+  + yield (Cmp(">=", y, add(ONE, x, x)),)
+  = F_1*(v/v_1)*(exp(v/v_1) - 1 - 2*v/v_1) | F_1 > 0; v_1 > 0
+exp: above 1
+  - yield (Cmp(">", y, ZERO),)
+  + yield (Cmp(">", y, ONE),)
+  = d*v*(exp(v/v_1) - 1/2) | d > 0; v_1 > 0
+tanh: below its argument everywhere
+  - yield (Cmp(">", y, neg(ONE)),)
+  -             yield (below, Cmp("<=", y, x))
+  + yield (Cmp(">", y, neg(ONE)),)
+  +             yield (Cmp("<=", y, x),)
+  = F_1*(v/v_1 - tanh(v/v_1)) if v > 0 else F_1*(tanh(v/v_1) - v/v_1) | F_1 > 0; v_1 > 0
+tanh: above its argument
+  - yield (below, Cmp(">=", mul(y, add(ONE, x)), x))
+  + yield (below, Cmp(">=", y, x))
+  = F_1*(tanh(v/v_1) - v/v_1) if v > 0 else F_1*v/v_1 | F_1 > 0; v_1 > 0
+sin: positive up to 4
+  - _number(3)), plus)
+  + _number(4)), plus)
+  = F_1*sin(min(max(v/v_1, 0), 3.5)) | F_1 > 0; v_1 > 0
+sin: a wrong cubic
+  - Fraction(1, 6)
+  + Fraction(1, 7)
+  = F_1*(sin(v/v_1) - v/v_1 + (v/v_1)**3/7) | F_1 > 0; v_1 > 0
+cos: a parabola that is too high
+  - # 1 - x**2/2 <= cos x
+  -             half = mul(_number(Fraction(1, 2))
+  + # 1 - x**2/2 <= cos x
+  +             half = mul(_number(Fraction(1, 3))
+  = d*v*(cos(v/v_1) - 1 + (v/v_1)**2/3) | d > 0; v_1 > 0
+sin and cos: below zero
+  - yield (Cmp("<=", y, ONE),)
+  + yield (Cmp("<=", y, ZERO),)
+  = d*v*(1/2 - sin(v/v_1)) | d > 0; v_1 > 0
+a root is one where it has no value
+  - yield (undefined, Cmp("=", *sides))
+  + yield (Cmp("=", *sides),)
+  = a*v | a_1 > 0; (sqrt(a/a_1) if a > 0 else 1) >= 0
+a root is its argument
+  - root = power(y, Fraction(exponent.denominator))
+  + root = power(y, Fraction(exponent.numerator))
+  = d*v*(sqrt(b/a_1) - b/a_1) | d > 0; a_1 > 0; b > 0
+a power below zero is one above
+  - sides = (root, inside) if exponent > 0 else (mul(root, inside), ONE)
+  + sides = (root, inside)
+  = d*v*((b/a_1)**(-1/2) - 1) | d > 0; a_1 > 0; b > a_1
+log: its tangent from below
+  - Cmp(">=", mul(y, x), add(x, neg(ONE)))
+  + Cmp(">=", y, add(x, neg(ONE)))
+  = d*v*(log(b/a_1) - b/a_1 + 1) | d > 0; a_1 > 0; b > 0
+
+## proofs/rational
+a quotient's divisor is never zero
+  - undefined = () if _product_of(bottom, nonzero) else (Cmp("=", bottom, ZERO),)
+  + undefined = ()
+  = d*v*a_1**2/a**2 | d > 0; a_1 > 0; (a_1/a if a > 0 else 1) > 0 | a=1.0
+every name is nonzero
+  - return name in known
+  + return bool(name)
+  = d*v*a_1**2/a**2 | d > 0; a_1 > 0; (a_1/a if a > 0 else 1) > 0 | a=1.0
+a product is nonzero by one factor
+  - _product_of(left, known) and _product_of(right, known)
+  + _product_of(left, known) or _product_of(right, known)
+  = d*v*a_1**2/a**2 | d > 0; a_1 > 0; b > 0; (a_1**2/(b*a) if a > 0 else 1) > 0 | a=1.0
+a comparison cleared of a negative divisor
+  - else mul(value.top, value.bottom)
+  + else value.top
+  = d*v*a_1/a | d > 0; a_1 > 0; a**2 > 0
+a sign lost in a quotient
+  - return Ratio(neg(inner.top), inner.bottom)
+  + return Ratio(inner.top, inner.bottom)
+  = -d*v | d > 0
+a division by a number multiplies
+  - return Ratio(mul(Num(1 / value), a.top), a.bottom)
+  + return Ratio(mul(Num(value), a.top), a.bottom)
+  = d*v/2 - d*v | d > 0
+a divisor dropped
+  - return Ratio(mul(a.top, b.bottom), mul(a.bottom, b.top))
+  + return Ratio(mul(a.top, b.bottom), mul(a.bottom, b.bottom))
+  = d*v*a_1/a | d > 0; a_1 > 0; a**2 > 0
+a power of -1 is one of 1
+  - return Ratio(top, bottom) if exponent > 0 else Ratio(bottom, top)
+  + return Ratio(top, bottom)
+  = d*v*((b/a_1)**(-1) - 1) | d > 0; a_1 > 0; b > a_1
+a choice's sides swapped as it is cleared
+  - If(_whole(then), Cmp(op, _whole(left), _whole(right)), _whole(other))
+  + If(_whole(other), Cmp(op, _whole(left), _whole(right)), _whole(then))
+  = a*v | a_1 > 0; (a if b > a_1 else b) > 0; b < a_1/2 | b=0.3
+a sum of quotients by each its own divisor
+  - add(mul(a.top, b.bottom), mul(b.top, a.bottom))
+  + add(mul(a.top, a.bottom), mul(b.top, b.bottom))
+  = d*v*(a_1/b - b/a_1) | d > 0; a_1 > 0; b > a_1
+a sum of one divisor is its first term
+  - add(*(part.top for part in parts))
+  + add(*(part.top for part in parts[:1]))
+  = d*v - 2*d*v | d > 0
+the right side of a quotient's comparison dropped
+  - difference = ratio(add(condition.left, neg(condition.right)))
+  + difference = ratio(condition.left)
+  = d*v if v/v_1 < 1 else 2*d*v | d > 0; v_1 > 0
+all values of one function are one symbol
+  - made = Sym(name(f"{function}_{len(found) + 1}"))
+  + made = Sym(f"{function}_1")
+  = F_1*(exp(v/v_1) - exp(v/v_2)) | F_1 > 0; v_1 > v_2; v_2 > 0 | v_2=0.5
+all arguments of one function are one symbol
+  - Sym(name(f"{function}_argument_{len(found) + 1}"))
+  + Sym(f"{function}_argument_1")
+  = F_1*(exp(v/v_1) - exp(v/v_2)) | F_1 > 0; v_1 > v_2; v_2 > 0 | v_2=0.5
+an argument is what stands above its divisor
+  - simple = isinstance(value.top, Sym | Num) and value.bottom == ONE
+  + simple = isinstance(value.top, Sym | Num)
+  = F_1*(v/v_1)*(exp(v/v_1) - 1 - 2*v/v_1) | F_1 > 0; v_1 > 0; v_1 > 2 | v_1=3.0
+sqrt is a cube root
+  - return "root", arg, Fraction(1, 2)
+  + return "root", arg, Fraction(1, 3)
+  = d*v*(2 - sqrt(b/a_1)) | d > 0; a_1 > 0; b > a_1; b < 8*a_1 | b=6.0
+
+## proofs/query
+a claim is asserted, not its opposite
+  - f"(assert (not {_comparison(self.claim)}))"
+  + f"(assert {_comparison(self.claim)})"
+  = a*v | a < 0
+a clause says all of its parts
+  - f"(or {
+  + f"(and {
+  = -d*v*log(2 + v**2/v_1**2) | d > 0; v_1 > 0
+what is to be above zero may be zero
+  - f"(assert (not {_comparison(self.claim)}))"
+  + "(assert (not " + _comparison(Cmp(self.claim.op.strip("=") + "=",
+  +     self.claim.left, self.claim.right)) + "))"
+  = d*v | d > 0; S >= 0 | heat=T_0*(S/c_0)**2
+a minus sign is not written
+  - return f"(- {_term(arg)})"
+  + return _term(arg)
+  = -d*v | d > 0
+a choice is written the other way round
+  - {_term(then)} {_term(other)})
+  + {_term(other)} {_term(then)})
+  = a*v | a_1 > 0; (a if b > a_1 else b) > 0; b < a_1/2 | b=0.3
+the last factor is not written
+  - return [*_factors(node.left), *_factors(node.right)]
+  + return [*_factors(node.left), *_factors(node.left)]
+  = d*v*(a/a_1) | d > 0; a_1 > 0
+every power is a square
+  - [_term(base)] * exponent.numerator
+  + [_term(base)] * 2
+  = d*v*(a/a_1)**3 | d > 0; a_1 > 0
+a fraction is its numerator
+  - else f"(/ {size} {value.denominator})"
+  + else size
+  = d*v*(0.5 - b/a_1) | d > 0; a_1 > 0; b < a_1; b > 0 | b=0.7
+
+## proofs/branches
+abs is its argument
+  - return If(z, Cmp(">=", z, ZERO), neg(z))
+  + return If(z, Cmp(">=", z, ZERO), z)
+  = d*abs(v) | d > 0
+sign is never below zero
+  - Num(Fraction(-1))
+  + Num(Fraction(1))
+  = F_1*(v/v_1)*sign(v) | F_1 > 0; v_1 > 0
+min is max
+  - return If(z, Cmp("<=", z, w), w)
+  + return If(w, Cmp("<=", z, w), z)
+  = min(d, a)*v | d > 0
+max is min
+  - return If(z, Cmp(">=", z, w), w)
+  + return If(w, Cmp(">=", z, w), z)
+  = -max(d, a)*v | d > 0; a < 0
+a dead zone is moved to the wrong side
+  - inside = If(add(z, neg(w)), above, If(add(z, w), below, ZERO))
+  + inside = If(add(z, w), above, If(add(z, w), below, ZERO))
+  = d*(deadzone(v, v_1) - v/2) if v > v_1 else d*v | d > 0; v_1 > 0
+a choice and its opposite both hold
+  - {choice: holds, opposite(choice): not holds}
+  + {choice: holds, opposite(choice): holds}
+  = d*v if a > 0 else (a*v if a <= 0 else d*v) | d > 0
+the opposite of >= is <=
+  - ">=": "<"}
+  + ">=": "<="}
+  = -d*v if a <= 0 else d*v | d > 0; a >= 0 | a=0.0
+a choice that the domain makes is taken as not holding
+  - dict.fromkeys(holding, True)
+  + dict.fromkeys(holding, False)
+  = -d*v if b > a_1 else d*v | d > 0; a_1 > 0; b > a_1
+divisions have values everywhere
+  - yield Cmp("!=", right, ZERO)
+  + yield Cmp("=", right, right)
+  = d*v*a_1**2/a**2 | d > 0; a_1 > 0
+a root of zero has an inverse
+  - yield Cmp(">=" if exponent > 0 else ">", base, ZERO)
+  + yield Cmp(">=", base, ZERO)
+  = d*v*(b/a_1)**(-1/2) | d > 0; a_1 > 0; b >= 0
+zero has an inverse
+  - case Pow(base, exponent) if exponent < 0:
+  + case Pow(base, exponent) if exponent < -1:
+  = d*v*(2 + tanh((a/a_1)**(-1))) | d > 0; a_1 > 0
+roots have values everywhere
+  - yield Cmp(">=", arg, ZERO)
+  + yield Cmp(">=", arg, arg)
+  = d*v*(1 + sqrt(a/a_1)) | d > 0; a_1 > 0 | a=1.0
+zero has a logarithm
+  - yield Cmp(">", arg, ZERO)
+  + yield Cmp(">=", arg, ZERO)
+  = d*v*(2 + tanh(log(b/a_1))) | d > 0; a_1 > 0; b >= 0
+""",
+    spec_of,
+)

@@ -1,0 +1,264 @@
+"""Faults in the network's laws and in the system made of them."""
+
+from tests.mutants.mutant import mutants_of
+from tests.mutants.specs import spec_of
+
+MUTANTS = mutants_of(
+    r"""
+## network/kirchhoff
+a transducer pushes the other way
+  - return _across(port.second, ratio), _across(port.first, -ratio)
+  + return _across(port.second, -ratio), _across(port.first, ratio)
+  = transducer_between_moving_nodes
+a transducer has another ratio
+  - return _across(port.second, ratio), _across(port.first, -ratio)
+  + return _across(port.second, self.field.one), _across(port.first, -self.field.one)
+  = transducer_between_moving_nodes
+a transducer's square
+  - return _across(port.second, ratio), _across(port.first, -ratio)
+  + return _across(port.second, ratio*ratio), _across(port.first, -ratio*ratio)
+  = transducer_between_moving_nodes
+the through variable of a coupling is doubled
+  - _draw(rows, port.first, Equation(first, {}), self.field.one)
+  -                 _draw(rows, port.second, Equation(second, {}), self.field.one)
+  + _draw(rows, port.first, Equation(first, {}), 2*self.field.one)
+  +                 _draw(rows, port.second, Equation(second, {}), 2*self.field.one)
+  = transducer_between_moving_nodes
+a coupling is left out
+  - for port, ratio in self.ratio.items():
+  -                 first, second
+  + for port, ratio in list(self.ratio.items())[1:]:
+  +                 first, second
+  = transducer_between_moving_nodes
+## network/junction
+conduction leaves the second body
+  - (rows[port.first], n): sp.S.One
+  + (rows[port.second], n): sp.S.One
+  = two airs
+heat comes to another body
+  - (rows[placed.port.body], n): sp.S.One
+  + (min(rows[p.element] for p, _ in self.laws.states if p.element in ("body", "hot")), n): sp.S.One
+  = two airs
+resistors in a loop push the other way
+  - J0=J0 - loops.between(B, B),
+  + J0=J0 + loops.between(B, B),
+  = coil loop
+resistors in a loop do not change J0
+  - J0=J0 - loops.between(B, B),
+  + J0=J0,
+  = coil loop
+a source does not see a loop
+  - g=self._with_heat(g - loops.between(B, D)),
+  + g=self._with_heat(g),
+  = driven coil loop
+a source sees a loop from the other side
+  - g=self._with_heat(g - loops.between(B, D)),
+  + g=self._with_heat(g + loops.between(B, D)),
+  = driven coil loop
+ports see a loop from the other side
+  - N=N + loops.between(D, D),
+  + N=N - loops.between(D, D),
+  = driven coil loop
+shares are left out of the processes' columns
+  - B, D = loops.columns(B), loops.columns(D)
+  + loops.columns(B), loops.columns(D)
+  = coil loop
+shares are left out of what drives processes
+  - B, D = loops.columns(B), loops.columns(D)
+  + B, D = loops.columns(B), D
+  = driven coil loop
+no heat is exchanged
+  - if isinstance(placed.port, Exchange)
+  + if False
+  = two airs
+states are coupled the other way
+  - J0, N = self._block("E", "E"), self._output("u")
+  + J0, N = self._block("E", "E").T, self._output("u")
+  = springs_in_a_loop
+states are not coupled
+  - J0, N = self._block("E", "E"), self._output("u")
+  + J0, N = self._block("E", "E") - self._block("E", "E"), self._output("u")
+  = springs_in_a_loop
+## network/inverse
+a law turned round multiplies by its slope
+  - return div(top, slope)
+  + return mul(slope, top)
+  = affine linear
+a law of one over R turned round divides
+  - return mul(right, top)
+  + return div(top, right)
+  = output_resistance_of_a_bank
+a law with a jump is linear
+  - if any(port.letter in names(node) for node in walk(port.law) if isinstance(node, Call | Cmp)):
+  + if False:
+  = friction
+a law that is not zero at zero is linear
+  - return slope if port.letter not in names(slope) and _vanishes(at_zero) else None
+  + return slope if port.letter not in names(slope) else None
+  = affine
+## network/loops
+a loop is solved with the other sign
+  - -e * slopes[c] for (r, c), e, _
+  + e * slopes[c] for (r, c), e, _
+  = coil loop
+the skew part of a loop has the other sign
+  - slopes[r] * entry * slopes[c] for
+  + -slopes[r] * entry * slopes[c] for
+  = coil loop
+shares are transposed
+  - return K @ self.H.T
+  + return K @ self.H
+  = coil loop
+a loop's slope is that of its first resistor
+  - law = slope_of(port) if isinstance(port, Resistor) and not placed.bank else None
+  + law = slope_of(members[0][1]) if isinstance(port, Resistor) and not placed.bank else None
+  = loop
+what a loop divides by is forgotten
+  - divisors.append(divisor)
+  + divisors.append(sp.S.One)
+  = loop of any sign
+## network/nodes
+a node may be of two domains
+  - if first is not domain:
+  + if domain is None:
+  = two domains
+a branch may have one node
+  - if branch[0] == branch[1]:
+  + if element == branch[0] == branch[1]:
+  = shorted
+## iphs/definitions
+conduction heats the first body
+  - return port.heats if isinstance(port, Resistor) else port.second
+  + return port.heats if isinstance(port, Resistor) else port.first
+  = two airs
+heat flows to the warmer side of an exchange
+  - return symbols.law(port.conductance, {}) * (ratio - 1)
+  + return symbols.law(port.conductance, {}) * (1 - ratio)
+  = two airs
+an exchange is of the inverse temperatures
+  - ratio = symbols[port.input] / temperature
+  + ratio = temperature / symbols[port.input]
+  = two airs
+an exchange has another body's temperature
+  - temperature = symbols[circuit.body(port.body).temperature]
+  -             ratio
+  + temperature = symbols[next(iter(circuit.of(Body)))[1].temperature]
+  +             ratio
+  = two airs
+laws are of minus their letter
+  - yield symbols[port.output], symbols.law(port.law, {port.letter: z, "T": heat})
+  + yield symbols[port.output], symbols.law(port.law, {port.letter: -z, "T": heat})
+  = output_resistance
+laws have another body's temperature
+  - heat = symbols[circuit.body(heated(port)).temperature]
+  -         if
+  + heat = symbols[next(iter(circuit.of(Body)))[1].temperature]
+  +         if
+  = across
+conduction is not over the first temperature
+  - yield symbols[port.output], symbols.law(port.conductance, {}) * z / first
+  + yield symbols[port.output], symbols.law(port.conductance, {}) * z
+  = two airs
+ratios have twice the temperature
+  - letters = {"T": symbols[circuit.body(port.body).temperature]} if port.body else {}
+  + letters = {"T": 2 * symbols[circuit.body(port.body).temperature]} if port.body else {}
+  = transducer_between_moving_nodes
+slopes have another body's temperature
+  - heat = symbols[circuit.body(heated(processes[slope.process][1])).temperature]
+  + heat = symbols[circuit.body(heated(processes[0][1])).temperature]
+  = coil loop
+co-states are of minus their state
+  - law = symbols.law(port.law, {port.letter: symbols[port.state]})
+  + law = symbols.law(port.law, {port.letter: -symbols[port.state]})
+  = current
+co-states are merged
+  - costates = {n: symbols[costate_name(port)] for n, (_, port) in enumerate(stores)}
+  + costates = {n: symbols[costate_name(stores[n * (n != 1)][1])] for n, _ in enumerate(stores)}
+  = two_sources_on_one_input
+outputs are merged
+  - outputs = {n: symbols[port.output] for n, port in enumerate(processes)}
+  + outputs = {n: symbols[processes[0].output] for n, port in enumerate(processes)}
+  = two_sources_on_one_input
+inputs are merged
+  - return symbols[port.input]
+  -         case Exchange
+  + return symbols[next(iter(circuit.model.inputs))]
+  +         case Exchange
+  = piezo
+## iphs/system
+a process is not over its temperature
+  - entries = {k: w / self.E[self.heats[k], 0] for k, w in enumerate(self.W)}
+  + entries = dict(enumerate(self.W))
+  = two_sources_on_one_input
+a process is over the first temperature
+  - entries = {k: w / self.E[self.heats[k], 0] for k, w in enumerate(self.W)}
+  + entries = {k: w / self.E[max(self.heats), 0] for k, w in enumerate(self.W)}
+  = two_sources_on_one_input
+what inputs add to a force has the other sign
+  - return self.bracket + self.D.T @ self.u
+  + return self.bracket - self.D.T @ self.u
+  = across
+forces have no input
+  - return self.bracket + self.D.T @ self.u
+  + return self.bracket
+  = across
+a body's own temperature is not taken
+  - return self.B.T @ self.E - vector(self.processes, self.E.lanes, taken)
+  + return self.B.T @ self.E
+  = a1_two_bodies
+processes cool what they heat
+  - total = total + entropy @ coupling.T - coupling @ entropy.T
+  + total = total - entropy @ coupling.T + coupling @ entropy.T
+  = two_sources_on_one_input
+processes are conservative
+  - total = total + entropy @ coupling.T - coupling @ entropy.T
+  + total = total
+  = two_sources_on_one_input
+heat of a source stays away
+  - total = total + self._unit(row) @ self._heating(self.D, row).T
+  + total = total
+  = across
+heat of a source is taken away
+  - total = total + self._unit(row) @ self._heating(self.D, row).T
+  + total = total - self._unit(row) @ self._heating(self.D, row).T
+  = across
+inputs push the other way
+  - return self.J_ir @ self.E + self.g @ self.u
+  + return self.J_ir @ self.E - self.g @ self.u
+  = output_resistance
+inputs do not push
+  - return self.J_ir @ self.E + self.g @ self.u
+  + return self.J_ir @ self.E
+  = output_resistance
+rates are of J0 alone
+  - return self.J_ir @ self.E + self.g @ self.u
+  + return self.J0 @ self.E + self.g @ self.u
+  = output_resistance
+outputs have the other sign
+  - return self.g.T @ self.E + self.N @ self.u
+  + return -self.g.T @ self.E + self.N @ self.u
+  = output_resistance
+outputs do not see other inputs
+  - return self.g.T @ self.E + self.N @ self.u
+  + return self.g.T @ self.E
+  = ports
+the production has no inputs
+  - return (self.R.T @ self.z)[0, 0]
+  + return (self.R.T @ self.bracket)[0, 0]
+  = across
+each process heats every body
+  - here = {n: r for n, r in enumerate(self.R) if self.heats[n] == row}
+  + here = dict(enumerate(self.R))
+  = two_sources_on_one_input
+## iphs/iphs
+energies are another state's
+  - energies=tuple(energy_of(placed.element, port) for placed, port in stores),
+  + energies=tuple(energy_of(placed.element, port) for placed, port in stores[:1] * len(stores)),
+  = two_sources_on_one_input
+the last energy is not counted
+  - return sp.Add(*self._stored)
+  + return sp.Add(*self._stored[:-1])
+  = current
+""",
+    spec_of,
+)
