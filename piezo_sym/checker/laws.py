@@ -19,7 +19,7 @@ PLAIN = re.compile(
     r"(?>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![A-Za-z0-9_.])|[A-Za-z_]\w*|[-+*/(),<>=]| )*+",
     re.ASCII,
 )
-FUNCTIONS = dict.fromkeys(("exp", "log", "sqrt", "sin", "cos", "tanh", "abs", "sign"), 1)
+FUNCTIONS = dict.fromkeys(("exp", "log", "sin", "cos", "tanh", "abs", "sign"), 1)
 FUNCTIONS |= dict.fromkeys(("min", "max", "deadzone", "saturate"), 2)
 OPERATORS = {ast.Mult: "*", ast.Div: "/", ast.USub: "neg", ast.UAdd: "+"}
 OPERATORS |= {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
@@ -37,7 +37,7 @@ KINKS = {
     "saturate": "min(max(x, -z), z)",
 }
 SLOPES = {"exp": "y", "log": "1/x", "sin": "cos(x)", "cos": "-sin(x)", "tanh": "1 - y**2"}
-SLOPES |= {"sqrt": "1/(2*y)", "*": "dx*z + x*dz", "/": "dx/z - x*dz/z**2", "neg": "-dx"}
+SLOPES |= {"*": "dx*z + x*dz", "/": "dx/z - x*dz/z**2", "neg": "-dx"}
 
 
 class InputError(Exception):
@@ -47,8 +47,8 @@ class InputError(Exception):
 class Node(NamedTuple):
     """A part of a law: an operation, its arguments, and a value where it has one.
 
-    ``num`` has a rational, ``sym`` a name, ``**`` an exponent, ``cmp`` an operator and ``sum`` a
-    bank as `value`; ``if`` has the arguments (comparison, then, else).
+    ``num`` has a rational, ``sym`` a name, ``**`` an exponent (sqrt 1/2), ``cmp`` an operator and
+    ``sum`` a bank as `value`; ``if`` has the arguments (comparison, then, else).
     """
 
     op: str
@@ -205,6 +205,8 @@ def _tree(node: ast.AST, text: str) -> Node:
             return Node("if", (_tree(test, text), *of(then, other)))
         case ast.Call(ast.Name("sum"), [ast.Name(bank), law], []):
             return Node("sum", of(law), bank)
+        case ast.Call(ast.Name("sqrt"), [arg], []):
+            return Node("**", of(arg), Fraction(1, 2))
         case ast.Call(ast.Name(name), args, []) if FUNCTIONS.get(name) == len(args):
             return Node(name, of(*args))
     raise ValueError(node)

@@ -91,8 +91,8 @@ class _Query:
         if node.op in OPERATIONS:
             parts = (self.holds(arg) if arg.op == "cmp" else self.term(arg) for arg in args)
             return f"({OPERATIONS[node.op]} {' '.join(parts)})"
-        if node.op in ("**", "sqrt"):
-            return self.term(self._power(args[0], node.value or Fraction(node.op == "sqrt", 2)))
+        if node.op == "**":
+            return self.term(self._power(args[0], Fraction(node.value)))
         if node.op == "/" and args[1].op == "num" and args[1].value:
             return self.term(Node("*", (num(1 / args[1].value), args[0])))
         if node.op == "/" and args[0].op == "neg":  # -(a/b), for a/b may be known
@@ -191,7 +191,7 @@ def partial(node: Node, path: tuple[Node, ...] = ()) -> Iterator[Claim]:
 
 def needed(node: Node) -> Iterator[Node]:
     """Yield what must hold of a function's arguments for it to have a value."""
-    given = {"/": -1, "sqrt": Fraction(1, 2), "**": node.value}.get(node.op, 1)
+    given = {"/": -1, "**": node.value}.get(node.op, 1)
     power, last = Fraction(given), node.args[-1] if node.args else node
     if node.op == "log" or (power < 0 and power.denominator > 1):
         yield compare(last, ">")

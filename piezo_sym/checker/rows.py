@@ -222,7 +222,7 @@ class _Closed:
     def _side(self, condition: Node, path: tuple[Node, ...]) -> Node:
         """Return the comparison b > 0 (or b <= 0) that stands for left above (below) right."""
         difference = made("x - z", x=condition.args[0], z=condition.args[1])
-        key = self.field.scaled([self.field.of(difference)])[1][0]
+        key = self.field.scaled(self.field.of(difference))
         turned = key != 0 and key.top.leading_coefficient() < 0
         above = condition.value in (">", ">=")
         key, difference = (-key, Node("neg", (difference,))) if turned else (key, difference)

@@ -165,7 +165,7 @@ class _Comparison:
         for pivot in own.pivots:
             determinant = determinant * pivot
         for tree in self.field.factors(determinant):
-            spelled = laws.replaced(tree, lambda key: sym(key if key[2] else key[:2]))
+            spelled = laws.replaced(tree, lambda key: sym(key if key[-1] else key[:2]))
             self.finding.divisors[spelled] = None
         for (name, _), form in own.forms.items():
             terms = [self._term(name, *term) for term in form.items()]

@@ -93,5 +93,5 @@ def _dimension(node: Node, units: Mapping[Any, Dimension]) -> Dimension | None:
     if node.op in "*/":
         sign = 1 if node.op == "*" else -1
         return _times(known[0], known[1], sign) if len(known) == 2 else None
-    power = {"**": node.value, "sqrt": Fraction(1, 2)}.get(node.op, 1)
+    power = node.value if node.op == "**" else 1
     return _times(NONE, known[0], power) if known else None
