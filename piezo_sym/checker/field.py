@@ -151,9 +151,9 @@ class Field:
         """Return a root, positive factors being taken out of it."""
         outside = constant(1)
         for factor, times in self._positive(base):
-            whole, rest = divmod(times, power)
-            outside = outside * Ratio(factor) ** whole * self._simple(Ratio(factor), power) ** rest
-            base = base / Ratio(factor) ** times
+            root = self._simple(factor, power) if times % power else factor
+            outside = outside * root ** (times if times % power else times // power)
+            base = base / factor**times
         return outside if base == 1 else outside * self._simple(base, power)
 
     def _simple(self, base: Ratio, power: int) -> Ratio:
@@ -164,17 +164,18 @@ class Field:
             self.powers[self.atoms[key]] = power, [*map(int, base.top.monoms()[0])].index(1)
         return found
 
-    def _positive(self, ratio: Ratio) -> list[tuple[Any, int]]:
-        """Return the factors known to be positive, and their powers."""
+    def _positive(self, ratio: Ratio) -> list[tuple[Ratio, int]]:
+        """Return the factors known to be positive, if need be with a minus, and their powers."""
         parts = [(ratio.top, 1), (ratio.bottom, -1)] if ratio != 0 else []
-        found = [(f, sign * times) for part, sign in parts for f, times in part.factor()[1]]
-        return [(f, times) for f, times in found if self.known(compare(self._tree(f), ">"))]
+        factors = [(f, sign * times) for part, sign in parts for f, times in part.factor()[1]]
+        both = [(own, times) for f, times in factors for own in (f, -f)]
+        return [(Ratio(f), n) for f, n in both if self.known(compare(self._tree(f), ">"))]
 
     def scaled(self, ratio: Ratio) -> Ratio:
         """Return an expression without its positive factors, of the same sign."""
         factor = constant(abs(_lead(ratio.top)) or 1)
         for part, times in self._positive(ratio):
-            factor = factor * Ratio(part) ** times
+            factor = factor * part**times
         return ratio / factor
 
     def is_zero(self, ratio: Ratio) -> bool:

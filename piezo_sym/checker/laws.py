@@ -19,7 +19,8 @@ PLAIN = re.compile(
     r"(?>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![A-Za-z0-9_.])|[A-Za-z_]\w*|[-+*/(),<>=]| )*+",
     re.ASCII,
 )
-FUNCTIONS = dict.fromkeys(("exp", "log", "sin", "cos", "tanh", "abs", "sign"), 1)
+SMOOTH = ("exp", "log", "sin", "cos", "tanh")
+FUNCTIONS = dict.fromkeys((*SMOOTH, "abs", "sign"), 1)
 FUNCTIONS |= dict.fromkeys(("min", "max", "deadzone", "saturate"), 2)
 OPERATORS = {ast.Mult: "*", ast.Div: "/", ast.USub: "neg", ast.UAdd: "+"}
 OPERATORS |= {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}

@@ -20,7 +20,7 @@ from .prover import Prover
 
 BITS, ORDER = 192, 10
 T, TANH, ALL = sym("s"), "1 - 2/(exp(2*x) + 1)", frozenset((-1, 0, 1))
-HOLD = {">": {1}, ">=": {0, 1}, "<": {-1}, "<=": {-1, 0}}
+HOLD = {"=": {0}, ">": {1}, ">=": {0, 1}, "<": {-1}, "<=": {-1, 0}}
 RULES: dict[str, Any] = {"*": lambda a, b: a * b, "/": lambda a, b: a * b, "neg": lambda a: -a}
 RULES |= {"abs": abs, "min": min, "max": max, "exp": lambda _: 1}
 RULES |= dict.fromkeys(("sign", "tanh"), lambda a: a)
@@ -71,15 +71,26 @@ class Signs:
 
     def _looked(self, node: Node) -> Found:
         """Return the signs of a tree as a whole."""
-        found = self._expanded(node) if self.hi is not None else ALL
-        rational = all(
-            part.op not in ("exp", "log", "sin", "cos", "tanh") for part in laws.walk(node)
-        )
+        tree = Node(node.op, tuple(map(self._settled, node.args)), node.value)
+        found = self._expanded(tree) if self.hi is not None else ALL
+        rational = not any(part.op in laws.SMOOTH for part in laws.walk(tree))
         if found == ALL and (self.hi is None or rational):
-            for side in (">=", "<="):
-                if self.prover.proves(compare(node, side), self.where):
+            for side in ("=", ">=", "<="):
+                if self.prover.proves(compare(tree, side), self.where):
                     return frozenset(HOLD[side])
         return found
+
+    def _settled(self, node: Node) -> Node:
+        """Return a tree without the choices that are settled, zero where it is zero."""
+        if self.of(node) == {0}:
+            return num(0)
+        if node.op in laws.KINKS:
+            return self._settled(laws.unkinked(node))
+        branches = self._branches(node) if node.op == "if" else ()
+        if len(branches) == 1:
+            return self._settled(branches[0])
+        args = (self._settled(arg) if arg.op != "cmp" else arg for arg in node.args)
+        return Node(node.op, tuple(args), node.value)
 
     def _expanded(self, node: Node) -> Found:
         radius = arb(_exact(((self.hi or 0) - self.lo) / 2))
@@ -106,29 +117,22 @@ class Signs:
         """Return the series of a tree as far as it is finite; it ends where a choice is open."""
         if node.op in ("num", "sym"):
             return t if node.op == "sym" else arb_series([_exact(node.value)])
-        if node.op in laws.KINKS:
-            return self._series(laws.unkinked(node), t)
         if node.op == "tanh":
             return self._series(made(TANH, x=node.args[0]), t)
-        args = [
-            self._series(arg, t) for arg in (self._branches(node) if node.op == "if" else node.args)
-        ]
-        power = Fraction(node.value or 0)
+        parts = self._branches(node) if node.op == "if" else node.args
+        args, power = [self._series(part, t) for part in parts], Fraction(node.value or 0)
         if node.op == "if":
-            found = (
-                args[0] if len(args) == 1 else arb_series([args[0][0].union(args[1][0])], prec=1)
-            )
+            value = args[0][0].union(args[-1][0])
+            found = args[0] if len(args) == 1 else arb_series([value], prec=1)
         elif node.op == "**" and power.denominator == 1:
             found = prod([args[0]] * abs(power.numerator), start=arb_series([1]))
             found = found if power >= 0 else 1 / found
         elif node.op == "**":
             found = (args[0].log() * arb(_exact(power))).exp()
+        elif node.op in laws.ARITHMETIC:
+            found = laws.ARITHMETIC[node.op](*args)
         else:
-            found = (
-                laws.ARITHMETIC[node.op](*args)
-                if node.op in laws.ARITHMETIC
-                else getattr(args[0], node.op)()
-            )
+            found = getattr(args[0], node.op)()
         kept = next((k for k in range(found.prec) if not found[k].is_finite()), found.prec)
         need(kept > 0, "it has no value")
         return arb_series(list(found)[:kept], prec=kept)

@@ -10,7 +10,7 @@ from fractions import Fraction
 from functools import cache
 from typing import Any, NamedTuple
 
-from .laws import InputError, Node, need
+from .laws import SMOOTH, InputError, Node, need
 
 TERM = re.compile(r"([*/]|^)([A-Za-z]+|1)(?:(?:\*\*|\^)(-?[1-9]))?(?![A-Za-z0-9^]|\*\*)")
 BASES = [
@@ -19,7 +19,6 @@ BASES = [
 ]
 Dimension = tuple[Fraction, ...]
 NONE: Dimension = (Fraction(0),) * len(BASES)
-PURE = ("exp", "log", "sin", "cos", "tanh")
 EQUAL = ("+", "min", "max", "deadzone", "saturate", "cmp", "if")
 
 
@@ -85,10 +84,10 @@ def _dimension(node: Node, units: Mapping[Any, Dimension]) -> Dimension | None:
         return units[node.value] if node.op == "sym" else NONE if node.value else None
     parts = [_dimension(arg, units) for arg in node.args]
     known = [part for part in (parts[1:] if node.op == "if" else parts) if part is not None]
-    need(node.op not in PURE or known in ([], [NONE]), f"the argument of {node.op} has a unit")
+    need(node.op not in SMOOTH or known in ([], [NONE]), f"the argument of {node.op} has a unit")
     equal = node.op not in EQUAL or all(part == known[0] for part in known)
     need(equal, f"the terms of {node.op!r} have different units")
-    if node.op in (*PURE, "sign") or (node.op == "**" and node.value == 0):
+    if node.op in (*SMOOTH, "sign") or (node.op == "**" and node.value == 0):
         return NONE
     if node.op in "*/":
         sign = 1 if node.op == "*" else -1
