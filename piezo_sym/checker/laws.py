@@ -123,6 +123,12 @@ def unkinked(node: Node) -> Node:
     return made(KINKS[node.op], x=node.args[0], z=node.args[-1])
 
 
+def plain(node: Node) -> Node:
+    """Return a tree with every function with kinks written as a choice."""
+    here = Node(node.op, tuple(map(plain, node.args)), node.value)
+    return plain(unkinked(here)) if node.op in KINKS else here
+
+
 def derivative(node: Node, by: Any) -> Node:
     """Return the derivative of a law by a symbol, branch by branch."""
     if by not in symbols(node) or node.op == "sym":

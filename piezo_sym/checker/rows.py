@@ -199,6 +199,7 @@ class _Closed:
     Each comparison that moves becomes a choice b of a side, free where both sides are equal.  On
     each cell the law's branch has values up to the edge; if it is there what the law is, the law
     is continuous: the pasting lemma.  A condition's parts have values before it is relied on.
+    Cells that are empty do not count: `where` says that the choices are those of some point, too.
     """
 
     def __init__(self) -> None:
@@ -212,7 +213,7 @@ class _Closed:
             here = Node(node.op, tuple(self.tree(arg, path) for arg in node.args), node.value)
             self.claims += [Claim((*self.where, *path), c) for c in needed(here)]
             return here
-        left, right = (self.tree(arg, path) for arg in node.args[0].args)
+        left, right = (self.tree(laws.plain(arg), path) for arg in node.args[0].args)
         side = Node("cmp", (left, right), node.args[0].value)
         if any(role in MOVING for role, _ in symbols(node.args[0])):
             side = self._side(side, path)
@@ -227,8 +228,12 @@ class _Closed:
         above = condition.value in (">", ">=")
         key, difference = (-key, Node("neg", (difference,))) if turned else (key, difference)
         chosen = compare(sym(("side", f"{key.top}/{key.bottom}")), ">")
+        side = chosen if above != turned else negated(chosen)
+        elsewhere = {name: sym(("elsewhere", name)) for name in symbols(condition)}
+        moved = put(condition, {name: own for name, own in elsewhere.items() if name[0] in MOVING})
         edge = Node("if", (chosen, difference, Node("neg", (difference,))))
+        point = Node("if", (side, *(Node("if", (moved, *map(num, n))) for n in ((0, -1), (-1, 0)))))
         for step in reversed(path):
-            edge = Node("if", (step, edge, num(0)))
-        self.where.append(compare(edge, ">="))
-        return chosen if above != turned else negated(chosen)
+            edge, point = (Node("if", (step, tree, num(0))) for tree in (edge, point))
+        self.where += [compare(edge, ">="), compare(point, ">=")]
+        return side
