@@ -1,18 +1,16 @@
 """Units of a spec: texts to exact factors and dimensions, and the walk that compares them.
 
-Input: texts such as ``N*s/m``, and trees with the dimension of every symbol.  Output: `Unit`, and
-the faults that a tree has.  pint knows the units; the grammar is the checker's own.
+Input: texts such as ``N*s/m``, which are read as laws are, and trees with the dimension of every
+symbol.  Output: `Unit`, and the faults that a tree has.  pint knows the units.
 """
 
-import re
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from functools import cache
 from typing import Any, NamedTuple
 
-from .laws import SMOOTH, InputError, Node, need
+from .laws import SMOOTH, InputError, Node, need, num, parse, symbols, value, walk
 
-TERM = re.compile(r"([*/]|^)([A-Za-z]+|1)(?:(?:\*\*|\^)(-?[1-9]))?(?![A-Za-z0-9^]|\*\*)")
 BASES = [
     f"[{w}]"
     for w in ["mass", "length", "time", "current", "temperature", "substance", "luminosity"]
@@ -32,15 +30,13 @@ class Unit(NamedTuple):
 @cache
 def unit(text: str) -> Unit:
     """Return the unit that a text names; raises `InputError` if it names none."""
-    factor, dimension, place = Fraction(1), NONE, 0
-    while len(text) <= 60 and (term := TERM.match(text, place)):
-        power = (-1 if term[1] == "/" else 1) * int(term[3] or 1)
-        named = Unit(Fraction(1), NONE) if term[2] == "1" else _named(term[2])
-        factor *= named.factor**power
-        dimension = _times(dimension, named.dimension, power)
-        place = term.end()
-    need(0 < place == len(text), f"{text[:60]!r} is no unit")
-    return Unit(factor, dimension)
+    tree = parse(text.replace("^", "**"))
+    parts = all(n.op in ("*", "/", "**", "sym") or n == num(1) for n in walk(tree))
+    need(parts, f"{text[:60]!r} is no unit")
+    named = {name: _named(name) for name in symbols(tree)}
+    factor = value(tree, {name: own.factor for name, own in named.items()})
+    dimension = _dimension(tree, {name: own.dimension for name, own in named.items()})
+    return Unit(factor, dimension or NONE)
 
 
 @cache
