@@ -192,7 +192,7 @@ def _tree(node: ast.AST, text: str) -> Node:
         case ast.Name(name):
             return sym(name)
         case ast.BinOp(base, ast.Pow(), exponent):
-            power = value(of(exponent)[0], {})
+            power = Fraction(_value(of(exponent)[0]))
             need(max(abs(power.numerator), power.denominator) <= MAX_POWER, "a power is too large")
             return Node("**", of(base), power)
         case ast.BinOp(_, ast.Add() | ast.Sub()):
@@ -219,11 +219,6 @@ def _tree(node: ast.AST, text: str) -> Node:
     raise ValueError(node)
 
 
-def value(node: Node, values: Mapping[Any, Fraction]) -> Fraction:
-    """Return the value of a tree of numbers, with whole powers."""
-    if node.op in ("num", "sym"):
-        return Fraction(values[node.value] if node.op == "sym" else node.value)
-    args = [value(arg, values) for arg in node.args]
-    if node.op == "**" and node.value.denominator == 1:
-        return Fraction(args[0] ** node.value.numerator)
-    return Fraction(ARITHMETIC[node.op](*args))
+def _value(node: Node) -> Fraction:
+    args = [_value(arg) for arg in node.args]
+    return ARITHMETIC[node.op](*args) if args else Fraction(node.value)
