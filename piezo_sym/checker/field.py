@@ -13,7 +13,7 @@ from typing import Any
 
 from flint import fmpq, fmpq_mpoly_ctx
 
-from .laws import ARITHMETIC, KINKS, Node, compare, need, negated, num, sym, unkinked
+from .laws import ARITHMETIC, KINKS, Node, compare, need, negated, num, sym, symbols, unkinked
 
 SIZE, MAX_TERMS, MAX_PRODUCT = 160, 3000, 60_000
 CTX = fmpq_mpoly_ctx.get([f"x{n}" for n in range(SIZE)], "lex")
@@ -89,9 +89,12 @@ def constant(value: int | Fraction) -> Ratio:
 
 
 class Field:
-    """The atoms of one comparison; `known` tells of comparisons whether they always hold."""
+    """The atoms of one comparison; `known` tells of comparisons whether they always hold.
 
-    def __init__(self, known: Callable[[Node], bool] = lambda _: False) -> None:
+    Without it no comparison is scaled: factors that depend on the size of a bank stay.
+    """
+
+    def __init__(self, known: Callable[[Node], bool] | None = None) -> None:
         self.atoms, self.trees, self.known = dict[Any, int](), list[Node](), known
         #: Atoms a of which a**power = b: choices are their own square, roots of an atom.
         self.powers: dict[int, tuple[int, int]] = {}
@@ -116,9 +119,9 @@ class Field:
             return self.of(unkinked(node), words)
         if node.op == "if":
             sides = (node.args[0], negated(node.args[0]))
-            settled = next((n for n, side in enumerate(sides) if self.known(side)), None)
-            if settled is not None:
-                return self.of(node.args[1 + settled], words)
+            for side, branch in zip(sides, node.args[1:], strict=True):
+                if self.known and self.known(side):
+                    return self.of(branch, words)
             then, other = (self.of(arg, words) for arg in node.args[1:])
             chosen = constant(0) if then == other else self._choice(node.args[0], words)
             return other + chosen * (then - other)
@@ -139,7 +142,7 @@ class Field:
         less = condition.value in ("<", ">=")
         left, right = condition.args[::-1] if less else condition.args
         found = self.scaled(self.of(left, words) - self.of(right, words))
-        if found.number is None:
+        if found.number is None or symbols(condition):
             key = ("choice", found)
             found = self.atom(key, Node("if", (compare(left, ">", right), num(1), num(0))))
             self.powers.setdefault(self.atoms[key], (2, self.atoms[key]))
@@ -166,14 +169,16 @@ class Field:
 
     def _positive(self, ratio: Ratio) -> list[tuple[Ratio, int]]:
         """Return the factors known to be positive, if need be with a minus, and their powers."""
-        parts = [(ratio.top, 1), (ratio.bottom, -1)] if ratio != 0 else []
+        parts = [(ratio.top, 1), (ratio.bottom, -1)] if self.known and ratio != 0 else []
         factors = [(f, sign * times) for part, sign in parts for f, times in part.factor()[1]]
         both = [(own, times) for f, times in factors for own in (f, -f)]
-        return [(Ratio(f), n) for f, n in both if self.known(compare(self._tree(f), ">"))]
+        return [
+            (Ratio(f), n) for f, n in both if self.known and self.known(compare(self._tree(f), ">"))
+        ]
 
     def scaled(self, ratio: Ratio) -> Ratio:
         """Return an expression without its positive factors, of the same sign."""
-        factor = constant(abs(_lead(ratio.top)) or 1)
+        factor = constant((self.known and abs(_lead(ratio.top))) or 1)
         for part, times in self._positive(ratio):
             factor = factor * part**times
         return ratio / factor

@@ -188,7 +188,7 @@ def _eliminated(left: list[Form], size: int) -> tuple[dict[Any, Form], list[Any]
         ((row[label] not in (1, -1), len(row), n), label)
         for n, row in enumerate(left)
         for label in unknown(row)
-        if not row[label] == 0
+        if row[label] != 0
     ]:
         (_, _, n), label = min(choices, key=lambda choice: choice[0])
         row = left.pop(n)

@@ -203,7 +203,7 @@ class _Closed:
     """
 
     def __init__(self) -> None:
-        self.where, self.claims, self.field = list[Node](), list[Claim](), Field()
+        self.where, self.claims, self.field = list[Node](), list[Claim](), Field(lambda _: False)
 
     def tree(self, node: Node, path: tuple[Node, ...]) -> Node:
         """Return a law in choices of sides; book what is needed for it to have a value."""
