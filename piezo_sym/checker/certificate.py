@@ -9,6 +9,7 @@ side*t, which cover the line.
 
 from collections.abc import Mapping
 from fractions import Fraction
+from math import inf
 from typing import Any
 
 from . import laws
@@ -102,19 +103,21 @@ class _Certificate:
 
     def _rays(self, f: Node, rays: Any) -> None:
         """Refuse f if f(s)*s >= 0 is not shown for all real s: on windows that cover them."""
-        covered: list[tuple[Any, Any]] = []
+        covered, reached, zero = list[tuple[Any, Any]](), -inf, Fraction(0)
         for ray in rays:
             centre, side = Fraction(ray["centre"]), ray["side"]
-            covered.append((centre, centre))
-            good = side in (1, -1) and shown(f, centre, side, (Fraction(0), Fraction(0)), self.real)
-            need(good, f"f is not shown to have its sign at {centre}")
-            for lo, hi, _ in ray["windows"]:
-                ends = Fraction(lo), None if hi == "inf" else Fraction(hi)
-                good = self._window(f, centre, side, ends)
-                need(good, f"f is not shown to have its sign from {lo} to {hi} of {centre}")
-                moved = [None if t is None else centre + side * t for t in ends]
-                covered.append((moved[0], moved[1]) if side > 0 else (moved[1], moved[0]))
-        need(bool(covered) and _is_line(covered), "the windows do not cover the line")
+            windows = [
+                (Fraction(lo), inf if hi == "inf" else Fraction(hi)) for lo, hi, _ in ray["windows"]
+            ]
+            for ends in [(zero, zero), *windows]:
+                good = side in (1, -1) and self._window(f, centre, side, ends)
+                need(
+                    good, f"f is not shown to have its sign from {ends[0]} to {ends[1]} of {centre}"
+                )
+                covered.append(tuple(sorted(centre + side * t for t in ends)))
+        for lo, hi in sorted(covered):
+            reached = max(reached, hi) if lo <= reached else reached
+        need(reached == inf, "the windows do not cover the line")
 
     def _window(self, f: Node, centre: Fraction, side: int, ends: tuple[Fraction, Any]) -> bool:
         """Return whether f(s)*s >= 0 on a window and where it starts, after cuts."""
@@ -124,20 +127,9 @@ class _Certificate:
             a, b = pieces.pop()
             if self.left < 0 or a < 0 or not shown(f, centre, side, (a, a), self.real):
                 return False
-            if shown(f, centre, side, (a, b), self.real):
-                continue
-            if a >= FARTHEST or (b is not None and b - a < NARROWEST * max(b, 1)):
-                return False
-            middle = max(2 * a, Fraction(1)) if b is None else (a + b) / 2
-            pieces += [(middle, b), (a, middle)]
+            if a < b and not shown(f, centre, side, (a, b), self.real):
+                if a >= FARTHEST or b - a < NARROWEST * max(b, 1):
+                    return False
+                middle = max(2 * a, Fraction(1)) if b == inf else (a + b) / 2
+                pieces += [(middle, b), (a, middle)]
         return True
-
-
-def _is_line(covered: list[tuple[Any, Any]]) -> bool:
-    """Return whether closed intervals (None: infinity) cover the real line."""
-    ends = sorted(((lo is not None, lo or 0), (hi is None, hi or 0)) for lo, hi in covered)
-    good, reached = not ends[0][0][0], ends[0][1]
-    for (_, lo), hi in ends[1:]:
-        good &= reached[0] or lo <= reached[1]
-        reached = max(reached, hi)
-    return good and reached[0]

@@ -95,7 +95,8 @@ class Field:
     """
 
     def __init__(self, known: Callable[[Node], bool] | None = None) -> None:
-        self.atoms, self.trees, self.known = dict[Any, int](), list[Node](), known
+        self.atoms, self.trees, self.scales = dict[Any, int](), list[Node](), known is not None
+        self.known = known or (lambda _: False)
         #: Atoms a of which a**power = b: choices are their own square, roots of an atom.
         self.powers: dict[int, tuple[int, int]] = {}
 
@@ -120,7 +121,7 @@ class Field:
         if node.op == "if":
             sides = (node.args[0], negated(node.args[0]))
             for side, branch in zip(sides, node.args[1:], strict=True):
-                if self.known and self.known(side):
+                if self.known(side):
                     return self.of(branch, words)
             then, other = (self.of(arg, words) for arg in node.args[1:])
             chosen = constant(0) if then == other else self._choice(node.args[0], words)
@@ -161,24 +162,22 @@ class Field:
 
     def _simple(self, base: Ratio, power: int) -> Ratio:
         """Return a root as an atom, of which a power is known if it is one of an atom."""
-        key, quotient = (power, base), Node("/", (self._tree(base.top), self._tree(base.bottom)))
-        found = self.atom(key, Node("**", (quotient,), Fraction(1, power)))
+        key = power, base
+        found = self.atom(key, Node("**", (self.tree(base),), Fraction(1, power)))
         if base.bottom.is_one() and len(base.top) == base.top.total_degree() == 1:
             self.powers[self.atoms[key]] = power, [*map(int, base.top.monoms()[0])].index(1)
         return found
 
     def _positive(self, ratio: Ratio) -> list[tuple[Ratio, int]]:
         """Return the factors known to be positive, if need be with a minus, and their powers."""
-        parts = [(ratio.top, 1), (ratio.bottom, -1)] if self.known and ratio != 0 else []
+        parts = [(ratio.top, 1), (ratio.bottom, -1)] if self.scales and ratio != 0 else []
         factors = [(f, sign * times) for part, sign in parts for f, times in part.factor()[1]]
         both = [(own, times) for f, times in factors for own in (f, -f)]
-        return [
-            (Ratio(f), n) for f, n in both if self.known and self.known(compare(self._tree(f), ">"))
-        ]
+        return [(Ratio(f), n) for f, n in both if self.known(compare(self._tree(f), ">"))]
 
     def scaled(self, ratio: Ratio) -> Ratio:
         """Return an expression without its positive factors, of the same sign."""
-        factor = constant((self.known and abs(_lead(ratio.top))) or 1)
+        factor = constant(abs(_lead(ratio.top)) or 1 if self.scales else 1)
         for part, times in self._positive(ratio):
             factor = factor * part**times
         return ratio / factor
@@ -199,9 +198,9 @@ class Field:
         """Return whether two trees are the same function."""
         return self.is_zero(self.of(one) - self.of(other))
 
-    def factors(self, ratio: Ratio) -> list[Node]:
-        """Return the factors above the line that are no numbers, as trees."""
-        return [self._tree(part) for part, _ in ratio.top.factor()[1]]
+    def tree(self, ratio: Ratio) -> Node:
+        """Return an expression as a tree of its atoms."""
+        return Node("/", (self._tree(ratio.top), self._tree(ratio.bottom)))
 
     def _tree(self, polynomial: Any) -> Node:
         terms = []

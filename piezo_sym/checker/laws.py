@@ -84,10 +84,9 @@ def negated(condition: Node) -> Node:
 
 def walk(node: Node) -> Iterator[Node]:
     """Yield a node and all that is in it."""
-    stack = [node]
-    while stack:
-        stack.extend(reversed((top := stack.pop()).args))
-        yield top
+    yield node
+    for arg in node.args:
+        yield from walk(arg)
 
 
 def symbols(node: Node) -> dict[Any, None]:
@@ -95,26 +94,16 @@ def symbols(node: Node) -> dict[Any, None]:
     return dict.fromkeys(n.value for n in walk(node) if n.op == "sym")
 
 
-def replaced(node: Node, change: Callable[[Any], Node]) -> Node:
-    """Return a tree with every symbol changed."""
-    if node.op == "sym":
-        return change(node.value)
-    return Node(node.op, tuple(replaced(arg, change) for arg in node.args), node.value)
-
-
 def put(node: Node, values: Mapping[Any, Node]) -> Node:
     """Return a tree with some symbols replaced by trees."""
-    return replaced(node, lambda name: values.get(name, sym(name)))
+    if node.op == "sym":
+        return values.get(node.value, node)
+    return Node(node.op, tuple(put(arg, values) for arg in node.args), node.value)
 
 
 def made(text: str, **parts: Node) -> Node:
     """Return the tree of a text, its names replaced by trees."""
-    return put(_known(text), parts)
-
-
-@cache
-def _known(text: str) -> Node:
-    return parse(text)
+    return put(parse(text), parts)
 
 
 def unkinked(node: Node) -> Node:
@@ -132,14 +121,11 @@ def derivative(node: Node, by: Any) -> Node:
     """Return the derivative of a law by a symbol, branch by branch."""
     if by not in symbols(node) or node.op == "sym":
         return num(int(node.op == "sym" and node.value == by))
-    if node.op in KINKS:
-        return derivative(unkinked(node), by)
-    if node.op == "if":
-        return Node("if", (node.args[0], *(derivative(arg, by) for arg in node.args[1:])))
-    inner = tuple(derivative(arg, by) for arg in node.args)
+    node = unkinked(node) if node.op in KINKS else node
+    inner = tuple(arg if arg.op == "cmp" else derivative(arg, by) for arg in node.args)
     x, z, dx, dz = node.args[0], node.args[-1], inner[0], inner[-1]
-    if node.op == "+":
-        return Node("+", inner)
+    if node.op in ("+", "if"):
+        return Node(node.op, inner)
     if node.op == "**":
         return made("n*y*dx", n=num(node.value), y=Node("**", (x,), node.value - 1), dx=dx)
     if node.op == "/" and dz == num(0):
@@ -159,6 +145,7 @@ def number(text: str) -> Fraction:
         raise InputError(f"{text[:40]!r} is no finite number") from None
 
 
+@cache
 def parse(text: Any, length: int = MAX_LENGTH, compares: bool | None = None) -> Node:
     """Return the tree of a law, or of a comparison if it `compares` (None: of either).
 

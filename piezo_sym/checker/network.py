@@ -7,7 +7,7 @@ Every branch's through variable and every node's potential is an unknown; a law 
 its letter is an equation, in either causality.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -35,31 +35,26 @@ class SingularError(Exception):
 
 
 class Flows(NamedTuple):
-    """A network solved, by (element, lane); `forms` says what each letter is a combination of."""
+    """A network solved, by (element, lane)."""
 
     letters: dict[Slot, Any]
     outputs: dict[Slot, Any]
     rates: dict[Slot, Any]
     conjugates: dict[str, Any]
-    forms: dict[Slot, Form]
     pivots: list[Any]
 
 
-def _parts(spec: Spec, counts: Mapping[str, int]) -> list[Part]:
-    """Return every branch, those of a bank once per lane, a hysteron as a store and a law."""
-    found = []
+def _parts(spec: Spec, counts: Mapping[str, int]) -> Iterator[Part]:
     for e in spec.of("store", "law", "source", "coupling", "hysteron"):
         for lane in range(1, counts[e.name] + 1) if e.lanes is not None else (0,):
-            roles, pairs = (
-                ("01", e.pairs) if e.kind.form == "coupling" else ([e.kind.form], e.pairs)
-            )
             if e.kind.form == "hysteron":
                 (a, b), inner = e.pairs[0], (e.name, lane)
-                roles, pairs = ["store", "law"], ((a, inner), (inner, b))
-            for role, pair in zip(roles, pairs, strict=True):
-                across = role == "law" if e.kind.form == "hysteron" else e.across
-                found.append(Part(e.name, lane, role, pair, across))
-    return found
+                yield Part(e.name, lane, "store", (a, inner), False)
+                yield Part(e.name, lane, "law", (inner, b), True)
+                continue
+            roles = "01" if e.kind.form == "coupling" else [e.kind.form]
+            for role, pair in zip(roles, e.pairs, strict=True):
+                yield Part(e.name, lane, role, pair, e.across)
 
 
 def flows(spec: Spec, counts: Mapping[str, int], algebra: Any) -> Flows:
@@ -70,9 +65,9 @@ def flows(spec: Spec, counts: Mapping[str, int], algebra: Any) -> Flows:
     SingularError
         If its laws have no, or more than one, solution, or a loop of laws that are not linear.
     """
-    found = _parts(spec, counts)
+    found = list(_parts(spec, counts))
     answers, pivots = _solved(spec, found, algebra)
-    made = Flows({}, {}, {}, {}, {}, pivots)
+    made = Flows({}, {}, {}, {}, pivots)
 
     def total(form: Form) -> Any:
         terms = algebra.one - algebra.one
@@ -86,7 +81,7 @@ def flows(spec: Spec, counts: Mapping[str, int], algebra: Any) -> Flows:
 
     for part in sorted((p for p in found if p.role == "law"), key=lambda p: _is_equation(spec, p)):
         slot, element = (part.element, part.lane), spec.elements[part.element]
-        made.forms[slot], made.letters[slot] = answers[part], total(answers[part])
+        made.letters[slot] = total(answers[part])
         made.outputs[slot] = algebra.law(element, "law", part.lane, made.letters[slot])
     for part in found:
         if part.role == "store":
@@ -99,7 +94,6 @@ def flows(spec: Spec, counts: Mapping[str, int], algebra: Any) -> Flows:
 
 
 def _heat(spec: Spec, algebra: Any, made: Flows) -> None:
-    """Add the rates of entropies: what processes produce, and what is exchanged."""
     heat = {body.name: algebra.given("T", body.name, 0) for body in spec.of("body")}
     rates = dict.fromkeys(heat, algebra.one - algebra.one)
     for slot, W in made.outputs.items():
@@ -128,7 +122,6 @@ def _is_equation(spec: Spec, part: Part) -> bool:
 
 
 def _solved(spec: Spec, found: list[Part], algebra: Any) -> tuple[dict[Any, Form], list[Any]]:
-    """Return for each branch the variable that it does not impose, and the pivots."""
     rows, one, balances = list[Form](), algebra.one, dict[Any, Form]()
     for n, part in enumerate(found):
         for node, sign in zip(part.nodes, (one, -one), strict=True):
@@ -144,7 +137,6 @@ def _solved(spec: Spec, found: list[Part], algebra: Any) -> tuple[dict[Any, Form
 
 
 def _law(spec: Spec, part: Part, before: Part, after: Part, algebra: Any) -> Form:
-    """Return the equation of one branch, a form that vanishes."""
     element, one, own = spec.elements[part.element], algebra.one, {part: algebra.one}
     across = _potential(part.nodes, one)
     if part.role == "1":  # through_2 = -ratio * (through_1 or across_1)
@@ -174,7 +166,6 @@ def _added(left: Form, right: Form, factor: Any) -> Form:
 
 
 def _eliminated(left: list[Form], size: int) -> tuple[dict[Any, Form], list[Any]]:
-    """Return each unknown as a form of the givens, by Gauss and Jordan; plain pivots first."""
 
     def unknown(row: Form) -> list[Any]:
         return [key for key in row if isinstance(key, Part) or key[0] == "e"]

@@ -8,7 +8,7 @@ the remainder on the window, and what is exactly zero at lo is divided out, t - 
 
 from fractions import Fraction
 from itertools import product
-from math import prod
+from math import inf, prod
 from typing import Any
 
 from flint import arb, arb_series, ctx, fmpq
@@ -28,11 +28,11 @@ Found = frozenset[int]
 
 
 class Signs:
-    """Signs on lo < t <= hi; `hi` None is infinity, lo = hi one point, trees having no t there."""
+    """Signs on lo < t <= hi; lo = hi one point, trees having no t there."""
 
-    def __init__(self, lo: Fraction, hi: Fraction | None, prover: Prover) -> None:
+    def __init__(self, lo: Fraction, hi: Any, prover: Prover) -> None:
         self.lo, self.hi, self.prover, self.known = lo, hi, prover, dict[Node, Found]()
-        ends = [compare(T, ">", lo), *([] if hi is None else [compare(T, "<=", hi)])]
+        ends = [compare(T, ">", lo), *([] if hi == inf else [compare(T, "<=", hi)])]
         self.where = tuple(ends) if lo != hi else ()
 
     def of(self, node: Node) -> Found:
@@ -72,9 +72,9 @@ class Signs:
     def _looked(self, node: Node) -> Found:
         """Return the signs of a tree as a whole."""
         tree = Node(node.op, tuple(map(self._settled, node.args)), node.value)
-        found = self._expanded(tree) if self.hi is not None else ALL
+        found = self._expanded(tree) if self.hi != inf else ALL
         rational = not any(part.op in laws.SMOOTH for part in laws.walk(tree))
-        if found == ALL and (self.hi is None or rational):
+        if found == ALL and (self.hi == inf or rational):
             for side in ("=", ">=", "<="):
                 if self.prover.proves(compare(tree, side), self.where):
                     return frozenset(HOLD[side])
@@ -93,7 +93,7 @@ class Signs:
         return Node(node.op, tuple(args), node.value)
 
     def _expanded(self, node: Node) -> Found:
-        radius = arb(_exact(((self.hi or 0) - self.lo) / 2))
+        radius = arb(_exact((self.hi - self.lo) / 2))
         step, field = arb(radius, radius), Field()
         try:
             both = [arb_series([_exact(self.lo) + more, 1]) for more in (arb(0), step)]

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from . import laws
 from .field import Field
 from .kinds import GIVES, KINDS, LETTERS, REFERENCES, STATES, Kind
-from .laws import InputError, Node, compare, made, need, num, parse, sym, symbols, walk
+from .laws import InputError, Node, compare, made, need, num, parse, put, sym, symbols, walk
 from .units import Dimension, check, unit
 
 DOTTED = re.compile(r"(\s*\.\s*[\w\"'-]+){9}")
@@ -121,7 +121,6 @@ class _Reader:
         return found
 
     def _words(self, raw: dict[str, dict[str, Any]]) -> dict[str, Symbol]:
-        """Return what each name of the domain means; a name has one meaning."""
         found = [(name, ("p", name)) for name in self.parameters]
         found += [(name, ("u", name)) for name in self.inputs]
         for name, kind in self.kinds.items():
@@ -140,7 +139,7 @@ class _Reader:
             Field().of(part)  # refuses what is too large to be written out
         unknown = [str(name)[:60] for name in symbols(tree) if name not in words]
         need(not unknown, f"{text[:60]!r} has unknown names: {', '.join(unknown)}")
-        return laws.replaced(tree, lambda name: sym(words[name]))
+        return put(tree, {name: sym(words[name]) for name in symbols(tree)})
 
     # Elements
 
@@ -229,7 +228,6 @@ class _Reader:
             yield owner, tuple(trees)
 
     def _lists(self, conditions: list[Node]) -> Iterator[tuple[str, str]]:
-        """Yield the bank of each list; refuse those that are not of one bank's laws alone."""
         owner: dict[Symbol, str] = {("x", n): n for n, e in self.elements.items() if e.lanes}
         for name, values in self.parameters.items():
             if isinstance(self.tables["parameters"][name]["value"], list):

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from . import laws
 from .field import Field, Ratio, constant
-from .laws import KINKS, InputError, Node, need, num, parse, sym, symbols, walk
+from .laws import KINKS, InputError, Node, need, num, parse, put, sym, symbols, walk
 from .network import Flows, SingularError, exchange, flows
 from .spec import Element, Spec
 
@@ -146,26 +146,21 @@ class _Comparison:
             self.finding.reasons.setdefault(subject, f"{what} is not that of the network")
 
     def _keep(self, own: Flows) -> None:
-        """Keep what must be nonzero, and letters that are sums of states of their lane, inputs."""
-        determinant = constant(1)
+
+        elements, lists = self.spec.elements, self.spec.lists
         for pivot in own.pivots:
-            determinant *= pivot
-        for tree in self.field.factors(determinant):
-            spelled = laws.replaced(tree, lambda key: sym(key if key[-1] else key[:2]))
-            self.finding.divisors[spelled] = None
-        for (name, _), form in own.forms.items():
-            terms = [num(0)]
-            for (role, owner, _), factor in form.items():
-                source = self.spec.elements[owner]
-                own_lane = source.lanes is None or owner == name
-                if role != "W" and own_lane and factor.number is not None:
-                    of = sym(("u", source.input)) if role == "u" else source.costate or num(0)
-                    terms.append(Node("*", (num(factor.number), of)))
-            if len(terms) > len(form):
-                self.finding.letters[name] = Node("+", tuple(terms))
+            tree = self.field.tree(pivot).args[0]
+            words = {key: sym(key if key[-1] else key[:2]) for key in symbols(tree)}
+            self.finding.divisors[put(tree, words)] = None
+        for (name, lane), letter in own.letters.items():
+            tree, lanes = self.field.tree(letter), {name: lane}
+            costates = {k: elements[k[1]].costate for k in symbols(tree) if k[0] == "E"}
+            words = {k: costates.get(k) or sym(k[:2]) for k in symbols(tree)}
+            self.finding.letters.pop(name, None)
+            if all(k[2:] in ((), (0,), (lanes.get(lists.get(k[1], k[1])),)) for k in words):
+                self.finding.letters[name] = put(tree, words)
 
     def _gradient(self) -> None:
-        """Compare dU/dx with the co-states; a choice in U may be of parameters alone."""
         energy, states = self.text.energy, self.spec.states
         terms = [
             (term.args[0], {term.value: 1}) if term.op == "sum" else (term, {})
