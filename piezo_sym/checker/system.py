@@ -180,7 +180,7 @@ class _Comparison:
             self._equal("energy", sum(slopes, constant(0)), own, f"dU/d{state}")
 
 
-def check_system(spec: Spec, system: Mapping[str, Any]) -> Finding:
+def check_system(spec: Spec, system: Any) -> Finding:
     """Return what is found of a published system."""
     finding, banks = Finding({}, {}, {}), {e.name for e in spec.elements.values() if e.lanes}
     try:
