@@ -14,7 +14,7 @@ import cvc5
 from cvc5 import Kind
 
 from .field import Field
-from .laws import KINKS, InputError, Node, compare, made, negated, num, symbols, unkinked
+from .laws import KINKS, Node, compare, made, negated, num, symbols, unkinked
 
 EFFORT, MILLISECONDS, SECONDS, MOST_PAIRS = 100_000, 8000, 300, 12
 KINDS = {"+": Kind.ADD, "*": Kind.MULT, "neg": Kind.NEG, "if": Kind.ITE, "=": Kind.EQUAL}
@@ -32,16 +32,14 @@ FACTS = {
     "x <= 0: (1 + y)*(1 - x + x**2) <= 1",
 }
 RISING = "x < a: y < b; x > a: y > b; x >= a: y >= b; x <= a: y <= b"
-MIRROR = "x + a <= 0: y + b <= 0; x + a >= 0: y + b >= 0"
+EQUAL = "x <= a: x >= a: y <= b; x <= a: x >= a: y >= b"
 PAIRS = {
     "exp": f"{RISING}; x + a <= 0: y*b <= 1; x + a >= 0: y*b >= 1",
     "log": f"x > 0: a > 0: {RISING.replace('; ', '; x > 0: a > 0: ')}",
-    "tanh": f"{RISING}; {MIRROR}",
-    "sin": "x <= a: x >= a: y <= b; x <= a: x >= a: y >= b;"
-    "x + a <= 0: x + a >= 0: y + b <= 0; x + a <= 0: x + a >= 0: y + b >= 0",
-    "cos": "(x - a)*(x + a) <= 0: (x - a)*(x + a) >= 0: y <= b",
+    "tanh": f"{RISING}; x + a <= 0: y + b <= 0; x + a >= 0: y + b >= 0",
+    "sin": f"{EQUAL}; {EQUAL.replace('a', '-a').replace('b', '-b')}",
+    "cos": f"{EQUAL}; {EQUAL.replace('a', '-a')}",
 }
-PAIRS["cos"] += f"; {PAIRS['cos'].replace('y <= b', 'y >= b')}"
 
 
 class Claim(NamedTuple):
@@ -86,11 +84,11 @@ class _Query:
             return self.make.mkReal(node.value.numerator, node.value.denominator)
         if node.op in KINKS:
             return self.term(unkinked(node))
-        if node.op == "+" and len(args) == 1:
-            return self.term(args[0])
-        if (node.value if node.op == "cmp" else node.op) in KINDS:
-            kind = KINDS[node.value if node.op == "cmp" else node.op]
+        kind = KINDS.get(node.value if node.op == "cmp" else node.op)
+        if kind and len(args) > 1 - (node.op == "neg"):
             return self.make.mkTerm(kind, *map(self.term, args))
+        if node.op == "+":
+            return self.term(args[0])
         if node.op == "**":
             return self.term(self._power(args[0], Fraction(node.value)))
         if node.op == "/" and args[1].op == "num" and args[1].value:
@@ -106,12 +104,17 @@ class _Query:
 
     def _power(self, x: Node, exponent: Fraction) -> Node:
         """Return x**(p/q) in products, by y with x >= 0 -> y >= 0 and y**q = x."""
+        y = (
+            x
+            if exponent.denominator == 1
+            else self._fresh(Node("root", (x,), exponent.denominator))
+        )
         if exponent.denominator > 1:
-            y = self._fresh(Node("root", (x,), exponent.denominator))
+            raised = Node("*", (y,) * exponent.denominator)
             self.add(compare(y, ">="), compare(x, ">="))
-            self.add(compare(_times(y, exponent.denominator), "=", x), compare(x, ">="))
-            x = y
-        size = _times(x, abs(exponent.numerator))
+            self.add(compare(raised, "=", x), compare(x, ">="))
+        size = Node("*", (num(1), *[y] * abs(exponent.numerator)))
+        size = size if exponent else num(1)
         return size if exponent >= 0 else Node("/", (num(1), size))
 
     def _function(self, name: str, x: Node, y: Node) -> None:
@@ -127,17 +130,6 @@ class _Query:
         others.append((x, y))
 
 
-def _times(x: Node, count: int) -> Node:
-    return num(1) if count == 0 else x if count == 1 else Node("*", (x,) * count)
-
-
-def _same(left: Node, right: Node) -> bool:
-    try:
-        return Field().same(left, right)
-    except InputError:  # too large to be written out
-        return False
-
-
 class Prover:
     """Answers claims under the conditions of a domain, and `ties` between names and states."""
 
@@ -148,13 +140,13 @@ class Prover:
     def proves(self, claim: Node, path: tuple[Node, ...] = ()) -> bool:
         """Return whether a claim follows from the domain and a path."""
         key = Claim(path, claim)
-        if claim.value == "=" and _same(*claim.args):
-            self.answers[key] = True
         if key not in self.answers:
             names = {name for tree in (claim, *path) for name in symbols(tree)}
             near = tuple(c for c in self.domain if set(symbols(c)) <= names)
             tries = dict.fromkeys((near, self.domain, (*self.domain, *self.ties)))
-            self.answers[key] = any(self._follows(claim, (*where, *path)) for where in tries)
+            same = claim.value == "=" and Field().same(*claim.args)
+            follows = (self._follows(claim, (*where, *path)) for where in tries)
+            self.answers[key] = same or any(follows)
         return self.answers[key]
 
     def _follows(self, claim: Node, where: tuple[Node, ...]) -> bool:
@@ -167,23 +159,20 @@ class Prover:
 
 def partial(node: Node, path: tuple[Node, ...] = ()) -> Iterator[Claim]:
     """Yield what must hold for a tree to have a value, where each part is reached."""
-    if node.op == "if":
-        yield from partial(node.args[0], path)
-        yield from partial(node.args[1], (*path, node.args[0]))
-        yield from partial(node.args[2], (*path, negated(node.args[0])))
-        return
-    for arg in node.args:
-        yield from partial(arg, path)
+    sides = (
+        ((), (node.args[0],), (negated(node.args[0]),))
+        if node.op == "if"
+        else [()] * len(node.args)
+    )
+    for arg, side in zip(node.args, sides, strict=True):
+        yield from partial(arg, (*path, *side))
     yield from (Claim(path, claim) for claim in needed(node))
 
 
 def needed(node: Node) -> Iterator[Node]:
     """Yield what must hold of a function's arguments for it to have a value."""
-    given = {"/": -1, "**": node.value}.get(node.op, 1)
-    power, last = Fraction(given), node.args[-1] if node.args else node
-    if node.op == "log" or (power < 0 and power.denominator > 1):
-        yield compare(last, ">")
-    elif power.denominator > 1:
-        yield compare(last, ">=")
-    elif power < 0 and not (last.op == "num" and last.value):
-        yield compare(last, "!=")
+    power = Fraction({"/": -1, "**": node.value}.get(node.op, 1))
+    if node.op == "log" or power.denominator > 1:
+        yield compare(node.args[0], ">" if node.op == "log" or power < 0 else ">=")
+    elif power < 0 and not (node.args[-1].op == "num" and node.args[-1].value):
+        yield compare(node.args[-1], "!=")
