@@ -3,8 +3,8 @@
 Input: a law, and the cases of its certificate.  Output: `InputError` if it does not hold.  A case
 holds where its guards do; there the law is a sum of terms, each prefactor*f(s) with letter =
 scale*s, or prefactor/letter if it has no f.  cvc5 answers that the cases cover the domain, and for
-the prefactor's sign; that f(s)*s has that sign is shown on windows lo < t <= hi of s = centre +
-side*t, which cover the line.
+the prefactor's sign; that f(s)*s has that sign is shown by `signs` on windows lo < t <= hi of
+s = centre + side*t, which cover the line.
 """
 
 from collections.abc import Mapping

@@ -60,7 +60,8 @@ class Signs:
         else:
             rule = RULES.get(node.op)
             found = frozenset(rule(*signs) for signs in product(*parts)) if rule else ALL
-        return found if not {-1, 1} <= found else self._looked(node)
+        told = node.op in laws.KINKS or not {-1, 1} <= found
+        return found if told else self._looked(node)
 
     def _branches(self, node: Node) -> tuple[Node, ...]:
         """Return the branch of a choice that is taken, or both."""

@@ -78,7 +78,7 @@ class _Comparison:
             self.spec.lists if role == "p" else self.counts if role in "xE" else ()
         )
         need(lane > 0 or not per_lane, f"{owner!r} is of a lane, and stands outside of lanes")
-        return self.field.symbol((role, owner, lane if per_lane else 0))
+        return self.field.of(sym((role, owner, lane if per_lane else 0)))
 
     def law(self, element: Element, field: str, lane: int, letter: Ratio | None = None) -> Ratio:
         tree = element.law if field == "law" else element.laws.get(field, element.costate)
