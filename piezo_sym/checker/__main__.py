@@ -20,7 +20,12 @@ def main(arguments: list[str]) -> int:
     if not __package__:  # run as a folder: it becomes a package that hides no other module
         folder = str(Path(__file__).parent)
         sys.path[:] = [*(path for path in sys.path if path != folder), str(Path(folder).parent)]
-    checker, rows = (import_module((__package__ or "checker") + name) for name in ("", ".rows"))
+    try:
+        checker, rows = (import_module((__package__ or "checker") + name) for name in ("", ".rows"))
+    except ImportError as error:
+        remedy = "pip install 'piezo_sym[proof]'"
+        print(f"{error.name} is not installed: {remedy}", file=sys.stderr)  # noqa: T201
+        return 2
     try:
         texts = [Path(path).read_text(encoding="utf-8-sig") for path in arguments]
         found_rows = list(rows.audit(checker.read_spec(texts[0]), json.loads(texts[1])))
