@@ -7,7 +7,7 @@ input is bad.
 import json
 import resource
 import sys
-from importlib import import_module, util
+from importlib import import_module
 from pathlib import Path
 
 SECONDS, BYTES = 900, 6 * 2**30
@@ -17,15 +17,15 @@ def main(arguments: list[str]) -> int:
     """Print what is confirmed of a spec; return the exit status."""
     resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS))
     resource.setrlimit(resource.RLIMIT_AS, (BYTES, BYTES))
-    if not __package__:  # run as a folder: it becomes a package, and hides no other module
-        folder = Path(__file__).parent
-        sys.path[:] = [path for path in sys.path if path != str(folder)]
-        found = util.spec_from_file_location("checker", folder / "__init__.py")
-        assert found is not None
-        assert found.loader is not None
-        sys.modules["checker"] = util.module_from_spec(found)
-        found.loader.exec_module(sys.modules["checker"])
-    checker, rows = (import_module((__package__ or "checker") + name) for name in ("", ".rows"))
+    if not __package__:  # run as a folder: it becomes a package that hides no other module
+        folder = str(Path(__file__).parent)
+        sys.path[:] = [*(path for path in sys.path if path != folder), str(Path(folder).parent)]
+    try:
+        checker, rows = (import_module((__package__ or "checker") + name) for name in ("", ".rows"))
+    except ImportError as error:
+        remedy = "pip install 'piezo_sym[proof]'"
+        print(f"{error.name} is not installed: {remedy}", file=sys.stderr)  # noqa: T201
+        return 2
     try:
         texts = [Path(path).read_text(encoding="utf-8-sig") for path in arguments]
         found_rows = list(rows.audit(checker.read_spec(texts[0]), json.loads(texts[1])))

@@ -1,30 +1,32 @@
-"""Laws as text to trees, by a small parser of the checker's own, and trees from trees.
+"""Laws as text to trees, read by Python's own parser and never run, and trees from trees.
 
 Input: text of the law grammar (numbers, names, + - * / **, ``a if x < y else b``, functions; in a
-published system ``sum(bank, law)`` too).  Output: `Node` trees with exact rationals.  A tree is
-data; limits on length, nesting and digits keep hostile text from costing time.
+published system ``sum(bank, law)`` too).  Output: `Node` trees with exact rationals.  Limits on
+length, nesting and digits keep hostile text from costing time.
 """
 
-from __future__ import annotations
-
+import ast
+import operator
 import re
 from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
 from functools import cache
-from math import ceil, comb, prod
 from typing import Any, NamedTuple
 
-MAX_LENGTH, MAX_DEPTH, MAX_DIGITS, MAX_EXPONENT, MAX_POWER = 1000, 100, 60, 400, 16
-MAX_TERMS = 600
-FUNCTIONS = dict.fromkeys(("exp", "log", "sqrt", "sin", "cos", "tanh", "abs", "sign"), 1)
-FUNCTIONS |= dict.fromkeys(("min", "max", "deadzone", "saturate"), 2)
-BINDS = {"if": 1, "<": 2, "<=": 2, ">": 2, ">=": 2, "+": 3, "-": 3, "*": 4, "/": 4, "**": 6}
-PREFIX = 5
-TOKEN = re.compile(
-    r" *((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![A-Za-z0-9_.])"
-    r"|[A-Za-z_][A-Za-z0-9_]*|\*\*|<=|>=|[-+*/(),<>]) *"
+MAX_LENGTH, MAX_DIGITS, MAX_EXPONENT, MAX_POWER = 1000, 60, 400, 16
+PLAIN = re.compile(
+    r"(?>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![A-Za-z0-9_.])|[A-Za-z_]\w*|[-+*/(),<>=]| )*+",
+    re.ASCII,
 )
+SMOOTH = ("exp", "log", "sin", "cos", "tanh")
+FUNCTIONS = dict.fromkeys((*SMOOTH, "abs", "sign"), 1)
+FUNCTIONS |= dict.fromkeys(("min", "max", "deadzone", "saturate"), 2)
+OPERATORS = {ast.Mult: "*", ast.Div: "/", ast.USub: "neg", ast.UAdd: "+"}
+OPERATORS |= {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
 OPPOSITE = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
+#: What operations do in every algebra: numbers, rational functions, power series.
+ARITHMETIC: dict[str, Callable[..., Any]] = {"*": operator.mul, "/": operator.truediv}
+ARITHMETIC |= {"neg": operator.neg, "+": lambda *terms: sum(terms[1:], terms[0])}
 #: Functions with kinks, by their definition, and derivatives of y = f(x).
 KINKS = {
     "abs": "x if x >= 0 else -x",
@@ -35,7 +37,7 @@ KINKS = {
     "saturate": "min(max(x, -z), z)",
 }
 SLOPES = {"exp": "y", "log": "1/x", "sin": "cos(x)", "cos": "-sin(x)", "tanh": "1 - y**2"}
-SLOPES |= {"sqrt": "1/(2*y)", "*": "dx*z + x*dz", "/": "dx/z - x*dz/z**2", "neg": "-dx"}
+SLOPES |= {"*": "dx*z + x*dz", "/": "dx/z - x*dz/z**2", "neg": "-dx"}
 
 
 class InputError(Exception):
@@ -45,12 +47,12 @@ class InputError(Exception):
 class Node(NamedTuple):
     """A part of a law: an operation, its arguments, and a value where it has one.
 
-    ``num`` has a rational, ``sym`` a name, ``**`` an exponent, ``cmp`` an operator and ``sum`` a
-    bank as `value`; ``if`` has the arguments (comparison, then, else).
+    ``num`` has a rational, ``sym`` a name, ``**`` an exponent (sqrt 1/2), ``cmp`` an operator and
+    ``sum`` a bank as `value`; ``if`` has the arguments (comparison, then, else).
     """
 
     op: str
-    args: tuple[Node, ...] = ()
+    args: tuple["Node", ...] = ()
     value: Any = None
 
 
@@ -82,10 +84,9 @@ def negated(condition: Node) -> Node:
 
 def walk(node: Node) -> Iterator[Node]:
     """Yield a node and all that is in it."""
-    stack = [node]
-    while stack:
-        stack.extend(reversed((top := stack.pop()).args))
-        yield top
+    yield node
+    for arg in node.args:
+        yield from walk(arg)
 
 
 def symbols(node: Node) -> dict[Any, None]:
@@ -93,26 +94,16 @@ def symbols(node: Node) -> dict[Any, None]:
     return dict.fromkeys(n.value for n in walk(node) if n.op == "sym")
 
 
-def replaced(node: Node, change: Callable[[Any], Node]) -> Node:
-    """Return a tree with every symbol changed."""
-    if node.op == "sym":
-        return change(node.value)
-    return Node(node.op, tuple(replaced(arg, change) for arg in node.args), node.value)
-
-
 def put(node: Node, values: Mapping[Any, Node]) -> Node:
     """Return a tree with some symbols replaced by trees."""
-    return replaced(node, lambda name: values.get(name, sym(name)))
+    if node.op == "sym":
+        return values.get(node.value, node)
+    return Node(node.op, tuple(put(arg, values) for arg in node.args), node.value)
 
 
 def made(text: str, **parts: Node) -> Node:
     """Return the tree of a text, its names replaced by trees."""
-    return put(_known(text), parts)
-
-
-@cache
-def _known(text: str) -> Node:
-    return parse(text)
+    return put(parse(text), parts)
 
 
 def unkinked(node: Node) -> Node:
@@ -120,36 +111,27 @@ def unkinked(node: Node) -> Node:
     return made(KINKS[node.op], x=node.args[0], z=node.args[-1])
 
 
+def plain(node: Node) -> Node:
+    """Return a tree with every function with kinks written as a choice."""
+    here = Node(node.op, tuple(map(plain, node.args)), node.value)
+    return plain(unkinked(here)) if node.op in KINKS else here
+
+
 def derivative(node: Node, by: Any) -> Node:
     """Return the derivative of a law by a symbol, branch by branch."""
     if by not in symbols(node) or node.op == "sym":
         return num(int(node.op == "sym" and node.value == by))
-    if node.op in KINKS:
-        return derivative(unkinked(node), by)
-    if node.op == "if":
-        return Node("if", (node.args[0], *(derivative(arg, by) for arg in node.args[1:])))
-    inner = tuple(derivative(arg, by) for arg in node.args)
+    node = unkinked(node) if node.op in KINKS else node
+    inner = tuple(arg if arg.op == "cmp" else derivative(arg, by) for arg in node.args)
     x, z, dx, dz = node.args[0], node.args[-1], inner[0], inner[-1]
-    if node.op == "+":
-        return Node("+", inner)
+    if node.op in ("+", "if"):
+        return Node(node.op, inner)
     if node.op == "**":
         return made("n*y*dx", n=num(node.value), y=Node("**", (x,), node.value - 1), dx=dx)
     if node.op == "/" and dz == num(0):
         return Node("/", (dx, z))
     slope = made(SLOPES[node.op], x=x, y=node, z=z, dx=dx, dz=dz)
     return slope if node.op in ("*", "/", "neg") else Node("*", (slope, dx))
-
-
-def _terms(node: Node, most: int) -> int:
-    """Return how many terms a law has when it is multiplied out; refuse too many."""
-    parts = [_terms(arg, most) for arg in node.args]
-    found = 1 if node.op not in ("+", "neg") else sum(parts)
-    if node.op in "*/":
-        found = prod(parts)
-    elif node.op == "**":
-        found = comb(parts[0] + ceil(abs(node.value)) - 1, ceil(abs(node.value)))
-    need(found <= most, "a law is too large when it is multiplied out")
-    return found
 
 
 def number(text: str) -> Fraction:
@@ -163,6 +145,7 @@ def number(text: str) -> Fraction:
         raise InputError(f"{text[:40]!r} is no finite number") from None
 
 
+@cache
 def parse(text: Any, length: int = MAX_LENGTH, compares: bool | None = None) -> Node:
     """Return the tree of a law, or of a comparison if it `compares` (None: of either).
 
@@ -171,95 +154,58 @@ def parse(text: Any, length: int = MAX_LENGTH, compares: bool | None = None) -> 
     InputError
         If the text is not of the grammar.
     """
-    plain = isinstance(text, str) and len(text) <= length and text.isascii()
-    need(plain, f"{str(text)[:60]!r} is no law of plain text, or too long")
-    parser = _Parser(text, sums=length > MAX_LENGTH)
-    tree = parser.expression(0)
-    parser.need(parser.tokens == [""])
-    need(compares in (None, tree.op == "cmp"), f"{text[:60]!r} is a comparison, or should be one")
-    _terms(tree, MAX_TERMS * length // MAX_LENGTH)
+    plain = isinstance(text, str) and len(text) <= length and PLAIN.fullmatch(text)
+    need(bool(plain), f"{str(text)[:60]!r} is no law of plain text, or too long")
+    try:
+        tree = _tree(ast.parse(text.strip(), mode="eval").body, text.strip())
+    except (SyntaxError, ValueError, LookupError, ArithmeticError, RecursionError, MemoryError):
+        raise InputError(f"{text[:60]!r} is not of the law grammar") from None
+    sums = any(part.op == "sum" for part in walk(tree)) and length <= MAX_LENGTH
+    good = not sums and compares in (None, tree.op == "cmp")
+    need(good, f"{text[:60]!r} is a comparison, or should be one, or has sums")
     return tree
 
 
-class _Parser:
-    """Precedence climbing, as Python reads the same text."""
+def _tree(node: ast.AST, text: str) -> Node:
+    """Return the tree of a part of a text; raises ValueError if laws have no such part."""
 
-    def __init__(self, text: str, sums: bool) -> None:
-        self.text, self.sums, self.depth, place = text, sums, 0, 0
-        self.tokens: list[str] = []
-        while found := TOKEN.match(text, place):
-            self.tokens.append(found[1])
-            place = found.end()
-        self.tokens = ["", *reversed(self.tokens)]
-        self.need(place == len(text))
+    def of(*parts: ast.AST) -> tuple[Node, ...]:
+        found = tuple(_tree(part, text) for part in parts)
+        return found if all(part.op != "cmp" for part in found) else of(ast.Pass())
 
-    def need(self, good: bool, why: str = "is not of the law grammar") -> None:
-        need(good, f"{self.text[:60]!r} {why}")
+    match node:
+        case ast.Constant():
+            return num(number(text[node.col_offset : node.end_col_offset]))
+        case ast.Name(name):
+            return sym(name)
+        case ast.BinOp(base, ast.Pow(), exponent):
+            power = Fraction(_value(of(exponent)[0]))
+            need(max(abs(power.numerator), power.denominator) <= MAX_POWER, "a power is too large")
+            return Node("**", of(base), power)
+        case ast.BinOp(_, ast.Add() | ast.Sub()):
+            terms = list[Node]()
+            while isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
+                (term,) = of(node.right)
+                terms.append(term if isinstance(node.op, ast.Add) else Node("neg", (term,)))
+                node = node.left
+            return Node("+", (*of(node), *reversed(terms)))
+        case ast.BinOp(left, op, right) if type(op) in OPERATORS:
+            return Node(OPERATORS[type(op)], of(left, right))
+        case ast.UnaryOp(op, arg) if type(op) in OPERATORS:
+            return Node(OPERATORS[type(op)], of(arg))
+        case ast.Compare(left, [op], [right]) if type(op) in OPERATORS:
+            return Node("cmp", of(left, right), OPERATORS[type(op)])
+        case ast.IfExp(ast.Compare() as test, then, other):
+            return Node("if", (_tree(test, text), *of(then, other)))
+        case ast.Call(ast.Name("sum"), [ast.Name(bank), law], []):
+            return Node("sum", of(law), bank)
+        case ast.Call(ast.Name("sqrt"), [arg], []):
+            return Node("**", of(arg), Fraction(1, 2))
+        case ast.Call(ast.Name(name), args, []) if FUNCTIONS.get(name) == len(args):
+            return Node(name, of(*args))
+    raise ValueError(node)
 
-    def take(self, *wanted: str) -> str:
-        self.need(self.tokens[-1] in wanted)
-        return self.tokens.pop()
 
-    def made(self, op: str, *args: Node, value: Any = None) -> Node:
-        chosen = [arg.op == "cmp" for arg in args]
-        self.need(not any(chosen[1:] if op == "if" else chosen) and (op != "if" or chosen[0]))
-        return Node(op, args, value)
-
-    def expression(self, least: int) -> Node:
-        self.depth += 1
-        self.need(self.depth <= MAX_DEPTH, "is nested too deeply")
-        tree = self.operand()
-        while (power := BINDS.get(self.tokens[-1], -1)) >= least:
-            operator = self.tokens.pop()
-            right = self.expression({"if": 2, "**": PREFIX}.get(operator, power + 1))
-            if operator == "if":
-                self.take("else")
-                tree = self.made("if", right, tree, self.expression(1))
-            elif operator == "**":
-                tree = self.made("**", tree, value=self.exponent(right))
-            elif operator in "+-":
-                term = self.made("neg", right) if operator == "-" else right
-                tree = self.made("+", *(tree.args if tree.op == "+" else (tree,)), term)
-            elif operator in OPPOSITE:
-                tree = self.made("cmp", tree, right, value=operator)
-            else:
-                tree = self.made(operator, tree, right)
-        self.depth -= 1
-        return tree
-
-    def operand(self) -> Node:
-        token = self.tokens[-1]
-        self.need(token not in ("", "if", "else") and token not in OPPOSITE)
-        self.tokens.pop()
-        if token[0].isdigit() or token[0] == ".":
-            return num(number(token))
-        if token in "+-":
-            tree = self.expression(PREFIX)
-            return self.made("neg", tree) if token == "-" else self.made("+", tree)
-        if token == "(":
-            tree = self.expression(0)
-            self.take(")")
-            return tree
-        self.need(token[0].isalpha() or token[0] == "_")
-        return self.call(token) if self.tokens[-1] == "(" else sym(token)
-
-    def call(self, function: str) -> Node:
-        self.tokens.pop()
-        bank, args = None, list[Node]()
-        if function == "sum" and self.sums:
-            bank = self.operand().value
-            self.take(",")
-        while not args or self.take(",", ")") == ",":
-            args.append(self.expression(0))
-        count = FUNCTIONS.get(function) if bank is None else 1
-        self.need(len(args) == count, "calls what laws do not have")
-        return self.made(function, *args, value=bank)
-
-    def exponent(self, node: Node) -> Fraction:
-        """Return the value of an exponent written with numbers, - and /."""
-        parts = [self.exponent(arg) for arg in node.args]
-        self.need(node.op in ("num", "neg", "/") and parts[1:] != [0], "has no rational power")
-        value = parts[0] / parts[1] if node.op == "/" else -parts[0] if parts else node.value
-        size = max(abs(value.numerator), value.denominator)
-        self.need(size <= MAX_POWER, "has a power beyond small rationals")
-        return Fraction(value)
+def _value(node: Node) -> Fraction:
+    args = [_value(arg) for arg in node.args]
+    return ARITHMETIC[node.op](*args) if args else Fraction(node.value)

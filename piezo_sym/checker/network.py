@@ -2,18 +2,18 @@
 
 Input: a `Spec`, the size of each bank, and the algebra in which the laws are written, numbers or
 rational functions: its `one`, `law(element, field, lane, letter)` ("law" the dissipative one) and
-`given(role, owner, lane)` of an input "u", a co-state "E" or a temperature "T".  Output: `Flows`:
-letters, outputs, rates.  Every branch's through variable and every node's potential is an
-unknown; a law that is linear in its letter is an equation, in either causality.
+`given(role, owner, lane)` of an input "u", a co-state "E" or a temperature "T".  Output: `Flows`.
+Every branch's through variable and every node's potential is an unknown; a law that is linear in
+its letter is an equation, in either causality.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import Any, NamedTuple
 
 from .field import Field
 from .kinds import REFERENCES
-from .laws import Node, made, put, sym
+from .laws import Node, made, num, put, sym
 from .spec import Element, Spec
 
 Form = dict[Any, Any]
@@ -35,30 +35,26 @@ class SingularError(Exception):
 
 
 class Flows(NamedTuple):
-    """A network solved, by (element, lane); `forms` says what each letter is a combination of."""
+    """A network solved, by (element, lane)."""
 
     letters: dict[Slot, Any]
     outputs: dict[Slot, Any]
     rates: dict[Slot, Any]
     conjugates: dict[str, Any]
-    forms: dict[Slot, Form]
     pivots: list[Any]
 
 
-def _parts(spec: Spec, counts: Mapping[str, int]) -> list[Part]:
-    """Return every branch, those of a bank once per lane."""
-    found = []
+def _parts(spec: Spec, counts: Mapping[str, int]) -> Iterator[Part]:
     for e in spec.of("store", "law", "source", "coupling", "hysteron"):
         for lane in range(1, counts[e.name] + 1) if e.lanes is not None else (0,):
             if e.kind.form == "hysteron":
                 (a, b), inner = e.pairs[0], (e.name, lane)
-                found.append(Part(e.name, lane, "store", (a, inner), False))
-                found.append(Part(e.name, lane, "law", (inner, b), True))
+                yield Part(e.name, lane, "store", (a, inner), False)
+                yield Part(e.name, lane, "law", (inner, b), True)
                 continue
-            roles = "01" if e.kind.form == "coupling" else (e.kind.form,)
-            pairs = zip(roles, e.pairs, strict=True)
-            found += [Part(e.name, lane, role, pair, e.across) for role, pair in pairs]
-    return found
+            roles = "01" if e.kind.form == "coupling" else [e.kind.form]
+            for role, pair in zip(roles, e.pairs, strict=True):
+                yield Part(e.name, lane, role, pair, e.across)
 
 
 def flows(spec: Spec, counts: Mapping[str, int], algebra: Any) -> Flows:
@@ -69,23 +65,23 @@ def flows(spec: Spec, counts: Mapping[str, int], algebra: Any) -> Flows:
     SingularError
         If its laws have no, or more than one, solution, or a loop of laws that are not linear.
     """
-    found = _parts(spec, counts)
+    found = list(_parts(spec, counts))
     answers, pivots = _solved(spec, found, algebra)
-    made = Flows({}, {}, {}, {}, {}, pivots)
+    made = Flows({}, {}, {}, {}, pivots)
 
     def total(form: Form) -> Any:
         terms = algebra.one - algebra.one
-        for (role, name, lane), factor in form.items():
-            if role == "W" and (name, lane) not in made.outputs:
+        for (role, *slot), factor in form.items():
+            if role == "W" and (*slot,) not in made.outputs:
                 raise SingularError("laws that are not linear depend on each other")
-            value = made.outputs[name, lane] if role == "W" else algebra.given(role, name, lane)
-            terms = terms + factor * value
+            terms += factor * (
+                made.outputs[(*slot,)] if role == "W" else algebra.given(role, *slot)
+            )
         return terms
 
     for part in sorted((p for p in found if p.role == "law"), key=lambda p: _is_equation(spec, p)):
-        slot = part.element, part.lane
-        made.forms[slot], made.letters[slot] = answers[part], total(answers[part])
-        element = spec.elements[part.element]
+        slot, element = (part.element, part.lane), spec.elements[part.element]
+        made.letters[slot] = total(answers[part])
         made.outputs[slot] = algebra.law(element, "law", part.lane, made.letters[slot])
     for part in found:
         if part.role == "store":
@@ -98,21 +94,19 @@ def flows(spec: Spec, counts: Mapping[str, int], algebra: Any) -> Flows:
 
 
 def _heat(spec: Spec, algebra: Any, made: Flows) -> None:
-    """Add the rates of entropies: what processes produce, and what is exchanged."""
     heat = {body.name: algebra.given("T", body.name, 0) for body in spec.of("body")}
-    rates = {body: algebra.one - algebra.one for body in heat}
-    for (name, lane), W in made.outputs.items():
-        body = spec.elements[name].bodies[0]
-        rates[body] = rates[body] + W * made.letters[name, lane] / heat[body]
-    for e in spec.of("conduction", "ambient"):
-        first = e.bodies[0]
-        if e.kind.form == "ambient":
-            rates[first] = rates[first] + exchange(e, algebra)
-            made.conjugates[e.name] = heat[first]
-            continue
-        power = algebra.law(e, "conductance", 0) * (heat[first] - heat[e.bodies[1]])
-        for body, share in zip(e.bodies, (-power, power), strict=True):
-            rates[body] = rates[body] + share / heat[body]
+    rates = dict.fromkeys(heat, algebra.one - algebra.one)
+    for slot, W in made.outputs.items():
+        body = spec.elements[slot[0]].bodies[0]
+        rates[body] += W * made.letters[slot] / heat[body]
+    for e in spec.of("ambient"):
+        rates[e.bodies[0]] += exchange(e, algebra)
+        made.conjugates[e.name] = heat[e.bodies[0]]
+    for e in spec.of("conduction"):
+        first, second = e.bodies
+        power = algebra.law(e, "conductance", 0) * (heat[first] - heat[second])
+        rates[first] -= power / heat[first]
+        rates[second] += power / heat[second]
     made.rates.update({(body, 0): rate for body, rate in rates.items()})
 
 
@@ -128,7 +122,6 @@ def _is_equation(spec: Spec, part: Part) -> bool:
 
 
 def _solved(spec: Spec, found: list[Part], algebra: Any) -> tuple[dict[Any, Form], list[Any]]:
-    """Return for each branch the variable that it does not impose, and the pivots."""
     rows, one, balances = list[Form](), algebra.one, dict[Any, Form]()
     for n, part in enumerate(found):
         for node, sign in zip(part.nodes, (one, -one), strict=True):
@@ -144,7 +137,6 @@ def _solved(spec: Spec, found: list[Part], algebra: Any) -> tuple[dict[Any, Form
 
 
 def _law(spec: Spec, part: Part, before: Part, after: Part, algebra: Any) -> Form:
-    """Return the equation of one branch, a form that vanishes."""
     element, one, own = spec.elements[part.element], algebra.one, {part: algebra.one}
     across = _potential(part.nodes, one)
     if part.role == "1":  # through_2 = -ratio * (through_1 or across_1)
@@ -173,42 +165,34 @@ def _added(left: Form, right: Form, factor: Any) -> Form:
     return {label: value for label, value in total.items() if (value == 0) is not True}
 
 
-def _is_given(label: Any) -> bool:
-    return not isinstance(label, Part) and label[0] != "e"
-
-
 def _eliminated(left: list[Form], size: int) -> tuple[dict[Any, Form], list[Any]]:
-    """Return each unknown as a form of the givens, by Gauss and Jordan; plain pivots first."""
+
+    def unknown(row: Form) -> list[Any]:
+        return [key for key in row if isinstance(key, Part) or key[0] == "e"]
+
+    def without(form: Form, label: Any, row: Form) -> Form:
+        rest = {key: value for key, value in form.items() if key != label}
+        return _added(rest, row, form[label]) if label in form else form
+
     solved, pivots = dict[Any, Form](), list[Any]()
-    while left:
-        choices = [
-            ((value not in (1, -1), len(row), n), label)
-            for n, row in enumerate(left)
-            for label, value in row.items()
-            if not (_is_given(label) or value == 0)
-        ]
-        if not choices:
-            break
+    while choices := [
+        ((row[label] not in (1, -1), len(row), n), label)
+        for n, row in enumerate(left)
+        for label in unknown(row)
+        if row[label] != 0
+    ]:
         (_, _, n), label = min(choices, key=lambda choice: choice[0])
         row = left.pop(n)
         pivots.append(pivot := row.pop(label))
         row = {key: -value / pivot for key, value in row.items()}
-        left = [_without(other, label, row) for other in left]
-        solved = {key: _without(other, label, row) for key, other in solved.items()} | {label: row}
-    open_ = any(not _is_given(key) for row in solved.values() for key in row)
-    if left or len(solved) != size or open_:
+        left = [without(other, label, row) for other in left]
+        solved = {key: without(other, label, row) for key, other in solved.items()} | {label: row}
+    if left or len(solved) != size or any(unknown(row) for row in solved.values()):
         raise SingularError("the laws of the network have no single solution")
     return solved, pivots
 
 
-def _without(form: Form, label: Any, row: Form) -> Form:
-    if label not in form:
-        return form
-    return _added({k: v for k, v in form.items() if k != label}, row, form[label])
-
-
 @cache
 def is_linear(law: Node, letter: Any) -> bool:
-    """Return whether a law is proportional to its letter: rational, with f(2z) = 2f(z)."""
-    doubled = put(law, {letter: made("2*z", z=sym(letter))})
-    return Field().same(doubled, made("2*x", x=law))
+    """Return whether a law is proportional to its letter: f(z) = z*f(1), by its form."""
+    return Field().same(law, made("z*x", z=sym(letter), x=put(law, {letter: num(1)})))

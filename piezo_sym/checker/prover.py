@@ -8,14 +8,17 @@ premise being the function's own domain: b != 0 -> q*b = a.  Nothing is assumed 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from time import monotonic
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import cvc5
+from cvc5 import Kind
 
+from .field import Field
 from .laws import KINKS, Node, compare, made, negated, num, symbols, unkinked
 
 EFFORT, MILLISECONDS, SECONDS, MOST_PAIRS = 100_000, 8000, 300, 12
-OPERATIONS = {"+": "+", "*": "*", "neg": "-", "if": "ite"}
+KINDS = {"+": Kind.ADD, "*": Kind.MULT, "neg": Kind.NEG, "if": Kind.ITE, "=": Kind.EQUAL}
+KINDS |= {"<": Kind.LT, "<=": Kind.LEQ, ">": Kind.GT, ">=": Kind.GEQ, "!=": Kind.DISTINCT}
 #: What is known of y = f(x), and of two values y and b of f at x and a: "premise: fact".
 FACTS = {
     "exp": "y > 0; y >= 1 + x; x <= 0: y <= 1; x <= 0: y <= 1 + x + x**2/2; x < 1: y*(1 - x) <= 1;"
@@ -29,16 +32,14 @@ FACTS = {
     "x <= 0: (1 + y)*(1 - x + x**2) <= 1",
 }
 RISING = "x < a: y < b; x > a: y > b; x >= a: y >= b; x <= a: y <= b"
-MIRROR = "x + a <= 0: y + b <= 0; x + a >= 0: y + b >= 0"
+EQUAL = "x <= a: x >= a: y <= b; x <= a: x >= a: y >= b"
 PAIRS = {
     "exp": f"{RISING}; x + a <= 0: y*b <= 1; x + a >= 0: y*b >= 1",
     "log": f"x > 0: a > 0: {RISING.replace('; ', '; x > 0: a > 0: ')}",
-    "tanh": f"{RISING}; {MIRROR}",
-    "sin": "x <= a: x >= a: y <= b; x <= a: x >= a: y >= b;"
-    "x + a <= 0: x + a >= 0: y + b <= 0; x + a <= 0: x + a >= 0: y + b >= 0",
-    "cos": "(x - a)*(x + a) <= 0: (x - a)*(x + a) >= 0: y <= b",
+    "tanh": f"{RISING}; x + a <= 0: y + b <= 0; x + a >= 0: y + b >= 0",
+    "sin": f"{EQUAL}; {EQUAL.replace('a', '-a').replace('b', '-b')}",
+    "cos": f"{EQUAL}; {EQUAL.replace('a', '-a')}",
 }
-PAIRS["cos"] += f"; {PAIRS['cos'].replace('y <= b', 'y >= b')}"
 
 
 class Claim(NamedTuple):
@@ -49,108 +50,84 @@ class Claim(NamedTuple):
 
 
 class _Query:
-    """Trees as SMT-LIB text, each part once, and the facts on the functions in them."""
+    """Trees as terms of cvc5, each part once, and the facts on the functions in them."""
 
     def __init__(self) -> None:
-        self.lines = ["(set-logic QF_NRA)"]
-        self.known: dict[Node, str] = {}
-        self.calls: dict[str, list[tuple[Node, Node]]] = {}
+        self.make = cvc5.TermManager()
+        self.solver, self.real = cvc5.Solver(self.make), self.make.getRealSort()
+        self.solver.setLogic("QF_NRA")
+        for option, most in {"rlimit-per": EFFORT, "tlimit-per": MILLISECONDS}.items():
+            self.solver.setOption(option, str(most))
+        self.known, self.calls = dict[Node, Any](), dict[str, list[tuple[Node, Node]]]()
 
-    def holds(self, condition: Node) -> str:
-        left, right = map(self.term, condition.args)
-        if condition.value == "!=":
-            return f"(not (= {left} {right}))"
-        return f"({condition.value} {left} {right})"
+    def add(self, fact: Node, *premises: Node, holds: bool = True) -> None:
+        """Assert a comparison, or its opposite, where premises hold."""
+        term = self.term(fact) if holds else self.make.mkTerm(Kind.NOT, self.term(fact))
+        for premise in premises:
+            term = self.make.mkTerm(Kind.IMPLIES, self.term(premise), term)
+        self.solver.assertFormula(term)
 
-    def term(self, node: Node) -> str:
-        """Return the name of a tree's term, the same for the same tree."""
+    def term(self, node: Node) -> Any:
+        """Return the term of a tree, the same for the same tree."""
         if node not in self.known:
-            text = self._text(node)
-            name = self.known[node] = text if text.isalnum() else f"t{len(self.known)}"
-            if name != text:
-                self.lines.append(f"(define-fun {name} () Real {text})")
+            self.known[node] = self._term(node)
         return self.known[node]
 
     def _fresh(self, node: Node) -> Node:
         symbol = Node("sym", (), ("value", node))
-        name = self.known[symbol] = f"y{len(self.known)}"
-        self.lines.append(f"(declare-const {name} Real)")
+        self.known[symbol] = self.make.mkConst(self.real, f"y{len(self.known)}")
         return symbol
 
-    def _text(self, node: Node) -> str:
+    def _term(self, node: Node) -> Any:
         args = node.args
         if node.op == "num":
-            size = f"(/ {abs(node.value.numerator)}.0 {node.value.denominator}.0)"
-            return size if node.value >= 0 else f"(- {size})"
-        if node.op == "sym":
-            return self.term(self._fresh(node))
+            return self.make.mkReal(node.value.numerator, node.value.denominator)
         if node.op in KINKS:
             return self.term(unkinked(node))
-        if node.op == "+" and len(args) == 1:
+        kind = KINDS.get(node.value if node.op == "cmp" else node.op)
+        if kind and len(args) > 1 - (node.op == "neg"):
+            return self.make.mkTerm(kind, *map(self.term, args))
+        if node.op == "+":
             return self.term(args[0])
-        if node.op in OPERATIONS:
-            parts = (self.holds(arg) if arg.op == "cmp" else self.term(arg) for arg in args)
-            return f"({OPERATIONS[node.op]} {' '.join(parts)})"
-        if node.op in ("**", "sqrt"):
-            return self.term(self._power(args[0], node.value or Fraction(node.op == "sqrt", 2)))
+        if node.op == "**":
+            return self.term(self._power(args[0], Fraction(node.value)))
         if node.op == "/" and args[1].op == "num" and args[1].value:
             return self.term(Node("*", (num(1 / args[1].value), args[0])))
         if node.op == "/" and args[0].op == "neg":  # -(a/b), for a/b may be known
             return self.term(made("-(x/z)", x=args[0].args[0], z=args[1]))
         y = self._fresh(node)
         if node.op == "/":
-            product = compare(Node("*", (y, args[1])), "=", args[0])
-            self._know(product, compare(args[1], "!="))
-        else:
+            self.add(compare(Node("*", (y, args[1])), "=", args[0]), compare(args[1], "!="))
+        elif node.op in FACTS:
             self._function(node.op, args[0], y)
         return self.term(y)
 
-    def _know(self, fact: Node, *premises: Node) -> None:
-        terms = " ".join(map(self.holds, (*premises, fact)))
-        self.lines.append(f"(assert (=> {terms}))")
-
     def _power(self, x: Node, exponent: Fraction) -> Node:
         """Return x**(p/q) in products, by y with x >= 0 -> y >= 0 and y**q = x."""
+        y = (
+            x
+            if exponent.denominator == 1
+            else self._fresh(Node("root", (x,), exponent.denominator))
+        )
         if exponent.denominator > 1:
-            y = self._fresh(Node("root", (x,), exponent.denominator))
-            inside, raised = compare(x, ">="), _times(y, exponent.denominator)
-            self._know(compare(y, ">="), inside)
-            self._know(compare(raised, "=", x), inside)
-            x = y
-        size = _times(x, abs(exponent.numerator))
+            raised = Node("*", (y,) * exponent.denominator)
+            self.add(compare(y, ">="), compare(x, ">="))
+            self.add(compare(raised, "=", x), compare(x, ">="))
+        size = Node("*", (num(1), *[y] * abs(exponent.numerator)))
+        size = size if exponent else num(1)
         return size if exponent >= 0 else Node("/", (num(1), size))
 
     def _function(self, name: str, x: Node, y: Node) -> None:
         """Assert what is known of exp, log, sin, cos or tanh, alone and of two values of one."""
         if (name, x.op) in (("log", "exp"), ("exp", "log")):  # log(exp(a)) = a; a > 0 for the other
-            inside = compare(x.args[0], ">") if name == "exp" else compare(num(1), ">")
-            self._know(compare(y, "=", x.args[0]), inside)
+            self.add(compare(y, "=", x.args[0]), *[compare(x.args[0], ">")] * (name == "exp"))
         others = self.calls.setdefault(name, [])
-        self._facts(FACTS[name], x=x, y=y)
-        for a, b in others[:MOST_PAIRS]:
-            self._facts(PAIRS[name], x=x, y=y, a=a, b=b)
+        pairs = [(PAIRS[name], {"a": a, "b": b}) for a, b in others[:MOST_PAIRS]]
+        for texts, words in [(FACTS[name], dict[str, Node]()), *pairs]:
+            for text in texts.split(";"):
+                *premises, fact = (made(t.strip(), x=x, y=y, **words) for t in text.split(":"))
+                self.add(fact, *premises)
         others.append((x, y))
-
-    def _facts(self, texts: str, **words: Node) -> None:
-        for text in texts.split(";"):
-            *premises, fact = (made(part.strip(), **words) for part in text.split(":"))
-            self._know(fact, compare(num(1), ">"), *premises)
-
-    def answer(self) -> str:
-        """Return sat, unsat or unknown."""
-        solver = cvc5.Solver(cvc5.TermManager())
-        for option, most in {"rlimit-per": EFFORT, "tlimit-per": MILLISECONDS}.items():
-            solver.setOption(option, str(most))
-        parser, text = cvc5.InputParser(solver), "\n".join([*self.lines, "(check-sat)"])
-        parser.setStringInput(cvc5.InputLanguage.SMT_LIB_2_6, text, "query")
-        found = ""
-        while not (command := parser.nextCommand()).isNull():
-            found += str(command.invoke(solver, parser.getSymbolManager()))
-        return found.strip()
-
-
-def _times(x: Node, count: int) -> Node:
-    return num(1) if count == 0 else x if count == 1 else Node("*", (x,) * count)
 
 
 class Prover:
@@ -167,35 +144,35 @@ class Prover:
             names = {name for tree in (claim, *path) for name in symbols(tree)}
             near = tuple(c for c in self.domain if set(symbols(c)) <= names)
             tries = dict.fromkeys((near, self.domain, (*self.domain, *self.ties)))
-            self.answers[key] = any(self._follows(claim, (*where, *path)) for where in tries)
+            same = claim.value == "=" and Field().same(*claim.args)
+            follows = (self._follows(claim, (*where, *path)) for where in tries)
+            self.answers[key] = same or any(follows)
         return self.answers[key]
 
     def _follows(self, claim: Node, where: tuple[Node, ...]) -> bool:
         query = _Query()
-        terms = [*map(query.holds, where), f"(not {query.holds(claim)})"]
-        query.lines += [f"(assert {term})" for term in terms]
-        return monotonic() < self.deadline and query.answer() == "unsat"
+        for condition in where:
+            query.add(condition)
+        query.add(claim, holds=False)
+        return monotonic() < self.deadline and bool(query.solver.checkSat().isUnsat())
 
 
 def partial(node: Node, path: tuple[Node, ...] = ()) -> Iterator[Claim]:
     """Yield what must hold for a tree to have a value, where each part is reached."""
-    if node.op == "if":
-        yield from partial(node.args[0], path)
-        yield from partial(node.args[1], (*path, node.args[0]))
-        yield from partial(node.args[2], (*path, negated(node.args[0])))
-        return
-    for arg in node.args:
-        yield from partial(arg, path)
+    sides = (
+        ((), (node.args[0],), (negated(node.args[0]),))
+        if node.op == "if"
+        else [()] * len(node.args)
+    )
+    for arg, side in zip(node.args, sides, strict=True):
+        yield from partial(arg, (*path, *side))
     yield from (Claim(path, claim) for claim in needed(node))
 
 
 def needed(node: Node) -> Iterator[Node]:
     """Yield what must hold of a function's arguments for it to have a value."""
-    given = {"/": -1, "sqrt": Fraction(1, 2), "**": node.value}.get(node.op, 1)
-    power, last = Fraction(given), node.args[-1] if node.args else node
-    if node.op == "log" or (power < 0 and power.denominator > 1):
-        yield compare(last, ">")
-    elif power.denominator > 1:
-        yield compare(last, ">=")
-    elif power < 0 and not (last.op == "num" and last.value):
-        yield compare(last, "!=")
+    power = Fraction({"/": -1, "**": node.value}.get(node.op, 1))
+    if node.op == "log" or power.denominator > 1:
+        yield compare(node.args[0], ">" if node.op == "log" or power < 0 else ">=")
+    elif power < 0 and not (node.args[-1].op == "num" and node.args[-1].value):
+        yield compare(node.args[-1], "!=")

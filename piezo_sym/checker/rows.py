@@ -1,12 +1,11 @@
 """What has to be shown of a spec, listed from the spec itself, and whether it is so.
 
 Input: a `Spec` and the parsed ``proofs.json``.  Output: one (id, element, reason) per row, the
-reason empty where it is confirmed.  skew and casimir follow from the balances: the power of the
-co-states vanishes for all of them, and nothing but processes and inputs is in an entropy's rate.
-`program` is about printed text, which is not read here: it has to be stated.
+reason empty where it is confirmed.  skew and casimir follow from the balances; `program` is about
+printed text, which is not read here: it has to be stated.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from . import laws
@@ -17,46 +16,45 @@ from .prover import Claim, Prover, needed, partial
 from .spec import Element, Spec
 from .system import check_system
 
-Row = tuple[str, str, str]
+Key = tuple[str, str]
 MOVING, OWN = ("z", "x", "T"), ("domain", "system")  # rows that are not stated by the package
 
 
-def audit(spec: Spec, proofs: Mapping[str, Any]) -> Iterator[Row]:
-    """Yield every row of a spec, and whether it is confirmed."""
+def audit(spec: Spec, proofs: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
+    """Yield every row of a spec, and why it is not confirmed."""
     return _Audit(spec, proofs).rows()
 
 
 class _Audit:
     def __init__(self, spec: Spec, proofs: Mapping[str, Any]) -> None:
-        self.spec, self.done = spec, dict[tuple[str, str], str]()
-        self.stated: dict[tuple[str, str], list[Mapping[str, Any]]] = {}
+        self.spec, self.done, self.stated = spec, dict[Key, str](), dict[Key, list[Any]]()
         need(isinstance(proofs, dict), "the proofs are no table")
-        entries, system = proofs.get("obligations"), proofs.get("system")
+        entries = proofs.get("obligations")
         listed = isinstance(entries, list) and all(isinstance(e, dict) for e in entries)
         need(listed, "the proofs have no list of obligations")
         for entry in entries or ():
             key = str(entry.get("id")), str(entry.get("element") or "")
             self.stated.setdefault(key, []).append(entry)
-        self.found = check_system(spec, system if isinstance(system, dict) else {})
+        self.found = check_system(spec, proofs.get("system"))
         self.conditions = tuple(tree for _, tree in spec.conditions)
-        heat = [(("T", b.name), b.laws["temperature"]) for b in spec.of("body")]
-        letters = [(("z", name), tree) for name, tree in self.found.letters.items()]
-        self.ties = tuple(compare(sym(name), "=", law) for name, law in (*heat, *letters))
+        known = {("T", body.name): body.laws["temperature"] for body in spec.of("body")}
+        known |= {("z", name): tree for name, tree in self.found.letters.items()}
+        self.ties = tuple(compare(sym(name), "=", law) for name, law in known.items())
         self.prover = Prover(self.conditions, self.ties)
 
-    def rows(self) -> Iterator[Row]:
+    def rows(self) -> Iterator[tuple[str, str, str]]:
         """Yield the rows, each after those that it rests on."""
-        reasons, system = self.found.reasons, [("system", "")]
-        divisors = [_true(tree, "!=") for tree in self.found.divisors]
+        spec, reasons, system = self.spec, self.found.reasons, [("system", "")]
         yield self._row("domain", "", self._own_values())
+        divisors = [_true(tree, "!=") for tree in self.found.divisors]
         yield self._row("system", "", divisors, why=reasons.get("system", ""))
-        for body in self.spec.of("body"):
-            law = body.laws["temperature"]
-            slope = laws.derivative(law, ("x", body.name))
+        for body in spec.of("body"):
+            law, name = body.laws["temperature"], body.name
+            slope = laws.derivative(law, ("x", name))
             claims = [*partial(law), *partial(slope), _true(law, ">"), _true(slope, ">")]
-            yield self._row("temperature", body.name, claims)
-        if not any(self.done[key] for key in self.done if key[0] == "temperature"):
-            warm = tuple(compare(sym(("T", b.name)), ">") for b in self.spec.of("body"))
+            yield self._row("temperature", name, claims)
+        if not any(why for key, why in self.done.items() if key[0] == "temperature"):
+            warm = (compare(sym(("T", body.name)), ">") for body in spec.of("body"))
             self.prover = Prover((*self.conditions, *warm), self.ties)
         for name in ("skew", "casimir", "energy", "entropy"):
             why = reasons.get("energy", "") if name in ("skew", "energy") else ""
@@ -64,14 +62,17 @@ class _Audit:
         domain = [claim for tree in self.conditions for claim in partial(tree)]
         if domain or ("welldef", "") in self.stated:
             yield self._row("welldef", "", domain, system)
-        for element in self.spec.elements.values():
+        for element in spec.elements.values():
             yield from self._element(element)
         heat = [key for key in self.done if key[0] in ("domain", "temperature", "passive")]
         yield self._row("sigma", "", (), heat)
-        cooled = [claim for e in self.spec.of("ambient") for claim in _cooling(e)]
+        cooled = list[Claim]()
+        for e in spec.of("ambient"):  # a conductance that is not negative, T_e above zero
+            law, hot = e.laws["conductance"], sym(("u", e.input))
+            cooled += [*partial(law), _true(law, ">="), _true(hot, ">")]
         for name in ("exergy", "environment") if cooled else ():
             yield self._row(name, "", cooled, [("sigma", ""), ("energy", "")])
-        yield self._row("units", why=next(iter(self.spec.faults), ""))
+        yield self._row("units", why=next(iter(spec.faults), ""))
         yield self._row("program")
         for key, entries in self.stated.items():
             claimed = any(e.get("verdict") == "PROVED" or e.get("required", True) for e in entries)
@@ -79,29 +80,26 @@ class _Audit:
                 yield self._information(*key)
 
     def _row(
-        self, name: str, element: str = "", claims: Any = (), rests: Any = (), why: str = ""
-    ) -> Row:
+        self, name: str, owner: str = "", claims: Any = (), rests: Iterable[Key] = (), why: str = ""
+    ) -> tuple[str, str, str]:
         """Return a row: stated as PROVED, its claims follow, and what it rests on is confirmed."""
-        stated, listed = self.stated.get((name, element), []), name not in OWN
-        verdicts = {str(entry.get("verdict")) for entry in stated} - {"PROVED"}
-        prover = self.prover if name != "domain" else Prover(())
+        verdicts = [str(entry.get("verdict")) for entry in self.stated.get((name, owner), ())]
+        prover, reason = self.prover if name != "domain" else Prover(()), ""
         try:
-            need(not listed or bool(stated), "missing")
-            need(not listed or not verdicts, f"stated as {min(verdicts, default='')}")
+            need(name in OWN or bool(verdicts), "missing")
+            for verdict in () if name in OWN else verdicts:
+                need(verdict == "PROVED", f"stated as {verdict}")
             need(not why, why)
             for key in rests:
                 need(not self.done[key], f"it rests on {' '.join(key)}, which is not confirmed")
             for path, claim in dict.fromkeys(claims):
-                names = ", ".join(str(name[1]) for name in symbols(claim))
-                need(
-                    prover.proves(claim, path),
-                    f"a comparison ({claim.value}) of {names[:80]} does not follow",
-                )
-            reason = ""
+                names = ", ".join(str(name[1]) for name in symbols(claim))[:80]
+                shown = prover.proves(claim, path)
+                need(shown, f"a comparison ({claim.value}) of {names} does not follow")
         except (InputError, ArithmeticError, RuntimeError) as error:
             reason = str(error) or type(error).__name__
-        self.done[name, element] = reason
-        return name, element, reason
+        self.done[name, owner] = reason
+        return name, owner, reason
 
     def _own_values(self) -> Iterator[Claim]:
         """Yield that the spec's own values, in each lane, are in its domain."""
@@ -114,46 +112,46 @@ class _Audit:
             here = [compare(sym(n), "=", found[lane % len(found)]) for n, found in own.items()]
             yield from (Claim(tuple(here), tree) for tree in self.conditions)
 
-    def _element(self, element: Element) -> Iterator[Row]:
-        own, name = tuple(tree for tree in (element.costate, element.law) if tree), element.name
-        trees = own or tuple(element.laws.values())
+    def _element(self, element: Element) -> Iterator[tuple[str, str, str]]:
+        own, name = [tree for tree in (element.costate, element.law) if tree], element.name
+        trees, z = own or list(element.laws.values()), ("z", name)
         claims = [claim for tree in trees for claim in partial(tree)]
         if claims or element.law:
             yield self._row("welldef", name, claims)
-        moving = [tree for tree in trees if _moves(tree)]
-        if moving and not element.jumps:
-            yield self._row("continuous", name, _continuous(moving))
+        kinks = [n for tree in trees for n in laws.walk(tree) if n.op in ("if", *KINKS)]
+        choosers = (n.args[0] if n.op == "if" else n for n in kinks)
+        if any(s[0] in MOVING for n in choosers for s in symbols(n)) and not element.jumps:
+            yield self._row("continuous", name, _continuous(trees))
         if element.law:
-            yield self._row("passive", name, self._passive(element), [("welldef", name)])
+            yield self._row("passive", name, self._passive(element, z), [("welldef", name)])
         elif element.kind.form == "conduction":
             yield self._row("passive", name, [*claims, _true(trees[0], ">=")])
 
-    def _passive(self, element: Element) -> Iterator[Claim]:
+    def _passive(self, element: Element, z: Key) -> Iterator[Claim]:
         """Yield that a law takes power in, after its certificate if it has one."""
-        law, z = element.law or num(0), sym(("z", element.name))
         given = [entry.get("certificate") for entry in self.stated["passive", element.name]]
         for certificate in filter(None, given):
             check_certificate(self.spec, element, certificate, self.prover)
         for side in "<>" if not any(given) else "":
-            yield Claim((compare(z, side),), compare(law, side + "="))
+            yield Claim((compare(sym(z), side),), compare(element.law or num(0), side + "="))
 
-    def _information(self, name: str, owner: str) -> Row:
+    def _information(self, name: str, owner: str) -> tuple[str, str, str]:
         """Return a row that is looked at where it is claimed."""
-        element = self.spec.elements.get(owner)
+        element, z = self.spec.elements.get(owner), sym(("z", owner))
         if name == "odd" and element and element.law:
-            turned = put(element.law, {("z", owner): made("-z", z=sym(("z", owner)))})
+            turned = put(element.law, {("z", owner): made("-z", z=z)})
             claim = Claim((), compare(turned, "=", made("-x", x=element.law)))
             return self._row(name, owner, [claim], [("welldef", owner)])
         if name == "invariant" and element and element.kind.form == "body":
-            return self._row(name, owner, self._invariant(element), [("sigma", "")])
+            return self._row(name, owner, self._invariant(owner), [("sigma", "")])
         return self._row(name, owner, why="the checker knows no such row")
 
-    def _invariant(self, body: Element) -> Iterator[Claim]:
+    def _invariant(self, body: str) -> Iterator[Claim]:
         """Yield that a body does not cool below its floor: T > floor, T <= m < T_e."""
-        T, m = sym(("T", body.name)), sym(("m", ""))
-        around = [e for e in self.spec.of("ambient", "conduction") if body.name in e.bodies]
+        T, m = sym(("T", body)), sym(("m", ""))
+        around = [e for e in self.spec.of("ambient", "conduction") if body in e.bodies]
         for e in around:
-            lam, others = e.laws["conductance"], [b for b in e.bodies if b != body.name]
+            lam, others = e.laws["conductance"], [b for b in e.bodies if b != body]
             hot = sym(("T", others[0]) if others else ("u", e.input))
             gains = [made("lam*(a/T - 1)", lam=lam, a=hot, T=x) for x in (T, m)]
             between = (compare(T, "<=", m), compare(m, "<", hot))
@@ -167,8 +165,11 @@ class _Audit:
         need(strict, "no floor of T, or no environment")
 
 
+def _true(left: Node, operator: str) -> Claim:
+    return Claim((), compare(left, operator))
+
+
 def _continuous(trees: list[Node]) -> Iterator[Claim]:
-    """Yield that laws do not jump where their choices meet."""
     for tree in trees:
         closed = _Closed()
         relaxed = closed.tree(tree, ())
@@ -177,32 +178,16 @@ def _continuous(trees: list[Node]) -> Iterator[Claim]:
             yield Claim(tuple(closed.where), compare(relaxed, "=", tree))
 
 
-def _cooling(element: Element) -> list[Claim]:
-    """Return what heat exchange needs: a conductance that is not negative, T_e above zero."""
-    law = element.laws["conductance"]
-    return [*partial(law), _true(law, ">="), _true(sym(("u", element.input)), ">")]
-
-
-def _true(left: Node, operator: str) -> Claim:
-    return Claim((), compare(left, operator))
-
-
-def _moves(tree: Node) -> bool:
-    """Return whether a law has a choice or kink in its letter, a state or a temperature."""
-    choosers = (n.args[0] if n.op == "if" else n for n in laws.walk(tree) if n.op in ("if", *KINKS))
-    return any(role in MOVING for chooser in choosers for role, _ in symbols(chooser))
-
-
 class _Closed:
-    """A law on the closed cells of its choices, which cover the domain.
+    """A law on the closed cells of its choices: if it is there its branch, it is continuous.
 
-    Each comparison that moves becomes a choice b of a side, free where both sides are equal.  On
-    each cell the law's branch has values up to the edge; if it is there what the law is, the law
-    is continuous: the pasting lemma.  A condition's parts have values before it is relied on.
+    Each comparison that moves becomes a choice b of a side, free where both sides are equal; that
+    a cell is not empty is known, too.  A condition's parts have values before it is relied on.
     """
 
     def __init__(self) -> None:
-        self.where, self.claims, self.field = list[Node](), list[Claim](), Field()
+        self.where, self.claims = list[Node](), list[Claim]()
+        self.field = Field(lambda _: False)
 
     def tree(self, node: Node, path: tuple[Node, ...]) -> Node:
         """Return a law in choices of sides; book what is needed for it to have a value."""
@@ -212,8 +197,8 @@ class _Closed:
             here = Node(node.op, tuple(self.tree(arg, path) for arg in node.args), node.value)
             self.claims += [Claim((*self.where, *path), c) for c in needed(here)]
             return here
-        left, right = (self.tree(arg, path) for arg in node.args[0].args)
-        side = Node("cmp", (left, right), node.args[0].value)
+        sides = tuple(self.tree(laws.plain(arg), path) for arg in node.args[0].args)
+        side = Node("cmp", sides, node.args[0].value)
         if any(role in MOVING for role, _ in symbols(node.args[0])):
             side = self._side(side, path)
         then = self.tree(node.args[1], (*path, side))
@@ -222,13 +207,16 @@ class _Closed:
     def _side(self, condition: Node, path: tuple[Node, ...]) -> Node:
         """Return the comparison b > 0 (or b <= 0) that stands for left above (below) right."""
         difference = made("x - z", x=condition.args[0], z=condition.args[1])
-        key = self.field.scaled([self.field.of(difference)])[1][0]
+        key = self.field.scaled(self.field.of(difference))
         turned = key != 0 and key.top.leading_coefficient() < 0
-        above = condition.value in (">", ">=")
         key, difference = (-key, Node("neg", (difference,))) if turned else (key, difference)
         chosen = compare(sym(("side", f"{key.top}/{key.bottom}")), ">")
-        edge = Node("if", (chosen, difference, Node("neg", (difference,))))
-        for step in reversed(path):
-            edge = Node("if", (step, edge, num(0)))
-        self.where.append(compare(edge, ">="))
-        return chosen if above != turned else negated(chosen)
+        side = chosen if (condition.value in (">", ">=")) != turned else negated(chosen)
+        moved = {s: sym(("elsewhere", s)) for s in symbols(condition) if s[0] in MOVING}
+        edge = made("b*d", b=Node("if", (chosen, num(1), num(-1))), d=difference)
+        there = [Node("if", (put(condition, moved), *map(num, n))) for n in ((0, -1), (-1, 0))]
+        for tree in (edge, Node("if", (side, *there))):
+            for step in reversed(path):
+                tree = Node("if", (step, tree, num(0)))
+            self.where.append(compare(tree, ">="))
+        return side

@@ -1,25 +1,17 @@
-"""Units of a spec: texts to exact factors and dimensions, and the walk that compares them.
+"""Units of a spec, by pint: exact factors and dimensions, and the walk that compares them.
 
 Input: texts such as ``N*s/m``, and trees with the dimension of every symbol.  Output: `Unit`, and
-the faults that a tree has.  pint knows the units; the grammar is the checker's own.
+the faults that a tree has.
 """
 
-import re
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from functools import cache
 from typing import Any, NamedTuple
 
-from .laws import InputError, Node, need
+from .laws import ARITHMETIC, PLAIN, SMOOTH, InputError, Node, need
 
-TERM = re.compile(r"([*/]|^)([A-Za-z]+|1)(?:(?:\*\*|\^)(-?[1-9]))?(?![A-Za-z0-9^]|\*\*)")
-BASES = [
-    f"[{w}]"
-    for w in ["mass", "length", "time", "current", "temperature", "substance", "luminosity"]
-]
-Dimension = tuple[Fraction, ...]
-NONE: Dimension = (Fraction(0),) * len(BASES)
-PURE = ("exp", "log", "sin", "cos", "tanh")
+Dimension = Any  # of pint: a product of powers
 EQUAL = ("+", "min", "max", "deadzone", "saturate", "cmp", "if")
 
 
@@ -31,20 +23,6 @@ class Unit(NamedTuple):
 
 
 @cache
-def unit(text: str) -> Unit:
-    """Return the unit that a text names; raises `InputError` if it names none."""
-    factor, dimension, place = Fraction(1), NONE, 0
-    while len(text) <= 60 and (term := TERM.match(text, place)):
-        power = (-1 if term[1] == "/" else 1) * int(term[3] or 1)
-        named = Unit(Fraction(1), NONE) if term[2] == "1" else _named(term[2])
-        factor *= named.factor**power
-        dimension = _times(dimension, named.dimension, power)
-        place = term.end()
-    need(0 < place == len(text), f"{text[:60]!r} is no unit")
-    return Unit(factor, dimension)
-
-
-@cache
 def _registry() -> Any:
     import pint
 
@@ -52,20 +30,20 @@ def _registry() -> Any:
 
 
 @cache
-def _named(name: str) -> Unit:
+def unit(text: str) -> Unit:
+    """Return the unit that a text names; raises `InputError` if it names none."""
+    need(
+        len(text) <= 60 and bool(PLAIN.fullmatch(text.replace("^", "*"))),
+        f"{text[:60]!r} is no unit",
+    )
     try:
-        factor, base = _registry().get_base_units(name)
-        origin = _registry().Quantity(Fraction(0), name).to_base_units().magnitude
-        powers = dict(base.dimensionality)
-    except (TypeError, AttributeError, ValueError):  # pint's own errors are among them
-        raise InputError(f"{name!r} is no unit") from None
-    dimension = tuple(Fraction(powers.pop(word, 0)) for word in BASES)
-    need(not origin and not powers, f"{name!r} is no plain unit")
-    return Unit(Fraction(factor), dimension)
-
-
-def _times(left: Dimension, right: Dimension, power: Fraction | int) -> Dimension:
-    return tuple(a + power * b for a, b in zip(left, right, strict=True))
+        named = _registry().parse_units(text)
+        zero, one = (_registry().Quantity(Fraction(n), named).to_base_units() for n in (0, 1))
+        factor = Fraction(one.magnitude)
+    except (TypeError, AttributeError, ValueError, ArithmeticError):  # pint's own are among them
+        raise InputError(f"{text!r} is no unit") from None
+    need(zero.magnitude == 0, f"{text!r} is no plain unit")
+    return Unit(factor, one.dimensionality)
 
 
 def check(
@@ -81,17 +59,16 @@ def check(
 
 def _dimension(node: Node, units: Mapping[Any, Dimension]) -> Dimension | None:
     """Return the dimension of a tree; None if it is zero and fits any."""
+    pure = unit("1").dimension
     if node.op in ("num", "sym"):
-        return units[node.value] if node.op == "sym" else NONE if node.value else None
+        return units[node.value] if node.op == "sym" else pure if node.value else None
     parts = [_dimension(arg, units) for arg in node.args]
     known = [part for part in (parts[1:] if node.op == "if" else parts) if part is not None]
-    need(node.op not in PURE or known in ([], [NONE]), f"the argument of {node.op} has a unit")
+    need(node.op not in SMOOTH or known in ([], [pure]), f"the argument of {node.op} has a unit")
     equal = node.op not in EQUAL or all(part == known[0] for part in known)
     need(equal, f"the terms of {node.op!r} have different units")
-    if node.op in (*PURE, "sign") or (node.op == "**" and node.value == 0):
-        return NONE
+    if node.op in (*SMOOTH, "sign") or (node.op == "**" and node.value == 0):
+        return pure
     if node.op in "*/":
-        sign = 1 if node.op == "*" else -1
-        return _times(known[0], known[1], sign) if len(known) == 2 else None
-    power = {"**": node.value, "sqrt": Fraction(1, 2)}.get(node.op, 1)
-    return _times(NONE, known[0], power) if known else None
+        return ARITHMETIC[node.op](*known) if len(known) == 2 else None
+    return known[0] ** (node.value if node.op == "**" else 1) if known else None

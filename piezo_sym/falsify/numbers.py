@@ -76,8 +76,8 @@ def _operation(node: Node, x: Any, z: Any) -> Any:
             return x * z
         case "/":
             return x / _nonzero(z)
-        case "**" | "sqrt":
-            return _power(x, Fraction(1, 2) if node.op == "sqrt" else node.value)
+        case "**":
+            return _power(x, node.value)
         case "min" | "max":
             try:
                 return x if (sign(x - z) >= 0) == (node.op == "max") else z

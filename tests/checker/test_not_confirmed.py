@@ -1,7 +1,9 @@
 import json
+import subprocess
+import sys
 
 import pytest
-from stated import PIEZO_STACK, forged, mass, refused, run, stated
+from stated import CHECKER, PIEZO_STACK, forged, mass, refused, run, stated
 
 from piezo_sym.checker import InputError, read_spec
 
@@ -180,6 +182,16 @@ def test_bad_input_is_one_line(tmp_path):
         assert (code, out) == (2, "")
         assert len(error.splitlines()) == 1
         assert error.startswith("bad input: ")
+
+
+def test_without_cvc5_the_program_says_what_to_install():
+    text = (
+        "import runpy, sys; sys.modules['cvc5'] = None; runpy.run_path(sys.argv[1], {}, '__main__')"
+    )
+    command = [sys.executable, "-I", "-c", text, str(CHECKER / "__main__.py"), "a.toml", "b.json"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == "cvc5 is not installed: pip install 'piezo_sym[proof]'\n"
 
 
 @pytest.mark.long
