@@ -35,6 +35,15 @@ edges of parameters are all
   - if not {*names(c)} <= ground.fixed]
   + if {*names(c)} <= ground.fixed]
   = d*v if v < v_1 else 2*d*v | d > 0; v_1 > 0
+## proofs/meetings
+no branch is ever taken
+  - return solver.ask(asked.query()).result == "unsat"
+  + return solver.ask(asked.query()).result != "unsat"
+  = d*v if v < v_1 else 2*d*v | d > 0; v_1 > 0
+any third branch lies in between
+  - paths[third] <= both
+  + paths[third] & both
+  = d*v if v < v_1 else (2*d*v if v < 2*v_1 else 4*d*v_1) | d > 0; v_1 > 0
 ## proofs/laws
 the law, not its power
   - mul(branch.value, Sym(letter)) if letter else branch.value,
@@ -110,29 +119,25 @@ heat exchange has nothing to show
 questions left open are forgotten
   - left += [found] if found else []
   + left += []
-  = F_1*(v/v_1)*(exp(v/v_1 + b/a_1 - 0.37) - 2.7182*(v/v_1 + b/a_1 - 0.37)) | F_1 > 0; v_1 > 0;
+  = F_1*(v/v_1)*(exp(v/v_1 + b/a_1 - 0.37) - 2.718281*(v/v_1 + b/a_1 - 0.37)) | F_1 > 0; v_1 > 0;
   = a_1 > 0; b > 0 | b=0.37
 what is open is no obstacle
   - if verdict is not Verdict.PROVED:
   -                 return
   + if verdict is Verdict.REFUTED:
   +                 return
-  = F_1*(v/v_1)*(exp(v/v_1 + b/a_1 - 0.37) - 2.7182*(v/v_1 + b/a_1 - 0.37)) | F_1 > 0; v_1 > 0;
+  = F_1*(v/v_1)*(exp(v/v_1 + b/a_1 - 0.37) - 2.718281*(v/v_1 + b/a_1 - 0.37)) | F_1 > 0; v_1 > 0;
   = a_1 > 0; b > 0 | b=0.37
-no branch is ever taken
-  - return any(solver.ask(made.query()).result == "unsat" for made in taken)
-  + return any(solver.ask(made.query()).result != "unsat" for made in taken)
-  = d*v if v < v_1 else 2*d*v | d > 0; v_1 > 0
 an answer that bounds do not decide is a proof
   - reason = f"{question.label}: bounds on the functions in it do not decide it"
   -         return Verdict.OPEN, None, reason
   + return None
-  = F_1*(v/v_1)*(exp(v/v_1 + b/a_1 - 0.37) - 2.7182*(v/v_1 + b/a_1 - 0.37)) | F_1 > 0; v_1 > 0;
+  = F_1*(v/v_1)*(exp(v/v_1 + b/a_1 - 0.37) - 2.718281*(v/v_1 + b/a_1 - 0.37)) | F_1 > 0; v_1 > 0;
   = a_1 > 0; b > 0 | b=0.37
 a sign left open is shown
   - return (Verdict.OPEN, None, f"{obligation.statement}: {found.reason}"), ()
   + return None, ()
-  = F_1*(v/v_1)*(exp(v/v_1 + b/a_1 - 0.37) - 2.7182*(v/v_1 + b/a_1 - 0.37)) | F_1 > 0; v_1 > 0;
+  = F_1*(v/v_1)*(exp(v/v_1 + b/a_1 - 0.37) - 2.718281*(v/v_1 + b/a_1 - 0.37)) | F_1 > 0; v_1 > 0;
   = a_1 > 0; b > 0 | b=0.37
 a refuted question is left open, and forgotten
   - if found and found[0] is Verdict.REFUTED:

@@ -28,6 +28,14 @@ tanh: above its argument
   - yield (below, Cmp(">=", mul(y, add(ONE, x)), x))
   + yield (below, Cmp(">=", y, x))
   = F_1*(tanh(v/v_1) - v/v_1) if v > 0 else F_1*v/v_1 | F_1 > 0; v_1 > 0
+exp: falls
+  - yield (*undefined, Cmp(">", x, a), Cmp("<=", y, b))
+  + yield (*undefined, Cmp("<", x, a), Cmp("<=", y, b))
+  = F_1*(exp(saturate(v, v_1)/v_1) - exp(v/v_1)) if v > 0 else 0*F_1 | F_1 > 0; v_1 > 0
+sin: one value wherever it is computed
+  - yield (Cmp("!=", x, a), Cmp("=", y, b))
+  + yield (Cmp("=", y, b),)
+  = F_1*(sin(v/v_1) - sin(v/v_1 - 1)) if v > 0 else 0*F_1 | F_1 > 0; v_1 > 0
 sin: positive up to 4
   - _number(3)), plus)
   + _number(4)), plus)

@@ -14,7 +14,7 @@ import signal
 import sys
 import tempfile
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -112,20 +112,17 @@ def _answer_here() -> None:
     """Let z3 and cvc5 answer in this process: it is one that may hang or end."""
     from piezo_sym.proofs import solvers, worker
 
-    class Here:
-        def __init__(self, name: str) -> None:
-            self.answer = worker.SOLVERS[name]
-
-        def ask(self, query: Any) -> Any:
+    class Here(solvers.Solver):
+        def _exchange(self, request: str) -> str:
+            asked = json.loads(request)
             try:
-                found: Mapping[str, Any] = self.answer(query.text(), query.variables)
+                answer = worker.SOLVERS[self.name](asked["text"], asked["order"])
             except Exception as error:
-                return solvers.Answer("unknown", reason=type(error).__name__)
-            values = {n: solvers.Fraction(v) for n, v in found.get("model", {}).items()}
-            return solvers.Answer(found["result"], values, found.get("reason", ""))
+                answer = {"result": "unknown", "reason": type(error).__name__}
+            return json.dumps(answer) + "\n"
 
     worker.Z3_LIMIT = LIMIT
-    solvers.solver = lambda name, *_: Here(name)
+    solvers.solver = lambda name, *_: Here(name, ())
 
 
 def checked(text: str, proofs: str) -> Said:
