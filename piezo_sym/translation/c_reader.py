@@ -149,8 +149,8 @@ class _Function:
         if self.written.slots == (Slot(""),):
             self.keep((self.name, 0), self.read.numeric(node)[0])
             return
-        counted = self.known.slots[{"states": "rhs", "processes": "heat"}[self.name]]
-        if self.read.whole(node) != self.known.places(counted)[-1]:
+        counted = self.known.layouts[{"states": "rhs", "processes": "heat"}[self.name]]
+        if self.read.whole(node) != counted.places[-1]:
             raise refused(node, "another number of rows")
 
     # Declarations
@@ -200,13 +200,13 @@ class _Function:
         tokens.take("=", "0", ";", name, "<")
         node = tokens.expression()
         tokens.take(";", "++", name, ")")
-        size, square = self.read.whole(node), self.written.places[-1] * self.written.places[-1]
+        size, square = self.read.whole(node), self.written.size * self.written.size
         inside = self.written.found or self.scope.lanes
         if self.name == "jacobian" and size == square and not inside:
             tokens.take("{", self.out, "[", name, "]", "=", "0.0", ";", "}")
             self.written.zeros = True
             return
-        banks = {self.field.count(bank): bank for bank in self.known.counts.values()}
+        banks = self.known.bank_of_size
         if size not in banks or len(self.scope.lanes) > 1:
             raise refused(node, "a loop over no bank")
         self._lanes(name, banks[size], pragma)

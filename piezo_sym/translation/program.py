@@ -107,15 +107,16 @@ def _label(key: Key, n: int, known: Proved) -> str:
 
 def _unmet(needs: tuple[Need, ...], known: Proved) -> Iterator[str]:
     """Yield what printed code divides by, or takes roots of, and laws do not."""
-    field = known.field
+    field, allowed = known.field, dict[Value, list[Need]]()
+    for given in known.needs:
+        allowed.setdefault(given.value, []).append(given)
     for need in needs:
         value = _in_first_lane(need.value)
         op = {"nonzero": "==", "nonnegative": "<"}.get(need.kind, "<=")
         fails = compare(op, value, field.zero)
         left = _in_first_lane(need.path) * fails
-        for given in known.needs:
-            fits = {given.kind} in _ENOUGH[need.kind] and (need.derived or not given.derived)
-            if fits and given.value == value:
+        for given in allowed.get(value, ()):
+            if {given.kind} in _ENOUGH[need.kind] and (need.derived or not given.derived):
                 left = left * (field.one - given.path)
         if not is_zero(left, inside=need.derived):
             where = "jacobian" if need.derived else "code"

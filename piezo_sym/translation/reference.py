@@ -164,9 +164,10 @@ class _Reader:
 
     def _jacobian(self, rates: Sequence[Value]) -> Iterator[tuple[Key, Value]]:
         slots = self.slots["rhs"]
+        columns = {g: c for c, slot in enumerate(slots) for g in self.names[slot.label].parts}
         for r, rate in enumerate(rates):
-            for c, slot in enumerate(slots):
-                (state,) = self.names[slot.label].parts
+            for c, state in sorted((columns[g], g) for g in rate.parts if g in columns):
+                slot = slots[c]
                 row, own = slots[r].bank, derivative(rate, state)
                 kind = SAME if row and row == slot.bank else ALL
                 yield ("jacobian", r, c, kind), own
