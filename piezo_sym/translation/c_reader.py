@@ -174,7 +174,8 @@ class _Function:
                 self.scope.declare(name, self.scope.pointer(node))
             elif constant:
                 whole = (self.read.whole(node), WHOLE) if kind == "long" else None
-                self.scope.declare(name, whole or (self.read.numeric(node)[0], PLAIN))
+                value = self.field.zero if whole else self.field.letter(self.read.numeric(node)[0])
+                self.scope.declare(name, whole or (value, PLAIN))
             elif not pointer:
                 value = self.read.numeric(node)[0]
                 self.scope.declare(name, Variable(value, self.scope.open[-1]))

@@ -3,8 +3,9 @@
 Input: values of one `Field`.  Output: values in which equal expressions look equal.  Generators are
 names (of one lane of a bank, where they have one), functions of values (``exp``, ``log``, ``sin``,
 ``cos``, ``tanh``), powers of sums that are no whole positive ones, sums over the lanes of a bank,
-and signs: ``sign(d, s)`` is 1 where d has the sign s, else 0.  Of the signs of one value
-exactly one is 1, and each is its own square.
+letters, and signs.  A letter stands for one long value; it is spelled out where letters alone do
+not decide.  ``sign(d, s)`` is 1 where d has the sign s, else 0.  Of the signs of one value exactly
+one is 1, and each is its own square.
 """
 
 from __future__ import annotations
@@ -23,6 +24,8 @@ Lane = tuple[str, int]  # a bank, and which of its lanes: 0 a row's, 1 a column'
 MOST_WORK = 10_000_000
 MOST_BITS = 20_000
 MOST_POWER = 64
+#: A value that has a name in a text gets a letter here if it has more terms.
+MOST_SPELLED = 6
 
 
 class NotShownError(Exception):
@@ -192,6 +195,10 @@ class Field:
                 lanes -= {(mark, 0)}
             self.gens.append(Generator(kind, arg, mark, lanes, parts))
         return self.raised(known, 1)
+
+    def letter(self, value: Value) -> Value:
+        """Return a letter for a long value, the same for equal values; or the value itself."""
+        return self.generator("letter", value) if len(value.terms) > MOST_SPELLED else value
 
     def raised(self, g: int, exponent: Exponent) -> Value:
         """Return a power of a generator, not yet in normal form where that is a sum's."""

@@ -143,7 +143,8 @@ class _Function:
             self._allocate(value)
             self.roles[name] = "out"
         else:
-            self.values[name] = self.read.any(value)
+            read, shape = self.read.any(value)
+            self.values[name] = self.field.letter(read) if shape != WHOLE else read, shape
 
     def _allocate(self, value: ast.Call) -> None:
         """Read how the result is made: with zeros, rows may be left out."""

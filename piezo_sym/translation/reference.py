@@ -26,7 +26,7 @@ from piezo_sym.spec.parse import parse_law
 from piezo_sym.spec.tables import conditions, lane_parameters, law_fields, states
 from piezo_sym.translation.change import across, derivative
 from piezo_sym.translation.field import Field, Need, NotShownError, Value
-from piezo_sym.translation.functions import call, power, size_of
+from piezo_sym.translation.functions import call, divisors, power, size_of
 from piezo_sym.translation.known import ALL, LEAST, SAME, Key, Proved
 from piezo_sym.translation.signs import assume, compare
 from piezo_sym.translation.zero import is_zero
@@ -187,8 +187,7 @@ class _Reader:
             for g, _ in mono:
                 path = path * self.field.raised(g, 1) if gens[g].kind == "sign" else path
             for g in below:
-                arg = gens[g].arg if gens[g].kind == "power" else None
-                yield Need("nonzero", arg or self.field.raised(g, 1), path, True)
+                yield from (Need("nonzero", d, path, True) for d in divisors(self.field, g))
 
     # Expressions
 
@@ -198,7 +197,7 @@ class _Reader:
         if isinstance(expr, sp.Symbol):
             if expr not in self.known:
                 path, field.path = field.path, field.one
-                self.known[expr] = self(self.definitions[expr])
+                self.known[expr] = field.letter(self(self.definitions[expr]))
                 field.path = path
             return self.known[expr]
         if isinstance(expr, sp.Rational):
@@ -212,6 +211,7 @@ class _Reader:
         args = [self(arg) for arg in expr.args]
         if isinstance(expr, sp.Add):
             return field.total(args)
+        args = [field.letter(arg) for arg in args]
         if isinstance(expr, sp.Mul):
             product = field.one
             for arg in args:

@@ -4,6 +4,8 @@ Input: what is written where, place by place.  Output: rows by slot, entries by 
 whether they are of equal lanes.  Each is written once; to an entry made of zeros more may be added.
 """
 
+from fractions import Fraction
+from math import prod
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
@@ -78,9 +80,7 @@ class Rows:
 
     def _if_long(self, place: Value) -> int:
         """Return a place of the first lanes where every bank has `LONG` lanes."""
-        total = 0
+        total = Fraction(0)
         for mono, c in place.terms.items():
-            for letter, power in mono:
-                c *= self._ends.get(letter, 0) ** power
-            total += c
-        return total
+            total += Fraction(c) * prod(self._ends.get(g, 0) ** int(e) for g, e in mono)
+        return int(total)

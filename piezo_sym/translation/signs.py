@@ -28,7 +28,7 @@ def sign_of(field: Field, g: int) -> int:
     if g not in field.signed:
         gen = field.gens[g]
         known = {"exp": 2, "sign": 1}.get(gen.kind, 0)
-        if gen.kind in {"power", "sum"} and gen.arg:
+        if gen.kind in {"power", "sum", "letter"} and gen.arg:
             known = sign(gen.arg)
         if not known:  # the domain may say more later
             return field.assumed.get(field.raised(g, 1), 0)
