@@ -144,13 +144,14 @@ class Field:
     assumed : other values of which the domain says so.
     signs, forms, factors, never, asked : what was found of signs and factors, see `signs`, `zero`.
     unknown : how often a solver did not know.
+    work : how many products of two terms were made.
     """
 
     def __init__(self) -> None:
         self.gens: list[Generator] = []
         self._numbers: dict[tuple[str, Value | None, Hashable], int] = {}
         self._joined: dict[tuple[Mono, Mono], tuple[Mono, Value | None] | None] = {}
-        self._work = 0
+        self.work = 0
         self.zero, self.one = Value(self, {}), Value(self, {(): 1})
         self.path: Value | None = self.one
         self.derived = False
@@ -197,8 +198,11 @@ class Field:
         return self.raised(known, 1)
 
     def letter(self, value: Value) -> Value:
-        """Return a letter for a long value, the same for equal values; or the value itself."""
-        return self.generator("letter", value) if len(value.terms) > MOST_SPELLED else value
+        """Return a letter for a long value without signs, the same for equal values; or itself."""
+        if len(value.terms) <= MOST_SPELLED:
+            return value
+        chosen = any(self.gens[g].kind == "sign" for g in value.generators())
+        return value if chosen else self.generator("letter", value)
 
     def raised(self, g: int, exponent: Exponent) -> Value:
         """Return a power of a generator, not yet in normal form where that is a sum's."""
@@ -216,8 +220,8 @@ class Field:
 
     def times(self, left: Value, right: Value) -> Value:
         """Return a product, in normal form."""
-        self._work += len(left.terms) * len(right.terms)
-        if self._work > MOST_WORK:
+        self.work += len(left.terms) * len(right.terms)
+        if self.work > MOST_WORK:
             raise NotShownError("the expressions are too large")
         terms: dict[Mono, Exponent] = {}
         more = []

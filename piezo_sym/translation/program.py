@@ -86,16 +86,24 @@ def _differences(
         place = f"{language} {key[0]}{[_label(key, n, known) for n in range(1, len(key))]}"
         if not matrix and (key not in rows or key not in known.values):
             yield _open(f"{place} is not written")
-        elif not is_zero(printed - wanted, inside=matrix):
+        elif found := _doubt(printed - wanted, inside=matrix):
             tried += 1
             at = witness(printed, wanted, known, iphs) if tried <= MOST_TRIED else None
-            reason = f"{place} is not shown to be the proved one"
+            reason = f"{place} {found}"
             if at:
                 reason = f"{place} is {at.printed}, and {at.proved} is proved"
             verdict = Verdict.REFUTED if at else Verdict.OPEN
             yield Row("program", "", STATEMENT, verdict, at.point if at else None, reason)
             if at:
                 return
+
+
+def _doubt(difference: Value, *, inside: bool) -> str:
+    """Return why a difference is not shown to be zero, or nothing if it is."""
+    try:
+        return "" if is_zero(difference, inside=inside) else "is not shown to be the proved one"
+    except NotShownError as error:
+        return f"is not shown to be the proved one: {error}"
 
 
 def _label(key: Key, n: int, known: Proved) -> str:
