@@ -99,9 +99,11 @@ class Expressions:
                 joined(first[1], second[1], node)
                 op = _OPERATORS[type(operator)]
                 return compare(op, first[0], second[0]), TEST
-            case ast.BoolOp(ast.Or(), [left, right]):
-                one, tests = self.field.one, (self.test(left), self.test(right))
-                return one - (one - tests[0]) * (one - tests[1]), TEST
+            case ast.BoolOp(ast.Or(), nodes):
+                one = none = self.field.one
+                for part in nodes:
+                    none = none * (one - self.test(part))
+                return one - none, TEST
             case ast.IfExp(test, then, other):
                 return self.choice(test, then, other)
             case ast.Call(function, args, []) if ast.unparse(function) in self.functions:
