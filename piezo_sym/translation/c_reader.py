@@ -14,8 +14,6 @@ A loop stands for every lane of a bank: what it adds up is a sum over lanes, wha
 of that lane.  Helpers mean what their text says.  Nothing is compiled or executed.
 """
 
-from __future__ import annotations
-
 import ast
 import re
 from collections.abc import Mapping

@@ -5,8 +5,6 @@ two parts: `derivative` in the lane itself, and `across`, by way of sums over la
 Signs have the derivative 0: what is said of derivatives holds inside the branches of a law.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from fractions import Fraction
 

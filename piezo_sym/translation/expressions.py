@@ -11,8 +11,6 @@ their cases, clip(x, a, b) = min(max(x, a), b); copysign(w, z) = |w| sign(z), of
 known.
 """
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

@@ -7,8 +7,6 @@ log(a b) = log a + log b and (a b)**c = a**c b**c for a, b > 0; (x**(1/n))**n = 
 (x**2)**(1/2) = abs(x); sin and tanh are odd, cos is even.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from fractions import Fraction
 from functools import partial

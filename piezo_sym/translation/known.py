@@ -4,8 +4,6 @@ Input: what `reference` finds in an `IPHS`; this is the type.  Output: the rows 
 the names that texts may use, and the places of parts and rows in arrays.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction

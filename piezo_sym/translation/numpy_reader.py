@@ -6,8 +6,6 @@ parameters, parts of x and u, or an expression; rows of `out` are written once. 
 and the helpers of a module have to be word for word what is expected.  Nothing is executed.
 """
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Mapping, Sequence
 from typing import final

@@ -6,8 +6,6 @@ every size of every bank, and divides by nothing more than the laws do; REFUTED 
 which a row differs; OPEN with what was not understood or not shown.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 
 from piezo_sym.iphs import IPHS

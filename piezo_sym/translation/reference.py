@@ -8,8 +8,6 @@ A parameter of a bank is one number a lane, as it is in printed modules; the pro
 co-states and laws of one lane, so they hold for lanes that differ.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import final

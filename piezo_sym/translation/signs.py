@@ -3,8 +3,6 @@
 Input: values.  Output: values in which signs choose; a comparison is 1 where it holds, else 0.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from fractions import Fraction
 from functools import partial, reduce

@@ -5,8 +5,6 @@ contradict itself is looked at; where a difference is zero, that is put in.  Wha
 fraction is multiplied out.  A sum over lanes is zero if its terms are.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
