@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import final
 
 import sympy as sp
@@ -87,11 +88,8 @@ class LaneMatrix:
         """Return the product; sums over a bank's lanes become `LaneSum`."""
         full: dict[tuple[int, int], list[sp.Expr]] = {}
         own: dict[tuple[int, int], list[sp.Expr]] = {}
-        right_rows: dict[int, list[tuple[int, sp.Expr, sp.Expr]]] = {}
-        for (m, c), entry, same in other.entries():
-            right_rows.setdefault(m, []).append((c, entry, same))
         for (r, m), left, left_own in self.entries():
-            for c, right, right_own in right_rows.get(m, ()):
+            for c, right, right_own in other.by_row.get(m, ()):
                 entry, same = _product(left, left_own, right, right_own, self.cols[m], self.lanes)
                 self._check_lanes(entry, self.rows[r].bank, other.cols[c].bank)
                 full.setdefault((r, c), []).append(entry)
@@ -133,6 +131,14 @@ class LaneMatrix:
         """Yield ((row, column), full, own) of every entry that is not zero, in order."""
         for place in sorted({**self.full, **self.own}):
             yield place, self.full.get(place, sp.S.Zero), self.own.get(place, sp.S.Zero)
+
+    @cached_property
+    def by_row(self) -> dict[int, list[tuple[int, sp.Expr, sp.Expr]]]:
+        """The (column, full, own) of every entry that is not zero, in order, by row."""
+        found: dict[int, list[tuple[int, sp.Expr, sp.Expr]]] = {}
+        for (r, c), full, own in self.entries():
+            found.setdefault(r, []).append((c, full, own))
+        return found
 
     def __str__(self) -> str:
         """Return the matrix as an aligned grid with its labels."""

@@ -31,6 +31,7 @@ from piezo_sym.spec.expressions import (
     Num,
     Pow,
     Sym,
+    names,
 )
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import banks, conditions, greater, lane_parameters, states
@@ -66,7 +67,7 @@ class SymbolTable:
             If it compares what is not real, such as ``log(sign(v)) < 1`` where v is negative.
         """
         try:
-            return to_sympy(tree, {**self.symbols, **letters})
+            return to_sympy(tree, {n: (letters if n in letters else self)[n] for n in names(tree)})
         except TypeError as error:
             what = f"the law {quote(spell(tree))} compares what has no real value somewhere"
             remedy = "keep its logarithms, roots and quotients defined"
@@ -77,7 +78,8 @@ def symbol_table(circuit: Circuit) -> SymbolTable:
     """Return the symbols of a circuit's parameters, inputs, states and named quantities."""
     model = circuit.model
     signs = _signs(model)
-    per_lane: dict[str, str] = {s: e for s, e in states(model).items() if e in banks(model)}
+    sizes = banks(model)
+    per_lane: dict[str, str] = {s: e for s, e in states(model).items() if e in sizes}
     owners = lane_parameters(model)
     per_lane |= {n: owners[n] for n, p in model.parameters.items() if isinstance(p.value, tuple)}
     names = [*model.parameters, *model.inputs, *states(model)]
@@ -89,9 +91,7 @@ def symbol_table(circuit: Circuit) -> SymbolTable:
         if isinstance(port, Body):
             signs[port.temperature] = {"positive": True}
     table = {name: _symbol(name, per_lane.get(name), signs.get(name)) for name in names}
-    counts = {
-        bank: sp.Symbol(f"{bank}_count", integer=True, positive=True) for bank in banks(model)
-    }
+    counts = {bank: sp.Symbol(f"{bank}_count", integer=True, positive=True) for bank in sizes}
     return SymbolTable(table, {table[name]: bank for name, bank in per_lane.items()}, counts)
 
 

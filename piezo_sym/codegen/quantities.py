@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace as replace_fields
+from functools import cached_property
 from typing import final
 
 import sympy as sp
@@ -113,8 +114,9 @@ class Quantities:
 
     def sharp(self, law: Expr) -> Expr:
         """Return a law with differences to a temperature written so that they do not cancel."""
-        return with_excess(law, self._temperature_laws(), self._excess)
+        return with_excess(law, self._temperature_laws, self._excess)
 
+    @cached_property
     def _temperature_laws(self) -> dict[str, Expr]:
         return {
             port.temperature: rename(port.law, {port.letter: port.state})
@@ -142,15 +144,17 @@ class Quantities:
         if self.after:  # T is a mean there, and no part of a derivative; functions have names
             found = self._functions.get(expr)
             return found if found else rebuild(expr, self.known)
-        laws = {law: Sym(name) for name, law in self._temperature_laws().items()}
-        found = laws.get(expr)
+        found = self._temperatures.get(expr)
         return found if found else rebuild(expr, self.known)
+
+    @cached_property
+    def _temperatures(self) -> dict[Expr, Sym]:
+        return {law: Sym(name) for name, law in self._temperature_laws.items()}
 
     def row(self, block: LaneMatrix, row: int, given: Callable[[int], Expr]) -> Iterator[Expr]:
         """Yield the terms of ``(block @ given)[row]``, column by column."""
-        for (r, c), full, own in block.entries():
-            if r == row:
-                yield from self._term(full, own, block.cols[c], given(c))
+        for c, full, own in block.by_row.get(row, ()):
+            yield from self._term(full, own, block.cols[c], given(c))
 
     def _term(self, full: sp.Expr, own: sp.Expr, col: Slot, value: Expr) -> Iterator[Expr]:
         if full != 0 and col.bank:
@@ -214,9 +218,10 @@ class Quantities:
 
     def _processes(self) -> tuple[list[Expr], list[Sym], list[Expr]]:
         forces, outputs, heats = [], [], []
+        states, inputs = self.system.B.T, self.system.D.T
         for k, (placed, port) in enumerate(self.circuit.of(Resistor, Conductor)):
-            terms = [*self.row(self.system.B.T, k, self.costate)]
-            terms += self.row(self.system.D.T, k, self.input)
+            terms = [*self.row(states, k, self.costate)]
+            terms += self.row(inputs, k, self.input)
             effort = drive = add(*terms)
             if not isinstance(effort, Sym) and isinstance(port, Resistor):
                 effort = self.defined_as(port.effort, effort, placed.bank, "driving forces")
@@ -238,13 +243,10 @@ class Quantities:
         A mean law is passive if the force moves along a line, so its co-states have to be affine.
         """
         law = self._at(port.law, port.heats)
-        affine = {
-            costate_name(store): rename(store.law, {store.letter: store.state})
-            for _, store in self.stores
-            if is_affine(store.law, {store.letter})
-        }
         still = {*self.circuit.model.inputs, *(port.name for _, port in self.circuit.of(Coupling))}
-        if placed.element in self.odd and {*names(drive)} <= affine.keys() | still:
+        used = {*names(drive)}
+        if placed.element in self.odd and used <= self._affine.keys() | still:
+            affine = {name: self._affine[name] for name in used & self._affine.keys()}
             later = {name: rename(tree, self.after) for name, tree in affine.items()}
             old, new = (replace(drive, ends) for ends in (affine, later))
             if not is_affine(law, {port.letter}) and mean_across_kinks(law, port.letter, old, new):
@@ -254,6 +256,15 @@ class Quantities:
                 last = self.define(f"{base}_new", new, placed.bank, note)
                 return mean_across_kinks(law, port.letter, first, last) or law
         return replace(law, {port.letter: effort})
+
+    @cached_property
+    def _affine(self) -> dict[str, Expr]:
+        """The law of each co-state that is affine in its state."""
+        return {
+            costate_name(store): rename(store.law, {store.letter: store.state})
+            for _, store in self.stores
+            if is_affine(store.law, {store.letter})
+        }
 
     def heat(self, k: int) -> Sym:
         """Return the quantity that is the heat of process k, summed over the lanes of a bank."""

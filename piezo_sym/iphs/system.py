@@ -83,19 +83,13 @@ class System:
     @cached_property
     def J_ir(self) -> LaneMatrix:
         """The skew structure matrix of eq. (3)."""
-        total = self.J0
-        for row in dict.fromkeys(self.heats):
-            entropy, coupling = self._unit(row), self._heating(self.B, row)
-            total = total + entropy @ coupling.T - coupling @ entropy.T
-        return total
+        couplings = self.B @ self._heating
+        return self.J0 + couplings.T - couplings
 
     @cached_property
     def g(self) -> LaneMatrix:
         """The input map of eq. (1); it depends on u where a source drives a process directly."""
-        total = self.G
-        for row in dict.fromkeys(self.heats):
-            total = total + self._unit(row) @ self._heating(self.D, row).T
-        return total
+        return self.G + (self.D @ self._heating).T
 
     @cached_property
     def rhs(self) -> LaneMatrix:
@@ -129,10 +123,11 @@ class System:
     def _unit(self, row: int) -> LaneMatrix:
         return vector(self.states, self.E.lanes, {row: sp.S.One})
 
-    def _heating(self, columns: LaneMatrix, row: int) -> LaneMatrix:
-        """Return the sum of R_k times the column of each process that heats the body in `row`."""
-        here = {n: r for n, r in enumerate(self.R) if self.heats[n] == row}
-        return columns @ vector(self.processes, self.R.lanes, here)
+    @cached_property
+    def _heating(self) -> LaneMatrix:
+        """The modulating functions as a matrix, R_k at the entropy that process k feeds."""
+        entries = {(k, self.heats[k]): r for k, r in enumerate(self.R) if r != 0}
+        return LaneMatrix(self.processes, self.states, self.R.lanes, entries)
 
 
 def _column(entries: Entries, k: int) -> dict[tuple[int, int], sp.Expr]:

@@ -14,8 +14,6 @@ A loop stands for every lane of a bank: what it adds up is a sum over lanes, wha
 of that lane.  Helpers mean what their text says.  Nothing is compiled or executed.
 """
 
-from __future__ import annotations
-
 import ast
 import re
 from collections.abc import Mapping
@@ -149,8 +147,8 @@ class _Function:
         if self.written.slots == (Slot(""),):
             self.keep((self.name, 0), self.read.numeric(node)[0])
             return
-        counted = self.known.slots[{"states": "rhs", "processes": "heat"}[self.name]]
-        if self.read.whole(node) != self.known.places(counted)[-1]:
+        counted = self.known.layouts[{"states": "rhs", "processes": "heat"}[self.name]]
+        if self.read.whole(node) != counted.places[-1]:
             raise refused(node, "another number of rows")
 
     # Declarations
@@ -174,7 +172,8 @@ class _Function:
                 self.scope.declare(name, self.scope.pointer(node))
             elif constant:
                 whole = (self.read.whole(node), WHOLE) if kind == "long" else None
-                self.scope.declare(name, whole or (self.read.numeric(node)[0], PLAIN))
+                value = self.field.zero if whole else self.field.letter(self.read.numeric(node)[0])
+                self.scope.declare(name, whole or (value, PLAIN))
             elif not pointer:
                 value = self.read.numeric(node)[0]
                 self.scope.declare(name, Variable(value, self.scope.open[-1]))
@@ -200,13 +199,13 @@ class _Function:
         tokens.take("=", "0", ";", name, "<")
         node = tokens.expression()
         tokens.take(";", "++", name, ")")
-        size, square = self.read.whole(node), self.written.places[-1] * self.written.places[-1]
+        size, square = self.read.whole(node), self.written.size * self.written.size
         inside = self.written.found or self.scope.lanes
         if self.name == "jacobian" and size == square and not inside:
             tokens.take("{", self.out, "[", name, "]", "=", "0.0", ";", "}")
             self.written.zeros = True
             return
-        banks = {self.field.count(bank): bank for bank in self.known.counts.values()}
+        banks = self.known.bank_of_size
         if size not in banks or len(self.scope.lanes) > 1:
             raise refused(node, "a loop over no bank")
         self._lanes(name, banks[size], pragma)

@@ -15,7 +15,6 @@ from piezo_sym.translation.change import moved
 from piezo_sym.translation.expressions import PLAIN, TEST, WHOLE, Expressions, Read, refused
 from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import Proved
-from piezo_sym.translation.rows import slot_at
 from piezo_sym.translation.zero import is_zero
 
 CALLS = {name: name for name in ("exp", "expm1", "log", "sqrt", "sin", "cos", "tanh", "pow")}
@@ -97,7 +96,7 @@ class Scope:
         self.names: dict[str, Meaning] = {}
         self.lanes: list[tuple[str, str]] = []
         self.open = [0]
-        self.read = Expressions(known.field, known.numbers, self._leaf, CALLS, True)
+        self.read = Expressions(known.field, known.numbers, known.real, self._leaf, CALLS, True)
 
     def declare(self, name: str, meaning: Meaning) -> None:
         """Give a new name a meaning."""
@@ -118,9 +117,8 @@ class Scope:
                     right = ast.BinOp(left.right, ast.Add(), right)
                     left = left.left
                 if isinstance(left, ast.Name) and self.roles.get(left.id) == "x":
-                    slots = self.known.slots["rhs"]
-                    place = self.read.whole(right)
-                    slot = slots[slot_at(slots, self.known.places(slots), place, True)]
+                    layout = self.known.layouts["x"]
+                    slot = layout.slots[layout.at(self.read.whole(right), bank=True)]
                     return Lanes(self.known.names[slot.label], slot.bank or "")
         raise refused(node, "a pointer")
 

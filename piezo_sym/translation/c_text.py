@@ -4,10 +4,9 @@ Input: the text of a C file.  Output: `Tokens`.  Comments are left out; of direc
 ``#include`` lines and ``#pragma omp simd`` are in the grammar, strings and characters are not.
 """
 
-from __future__ import annotations
-
 import ast
 import re
+from keyword import iskeyword
 from typing import final
 
 from piezo_sym.translation.field import NotShownError
@@ -20,15 +19,8 @@ _TOKEN = re.compile(
     r"|(?P<sign>->|\|\||\+\+|\+=|[<>=!]=|[-+*/<>=?:,;(){}\[\]])",
     re.DOTALL,
 )
-#: Binary operators, weakest first; those of one level are taken from left to right.
-_LEVELS: tuple[dict[str, type[ast.AST]], ...] = (
-    {"||": ast.Or},
-    {"==": ast.Eq, "!=": ast.NotEq},
-    {"<": ast.Lt, "<=": ast.LtE, ">": ast.Gt, ">=": ast.GtE},
-    {"+": ast.Add, "-": ast.Sub},
-    {"*": ast.Mult, "/": ast.Div},
-)
-MOST_NESTED = 100
+_SPELLED, _CLOSING = {"||": "or", "->": "."}, {"(": ")", "[": "]"}
+MOST_DIGITS = 9
 
 
 @final
@@ -48,7 +40,7 @@ class Tokens:
                 raise NotShownError(f"the C file should have one line {line.strip()}")
             text = text.replace(line, "")
         self.found: list[str] = []
-        self.at, self.depth = 0, 0
+        self.at = 0
         self.sums: list[frozenset[str]] = []
         place = 0
         while place < len(text):
@@ -103,71 +95,39 @@ class Tokens:
     # Expressions
 
     def expression(self) -> ast.expr:
-        """Take an expression."""
-        self.depth += 1
-        if self.depth > MOST_NESTED:
-            raise NotShownError("the C file nests expressions too deeply")
-        made = self._binary(0)
-        if self.taken("?"):
-            then = self.expression()
-            self.take(":")
-            made = ast.IfExp(made, then, self.expression())
-        self.depth -= 1
-        return made
+        """Take an expression: C's operators bind as Python's do, but for ``?`` and comparisons.
 
-    def _binary(self, level: int) -> ast.expr:
-        """Take operators of a level, and what binds more strongly."""
-        if level == len(_LEVELS):
-            return self._unary()
-        made = self._binary(level + 1)
-        while operator := _LEVELS[level].get(self.peek()):
+        A comparison of comparisons, which they read differently, is left for readers to refuse.
+        """
+        text = self._in_python()
+        try:
+            return ast.parse(text, mode="eval").body
+        except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+            raise NotShownError(f"the C file has {text[:60]!r} for an expression") from error
+
+    def _in_python(self) -> str:
+        """Take an expression up to the token that ends it."""
+        words: list[str] = []
+        while (token := self.peek()) not in {";", ",", ")", "]", "}", ":", ""}:
             self.next()
-            right = self._binary(level + 1)
-            made = _joined(made, operator(), right)
-        return made
+            if token == "?":
+                then = self._in_python()
+                self.take(":")
+                return f"({then}) if ({' '.join(words)}) else ({self._in_python()})"
+            if iskeyword(token) or (token.isdigit() and len(token) > MOST_DIGITS):
+                raise NotShownError(f"the C file has {token[:20]!r} in an expression")
+            words.append(self._inside(token) if token in _CLOSING else _SPELLED.get(token, token))
+        if not words:
+            raise NotShownError(f"the C file has {token!r} where an expression should be")
+        return " ".join(words)
 
-    def _unary(self) -> ast.expr:
-        if self.taken("-"):
-            return ast.UnaryOp(ast.USub(), self._unary())
-        made = self._primary()
-        while self.peek() in {"(", "[", "->"} and not isinstance(made, ast.Constant):
-            if self.taken("->"):
-                made = ast.Attribute(made, self.word())
-            elif self.taken("["):
-                made = ast.Subscript(made, self.expression())
-                self.take("]")
-            else:
-                made = ast.Call(made, self._arguments(), [])
-        return made
-
-    def _arguments(self) -> list[ast.expr]:
-        self.take("(")
-        found = [self.expression()]
+    def _inside(self, opening: str) -> str:
+        """Take what stands in brackets; of casts, ``(double)NAN`` is in the grammar."""
+        if self.taken("double"):
+            self.take(")", "NAN")
+            return "NAN"
+        found = [self._in_python()]
         while self.taken(","):
-            found.append(self.expression())
-        self.take(")")
-        return found
-
-    def _primary(self) -> ast.expr:
-        if self.taken("("):
-            if self.taken("double"):
-                self.take(")", "NAN")
-                return ast.Name("NAN")
-            made = self.expression()
-            self.take(")")
-            return made
-        if self.peek()[:1].isdigit() or self.peek()[:1] == ".":
-            text = self.next()
-            if text.isdigit() and (len(text) > 9 or (text[0] == "0" and text != "0")):
-                raise NotShownError("the C file has an integer that is too long, or octal")
-            return ast.Constant(int(text) if text.isdigit() else float(text))
-        return ast.Name(self.word())
-
-
-def _joined(left: ast.expr, operator: ast.AST, right: ast.expr) -> ast.expr:
-    if isinstance(operator, ast.cmpop):
-        return ast.Compare(left, [operator], [right])
-    if isinstance(operator, ast.boolop):
-        return ast.BoolOp(operator, [left, right])
-    assert isinstance(operator, ast.operator)
-    return ast.BinOp(left, operator, right)
+            found.append(self._in_python())
+        self.take(_CLOSING[opening])
+        return f"{opening}{', '.join(found)}{_CLOSING[opening]}"

@@ -5,8 +5,6 @@ two parts: `derivative` in the lane itself, and `across`, by way of sums over la
 Signs have the derivative 0: what is said of derivatives holds inside the branches of a law.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from fractions import Fraction
 
@@ -44,8 +42,8 @@ def _put(field: Field, g: int, new: Mapping[int, Value]) -> Value:
             raise NotShownError("a lane's name comes into a sum over lanes")
         return field.lane_sum(put(gen.arg, new), bank)
     arg = put(gen.arg, new)
-    if gen.kind == "power":
-        return arg
+    if gen.kind in {"power", "letter"}:
+        return arg if gen.kind == "power" else field.letter(arg)
     if gen.kind == "sign":
         op = {1: ">", 0: "==", -1: "<"}[int(str(gen.mark))]
         return compare(op, arg, field.zero)
@@ -117,7 +115,7 @@ def _slope(field: Field, g: int, state: int, own: Value, of_sum: Inner) -> Value
     if gen.kind == "sum":
         return of_sum(gen)
     inner = _chain(gen.arg, state, own, of_sum)
-    if gen.kind == "power" or not inner.terms:
+    if gen.kind in {"power", "letter"} or not inner.terms:
         return inner
     match gen.kind:
         case "exp":

@@ -11,8 +11,6 @@ their cases, clip(x, a, b) = min(max(x, a), b); copysign(w, z) = |w| sign(z), of
 known.
 """
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -65,7 +63,7 @@ class Expressions:
     Attributes
     ----------
     field : of the values.
-    numbers : see `Proved.numbers`.
+    numbers, real : see `Proved`.
     leaf : reads what the language or its names give a meaning: names, subscripts, other calls.
     functions : the name of each function in the text, and what it is.
     whole_division : whether a quotient of integers is an integer, as in C.
@@ -73,6 +71,7 @@ class Expressions:
 
     field: Field
     numbers: Mapping[float, Fraction]
+    real: Callable[[Value], Value]
     leaf: Leaf
     functions: Mapping[str, str]
     whole_division: bool
@@ -89,30 +88,39 @@ class Expressions:
             case ast.Constant(number):
                 return self._number(number)
             case ast.UnaryOp(ast.USub(), arg):
-                value, shape = self.numeric(arg)
+                value, shape = self.any(arg)
                 return -value, shape
-            case ast.BinOp(left, operator, right):
-                return self._operation(self.numeric(left), operator, self.numeric(right), node)
+            case ast.BinOp():
+                return self._operations(node)
             case ast.Compare(left, [operator], [right]) if type(operator) in _OPERATORS:
                 first, second = self.numeric(left), self.numeric(right)
                 joined(first[1], second[1], node)
                 op = _OPERATORS[type(operator)]
                 return compare(op, first[0], second[0]), TEST
-            case ast.BoolOp(ast.Or(), [left, right]):
-                one, tests = self.field.one, (self.test(left), self.test(right))
-                return one - (one - tests[0]) * (one - tests[1]), TEST
+            case ast.BoolOp(ast.Or(), nodes):
+                one = none = self.field.one
+                for part in nodes:
+                    none = none * (one - self.test(part))
+                return one - none, TEST
             case ast.IfExp(test, then, other):
                 return self.choice(test, then, other)
             case ast.Call(function, args, []) if ast.unparse(function) in self.functions:
                 return self._call(self.functions[ast.unparse(function)], args, node)
         return self.leaf(node)
 
-    def numeric(self, node: ast.expr) -> Read:
+    def any(self, node: ast.expr) -> Read:
         """Return an expression that is no condition."""
         value, shape = self(node)
         if shape == TEST:
             raise refused(node, "a condition as a number")
         return value, shape
+
+    def numeric(self, node: ast.expr) -> Read:
+        """Return an expression as a real number."""
+        return self._real(self.any(node))
+
+    def _real(self, read: Read) -> Read:
+        return (self.real(read[0]), PLAIN) if read[1] == WHOLE else read
 
     def whole(self, node: ast.expr) -> Value:
         """Return an integer: an index or a size."""
@@ -158,8 +166,21 @@ class Expressions:
             return self.field.number(value), WHOLE
         return self.field.number(self.numbers.get(value) or Fraction(repr(value))), PLAIN
 
+    def _operations(self, node: ast.expr) -> Read:
+        """Return a sum or product of many, its operators taken from left to right."""
+        rest: list[ast.BinOp] = []
+        while isinstance(node, ast.BinOp):
+            rest.append(node)
+            node = node.left
+        made = self.any(node)
+        for part in reversed(rest):
+            made = self._operation(made, part.op, self.any(part.right), part)
+        return made
+
     def _operation(self, left: Read, operator: ast.operator, right: Read, node: ast.expr) -> Read:
         shape = joined(left[1], right[1], node)
+        if shape != WHOLE or isinstance(operator, ast.Div):
+            left, right = self._real(left), self._real(right)
         match operator:
             case ast.Add():
                 return left[0] + right[0], shape

@@ -3,8 +3,9 @@
 Input: values of one `Field`.  Output: values in which equal expressions look equal.  Generators are
 names (of one lane of a bank, where they have one), functions of values (``exp``, ``log``, ``sin``,
 ``cos``, ``tanh``), powers of sums that are no whole positive ones, sums over the lanes of a bank,
-and signs: ``sign(d, s)`` is 1 where d has the sign s, else 0.  Of the signs of one value
-exactly one is 1, and each is its own square.
+letters, and signs.  A letter stands for one long value; it is spelled out where letters alone do
+not decide.  ``sign(d, s)`` is 1 where d has the sign s, else 0.  Of the signs of one value exactly
+one is 1, and each is its own square.
 """
 
 from __future__ import annotations
@@ -23,6 +24,8 @@ Lane = tuple[str, int]  # a bank, and which of its lanes: 0 a row's, 1 a column'
 MOST_WORK = 10_000_000
 MOST_BITS = 20_000
 MOST_POWER = 64
+#: A value that has a name in a text gets a letter here if it has more terms.
+MOST_SPELLED = 6
 
 
 class NotShownError(Exception):
@@ -141,13 +144,14 @@ class Field:
     assumed : other values of which the domain says so.
     signs, forms, factors, never, asked : what was found of signs and factors, see `signs`, `zero`.
     unknown : how often a solver did not know.
+    work : how many products of two terms were made.
     """
 
     def __init__(self) -> None:
         self.gens: list[Generator] = []
         self._numbers: dict[tuple[str, Value | None, Hashable], int] = {}
         self._joined: dict[tuple[Mono, Mono], tuple[Mono, Value | None] | None] = {}
-        self._work = 0
+        self.work = 0
         self.zero, self.one = Value(self, {}), Value(self, {(): 1})
         self.path: Value | None = self.one
         self.derived = False
@@ -193,6 +197,13 @@ class Field:
             self.gens.append(Generator(kind, arg, mark, lanes, parts))
         return self.raised(known, 1)
 
+    def letter(self, value: Value) -> Value:
+        """Return a letter for a long value without signs, the same for equal values; or itself."""
+        if len(value.terms) <= MOST_SPELLED:
+            return value
+        chosen = any(self.gens[g].kind == "sign" for g in value.generators())
+        return value if chosen else self.generator("letter", value)
+
     def raised(self, g: int, exponent: Exponent) -> Value:
         """Return a power of a generator, not yet in normal form where that is a sum's."""
         return Value(self, {((g, exponent),): 1})
@@ -209,8 +220,8 @@ class Field:
 
     def times(self, left: Value, right: Value) -> Value:
         """Return a product, in normal form."""
-        self._work += len(left.terms) * len(right.terms)
-        if self._work > MOST_WORK:
+        self.work += len(left.terms) * len(right.terms)
+        if self.work > MOST_WORK:
             raise NotShownError("the expressions are too large")
         terms: dict[Mono, Exponent] = {}
         more = []

@@ -7,8 +7,7 @@ log(a b) = log a + log b and (a b)**c = a**c b**c for a, b > 0; (x**(1/n))**n = 
 (x**2)**(1/2) = abs(x); sin and tanh are odd, cos is even.
 """
 
-from __future__ import annotations
-
+from collections.abc import Iterator
 from fractions import Fraction
 from functools import partial
 
@@ -37,9 +36,8 @@ def _power(q: Exponent, base: Value) -> Value:
     made = _root(field, size, q)
     for g, e in common:
         made = made * field.raised(g, e * q)
-        if q < 0:
-            arg = field.gens[g].arg if field.gens[g].kind == "power" else None
-            _needs("nonzero", arg or field.raised(g, 1))
+        for divisor in divisors(field, g) if q < 0 else ():
+            _needs("nonzero", divisor)
     if root:
         rest, even = _even(rest, q)
         made = made * even
@@ -49,6 +47,18 @@ def _power(q: Exponent, base: Value) -> Value:
         if q < 0:
             _needs("nonzero", factor)
     return made
+
+
+def divisors(field: Field, g: int) -> Iterator[Value]:
+    """Yield what must not be zero where a generator divides: for a letter what it stands for."""
+    gen = field.gens[g]
+    if gen.kind != "letter" or gen.arg is None:
+        yield (gen.kind == "power" and gen.arg) or field.raised(g, 1)
+        return
+    _, common, rest = primitive(gen.arg, partly=False)
+    for other, _ in common:
+        yield from divisors(field, other)
+    yield from (factor for factor, _ in factors(rest))
 
 
 def _generated(arg: Value, q: Exponent) -> Value:

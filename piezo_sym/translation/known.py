@@ -4,20 +4,46 @@ Input: what `reference` finds in an `IPHS`; this is the type.  Output: the rows 
 the names that texts may use, and the places of parts and rows in arrays.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
-from dataclasses import field as dataclass_field
 from fractions import Fraction
+from functools import cached_property
+from itertools import accumulate, pairwise
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
+from piezo_sym.translation.change import put
 from piezo_sym.translation.field import Field, Need, NotShownError, Value
 
 #: A function, its row, and for an entry its column and whether it is of equal lanes.
 Key = tuple[str | int, ...]
 LEAST, ALL, SAME = "least over lanes", "all lanes", "equal lanes"
+
+
+@final
+@dataclass(frozen=True)
+class Layout:
+    """The slots of an array, and where each starts; the last place is the array's size."""
+
+    slots: tuple[Slot, ...]
+    places: tuple[Value, ...]
+
+    @cached_property
+    def _starts(self) -> dict[Value, int]:
+        return {place: n for n, place in enumerate(self.places[:-1])}
+
+    def at(self, place: Value, *, bank: bool) -> int:
+        """Return the slot that starts at a place, a bank's or another.
+
+        Raises
+        ------
+        NotShownError
+            If there is none.
+        """
+        n = self._starts.get(place)
+        if n is None or bool(self.slots[n].bank) != bank:
+            raise NotShownError("a place where no row starts")
+        return n
 
 
 @final
@@ -36,7 +62,6 @@ class Proved:
     margins : of the conditions of the domain, and whether each is strict.
     numbers : numbers of the spec that have to be rounded to be printed, by what they become.
     parameters, inputs : the names that are parameters, the rows of u.
-    placed : what `places` found.
     """
 
     field: Field
@@ -49,36 +74,59 @@ class Proved:
     numbers: Mapping[float, Fraction]
     parameters: frozenset[str]
     inputs: tuple[Slot, ...]
-    placed: dict[tuple[Slot, ...], list[Value]] = dataclass_field(default_factory=dict)
 
-    def places(self, slots: tuple[Slot, ...]) -> list[Value]:
-        """Return where the rows of each slot start, in sizes of banks; and their number."""
-        if slots not in self.placed:
-            found = [self.field.zero]
-            for slot in slots:
-                size = self.field.count(slot.bank) if slot.bank else self.field.one
-                found.append(found[-1] + size)
-            self.placed[slots] = found
-        return self.placed[slots]
+    @cached_property
+    def layouts(self) -> dict[str, Layout]:
+        """The layout of each function's result, and of the arguments x and u."""
+        found = {}
+        for name, slots in {**self.slots, "x": self.slots["rhs"], "u": self.inputs}.items():
+            rows = (self.sizes[slot.bank] if slot.bank else self.field.one for slot in slots)
+            places = accumulate(rows, Value.__add__, initial=self.field.zero)
+            found[name] = Layout(slots, tuple(places))
+        return found
 
-    @property
-    def counts(self) -> dict[str, str]:
-        """The bank of each name of a size."""
-        return {f"{slot.bank}_count": slot.bank for slot in self.slots["rhs"] if slot.bank}
+    @cached_property
+    def ends(self) -> dict[int, Value]:
+        """The letters that places are written in: for each bank, how many lanes end with it.
+
+        A place is then a letter and a number, however many banks stand before it.
+        """
+        found, total = {}, self.field.zero
+        for slot in self.slots["rhs"]:
+            if slot.bank:
+                total = total + self.field.count(slot.bank)
+                (letter,) = self.field.name(f"end of {slot.bank}").generators()
+                found[letter] = total
+        return found
+
+    @cached_property
+    def sizes(self) -> dict[str, Value]:
+        """The size of each bank, in the letters of places."""
+        banks = [slot.bank for slot in self.slots["rhs"] if slot.bank]
+        ends = [self.field.zero, *(self.field.raised(letter, 1) for letter in self.ends)]
+        return {
+            bank: last - first for bank, (first, last) in zip(banks, pairwise(ends), strict=True)
+        }
+
+    @cached_property
+    def bank_of_size(self) -> dict[Value, str]:
+        """The bank of each size."""
+        return {size: bank for bank, size in self.sizes.items()}
+
+    def real(self, size: Value) -> Value:
+        """Return an integer made of sizes as a real number."""
+        return put(size, self.ends)
 
     def parameter(self, name: str) -> tuple[Value, bool]:
         """Return a parameter that lanes share, or the size of a bank; and whether it is a size."""
-        if name in self.counts:
-            return self.field.count(self.counts[name]), True
+        bank = name.removesuffix("_count")
+        if bank != name and bank in self.sizes:
+            return self.sizes[bank], True
         if name not in self.parameters or name in self.banks:
             raise NotShownError(f"{name} is no parameter that lanes share")
         return self.names[name], False
 
     def part(self, role: str, place: Value) -> Value:
         """Return the part of x or u at a place, one that lanes share."""
-        slots = self.slots["rhs"] if role == "x" else self.inputs
-        found = zip(slots, self.places(slots), strict=False)
-        name = next((s.label for s, at in found if at == place and not s.bank), None)
-        if name is None:
-            raise NotShownError(f"a part of {role} that is none")
-        return self.names[name]
+        layout = self.layouts[role]
+        return self.names[layout.slots[layout.at(place, bank=False)].label]

@@ -6,8 +6,6 @@ parameters, parts of x and u, or an expression; rows of `out` are written once. 
 and the helpers of a module have to be word for word what is expected.  Nothing is executed.
 """
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Mapping, Sequence
 from typing import final
@@ -16,8 +14,8 @@ from piezo_sym.algebra.lanes import Slot
 from piezo_sym.translation.change import moved
 from piezo_sym.translation.expressions import PLAIN, WHOLE, Expressions, Read, Shape, refused
 from piezo_sym.translation.field import NotShownError, Value
-from piezo_sym.translation.known import ALL, LEAST, SAME, Key, Proved
-from piezo_sym.translation.rows import Rows, slot_at
+from piezo_sym.translation.known import ALL, LEAST, SAME, Key, Layout, Proved
+from piezo_sym.translation.rows import Rows
 
 ARGUMENTS = dict.fromkeys(
     ["jacobian", "margins", "outputs", "supply", "heat", "entropy_production"], "x u p"
@@ -66,7 +64,7 @@ class _Function:
         self.lanes: dict[str, tuple[Value, Value]] = {}
         self.written = Rows(known, self.name)
         self.field.derived = self.name == "jacobian"
-        self.read = Expressions(self.field, known.numbers, self._leaf, CALLS, False)
+        self.read = Expressions(self.field, known.numbers, known.real, self._leaf, CALLS, False)
 
     def rows(self) -> dict[Key, Value]:
         """Return the rows that the function writes."""
@@ -143,7 +141,8 @@ class _Function:
             self._allocate(value)
             self.roles[name] = "out"
         else:
-            self.values[name] = self.read.numeric(value)
+            read, shape = self.read.any(value)
+            self.values[name] = self.field.letter(read) if shape != WHOLE else read, shape
 
     def _allocate(self, value: ast.Call) -> None:
         """Read how the result is made: with zeros, rows may be left out."""
@@ -152,11 +151,11 @@ class _Function:
         match shape:
             case ast.Tuple([size, ast.Starred() as rest]) if not zeros:
                 right = ast.unparse(rest) == f"*{self.x}.shape[1:]"
-                right = right and self.read.whole(size) == self.written.places[-1]
+                right = right and self.read.whole(size) == self.written.size
             case ast.Tuple():
                 right = zeros and ast.unparse(shape) == square and self.name == "jacobian"
             case _:
-                right = self.read.whole(shape) == self.written.places[-1]
+                right = self.read.whole(shape) == self.written.size
                 right = right and zeros and self.name == "initial_state"
         if not right or len(value.args) != 1 or value.keywords or "out" in self.roles.values():
             raise refused(value, "an array")
@@ -168,7 +167,7 @@ class _Function:
         if self.name == "jacobian":
             self._entry(place, value, added=added)
             return
-        n, bank = self._row(place, self.written.slots)
+        n, bank = self._row(place, self.written.layout)
         if isinstance(value, ast.Tuple) and bank and self.name == "initial_state":
             for lane, part in enumerate(value.elts):
                 self.written.keep((self.name, n, lane), self._of(part), added=added)
@@ -181,14 +180,14 @@ class _Function:
     def _entry(self, place: ast.expr, value: ast.expr, *, added: bool) -> None:
         if not isinstance(place, ast.Tuple) or len(place.elts) != 2:
             raise refused(place, "a place in a matrix")
-        slots, shapes = self.written.slots, list[Shape]()
+        layout, shapes = self.written.layout, list[Shape]()
         equal = [_first(part) in self.lanes for part in place.elts]
         if all(equal):
             (row, rows), (col, cols) = map(self._index_array, place.elts)
             if rows != cols:
                 raise refused(place, "equal lanes of two banks")
         else:
-            (row, rows), (col, cols) = (self._row(part, slots) for part in place.elts)
+            (row, rows), (col, cols) = (self._row(part, layout) for part in place.elts)
         if rows and cols and not all(equal):
             shapes = [Shape("row", rows), Shape("column", cols), Shape("pair", rows, cols)]
         elif bank := rows or cols:
@@ -216,29 +215,27 @@ class _Function:
 
     # Places
 
-    def _row(self, node: ast.expr, slots: tuple[Slot, ...]) -> tuple[int, str | None]:
+    def _row(self, node: ast.expr, layout: Layout) -> tuple[int, str | None]:
         """Return the slot of an index or of a slice, and its bank."""
-        places = self.known.places(slots)
         if not isinstance(node, ast.Slice):
-            return slot_at(slots, places, self.read.whole(node), bank=False), None
+            return layout.at(self.read.whole(node), bank=False), None
         if node.lower is None or node.upper is None or node.step is not None:
             raise refused(node, "a slice")
-        n = slot_at(slots, places, self.read.whole(node.lower), bank=True)
-        if self.read.whole(node.upper) != places[n + 1]:
+        n = layout.at(self.read.whole(node.lower), bank=True)
+        if self.read.whole(node.upper) != layout.places[n + 1]:
             raise refused(node, "a slice")
-        return n, slots[n].bank
+        return n, layout.slots[n].bank
 
     def _index_array(self, node: ast.expr) -> tuple[int, str | None]:
         """Return the slot of ``lanes`` or of ``lanes + (second - (first))``, and its bank."""
         shift = self.field.zero
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
             shift, node = self.read.whole(node.right), node.left
-        slots, places = self.written.slots, self.written.places
-        first, last = self.lanes[_first(node)]
-        n = slot_at(slots, places, first + shift, bank=True)
-        if not isinstance(node, ast.Name) or last + shift != places[n + 1]:
+        layout, (first, last) = self.written.layout, self.lanes[_first(node)]
+        n = layout.at(first + shift, bank=True)
+        if not isinstance(node, ast.Name) or last + shift != layout.places[n + 1]:
             raise refused(node, "lanes of another bank")
-        return n, slots[n].bank
+        return n, layout.slots[n].bank
 
     # Names
 
@@ -250,9 +247,10 @@ class _Function:
                 value, whole = self.known.parameter(name)
                 return value, WHOLE if whole else PLAIN
             case ast.Subscript(ast.Name(x), place) if self.roles.get(x) in {"x", "u"}:
-                slots = self.known.slots["rhs"] if self.roles[x] == "x" else self.known.inputs
-                n, bank = self._row(place, slots)
-                return self.known.names[slots[n].label], Shape("lanes", bank) if bank else PLAIN
+                layout = self.known.layouts[self.roles[x]]
+                n, bank = self._row(place, layout)
+                value = self.known.names[layout.slots[n].label]
+                return value, Shape("lanes", bank) if bank else PLAIN
             case ast.Subscript(arg, place):
                 kind = {"(:, None)": "row", "None": "column"}.get(ast.unparse(place))
                 value, shape = self.read.numeric(arg)
@@ -264,7 +262,7 @@ class _Function:
                 dimensions = f"{self.x}.ndim" if self.x else "1"
                 known = name in self.known.parameters and self.roles.get(p) == "p"
                 known = known and ast.unparse(axes) == dimensions
-                if bank and known and self.read.whole(size) == self.field.count(bank):
+                if bank and known and self.read.whole(size) == self.known.sizes[bank]:
                     return self.known.names[name], Shape("maybe", bank)
             case ast.Call(ast.Attribute(ast.Name("np"), name), args, keywords):
                 return self._array_call(name, args, [ast.unparse(word) for word in keywords], node)
@@ -281,8 +279,7 @@ class _Function:
                 if shape.kind == "lanes":
                     return self.field.lane_sum(value, shape.bank), PLAIN
             case "ones", [ast.Tuple([size, rest])], []:
-                banks = {self.field.count(bank): bank for bank in self.known.counts.values()}
-                bank = banks.get(self.read.whole(size), "")
+                bank = self.known.bank_of_size.get(self.read.whole(size), "")
                 if bank and ast.unparse(rest) == f"*(1,) * ({self.x}.ndim - 1)":
                     return self.field.one, Shape("lanes", bank)
         raise refused(node, "a call")

@@ -4,8 +4,6 @@ Input: the signs.  Output: no, if a solver shows that they contradict each other
 says.  Generators are real numbers to it, of the signs that they are known to have.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 

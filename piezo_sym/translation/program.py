@@ -6,8 +6,6 @@ every size of every bank, and divides by nothing more than the laws do; REFUTED 
 which a row differs; OPEN with what was not understood or not shown.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 
 from piezo_sym.iphs import IPHS
@@ -86,16 +84,24 @@ def _differences(
         place = f"{language} {key[0]}{[_label(key, n, known) for n in range(1, len(key))]}"
         if not matrix and (key not in rows or key not in known.values):
             yield _open(f"{place} is not written")
-        elif not is_zero(printed - wanted, inside=matrix):
+        elif found := _doubt(printed - wanted, inside=matrix):
             tried += 1
             at = witness(printed, wanted, known, iphs) if tried <= MOST_TRIED else None
-            reason = f"{place} is not shown to be the proved one"
+            reason = f"{place} {found}"
             if at:
                 reason = f"{place} is {at.printed}, and {at.proved} is proved"
             verdict = Verdict.REFUTED if at else Verdict.OPEN
             yield Row("program", "", STATEMENT, verdict, at.point if at else None, reason)
             if at:
                 return
+
+
+def _doubt(difference: Value, *, inside: bool) -> str:
+    """Return why a difference is not shown to be zero, or nothing if it is."""
+    try:
+        return "" if is_zero(difference, inside=inside) else "is not shown to be the proved one"
+    except NotShownError as error:
+        return f"is not shown to be the proved one: {error}"
 
 
 def _label(key: Key, n: int, known: Proved) -> str:
@@ -107,15 +113,16 @@ def _label(key: Key, n: int, known: Proved) -> str:
 
 def _unmet(needs: tuple[Need, ...], known: Proved) -> Iterator[str]:
     """Yield what printed code divides by, or takes roots of, and laws do not."""
-    field = known.field
+    field, allowed = known.field, dict[Value, list[Need]]()
+    for given in known.needs:
+        allowed.setdefault(given.value, []).append(given)
     for need in needs:
         value = _in_first_lane(need.value)
         op = {"nonzero": "==", "nonnegative": "<"}.get(need.kind, "<=")
         fails = compare(op, value, field.zero)
         left = _in_first_lane(need.path) * fails
-        for given in known.needs:
-            fits = {given.kind} in _ENOUGH[need.kind] and (need.derived or not given.derived)
-            if fits and given.value == value:
+        for given in allowed.get(value, ()):
+            if {given.kind} in _ENOUGH[need.kind] and (need.derived or not given.derived):
                 left = left * (field.one - given.path)
         if not is_zero(left, inside=need.derived):
             where = "jacobian" if need.derived else "code"

@@ -8,8 +8,6 @@ A parameter of a bank is one number a lane, as it is in printed modules; the pro
 co-states and laws of one lane, so they hold for lanes that differ.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import final
@@ -26,7 +24,7 @@ from piezo_sym.spec.parse import parse_law
 from piezo_sym.spec.tables import conditions, lane_parameters, law_fields, states
 from piezo_sym.translation.change import across, derivative
 from piezo_sym.translation.field import Field, Need, NotShownError, Value
-from piezo_sym.translation.functions import call, power, size_of
+from piezo_sym.translation.functions import call, divisors, power, size_of
 from piezo_sym.translation.known import ALL, LEAST, SAME, Key, Proved
 from piezo_sym.translation.signs import assume, compare
 from piezo_sym.translation.zero import is_zero
@@ -175,9 +173,10 @@ class _Reader:
 
     def _jacobian(self, rates: Sequence[Value]) -> Iterator[tuple[Key, Value]]:
         slots = self.slots["rhs"]
+        columns = {g: c for c, slot in enumerate(slots) for g in self.names[slot.label].parts}
         for r, rate in enumerate(rates):
-            for c, slot in enumerate(slots):
-                (state,) = self.names[slot.label].parts
+            for c, state in sorted((columns[g], g) for g in rate.parts if g in columns):
+                slot = slots[c]
                 row, own = slots[r].bank, derivative(rate, state)
                 kind = SAME if row and row == slot.bank else ALL
                 yield ("jacobian", r, c, kind), own
@@ -197,8 +196,7 @@ class _Reader:
             for g, _ in mono:
                 path = path * self.field.raised(g, 1) if gens[g].kind == "sign" else path
             for g in below:
-                arg = gens[g].arg if gens[g].kind == "power" else None
-                yield Need("nonzero", arg or self.field.raised(g, 1), path, True)
+                yield from (Need("nonzero", d, path, True) for d in divisors(self.field, g))
 
     # Expressions
 
@@ -208,7 +206,7 @@ class _Reader:
         if isinstance(expr, sp.Symbol):
             if expr not in self.known:
                 path, field.path = field.path, field.one
-                self.known[expr] = self(self.definitions[expr])
+                self.known[expr] = field.letter(self(self.definitions[expr]))
                 field.path = path
             return self.known[expr]
         if isinstance(expr, sp.Rational):
@@ -222,6 +220,7 @@ class _Reader:
         args = [self(arg) for arg in expr.args]
         if isinstance(expr, sp.Add):
             return field.total(args)
+        args = [field.letter(arg) for arg in args]
         if isinstance(expr, sp.Mul):
             product = field.one
             for arg in args:

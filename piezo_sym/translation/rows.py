@@ -4,14 +4,16 @@ Input: what is written where, place by place.  Output: rows by slot, entries by 
 whether they are of equal lanes.  Each is written once; to an entry made of zeros more may be added.
 """
 
-from __future__ import annotations
-
-from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from math import prod
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.translation.field import NotShownError, Value
-from piezo_sym.translation.known import ALL, SAME, Key, Proved
+from piezo_sym.translation.known import ALL, SAME, Key, Layout, Proved
+
+#: More lanes than an array without banks has places.
+LONG = 10**9
 
 
 @final
@@ -20,18 +22,28 @@ class Rows:
 
     Attributes
     ----------
-    slots, places : the rows of its result, and where each of them starts; the last is the size.
+    layout : of its result.
     found : what was written.
     zeros : whether what is not written is zero.
     """
 
     def __init__(self, known: Proved, name: str) -> None:
         self.known, self.name = known, name
-        self.slots = known.slots.get(name, ())
-        self.places = known.places(self.slots)
+        self.layout = known.layouts.get(name, Layout((), (known.field.zero,)))
         self.found: dict[Key, Value] = {}
         self.zeros = False
-        self._tables: dict[tuple[str, ...], dict[Value, Key]] = {}
+        self._ends = {letter: n * LONG for n, letter in enumerate(known.ends, 1)}
+        self._starts = {self._if_long(at): n for n, at in enumerate(self.layout.places[:-1])}
+
+    @property
+    def slots(self) -> tuple[Slot, ...]:
+        """The slots of its result."""
+        return self.layout.slots
+
+    @property
+    def size(self) -> Value:
+        """How many rows its result has."""
+        return self.layout.places[-1]
 
     def keep(self, key: Key, value: Value, *, added: bool = False) -> None:
         """Take what is written; refuse what is written over, or added to nothing."""
@@ -43,54 +55,32 @@ class Rows:
         self.found[key] = self.found[key] + value if key in self.found else value
 
     def key_at(self, place: Value, banks: tuple[str, ...]) -> Key | None:
-        """Return what stands at a place that loops over the lanes of some banks write."""
-        if banks not in self._tables:
-            self._tables[banks] = {at: key for key, at in self._lane_places(banks)}
-        return self._tables[banks].get(place)
+        """Return what stands at a place that loops over the lanes of some banks write.
 
-    def _lane_places(self, banks: Sequence[str]) -> Iterator[tuple[Key, Value]]:
-        """Yield the key and the place of all that such loops can write."""
-        index = [self.known.field.name("index", bank, n) for n, bank in enumerate(banks)]
-        for r, row in enumerate(self.slots):
-            if row.bank and [row.bank] != [*banks[:1]]:
-                continue
-            first = self.places[r] + index[0] if row.bank else self.places[r]
-            used = int(row.bank is not None)
-            if self.name != "jacobian":
-                yield from [((self.name, r), first)] if used == len(banks) else []
-                continue
-            for c in range(len(self.slots)):
-                place = first * self.places[-1] + self.places[c]
-                yield from self._entries(r, c, place, banks, used, index)
+        The place says which slots it is where every bank has `LONG` lanes; it then has to be
+        theirs for every size.
+        """
+        matrix, at, total = self.name == "jacobian", self._if_long(place), self.known.field.zero
+        found = [
+            self._starts.get(n) for n in (divmod(at, self._if_long(self.size)) if matrix else [at])
+        ]
+        slots, lanes, steps = [n for n in found if n is not None], list[str](), list[Value]()
+        if len(slots) < len(found):
+            return None
+        for n, step in zip(slots[::-1], (self.known.field.one, self.size), strict=False):
+            total = total + self.layout.places[n] * step
+            if bank := self.slots[n].bank:
+                lanes, steps = [bank, *lanes], [step, *steps]
+        same = len(lanes) == 2 and [*banks] == lanes[:1] == lanes[1:]
+        lanes, steps = (lanes[:1], [steps[0] + steps[1]]) if same else (lanes, steps)
+        for n, (bank, step) in enumerate(zip(lanes, steps, strict=True)):
+            total = total + self.known.field.name("index", bank, n) * step
+        kind = [SAME if same else ALL] if matrix else []
+        return (self.name, *slots, *kind) if [*banks] == lanes and total == place else None
 
-    def _entries(
-        self,
-        r: int,
-        c: int,
-        place: Value,
-        banks: Sequence[str],
-        used: int,
-        index: Sequence[Value],
-    ) -> Iterator[tuple[Key, Value]]:
-        """Yield the entries of a row's lane (if it is `used`) and of a column."""
-        row, col = self.slots[r], self.slots[c]
-        if not col.bank and used == len(banks):
-            yield ("jacobian", r, c, ALL), place
-        if col.bank and [col.bank] == [*banks[used:]]:
-            yield ("jacobian", r, c, ALL), place + index[used]
-        if col.bank and row.bank and [row.bank] == [col.bank] == [*banks]:
-            yield ("jacobian", r, c, SAME), place + index[0]
-
-
-def slot_at(slots: Sequence[Slot], places: Sequence[Value], place: Value, bank: bool) -> int:
-    """Return the slot that starts at a place, a bank's or another.
-
-    Raises
-    ------
-    NotShownError
-        If there is none.
-    """
-    for n, slot in enumerate(slots):
-        if bool(slot.bank) == bank and places[n] == place:
-            return n
-    raise NotShownError("a place where no row starts")
+    def _if_long(self, place: Value) -> int:
+        """Return a place of the first lanes where every bank has `LONG` lanes."""
+        total = Fraction(0)
+        for mono, c in place.terms.items():
+            total += Fraction(c) * prod(self._ends.get(g, 0) ** int(e) for g, e in mono)
+        return int(total)

@@ -3,8 +3,6 @@
 Input: values.  Output: values in which signs choose; a comparison is 1 where it holds, else 0.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from fractions import Fraction
 from functools import partial, reduce
@@ -28,7 +26,7 @@ def sign_of(field: Field, g: int) -> int:
     if g not in field.signed:
         gen = field.gens[g]
         known = {"exp": 2, "sign": 1}.get(gen.kind, 0)
-        if gen.kind in {"power", "sum"} and gen.arg:
+        if gen.kind in {"power", "sum", "letter"} and gen.arg:
             known = sign(gen.arg)
         if not known:  # the domain may say more later
             return field.assumed.get(field.raised(g, 1), 0)

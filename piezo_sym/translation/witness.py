@@ -161,7 +161,7 @@ class Point:
             if not side and arg.a != arg.b:
                 raise UndecidedError
             return self.exact(Fraction(int(side == gen.mark)))
-        if gen.kind == "power":
+        if gen.kind in {"power", "letter"}:
             return arg
         if gen.kind == "log" and arg.a <= 0:
             raise UndecidedError

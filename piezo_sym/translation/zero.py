@@ -5,8 +5,6 @@ contradict itself is looked at; where a difference is zero, that is put in.  Wha
 fraction is multiplied out.  A sum over lanes is zero if its terms are.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
@@ -17,7 +15,7 @@ from piezo_sym.translation.change import put
 from piezo_sym.translation.field import Field, NotShownError, Value
 from piezo_sym.translation.functions import power
 from piezo_sym.translation.possible import impossible
-from piezo_sym.translation.signs import has_sign, sign
+from piezo_sym.translation.signs import has_sign, sign, sign_of
 
 MOST_CASES = 500
 MOST_STEPS = 12
@@ -27,8 +25,41 @@ Case = tuple[Value, dict[Value, int]]
 
 def is_zero(value: Value, *, inside: bool = False) -> bool:
     """Return whether a value is shown to be zero; with `inside`, inside the branches of states."""
-    if not value.terms:
-        return True
+    gens = value.field.gens
+    letters = [g for g in value.parts if gens[g].kind == "letter"]
+    try:
+        if not value.terms or _is_zero(value, inside=inside):
+            return True
+    except NotShownError:
+        if not letters:
+            raise
+    spelled = (_spelled(value, letter) for letter in sorted(letters, reverse=True))
+    new = next((new for new in spelled if new != value), None)  # none: all stand in sums over lanes
+    return new is not None and is_zero(new, inside=inside)
+
+
+def _spelled(value: Value, letter: int) -> Value:
+    """Return a value without a letter: by a name in what it stands for, or spelled out.
+
+    What is linear in a state by a factor that is not zero becomes a new name, and that state what
+    it then has to be: an equation holds for all values of the one if for all of the other.
+    """
+    field, arg = value.field, value.field.gens[letter].arg
+    assert arg is not None
+    linear = not any(field.gens[g].kind == "sign" for g in arg.parts)
+    for g in sorted(arg.parts & field.states) if linear else ():
+        own = Value(field, {mono: c for mono, c in arg.terms.items() if (g, 1) in mono})
+        rest, factor = arg - own, own * Value(field, {((g, -1),): 1})
+        alone = g not in factor.parts | rest.parts and not sign_of(field, g)
+        if alone and has_sign(factor) and arg.lanes == field.gens[g].lanes:
+            bank, lane = next(iter(arg.lanes), (None, 0))
+            new = field.name(f"letter {letter}", bank, lane)
+            field.states |= new.parts
+            return put(value, {letter: new, g: (new - rest) * _inverse(factor)})
+    return put(value, {letter: arg})
+
+
+def _is_zero(value: Value, *, inside: bool) -> bool:
     parts = _apart(value)
     if len(parts) > 1 or parts[0] is not value:
         return all(is_zero(part, inside=inside) for part in parts)
@@ -245,8 +276,7 @@ def _solved(d: Value) -> dict[int, Value]:
             continue
         if not has_sign(factor):
             continue
-        found = -(rest * _inverse(factor))
-        return {g: found}
+        return {g: -(rest * _inverse(factor))}
     return {}
 
 
