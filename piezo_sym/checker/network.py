@@ -166,30 +166,37 @@ def _added(left: Form, right: Form, factor: Any) -> Form:
 
 
 def _eliminated(left: list[Form], size: int) -> tuple[dict[Any, Form], list[Any]]:
-
-    def unknown(row: Form) -> list[Any]:
-        return [key for key in row if isinstance(key, Part) or key[0] == "e"]
-
-    def without(form: Form, label: Any, row: Form) -> Form:
-        rest = {key: value for key, value in form.items() if key != label}
-        return _added(rest, row, form[label]) if label in form else form
-
-    solved, pivots = dict[Any, Form](), list[Any]()
-    while choices := [
-        ((row[label] not in (1, -1), len(row), n), label)
-        for n, row in enumerate(left)
-        for label in unknown(row)
-        if row[label] != 0
-    ]:
-        (_, _, n), label = min(choices, key=lambda choice: choice[0])
-        row = left.pop(n)
+    rows, solved, pivots = dict(enumerate(left)), dict[Any, Form](), list[Any]()
+    choices = {n: found for n, row in rows.items() if (found := _choice(n, row))}
+    while choices:
+        (_, _, n), label = min(choices.values(), key=lambda choice: choice[0])
+        row = rows.pop(n)
+        del choices[n]
         pivots.append(pivot := row.pop(label))
         row = {key: -value / pivot for key, value in row.items()}
-        left = [without(other, label, row) for other in left]
-        solved = {key: without(other, label, row) for key, other in solved.items()} | {label: row}
-    if left or len(solved) != size or any(unknown(row) for row in solved.values()):
+        for table in (rows, solved):
+            for key in [key for key, other in table.items() if label in other]:
+                factor = table[key].pop(label)
+                table[key] = _added(table[key], row, factor)
+                if table is rows and not (found := _choice(key, table[key])):
+                    choices.pop(key, None)
+                elif table is rows:
+                    choices[key] = found
+        solved[label] = row
+    if rows or len(solved) != size or any(map(_unknown, solved.values())):
         raise SingularError("the laws of the network have no single solution")
     return solved, pivots
+
+
+def _choice(n: int, row: Form) -> Any:
+    """Return the best unknown to solve a row for: short rows first, and factors 1 and -1."""
+    found = [label for label in _unknown(row) if row[label] != 0]
+    ranks = [((row[label] not in (1, -1), len(row), n), label) for label in found]
+    return min(ranks, key=lambda choice: choice[0], default=None)
+
+
+def _unknown(row: Form) -> list[Any]:
+    return [key for key in row if isinstance(key, Part) or key[0] == "e"]
 
 
 @cache

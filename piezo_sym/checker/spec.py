@@ -19,7 +19,7 @@ from .laws import InputError, Node, compare, made, need, num, parse, put, sym, s
 from .units import Dimension, check, unit
 
 DOTTED = re.compile(r"(\s*\.\s*[\w\"'-]+){9}")
-MAX_BYTES, MAX_ELEMENTS = 500_000, 300
+MAX_BYTES = 500_000
 TABLES = ("model", "parameters", "inputs", "domain", "initial", "elements")
 Symbol = tuple[str, str]
 
@@ -89,7 +89,7 @@ class _Reader:
         self.parameters = self._values("parameters", "value", "p")
         self.inputs = {n: v[0] for n, v in self._values("inputs", "default", "u").items()}
         raw = tables["elements"]
-        need(0 < len(raw) <= MAX_ELEMENTS, f"{len(raw)} elements; 1 to {MAX_ELEMENTS} are read")
+        need(bool(raw), "no elements")
         self.kinds = {name: KINDS[entry["kind"]] for name, entry in raw.items()}
         self.bodies = [name for name, kind in self.kinds.items() if kind.form == "body"]
         self.words = self._words(raw)

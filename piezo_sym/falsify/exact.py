@@ -66,6 +66,7 @@ class Exact:
         """Read the spec; the checker's `InputError` if it cannot."""
         self.spec = read_spec(iphs.model.to_toml())
         self.states = {body.element: port.state for body, port in iphs.circuit.of(Body)}
+        self.points: dict[tuple[Any, ...], Point] = {}
 
     def broken(self, claim: Claim, space: Space, point: Array) -> str | None:
         """Return what breaks a row at a point of the domain, or None."""
@@ -116,6 +117,13 @@ class Exact:
         return None
 
     def _at(self, space: Space, values: list[Fraction]) -> Point:
+        """Return what is computed at a point, once for all claims."""
+        key = (*space.counts.items(), *values)
+        if key not in self.points:
+            self.points[key] = self._computed(space, values)
+        return self.points[key]
+
+    def _computed(self, space: Space, values: list[Fraction]) -> Point:
         given: list[dict[str, Any]] = []
         for records in (space.module.PARAMETERS, space.module.INPUTS, space.module.STATES):
             given.append({})

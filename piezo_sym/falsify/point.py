@@ -85,6 +85,20 @@ def evaluate(
 
 
 @final
+class _Lane(dict[Any, Any]):
+    """The values of names in one lane, each looked up when it is asked for."""
+
+    def __init__(self, known: Mapping[Any, list[Any]], lane: int, letters: Mapping[Any, Any]):
+        super().__init__(letters)
+        self.known, self.lane = known, lane
+
+    def __missing__(self, name: Any) -> Any:
+        """Return the value of a name that is no letter."""
+        found = self.known[name]
+        return found[max(self.lane - 1, 0) % len(found)]
+
+
+@final
 class _Evaluation:
     """One evaluation, the algebra of its network; what cannot be told is no number (nan)."""
 
@@ -111,13 +125,13 @@ class _Evaluation:
             T = self.told(body.laws["temperature"], body.name)
             self.known["T", body.name] = [arb(0) if T == 0 else T]  # W*z/T is then no number
 
-    def words(self, lane: int) -> dict[Any, Any]:
-        """Return the values of names in one lane."""
-        return {name: found[max(lane - 1, 0) % len(found)] for name, found in self.known.items()}
+    def words(self, lane: int, letters: Mapping[Any, Any] | None = None) -> dict[Any, Any]:
+        """Return the values of names in one lane, and of letters."""
+        return _Lane(self.known, lane, letters or {})
 
     def told(self, tree: Node, where: str, lane: int = 0, letter: Any = None) -> Any:
         """Return a law's value; nan if it has none or it cannot be told."""
-        words = self.words(lane) | ({} if letter is None else {("z", where): letter})
+        words = self.words(lane, {} if letter is None else {("z", where): letter})
         try:
             return compute(tree, words)
         except NoValue:
