@@ -45,6 +45,7 @@ def turn(port: Resistor) -> Resistor | None:
         output=port.effort,
         effort=port.output,
         imposes=port.imposes.other,
+        written=port.written or port.law,
     )
 
 

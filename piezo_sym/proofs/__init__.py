@@ -79,6 +79,14 @@ def _of_element(
     iphs: IPHS, element: str, own: tuple[Law, ...], ground: Ground
 ) -> Iterator[Obligation]:
     """Yield what has to be shown of the laws of one element."""
+    loose = any(None in law.ties for law in own)
+    for made in _of_laws(iphs, element, own, ground):
+        yield replace(made, loose=loose)
+
+
+def _of_laws(
+    iphs: IPHS, element: str, own: tuple[Law, ...], ground: Ground
+) -> Iterator[Obligation]:
     yield from filter(None, [laws.welldef(own, ground)])
     for law in own:
         yield from filter(None, [continuous(law, ground)])

@@ -27,7 +27,9 @@ class Law:
     tree : the law.
     letter : of a dissipative law, the letter of its conjugate variable.
     jumps : whether the spec says that it is discontinuous on purpose.
-    ties : what its letter is as a function of a state, where not every value is taken.
+    ties : what its letter is as a function of states, where not every value is taken; None if that
+        is not known.
+    written : the law as the spec has it, where it gives what this one is given.
     """
 
     element: str
@@ -35,7 +37,8 @@ class Law:
     tree: Expr
     letter: str = ""
     jumps: bool = False
-    ties: tuple[Cmp, ...] = ()
+    ties: tuple[Cmp | None, ...] = ()
+    written: Expr | None = None
 
 
 @final
@@ -61,7 +64,7 @@ class Ground:
     def about(self, *laws: Law) -> Ground:
         """Return the ground for questions about laws, whose letters are names too."""
         letters = dict.fromkeys(law.letter for law in laws if law.letter)
-        ties = [tie for law in laws for tie in law.ties]
+        ties = [tie for law in laws for tie in law.ties if tie]
         return replace(self, order=(*self.order, *letters), where=(*self.where, *ties))
 
 

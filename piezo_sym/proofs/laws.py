@@ -6,16 +6,15 @@ words of the domain: a state by its symbol, the temperature of the body that is 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 from piezo_sym.iphs import IPHS
-from piezo_sym.iphs.definitions import costate_name
 from piezo_sym.proofs.branches import MOST, TooManyBranchesError, branches, partial
 from piezo_sym.proofs.ground import Ground, Law
 from piezo_sym.proofs.obligations import Obligation, Question, SignOf
 from piezo_sym.proofs.reflection import reflected
-from piezo_sym.spec.calculus import add, derivative, mul, neg
+from piezo_sym.proofs.ties import ties
+from piezo_sym.spec.calculus import add, mul, neg
 from piezo_sym.spec.circuit import Placed
 from piezo_sym.spec.elements.ports import (
     Body,
@@ -36,35 +35,17 @@ from piezo_sym.spec.expressions import (
     names,
     rename,
 )
-from piezo_sym.spec.tables import condition_text, conditions
+from piezo_sym.spec.tables import condition_text
 from piezo_sym.spec.text import spell
-
-
-def _forces(iphs: IPHS) -> Iterator[tuple[str, Cmp]]:
-    """Yield for each process that is driven by one co-state what ties its letter to the state.
-
-    A current phi/L takes every value; it needs no tie, unless the domain speaks of phi.
-    """
-    used = {name for c in conditions(iphs.model) for name in names(c.tree)}
-    stores = {iphs.symbols[costate_name(p)]: p for _, p in iphs.circuit.of(Storage, Body)}
-    processes = iphs.circuit.of(Resistor, Conductor)
-    for (placed, port), force in zip(processes, iphs.system.drive, strict=True):
-        store = stores.get(force) or stores.get(-force)
-        if isinstance(port, Resistor) and isinstance(store, Storage):
-            bent = store.letter in names(derivative(store.law, store.letter))
-            if bent or store.state in used:
-                law = rename(store.law, {store.letter: store.state})
-                given = law if force in stores else neg(law)  # an element may be turned round
-                yield placed.element, Cmp("=", Sym(port.letter), given)
 
 
 def laws_of(iphs: IPHS) -> tuple[Law, ...]:
     """Return every law of a model, in declaration order."""
     heat = {placed.element: port.temperature for placed, port in iphs.circuit.of(Body)}
-    ties = dict(_forces(iphs))
+    tied = ties(iphs)
     found = [law for placed in iphs.circuit.ports if (law := _law(iphs, placed, heat))]
     return tuple(
-        replace(law, ties=(ties[law.element],)) if law.letter and law.element in ties else law
+        replace(law, ties=(tied[law.element],)) if law.letter and law.element in tied else law
         for law in found
     )
 
@@ -78,8 +59,10 @@ def _law(iphs: IPHS, placed: Placed, heat: dict[str, str]) -> Law | None:
         case Body():
             return Law(element, port.temperature, rename(port.law, {port.letter: port.state}))
         case Resistor():
-            law = rename(port.law, {"T": heat[port.heats]})
-            return Law(element, port.output, law, port.letter, jumps)
+            words = {"T": heat[port.heats]}
+            written = rename(port.written, words) if port.written else None
+            law = rename(port.law, words)
+            return Law(element, port.output, law, port.letter, jumps, written=written)
         case Coupling():
             words = {"T": heat[port.body]} if port.body else {}
             return Law(element, port.name, rename(port.ratio, words))
@@ -98,6 +81,9 @@ def welldef(laws: tuple[Law, ...], ground: Ground) -> Obligation | None:
     ground = ground.about(*laws)
     try:
         found = [question for law in laws for question in valued(law.tree, ground)]
+        for written in (law.written for law in laws if law.written):
+            order = dict.fromkeys((*ground.order, *names(written)))
+            found += valued(written, replace(ground, order=tuple(order)))
     except TooManyBranchesError:
         return replace(made, open_because=too_many(laws[0]))
     needed = found or any(law.letter for law in laws)
@@ -225,7 +211,12 @@ def odd(law: Law, ground: Ground) -> Obligation:
     claim = Cmp("=", total, ZERO)
     original = Cmp("=", law.tree, neg(turned))
     question = Question(made.statement, ground.order, ground.where, claim, original)
-    return replace(made, questions=on_branches(total, question) if total != ZERO else ())
+    try:  # a law that is asked about where its letter may be must have values where that is turned
+        found = valued(turned, ground) if law.ties else ()
+    except TooManyBranchesError:
+        return replace(made, open_because=too_many(law))
+    mirrored = on_branches(total, question) if total != ZERO else ()
+    return replace(made, questions=(*found, *mirrored))
 
 
 def _under(where: tuple[Cmp, ...]) -> str:

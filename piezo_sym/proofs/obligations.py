@@ -213,6 +213,7 @@ class Obligation:
     sign : the law behind the questions, where it is one law's sign.
     letter : a letter whose simple values are tried where questions are left open.
     required : whether `generate` insists on it; else it is information.
+    loose : whether the domain may bound a letter in a way that is not told: no witness counts.
     open_because : why nothing could be asked, where a law is beyond what is looked at.
     """
 
@@ -227,6 +228,7 @@ class Obligation:
     sign: SignOf | None = None
     letter: str = ""
     required: bool = True
+    loose: bool = False
     open_because: str = ""
 
     def smooth(self) -> Obligation:

@@ -207,7 +207,27 @@ def _drive(spec, name, element, key):
         if key in {"voltage", "velocity"} and inner in {a, b}:
             same = (b == inner) == (first == inner)
             return ("name", f"~{other}") if same else ("neg", ("name", f"~{other}"))
-    raise ValueError(f"{name} is driven by nothing that the oracle knows")
+    if key in {"force", "current"}:
+        ends = [_across(spec, end) for end in (first, second)]
+        if None not in ends:
+            return ("+", ends[0], ("neg", ends[1]))
+    spec.free.append(f"~{name}")  # nothing that the oracle knows: any number
+    spec.own[f"~{name}"] = Fraction(0)
+    return ("name", f"~{name}")
+
+
+def _across(spec, node):
+    """Return the speed or the potential of a node that a mass or a source gives, or None."""
+    if node in {"wall", "gnd"}:
+        return ("num", Fraction(0))
+    for name, element in spec.data["elements"].items():
+        ends = element.get("between", [element.get("at"), "wall"])
+        if ends[0] == node and ends[1] in {"wall", "gnd"}:
+            if element["kind"] in {"mass", "capacitor"}:
+                return ("name", f"~{name}")
+            if element["kind"] in {"velocity_source", "voltage_source"}:
+                return ("name", element["input"])
+    return None
 
 
 def moving(spec):

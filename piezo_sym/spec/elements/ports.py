@@ -80,7 +80,8 @@ class Resistor:
     letter : the letter of the conjugate variable z in `law`; ``T`` is the heated body's
     temperature. field : the name of the law in the spec, for messages. output : name of W, such as
     ``V_hysteron``. effort : name of z, where it is not simply a co-state. imposes : which variable
-    W is; z is the other one. heats : the element whose body takes the heat.
+    W is; z is the other one. heats : the element whose body takes the heat. written : the law as
+    the spec has it, in its own letter, where this is that one turned round.
     """
 
     letter: str
@@ -92,6 +93,7 @@ class Resistor:
     domain: Domain
     imposes: Variable
     heats: str
+    written: Expr | None = None
 
 
 @final
