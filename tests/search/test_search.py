@@ -236,6 +236,13 @@ def test_what_was_found_once_stays_right(path, prover):
     assert [f for f in verdicts(source, answer, Counter()) if f.kind in BAD] == []
 
 
+@pytest.mark.parametrize("name", ["difference_of_bounded_speeds", "input_in_the_domain"])
+def test_a_law_is_passive_where_the_domain_bounds_what_drives_it(name, prover):
+    answer = prover.rows(next(path for path in FOUND if path.stem == name).read_text())
+    rows = {(row["id"], row["element"]): row["verdict"] for row in answer["rows"]}
+    assert rows["welldef", "damper"] == rows["passive", "damper"] == "PROVED"
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("number", range(1000, 1010))
 def test_no_verdict_of_a_slice_is_false(number, prover):
