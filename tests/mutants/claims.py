@@ -77,18 +77,19 @@ every law is odd
   - total = ZERO if twice == neg(turned) else add(twice, turned)
   + total = ZERO
   = d*v + d*v**2/v_1 if v > 0 else d*v | d > 0; v_1 > 0
+every law has the first body's temperature
+  - words = {"T": heat[port.heats]}
+  + words = {"T": next(iter(heat.values()))}
+  = two bodies
+## proofs/ties
 an element turned round has its state's sign
-  - given = law if force in stores else neg(law)
-  + given = law
+  - return neg(product) if expr.args[0] == -1 else mul(known[0], product)
+  + return product if expr.args[0] == -1 else mul(known[0], product)
   = turned
 letters are tied to each other's states
   - in zip(processes, iphs.system.drive, strict=True)
   + in zip(processes, tuple(iphs.system.drive)[::-1], strict=True)
   = two masses
-every law has the first body's temperature
-  - law = rename(port.law, {"T": heat[port.heats]})
-  + law = rename(port.law, {"T": next(iter(heat.values()))})
-  = two bodies
 ## proofs/obligations
 of a claim's branches the first is asked about
   - for branch in found
@@ -157,34 +158,36 @@ a model that breaks the claim is a proof
 of a claim's parts one is enough
   - return all(answer.result == "unsat" for answer in self._answers(claim, claim))
   + return any(answer.result == "unsat" for answer in self._answers(claim, claim))
-  = min(a + 5*a_1, d)*v_1*(log(1 + exp(v/v_1)) - log(2)) | d > 0; a_1 > 0; v_1 > 0 | a=-6.0
+  = min(a + 5*a_1, d)*v*(exp(v/v_1) - 7.38*(v/v_1 - 1)) | d > 0; a_1 > 0; v_1 > 0 | a=-6.0
 a sum is positive by one term
   - case Add(terms) if all(map(self.plain, terms)) and any(map(self.positive, terms)):
   + case Add(terms) if any(map(self.positive, terms)):
-  = F_1*(log(1 + exp(v/(v_1 - v_2/1000))) - log(2)) | F_1 > 0; v_1 > 0; v_2 > 0;
+  = F_1*(v/(v_1 - v_2/1000)*(exp(v/(v_1 - v_2/1000)) - 7.38*(v/(v_1 - v_2/1000) - 1))) | F_1 >
+  = 0; v_1 > 0; v_2 > 0;
   = (v_1 - v_2/1000)**2 > 0 | v_2=2000.0
 a name in the domain is positive
   - case Sym() if Cmp(">", part, ZERO) in map(greater, self.where):
   + case Sym() if any(part in (c.left, c.right) for c in self.where):
-  = F_1*(log(1 + exp(v*a/F_1)) - log(2)) | F_1 > 0; a_1 > 0; a < 3*a_1
+  = F_1*(v*a/F_1*(exp(v*a/F_1) - 7.38*(v*a/F_1 - 1))) | F_1 > 0; a_1 > 0; a < 3*a_1
 every power keeps its sign
   - return e.denominator != 1 or e % 2 == 0 or self.plain(base)
   + return True
-  = a**3/a_1**2*v_1*(log(1 + exp(v/v_1)) - log(2)) | v_1 > 0; a_1 > 0
+  = a**3/a_1**2*v*(exp(v/v_1) - 7.38*(v/v_1 - 1)) | v_1 > 0; a_1 > 0
 a sum keeps its sign by one term
   - return all(map(self.plain, parts))
   + return any(map(self.plain, parts))
-  = (F_1 - F_2/1000)*(log(1 + exp(v/v_1)) - log(2)) | F_1 > 0; F_2 > 0; v_1 > 0 | F_2=2000.0
+  = (F_1 - F_2/1000)*(v/v_1*(exp(v/v_1) - 7.38*(v/v_1 - 1))) | F_1 > 0; F_2 > 0; v_1 > 0 |
+  = F_2=2000.0
 a product keeps its sign by one factor
   - return self.plain(left) and self.plain(right)
   + return self.plain(left) or self.plain(right)
-  = (a*d + d**2)/d*v_1*(log(1 + exp(v/v_1)) - log(2)) | d > 0; v_1 > 0 | a=-5.0
+  = (a*d + d**2)/d*v*(exp(v/v_1) - 7.38*(v/v_1 - 1)) | d > 0; v_1 > 0 | a=-5.0
 a name keeps its sign
   - return self.positive(part)
   -             case Call(
   + return True
   +             case Call(
-  = a*v_1*(log(1 + exp(v/v_1)) - log(2)) | v_1 > 0
+  = a*v*(exp(v/v_1) - 7.38*(v/v_1 - 1)) | v_1 > 0
 tanh is never below zero
   - case Call("exp" | "abs" | "sqrt", _):
   -                 return True
@@ -192,13 +195,16 @@ tanh is never below zero
   + case Call("exp" | "abs" | "sqrt" | "tanh", _):
   +                 return True
   +             case Pow(base, e):
-  = F_1*tanh(1000 - exp(b/a_1))*(log(1 + exp(v/v_1)) - log(2)) | F_1 > 0; a_1 > 0; v_1 > 0; b > 0
+  = F_1*tanh(1000 - exp(b/a_1))*(v/v_1*(exp(v/v_1) - 7.38*(v/v_1 - 1))) | F_1 > 0; a_1 > 0; v_1
+  = > 0; b > 0
   = | b=7.0
 what is known of one case is known of all
   - return replace(self, where=(*self.where, *guards), known={})
   + return replace(self, where=(*self.where, *guards))
-  = F_1*(log(1 + exp(v*(a + 1000*a_1)/F_1)) - log(2)) if a > 0 else
-  = F_1*(log(1 + exp(v*(a + 1000*a_1)/F_1)) - log(2))/2 | F_1 > 0; a_1 > 0 | a=-2000.0
+  = F_1*(v*(a + 1000*a_1)/F_1*(exp(v*(a + 1000*a_1)/F_1) - 7.38*(v*(a + 1000*a_1)/F_1 - 1))) if
+  = a > 0 else
+  = F_1*(v*(a + 1000*a_1)/F_1*(exp(v*(a + 1000*a_1)/F_1) - 7.38*(v*(a + 1000*a_1)/F_1 - 1)))/2 |
+  = F_1 > 0; a_1 > 0 | a=-2000.0
 ## proofs/whole
 a term that is not shown to be passive is left out
   - if part is None:
@@ -219,11 +225,11 @@ a case that is not shown is empty
 every factor keeps its sign
   - if self.asked.follows(Cmp(">=", fold(mul, left, start), ZERO)):
   + if self.asked.follows(Cmp(">=", fold(mul, left, start), fold(mul, left, start))):
-  = (1000*a_1 - a)*v_1*(log(1 + exp(v/v_1)) - log(2)) | a_1 > 0; v_1 > 0 | a=2000.0
+  = (1000*a_1 - a)*v*(exp(v/v_1) - 7.38*(v/v_1 - 1)) | a_1 > 0; v_1 > 0 | a=2000.0
 a factor that keeps no sign is left out
   - total = -total if self._keeps([factor], -1) else 0
   + total = -total if self._keeps([factor], -1) else total
-  = (1000*a_1 - a)*(b - a_1)/a_1*v_1*(log(1 + exp(v/v_1)) - log(2)) | a_1 > 0; v_1 > 0; b > a_1
+  = (1000*a_1 - a)*(b - a_1)/a_1*v*(exp(v/v_1) - 7.38*(v/v_1 - 1)) | a_1 > 0; v_1 > 0; b > a_1
   = | a=2000.0
 a polynomial part is passive
   - if law == self.law or not self.asked.follows(Cmp(">=", power, ZERO)):

@@ -207,20 +207,20 @@ a body's own temperature is not taken
   + return self.B.T @ self.E
   = a1_two_bodies
 processes cool what they heat
-  - total = total + entropy @ coupling.T - coupling @ entropy.T
-  + total = total - entropy @ coupling.T + coupling @ entropy.T
+  - return self.J0 + couplings.T - couplings
+  + return self.J0 - couplings.T + couplings
   = two_sources_on_one_input
 processes are conservative
-  - total = total + entropy @ coupling.T - coupling @ entropy.T
-  + total = total
+  - return self.J0 + couplings.T - couplings
+  + return self.J0
   = two_sources_on_one_input
 heat of a source stays away
-  - total = total + self._unit(row) @ self._heating(self.D, row).T
-  + total = total
+  - return self.G + (self.D @ self._heating).T
+  + return self.G
   = across
 heat of a source is taken away
-  - total = total + self._unit(row) @ self._heating(self.D, row).T
-  + total = total - self._unit(row) @ self._heating(self.D, row).T
+  - return self.G + (self.D @ self._heating).T
+  + return self.G - (self.D @ self._heating).T
   = across
 inputs push the other way
   - return self.J_ir @ self.E + self.g @ self.u
@@ -246,9 +246,9 @@ the production has no inputs
   - return (self.R.T @ self.z)[0, 0]
   + return (self.R.T @ self.bracket)[0, 0]
   = across
-each process heats every body
-  - here = {n: r for n, r in enumerate(self.R) if self.heats[n] == row}
-  + here = dict(enumerate(self.R))
+each process heats the next state
+  - entries = {(k, self.heats[k]): r for k, r in enumerate(self.R) if r != 0}
+  + entries = {(k, self.heats[k] - 1): r for k, r in enumerate(self.R) if r != 0}
   = two_sources_on_one_input
 ## iphs/iphs
 energies are another state's

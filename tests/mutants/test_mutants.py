@@ -20,7 +20,7 @@ MUTANTS = {
 }
 NOTICE = {"net", "checker", "program"}
 #: Of so many mutants of a list one is run each time.
-EVERY = 30
+EVERY = 50
 
 
 def rows():

@@ -144,7 +144,7 @@ def python(compiler, *words):
 @pytest.mark.parametrize(
     ("module", "compiler"),
     [
-        pytest.param(model, name, marks=[pytest.mark.long] if model in MODELS[1:-1] else [])
+        pytest.param(model, name, marks=[pytest.mark.long] if model in MODELS[1:] else [])
         for name in SANITIZING
         for model in (MODELS if name == SANITIZING[0] else MODELS[:1])
     ],

@@ -212,7 +212,7 @@ sweep("piezo_stack", over=over, inputs={{"V_in": sine(100, 100)}}, duration={dur
     [
         (0.1, "discrete_gradient", 2),
         (10.0, "discrete_gradient", 2),
-        (10.0, "discrete_gradient", 1),
+        pytest.param(10.0, "discrete_gradient", 1, marks=pytest.mark.long),
         (10.0, "LSODA", 2),
     ],
 )
