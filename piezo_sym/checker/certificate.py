@@ -96,7 +96,7 @@ class _Certificate:
             base = self.read(text)
             need(self.letter not in symbols(base), "a scale has the letter in it")
             claims += [*partial(base), Claim((), compare(base, ">"))]
-            z = Node("/", (z, Node("**", (base,), Fraction(power))))
+            z = Node("/", (z, Node("**", (base,), laws.number(str(power)))))
         f = laws.parse(term["f"])
         need(set(symbols(f)) <= {"s"}, "f is not of s alone")
         return Node("*", (front, put(f, {"s": z})))
@@ -105,12 +105,13 @@ class _Certificate:
         """Refuse f if f(s)*s >= 0 is not shown for all real s: on windows that cover them."""
         covered, reached, zero = list[tuple[Any, Any]](), -inf, Fraction(0)
         for ray in rays:
-            centre, side = Fraction(ray["centre"]), ray["side"]
+            centre, side = laws.number(str(ray["centre"])), ray["side"]
             windows = [
                 (Fraction(lo), inf if hi == "inf" else Fraction(hi)) for lo, hi, _ in ray["windows"]
             ]
             for ends in [(zero, zero), *windows]:
-                good = side in (1, -1) and self._window(f, centre, side, ends)
+                inside = side in (1, -1) and 0 <= ends[0] <= ends[1]
+                good = inside and self._window(f, centre, side, ends)
                 need(
                     good, f"f is not shown to have its sign from {ends[0]} to {ends[1]} of {centre}"
                 )

@@ -152,7 +152,8 @@ class Field:
         """Return a root as an atom, of which a power is known if it is one of an atom."""
         key = power, base
         found = self.atom(key, Node("**", (self.tree(base),), Fraction(1, power)))
-        if base.bottom.is_one() and len(base.top) == base.top.total_degree() == 1:
+        single = len(base.top) == base.top.total_degree() == base.top.leading_coefficient() == 1
+        if base.bottom.is_one() and single:
             self.powers[self.atoms[key]] = power, [*map(int, base.top.monoms()[0])].index(1)
         return found
 

@@ -138,7 +138,8 @@ def number(text: str) -> Fraction:
     """Return the exact value of a decimal number."""
     mantissa, _, exponent = text.strip().lower().replace("_", "").partition("e")
     try:
-        small = len(mantissa) <= MAX_DIGITS and abs(int(exponent[:9] or 0)) <= MAX_EXPONENT
+        short = len(mantissa) <= MAX_DIGITS and len(exponent) <= MAX_DIGITS
+        small = short and abs(int(exponent or 0)) <= MAX_EXPONENT
         need(small, f"number {text[:40]!r} has too many digits")
         return Fraction(f"{mantissa}e{exponent or 0}")
     except ValueError:

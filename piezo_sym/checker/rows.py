@@ -141,7 +141,7 @@ class _Audit:
         if name == "odd" and element and element.law:
             turned = put(element.law, {("z", owner): made("-z", z=z)})
             claim = Claim((), compare(turned, "=", made("-x", x=element.law)))
-            return self._row(name, owner, [claim], [("welldef", owner)])
+            return self._row(name, owner, [*partial(turned), claim], [("welldef", owner)])
         if name == "invariant" and element and element.kind.form == "body":
             return self._row(name, owner, self._invariant(owner), [("sigma", "")])
         return self._row(name, owner, why="the checker knows no such row")

@@ -58,10 +58,14 @@ class _Published:
         own = [self.sums(arg, depth) for arg in node.args]
         power = node.value if node.op == "**" else 1
         found = sum(own) if node.op == "*" else max(own, default=0) + (node.op == "sum")
+        if node.op == "if":
+            found = own[0] + max(own[1:])
+        elif node.op in KINKS:
+            found *= 2
         whole = node.op not in ("/", "**") or (power > 0 and power.denominator == 1 and not own[1:])
         need(whole or not own[-1], "a published divisor or root has a sum over lanes")
         need(found * power <= MOST_SUMS, f"more than {MOST_SUMS} published sums are multiplied")
-        return 0 if node.op in laws.SMOOTH else int(found * power)
+        return int(found * power)
 
 
 class _Comparison:
@@ -166,6 +170,10 @@ class _Comparison:
             (term.args[0], {term.value: 1}) if term.op == "sum" else (term, {})
             for term in (energy.args if energy.op == "+" else (energy,))
         ]
+        for term, bound in terms:
+            for role, owner in (self.spec.words.get(name, ("", "")) for name in symbols(term)):
+                need(role in ("p", "x"), "the energy has other names than states and parameters")
+                need(role == "p" or not bound or owner in bound, "a bank's energy has other states")
         for part in (part for term, _ in terms for part in walk(term)):
             chooser = part.args[0] if part.op == "if" else part
             moves = part.op in ("if", *KINKS) and any(s in states for s in symbols(chooser))

@@ -7,6 +7,7 @@ the faults that a tree has.
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from functools import cache
+from tokenize import TokenError
 from typing import Any, NamedTuple
 
 from .laws import ARITHMETIC, PLAIN, SMOOTH, InputError, Node, need
@@ -40,7 +41,7 @@ def unit(text: str) -> Unit:
         named = _registry().parse_units(text)
         zero, one = (_registry().Quantity(Fraction(n), named).to_base_units() for n in (0, 1))
         factor = Fraction(one.magnitude)
-    except (TypeError, AttributeError, ValueError, ArithmeticError):  # pint's own are among them
+    except (TypeError, AttributeError, ValueError, ArithmeticError, AssertionError, TokenError):
         raise InputError(f"{text!r} is no unit") from None
     need(zero.magnitude == 0, f"{text!r} is no plain unit")
     return Unit(factor, one.dimensionality)

@@ -1,10 +1,11 @@
 """Proofs: obligations on an `IPHS`, and verdicts on them.
 
 stage          from -> to                      in
-obligations    IPHS -> Obligation              balances, laws, continuity, bodies, divisors
-queries        Question -> Query               obligations, branches, rational, query (SMT-LIB)
+obligations    IPHS -> Obligation              balances, laws, ties, continuity, bodies, divisors,
+                                               domain
+queries        Question -> Query               obligations, branches, rational, facts, query
 answers        Query -> Answer                 solvers, in processes of their own (worker)
-verdicts       Obligation -> Row               prove, exactly (witnesses), units
+verdicts       Obligation -> Row               prove, meetings, exactly (witnesses), units
 report         rows -> Report                  report
 """
 
@@ -79,7 +80,7 @@ def _of_element(
     iphs: IPHS, element: str, own: tuple[Law, ...], ground: Ground
 ) -> Iterator[Obligation]:
     """Yield what has to be shown of the laws of one element."""
-    loose = any(None in law.ties for law in own)
+    loose = next((law.letter for law in own if None in law.ties), "")
     for made in _of_laws(iphs, element, own, ground):
         yield replace(made, loose=loose)
 

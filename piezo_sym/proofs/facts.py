@@ -16,6 +16,7 @@ from piezo_sym.spec.expressions import ONE, ZERO, Cmp, Expr, Num
 Clause = tuple[Cmp, ...]
 
 
+#: A little below e: exp(x) >= e*x.
 BELOW_E = Num(Fraction(271828, 100000))
 
 

@@ -29,7 +29,7 @@ class Law:
     jumps : whether the spec says that it is discontinuous on purpose.
     ties : what its letter is as a function of states, where not every value is taken; None if that
         is not known.
-    written : the law as the spec has it, where it gives what this one is given.
+    written : the law as the spec writes it, in its own letter, where the network turns it round.
     """
 
     element: str

@@ -35,6 +35,7 @@ from piezo_sym.spec.expressions import (
     names,
     rename,
 )
+from piezo_sym.spec.expressions import replace as substituted
 from piezo_sym.spec.tables import condition_text
 from piezo_sym.spec.text import spell
 
@@ -211,8 +212,9 @@ def odd(law: Law, ground: Ground) -> Obligation:
     claim = Cmp("=", total, ZERO)
     original = Cmp("=", law.tree, neg(turned))
     question = Question(made.statement, ground.order, ground.where, claim, original)
-    try:  # a law that is asked about where its letter may be must have values where that is turned
-        found = valued(turned, ground) if law.ties else ()
+    mirror = substituted(law.tree, {law.letter: neg(Sym(law.letter))})
+    try:  # the mirrored law has values, too: `welldef` is about those that the letter takes
+        found = valued(mirror, ground) if law.ties else ()
     except TooManyBranchesError:
         return replace(made, open_because=too_many(law))
     mirrored = on_branches(total, question) if total != ZERO else ()

@@ -1,8 +1,8 @@
 """What has to be shown of a model, as data.
 
-Input: nothing; these are the types.  Output: `Obligation` records that `algebra`, `laws` and
-`balances` state and `prove` decides.  An obligation holds if its residuals are zero, its questions
-are answered, and the obligations it rests on hold.
+Input: nothing; these are the types.  Output: `Obligation` records that `balances`, `bodies`,
+`laws`, `continuity`, `divisors` and `domain` state and `prove` decides.  An obligation holds if its
+residuals are zero, its questions are answered, and the obligations it rests on hold.
 """
 
 from __future__ import annotations
@@ -213,7 +213,8 @@ class Obligation:
     sign : the law behind the questions, where it is one law's sign.
     letter : a letter whose simple values are tried where questions are left open.
     required : whether `generate` insists on it; else it is information.
-    loose : whether the domain may bound a letter in a way that is not told: no witness counts.
+    loose : a letter that the domain may bound by a drive that is not written out; what its value
+        refutes is then OPEN.
     open_because : why nothing could be asked, where a law is beyond what is looked at.
     """
 
@@ -228,7 +229,7 @@ class Obligation:
     sign: SignOf | None = None
     letter: str = ""
     required: bool = True
-    loose: bool = False
+    loose: str = ""
     open_because: str = ""
 
     def smooth(self) -> Obligation:

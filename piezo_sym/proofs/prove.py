@@ -55,7 +55,7 @@ def prove(
     asked = solver or opinions()
     decided = _decide(obligation, iphs, tuple(before), asked)
     verdict, witness, reason, method, certificate = decided
-    if obligation.loose and verdict is Verdict.REFUTED:
+    if verdict is Verdict.REFUTED and obligation.loose in (witness or {}):
         verdict, witness, reason = Verdict.OPEN, None, LOOSE
     return Row(
         obligation.id,

@@ -31,7 +31,7 @@ RESULTS = frozenset({"unsat", "sat", "unknown"})
 @final
 @dataclass(frozen=True)
 class Answer:
-    """What a solver says of a query: ``unsat`` proves its claim; with ``sat`` comes the witness."""
+    """What a solver says: ``unsat`` proves the claim; ``sat`` has a model if one is wanted."""
 
     result: str
     model: Mapping[str, Fraction] = field(default_factory=dict)

@@ -161,7 +161,11 @@ class _Function:
         name = tokens.word()
         if constant and not pointer and tokens.taken("["):
             self.scope.declare(name, self._list())
-        elif fixed or (kind == "long" and (pointer or not constant)):
+        elif (
+            fixed
+            or (kind == "long" and not constant)
+            or (pointer and (kind == "long" or not constant))
+        ):
             raise NotShownError(f"the declaration of {name}")
         elif not constant and not pointer and tokens.peek() == ";":
             self.scope.declare(name, Variable(None, self.scope.open[-1]))
@@ -174,7 +178,7 @@ class _Function:
                 whole = (self.read.whole(node), WHOLE) if kind == "long" else None
                 value = self.field.zero if whole else self.field.letter(self.read.numeric(node)[0])
                 self.scope.declare(name, whole or (value, PLAIN))
-            elif not pointer:
+            else:
                 value = self.read.numeric(node)[0]
                 self.scope.declare(name, Variable(value, self.scope.open[-1]))
         tokens.take(";")

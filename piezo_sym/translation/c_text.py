@@ -16,9 +16,11 @@ _TOKEN = re.compile(
     r"|#pragma omp simd(?P<pragma>(?: reduction\(\+:[\w,\s\\]*\))?)(?=\n)"
     r"|(?P<word>[A-Za-z_]\w*)"
     r"|(?P<number>(?:\d+\.\d*|\.\d+|\d+)(?:[eE][-+]?\d+)?)(?![\w.])"
-    r"|(?P<sign>->|\|\||\+\+|\+=|[<>=!]=|[-+*/<>=?:,;(){}\[\]])",
-    re.DOTALL,
+    r"|(?P<sign>->|\|\||\+\+|--|\+=|[<>=!]=|[-+*/<>=?:,;(){}\[\]])",
+    re.DOTALL | re.ASCII,
 )
+#: A comment, and the two headers: nothing of a file stands before them.
+_HEAD = r'\s*(?:/\*(?:(?!\*/)[^\\])*\*/)?\s*(?:#include (?:"{model}\.h"|<math\.h>)\n\s*){{2}}'
 _SPELLED, _CLOSING = {"||": "or", "->": "."}, {"(": ")", "[": "]"}
 MOST_DIGITS = 9
 
@@ -34,19 +36,21 @@ class Tokens:
     """
 
     def __init__(self, text: str, model: str) -> None:
-        heads = [f'#include "{model}.h"\n', "#include <math.h>\n"]
-        for line in heads:
-            if text.count(line) != 1:
-                raise NotShownError(f"the C file should have one line {line.strip()}")
-            text = text.replace(line, "")
+        head = re.match(_HEAD.format(model=re.escape(model)), text)
+        for line in (f'#include "{model}.h"\n', "#include <math.h>\n"):
+            if head is None or text.count(line) != 1:
+                raise NotShownError(f"the C file should begin with one line {line.strip()}")
+        assert head is not None
+        first, text = text.count("\n", 0, head.end()), text[head.end() :]
         self.found: list[str] = []
         self.at = 0
         self.sums: list[frozenset[str]] = []
         place = 0
         while place < len(text):
             match = _TOKEN.match(text, place)
-            if match is None or "??" in match[0]:
-                number = text.count("\n", 0, place) + len(heads) + 1
+            spliced = match is not None and match["pragma"] is None and "\\" in match[0]
+            if match is None or spliced or "??" in match[0]:
+                number = text.count("\n", 0, place) + first + 1
                 raise NotShownError(f"line {number} of the C file is outside the grammar")
             place = match.end()
             if match["pragma"] is not None:
@@ -114,7 +118,8 @@ class Tokens:
                 then = self._in_python()
                 self.take(":")
                 return f"({then}) if ({' '.join(words)}) else ({self._in_python()})"
-            if iskeyword(token) or (token.isdigit() and len(token) > MOST_DIGITS):
+            odd = iskeyword(token) or token in {"++", "--"}  # these mean others in Python
+            if odd or (token.isdigit() and len(token) > MOST_DIGITS):
                 raise NotShownError(f"the C file has {token[:20]!r} in an expression")
             words.append(self._inside(token) if token in _CLOSING else _SPELLED.get(token, token))
         if not words:

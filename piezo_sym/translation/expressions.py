@@ -24,6 +24,8 @@ from piezo_sym.translation.signs import choose, compare, side_of
 MOST_MAGNITUDE = 300
 MOST_WHOLE = 2**31 - 1
 _ARGUMENTS = {"pow": 2, "copysign": 2, "minimum": 2, "maximum": 2, "clip": 3}
+#: NumPy's functions that give integers of integers, which may wrap round.
+_INTEGERS = frozenset({"abs", "sign", "minimum", "maximum", "clip", "sum"})
 _OPERATORS = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
 
 
@@ -89,7 +91,7 @@ class Expressions:
                 return self._number(number)
             case ast.UnaryOp(ast.USub(), arg):
                 value, shape = self.any(arg)
-                return -value, shape
+                return self._bounded((-value, shape), node)
             case ast.BinOp():
                 return self._operations(node)
             case ast.Compare(left, [operator], [right]) if type(operator) in _OPERATORS:
@@ -97,12 +99,12 @@ class Expressions:
                 joined(first[1], second[1], node)
                 op = _OPERATORS[type(operator)]
                 return compare(op, first[0], second[0]), TEST
-            case ast.BoolOp(ast.Or(), nodes):
+            case ast.BoolOp(ast.Or(), nodes) if self.whole_division:
                 one = none = self.field.one
                 for part in nodes:
                     none = none * (one - self.test(part))
                 return one - none, TEST
-            case ast.IfExp(test, then, other):
+            case ast.IfExp(test, then, other) if self.whole_division:
                 return self.choice(test, then, other)
             case ast.Call(function, args, []) if ast.unparse(function) in self.functions:
                 return self._call(self.functions[ast.unparse(function)], args, node)
@@ -142,8 +144,11 @@ class Expressions:
         path, one = field.path, field.one
         for chosen, node in ((test, then), (one - test, other)):
             field.path = path and path * chosen
-            parts.append(self.numeric(node))
+            parts.append(self.any(node))
         field.path = path
+        if parts[0][1] == parts[1][1] == WHOLE:
+            raise refused(condition, "a choice of integers")
+        parts = [self._real(part) for part in parts]
         (first, shape), (second, shape_of_other) = parts
         shape = joined(
             joined(shape, shape_of_other, condition), self.shape_of(condition), condition
@@ -183,32 +188,37 @@ class Expressions:
             left, right = self._real(left), self._real(right)
         match operator:
             case ast.Add():
-                return left[0] + right[0], shape
+                return self._bounded((left[0] + right[0], shape), node)
             case ast.Sub():
-                return left[0] - right[0], shape
+                return self._bounded((left[0] - right[0], shape), node)
             case ast.Mult():
-                made = left[0] * right[0]
-                if shape == WHOLE and abs(made.constant or Fraction(0)) > MOST_WHOLE:
-                    raise refused(node, "an integer that is too large")
-                return made, shape
+                return self._bounded((left[0] * right[0], shape), node)
             case ast.Div() if shape != WHOLE or not self.whole_division:
                 shape = PLAIN if shape == WHOLE else shape
                 return left[0] * power(right[0], Fraction(-1)), shape
             case ast.Pow() if right[0].constant is not None and not self.whole_division:
-                return power(left[0], right[0].constant), left[1]
+                return self._bounded((power(left[0], right[0].constant), left[1]), node)
         raise refused(node, "an operator")
+
+    def _bounded(self, read: Read, node: ast.expr) -> Read:
+        """Return an integer that neither language wraps round, or a number."""
+        if read[1] == WHOLE and abs(read[0].constant or Fraction(0)) > MOST_WHOLE:
+            raise refused(node, "an integer that is too large")
+        return read
 
     def _call(self, function: str, nodes: list[ast.expr], node: ast.expr) -> Read:
         if function == "choice" and len(nodes) == 3:
             return self.choice(*nodes)
-        read = [self.numeric(arg) for arg in nodes]
-        shape = PLAIN
+        given = [self.any(arg) for arg in nodes]
+        whole = function in _INTEGERS and all(own == WHOLE for _, own in given)
+        read, shape = [self._real(part) for part in given], PLAIN
         for _, own in read:
             shape = joined(shape, own, node)
         args = [value for value, _ in read]
         if len(args) != _ARGUMENTS.get(function, 1):
             raise refused(node, "a call")
-        return self.apply(function, args), joined(shape, PLAIN, node)
+        value, shape = self.apply(function, args), joined(shape, PLAIN, node)
+        return value, WHOLE if whole and not self.whole_division else shape
 
     def apply(self, function: str, args: list[Value]) -> Value:
         """Return a function of values."""

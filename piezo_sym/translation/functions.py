@@ -93,7 +93,8 @@ def _even(value: Value, q: Exponent) -> tuple[Value, Value]:
 
 def _needs(kind: str, value: Value) -> None:
     field, enough = value.field, 2 if kind != "nonnegative" else 1
-    if field.path is not None and sign(value) < enough and sign(-value) < 2:
+    below = kind == "nonzero" and sign(-value) == 2
+    if field.path is not None and sign(value) < enough and not below:
         field.needs[Need(kind, value, field.path, field.derived)] = None
 
 

@@ -1,20 +1,65 @@
 """What surrounds the functions of a printed NumPy module: imports, tables, parameters, helpers.
 
 Input: the text of ``<model>.py`` and an `IPHS`.  Output: its functions as trees, if all else in it
-is as expected: helpers word for word, tables with the names of the model, parameters with its
+is as expected: helpers as they stand here, tables with the names of the model, parameters with its
 values.  So a name such as ``np`` or ``_lanes`` means in every function what it should.
 """
 
 import ast
+import re
 from collections.abc import Mapping
 from itertools import chain
 
-from piezo_sym.codegen.numpy_head import IMPORTS, LANES, LANES_TYPE, RATES, RECORDS, SHAPES
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.elements.ports import Body
 from piezo_sym.spec.tables import banks, condition_text, conditions, lane_parameters
 from piezo_sym.translation.field import NotShownError
 from piezo_sym.translation.numpy_reader import ARGUMENTS
+
+_HELPERS = """
+from dataclasses import dataclass
+from typing import NamedTuple
+import numpy as np
+class Record(NamedTuple):
+    name: str
+    unit: str
+    doc: str
+    bank: str | None = None
+class Condition(NamedTuple):
+    text: str
+    strict: bool
+_Lanes = float | tuple[float, ...]
+_BLOCK = 150_000
+def _states(x, p):
+    x = np.asarray(x, dtype=float)
+    n = {size}
+    if x.shape[:1] != (n,):
+        raise ValueError(f"x has shape {{x.shape}}, but there are {{n}} states")
+    return x
+def _inputs(u):
+    u = np.asarray(u, dtype=float)
+    if u.shape[:1] != ({inputs},):
+        raise ValueError(f"u has shape {{u.shape}}, but there are {inputs} inputs")
+    return u
+def _lanes(value, count, ndim):
+    if np.ndim(value) == 0:
+        return value
+    value = np.asarray(value, dtype=float)
+    if len(value) != count or value.ndim > ndim:
+        raise ValueError(f"a parameter of a bank of {{count}} lanes has {{len(value)}} values")
+    return value.reshape(*value.shape, *(1,) * (ndim - value.ndim))
+def rhs(x, u, p, /):
+    x, u = _states(x, p), _inputs(u)
+    out = np.empty(x.shape)
+    if x.ndim != 2 or x.size <= _BLOCK:
+        _rates(x, u, p, out)
+        return out
+    step = max(1, _BLOCK // len(x))
+    for first in range(0, x.shape[1], step):
+        part = slice(first, first + step)
+        _rates(x[:, part], u[:, part] if u.ndim == 2 else u, p, out[:, part])
+    return out
+"""
 
 
 def numpy_functions(text: str, iphs: IPHS) -> Mapping[str, ast.FunctionDef]:
@@ -25,11 +70,21 @@ def numpy_functions(text: str, iphs: IPHS) -> Mapping[str, ast.FunctionDef]:
     NotShownError
         If anything else in the module is not as expected.
     """
+    if re.search(r"coding[:=]", "\n".join(text.split("\n")[:2])):
+        raise NotShownError("the NumPy module has another coding")
     try:
         module = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         raise NotShownError(f"the NumPy module cannot be parsed: {error}") from error
-    left = [_bare(node) for node in ast.parse(_helpers(iphs)).body]
+    slots = iphs.system.states
+    size = [
+        str(sum(s.bank is None for s in slots)),
+        *(f"p.{s.bank}_count" for s in slots if s.bank),
+    ]
+    helpers = _HELPERS.format(size=" + ".join(size), inputs=len(iphs.model.inputs))
+    left = [_bare(node) for node in ast.parse(helpers).body]
+    if not banks(iphs.model):
+        left = [text for text in left if "_Lanes =" not in text and "_lanes(" not in text]
     tables = _tables(iphs)
     functions: dict[str, ast.FunctionDef] = {}
     for node in module.body[1:]:
@@ -56,19 +111,15 @@ def _is_text(node: ast.stmt) -> bool:
     return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
 
 
-def _helpers(iphs: IPHS) -> str:
-    """Return what stands in every module, as the head of a module has it."""
-    slots, sizes = iphs.system.states, banks(iphs.model)
-    size = [str(sum(s.bank is None for s in slots))]
-    size += [f"p.{s.bank}_count" for s in slots if s.bank]
-    shapes = SHAPES.format(size=" + ".join(size), inputs=len(iphs.model.inputs))
-    return "\n".join([IMPORTS, RECORDS, shapes, RATES, *([LANES_TYPE, LANES] if sizes else [])])
-
-
 def _bare(node: ast.stmt) -> str:
     """Return a statement as text, without its docstring."""
     if isinstance(node, ast.FunctionDef | ast.ClassDef) and _is_text(node.body[0]):
-        node.body = node.body[1:]
+        body = ast.Module(node.body[1:], [])
+        head = ast.unparse(node).split("\n", maxsplit=1)[0]
+        return f"{head}\n{ast.unparse(body)}"
+    if isinstance(node, ast.FunctionDef | ast.ClassDef):
+        head = ast.unparse(node).split("\n", maxsplit=1)[0]
+        return f"{head}\n{ast.unparse(ast.Module(node.body, []))}"
     return ast.unparse(node)
 
 

@@ -21,14 +21,13 @@ ARGUMENTS = dict.fromkeys(
     ["jacobian", "margins", "outputs", "supply", "heat", "entropy_production"], "x u p"
 ) | {"initial_state": "u p", "_rates": "x u p out", "temperatures": "x p"}
 ARGUMENTS |= {"energy": "x p", "entropy": "x p"}
-KEPT = ("np", "_states", "_inputs", "_lanes")
 CALLS = {f"np.{name}": name for name in ("exp", "expm1", "log", "sqrt", "sin", "cos", "tanh")}
 CALLS |= {"np.abs": "abs", "np.sign": "sign", "np.minimum": "minimum", "np.maximum": "maximum"}
 CALLS |= {"np.clip": "clip"}
 
 
 def read_numpy(functions: Mapping[str, ast.FunctionDef], known: Proved) -> dict[Key, Value]:
-    """Return every row that the functions of a module write; see `head` for the rest of it.
+    """Return every row that the functions of a module write; see `numpy_head` for the rest of it.
 
     Raises
     ------

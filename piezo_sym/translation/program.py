@@ -19,7 +19,7 @@ from piezo_sym.translation.numpy_reader import read_numpy
 from piezo_sym.translation.reference import proved
 from piezo_sym.translation.signs import compare
 from piezo_sym.translation.witness import witness
-from piezo_sym.translation.zero import is_zero
+from piezo_sym.translation.zero import Edges, edges_of, is_zero
 
 STATEMENT = "the printed NumPy and C modules are the proved system (real arithmetic)"
 MOST_TEXT = 4_000_000
@@ -84,7 +84,7 @@ def _differences(
         place = f"{language} {key[0]}{[_label(key, n, known) for n in range(1, len(key))]}"
         if not matrix and (key not in rows or key not in known.values):
             yield _open(f"{place} is not written")
-        elif found := _doubt(printed - wanted, inside=matrix):
+        elif found := _doubt(printed - wanted, edges_of(wanted) if matrix else frozenset()):
             tried += 1
             at = witness(printed, wanted, known, iphs) if tried <= MOST_TRIED else None
             reason = f"{place} {found}"
@@ -96,10 +96,10 @@ def _differences(
                 return
 
 
-def _doubt(difference: Value, *, inside: bool) -> str:
+def _doubt(difference: Value, edges: Edges) -> str:
     """Return why a difference is not shown to be zero, or nothing if it is."""
     try:
-        return "" if is_zero(difference, inside=inside) else "is not shown to be the proved one"
+        return "" if is_zero(difference, edges=edges) else "is not shown to be the proved one"
     except NotShownError as error:
         return f"is not shown to be the proved one: {error}"
 
@@ -124,7 +124,7 @@ def _unmet(needs: tuple[Need, ...], known: Proved) -> Iterator[str]:
         for given in allowed.get(value, ()):
             if {given.kind} in _ENOUGH[need.kind] and (need.derived or not given.derived):
                 left = left * (field.one - given.path)
-        if not is_zero(left, inside=need.derived):
+        if not is_zero(left):
             where = "jacobian" if need.derived else "code"
             yield f"{where} needs a value to be {need.kind} that is not shown to be so"
 

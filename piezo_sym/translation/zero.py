@@ -6,7 +6,7 @@ fraction is multiplied out.  A sum over lanes is zero if its terms are.
 """
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from itertools import product
 from math import ceil
@@ -19,23 +19,30 @@ from piezo_sym.translation.signs import has_sign, sign, sign_of
 
 MOST_CASES = 500
 MOST_STEPS = 12
-Sides = Mapping[Value, int]
 Case = tuple[Value, dict[Value, int]]
+Edges = frozenset[Value]
 
 
-def is_zero(value: Value, *, inside: bool = False) -> bool:
-    """Return whether a value is shown to be zero; with `inside`, inside the branches of states."""
+def is_zero(value: Value, *, edges: Edges = frozenset()) -> bool:
+    """Return whether a value is shown to be zero, but where a difference of `edges` is zero."""
     gens = value.field.gens
     letters = [g for g in value.parts if gens[g].kind == "letter"]
     try:
-        if not value.terms or _is_zero(value, inside=inside):
+        if not value.terms or _is_zero(value, edges=edges):
             return True
     except NotShownError:
         if not letters:
             raise
     spelled = (_spelled(value, letter) for letter in sorted(letters, reverse=True))
     new = next((new for new in spelled if new != value), None)  # none: all stand in sums over lanes
-    return new is not None and is_zero(new, inside=inside)
+    return new is not None and is_zero(new, edges=edges)
+
+
+def edges_of(value: Value) -> Edges:
+    """Return the differences of states whose signs choose in a value, which may bend there."""
+    field = value.field
+    found = (field.gens[g].arg for g in value.parts if field.gens[g].kind == "sign")
+    return frozenset(d for d in found if d is not None and d.parts & field.states)
 
 
 def _spelled(value: Value, letter: int) -> Value:
@@ -59,17 +66,17 @@ def _spelled(value: Value, letter: int) -> Value:
     return put(value, {letter: arg})
 
 
-def _is_zero(value: Value, *, inside: bool) -> bool:
+def _is_zero(value: Value, *, edges: Edges) -> bool:
     parts = _apart(value)
     if len(parts) > 1 or parts[0] is not value:
-        return all(is_zero(part, inside=inside) for part in parts)
+        return all(is_zero(part, edges=edges) for part in parts)
     groups = _groups(value)
     if not groups:
         return not cleared(value).terms
-    if _by_cases(value, groups, inside=inside):
+    if _by_cases(value, groups, edges=edges):
         return True
     together = [tuple(d for group in groups for d in group)]
-    return len(groups) > 1 and _by_cases(value, together, inside=inside)
+    return len(groups) > 1 and _by_cases(value, together, edges=edges)
 
 
 def cleared(value: Value) -> Value:
@@ -127,12 +134,12 @@ def _groups(value: Value) -> list[tuple[Value, ...]]:
     return [tuple(sorted(group, key=lambda d: sorted(d.terms))) for group in groups]
 
 
-def _by_cases(value: Value, groups: Sequence[tuple[Value, ...]], *, inside: bool) -> bool:
+def _by_cases(value: Value, groups: Sequence[tuple[Value, ...]], *, edges: Edges) -> bool:
     """Return whether a value is zero, each group of choices looked at by itself."""
     left = value
     for group in groups:
         here = _chosen_by(value, group)
-        base = _common(list(_cases(here, {}, [MOST_CASES], inside=inside)))
+        base = _common(list(_cases(here, {}, [MOST_CASES], edges=edges)))
         if base is None:
             return False
         left = left - here + base
@@ -153,7 +160,7 @@ def _common(cases: list[Case]) -> Value | None:
 
 
 def _cases(
-    value: Value, sides: dict[Value, int], left: list[int], *, inside: bool
+    value: Value, sides: dict[Value, int], left: list[int], *, edges: Edges
 ) -> Iterator[Case]:
     """Yield what a value is in each case that does not contradict itself, and the signs there."""
     field = value.field
@@ -168,10 +175,10 @@ def _cases(
         return
     d = max(found, key=lambda d: found[d])
     assert d is not None
-    for side in (1, -1) if inside and d.parts & field.states else (1, -1, 0):
+    for side in (1, -1) if d in edges else (1, -1, 0):
         if _possible(d, side) and not any(_never(d, side, e, s) for e, s in sides.items()):
             here = {**sides, d: side}
-            yield from _cases(field.at(value, {d: side}), here, left, inside=inside)
+            yield from _cases(field.at(value, {d: side}), here, left, edges=edges)
 
 
 def _never(first: Value, s: int, second: Value, t: int) -> bool:

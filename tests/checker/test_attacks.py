@@ -6,8 +6,13 @@ import pytest
 from stated import PIEZO_STACK, forged, mass, refused, stated
 from test_certificates import HOLDS, NEAR_ZERO, SOFTPLUS, checked, term
 
+from piezo_sym import derive
 from piezo_sym.checker import read_spec
+from piezo_sym.checker.field import Field
+from piezo_sym.checker.laws import parse
 from piezo_sym.checker.system import check_system
+from piezo_sym.proofs import Verdict, decide
+from piezo_sym.spec.load import parse as load_text
 
 SPEC = read_spec(PIEZO_STACK)
 SIDES = "(1 if a > 0 else 0)", "(1 if a > a_1 else 0)"
@@ -23,6 +28,9 @@ FEW_LANES = (
     "{0}*({0} - 1)*({0} - 2)*({0} - 3)".format("max(N, N)"),
     "((1 if (N - 1)*(N - 4) > 0 else 0) - (1 if (N - 1)*(N - 5) > 0 else 0))",
     "(sqrt(N*N) - N)*(N - 1)*(N - 2)*(N - 3)",
+    "sin(N - 1)*sin(N - 2)*sin(N - 3)",
+    "(exp((N - 1)*(N - 2)) - 1)*(exp(N - 3) - 1)",
+    "((N - 1)*(N - 2) if N - 3.5 > 0 else 0)",
 )
 
 
@@ -33,6 +41,10 @@ def test_what_vanishes_for_few_lanes_is_seen(zero):
     assert not check_system(SPEC, system).reasons
     system["rates"]["p"] += f" + F_ext*{zero}"
     assert "system" in check_system(SPEC, system).reasons
+
+
+def _more_energy(system, text):
+    system["energy"] += f" + {text}"
 
 
 FORGERIES = {
@@ -50,6 +62,10 @@ FORGERIES = {
     "an energy without a store": lambda system: system.update(
         energy=system["energy"].replace(" + p**2/(2*M)", "")
     ),
+    "an energy of co-states": lambda system: _more_energy(system, "v_mass*F_spring"),
+    "an energy of a temperature": lambda system: _more_energy(system, "1000*T*c_0"),
+    "an energy of inputs": lambda system: _more_energy(system, "F_ext*T_e"),
+    "an energy of each lane": lambda system: _more_energy(system, "sum(hysteron, k*q**2) - k*q**2"),
     "the co-state of another store": lambda system: system["names"]["v_mass"].update(law="p/L"),
 }
 
@@ -130,6 +146,40 @@ def test_windows_are_looked_at(f, window):
     rays = [{"centre": "0", "side": side, "windows": [window]} for side in (1, -1)]
     law = "F_1*({})".format(re.sub(r"\bs\b", "(v/v_1)", f))
     assert checked(law, [{"guards": [], "terms": [{**term(law, "F_1", f), "rays": rays}]}])
+
+
+def test_windows_whose_ends_are_exchanged_cover_nothing():
+    f, law = "s*(s - 1)*(s - 2)", "F_1*(v/v_1*(v/v_1 - 1)*(v/v_1 - 2))"
+    right = [["1", "0", 0], ["2", "1", 0], ["2", "inf", 0]]
+    rays = [
+        {"centre": "0", "side": 1, "windows": right},
+        {"centre": "0", "side": -1, "windows": [["0", "inf", 0]]},
+    ]
+    assert checked(law, [{"guards": [], "terms": [{**term(law, "F_1", f), "rays": rays}]}])
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "same"),
+    [
+        ("sqrt(x)**2", "x", True),
+        ("sqrt(4*x)**2", "x", False),
+        ("sqrt(-x)**2", "x", False),
+        ("(8*x)**(1/3)*(8*x)**(2/3)", "x", False),
+    ],
+)
+def test_a_root_keeps_the_factor_of_its_argument(one, other, same):
+    assert Field().same(parse(one), parse(other)) == same
+
+
+def test_a_mirrored_law_has_values_where_it_is_called_odd():
+    """W(-v) = -W(v) says nothing where W(-v) has no value."""
+    law = "F_1*v/v_1*(1 + log(v/v_1) - log(v/v_1))"
+    text = mass(law, "p_mass > 0").replace("[elements]", "[initial]\np_mass = 1.0\n[elements]")
+    assert ("odd", "damper") not in {
+        (row.id, row.element)
+        for row in decide(derive(load_text(text))).rows
+        if row.verdict is Verdict.PROVED
+    }
 
 
 def test_a_law_that_is_active_in_a_hidden_corner_is_not_confirmed():

@@ -122,7 +122,7 @@ FLAWS = {
     "no windows": (lambda t: t["rays"].clear(), "cover the line"),
     "a gap": (lambda t: t["rays"][0]["windows"].pop(1), "cover the line"),
     "no infinity": (lambda t: t["rays"][0]["windows"].pop(2), "cover the line"),
-    "no number": (lambda t: t["rays"][0].update(centre="here"), "cannot be read"),
+    "no number": (lambda t: t["rays"][0].update(centre="here"), "no finite number"),
     "nothing": (lambda t: t.clear(), "cannot be read"),
 }
 

@@ -25,7 +25,6 @@ def _found(was: Said, now: Said) -> tuple[str, str]:
         return "-", f"CRASH {now['crash']}"
     proved, before = (_proved(said) for said in (now, was))
     wrong = [key for key in now["rows"] if key in proved and key not in before]
-    wrong = [key for key in wrong if key != "program"]
     missing = [key for key in was["rows"] if _words(key) not in map(_words, now["rows"])]
     what = [_words(key) for key in wrong] + [f"{_words(key)} is missing" for key in missing]
     what += ["another system"] * (now["system"] != was["system"])

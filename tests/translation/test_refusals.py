@@ -31,6 +31,26 @@ NUMPY = {
     "a long number": ("out[0] = v_mass\n", "out[0] = v_mass*1e999\n"),
     "a large power": ("out[0] = v_mass\n", "out[0] = (v_mass + q)**100000\n"),
     "nested parentheses": ("out[0] = v_mass\n", f"out[0] = {'(' * 5000}v_mass{')' * 5000}\n"),
+    "integers that wrap round": (
+        "out[0] = v_mass\n",
+        "out[0] = v_mass*np.abs(3)**41/36472996377170786403\n",
+    ),
+    "another coding": ('"""Piezo', '# -*- coding: raw_unicode_escape -*-\n"""Piezo'),
+    "a choice by truth": ("out[0] = v_mass\n", "out[0] = v_mass if M > 0 else 0.0\n"),
+    "a root of what is negative": (
+        "out[0] = v_mass\n",
+        "out[0] = v_mass*np.sqrt(-M)/np.sqrt(-M)\n",
+    ),
+    "a slope where nothing is": ("out[0, 1] = 1/M\n", "out[0, 1] = p/(p*M)\n"),
+    "a slope at an edge that is everywhere": (
+        "out[0, 1] = 1/M\n",
+        "out[0, 1] = np.where(np.sin(p)**2 + np.cos(p)**2 == 1, 7, 1/M)\n",
+    ),
+    "a slope at the edge of a letter": (
+        "out[0, 1] = 1/M\n",
+        "zz = p + S + M + k + d + C + a\n"
+        "    out[0, 1] = np.where(zz == p + S + M + k + d + C + a, 7, 1/M)\n",
+    ),
     "no text": ("", None),
     "NUL": ("out[0]", "out\0[0]"),
 }
@@ -54,6 +74,27 @@ C = {
     "an octal number": ("power_2(p)/(2.0*M)", "power_2(p)/(010/4*M)"),
     "another function's name": ("void piezo_stack_rhs(", "void rhs("),
     "nested parentheses": ("out[0] = v_mass;", f"out[0] = {'(' * 5000}v_mass{')' * 5000};"),
+    "a comment that C ends earlier": (
+        "out[0] = v_mass;", "/* *\\\n/ return; /* */ out[0] = v_mass;"
+    ),
+    "an expression that nothing reads": (
+        "out[0] = v_mass;",
+        "out[0] = v_mass; double *restrict o2 = (piezo_stack_temperatures(x, p_, out), out);",
+    ),
+    "a name of other letters": (
+        "out[0] = v_mass;", "const double w\u00aa = v_mass; out[0] = w\u00aa;"
+    ),
+    "integers divided in a choice": (
+        "out[0] = v_mass;",
+        "out[0] = v_mass + M - 2.0*((M > 0.0 ? 1 : 1)/2)*M;",
+    ),
+    "a sum of integers that is too large": (
+        "out[0] = v_mass;",
+        "out[0] = v_mass*(999999999 + 999999999 + 999999999)/2999999997.0;",
+    ),
+    "a header in a comment": ("#include <math.h>\n", "/* *#include <math.h>\n/ */\n"),
+    "a decrement": ("T_0*c_0*exp(S/c_0)", "T_0*c_0*exp(--S/c_0)"),
+    "an increment": ("out[0] = v_mass;", "out[0] = ++v_mass;"),
     "no text": ("", None),
 }  # fmt: skip
 
