@@ -137,31 +137,33 @@ a threshold is on the other side of zero
   = F_1*(v/v_1)*(5 if v < -2*v_1 else exp(v/v_1 - 0.37) - 2.7184*(v/v_1 - 0.37)) | F_1 > 0;
   = v_1 > 0
 ## proofs/signs/reduce
-kinked functions let factors of any sign out
-  - free, parts = _shared(args, setting, positive=True)
-  + free, parts = _shared(args, setting, positive=False)
-  = a*abs(a*v)/a_1*(log(1 + exp(v/v_1)) - log(2)) | a_1 > 0; v_1 > 0
+what a letter is divided by keeps its sign
+  - if found.bound == Sym(letter) and found.free and plain.is_positive(found.free):
+  + if found.bound == Sym(letter) and found.free and found.free:
+  = F_2*(v*a_1*a/F_1**2*(exp(v*a_1*a/F_1**2) - 7.38*(v*a_1*a/F_1**2 - 1))) | F_1 > 0; F_2 > 0; a_1 > 0
 what a letter is divided by is positive
   - if found.bound == Sym(letter) and found.free and plain.is_positive(found.free):
   + if found.bound == Sym(letter) and found.free:
-  = F_1*(log(1 + exp(v*a/F_1)) - log(2)) | F_1 > 0
+  = F_1*(v*a/F_1*(exp(v*a/F_1) - 7.38*(v*a/F_1 - 1))) | F_1 > 0
 every name is a unit
   - for name in free if positive(name)]
   + for name in free]
-  = F_1*(log(1 + exp(v/v_2)) - log(2)) | F_1 > 0; v_2**2 > 0 | v_2=-1.0
+  = F_1*(v/v_2*(exp(v/v_2) - 7.38*(v/v_2 - 1))) | F_1 > 0; v_2**2 > 0 | v_2=-1.0
 a product is positive by one factor
   - return all(map(self.positive, powers))
   + return any(map(self.positive, powers))
-  = F_1*(log(1 + exp(v*a_1/(v_1*a))) - log(2)) | F_1 > 0; v_1 > 0; a_1 > 0; a**2 > 0
+  = F_1*(v*a_1/(v_1*a)*(exp(v*a_1/(v_1*a)) - 7.38*(v*a_1/(v_1*a) - 1))) | F_1 > 0; v_1 > 0; a_1
+  = > 0; a**2 > 0
 factors in front are dropped
   - prefactors = (*front, *free, *outside)
   + prefactors = (*free, *outside)
-  = (1000*a_1 - a)*v_1*(log(1 + exp(v/v_1)) - log(2)) | a_1 > 0; v_1 > 0 | a=2000.0
+  = (1000*a_1 - a)*v_1*(v/v_1*(exp(v/v_1) - 7.38*(v/v_1 - 1))) | a_1 > 0; v_1 > 0 | a=2000.0
 ## proofs/signs/sums
 what is in no group is dropped
   - return None if left else groups
   + return groups
-  = F_1*(log(1 + exp(v/v_1)) - log(2)) + d*v - F_2/1000*tanh(v/v_1 + v/v_2) | F_1 > 0; d > 0;
+  = F_1*(v/v_1*(exp(v/v_1) - 7.38*(v/v_1 - 1))) + d*v - F_2/1000*tanh(v/v_1 + v/v_2) | F_1 > 0;
+  = d > 0;
   = F_2 > 0; v_1 > 0; v_2 > 0 | F_2=9000.0
 a product's choice is taken the other way round
   - If(_product(left, inner.then), inner.condition, _product(left, inner.other))
@@ -183,13 +185,14 @@ only where a choice holds
 a guard holds on both sides
   - guard = choice if holds else opposite(choice)
   + guard = choice
-  = F_1*(log(1 + exp(v/v_1)) - log(2)) if a > 0 else
-  = (a + 1000*a_1)*v_1*(log(1 + exp(v/v_1)) - log(2)) | F_1 > 0; v_1 > 0; a_1 > 0 | a=-2000.0
+  = F_1*(v/v_1*(exp(v/v_1) - 7.38*(v/v_1 - 1))) if a > 0 else
+  = (a + 1000*a_1)*v_1*(v/v_1*(exp(v/v_1) - 7.38*(v/v_1 - 1))) | F_1 > 0; v_1 > 0; a_1 > 0 |
+  = a=-2000.0
 the sides of a choice are swapped
   - return _taken(node.then if holds else node.other, choice, holds)
   + return _taken(node.other if holds else node.then, choice, holds)
-  = (1000*a_1 + a)*v_1*(log(1 + exp(v/v_1)) - log(2)) if a <= 0 else
-  = F_1*(log(1 + exp(v/v_1)) - log(2)) | F_1 > 0; v_1 > 0; a_1 > 0 | a=-2000.0
+  = (1000*a_1 + a)*v_1*(v/v_1*(exp(v/v_1) - 7.38*(v/v_1 - 1))) if a <= 0 else
+  = F_1*(v/v_1*(exp(v/v_1) - 7.38*(v/v_1 - 1))) | F_1 > 0; v_1 > 0; a_1 > 0 | a=-2000.0
 """,
     spec_of,
 )
