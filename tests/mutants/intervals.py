@@ -140,7 +140,8 @@ a threshold is on the other side of zero
 what a letter is divided by keeps its sign
   - if found.bound == Sym(letter) and found.free and plain.is_positive(found.free):
   + if found.bound == Sym(letter) and found.free and found.free:
-  = F_2*(v*a_1*a/F_1**2*(exp(v*a_1*a/F_1**2) - 7.38*(v*a_1*a/F_1**2 - 1))) | F_1 > 0; F_2 > 0; a_1 > 0
+  = F_2*(v*a_1*a/F_1**2*(exp(v*a_1*a/F_1**2) - 7.38*(v*a_1*a/F_1**2 - 1))) | F_1 > 0;
+  = F_2 > 0; a_1 > 0
 what a letter is divided by is positive
   - if found.bound == Sym(letter) and found.free and plain.is_positive(found.free):
   + if found.bound == Sym(letter) and found.free:
