@@ -162,9 +162,7 @@ class _Function:
         if constant and not pointer and tokens.taken("["):
             self.scope.declare(name, self._list())
         elif (
-            fixed
-            or (kind == "long" and not constant)
-            or (pointer and (kind == "long" or not constant))
+            fixed or (not constant and (pointer or kind == "long")) or (pointer and kind == "long")
         ):
             raise NotShownError(f"the declaration of {name}")
         elif not constant and not pointer and tokens.peek() == ";":
