@@ -33,11 +33,13 @@ def main(arguments: list[str]) -> int:
         print(f"bad input: {str(error).partition(chr(10))[0][:200]}", file=sys.stderr)  # noqa: T201
         return 2
     for name, element, why in found_rows:
-        line = f"{'not ' * bool(why)}confirmed {name} {element}".rstrip() + f": {why}" * bool(why)
+        word = "not confirmed" if why else "stated" if name == rows.STATED else "confirmed"
+        line = f"{word} {name} {element}".rstrip() + f": {why}" * bool(why)
         print("".join(c if c.isprintable() else "?" for c in line))  # noqa: T201
-    good = sum(not why for _, _, why in found_rows)
-    print(f"{good} of {len(found_rows)} rows confirmed")  # noqa: T201
-    return int(good < len(found_rows))
+    looked_at = [why for name, _, why in found_rows if name != rows.STATED]
+    good = sum(not why for why in looked_at)
+    print(f"{good} of {len(looked_at)} rows confirmed; printed text is not read here")  # noqa: T201
+    return int(any(why for _, _, why in found_rows))
 
 
 if __name__ == "__main__":

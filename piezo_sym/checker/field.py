@@ -1,4 +1,4 @@
-"""Laws as rational functions over atoms, in a normal form: equal if and only if the same.
+"""Laws as rational functions over atoms, in a normal form: what has the same form is equal.
 
 Input: trees, and what each symbol stands for.  Output: `Ratio`, a reduced quotient of FLINT's
 polynomials.  Symbols and functions (of normal arguments) are atoms; a choice ``a if c else b`` is

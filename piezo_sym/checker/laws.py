@@ -172,7 +172,9 @@ def _tree(node: ast.AST, text: str) -> Node:
 
     def of(*parts: ast.AST) -> tuple[Node, ...]:
         found = tuple(_tree(part, text) for part in parts)
-        return found if all(part.op != "cmp" for part in found) else of(ast.Pass())
+        if any(part.op == "cmp" for part in found):
+            raise ValueError("a comparison inside a law")
+        return found
 
     match node:
         case ast.Constant():

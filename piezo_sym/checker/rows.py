@@ -2,7 +2,7 @@
 
 Input: a `Spec` and the parsed ``proofs.json``.  Output: one (id, element, reason) per row, the
 reason empty where it is confirmed.  skew and casimir follow from the balances; `program` is about
-printed text, which is not read here: it has to be stated.
+printed text, which is not read here: it has to be stated, and is called so.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -16,6 +16,8 @@ from .prover import Claim, Prover, needed, partial
 from .spec import Element, Spec
 from .system import check_system
 
+#: The row that has to be stated, and is not looked at.
+STATED = "program"
 Key = tuple[str, str]
 MOVING, OWN = ("z", "x", "T"), ("domain", "system")  # rows that are not stated by the package
 
@@ -73,7 +75,7 @@ class _Audit:
         for name in ("exergy", "environment") if cooled else ():
             yield self._row(name, "", cooled, [("sigma", ""), ("energy", "")])
         yield self._row("units", why=next(iter(spec.faults), ""))
-        yield self._row("program")
+        yield self._row(STATED)
         for key, entries in self.stated.items():
             claimed = any(e.get("verdict") == "PROVED" or e.get("required", True) for e in entries)
             if claimed and key not in self.done:

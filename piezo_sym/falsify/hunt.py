@@ -115,7 +115,7 @@ class Track:
     def _lose(self, seen: Seen, lost: Mask) -> None:
         """Note a point where a law is nan though nothing overflowed."""
         if self.claim.climbs and self.lost is None and lost.any():
-            place = np.flatnonzero(lost & ~seen.lost & ~np.isinf(seen.laws).any(axis=0))
+            place = np.flatnonzero(lost & ~seen.out_of_range & ~np.isinf(seen.laws).any(axis=0))
             self.lost = (seen.space, seen.points[:, place[0]]) if len(place) else None
 
 
@@ -226,7 +226,9 @@ class Hunt:
             value = exact.broken(claim, space, point) if key < 0 else None
             if value:
                 raise self._contradiction(claim, value, space.words(point))
-            plain = not space.at(point[:, None]).lost[0]  # else underflow, which is none either
+            plain = not space.at(point[:, None]).out_of_range[
+                0
+            ]  # else underflow, which is none either
             told = key < ZERO and claim.numbers and plain
             rounding = rounding or ((space, point) if told else None)
         if track.lost and rounding is None and exact.has_value(claim, *track.lost):

@@ -184,10 +184,10 @@ class Seen:
         return found
 
     @cached_property
-    def lost(self) -> Mask:
-        """Which points are extreme, or have a temperature that is: what is lost there says nothing.
+    def out_of_range(self) -> Mask:
+        """Which points have a number or a temperature beyond what products of doubles hold.
 
-        A temperature is an exponential as a rule, so that any entropy may make it so.
+        A nan there says nothing.  A temperature is an exponential as a rule: any entropy may do it.
         """
         size = np.abs(self.temperatures)
         found: Mask = self.extreme | np.any((size > EXTREME) | (size < 1 / EXTREME), axis=0)

@@ -76,16 +76,7 @@ def numpy_functions(text: str, iphs: IPHS) -> Mapping[str, ast.FunctionDef]:
         module = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         raise NotShownError(f"the NumPy module cannot be parsed: {error}") from error
-    slots = iphs.system.states
-    size = [
-        str(sum(s.bank is None for s in slots)),
-        *(f"p.{s.bank}_count" for s in slots if s.bank),
-    ]
-    helpers = _HELPERS.format(size=" + ".join(size), inputs=len(iphs.model.inputs))
-    left = [_bare(node) for node in ast.parse(helpers).body]
-    if not banks(iphs.model):
-        left = [text for text in left if "_Lanes =" not in text and "_lanes(" not in text]
-    tables = _tables(iphs)
+    left, tables = _helpers(iphs), _tables(iphs)
     functions: dict[str, ast.FunctionDef] = {}
     for node in module.body[1:]:
         match node:
@@ -109,6 +100,18 @@ def numpy_functions(text: str, iphs: IPHS) -> Mapping[str, ast.FunctionDef]:
 
 def _is_text(node: ast.stmt) -> bool:
     return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+
+
+def _helpers(iphs: IPHS) -> list[str]:
+    """Return what stands in every module, statement by statement."""
+    slots = iphs.system.states
+    size = [str(sum(s.bank is None for s in slots))]
+    size += [f"p.{s.bank}_count" for s in slots if s.bank]
+    helpers = _HELPERS.format(size=" + ".join(size), inputs=len(iphs.model.inputs))
+    found = [_bare(node) for node in ast.parse(helpers).body]
+    if not banks(iphs.model):
+        return [text for text in found if "_Lanes =" not in text and "_lanes(" not in text]
+    return found
 
 
 def _bare(node: ast.stmt) -> str:

@@ -138,6 +138,8 @@ COIL = 'coil "inductor", between = ["o", "gnd"], inductance = "L"\n'
 CAP = 'cap "capacitor", between = ["n", "gnd"], capacitance = "C"\n'
 FEED = 'feed "resistor", between = ["in", "n"], current = "v/R", heats = "body"\n'
 LOSS = 'loss "resistor", between = ["{}", "{}"], {} = "{}", heats = "{}"\n'
+TWO_LOSSES = LOSS.format("n", "o", "current", "v/R", "body")
+TWO_LOSSES += LOSS.replace("loss", "loss_2").format("o", "gnd", "voltage", "R_2*T/T_0*i", "other")
 VOLT = 'V = { unit = "V", default = 1.0 }'
 AMPERE = 'I = { unit = "A", default = 1.0 }'
 NAMED |= {
@@ -197,24 +199,13 @@ NAMED |= {
         inputs=VOLT,
     ),
     "loop": network(
-        PUSH
-        + CAP
-        + LOSS.format("n", "o", "current", "v/R", "body")
-        + LOSS.replace("loss", "loss_2").format("o", "gnd", "voltage", "R_2*T/T_0*i", "other")
-        + BODY
-        + OTHER,
+        PUSH + CAP + TWO_LOSSES + BODY + OTHER,
         "R > 0",
         "R_2 > 0",
         inputs=AMPERE,
     ),
     "coil loop": network(
-        PUSH
-        + CAP
-        + LOSS.format("n", "o", "current", "v/R", "body")
-        + LOSS.replace("loss", "loss_2").format("o", "gnd", "voltage", "R_2*T/T_0*i", "other")
-        + COIL
-        + BODY
-        + OTHER,
+        PUSH + CAP + TWO_LOSSES + COIL + BODY + OTHER,
         "R > 0",
         "R_2 > 0",
         inputs=AMPERE,
