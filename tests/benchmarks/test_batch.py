@@ -39,6 +39,7 @@ def by_hand(tmp_path_factory):
     return call
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("lanes", COLUMNS)
 def test_a_batch_is_as_fast_as_blocked_c_written_by_hand(by_hand, lanes):
     x, _ = states_and_inputs(lanes, COLUMNS[lanes])

@@ -72,6 +72,7 @@ def test_both_compute_the_same(library, lanes):
     np.testing.assert_allclose(*results, rtol=1e-12)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("lanes", SIZES)
 def test_generated_c_is_as_fast_as_c_written_by_hand(library, lanes):
     calls = LANE_CALLS // (lanes + 10)

@@ -89,6 +89,7 @@ def test_no_two_elements_have_the_same_law():
     assert len(laws) == len(set(laws)) == 64
 
 
+@pytest.mark.long
 def test_time_grows_with_the_number_of_elements():
     seconds(4)  # the solver starts
     few, many = seconds(16), seconds(64)

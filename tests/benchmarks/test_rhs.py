@@ -84,6 +84,7 @@ def test_a_slip_of_a_part_in_a_billion_would_be_seen():
     assert np.any(np.abs(difference) > 1e-12 * by_hand.size(x, u))
 
 
+@pytest.mark.long
 def test_generated_rates_are_as_fast_as_those_written_by_hand():
     x, u = states_and_inputs(2, STATES)
     p = generated.Parameters()
@@ -118,6 +119,7 @@ def cold(model):
     return call
 
 
+@pytest.mark.long
 def test_a_large_bank_costs_no_more_than_a_small_one():
     small, large = ratio_within(cold(of_size(2)), cold(of_size(20_000)), 5)
     print(f"\nderive, prove, print: r = 2 {small * 1e3:.1f} ms, r = 20000 {large * 1e3:.1f} ms,")

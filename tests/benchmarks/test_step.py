@@ -44,6 +44,7 @@ def time_of_a_step(count, steps, repetitions=5):
     return best / steps
 
 
+@pytest.mark.long
 def test_a_step_costs_in_proportion_to_the_hysterons():
     ratio = np.inf
     for _ in range(4):  # a busy machine blurs the ratio: measured again while it is too large
