@@ -72,7 +72,7 @@ def simulate(
     model : the name of a shipped spec, the path of a spec file, or a `Model`.
     inputs : name -> number, (t, values), function of t [s], or signal; SI units.
     duration : length of the run [s].
-    rtol : relative tolerance, of what each interval adds to the error; 1e-5 when left out.
+    rtol : about the largest error of a state, in its largest magnitude; 1e-5 when left out.
     step : a fixed step [s] instead of rtol.
     parameters, initial : name -> number, or for a bank a list of one number a lane; SI units.
     method : discrete_gradient when left out, or one of SciPy's.

@@ -14,9 +14,11 @@ from typing import final
 
 from piezo_sym.codegen import (
     MARK,
+    c_collocation,
     c_header,
     c_source,
     c_step,
+    collocation_of,
     lower,
     numpy_module,
     start_of,
@@ -87,6 +89,7 @@ def render(
         f"{model.name}/{model.name}.py": numpy_module(program),
         f"{model.name}/{model.name}.h": c_header(program, declared),
         f"{model.name}/{model.name}.c": c_source(program, step),
+        f"{model.name}/{model.name}_step.c": c_collocation(program, collocation_of(iphs)),
         f"{model.name}/proofs.json": proofs_json(report, model, made),
         f"{model.name}/proofs.smt2": smt2(report, made),
     }

@@ -6,7 +6,8 @@
     junction     Circuit -> Junction           Kirchhoff's and Newton's laws solved   network
     system       Junction -> IPHS              Definition 1, and what follows         iphs
 
-Banks stay symbolic in their size r all the way (`algebra.lanes`); `IPHS.expand` writes them out.
+Laws are trees of `expressions`, from the spec to the printers.  Banks stay symbolic in their size r
+all the way (`algebra.lanes`); `IPHS.expand` writes them out.
 """
 
 from __future__ import annotations

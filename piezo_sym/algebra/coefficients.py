@@ -10,8 +10,8 @@ from fractions import Fraction
 
 import sympy as sp
 
-from piezo_sym.spec.calculus import add, div, mul, power
-from piezo_sym.spec.expressions import ONE, Expr, Num, Sym
+from piezo_sym.expressions.calculus import add, div, mul, power
+from piezo_sym.expressions.tree import ONE, Expr, Num, Sym
 
 
 def coefficient(expr: sp.Expr) -> Expr:

@@ -16,9 +16,10 @@ import sympy as sp
 
 from piezo_sym.algebra.sums import LaneSum, LaneSymbol
 from piezo_sym.errors import SpecError, quote
-from piezo_sym.spec.circuit import Circuit
-from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, Resistor, Storage
-from piezo_sym.spec.expressions import (
+from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.expressions.parse import parse_rule
+from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tree import (
     ZERO,
     Add,
     Call,
@@ -33,9 +34,10 @@ from piezo_sym.spec.expressions import (
     Sym,
     names,
 )
+from piezo_sym.spec.circuit import Circuit
+from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, Resistor, Storage
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import banks, conditions, greater, lane_parameters, states
-from piezo_sym.spec.text import spell
 
 
 @final
@@ -145,8 +147,8 @@ def to_sympy(node: Expr, table: Mapping[str, sp.Expr]) -> sp.Expr:
             return to_sympy(base, table) ** sp.Rational(exponent.numerator, exponent.denominator)
         case Call(function, args):
             parts = tuple(to_sympy(arg, table) for arg in args)
-            if function in _SMOOTH:
-                return _SMOOTH[function](*parts)
+            if RECORDS[function].smooth:
+                return getattr(sp, function)(*parts)
             return _by_branches(partial(_kinked, function), parts)
         case If(then, Cmp(op, left, right), other):
             choose = partial(_choice, op, to_sympy(then, table), to_sympy(other, table))
@@ -190,31 +192,13 @@ def _choices(expr: sp.Basic) -> Iterator[sp.Piecewise]:
 
 
 RELATIONS = {"<": sp.Lt, "<=": sp.Le, ">": sp.Gt, ">=": sp.Ge}
-_SMOOTH = {
-    "exp": sp.exp,
-    "log": sp.log,
-    "sqrt": sp.sqrt,
-    "sin": sp.sin,
-    "cos": sp.cos,
-    "tanh": sp.tanh,
-}
 
 
 def _kinked(function: str, *args: sp.Expr) -> sp.Expr:
     """Return a function with kinks as its branches."""
-    z, w = args[0], args[-1]
-    match function:
-        case "abs":
-            return sp.Piecewise((z, _relation(">=", z, sp.S.Zero)), (-z, True))
-        case "min":
-            return sp.Piecewise((z, _relation("<=", z, w)), (w, True))
-        case "max":
-            return sp.Piecewise((z, _relation(">=", z, w)), (w, True))
-    edge = sp.S.Zero if function == "sign" else w
-    above, below = _relation(">", z, edge), _relation("<", z, -edge)
-    match function:
-        case "sign":
-            return sp.Piecewise((1, above), (-1, below), (0, True))
-        case "deadzone":
-            return sp.Piecewise((z - w, above), (z + w, below), (0, True))
-    return sp.Piecewise((w, above), (-w, below), (z, True))  # saturate
+    law, table, cases = parse_rule(RECORDS[function].choices), {"x": args[0], "w": args[-1]}, []
+    while isinstance(law, If):
+        left, right = (to_sympy(side, table) for side in (law.condition.left, law.condition.right))
+        cases.append((to_sympy(law.then, table), _relation(law.condition.op, left, right)))
+        law = law.other
+    return sp.Piecewise(*cases, (to_sympy(law, table), True))

@@ -23,12 +23,13 @@ from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run import simulate
 from piezo_sym.run.checks import known_keys
 from piezo_sym.run.compiled import check_inputs
-from piezo_sym.run.discrete import METHOD, fixed
+from piezo_sym.run.discrete import fixed
 from piezo_sym.run.engine import compiled
 from piezo_sym.run.guard import check_start
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.module import checked, rows
 from piezo_sym.run.parameters import read_initial, read_parameters
+from piezo_sym.run.runs import METHOD
 from piezo_sym.run.system import System
 
 if TYPE_CHECKING:

@@ -23,8 +23,8 @@ from piezo_sym.bench.lambdified import batch, field, solver
 from piezo_sym.bench.problem import INSTANT, Problem, problem_of
 from piezo_sym.errors import EngineError, PiezoError, RunError, UsageError, nearest, quote
 from piezo_sym.run import simulate
-from piezo_sym.run.discrete import METHOD
 from piezo_sym.run.engine.engine import engine_of
+from piezo_sym.run.runs import METHOD
 from piezo_sym.run.scales import shared
 
 if TYPE_CHECKING:

@@ -72,12 +72,11 @@ class _Certificate:
         def adds_up(found: list[Node]) -> bool:
             return field.same(self.law, Node("+", (num(0), *found)))
 
-        field, claims = Field(known), list[Claim]()
+        field, claims = Field(known, scales=True), list[Claim]()
         parts = [self.read(term["law"]) for term in terms]
         need(adds_up(parts), "its terms are not shown to make up the law")
         products = [self._product(term, claims) for term in terms]
-        same = all(map(field.same, parts, products)) and adds_up(products)
-        need(same, "a term is not shown to be prefactor*f(s)")
+        need(adds_up(products), "a term is not shown to be prefactor*f(s)")
         good = all(self.prover.proves(claim, (*guards, *path)) for path, claim in claims)
         need(good, "the sign of a prefactor or scale is not shown")
         for term in terms:
@@ -96,7 +95,7 @@ class _Certificate:
             base = self.read(text)
             need(self.letter not in symbols(base), "a scale has the letter in it")
             claims += [*partial(base), Claim((), compare(base, ">"))]
-            z = Node("/", (z, Node("**", (base,), laws.number(str(power)))))
+            z = Node("/", (z, Node("**", (base,), _number(power))))
         f = laws.parse(term["f"])
         need(set(symbols(f)) <= {"s"}, "f is not of s alone")
         return Node("*", (front, put(f, {"s": z})))
@@ -105,32 +104,32 @@ class _Certificate:
         """Refuse f if f(s)*s >= 0 is not shown for all real s: on windows that cover them."""
         covered, reached, zero = list[tuple[Any, Any]](), -inf, Fraction(0)
         for ray in rays:
-            centre, side = laws.number(str(ray["centre"])), ray["side"]
-            windows = [
-                (Fraction(lo), inf if hi == "inf" else Fraction(hi)) for lo, hi, _ in ray["windows"]
+            centre, side = _number(ray["centre"]), int(ray["side"])
+            windows: list[tuple[Any, Any]] = [
+                (_number(lo), inf if hi == "inf" else _number(hi)) for lo, hi, _ in ray["windows"]
             ]
-            for ends in [(zero, zero), *windows]:
-                inside = side in (1, -1) and 0 <= ends[0] <= ends[1]
-                good = inside and self._window(f, centre, side, ends)
-                need(
-                    good, f"f is not shown to have its sign from {ends[0]} to {ends[1]} of {centre}"
-                )
-                covered.append(tuple(sorted(centre + side * t for t in ends)))
+            for lo, hi in [(zero, zero), *windows]:
+                inside = side in (1, -1) and 0 <= lo <= hi
+                good = inside and self._window(f, centre, side, lo, hi)
+                need(good, f"f is not shown to have its sign from {lo} to {hi} of {centre}")
+                covered.append(tuple(sorted((centre + side * lo, centre + side * hi))))
         for lo, hi in sorted(covered):
             reached = max(reached, hi) if lo <= reached else reached
         need(reached == inf, "the windows do not cover the line")
 
-    def _window(self, f: Node, centre: Fraction, side: int, ends: tuple[Fraction, Any]) -> bool:
+    def _window(self, f: Node, centre: Fraction, side: int, lo: Fraction, hi: Any) -> bool:
         """Return whether f(s)*s >= 0 on a window and where it starts, after cuts."""
-        pieces = [ends]
-        while pieces:
-            self.left -= 1
-            a, b = pieces.pop()
-            if self.left < 0 or a < 0 or not shown(f, centre, side, (a, a), self.real):
-                return False
-            if a < b and not shown(f, centre, side, (a, b), self.real):
-                if a >= FARTHEST or b - a < NARROWEST * max(b, 1):
-                    return False
-                middle = max(2 * a, Fraction(1)) if b == inf else (a + b) / 2
-                pieces += [(middle, b), (a, middle)]
-        return True
+        self.left -= 1
+        if self.left < 0 or not shown(f, centre, side, (lo, lo), self.real):
+            return False
+        if lo == hi or shown(f, centre, side, (lo, hi), self.real):
+            return True
+        middle = (lo + hi) / 2 if hi != inf else max(2 * lo, Fraction(1))
+        wide = lo < FARTHEST and hi - lo >= NARROWEST * max(hi, 1)
+        halves = (lo, middle), (middle, hi)
+        return wide and all(self._window(f, centre, side, *half) for half in halves)
+
+
+def _number(text: Any) -> Fraction:
+    top, _, bottom = str(text).partition("/")
+    return laws.number(top) / laws.number(bottom or "1")

@@ -3,33 +3,35 @@
 Input: trees, and what each symbol stands for.  Output: `Ratio`, a reduced quotient of FLINT's
 polynomials.  Symbols and functions (of normal arguments) are atoms; a choice ``a if c else b`` is
 ``[c]*a + (1 - [c])*b`` with an atom [c] of which [c]**2 = [c]; positive factors leave comparisons
-and roots.  An identity between atoms holds wherever both sides have values.
+and roots.  An identity between atoms holds wherever both sides have values, whatever is divided by
+in branches that are not taken.
 """
 
 from collections.abc import Callable
 from fractions import Fraction
-from math import comb
+from functools import reduce
+from math import comb, prod
 from typing import Any
 
 from flint import fmpq, fmpq_mpoly_ctx
 
-from . import laws
-from .laws import ARITHMETIC, InputError, Node, compare, need, negated, num, symbols
+from .laws import ARITHMETIC, KINKS, InputError, Node, compare, need, negated, num, unkinked, walk
 
-SIZE, MAX_TERMS, MAX_PRODUCT = 160, 3000, 60_000
+SIZE, MAX_TERMS, MAX_PRODUCT, MAX_SIDES = 160, 3000, 60_000, 256
 CTX = fmpq_mpoly_ctx.get([f"x{n}" for n in range(SIZE)], "lex")
+UNIT = CTX.constant(1)
 
 
 class _Ratio:
     """A reduced quotient of two polynomials, the lower one with leading coefficient 1."""
 
-    def __init__(self, top: Any, bottom: Any = None) -> None:
-        if bottom is not None and not bottom.is_one():
+    def __init__(self, top: Any, bottom: Any = UNIT) -> None:
+        if not bottom.is_one():
             need(not bottom.is_zero(), "a divisor is zero by its form")
-            shared = top.gcd(bottom) * bottom.leading_coefficient()
+            shared = top.gcd(bottom)
             top, bottom = top / shared, bottom / shared
             top, bottom = (part / bottom.leading_coefficient() for part in (top, bottom))
-        self.top, self.bottom = top, CTX.constant(1) if bottom is None else bottom
+        self.top, self.bottom = top, bottom
 
     def __add__(self, other: "Ratio") -> "Ratio":
         if self.bottom == other.bottom:
@@ -47,7 +49,7 @@ class _Ratio:
         return Ratio(_product(self.top, other.top), _product(self.bottom, other.bottom))
 
     def __truediv__(self, other: "Ratio") -> "Ratio":
-        return Ratio(_product(self.top, other.bottom), _product(self.bottom, other.top))
+        return self * Ratio(other.bottom, other.top)
 
     def __pow__(self, power: int) -> "Ratio":
         if power < 0:
@@ -78,112 +80,135 @@ def constant(value: int | Fraction) -> Ratio:
     return Ratio(CTX.constant(fmpq(value.numerator, value.denominator)))
 
 
+ZERO, ONE = constant(0), constant(1)
+
+
 class Field:
     """The atoms of one comparison; `known` tells of comparisons whether they always hold.
 
-    Without it no comparison is scaled: factors that depend on the size of a bank stay.
+    Comparisons lose their numeric factors only if it `scales`: some depend on the size of a bank.
     """
 
-    def __init__(self, known: Callable[[Node], bool] | None = None) -> None:
-        self.atoms, self.trees, self.scales = dict[Any, int](), list[Node](), known is not None
-        self.known = known or (lambda _: False)
-        #: Atoms a of which a**power = b: choices are their own square, roots of an atom.
-        self.powers: dict[int, tuple[int, int]] = {}
+    def __init__(
+        self, known: Callable[[Node], bool] = lambda _: False, *, scales: bool = False
+    ) -> None:
+        self.atoms, self.known, self.scales = dict[Any, tuple[int, Node]](), known, scales
+        #: Polynomials that are zero: of choices, their own squares, and of roots.
+        self.relations = dict[Ratio, Any]()
+        #: Factors of what is zero nowhere, taken or not.
+        self.nonzero = set[Ratio]()
 
     def atom(self, key: Any, tree: Node) -> Ratio:
         """Return an atom, the same for the same key."""
-        if key not in self.atoms:
-            self.atoms[key] = len(self.trees)
-            need(len(self.trees) < SIZE, f"more than {SIZE} different symbols and functions")
-            self.trees.append(tree)
-        return Ratio(CTX.gen(self.atoms[key]))
+        place, _ = self.atoms.setdefault(key, (len(self.atoms), tree))
+        need(place < SIZE, f"more than {SIZE} different symbols and functions")
+        return Ratio(CTX.gen(place))
 
-    def of(self, node: Node, words: Callable[[Any], Ratio] | None = None) -> Ratio:
-        """Return the normal form of a tree, `words` giving that of its symbols."""
+    def of(self, node: Node, words: Callable[[Node], Ratio] | None = None) -> Ratio:
+        """Return the normal form of a tree, `words` giving that of its symbols and sums."""
         if node.op == "num":
             return constant(node.value)
-        if node.op == "sym":
-            return words(node.value) if words else self.atom(("symbol", node.value), node)
-        if node.op in laws.KINKS:
-            return self.of(laws.unkinked(node), words)
+        if node.op in ("sym", "sum"):
+            return words(node) if words else self.atom(("symbol", node.value), node)
+        if node.op in KINKS:
+            return self.of(unkinked(node), words)
         if node.op == "if":
-            sides = (node.args[0], negated(node.args[0]))
-            for side, branch in zip(sides, node.args[1:], strict=True):
+            for n, side in ((1, node.args[0]), (2, negated(node.args[0]))):
                 if self.known(side):
-                    return self.of(branch, words)
-            then, other = (self.of(arg, words) for arg in node.args[1:])
-            chosen = constant(0) if then == other else self._choice(node.args[0], words)
+                    return self.of(node.args[n], words)
+            then, other = (self.of(branch, words) for branch in node.args[1:])
+            chosen = ZERO if then == other else self._choice(node.args[0], words)
             return other + chosen * (then - other)
         args = [self.of(arg, words) for arg in node.args]
         if node.op == "**":
             power = Fraction(node.value)
             root = args[0] if power.denominator == 1 else self._root(args[0], power.denominator)
-            return root**power.numerator
+            return (root if power >= 0 else self._inverse(root)) ** abs(power.numerator)
+        if node.op == "/":
+            return args[0] * self._inverse(args[1])
         if node.op in ARITHMETIC:
             found: Ratio = ARITHMETIC[node.op](*args)
             return found
-        if args[0] == 0 and node.op != "log":
-            return constant(int(node.op in ("exp", "cos")))
+        if args[0] == ZERO and node.op != "log":
+            return ONE if node.op in ("exp", "cos", "cosh") else ZERO
         return self.atom((node.op, *args), node)
 
-    def _choice(self, condition: Node, words: Callable[[Any], Ratio] | None) -> Ratio:
+    def _choice(self, condition: Node, words: Callable[[Node], Ratio] | None) -> Ratio:
         """Return the atom [difference > 0], or 1 less that of its opposite."""
         less = condition.value in ("<", ">=")
         left, right = condition.args[::-1] if less else condition.args
         found = self.scaled(self.of(left, words) - self.of(right, words))
-        if not symbols(condition) and found.top.is_constant() and found.bottom.is_one():
-            found = constant(int(found != 0 and found.top.leading_coefficient() > 0))
+        fixed = all(part.op not in ("sym", "sum") for part in walk(condition))
+        if fixed and found.top.is_constant() and found.bottom.is_one():
+            found = ONE if found != ZERO and found.top.leading_coefficient() > 0 else ZERO
         else:
-            key = ("choice", found)
-            found = self.atom(key, Node("if", (compare(left, ">", right), num(1), num(0))))
-            self.powers.setdefault(self.atoms[key], (2, self.atoms[key]))
-        return found if condition.value in "<>" else constant(1) - found
+            tree = Node("if", (compare(left, ">", right), num(1), num(0)))
+            found = self.atom(("choice", found), tree)
+            self.relations[found] = found.top**2 - found.top
+        return found if condition.value in "<>" else ONE - found
+
+    def _inverse(self, ratio: Ratio) -> Ratio:
+        """Return 1/ratio, in which factors that choices or roots can make zero are not cancelled.
+
+        A branch that is not taken may divide by zero; what cancels that would be no identity.
+        """
+        if not self._places(ratio.top):
+            return ONE / ratio
+        size, factors = ratio.top.factor()
+        found = Ratio(ratio.bottom / size)
+        for own, times in ((Ratio(factor), times) for factor, times in factors):
+            tree = Node("/", (num(1), self._tree(own.top)))
+            hidden = own not in self.nonzero and self._vanishes(own.top)
+            part = self.atom(("/", own), tree) if hidden else ONE / own
+            found = found * part**times
+        return found
+
+    def _places(self, polynomial: Any) -> list[int]:
+        """Return the places of the atoms in a polynomial of which a relation is known."""
+        places = [n for n, power in enumerate(polynomial.degrees()) if power]
+        return [n for n in places if Ratio(CTX.gen(n)) in self.relations]
+
+    def _vanishes(self, factor: Any) -> bool:
+        """Return whether some sides of its choices, or roots in a sum, could make a factor zero."""
+        keys, sides = list(self.atoms), [factor]
+        for place in self._places(factor):
+            if keys[place][0] != "choice":
+                return len(factor) > 1
+            need(len(sides) < MAX_SIDES, "a divisor has too many choices")
+            sides = [part.subs({f"x{place}": side}) for part in sides for side in (0, 1)]
+        return any(part.is_zero() for part in sides)
 
     def _root(self, base: Ratio, power: int) -> Ratio:
         """Return a root, positive factors being taken out of it."""
-        outside = constant(1)
+        outside = ONE
         for factor, times in self._positive(base):
             root = self._simple(factor, power) if times % power else factor
             outside = outside * root ** (times if times % power else times // power)
             base = base / factor**times
-        return outside if base == 1 else outside * self._simple(base, power)
+        return outside if base == ONE else outside * self._simple(base, power)
 
     def _simple(self, base: Ratio, power: int) -> Ratio:
-        """Return a root as an atom, of which a power is known if it is one of an atom."""
-        key = power, base
-        found = self.atom(key, Node("**", (self.tree(base),), Fraction(1, power)))
-        single = len(base.top) == base.top.total_degree() == base.top.leading_coefficient() == 1
-        if base.bottom.is_one() and single:
-            self.powers[self.atoms[key]] = power, [*map(int, base.top.monoms()[0])].index(1)
+        """Return a root as an atom; a power is known of one of a single term without choices."""
+        found = self.atom((power, base), Node("**", (self.tree(base),), Fraction(1, power)))
+        keys, parts = list(self.atoms), (base.top, base.bottom)
+        chosen = any(keys[n][0] == "choice" for part in parts for n in self._places(part))
+        if len(base.top) == len(base.bottom) == 1 and not chosen:
+            self.relations[found] = found.top**power * base.bottom - base.top
         return found
 
     def _positive(self, ratio: Ratio) -> list[tuple[Ratio, int]]:
         """Return the factors known to be positive, if need be with a minus, and their powers."""
-        parts = [(ratio.top, 1), (ratio.bottom, -1)] if self.scales and ratio != 0 else []
+        parts = [(ratio.top, 1), (ratio.bottom, -1)] if ratio != ZERO else []
         factors = [(f, sign * times) for part, sign in parts for f, times in part.factor()[1]]
         both = [(own, times) for f, times in factors for own in (f, -f)]
         return [(Ratio(f), n) for f, n in both if self.known(compare(self._tree(f), ">"))]
 
     def scaled(self, ratio: Ratio) -> Ratio:
         """Return an expression without its positive factors, of the same sign."""
-        factor = constant(1)
-        if self.scales and ratio != 0:
-            factor *= Ratio(CTX.constant(abs(ratio.top.leading_coefficient())))
-        for part, times in self._positive(ratio):
-            factor = factor * part**times
-        return ratio / factor
-
-    def is_zero(self, ratio: Ratio) -> bool:
-        """Return whether an expression vanishes, powers of choices and roots being reduced."""
-        total: dict[Any, Any] = {}
-        for monomial, factor in ratio.top.to_dict().items():
-            powers = [int(power) for power in monomial]
-            for place, (power, base) in reversed(self.powers.items()):
-                while powers[place] >= power:
-                    powers[place] -= power
-                    powers[base] += 1
-            total[tuple(powers)] = total.get(tuple(powers), 0) + factor
-        return not any(total.values())
+        if not self.scales or ratio == ZERO:
+            return ratio
+        size = Ratio(CTX.constant(abs(ratio.top.leading_coefficient())))
+        return ratio / prod((part**n for part, n in self._positive(ratio)), start=size)
 
     def same(self, one: Node, other: Node) -> bool:
         """Return whether two trees are the same function, and not too large to be told."""
@@ -192,16 +217,19 @@ class Field:
         except InputError:
             return False
 
+    def is_zero(self, ratio: Ratio) -> bool:
+        """Return whether an expression vanishes, what choices and roots are being known."""
+        rest = reduce(lambda top, zero: divmod(top, zero)[1], self.relations.values(), ratio.top)
+        return bool(rest == 0)
+
     def tree(self, ratio: Ratio) -> Node:
         """Return an expression as a tree of its atoms."""
         return Node("/", (self._tree(ratio.top), self._tree(ratio.bottom)))
 
     def _tree(self, polynomial: Any) -> Node:
-        terms = []
+        terms, atoms = [], [tree for _, tree in self.atoms.values()]
         for powers, factor in polynomial.to_dict().items():
-            tree = num(Fraction(int(factor.p), int(factor.q)))
-            for place, power in enumerate(powers):
-                if power:
-                    tree = Node("*", (tree, Node("**", (self.trees[place],), Fraction(int(power)))))
-            terms.append(tree)
+            raised = (Node("**", (atoms[n],), Fraction(int(p))) for n, p in enumerate(powers) if p)
+            size = num(Fraction(int(factor.p), int(factor.q)))
+            terms.append(reduce(lambda tree, part: Node("*", (tree, part)), raised, size))
         return Node("+", tuple(terms))

@@ -39,20 +39,22 @@ class Kind(NamedTuple):
 
     form: str
     domains: str
-    nodes: tuple[str, ...]
+    nodes: list[str]
     across: bool
-    laws: dict[str, tuple[str, tuple[str, ...]]]
-    others: tuple[str, ...]
+    laws: dict[str, tuple[str, list[str]]]
+    fields: set[str]
+    needed: set[str]
     costate: str
 
 
 def _kind(row: str) -> tuple[str, Kind]:
     name, form, domains, nodes, across, laws, others, costate = map(str.strip, row.split("|"))
-    fields = [text.split() for text in laws.split(";") if text]
-    table = {field: (unit, tuple(letters)) for field, unit, *letters in fields}
-    return name, Kind(
-        form, domains, tuple(nodes.split()), across == "+", table, tuple(others.split()), costate
-    )
+    table = [text.split() for text in laws.split(";") if text]
+    fields = {"kind", *nodes.split(), *others.split(), *(field for field, *_ in table)}
+    needed = {field for field in fields if not field.endswith("?")}
+    known = {field.rstrip("?") for field in fields}
+    units = {field.rstrip("?"): (unit, letters) for field, unit, *letters in table}
+    return name, Kind(form, domains, nodes.split(), across == "+", units, known, needed, costate)
 
 
 KINDS = dict(map(_kind, _TABLE.strip().splitlines()))

@@ -18,7 +18,7 @@ PLAIN = re.compile(
     r"(?>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![A-Za-z0-9_.])|[A-Za-z_]\w*|[-+*/(),<>=]| )*+",
     re.ASCII,
 )
-SMOOTH = ("exp", "log", "sin", "cos", "tanh")
+SMOOTH = ("exp", "log", "sin", "cos", "tanh", "atan", "sinh", "cosh", "erf")
 FUNCTIONS = dict.fromkeys((*SMOOTH, "abs", "sign"), 1)
 FUNCTIONS |= dict.fromkeys(("min", "max", "deadzone", "saturate"), 2)
 OPERATORS = {ast.Mult: "*", ast.Div: "/", ast.USub: "neg", ast.UAdd: "+"}
@@ -37,6 +37,8 @@ KINKS = {
     "saturate": "min(max(x, -z), z)",
 }
 SLOPES = {"exp": "y", "log": "1/x", "sin": "cos(x)", "cos": "-sin(x)", "tanh": "1 - y**2"}
+SLOPES |= {"sinh": "cosh(x)", "cosh": "sinh(x)", "atan": "1/(1 + x**2)"}
+SLOPES["erf"] = "exp(-x**2)/sqrt(atan(1))"  # atan(1) = pi/4
 SLOPES |= {"*": "dx*z + x*dz", "/": "dx/z - x*dz/z**2", "neg": "-dx"}
 
 
@@ -111,21 +113,15 @@ def unkinked(node: Node) -> Node:
     return made(KINKS[node.op], x=node.args[0], z=node.args[-1])
 
 
-def plain(node: Node) -> Node:
-    """Return a tree with every function with kinks written as a choice."""
-    here = Node(node.op, tuple(map(plain, node.args)), node.value)
-    return plain(unkinked(here)) if node.op in KINKS else here
-
-
 def derivative(node: Node, by: Any) -> Node:
-    """Return the derivative of a law by a symbol, branch by branch."""
+    """Return the derivative of a law by a symbol, branch by branch; of one lane, if it is a sum."""
     if by not in symbols(node) or node.op == "sym":
         return num(int(node.op == "sym" and node.value == by))
     node = unkinked(node) if node.op in KINKS else node
     inner = tuple(arg if arg.op == "cmp" else derivative(arg, by) for arg in node.args)
     x, z, dx, dz = node.args[0], node.args[-1], inner[0], inner[-1]
-    if node.op in ("+", "if"):
-        return Node(node.op, inner)
+    if node.op in ("+", "if", "sum"):
+        return Node(node.op, inner) if node.op != "sum" else dx
     if node.op == "**":
         return made("n*y*dx", n=num(node.value), y=Node("**", (x,), node.value - 1), dx=dx)
     if node.op == "/" and dz == num(0):
@@ -148,13 +144,7 @@ def number(text: str) -> Fraction:
 
 @cache
 def parse(text: Any, length: int = MAX_LENGTH, compares: bool | None = None) -> Node:
-    """Return the tree of a law, or of a comparison if it `compares` (None: of either).
-
-    Raises
-    ------
-    InputError
-        If the text is not of the grammar.
-    """
+    """Return the tree of a law, or of a comparison if it `compares` (None: of either)."""
     plain = isinstance(text, str) and len(text) <= length and PLAIN.fullmatch(text)
     need(bool(plain), f"{str(text)[:60]!r} is no law of plain text, or too long")
     try:

@@ -1,13 +1,14 @@
-"""Kirchhoff's and Newton's laws of a spec as one tableau, solved in any field.
+"""Kirchhoff's and Newton's laws of a spec as one sparse tableau, solved in any field.
 
 Input: a `Spec`, the size of each bank, and the algebra in which the laws are written, numbers or
-rational functions: its `one`, `law(element, field, lane, letter)` ("law" the dissipative one) and
-`given(role, owner, lane)` of an input "u", a co-state "E" or a temperature "T".  Output: `Flows`.
-Every branch's through variable and every node's potential is an unknown; a law that is linear in
-its letter is an equation, in either causality.
+rational functions: its `one`, ``law(element, field, lane, letter)`` ("law" the dissipative one),
+``given(role, owner, lane)`` of an input "u", a co-state "E" or a temperature "T", and how many
+lanes ``like(slot)`` there are.  Output: `Flows`.
+The through and the across variable of every branch and the potential of every node are unknowns; a
+law that is linear in its letter is an equation, in either causality.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -18,9 +19,10 @@ from .spec import Element, Spec
 
 Form = dict[Any, Any]
 Slot = tuple[str, int]
+UNKNOWN = ("through", "across", "potential")
 
 
-class Part(NamedTuple):
+class Branch(NamedTuple):
     """A branch: its element and lane, what stands in it, its nodes, what it imposes."""
 
     element: str
@@ -29,174 +31,151 @@ class Part(NamedTuple):
     nodes: tuple[Any, Any]
     across: bool
 
+    @property
+    def imposed(self) -> tuple[str, "Branch"]:
+        """The variable that its law gives."""
+        return "across" if self.across else "through", self
+
+    @property
+    def answer(self) -> tuple[str, "Branch"]:
+        """The variable that the network gives it."""
+        return "through" if self.across else "across", self
+
 
 class SingularError(Exception):
-    """The laws have no single solution."""
+    """The laws have no or more than one solution, or a loop of laws that are not linear."""
 
 
 class Flows(NamedTuple):
-    """A network solved, by (element, lane)."""
+    """A network solved, by (element, lane); of ports their output and what flows in with it."""
 
     letters: dict[Slot, Any]
     outputs: dict[Slot, Any]
     rates: dict[Slot, Any]
-    conjugates: dict[str, Any]
+    ports: dict[str, tuple[Any, Any]]
     pivots: list[Any]
 
 
-def _parts(spec: Spec, counts: Mapping[str, int]) -> Iterator[Part]:
-    for e in spec.of("store", "law", "source", "coupling", "hysteron"):
-        for lane in range(1, counts[e.name] + 1) if e.lanes is not None else (0,):
-            if e.kind.form == "hysteron":
-                (a, b), inner = e.pairs[0], (e.name, lane)
-                yield Part(e.name, lane, "store", (a, inner), False)
-                yield Part(e.name, lane, "law", (inner, b), True)
-                continue
-            roles = "01" if e.kind.form == "coupling" else [e.kind.form]
-            for role, pair in zip(roles, e.pairs, strict=True):
-                yield Part(e.name, lane, role, pair, e.across)
-
-
 def flows(spec: Spec, counts: Mapping[str, int], algebra: Any) -> Flows:
-    """Return what flows in a network.
+    """Return what flows in a network; raises `SingularError` if its laws do not tell."""
+    branches, zero = list[Branch](), algebra.one - algebra.one
+    for e in spec.of("store", "law", "source", "coupling", "hysteron"):
+        branches += _branches(e, range(1, counts[e.name] + 1) if e.lanes is not None else (0,))
+    unknowns, pivots = _solved(list(_equations(spec, branches, algebra)))
+    found = Flows({}, {}, {}, {}, pivots)
 
-    Raises
-    ------
-    SingularError
-        If its laws have no, or more than one, solution, or a loop of laws that are not linear.
-    """
-    found = list(_parts(spec, counts))
-    answers, pivots = _solved(spec, found, algebra)
-    made = Flows({}, {}, {}, {}, pivots)
-
-    def total(form: Form) -> Any:
-        terms = algebra.one - algebra.one
-        for (role, *slot), factor in form.items():
-            if role == "W" and (*slot,) not in made.outputs:
+    def answer(branch: Branch) -> Any:
+        total = zero
+        for (role, *slot), factor in unknowns[branch.answer].items():
+            if role == "W" and (*slot,) not in found.outputs:
                 raise SingularError("laws that are not linear depend on each other")
-            terms += factor * (
-                made.outputs[(*slot,)] if role == "W" else algebra.given(role, *slot)
-            )
-        return terms
+            total += factor * (found.outputs[*slot,] if role == "W" else algebra.given(role, *slot))
+        return total
 
-    for part in sorted((p for p in found if p.role == "law"), key=lambda p: _is_equation(spec, p)):
-        slot, element = (part.element, part.lane), spec.elements[part.element]
-        made.letters[slot] = total(answers[part])
-        made.outputs[slot] = algebra.law(element, "law", part.lane, made.letters[slot])
-    for part in found:
-        if part.role == "store":
-            made.rates[part.element, part.lane] = total(answers[part])
-        elif part.role == "source":
-            y = total(answers[part])
-            made.conjugates[part.element] = -y if part.across else y
-    _heat(spec, algebra, made)
-    return made
+    for branch in sorted(branches, key=lambda b: b.role != "law"):  # others may depend on those
+        element, slot = spec.elements[branch.element], (branch.element, branch.lane)
+        if branch.role in ("law", "linear"):
+            found.letters[slot] = answer(branch)
+            found.outputs[slot] = algebra.law(element, "law", branch.lane, found.letters[slot])
+        elif branch.role == "store":
+            found.rates[slot] = answer(branch)
+        elif branch.role == "source":
+            y = -answer(branch) if branch.across else answer(branch)
+            found.ports[branch.element] = y, algebra.given("u", branch.element, 0)
+    _heat(spec, algebra, found)
+    return found
 
 
-def _heat(spec: Spec, algebra: Any, made: Flows) -> None:
-    heat = {body.name: algebra.given("T", body.name, 0) for body in spec.of("body")}
-    rates = dict.fromkeys(heat, algebra.one - algebra.one)
-    for slot, W in made.outputs.items():
-        body = spec.elements[slot[0]].bodies[0]
-        rates[body] += W * made.letters[slot] / heat[body]
-    for e in spec.of("ambient"):
-        rates[e.bodies[0]] += exchange(e, algebra)
-        made.conjugates[e.name] = heat[e.bodies[0]]
-    for e in spec.of("conduction"):
-        first, second = e.bodies
-        power = algebra.law(e, "conductance", 0) * (heat[first] - heat[second])
-        rates[first] -= power / heat[first]
-        rates[second] += power / heat[second]
-    made.rates.update({(body, 0): rate for body, rate in rates.items()})
+def _heat(spec: Spec, algebra: Any, found: Flows) -> None:
+    """Add the rates of entropies, and what environments bring: lam*(T_e/T - 1)."""
+    T = {body.name: algebra.given("T", body.name, 0) for body in spec.of("body")}
+    found.rates.update({(body, 0): algebra.one - algebra.one for body in T})
+    for slot, W in found.outputs.items():
+        (body,) = spec.elements[slot[0]].bodies
+        found.rates[body, 0] += algebra.like(slot) * W * found.letters[slot] / T[body]
+    for e in spec.of("ambient", "conduction"):
+        first, lam = e.bodies[0], algebra.law(e, "conductance", 0)
+        other = algebra.given("u", e.name, 0) if e.input else T[e.bodies[1]]
+        flow = lam * (other / T[first] - algebra.one)
+        found.rates[first, 0] += flow
+        if e.input:
+            found.ports[e.name] = T[first], flow
+        else:
+            found.rates[e.bodies[1], 0] += lam * (T[first] / other - algebra.one)
 
 
-def exchange(element: Element, algebra: Any) -> Any:
-    """Return the entropy that an environment brings, lam*(T_e/T - 1)."""
-    hot, T = algebra.given("u", element.name, 0), algebra.given("T", element.bodies[0], 0)
-    return algebra.law(element, "conductance", 0) * (hot / T - algebra.one)
+def _branches(e: Element, lanes: Iterable[int]) -> Iterator[Branch]:
+    law = "linear" if e.law and is_linear(e.law, ("z", e.name)) else "law"
+    for lane in lanes:
+        if e.kind.form == "hysteron":
+            (a, b), inner = e.pairs[0], (e.name, lane)
+            yield Branch(e.name, lane, "store", (a, inner), False)
+            yield Branch(e.name, lane, law, (inner, b), True)
+        else:
+            roles = {"coupling": ("first", "second"), "law": (law,)}
+            for role, pair in zip(roles.get(e.kind.form, (e.kind.form,)), e.pairs, strict=True):
+                yield Branch(e.name, lane, role, pair, e.across and role != "second")
 
 
-def _is_equation(spec: Spec, part: Part) -> bool:
-    law = spec.elements[part.element].law
-    return law is not None and is_linear(law, ("z", part.element))
-
-
-def _solved(spec: Spec, found: list[Part], algebra: Any) -> tuple[dict[Any, Form], list[Any]]:
-    rows, one, balances = list[Form](), algebra.one, dict[Any, Form]()
-    for n, part in enumerate(found):
-        for node, sign in zip(part.nodes, (one, -one), strict=True):
+def _equations(spec: Spec, branches: list[Branch], algebra: Any) -> Iterator[Form]:
+    balances, one = dict[Any, Form](), algebra.one
+    for branch in branches:
+        fall: Form = {("across", branch): one}
+        for node, sign in zip(branch.nodes, (one, -one), strict=True):
             if node not in REFERENCES:
-                balances.setdefault(node, {})[part] = sign
-        rows.append(_law(spec, part, found[n - 1], found[(n + 1) % len(found)], algebra))
-    unknowns, pivots = _eliminated([*balances.values(), *rows], len(balances) + len(found))
-    answers: dict[Any, Form] = {part: {} for part in found}
-    for part in found:
-        for label, factor in ({part: one} if part.across else _potential(part.nodes, one)).items():
-            answers[part] = _added(answers[part], unknowns[label], factor)
-    return answers, pivots
+                shared = isinstance(node, str)  # a lane's own node is not
+                many = algebra.like((branch.element, branch.lane)) if shared else one
+                balances.setdefault(node, {})["through", branch] = sign * many
+                fall["potential", node] = -sign
+        yield fall
+        yield {branch.imposed: one, **_law(spec.elements[branch.element], branch, algebra)}
+    yield from balances.values()
 
 
-def _law(spec: Spec, part: Part, before: Part, after: Part, algebra: Any) -> Form:
-    element, one, own = spec.elements[part.element], algebra.one, {part: algebra.one}
-    across = _potential(part.nodes, one)
-    if part.role == "1":  # through_2 = -ratio * (through_1 or across_1)
-        n = algebra.law(element, "ratio", 0)
-        return own | ({before: n} if element.across else _potential(before.nodes, n))
-    if part.role == "0":  # across_1 = ratio * across_2, or through_1 = ratio * across_2
-        other = _potential(after.nodes, -algebra.law(element, "ratio", 0))
-        return _added(across if element.across else own, other, one)
-    if part.role == "law" and _is_equation(spec, part):
-        slope = algebra.law(element, "law", part.lane, one)
-        return across | {part: -slope} if part.across else own | _potential(part.nodes, -slope)
-    given = {"store": "E", "law": "W", "source": "u"}[part.role], part.element, part.lane
-    sign = one if part.role == "source" and not part.across else -one
-    return (across if part.across else own) | {given: sign}
+def _law(element: Element, branch: Branch, algebra: Any) -> Form:
+    """Return what a law adds to what it imposes, to make zero."""
+    if branch.role in ("first", "second"):
+        first, second = _branches(element, (0,))
+        ratio = algebra.law(element, "ratio", 0)
+        # first: across or through = ratio*across of the second; second: through = -ratio*answer
+        return {("across", second): -ratio} if branch == first else {first.answer: ratio}
+    if branch.role == "linear":
+        return {branch.answer: -algebra.law(element, "law", branch.lane, algebra.one)}
+    given = {"store": "E", "law": "W", "source": "u"}[branch.role], element.name, branch.lane
+    drawn = branch.role == "source" and not branch.across
+    return {given: algebra.one if drawn else -algebra.one}
 
 
-def _potential(nodes: tuple[Any, Any], factor: Any) -> Form:
-    pairs = zip(nodes, (factor, -factor), strict=True)
-    return {("e", node): sign for node, sign in pairs if node not in REFERENCES}
-
-
-def _added(left: Form, right: Form, factor: Any) -> Form:
-    total = dict(left)
-    for label, value in right.items():
-        total[label] = factor * value + total[label] if label in total else factor * value
-    return {label: value for label, value in total.items() if (value == 0) is not True}
-
-
-def _eliminated(left: list[Form], size: int) -> tuple[dict[Any, Form], list[Any]]:
+def _solved(left: list[Form]) -> tuple[dict[Any, Form], list[Any]]:
+    """Return each unknown by what is given, and the pivots."""
     rows, solved, pivots = dict(enumerate(left)), dict[Any, Form](), list[Any]()
-    choices = {n: found for n, row in rows.items() if (found := _choice(n, row))}
-    while choices:
-        (_, _, n), label = min(choices.values(), key=lambda choice: choice[0])
+    choices = {n: _choice(n, row) for n, row in rows.items()}
+    while rows:
+        (*_, n), label = min(choices.values(), key=lambda choice: choice[0])
+        if label is None:
+            raise SingularError("the laws of the network have no single solution")
         row = rows.pop(n)
         del choices[n]
         pivots.append(pivot := row.pop(label))
-        row = {key: -value / pivot for key, value in row.items()}
-        for table in (rows, solved):
-            for key in [key for key, other in table.items() if label in other]:
-                factor = table[key].pop(label)
-                table[key] = _added(table[key], row, factor)
-                if table is rows and not (found := _choice(key, table[key])):
-                    choices.pop(key, None)
-                elif table is rows:
-                    choices[key] = found
-        solved[label] = row
-    if rows or len(solved) != size or any(map(_unknown, solved.values())):
-        raise SingularError("the laws of the network have no single solution")
+        solved[label] = {key: -factor / pivot for key, factor in row.items()}
+        for name, form in (*rows.items(), *solved.items()):
+            if label in form:
+                factor = form.pop(label)
+                for key, value in solved[label].items():
+                    form[key] = form[key] + factor * value if key in form else factor * value
+                    if (form[key] == 0) is True:  # an enclosure of zero is not
+                        del form[key]
+                if name in rows:
+                    choices[name] = _choice(name, form)
     return solved, pivots
 
 
-def _choice(n: int, row: Form) -> Any:
-    """Return the best unknown to solve a row for: short rows first, and factors 1 and -1."""
-    found = [label for label in _unknown(row) if row[label] != 0]
-    ranks = [((row[label] not in (1, -1), len(row), n), label) for label in found]
-    return min(ranks, key=lambda choice: choice[0], default=None)
-
-
-def _unknown(row: Form) -> list[Any]:
-    return [key for key in row if isinstance(key, Part) or key[0] == "e"]
+def _choice(n: int, row: Form) -> tuple[tuple[int, int, int, int], Any]:
+    """Return the best unknown to solve a row for: factors 1 and -1, what falls, short rows."""
+    known = [(x, factor) for x, factor in row.items() if x[0] in UNKNOWN and factor != 0]
+    size = len(row), n
+    ranks = [((int(f not in (1, -1)), int(x[0] != "across"), *size), x) for x, f in known]
+    return min(ranks, key=lambda choice: choice[0], default=((2, 0, *size), None))
 
 
 @cache

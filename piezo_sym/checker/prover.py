@@ -19,6 +19,7 @@ from .laws import KINKS, Node, compare, made, negated, num, symbols, unkinked
 EFFORT, MILLISECONDS, SECONDS, MOST_PAIRS = 100_000, 8000, 300, 12
 KINDS = {"+": Kind.ADD, "*": Kind.MULT, "neg": Kind.NEG, "if": Kind.ITE, "=": Kind.EQUAL}
 KINDS |= {"<": Kind.LT, "<=": Kind.LEQ, ">": Kind.GT, ">=": Kind.GEQ, "!=": Kind.DISTINCT}
+ABOVE = "x >= 0: y*(1 + x) >= x; x <= 0: y*(1 - x) <= x"
 #: What is known of y = f(x), and of two values y and b of f at x and a: "premise: fact".
 FACTS = {
     "exp": "y > 0; y >= 1 + x; x <= 0: y <= 1; x <= 0: y <= 1 + x + x**2/2; x < 1: y*(1 - x) <= 1;"
@@ -30,6 +31,11 @@ FACTS = {
     "tanh": "y < 1; y > -1; x >= 0: y <= x; x <= 0: y >= x; x >= 0: y >= x - x**3/3; x > 0: y > 0;"
     "x <= 0: y <= x - x**3/3; x < 0: y < 0; x >= 0: (1 - y)*(1 + x + x**2) <= 1;"
     "x <= 0: (1 + y)*(1 - x + x**2) <= 1",
+    "atan": f"y < 1.5708; y > -1.5708; x >= 0: y <= x; x <= 0: y >= x; {ABOVE}",
+    "sinh": "x >= 0: y >= x + x**3/6; x <= 0: y <= x + x**3/6; x >= 0: y*(1 - x**2/6) <= x;"
+    "x <= 0: y*(1 - x**2/6) >= x",
+    "cosh": "y >= 1 + x**2/2; y*(1 - x**2/2) <= 1",
+    "erf": f"y < 1; y > -1; x >= 0: y <= 1.1284*x; x <= 0: y >= 1.1284*x; {ABOVE}",
 }
 RISING = "x < a: y < b; x > a: y > b; x >= a: y >= b; x <= a: y <= b"
 EQUAL = "x <= a: x >= a: y <= b; x <= a: x >= a: y >= b"
@@ -40,6 +46,7 @@ PAIRS = {
     "sin": f"{EQUAL}; {EQUAL.replace('a', '-a').replace('b', '-b')}",
     "cos": f"{EQUAL}; {EQUAL.replace('a', '-a')}",
 }
+PAIRS |= dict.fromkeys(("atan", "sinh", "erf"), PAIRS["tanh"]) | {"cosh": PAIRS["cos"]}
 
 
 class Claim(NamedTuple):
@@ -79,16 +86,15 @@ class _Query:
         return symbol
 
     def _term(self, node: Node) -> Any:
-        args = node.args
+        args, kind = node.args, KINDS.get(node.value if node.op == "cmp" else node.op)
         if node.op == "num":
             return self.make.mkReal(node.value.numerator, node.value.denominator)
         if node.op in KINKS:
             return self.term(unkinked(node))
-        kind = KINDS.get(node.value if node.op == "cmp" else node.op)
-        if kind and len(args) > 1 - (node.op == "neg"):
-            return self.make.mkTerm(kind, *map(self.term, args))
-        if node.op == "+":
+        if node.op in "+*" and len(args) == 1:
             return self.term(args[0])
+        if kind:
+            return self.make.mkTerm(kind, *map(self.term, args))
         if node.op == "**":
             return self.term(self._power(args[0], Fraction(node.value)))
         if node.op == "/" and args[1].op == "num" and args[1].value:
@@ -104,21 +110,16 @@ class _Query:
 
     def _power(self, x: Node, exponent: Fraction) -> Node:
         """Return x**(p/q) in products, by y with x >= 0 -> y >= 0 and y**q = x."""
-        y = (
-            x
-            if exponent.denominator == 1
-            else self._fresh(Node("root", (x,), exponent.denominator))
-        )
-        if exponent.denominator > 1:
-            raised = Node("*", (y,) * exponent.denominator)
+        y, order = x, exponent.denominator
+        if order > 1:
+            y = self._fresh(Node("root", (x,), order))
             self.add(compare(y, ">="), compare(x, ">="))
-            self.add(compare(raised, "=", x), compare(x, ">="))
+            self.add(compare(Node("*", (y,) * order), "=", x), compare(x, ">="))
         size = Node("*", (num(1), *[y] * abs(exponent.numerator)))
-        size = size if exponent else num(1)
         return size if exponent >= 0 else Node("/", (num(1), size))
 
     def _function(self, name: str, x: Node, y: Node) -> None:
-        """Assert what is known of exp, log, sin, cos or tanh, alone and of two values of one."""
+        """Assert what is known of a smooth function, alone and of two values of one."""
         if (name, x.op) in (("log", "exp"), ("exp", "log")):  # log(exp(a)) = a; a > 0 for the other
             self.add(compare(y, "=", x.args[0]), *[compare(x.args[0], ">")] * (name == "exp"))
         others = self.calls.setdefault(name, [])
@@ -159,12 +160,9 @@ class Prover:
 
 def partial(node: Node, path: tuple[Node, ...] = ()) -> Iterator[Claim]:
     """Yield what must hold for a tree to have a value, where each part is reached."""
-    sides = (
-        ((), (node.args[0],), (negated(node.args[0]),))
-        if node.op == "if"
-        else [()] * len(node.args)
-    )
-    for arg, side in zip(node.args, sides, strict=True):
+    condition = node.args[:1] if node.op == "if" else ()
+    for n, arg in enumerate(node.args):
+        side = condition if n == 1 else tuple(map(negated, condition)) if n == 2 else ()
         yield from partial(arg, (*path, *side))
     yield from (Claim(path, claim) for claim in needed(node))
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from . import laws
 from .certificate import check_certificate
-from .field import Field
+from .field import ZERO, Field
 from .laws import KINKS, InputError, Node, compare, made, need, negated, num, put, sym, symbols
 from .prover import Claim, Prover, needed, partial
 from .spec import Element, Spec
@@ -38,11 +38,10 @@ class _Audit:
             key = str(entry.get("id")), str(entry.get("element") or "")
             self.stated.setdefault(key, []).append(entry)
         self.found = check_system(spec, proofs.get("system"))
-        self.conditions = tuple(tree for _, tree in spec.conditions)
         known = {("T", body.name): body.laws["temperature"] for body in spec.of("body")}
         known |= {("z", name): tree for name, tree in self.found.letters.items()}
         self.ties = tuple(compare(sym(name), "=", law) for name, law in known.items())
-        self.prover = Prover(self.conditions, self.ties)
+        self.prover = Prover(spec.conditions, self.ties)
 
     def rows(self) -> Iterator[tuple[str, str, str]]:
         """Yield the rows, each after those that it rests on."""
@@ -57,11 +56,12 @@ class _Audit:
             yield self._row("temperature", name, claims)
         if not any(why for key, why in self.done.items() if key[0] == "temperature"):
             warm = (compare(sym(("T", body.name)), ">") for body in spec.of("body"))
-            self.prover = Prover((*self.conditions, *warm), self.ties)
+            self.prover = Prover((*spec.conditions, *warm), self.ties)
         for name in ("skew", "casimir", "energy", "entropy"):
             why = reasons.get("energy", "") if name in ("skew", "energy") else ""
-            yield self._row(name, "", (), system, why)
-        domain = [claim for tree in self.conditions for claim in partial(tree)]
+            claims = self.found.values if name in ("skew", "energy") else []
+            yield self._row(name, "", claims, system, why)
+        domain = [claim for tree in spec.conditions for claim in partial(tree)]
         if domain or ("welldef", "") in self.stated:
             yield self._row("welldef", "", domain, system)
         for element in spec.elements.values():
@@ -106,13 +106,13 @@ class _Audit:
     def _own_values(self) -> Iterator[Claim]:
         """Yield that the spec's own values, in each lane, are in its domain."""
         spec = self.spec
-        own = {("u", name): [num(value)] for name, value in spec.inputs.items()}
-        own |= {("p", n): [num(value) for value in v] for n, v in spec.parameters.items()}
+        own = {("u", name): [*map(num, values)] for name, values in spec.inputs.items()}
+        own |= {("p", name): [*map(num, values)] for name, values in spec.parameters.items()}
         own |= {("x", n): [*spec.initial.get(n, [num(0)])] for n in spec.states.values()}
         own |= {("T", b.name): [b.laws["temperature"]] for b in spec.of("body")}
         for lane in range(max(map(len, own.values()))):
             here = [compare(sym(n), "=", found[lane % len(found)]) for n, found in own.items()]
-            yield from (Claim(tuple(here), tree) for tree in self.conditions)
+            yield from (Claim(tuple(here), tree) for tree in spec.conditions)
 
     def _element(self, element: Element) -> Iterator[tuple[str, str, str]]:
         own, name = [tree for tree in (element.costate, element.law) if tree], element.name
@@ -162,7 +162,9 @@ class _Audit:
             else:
                 yield Claim(between, compare(gains[0], ">=", gains[1]))
                 yield Claim(between, compare(gains[1], ">="))
-        floors = [c for c in self.conditions if T in (c.args[:1] if c.value == ">" else c.args[1:])]
+        floors = [
+            c for c in self.spec.conditions if T in (c.args[:1] if c.value == ">" else c.args[1:])
+        ]
         strict = any(c.value in "<>" for c in floors) and any(e.input for e in around)
         need(strict, "no floor of T, or no environment")
 
@@ -189,28 +191,28 @@ class _Closed:
 
     def __init__(self) -> None:
         self.where, self.claims = list[Node](), list[Claim]()
-        self.field = Field(lambda _: False)
+        self.field = Field(scales=True)
 
-    def tree(self, node: Node, path: tuple[Node, ...]) -> Node:
+    def tree(self, node: Node, path: tuple[Node, ...], kinks: Iterable[str] = ("sign",)) -> Node:
         """Return a law in choices of sides; book what is needed for it to have a value."""
-        if node.op == "sign":
-            return self.tree(laws.unkinked(node), path)
+        if node.op in kinks:
+            return self.tree(laws.unkinked(node), path, kinks)
         if node.op != "if":
-            here = Node(node.op, tuple(self.tree(arg, path) for arg in node.args), node.value)
+            here = Node(node.op, tuple(self.tree(a, path, kinks) for a in node.args), node.value)
             self.claims += [Claim((*self.where, *path), c) for c in needed(here)]
             return here
-        sides = tuple(self.tree(laws.plain(arg), path) for arg in node.args[0].args)
+        sides = tuple(self.tree(arg, path, KINKS) for arg in node.args[0].args)
         side = Node("cmp", sides, node.args[0].value)
         if any(role in MOVING for role, _ in symbols(node.args[0])):
             side = self._side(side, path)
-        then = self.tree(node.args[1], (*path, side))
-        return Node("if", (side, then, self.tree(node.args[2], (*path, negated(side)))))
+        then = self.tree(node.args[1], (*path, side), kinks)
+        return Node("if", (side, then, self.tree(node.args[2], (*path, negated(side)), kinks)))
 
     def _side(self, condition: Node, path: tuple[Node, ...]) -> Node:
         """Return the comparison b > 0 (or b <= 0) that stands for left above (below) right."""
         difference = made("x - z", x=condition.args[0], z=condition.args[1])
         key = self.field.scaled(self.field.of(difference))
-        turned = key != 0 and key.top.leading_coefficient() < 0
+        turned = key != ZERO and key.top.leading_coefficient() < 0
         key, difference = (-key, Node("neg", (difference,))) if turned else (key, difference)
         chosen = compare(sym(("side", f"{key.top}/{key.bottom}")), ">")
         side = chosen if (condition.value in (">", ">=")) != turned else negated(chosen)

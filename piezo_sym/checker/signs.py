@@ -22,8 +22,8 @@ BITS, ORDER = 192, 10
 T, TANH, ALL = sym("s"), "1 - 2/(exp(2*x) + 1)", frozenset((-1, 0, 1))
 HOLD = {"=": {0}, ">": {1}, ">=": {0, 1}, "<": {-1}, "<=": {-1, 0}}
 RULES: dict[str, Any] = {"*": lambda a, b: a * b, "/": lambda a, b: a * b, "neg": lambda a: -a}
-RULES |= {"abs": abs, "min": min, "max": max, "exp": lambda _: 1}
-RULES |= dict.fromkeys(("sign", "tanh"), lambda a: a)
+RULES |= {"abs": abs, "min": min, "max": max} | dict.fromkeys(("exp", "cosh"), lambda _: 1)
+RULES |= dict.fromkeys(("sign", "tanh", "atan", "sinh", "erf"), lambda a: a)
 Found = frozenset[int]
 
 
@@ -32,8 +32,8 @@ class Signs:
 
     def __init__(self, lo: Fraction, hi: Any, prover: Prover) -> None:
         self.lo, self.hi, self.prover, self.known = lo, hi, prover, dict[Node, Found]()
-        ends = [compare(T, ">", lo), *([] if hi == inf else [compare(T, "<=", hi)])]
-        self.where = tuple(ends) if lo != hi else ()
+        ends = compare(T, ">", lo), *(() if hi == inf else (compare(T, "<=", hi),))
+        self.where = ends if lo != hi else ()
 
     def of(self, node: Node) -> Found:
         """Return the signs that a tree may have."""

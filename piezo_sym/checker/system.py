@@ -1,30 +1,37 @@
-"""The published system against Kirchhoff's laws, exactly, for banks of 1 to 3 lanes.
+"""The published system against Kirchhoff's laws, exactly, for banks of any number of lanes.
 
 Input: a `Spec` and the "system" of ``proofs.json``.  Output: a `Finding`.  A lane of a bank draws
 the current of its own inductor, a state, from the nodes it shares; so shared rates have sums over
 lanes with coefficients that no count is in, and products of two sums at most (heats).  An identity
 in which no more than two sums are multiplied, in a row of its own lane or none, concerns three
-lanes at once at most: it holds for every count if it does for 1, 2 and 3.
+lanes at once at most.  So a bank has three here, of each of which there are as many as a symbol
+says: no two sums, and no two functions of sums, are then equal for some counts alone.
 """
 
 from collections.abc import Mapping
+from operator import mul
 from typing import Any, NamedTuple
 
 from . import laws
-from .field import Field, Ratio, constant
+from .field import ONE, ZERO, Field, Ratio
 from .laws import KINKS, InputError, Node, need, num, parse, put, sym, symbols, walk
-from .network import Flows, SingularError, exchange, flows
+from .network import Flows, SingularError, Slot, flows
+from .prover import Claim, partial
 from .spec import Element, Spec
 
-MAX_TEXT, MOST_SUMS, MOST_COUNT, MAX_NAMES, MAX_CHAIN = 100_000, 2, 3, 1000, 50
+MAX_TEXT, MOST_SUMS, LANES, MAX_NAMES, MAX_CHAIN = 100_000, 2, 3, 1000, 50
 
 
 class Finding(NamedTuple):
-    """Reasons by subject ("system", "energy"), what must not be zero, letters by states."""
+    """Reasons by subject ("system", "energy"), what must not be zero, letters by states.
+
+    `values` is what must hold for the energy to have a value.
+    """
 
     reasons: dict[str, str]
     divisors: dict[Node, None]
     letters: dict[str, Node]
+    values: list[Claim]
 
 
 class _Published:
@@ -44,7 +51,7 @@ class _Published:
         )
         free = not any(n in spec.words and spec.words[n][0] != "T" for n in self.names)
         need(free and len(self.names) <= MAX_NAMES, "a published name is taken, or too many are")
-        for table in (self.laws, self.rates, self.outputs):
+        for table in (self.laws, self.rates, self.outputs, {"": self.energy}):
             for tree in table.values():
                 self.sums(tree, 0)
 
@@ -59,6 +66,7 @@ class _Published:
         power = node.value if node.op == "**" else 1
         found = sum(own) if node.op == "*" else max(own, default=0) + (node.op == "sum")
         if node.op == "if":
+            need(all(n.op != "sum" for n in walk(node)), "a published choice has a sum over lanes")
             found = own[0] + max(own[1:])
         elif node.op in KINKS:
             found *= 2
@@ -69,80 +77,90 @@ class _Published:
 
 
 class _Comparison:
-    """One comparison, for one size of every bank; the algebra of its network."""
+    """The comparison; the laws and symbols of its network."""
 
-    def __init__(self, spec: Spec, text: _Published, count: int, finding: Finding) -> None:
-        self.spec, self.text, self.finding, self.one = spec, text, finding, constant(1)
-        self.counts = {e.name: count for e in spec.of("hysteron") if e.lanes is not None}
+    def __init__(self, spec: Spec, text: _Published, finding: Finding) -> None:
+        self.spec, self.text, self.finding, self.one = spec, text, finding, ONE
+        self.counts = {e.name: LANES for e in spec.of("hysteron") if e.lanes is not None}
         self.field, self.known = Field(), dict[Any, Ratio]()
 
     def symbol(self, meaning: tuple[str, str], lane: int) -> Ratio:
+        """Return a symbol, with its lane if it has one."""
         role, owner = meaning
-        per_lane = owner in (
-            self.spec.lists if role == "p" else self.counts if role in "xE" else ()
-        )
-        need(lane > 0 or not per_lane, f"{owner!r} is of a lane, and stands outside of lanes")
-        return self.field.of(sym((role, owner, lane if per_lane else 0)))
+        banks = {"p": self.spec.lists, "x": self.counts, "E": self.counts}.get(role, ())
+        need(lane > 0 or owner not in banks, f"{owner!r} is of a lane, and stands outside of lanes")
+        return self.field.of(sym((role, owner, lane) if owner in banks else (role, owner)))
 
     def law(self, element: Element, field: str, lane: int, letter: Ratio | None = None) -> Ratio:
+        """Return a law of an element, its letter being given."""
         tree = element.law if field == "law" else element.laws.get(field, element.costate)
 
-        def word(name: tuple[str, str]) -> Ratio:
-            return letter if letter and name[0] == "z" else self.symbol(name, lane)
+        def word(node: Node) -> Ratio:
+            if letter is not None and node.value[0] == "z":
+                return letter
+            return self.symbol(node.value, lane)
 
         return self.field.of(tree or num(0), word)
 
+    def like(self, slot: Slot) -> Ratio:
+        """Return how many lanes are like one, a symbol; 1 outside of banks."""
+        return self.field.of(sym(("N", *slot))) if slot[1] else ONE
+
     def given(self, role: str, owner: str, lane: int) -> Ratio:
+        """Return an input, a co-state or a temperature by its element."""
         return self.symbol((role, self.spec.elements[owner].input if role == "u" else owner), lane)
 
     def published(self, node: Node, bound: Mapping[str, int]) -> Ratio:
         """Return a published text, its lanes bound."""
-        if not any(part.op == "sum" for part in walk(node)):
-            return self.field.of(node, lambda name: self.name(name, bound))
-        need(node.op != "if", "a published choice has a sum over lanes")
+        return self.field.of(node, lambda part: self.word(part, bound))
+
+    def word(self, node: Node, bound: Mapping[str, int]) -> Ratio:
+        """Return a sum over lanes, or what a published name stands for."""
         if node.op == "sum":
             need(node.value in self.counts, f"{node.value!r} is no bank")
             lanes = range(1, self.counts[node.value] + 1)
-            terms = (self.published(node.args[0], {**bound, node.value: lane}) for lane in lanes)
-            return sum(terms, constant(0))
-        inner = [self.published(arg, bound) for arg in node.args]
-        shell = Node(node.op, tuple(sym(n) for n in range(len(inner))), node.value)
-        return self.field.of(shell, inner.__getitem__)
+            many = [self.like((node.value, lane)) for lane in lanes]
+            own = (self.published(node.args[0], {**bound, node.value: lane}) for lane in lanes)
+            return sum(map(mul, many, own), ZERO)
+        name = node.value
+        if name in self.text.names:
+            bank = self.text.names[name][2]
+            lane = bound.get(bank, 0) if bank else 0
+            need(lane > 0 or not bank, f"{name!r} is of a lane, and stands outside of lanes")
+            if (name, lane) not in self.known:
+                self.known[name, lane] = self._named(name, {bank: lane} if bank else {})
+            return self.known[name, lane]
+        role, owner = self.spec.words.get(name, ("T", ""))
+        need(role != "T", f"unknown published name {name[:60]!r}")
+        bank = self.spec.lists.get(owner, "") if role == "p" else owner
+        return self.symbol((role, owner), bound.get(bank, 0))
 
-    def name(self, name: str, bound: Mapping[str, int]) -> Ratio:
-        """Return what a published name stands for: a co-state for itself, once it is compared."""
-        if name not in self.text.names:
-            role, owner = self.spec.words.get(name, ("T", ""))
-            need(role != "T", f"unknown published name {name[:60]!r}")
-            bank = self.spec.lists.get(owner, "") if role == "p" else owner
-            return self.symbol((role, owner), bound.get(bank, 0))
-        element, role, bank = self.text.names[name]
-        lane = bound.get(bank, 0) if bank else 0
-        need(lane > 0 or not bank, f"{name!r} is of a lane, and stands outside of lanes")
-        if (name, lane) not in self.known:
-            found = self.published(self.text.laws[name], {bank: lane} if bank else {})
-            store = self.spec.elements.get(element)
-            if role in ("costate", "temperature") and store is not None and store.costate:
-                self._equal("system", found, self.law(store, "costate", lane), name)
-                found = self.given("T" if store.kind.form == "body" else "E", store.name, lane)
-            self.known[name, lane] = found
-        return self.known[name, lane]
+    def _named(self, name: str, bound: Mapping[str, int]) -> Ratio:
+        """Return what a name is by its text; a co-state is itself, once it is compared."""
+        (owner, role, _), lane = self.text.names[name], max(bound.values(), default=0)
+        found, store = self.published(self.text.laws[name], bound), self.spec.elements.get(owner)
+        if role not in ("costate", "temperature") or store is None or not store.costate:
+            return found
+        self._equal("system", found, self.law(store, "costate", lane), name)
+        return self._costate(store, lane)
+
+    def _costate(self, store: Element, lane: int) -> Ratio:
+        return self.symbol(("T" if store.kind.form == "body" else "E", store.name), lane)
 
     def check(self) -> None:
         """Compare rates and outputs, and close the balances."""
-        own, power = flows(self.spec, self.counts, self), constant(0)
+        own, power = flows(self.spec, self.counts, self), ZERO
         self._keep(own)
-        for name, y in own.conjugates.items():
-            element, given = self.spec.elements[name], self.published(self.text.outputs[name], {})
+        for name, (y, inflow) in own.ports.items():
+            given = self.published(self.text.outputs[name], {})
             self._equal("system", given, y, f"output of {name}")
-            ambient = element.kind.form == "ambient"
-            power += given * (exchange(element, self) if ambient else self.given("u", name, 0))
+            power += given * inflow
         for (name, lane), rate in own.rates.items():
             element = self.spec.elements[name]
             given = self.published(self.text.rates[element.state], {name: lane} if lane else {})
             self._equal("system", given, rate, f"rate of {element.state}")
-            power -= self.given("T" if element.kind.form == "body" else "E", name, lane) * given
-        self._equal("energy", power, constant(0), "dU/dt - y^T u")
+            power -= self.like((name, lane)) * self._costate(element, lane) * given
+        self._equal("energy", power, ZERO, "dU/dt - y^T u")
         self._gradient()
 
     def _equal(self, subject: str, given: Ratio, own: Ratio, what: str) -> None:
@@ -150,56 +168,59 @@ class _Comparison:
             self.finding.reasons.setdefault(subject, f"{what} is not that of the network")
 
     def _keep(self, own: Flows) -> None:
-
-        elements, lists = self.spec.elements, self.spec.lists
+        """Keep the divisors, and each letter that is one of states of its own lane."""
         for pivot in own.pivots:
-            tree = self.field.tree(pivot).args[0]
-            words = {key: sym(key if key[-1] else key[:2]) for key in symbols(tree)}
-            self.finding.divisors[put(tree, words)] = None
+            self.finding.divisors[self.field.tree(pivot).args[0]] = None
+            self.field.nonzero |= {Ratio(factor) for factor, _ in pivot.top.factor()[1]}
+        lists, elements = self.spec.lists, self.spec.elements
         for (name, lane), letter in own.letters.items():
-            tree, lanes = self.field.tree(letter), {name: lane}
-            costates = {k: elements[k[1]].costate for k in symbols(tree) if k[0] == "E"}
-            words = {k: costates.get(k) or sym(k[:2]) for k in symbols(tree)}
-            self.finding.letters.pop(name, None)
-            if all(k[2:] in ((), (0,), (lanes.get(lists.get(k[1], k[1])),)) for k in words):
-                self.finding.letters[name] = put(tree, words)
+            tree = self.field.tree(letter)
+            costates = {key: elements[key[1]].costate for key in symbols(tree) if key[0] == "E"}
+            words = {key: costates.get(key) or sym(key[:2]) for key in symbols(tree)}
+            self.finding.letters[name] = put(tree, words)
+            if not {(lists.get(k[1], k[1]), k[2]) for k in words if k[2:]} <= {(name, lane)}:
+                del self.finding.letters[name]
 
     def _gradient(self) -> None:
+        """Compare the energy's derivatives, of sums by the state of one lane, with co-states."""
         energy, states = self.text.energy, self.spec.states
-        terms = [
-            (term.args[0], {term.value: 1}) if term.op == "sum" else (term, {})
-            for term in (energy.args if energy.op == "+" else (energy,))
-        ]
-        for term, bound in terms:
-            for role, owner in (self.spec.words.get(name, ("", "")) for name in symbols(term)):
-                need(role in ("p", "x"), "the energy has other names than states and parameters")
-                need(role == "p" or not bound or owner in bound, "a bank's energy has other states")
-        for part in (part for term, _ in terms for part in walk(term)):
-            chooser = part.args[0] if part.op == "if" else part
-            moves = part.op in ("if", *KINKS) and any(s in states for s in symbols(chooser))
-            need(part.op != "sum" and not moves, "the energy has choices of states")
+        self.published(energy, {})  # whatever is of a lane is in a sum
+        for name in symbols(energy):
+            known = self.spec.words.get(name, ("", ""))[0] in ("p", "x")
+            need(known, "the energy has other names than states and parameters")
+        symbolic = {name: sym(self.spec.words[name]) for name in symbols(energy)}
+        for part in walk(energy):
+            owners = {
+                states[n] for n in symbols(part.args[0] if part.op == "if" else part) if n in states
+            }
+            single = owners <= {part.value} and sum(inner.op == "sum" for inner in walk(part)) == 1
+            need(part.op != "sum" or single, "a bank's energy has other states")
+            moves = bool(owners) and part.op in ("if", *KINKS)
+            need(not moves, "the energy has choices of states")
+        self.finding.values.extend(partial(_alone(put(energy, symbolic))))
         for state, name in states.items():
-            slopes = [
-                self.published(laws.derivative(term, state), bound)
-                for term, bound in terms
-                if state in symbols(term)
-            ]
-            own = self.law(self.spec.elements[name], "costate", int(name in self.counts))
-            self._equal("energy", sum(slopes, constant(0)), own, f"dU/d{state}")
+            lane = int(name in self.counts)
+            given = self.published(laws.derivative(energy, state), {name: lane} if lane else {})
+            own = self.law(self.spec.elements[name], "costate", lane)
+            self._equal("energy", given, own, f"dU/d{state}")
+
+
+def _alone(node: Node) -> Node:
+    """Return a tree in which any lane stands for the sum over all."""
+    inner = tuple(map(_alone, node.args))
+    return inner[0] if node.op == "sum" else Node(node.op, inner, node.value)
 
 
 def check_system(spec: Spec, system: Any) -> Finding:
     """Return what is found of a published system."""
-    finding, banks = Finding({}, {}, {}), {e.name for e in spec.elements.values() if e.lanes}
+    finding, banks = Finding({}, {}, {}, []), {e.name for e in spec.elements.values() if e.lanes}
     try:
         text = _Published(spec, system)
         expected = [(s, name, name if name in banks else None) for s, name in spec.states.items()]
         ports = {e.name for e in spec.of("source", "ambient")}
         tables = set(text.rates) == set(spec.states) and set(text.outputs) == ports
         need(text.states == expected and tables, "states or ports are not those of the spec")
-        for count in range(1, MOST_COUNT + 1 if banks else 2):
-            if not finding.reasons:
-                _Comparison(spec, text, count, finding).check()
+        _Comparison(spec, text, finding).check()
     except (InputError, SingularError, RecursionError) as error:
         finding.reasons.setdefault("system", str(error))
     except (KeyError, TypeError, AttributeError) as error:

@@ -1,26 +1,23 @@
 """Units of a spec, by pint: exact factors and dimensions, and the walk that compares them.
 
-Input: texts such as ``N*s/m``, and trees with the dimension of every symbol.  Output: `Unit`, and
-the faults that a tree has.
+Input: texts such as ``N*s/m``, and trees with the dimension of every symbol.  Output: the factor to
+SI and the dimension of a unit, and the faults that a tree has.
 """
 
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Mapping
 from fractions import Fraction
 from functools import cache
-from tokenize import TokenError
-from typing import Any, NamedTuple
+from typing import Any
 
-from .laws import ARITHMETIC, PLAIN, SMOOTH, InputError, Node, need
+from flint import fmpz
+
+from .laws import ARITHMETIC, SMOOTH, InputError, Node, need, parse
 
 Dimension = Any  # of pint: a product of powers
+PLAIN = re.compile(r"[A-Za-z1-9*/^() -]{1,60}")
+MAX_BITS = 10_000
 EQUAL = ("+", "min", "max", "deadzone", "saturate", "cmp", "if")
-
-
-class Unit(NamedTuple):
-    """A unit: a value in it times `factor` is the value in SI."""
-
-    factor: Fraction
-    dimension: Dimension
 
 
 @cache
@@ -31,36 +28,55 @@ def _registry() -> Any:
 
 
 @cache
-def unit(text: str) -> Unit:
-    """Return the unit that a text names; raises `InputError` if it names none."""
-    need(
-        len(text) <= 60 and bool(PLAIN.fullmatch(text.replace("^", "*"))),
-        f"{text[:60]!r} is no unit",
-    )
-    try:
-        named = _registry().parse_units(text)
-        zero, one = (_registry().Quantity(Fraction(n), named).to_base_units() for n in (0, 1))
-        factor = Fraction(one.magnitude)
-    except (TypeError, AttributeError, ValueError, ArithmeticError, AssertionError, TokenError):
+def unit(text: str) -> tuple[Fraction, Dimension]:
+    """Return the factor to SI and the dimension of a unit; raises `InputError` if it is none."""
+    need(bool(PLAIN.fullmatch(text)), f"{text[:60]!r} is no unit")
+    try:  # as a law, whose names are no words of Python
+        return _read(parse(re.sub("[A-Za-z]+", r"unit_\g<0>", text.replace("^", "**")), 400))
+    except (InputError, TypeError, AttributeError, ValueError, ArithmeticError, AssertionError):
         raise InputError(f"{text!r} is no unit") from None
-    need(zero.magnitude == 0, f"{text!r} is no plain unit")
-    return Unit(factor, one.dimensionality)
 
 
-def check(
+def _read(node: Node) -> tuple[Fraction, Dimension]:
+    """Return the factor and the dimension of a product of powers of named units."""
+    if node.op in ("sym", "num"):
+        need(node.op == "sym" or node.value == 1, "a unit has no number")
+        named = _registry().parse_units(str(node.value).removeprefix("unit_").strip("1"))
+        zero, one = (_registry().Quantity(Fraction(n), named).to_base_units() for n in (0, 1))
+        need(zero.magnitude == 0, "it has an offset")
+        return Fraction(one.magnitude), one.dimensionality
+    need(node.op in ("*", "/", "**"), "a unit is a product of powers")
+    (factor, dimension), *others = map(_read, node.args)
+    if others:
+        act = ARITHMETIC[node.op]
+        return act(factor, others[0][0]), act(dimension, others[0][1])
+    bits = max(factor.numerator, factor.denominator).bit_length() * abs(node.value.numerator)
+    need(bits < MAX_BITS, "its factor is too long")
+    power, size = Fraction(node.value), factor**node.value.numerator
+    roots = (fmpz(n).root(power.denominator) for n in (size.numerator, size.denominator))
+    root = Fraction(*map(int, roots))
+    need(root**power.denominator == size, "its factor is no exact number")
+    return root, dimension**power
+
+
+def faults(
     tree: Node, units: Mapping[Any, Dimension], needed: Dimension | None, where: str
-) -> Iterator[str]:
-    """Yield the first fault of a tree's units, if there is one."""
+) -> list[str]:
+    """Return the first fault of a tree's units, if there is one."""
     try:
-        if _dimension(tree, units) not in (None, needed) and needed is not None:
-            yield f"{where} has another unit than its row"
+        found = _dimension(tree, units)
+        return (
+            []
+            if needed is None or found in (None, needed)
+            else [f"{where} has another unit than its row"]
+        )
     except InputError as fault:
-        yield f"{where}: {fault}"
+        return [f"{where}: {fault}"]
 
 
 def _dimension(node: Node, units: Mapping[Any, Dimension]) -> Dimension | None:
     """Return the dimension of a tree; None if it is zero and fits any."""
-    pure = unit("1").dimension
+    pure = unit("1")[1]
     if node.op in ("num", "sym"):
         return units[node.value] if node.op == "sym" else pure if node.value else None
     parts = [_dimension(arg, units) for arg in node.args]

@@ -1,6 +1,7 @@
 """Verdicts as JUnit XML, which continuous integration shows.
 
-Input: reports.  Output: the text of the file: a suite a model, a case a property.
+Input: reports, and what a second program says of them.  Output: the text of the file: a suite per
+model, a case per property; a suite more per model for the second program.
 """
 
 from __future__ import annotations
@@ -14,15 +15,20 @@ from piezo_sym.version import VERSION
 if TYPE_CHECKING:
     from piezo_sym.errors import PiezoError
     from piezo_sym.proofs.report import Report, Row
+    from piezo_sym.verification.recheck import Recheck
 
 
-def junit_xml(reports: Iterable[Report], errors: Iterable[PiezoError] = ()) -> str:
+def junit_xml(
+    reports: Iterable[tuple[Report, Recheck | None]], errors: Iterable[PiezoError] = ()
+) -> str:
     """Return JUnit XML: REFUTED is a failure, OPEN an error, unless it is only information.
+
+    What a second program does not confirm is a failure in the suite ``<model>, rechecked``.
 
     A spec that could not be read is a suite of its own, with one error.
     """
     root = ET.Element("testsuites", name=f"piezo-sym {VERSION}")
-    for report in reports:
+    for report, second in reports:
         failed = [row.verdict.value for row in report.failures]
         suite = ET.SubElement(
             root,
@@ -34,6 +40,8 @@ def junit_xml(reports: Iterable[Report], errors: Iterable[PiezoError] = ()) -> s
         )
         for row in report.rows:
             _case(suite, report, row)
+        if second is not None:
+            _rechecked(root, report, second)
     for error in errors:
         suite = ET.SubElement(
             root, "testsuite", name=error.where or "spec", tests="1", failures="0", errors="1"
@@ -42,6 +50,24 @@ def junit_xml(reports: Iterable[Report], errors: Iterable[PiezoError] = ()) -> s
         ET.SubElement(case, "error", message=str(error), type=type(error).__name__)
     ET.indent(root)
     return ET.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
+
+
+def _rechecked(root: ET.Element, report: Report, second: Recheck) -> None:
+    """Add the suite of what a second program says."""
+    faults = len(second.faults(report.information))
+    tests, name = len(second.rows) + bool(second.failed), f"{report.model}, rechecked"
+    suite = ET.SubElement(
+        root, "testsuite", name=name, tests=str(tests), failures=str(faults), errors="0"
+    )
+    for key, word in second.rows.items():
+        case = ET.SubElement(suite, "testcase", classname=name, name=" ".join(filter(None, key)))
+        if word == "confirmed":
+            continue
+        kind = "skipped" if word == "stated" or key in report.information else "failure"
+        ET.SubElement(case, kind, message=word)
+    if second.failed:
+        case = ET.SubElement(suite, "testcase", classname=name, name="checker")
+        ET.SubElement(case, "failure", message=second.failed)
 
 
 def _case(suite: ET.Element, report: Report, row: Row) -> None:

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     import xarray
 
 ENDINGS = (".nc", ".csv")
-NOTE = "States are extrapolated; sums since t = 0 and residuals are the finest of three runs'."
 METHODS = """discrete_gradient (compiled) if left out; or SciPy's RK23, RK45, DOP853, Radau, BDF or
 LSODA."""
 
@@ -104,8 +103,6 @@ def simulate(
 
 
 def _print(result: xarray.Dataset) -> None:
-    from piezo_sym.run.dataset import FINEST
-
     last = result.isel(time=-1)
     columns = table(
         f"{result.attrs['model']} at t = {float(last.time):.6g} s", "", "value", "unit", ""
@@ -114,10 +111,8 @@ def _print(result: xarray.Dataset) -> None:
         value = ", ".join(f"{v:.6g}" for v in variable.values.reshape(-1)[:4])
         more = ", ..." if variable.size > 4 else ""
         unit, about = (str(variable.attrs.get(key, "")) for key in ("units", "long_name"))
-        row(columns, str(name), value + more, unit, about.removesuffix(FINEST))
+        row(columns, str(name), value + more, unit, about)
     console().print(columns)
-    if "extrapolated" in result.attrs:
-        console().print(NOTE, soft_wrap=True)
 
 
 def _write(result: xarray.Dataset, path: Path) -> None:

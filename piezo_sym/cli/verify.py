@@ -17,6 +17,7 @@ from piezo_sym.files import write_text
 
 if TYPE_CHECKING:
     from piezo_sym.proofs.report import Report, Row
+    from piezo_sym.verification.recheck import Recheck
 
 
 def verify(
@@ -34,24 +35,37 @@ def verify(
     property is proved, 1 if one is not (or the second program does not confirm it), 2 if a spec is
     wrong; the others are looked at all the same.  Exit code 3: a proof and a number disagree.
     """
-    found, errors = _reports(specs)
-    reports = list(found.values())
-    if as_json:
-        rows = [row.as_dict(report.model) for report in reports for row in report.rows]
-        typer.echo(json.dumps(rows, indent=2))
-    else:
-        for report in reports:
-            _print(report)
-    if junit is not None:
-        write_text(junit, junit_xml(reports, errors))
     if recheck:
-        errors += _rechecked(found)
+        from piezo_sym.verification.recheck import check_installed
+
+        check_installed()
+    found, errors = _reports(specs)
+    second = {spec: _rechecked(spec, report) for spec, report in found.items() if recheck}
+    _show(found, second, as_json=as_json)
+    if junit is not None:
+        pairs = [(report, second.get(spec)) for spec, report in found.items()]
+        write_text(junit, junit_xml(pairs, errors))
+    for spec, opinion in second.items():
+        faults = opinion.faults(found[spec].information)
+        errors += [ProofError(faults[0], found[spec].model)] if faults else []
     for error in errors[:-1]:
         typer.echo(f"piezo-sym: {error}", err=True)
     if errors:
         raise errors[-1]
-    if not all(report.proved for report in reports):
+    if not all(report.proved for report in found.values()):
         raise typer.Exit(1)
+
+
+def _show(found: dict[str, Report], second: dict[str, Recheck], *, as_json: bool) -> None:
+    """Print the verdicts, as tables or as JSON, and what the second program says of them."""
+    for spec, report in found.items():
+        if not as_json:
+            _print(report)
+        if spec in second:
+            typer.echo(f"{report.model}, by a second program:\n{second[spec].said}", err=True)
+    if as_json:
+        rows = [row for spec, report in found.items() for row in _rows(report, second.get(spec))]
+        typer.echo(json.dumps(rows, indent=2))
 
 
 def _reports(specs: list[str]) -> tuple[dict[str, Report], list[PiezoError]]:
@@ -72,22 +86,23 @@ def _reports(specs: list[str]) -> tuple[dict[str, Report], list[PiezoError]]:
     return reports, errors
 
 
-def _rechecked(reports: dict[str, Report]) -> list[PiezoError]:
-    """Return an error for each spec that the second program does not confirm, and print why."""
+def _rechecked(spec: str, report: Report) -> Recheck:
+    """Return what a second program says of the verdicts on a spec."""
     from piezo_sym.proofs import proofs_json
     from piezo_sym.spec.load import load
     from piezo_sym.spec.source import find, read
     from piezo_sym.verification.recheck import recheck
 
-    errors: list[PiezoError] = []
-    for spec, report in reports.items():
-        text = read(find(spec))
-        confirmed, said = recheck(text, proofs_json(report, load(spec), ""))
-        typer.echo(f"{report.model}, by a second program:\n{said}", err=True)
-        if not confirmed:
-            first = next((line for line in said.splitlines() if line.startswith("not")), said)
-            errors.append(ProofError(first, report.model))
-    return errors
+    return recheck(read(find(spec)), proofs_json(report, load(spec), ""))
+
+
+def _rows(report: Report, second: Recheck | None) -> list[dict[str, object]]:
+    """Return the rows as plain data, each with what the second program says of it if it ran."""
+    rows = []
+    for row in report.rows:
+        said = {"recheck": second.rows.get((row.id, row.element))} if second else {}
+        rows.append({**row.as_dict(report.model), **said})
+    return rows
 
 
 def _print(report: Report) -> None:

@@ -7,8 +7,8 @@ and in a loop over lanes a compiler makes masks of such branches.  What is not a
 
 from __future__ import annotations
 
-from piezo_sym.spec.calculus import add, div, mul, neg
-from piezo_sym.spec.expressions import ZERO, Call, Cmp, Div, Expr, If, Mul, Neg, Num, Sym, rebuild
+from piezo_sym.expressions.calculus import add, div, mul, neg
+from piezo_sym.expressions.tree import ZERO, Call, Cmp, Div, Expr, If, Mul, Neg, Num, Sym, rebuild
 
 
 def with_branches(node: Expr) -> Expr:

@@ -16,7 +16,7 @@ from piezo_sym.codegen.c_stages import Write, stages
 from piezo_sym.codegen.places import Places, places
 from piezo_sym.codegen.program import Field, Program, needed
 from piezo_sym.codegen.step import Step
-from piezo_sym.spec.expressions import Expr, Sym
+from piezo_sym.expressions.tree import Expr, Sym
 from piezo_sym.spec.names import fresh
 
 _STEP = ("x", "x_new", "u", "h", "p", "out")

@@ -12,7 +12,7 @@ from piezo_sym.codegen.c_lines import Words, stage_lines, statement
 from piezo_sym.codegen.c_names import KEPT
 from piezo_sym.codegen.c_stages import Write, stages
 from piezo_sym.codegen.program import Limit, Program, bank_of, needed
-from piezo_sym.spec.expressions import Call, Div, Expr, Mul, Sym, names
+from piezo_sym.expressions.tree import Call, Div, Expr, Mul, Sym, names
 from piezo_sym.spec.names import fresh
 
 

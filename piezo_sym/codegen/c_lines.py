@@ -12,14 +12,16 @@ from typing import final
 
 from piezo_sym.codegen.branches import with_branches
 from piezo_sym.codegen.c_stages import Loop, Stage, Write
-from piezo_sym.codegen.c_style import c_piece, c_style
+from piezo_sym.codegen.c_style import c_piece, c_style, is_constant, real_style, widened
 from piezo_sym.codegen.program import Quantity
-from piezo_sym.spec.expressions import Add, Expr, If, LaneSum
-from piezo_sym.spec.text import PRODUCT, SUM, Style, enclose, signed, write_comparison
+from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.expressions.text import PRODUCT, SUM, Style, enclose, signed, write_comparison
+from piezo_sym.expressions.tree import Add, Expr, If, LaneSum
 
 WIDTH = 96
 #: Calls that take one lane at a time: a loop with them is not to be vectorised.
-LIBRARY = re.compile(r"\b(?:exp|expm1|log|sin|cos|tanh|pow|mean_tanh|mean_tanh_by_new)\(")
+_ALONE = "|".join(record.in_c for record in RECORDS.values() if record.transcendental)
+LIBRARY = re.compile(rf"\b(?:(?:{_ALONE}|pow)(?:_of)?|mean_tanh|mean_tanh_by_new)\(")
 
 
 @final
@@ -32,15 +34,18 @@ class Words:
     names : what C calls each name of the program.
     arrays : the parameters and states of a bank, and which bank's.
     lane : the lane of a loop.
+    number : the type of numbers: ``double``, or ``real`` in a text for every width.
     """
 
     names: Mapping[str, str]
     arrays: Mapping[str, str]
     lane: str
+    number: str = "double"
 
     def style(self, lane: str | None = None) -> Style:
         """Return the spelling of expressions in lane `lane`: in the loop's, if none is given."""
-        return c_style(self.names, self.arrays, lane or self.lane)
+        style = c_style(self.names, self.arrays, lane or self.lane)
+        return style if self.number == "double" else real_style(style)
 
     def text(self, value: Expr, lane: str | None = None) -> str:
         """Return an expression as C."""
@@ -56,12 +61,14 @@ def indented(lines: Iterable[str], depth: int = 1) -> Iterator[str]:
 def statement(target: str, value: Expr, words: Words, lane: str | None = None) -> list[str]:
     """Return ``target value;``, target with an operator; a long value has a line a term or case."""
     text = words.text(value, lane)
+    if words.number != "double" and is_constant(value):
+        text = f"wide({text})"
     parts = with_branches(value)
     if len(target) + len(text) + 10 <= WIDTH or not isinstance(parts, Add | If):
         return [f"{target} {text};"]
     style = words.style(lane)
     if isinstance(parts, If):
-        return _pick(target, parts, style)
+        return _pick(target, parts, style, wide=words.number != "double")
     lines = list(_terms(parts, style))
     return [f"{target} {lines[0]}", *(f"    {line}" for line in lines[1:-1]), f"    {lines[-1]};"]
 
@@ -74,16 +81,20 @@ def _terms(value: Add, style: Style) -> Iterator[str]:
         yield f"{sign} {enclose(c_piece(size, style), PRODUCT)}"
 
 
-def _pick(target: str, value: If, style: Style) -> list[str]:
-    """Return a call of ``pick`` with a line an argument."""
+def _pick(target: str, value: If, style: Style, *, wide: bool) -> list[str]:
+    """Return a call of ``pick``, or of ``chosen`` for every width, with a line per argument."""
     condition = write_comparison(value.condition, style)
-    then, other = (c_piece(part, style)[0] for part in (value.then, value.other))
-    return [f"{target} pick(", f"    {condition},", f"    {then},", f"    {other});"]
+    parts = [c_piece(part, style) for part in (value.then, value.other)]
+    then, other = (widened(part) if wide else part[0] for part in parts)
+    word = "chosen" if wide else "pick"
+    return [f"{target} {word}(", f"    {condition},", f"    {then},", f"    {other});"]
 
 
 def define(quantity: Quantity, words: Words, lane: str | None = None) -> list[str]:
     """Return the definition of a quantity: of a shared one, or of one lane's."""
-    return statement(f"const double {words.names[quantity.name]} =", quantity.value, words, lane)
+    return statement(
+        f"const {words.number} {words.names[quantity.name]} =", quantity.value, words, lane
+    )
 
 
 def noted(quantities: Iterable[Quantity], words: Words) -> Iterator[str]:
@@ -108,8 +119,10 @@ def loop_lines(loop: Loop, words: Words) -> Iterator[str]:
     sums = [words.names[quantity.name] for quantity in loop.sums]
     parts = [*(["sums over lanes"] if loop.sums else []), *(["rows"] if loop.writes else [])]
     yield f"/* {loop.bank}: {' and '.join(parts)} */"
-    yield from (f"double {name} = 0.0;" for name in sums)
-    yield from (f"{w.target} = HUGE_VAL;" for w in loop.writes if w.how == "min")
+    zero = "0.0" if words.number == "double" else "zero"
+    yield from (f"{words.number} {name} = {zero};" for name in sums)
+    most = "HUGE_VAL" if words.number == "double" else "wide(HUGE_VAL)"
+    yield from (f"{w.target} = {most};" for w in loop.writes if w.how == "min")
     body = list(_body(loop, words))
     if not any(map(LIBRARY.search, body)):
         yield from _directive(sums, loop.writes)
@@ -119,8 +132,11 @@ def loop_lines(loop: Loop, words: Words) -> Iterator[str]:
 
 
 def _directive(sums: Sequence[str], writes: Sequence[Write]) -> Iterator[str]:
-    """Yield the directive that lets a compiler take lanes together, and add them in any order."""
-    if not sums:
+    """Yield the directive that lets a compiler take lanes together, and add them in any order.
+
+    A least over the lanes is no sum: with the directive, lanes taken together would lose it.
+    """
+    if not sums or any(write.how == "min" for write in writes):
         yield from ["#pragma omp simd"] if all(write.how == "=" for write in writes) else []
         return
     line = "#pragma omp simd reduction(+:"
@@ -146,7 +162,8 @@ def _body(loop: Loop, words: Words) -> Iterator[str]:
 def write_lines(write: Write, words: Words) -> list[str]:
     """Return the lines that write a value where it goes."""
     if write.how == "min":
-        return [f"{write.target} = min({write.target}, {words.text(write.value)});"]
+        least = "min" if words.number == "double" else "least"
+        return [f"{write.target} = {least}({write.target}, {words.text(write.value)});"]
     return statement(f"{write.target} {write.how}", write.value, words)
 
 

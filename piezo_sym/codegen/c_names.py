@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from piezo_sym.codegen.program import Program
+from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.spec.names import fresh
 
 _CPLUSPLUS = """alignas alignof and and_eq asm bitand bitor catch char8_t char16_t char32_t class
@@ -36,14 +37,16 @@ _CALLED = (
 )
 #: What the engine adds to a module's text where it reads it with vectors for numbers.
 _VECTORS = (
-    "PAIR PLAIN "
-    "WIDTH SIDE MODEL real bits mask zero nowhere everywhere wide chosen any size_of with_sign "
+    "PLAIN "
+    "WIDTH SIDE MODEL real mask zero nowhere wide chosen any size_of with_sign "
     "power_of_two small_expm1 reduced exp_of expm1_of LANE_BY_LANE sqrt_of log_of sin_of cos_of "
-    "tanh_of pow_of whole_power least largest sign_of deadzone_of saturate_of phi3_of share_above "
+    "tanh_of atan_of sinh_of cosh_of erf_of pow_of whole_power least largest sign_of deadzone_of "
+    "saturate_of phi3_of share_above "
     "ramp_of ramp_by_new_of mean_sign_of mean_sign_by_new_of bend_of "
     "log1p_of atanh_of mean_tanh_of mean_tanh_by_new_of beyond_of mean_deadzone_of "
-    "mean_deadzone_by_new_of mean_deadzone_by_width_of way_of about_per lane_of few pattern "
-    "LANES NUMBER gathered pick deadzone saturate sign"
+    "mean_deadzone_by_new_of mean_deadzone_by_width_of way_of about_per few pattern "
+    "REAL_WIDTH LANE OF SET bits_of real_of none_of largest_of LANES NUMBER gathered pick deadzone "
+    "saturate sign"
 )
 _ENDS = (
     *("parameters", "states", "processes", "jacobian", "margins"),
@@ -53,6 +56,7 @@ _ENDS = (
 KEPT = (
     frozenset(f"{_CPLUSPLUS} {_MACROS} {_CALLED} {_VECTORS}".split())
     | {f"{kind}_{word}" for kind in ("FLT", "DBL", "LDBL") for word in _FLOATS.split()}
+    | {f"{r.in_c}{end}" for r in RECORDS.values() if r.transcendental for end in ("_of", "_each")}
     | {f"{word}{end}" for word in ("M_PI", "M_E", "M_SQRT2", "M_LN2") for end in ("l", "f")}
 )
 

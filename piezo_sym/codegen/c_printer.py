@@ -34,7 +34,7 @@ from piezo_sym.codegen.program import (
     jacobian_roots,
     needed,
 )
-from piezo_sym.spec.expressions import ZERO, Expr, Neg, Num
+from piezo_sym.expressions.tree import ZERO, Expr, Neg, Num
 
 
 def c_source(program: Program, more: str = "") -> str:

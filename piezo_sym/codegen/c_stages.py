@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import final
 
 from piezo_sym.codegen.program import Quantity, needed
-from piezo_sym.spec.expressions import Expr, LaneSum, names
+from piezo_sym.expressions.tree import Expr, LaneSum, names
 
 
 @final

@@ -18,7 +18,7 @@ from piezo_sym.codegen.c_stages import Write
 from piezo_sym.codegen.places import places
 from piezo_sym.codegen.program import Program, Row
 from piezo_sym.codegen.step import Step
-from piezo_sym.spec.expressions import Sym
+from piezo_sym.expressions.tree import Sym
 
 #: Opens the part of a source that also holds where `double` stands for a vector of many states'
 #: numbers: no conditions of C, no constants without type.
@@ -33,7 +33,8 @@ def c_step(program: Program, step: Step, start: Step | None = None) -> tuple[str
     start : the dissipative step, if the system has one.
     """
     frame = Frame(program, step)
-    functions = [STEP, *_Printer(frame).functions(), inside(frame)]
+    functions = [*_Printer(frame).functions(), inside(frame)]
+    functions = [STEP, *functions]
     declared = _declarations(frame)
     if start:
         lossy = Frame(program, start)

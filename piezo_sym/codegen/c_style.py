@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from fractions import Fraction
 
 from piezo_sym.codegen.branches import with_branches
-from piezo_sym.spec.expressions import Expr
-from piezo_sym.spec.text import (
+from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.expressions.text import (
     ATOM,
     PRODUCT,
     SUM,
@@ -24,21 +25,18 @@ from piezo_sym.spec.text import (
     enclose,
     piece,
 )
+from piezo_sym.expressions.tree import Expr
+from piezo_sym.expressions.tree import names as names_in
 
-CALLS = {"abs": "fabs"}
+#: Functions of ``real``, one number or one per lane: the head of a step has the first, wide.h both.
+REALS = {name: f"{record.in_c}_of" for name, record in RECORDS.items() if record.smooth}
+_CONSTANT = re.compile(r"-?[\d.]+(?:e[-+]?\d+)?(?:/[\d.]+)?")
 #: Beyond, a power calls the library; such exponents do not occur in laws of nature.
 MOST_FACTORS = 8
 #: Whole numbers up to here are floating-point numbers without rounding.
 EXACT = 2**53
-_NAN = "not a number stays so"
-_HELPERS = {
-    "pick": ("int condition, double a, double b", "condition ? a : b"),
-    "sign": ("double z", "z > 0.0 ? 1.0 : z < 0.0 ? -1.0 : z"),
-    "min": ("double a, double b", f"a < b || a != a ? a : b; /* {_NAN} */"),
-    "max": ("double a, double b", f"a > b || a != a ? a : b; /* {_NAN} */"),
-    "saturate": ("double z, double w", "z > w ? w : z < -w ? -w : z"),
-    "deadzone": ("double z, double w", "z > w ? z - w : z < -w ? z + w : z - z"),
-}
+_PICK = ("int condition, double a, double b", "condition ? a : b")
+_HELPERS = {"pick": _PICK} | {n: r.c_helper for n, r in RECORDS.items() if r.c_helper}
 
 
 def c_number(value: Fraction) -> Piece:
@@ -53,20 +51,22 @@ def c_number(value: Fraction) -> Piece:
     return (text if re.search(r"[.e]", text) else f"{text}.0"), ATOM
 
 
-def _power(base: Piece, exponent: Fraction) -> Piece:
+def _power(base: Piece, exponent: Fraction, ending: str = "") -> Piece:
     if exponent == Fraction(1, 2):
-        return f"sqrt({base[0]})", ATOM
+        return f"sqrt{ending}({base[0]})", ATOM
     size = abs(exponent)
     if size.denominator != 1 or not 1 <= size <= MOST_FACTORS:
-        return f"pow({base[0]}, {c_number(exponent)[0]})", ATOM
-    product = f"power_{size}({base[0]})" if size > 1 else base[0]
+        by = c_number(exponent)
+        return f"pow{ending}({base[0]}, {widened(by) if ending else by[0]})", ATOM
+    product = f"power_{size}{ending}({base[0]})" if size > 1 else base[0]
     if exponent > 0:
         return product, ATOM if size > 1 else base[1]
     return f"1.0/{enclose((product, ATOM if size > 1 else base[1]), UNARY)}", PRODUCT
 
 
 def _call(function: str, args: tuple[Piece, ...]) -> Piece:
-    return f"{CALLS.get(function, function)}({', '.join(text for text, _ in args)})", ATOM
+    name = RECORDS[function].in_c if function in RECORDS else function
+    return f"{name}({', '.join(text for text, _ in args)})", ATOM
 
 
 def _pick(then: Piece, test: str, other: Piece) -> Piece:
@@ -89,6 +89,31 @@ def c_style(names: Mapping[str, str], arrays: Mapping[str, str], index: str) -> 
         return (f"{names[word]}[{index}]" if word in arrays else names[word]), ATOM
 
     return Style(c_number, name, _power, _call, _pick, _lane_sum)
+
+
+def real_style(plain: Style) -> Style:
+    """Return a spelling that holds for every width of ``real``: one number, or one per lane."""
+
+    def power(base: Piece, exponent: Fraction) -> Piece:
+        return _power(base, exponent, "_of")
+
+    def call(function: str, args: tuple[Piece, ...]) -> Piece:
+        return f"{REALS[function]}({', '.join(map(widened, args))})", ATOM
+
+    def choose(then: Piece, test: str, other: Piece) -> Piece:
+        return f"chosen({test}, {widened(then)}, {widened(other)})", ATOM
+
+    return replace(plain, power=power, call=call, choose=choose)
+
+
+def widened(value: Piece) -> str:
+    """Return the text of a value, a number as one of every width."""
+    return f"wide({value[0]})" if _CONSTANT.fullmatch(value[0]) else value[0]
+
+
+def is_constant(value: Expr) -> bool:
+    """Return whether an expression is made of numbers alone."""
+    return not names_in(value)
 
 
 def c_piece(node: Expr, style: Style) -> Piece:

@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from piezo_sym.codegen.program import Entry, Outer, Program, Quantity, Row
-from piezo_sym.spec.calculus import div, mul, neg
-from piezo_sym.spec.expressions import ONE, Add, Call, Div, Expr, Mul, Neg, rebuild
+from piezo_sym.expressions.calculus import div, mul, neg
+from piezo_sym.expressions.tree import ONE, Add, Call, Div, Expr, Mul, Neg, rebuild
 
 
 def sharp_program(program: Program) -> Program:

@@ -20,8 +20,9 @@ from typing import Any
 from piezo_sym.codegen.mean import HALF
 from piezo_sym.codegen.program import Quantity, Row
 from piezo_sym.codegen.step import Change, Step
-from piezo_sym.spec.calculus import add, mul, neg
-from piezo_sym.spec.expressions import (
+from piezo_sym.expressions.calculus import add, mul, neg
+from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.expressions.tree import (
     ONE,
     Add,
     Call,
@@ -35,7 +36,7 @@ from piezo_sym.spec.expressions import (
     names,
     rebuild,
 )
-from piezo_sym.spec.expressions import children as parts_of
+from piezo_sym.expressions.tree import children as parts_of
 from piezo_sym.spec.names import fresh
 
 NOTE = "reciprocals"
@@ -44,7 +45,7 @@ BEFORE = "before the step"
 SQUARE = Fraction(2)
 #: Factors of a product that is worth a name elsewhere.
 FEWEST = 3
-FUNCTIONS = frozenset({"exp", "expm1", "log", "sqrt", "sin", "cos", "tanh"})
+FUNCTIONS = frozenset(name for name, record in RECORDS.items() if record.smooth)
 
 
 def economical(step: Step, lanes: Mapping[str, str], still: Collection[str]) -> Step:

@@ -13,8 +13,8 @@ from __future__ import annotations
 from typing import final
 
 from piezo_sym.codegen.quantities import Quantities
-from piezo_sym.spec.calculus import add, div, mul, neg
-from piezo_sym.spec.expressions import ZERO, Expr, Num, Sym
+from piezo_sym.expressions.calculus import add, div, mul, neg
+from piezo_sym.expressions.tree import ZERO, Expr, Num, Sym
 
 NOTE = "Newton's equations, solved"
 

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from piezo_sym.spec.calculus import add, mul
-from piezo_sym.spec.expressions import Add, Call, Expr, Mul, Neg, Sym, rebuild
+from piezo_sym.expressions.calculus import add, mul
+from piezo_sym.expressions.tree import Add, Call, Expr, Mul, Neg, Sym, rebuild
 
 Define = Callable[[str, Sym, Expr], Sym]
 

@@ -12,15 +12,15 @@ from fractions import Fraction
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.codegen.program import Function, Limit, Row, bank_of
 from piezo_sym.codegen.quantities import Quantities
+from piezo_sym.expressions.calculus import add, div, mul, neg
+from piezo_sym.expressions.parse import parse_law
+from piezo_sym.expressions.text import signed
+from piezo_sym.expressions.tree import ONE, Expr, Num, Sym
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name
-from piezo_sym.spec.calculus import add, div, mul, neg
 from piezo_sym.spec.elements.ports import Body, Exchange
-from piezo_sym.spec.expressions import ONE, Expr, Num, Sym
 from piezo_sym.spec.model import Model
-from piezo_sym.spec.parse import parse_law
 from piezo_sym.spec.tables import condition_text, conditions
-from piezo_sym.spec.text import signed
 
 STATE_INPUT = ("x", "u", "p")
 STATE = ("x", "p")

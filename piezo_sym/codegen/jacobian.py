@@ -17,8 +17,8 @@ from typing import final
 
 from piezo_sym.codegen.program import Entry, Field, Jacobian, Outer, Quantity, Row, bank_of, needed
 from piezo_sym.codegen.quantities import Quantities
-from piezo_sym.spec.calculus import add, derivative, mul
-from piezo_sym.spec.expressions import ZERO, Expr, LaneSum, Num, Sym, names
+from piezo_sym.expressions.calculus import add, derivative, mul
+from piezo_sym.expressions.tree import ZERO, Expr, LaneSum, Num, Sym, names
 
 
 @final

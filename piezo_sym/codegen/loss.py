@@ -19,10 +19,10 @@ from piezo_sym.algebra.lanes import Slot
 from piezo_sym.codegen.mean import lead
 from piezo_sym.codegen.program import Row
 from piezo_sym.codegen.quantities import Quantities
+from piezo_sym.expressions.calculus import add, div, mul, neg, power
+from piezo_sym.expressions.tree import Sym
 from piezo_sym.iphs import IPHS
-from piezo_sym.spec.calculus import add, div, mul, neg, power
 from piezo_sym.spec.elements.ports import Body, Storage
-from piezo_sym.spec.expressions import Sym
 
 NAME = "numerical"
 NOTE = "numerical losses"

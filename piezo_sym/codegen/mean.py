@@ -20,8 +20,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 
-from piezo_sym.spec.calculus import add, derivative, div, mul, neg, power
-from piezo_sym.spec.expressions import (
+from piezo_sym.expressions.calculus import add, derivative, div, mul, neg, power
+from piezo_sym.expressions.tree import (
     Add,
     Call,
     Div,
@@ -114,6 +114,15 @@ def mean_excess(
         mul(old_value, Call("phi1", (moved,))),
         mul(mul(cold, moved), Call("phi2", (moved,))),
     )
+
+
+def exponent(value: Expr) -> Expr:
+    """Return the argument of the exponential in ``T_0*expm1(S/c_0)``."""
+    match value:
+        case Mul(_, Call("expm1", (arg,))):
+            return arg
+    msg = "an excess is a constant times an exponential less one"
+    raise TypeError(msg)
 
 
 def mean_across_kinks(law: Expr, letter: str, old: Expr, new: Expr) -> Expr | None:

@@ -28,9 +28,9 @@ from piezo_sym.codegen.loss import is_lossy, with_loss
 from piezo_sym.codegen.program import Entry, Field, Row
 from piezo_sym.codegen.quantities import Quantities
 from piezo_sym.codegen.step import Change, Step
+from piezo_sym.expressions.calculus import add, div, mul, neg
+from piezo_sym.expressions.tree import ONE, Expr, Sym
 from piezo_sym.iphs import IPHS
-from piezo_sym.spec.calculus import add, div, mul, neg
-from piezo_sym.spec.expressions import ONE, Expr, Sym
 from piezo_sym.spec.tables import lane_parameters
 
 

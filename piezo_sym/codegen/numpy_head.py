@@ -9,12 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from piezo_sym.codegen.program import Field, Program
+from piezo_sym.expressions import functions
 from piezo_sym.version import VERSION
 
-IMPORTS = """from dataclasses import dataclass
-from typing import NamedTuple
-
-import numpy as np"""
+STANDARD = ("from dataclasses import dataclass", "from typing import NamedTuple")
 
 #: What every generated file says of itself.
 MARK = "Made by piezo_sym"
@@ -80,11 +78,15 @@ def rhs(x, u, p, /):
     return out'''
 
 
-def head(program: Program) -> str:
-    """Return everything before a module's first function."""
+def head(program: Program, text: str = "") -> str:
+    """Return everything before a module's first function; `text` is that of its functions."""
+    called = [r.numpy_helper for r in functions.RECORDS.values() if f"{r.numpy}(" in text]
+    imports, definitions = zip(("", ""), *(lines for lines in called if lines), strict=True)
+    standard = "\n".join(sorted({*STANDARD, *imports} - {""}))
     parts = [
         _docstring(program),
-        IMPORTS,
+        f"{standard}\n\nimport numpy as np",
+        *definitions[1:],
         f'NAME = "{program.name}"\nSPEC_SHA256 = "{program.sha256}"',
         RECORDS,
         "\n".join(_tables(program)),

@@ -24,9 +24,9 @@ from piezo_sym.codegen.program import (
     jacobian_roots,
     needed,
 )
-from piezo_sym.spec.expressions import ZERO, Add, Expr, LaneSum, Node, Sym, names
+from piezo_sym.expressions.text import PRODUCT, SUM, UNARY, enclose, piece, signed
+from piezo_sym.expressions.tree import ZERO, Add, Expr, LaneSum, Node, Sym, names
 from piezo_sym.spec.names import fresh
-from piezo_sym.spec.text import PRODUCT, SUM, UNARY, enclose, piece, signed
 
 WIDTH = 96
 
@@ -34,8 +34,8 @@ WIDTH = 96
 def numpy_module(program: Program) -> str:
     """Return the text of a program's NumPy module."""
     printer = _Printer(program)
-    parts = [head(program), *(printer.function(f) for f in program.functions)]
-    parts += [printer.jacobian(), printer.margins()]
+    functions = [*map(printer.function, program.functions), printer.jacobian(), printer.margins()]
+    parts = [head(program, "\n".join(functions)), *functions]
     return "\n\n\n".join(part.strip("\n") for part in parts) + "\n"
 
 

@@ -6,24 +6,36 @@ over an array instead of five.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from fractions import Fraction
+from typing import final
 
-from piezo_sym.spec.expressions import Expr
-from piezo_sym.spec.text import ATOM, POWER, PRODUCT, SUM, Piece, Style, decimal, enclose, write
+from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.expressions.text import (
+    ATOM,
+    POWER,
+    PRODUCT,
+    SUM,
+    Piece,
+    Style,
+    decimal,
+    enclose,
+    write,
+)
+from piezo_sym.expressions.tree import Expr
 
-CALLS = {
-    "exp": "np.exp",
-    "expm1": "np.expm1",
-    "log": "np.log",
-    "sqrt": "np.sqrt",
-    "sin": "np.sin",
-    "cos": "np.cos",
-    "tanh": "np.tanh",
-    "abs": "np.abs",
-    "sign": "np.sign",
-    "min": "np.minimum",
-    "max": "np.maximum",
-}
+STRENGTHS = {"atom": ATOM, "sum": SUM}
+
+
+@final
+@dataclass(frozen=True)
+class _Operand:
+    """A piece as the text of a record takes it: ``{x:sum}`` is in parentheses if it needs them."""
+
+    piece: Piece
+
+    def __format__(self, strength: str) -> str:
+        return enclose(self.piece, STRENGTHS[strength]) if strength else self.piece[0]
 
 
 def _number(value: Fraction) -> Piece:
@@ -46,13 +58,11 @@ def _power(base: Piece, exponent: Fraction) -> Piece:
 
 
 def _call(function: str, args: tuple[Piece, ...]) -> Piece:
-    texts = [text for text, _ in args]
-    if function in CALLS:
-        return f"{CALLS[function]}({', '.join(texts)})", ATOM
-    clipped = f"np.clip({texts[0]}, -{enclose(args[1], ATOM)}, {texts[1]})"
-    if function == "saturate":
-        return clipped, ATOM
-    return f"{enclose(args[0], SUM)} - {clipped}", SUM  # deadzone
+    record = RECORDS[function]
+    if "{" not in record.numpy:
+        return f"{record.numpy}({', '.join(text for text, _ in args)})", ATOM
+    text = record.numpy.format(x=_Operand(args[0]), w=_Operand(args[-1]))
+    return text, STRENGTHS[record.binds]
 
 
 NUMPY = Style(

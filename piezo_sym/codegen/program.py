@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
-from piezo_sym.spec.expressions import Expr, LaneSum, Node, names
+from piezo_sym.expressions.tree import Expr, LaneSum, Node, names
 
 
 @final

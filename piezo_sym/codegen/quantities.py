@@ -16,25 +16,24 @@ import sympy as sp
 from piezo_sym.algebra.coefficients import coefficient
 from piezo_sym.algebra.lanes import LaneMatrix, Slot
 from piezo_sym.codegen.excess import with_excess
-from piezo_sym.codegen.mean import is_affine, mean, mean_across_kinks, mean_excess
+from piezo_sym.codegen.mean import exponent, is_affine, mean, mean_across_kinks, mean_excess
 from piezo_sym.codegen.program import Quantity
-from piezo_sym.iphs import IPHS
-from piezo_sym.iphs.definitions import costate_name, heated
-from piezo_sym.network import port_order
-from piezo_sym.spec.calculus import add, div, mul, neg
-from piezo_sym.spec.circuit import Placed
-from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, Resistor, Source, Storage
-from piezo_sym.spec.expressions import (
+from piezo_sym.expressions.calculus import add, div, mul, neg
+from piezo_sym.expressions.tree import (
     Call,
     Expr,
     LaneSum,
-    Mul,
     Sym,
     names,
     rebuild,
     rename,
     replace,
 )
+from piezo_sym.iphs import IPHS
+from piezo_sym.iphs.definitions import costate_name, heated
+from piezo_sym.network import port_order
+from piezo_sym.spec.circuit import Placed
+from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, Resistor, Source, Storage
 from piezo_sym.spec.names import fresh
 
 
@@ -54,10 +53,16 @@ class Quantities:
     odd : for a step, the dissipative elements whose laws are odd; co-states are then means over the
         step, and laws with kinks too.  None for the quantities at a point.
     late : for a step, co-states of stores are those at its end; temperatures are still means.
+    given : for a stage of a collocation step: co-states not affine in the state are `means`, given.
     """
 
     def __init__(
-        self, iphs: IPHS, odd: frozenset[str] | None = None, *, late: bool = False
+        self,
+        iphs: IPHS,
+        odd: frozenset[str] | None = None,
+        *,
+        late: bool = False,
+        given: bool = False,
     ) -> None:
         self.system = iphs.system
         self.circuit = iphs.circuit
@@ -67,8 +72,8 @@ class Quantities:
         self.taken = set(self.circuit.names)
         self.taken |= {str(symbol.name) for symbol, _ in (*iphs.slopes, *iphs.shares)}
         self.defined: list[Quantity] = []
-        self.odd = odd or frozenset()
-        self.late = late
+        self.odd, self.late, self.given = odd or frozenset(), late, given
+        self.means: list[Quantity] = []
         stores = self.stores if odd is not None else ()
         self.after = {port.state: self.name(f"{port.state}_new") for _, port in stores}
         self._sums: dict[LaneSum, Sym] = {}
@@ -126,9 +131,11 @@ class Quantities:
     def _excess(self, hot: str, cold: Sym, value: Expr) -> Sym:
         """Return ``hot - cold`` as a quantity, and from now on hot as cold plus this quantity."""
         base = f"{hot}_minus_{cold.name}"
+        if self.given:
+            return self._given_excess(hot, cold, value, base)
         if self.after:
             body = next(port for port in self.bodies.values() if port.temperature == hot)
-            value = mean_excess(value, cold, _exponent(value), *self._ends(body.state))
+            value = mean_excess(value, cold, exponent(value), *self._ends(body.state))
             value = self._functions_named(value, body)
         known = next((q for q in self.defined if q.value == value), None)
         if known:
@@ -137,6 +144,19 @@ class Quantities:
         place = next(n for n, quantity in enumerate(self.defined) if quantity.name == hot)
         self.defined.insert(place, self.defined.pop())
         self.defined[place + 1] = replace_fields(self.defined[place + 1], value=add(cold, excess))
+        return excess
+
+    def _given_excess(self, hot: str, cold: Sym, value: Expr, base: str) -> Sym:
+        """Return ``hot - cold`` as what is given, and from now on hot as cold plus this."""
+        known = next((mean for mean in self.means if mean.value == value), None)
+        if known:
+            return Sym(known.name)
+        place = next((n for n, mean in enumerate(self.means) if mean.name == hot), -1)
+        if place < 0:  # given as a difference to another constant already
+            return self.define(base, add(Sym(hot), neg(cold)), None, "co-states dU/dx")
+        self.means[place] = Quantity(self.name(base), value, None, self.means[place].note)
+        excess = Sym(self.means[place].name)
+        self.defined.insert(0, Quantity(hot, add(cold, excess), None, "co-states dU/dx"))
         return excess
 
     def known(self, expr: Expr) -> Expr:
@@ -169,6 +189,9 @@ class Quantities:
         note = "mean co-states" if self.after and not self.late else "co-states dU/dx"
         for placed, port in self.stores:
             law = rename(port.law, {port.letter: port.state})
+            if self.given and not is_affine(law, {port.state}):
+                self.means.append(Quantity(costate_name(port), law, placed.bank, note))
+                continue
             if self.late and isinstance(port, Storage):
                 law = rename(law, self.after)
             elif self.after:
@@ -274,12 +297,3 @@ class Quantities:
             return self.total(self.heats[k], slot.bank, base)
         known = next((q for q in self.defined if q.value == self.heats[k]), None)
         return Sym(known.name) if known else self.define(base, self.heats[k], None, "heats")
-
-
-def _exponent(value: Expr) -> Expr:
-    """Return the argument of the exponential in ``T_0*expm1(S/c_0)``."""
-    match value:
-        case Mul(_, Call("expm1", (arg,))):
-            return arg
-    msg = "an excess is a constant times an exponential less one"
-    raise TypeError(msg)

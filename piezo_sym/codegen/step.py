@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import final
 
 from piezo_sym.codegen.program import Quantity, Row
-from piezo_sym.spec.expressions import Expr, Sym
+from piezo_sym.expressions.tree import Expr, Sym
 
 
 @final

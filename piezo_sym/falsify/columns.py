@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from piezo_sym.expressions.tree import Cmp, Num, Sym
 from piezo_sym.falsify.space import Mask, Space
 from piezo_sym.iphs import IPHS
-from piezo_sym.spec.expressions import Cmp, Num, Sym
 from piezo_sym.spec.tables import conditions, greater
 from piezo_sym.spec.units import parse_unit
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from piezo_sym.checker import InputError
 from piezo_sym.errors import ContradictionError
+from piezo_sym.expressions.tree import names
 from piezo_sym.falsify.claims import TOLERANCE, Claim, claim_of
 from piezo_sym.falsify.columns import pairs, positive
 from piezo_sym.falsify.exact import Exact
@@ -25,7 +26,6 @@ from piezo_sym.falsify.probe import probe_of
 from piezo_sym.falsify.space import EXTREME, LARGEST, LEAST, Array, Mask, Seen, Space
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.elements.ports import Body
-from piezo_sym.spec.expressions import names
 from piezo_sym.spec.tables import conditions
 
 POINTS = 100_000
@@ -226,9 +226,8 @@ class Hunt:
             value = exact.broken(claim, space, point) if key < 0 else None
             if value:
                 raise self._contradiction(claim, value, space.words(point))
-            plain = not space.at(point[:, None]).out_of_range[
-                0
-            ]  # else underflow, which is none either
+            here = space.at(point[:, None])
+            plain = not here.out_of_range[0]  # else underflow, which is none either
             told = key < ZERO and claim.numbers and plain
             rounding = rounding or ((space, point) if told else None)
         if track.lost and rounding is None and exact.has_value(claim, *track.lost):

@@ -31,7 +31,7 @@ class Point:
 
     Per element and lane: `letters` z, `outputs` W, `heats` W*z, `productions`; per body:
     `temperatures`, `slopes` dT/dS; `conductances`; per state symbol and lane: `rates`.
-    `conditions` has (text, whether it holds) of the domain, `inside` whether all do.
+    `conditions` says of each of the domain whether it holds, `inside` whether all do.
     """
 
     letters: dict[str, Values] = field(default_factory=dict)
@@ -42,14 +42,14 @@ class Point:
     slopes: dict[str, Any] = field(default_factory=dict)
     conductances: dict[str, Any] = field(default_factory=dict)
     rates: dict[str, Values] = field(default_factory=dict)
-    conditions: tuple[tuple[str, bool | None], ...] = ()
+    conditions: tuple[bool | None, ...] = ()
     sigma: Any = None
     undefined: tuple[str, ...] = ()
 
     @property
     def inside(self) -> bool | None:
         """Whether the point is in the domain."""
-        told = [holds for _, holds in self.conditions]
+        told = self.conditions
         return False if False in told else None if None in told else True
 
 
@@ -140,6 +140,10 @@ class _Evaluation:
             self.untold = True
         return arb("nan")
 
+    def like(self, _: tuple[str, int]) -> Any:
+        """Return how many lanes are like this one: it alone, each is there."""
+        return self.one
+
     def law(self, element: Element, field: str, lane: int, letter: Any = None) -> Any:
         """Return the value of a law."""
         tree = element.law if field == "law" else element.laws[field]
@@ -170,7 +174,7 @@ class _Evaluation:
             made.slopes[body.name] = _plain(self.told(slope, body.name))
         for e in self.spec.of("conduction", "ambient"):
             made.conductances[e.name] = _plain(self.law(e, "conductance", 0))
-        made.conditions = tuple((text, self._holds(tree)) for text, tree in self.spec.conditions)
+        made.conditions = tuple(map(self._holds, self.spec.conditions))
         made.undefined += tuple(self.undefined)
         return made
 

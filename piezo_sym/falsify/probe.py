@@ -22,20 +22,9 @@ from piezo_sym.codegen.functions import limits_of
 from piezo_sym.codegen.lower import program_of
 from piezo_sym.codegen.program import Function, Row, bank_of
 from piezo_sym.codegen.quantities import Quantities
-from piezo_sym.iphs import IPHS
-from piezo_sym.iphs.definitions import costate_name
-from piezo_sym.spec.calculus import add, derivative, mul, neg
-from piezo_sym.spec.elements.ports import (
-    Body,
-    Conductor,
-    Coupling,
-    Domain,
-    Resistor,
-    Source,
-    Storage,
-    Variable,
-)
-from piezo_sym.spec.expressions import (
+from piezo_sym.expressions.calculus import add, derivative, kinks, mul, neg
+from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.expressions.tree import (
     ONE,
     ZERO,
     Add,
@@ -55,11 +44,21 @@ from piezo_sym.spec.expressions import (
     rename,
     walk,
 )
+from piezo_sym.iphs import IPHS
+from piezo_sym.iphs.definitions import costate_name
+from piezo_sym.spec.elements.ports import (
+    Body,
+    Conductor,
+    Coupling,
+    Domain,
+    Resistor,
+    Source,
+    Storage,
+    Variable,
+)
 from piezo_sym.spec.tables import lane_parameters
 from piezo_sym.spec.units import parse_unit
 
-PAIRED = frozenset({"min", "max", "deadzone", "saturate"})
-SCALED = frozenset({"exp", "expm1", "log", "sin", "cos", "tanh"})
 UNITS = {
     (Domain.ELECTRICAL, Variable.ACROSS): "V",
     (Domain.ELECTRICAL, Variable.THROUGH): "A",
@@ -235,8 +234,8 @@ def _hole(node: Node) -> Expr:
             own = Cmp("<" if exponent > 0 else "<=", base, ZERO)
         case Pow(base, exponent) if exponent < 0:
             own = Cmp("<=", _absolute(base), ZERO)
-        case Call("sqrt" | "log" as function, (arg,)):
-            own = Cmp("<" if function == "sqrt" else "<=", arg, ZERO)
+        case Call(function, (arg,)) if RECORDS[function].domain:
+            own = Cmp("<" if "=" in RECORDS[function].domain else "<=", arg, ZERO)
         case _:
             own = None
     return _any([If(ONE, own, ZERO) if own else ZERO, *map(_hole, children(node))])
@@ -256,16 +255,12 @@ def _edges(tree: Node) -> Iterator[Edge]:
                 continue
             case Cmp(_, left, right):
                 yield Edge(add(left, neg(right)), kink=True)
-            case Call(function, (z, w)) if function in PAIRED:
-                yield Edge(add(z, neg(w)), kink=True)
-                if function in {"deadzone", "saturate"}:
-                    yield Edge(add(z, w), kink=True)
-            case Call("abs" | "sign", (z,)):
-                yield Edge(z, kink=True)
-            case Call("sqrt", (z,)) | Pow(z, _) | Div(_, z):
-                yield Edge(z)
-            case Call(function, (z,)) if function in SCALED:
+            case Call(function) if not RECORDS[function].smooth:
+                yield from (Edge(add(c.left, neg(c.right)), kink=True) for c in kinks(node))
+            case Call(function, (z,)) if RECORDS[function].units == "pure":
                 yield from (Edge(z), Edge(add(z, neg(ONE))), Edge(add(z, ONE)))
+            case Call(_, (z,)) | Pow(z, _) | Div(_, z):
+                yield Edge(z)
             case Add():
                 yield Edge(node)
 

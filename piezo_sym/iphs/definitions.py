@@ -13,6 +13,9 @@ import sympy as sp
 from piezo_sym.algebra.lanes import vector
 from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import SpecError, quote
+from piezo_sym.expressions.integrals import antiderivative
+from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tree import Expr, rename
 from piezo_sym.iphs.system import System
 from piezo_sym.network import Junction, Slope, port_order
 from piezo_sym.spec.circuit import Circuit, Placed
@@ -25,9 +28,6 @@ from piezo_sym.spec.elements.ports import (
     Source,
     Storage,
 )
-from piezo_sym.spec.expressions import Expr, rename
-from piezo_sym.spec.integrals import antiderivative
-from piezo_sym.spec.text import spell
 
 
 def costate_name(port: Storage | Body) -> str:

@@ -17,6 +17,8 @@ import sympy as sp
 from piezo_sym.algebra.lanes import LaneMatrix, vector
 from piezo_sym.algebra.notation import slot_text, text
 from piezo_sym.algebra.symbols import SymbolTable, symbol_table
+from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tree import Expr
 from piezo_sym.iphs.definitions import (
     costates_of,
     energy_of,
@@ -30,10 +32,8 @@ from piezo_sym.iphs.system import System
 from piezo_sym.network import Junction, junction_of
 from piezo_sym.spec.circuit import Circuit, circuit_of
 from piezo_sym.spec.elements.ports import Body, Conductor, Resistor, Storage
-from piezo_sym.spec.expressions import Expr
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import banks
-from piezo_sym.spec.text import spell
 from piezo_sym.spec.unroll import unroll
 
 Matrix: TypeAlias = "sp.ImmutableMatrix | LaneMatrix"

@@ -11,10 +11,10 @@ from dataclasses import replace
 import sympy as sp
 
 from piezo_sym.algebra.symbols import to_sympy
-from piezo_sym.spec.calculus import derivative, div, mul
+from piezo_sym.expressions.calculus import derivative, div, mul
+from piezo_sym.expressions.tree import ONE, ZERO, Call, Cmp, Div, Expr, Sym, names, walk
+from piezo_sym.expressions.tree import replace as substitute
 from piezo_sym.spec.elements.ports import Domain, Resistor
-from piezo_sym.spec.expressions import ONE, ZERO, Call, Cmp, Div, Expr, Sym, names, walk
-from piezo_sym.spec.expressions import replace as substitute
 
 #: The letter that a law has in the other causality.
 CONJUGATE = {

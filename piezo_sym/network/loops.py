@@ -23,10 +23,10 @@ from sympy.polys.matrices import DomainMatrix
 
 from piezo_sym.algebra.lanes import LaneMatrix
 from piezo_sym.errors import NetworkError, listing, quote
+from piezo_sym.expressions.tree import Expr
 from piezo_sym.network.inverse import slope_of
 from piezo_sym.network.kirchhoff import Laws
 from piezo_sym.spec.elements.ports import Domain, Resistor
-from piezo_sym.spec.expressions import Expr
 from piezo_sym.spec.names import fresh
 
 #: More than these would write out solutions of thousands of terms.

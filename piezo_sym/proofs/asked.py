@@ -13,12 +13,8 @@ from functools import cached_property
 from itertools import product
 from typing import final
 
-from piezo_sym.proofs.branches import TooManyBranchesError
-from piezo_sym.proofs.exactly import holds
-from piezo_sym.proofs.obligations import Question
-from piezo_sym.proofs.query import connected
-from piezo_sym.proofs.solvers import Answer, Asks
-from piezo_sym.spec.expressions import (
+from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.expressions.tree import (
     ONE,
     ZERO,
     Add,
@@ -33,6 +29,11 @@ from piezo_sym.spec.expressions import (
     Sym,
     names,
 )
+from piezo_sym.proofs.branches import TooManyBranchesError
+from piezo_sym.proofs.exactly import holds
+from piezo_sym.proofs.obligations import Question
+from piezo_sym.proofs.query import connected
+from piezo_sym.proofs.solvers import Answer, Asks
 from piezo_sym.spec.tables import greater
 
 #: Values of a letter that are tried against a law, in this order.
@@ -87,7 +88,7 @@ class Asked:
         match part:
             case Num(value):
                 return value > 0
-            case Call("exp", _):
+            case Call(function, _) if RECORDS[function].sign == ">":
                 return True
             case Neg(arg) if self.positive(arg):
                 return False
@@ -95,7 +96,9 @@ class Asked:
                 return True
             case Mul(a, b) | Div(a, b) if self.positive(a) and self.positive(b):
                 return True
-            case Pow(base, _) | Call("sqrt" | "abs", (base,)) if self.positive(base):
+            case Pow(base, _) if self.positive(base):
+                return True
+            case Call(function, (base,)) if RECORDS[function].sign and self.positive(base):
                 return True
             case Add(terms) if all(map(self.plain, terms)) and any(map(self.positive, terms)):
                 return True
@@ -106,7 +109,7 @@ class Asked:
         match part:
             case Sym() | Num():
                 return self.positive(part)
-            case Call("exp" | "abs" | "sqrt", _):
+            case Call(function, _) if RECORDS[function].sign:
                 return True
             case Pow(base, e):
                 return e.denominator != 1 or e % 2 == 0 or self.plain(base)

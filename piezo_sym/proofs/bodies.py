@@ -8,17 +8,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
+from piezo_sym.expressions.calculus import add, derivative, div, mul, neg
+from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Expr, Sym, names, rename
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.branches import TooManyBranchesError
 from piezo_sym.proofs.ground import Ground
 from piezo_sym.proofs.laws import on_branches, valued
 from piezo_sym.proofs.obligations import Obligation, Question
-from piezo_sym.spec.calculus import add, derivative, div, mul, neg
 from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, Resistor
-from piezo_sym.spec.expressions import ONE, ZERO, Cmp, Expr, Sym, names, rename
 from piezo_sym.spec.names import fresh
 from piezo_sym.spec.tables import conditions, greater
-from piezo_sym.spec.text import spell
 
 
 def temperature(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:

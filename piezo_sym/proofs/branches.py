@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import final
 
-from piezo_sym.spec.calculus import add, neg
-from piezo_sym.spec.expressions import (
+from piezo_sym.expressions.calculus import clause, rule
+from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.expressions.tree import (
     ONE,
     ZERO,
     Add,
@@ -32,7 +32,7 @@ from piezo_sym.spec.expressions import (
 #: More branches than these are not looked at: the law is left open.
 MOST = 400
 OPPOSITE = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
-KINKED = frozenset({"abs", "sign", "min", "max", "deadzone", "saturate"})
+KINKED = frozenset(name for name, record in RECORDS.items() if not record.smooth)
 
 
 @final
@@ -116,35 +116,13 @@ def parts(branch: Branch) -> tuple[Expr, ...]:
 def with_choices(node: Expr, known: Container[Cmp] = ()) -> Expr:
     """Return a law with each function that has kinks written as choices; `known` ones hold."""
     inner = rebuild(node, lambda part: with_choices(part, known))
-    if isinstance(inner, Call) and inner.function in KINKED:
-        return _choices(inner.function, inner.args[0], inner.args[-1], known)
-    return inner
-
-
-def _choices(function: str, z: Expr, w: Expr, known: Container[Cmp] = ()) -> Expr:
-    """Return a function with kinks as choices; the edges are those of the contracts' formulas."""
-    match function:
-        case "abs":
-            return If(z, Cmp(">=", z, ZERO), neg(z))
-        case "sign":
-            return If(ONE, Cmp(">", z, ZERO), If(Num(Fraction(-1)), Cmp("<", z, ZERO), ZERO))
-        case "min":
-            return If(z, Cmp("<=", z, w), w)
-        case "max":
-            return If(z, Cmp(">=", z, w), w)
-    above, below = Cmp(">", z, w), Cmp("<", z, neg(w))
-    if function == "deadzone":
-        inside = If(add(z, neg(w)), above, If(add(z, w), below, ZERO))
-    else:
-        inside = If(w, above, If(neg(w), below, z))
-    wide = Cmp(">=", w, ZERO)  # there, and only there, the formula has these three branches
-    if wide in known or (isinstance(w, Num) and w.value >= 0):
-        return inside
-    if function == "deadzone":
-        general = add(If(add(z, neg(w)), above, ZERO), If(add(z, w), below, ZERO))
-    else:
-        general = _choices("min", _choices("max", z, neg(w)), w)
-    return If(inside, wide, general)
+    if not isinstance(inner, Call) or inner.function not in KINKED:
+        return inner
+    record, (z, *_), w = RECORDS[inner.function], inner.args, inner.args[-1]
+    made, wide = rule(record.choices, z, w), Cmp(">=", w, ZERO)
+    if not record.width or wide in known or (isinstance(w, Num) and w.value >= 0):
+        return made
+    return If(made, wide, with_choices(rule(record.formula, z, w)))
 
 
 def choices(node: Node) -> tuple[Cmp, ...]:
@@ -201,7 +179,5 @@ def partial(node: Node) -> Iterator[Cmp]:
                 yield Cmp(">=" if exponent > 0 else ">", base, ZERO)
             case Pow(base, exponent) if exponent < 0:
                 yield Cmp("!=", base, ZERO)
-            case Call("sqrt", (arg,)):
-                yield Cmp(">=", arg, ZERO)
-            case Call("log", (arg,)):
-                yield Cmp(">", arg, ZERO)
+            case Call(function, (arg,)) if function in RECORDS and RECORDS[function].domain:
+                yield from clause(RECORDS[function].domain, arg, part)

@@ -12,6 +12,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import combinations
 
+from piezo_sym.expressions.calculus import add, neg
+from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tree import Cmp, names
 from piezo_sym.proofs.branches import (
     Branch,
     TooManyBranchesError,
@@ -24,9 +27,6 @@ from piezo_sym.proofs.branches import (
 from piezo_sym.proofs.ground import Ground, Law
 from piezo_sym.proofs.laws import ask, too_many
 from piezo_sym.proofs.obligations import Meeting, Obligation, Question
-from piezo_sym.spec.calculus import add, neg
-from piezo_sym.spec.expressions import Cmp, names
-from piezo_sym.spec.text import spell
 
 #: More branches than these are not compared, each with each.
 MOST = 60

@@ -11,6 +11,9 @@ from dataclasses import replace
 import sympy as sp
 
 from piezo_sym.algebra.coefficients import coefficient
+from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tree import ZERO, Cmp, Expr, Neg, rename
+from piezo_sym.expressions.tree import replace as put
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import heated
 from piezo_sym.proofs.branches import TooManyBranchesError
@@ -18,9 +21,6 @@ from piezo_sym.proofs.ground import Ground
 from piezo_sym.proofs.laws import on_branches, valued
 from piezo_sym.proofs.obligations import Obligation, Question
 from piezo_sym.spec.elements.ports import Conductor, Coupling, Resistor
-from piezo_sym.spec.expressions import ZERO, Cmp, Expr, Neg, rename
-from piezo_sym.spec.expressions import replace as put
-from piezo_sym.spec.text import spell
 
 MOST_TEXT = 60
 

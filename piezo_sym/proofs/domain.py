@@ -9,6 +9,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
 
+from piezo_sym.expressions.parse import parse_law
+from piezo_sym.expressions.tree import ONE, ZERO, Cmp, names, rename
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.branches import TooManyBranchesError
 from piezo_sym.proofs.exactly import Value, holds, value_of
@@ -17,8 +19,6 @@ from piezo_sym.proofs.laws import valued
 from piezo_sym.proofs.obligations import Obligation, Question
 from piezo_sym.proofs.solvers import Asks
 from piezo_sym.spec.elements.ports import Body
-from piezo_sym.spec.expressions import ONE, ZERO, Cmp, names, rename
-from piezo_sym.spec.parse import parse_law
 from piezo_sym.spec.tables import conditions, states
 
 

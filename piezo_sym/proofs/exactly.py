@@ -13,7 +13,9 @@ from typing import Any, final
 
 from mpmath import iv
 
-from piezo_sym.spec.expressions import (
+from piezo_sym.expressions.functions import RECORDS, Function
+from piezo_sym.expressions.parse import parse_rule
+from piezo_sym.expressions.tree import (
     Add,
     Call,
     Cmp,
@@ -27,6 +29,7 @@ from piezo_sym.spec.expressions import (
     Pow,
     Sym,
 )
+from piezo_sym.proofs.balls import smooth
 
 DIGITS = 40
 #: Beyond this the argument of a function is not looked at, nor a rational power of more bits.
@@ -103,7 +106,7 @@ def _interval(value: Value) -> Value:
     return iv.mpf(value.numerator) / iv.mpf(value.denominator)
 
 
-def _value(node: Expr, values: Mapping[str, Fraction]) -> Value:
+def _value(node: Expr, values: Mapping[str, Value]) -> Value:
     match node:
         case Num(value):
             return value
@@ -174,66 +177,31 @@ def _large(z: Value) -> bool:
 
 
 def _call(function: str, args: list[Value]) -> Value:
-    z, w = args[0], args[-1]
-    if function in {"exp", "sin", "cos", "tanh"} and _large(z):
-        return _far(function, _interval(z))
-    if function in {"exp", "log", "sin", "cos", "tanh"} and isinstance(z, Fraction):
-        at_zero = {"exp": (0, 1), "sin": (0, 0), "cos": (0, 1), "tanh": (0, 0), "log": (1, 0)}
-        special, result = at_zero[function]
-        if z == special:
-            return Fraction(result)
-    match function:
-        case "exp":
-            return iv.exp(_interval(z))
-        case "log":
-            if _certain(z) != 1:
-                msg = "logarithm of a number that is not positive"
-                raise ValueError(msg)
-            return iv.log(_interval(z))
-        case "sin":
-            return iv.sin(_interval(z))
-        case "cos":
-            return iv.cos(_interval(z))
-        case "tanh":
-            return 1 - 2 / (iv.exp(2 * _interval(z)) + 1)
-        case "sqrt":
-            return _power(z, Fraction(1, 2))
-    return _kinked(function, z, w)
+    record, z = RECORDS[function], args[0]
+    if not record.smooth:  # as the contracts have it, whatever the sign of a width
+        return _value(parse_rule(record.formula or record.choices), {"x": z, "w": args[-1]})
+    if record.power is not None:
+        return _power(z, record.power)
+    if record.domain and _certain(z) != 1:
+        raise ValueError(f"{function} of a number that is not positive")
+    if not record.domain and _large(z):
+        return _far(record, _interval(z))
+    if record.known and isinstance(z, Fraction) and z == record.known[0]:
+        return Fraction(record.known[1])
+    return smooth(function, _interval(z), iv)
 
 
-def _far(function: str, z: Value) -> Value:
-    """Return bounds on a function of a large number; exp has no upper one."""
-    if function in {"sin", "cos"}:
-        return iv.mpf([-1, 1])
-    edge = iv.exp(iv.mpf(-LARGEST_ARGUMENT)).b
-    if function == "tanh" and abs(z).a > LARGEST_ARGUMENT:
-        return iv.mpf([1 - iv.mpf(edge), 1]) if z.a > 0 else iv.mpf([-1, iv.mpf(edge) - 1])
-    if function == "tanh":
-        return iv.mpf([-1, 1])
-    if z.b < -LARGEST_ARGUMENT:
-        return iv.mpf([0, edge])
-    raise TooCloseError
-
-
-def _kinked(function: str, z: Value, w: Value) -> Value:
-    """Return a function with kinks: the branch is chosen by signs that are certain."""
-    match function:
-        case "abs":
-            return z if _above(z, Fraction(0)) else -z
-        case "sign":
-            return Fraction(_certain(z))
-        case "min":
-            return w if _above(z, w) else z
-        case "max":
-            return z if _above(z, w) else w
-        case "deadzone":  # as the contracts have it, whatever the sign of w
-            above = _kinked("max", minus(z, w), Fraction(0))
-            return minus(above, _kinked("max", minus(-w, z), Fraction(0)))
-    return _kinked("min", _kinked("max", z, -w), w)  # saturate
-
-
-def _above(a: Value, b: Value) -> bool:
-    return _certain(minus(a, b)) > 0
+def _far(record: Function, z: Value) -> Value:
+    """Return bounds on a function of a large number; some have none."""
+    low, high = (_interval(b) if isinstance(b, Fraction) else None for b in record.bounds)
+    edge = iv.mpf(LARGEST_ARGUMENT)
+    if record.monotone and z.a > LARGEST_ARGUMENT:
+        low = smooth(record.name, edge, iv)
+    elif record.monotone and z.b < -LARGEST_ARGUMENT:
+        high = smooth(record.name, -edge, iv)
+    if low is None or high is None:
+        raise TooCloseError
+    return iv.mpf([low.a, high.b])
 
 
 def _certain(value: Value) -> int:

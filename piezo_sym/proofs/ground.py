@@ -8,10 +8,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import final
 
+from piezo_sym.expressions.tree import ZERO, Call, Cmp, Div, Expr, Mul, Sym, names, rename
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.obligations import Obligation
 from piezo_sym.spec.elements.ports import Body, Storage
-from piezo_sym.spec.expressions import ZERO, Call, Cmp, Div, Expr, Mul, Sym, names, rename
 from piezo_sym.spec.tables import condition_text, conditions
 
 

@@ -10,10 +10,10 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from itertools import combinations, pairwise, product
 
+from piezo_sym.expressions.tree import Cmp, Expr, names
 from piezo_sym.proofs.branches import Branch
 from piezo_sym.proofs.exactly import TooCloseError, Value, holds, minus, sign_of, value_of
 from piezo_sym.proofs.obligations import Meeting
-from piezo_sym.spec.expressions import Cmp, Expr, names
 
 #: How far from the point a branch is looked for.
 STEPS = tuple(Fraction(1, 10**n) for n in (6, 12, 18))

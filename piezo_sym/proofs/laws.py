@@ -8,13 +8,25 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from piezo_sym.expressions.calculus import add, mul, neg
+from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tree import (
+    ZERO,
+    Call,
+    Cmp,
+    Expr,
+    Node,
+    Sym,
+    names,
+    rename,
+)
+from piezo_sym.expressions.tree import replace as substituted
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.branches import MOST, TooManyBranchesError, branches, partial
 from piezo_sym.proofs.ground import Ground, Law
 from piezo_sym.proofs.obligations import Obligation, Question, SignOf
 from piezo_sym.proofs.reflection import reflected
 from piezo_sym.proofs.ties import ties
-from piezo_sym.spec.calculus import add, mul, neg
 from piezo_sym.spec.circuit import Placed
 from piezo_sym.spec.elements.ports import (
     Body,
@@ -25,19 +37,7 @@ from piezo_sym.spec.elements.ports import (
     Source,
     Storage,
 )
-from piezo_sym.spec.expressions import (
-    ZERO,
-    Call,
-    Cmp,
-    Expr,
-    Node,
-    Sym,
-    names,
-    rename,
-)
-from piezo_sym.spec.expressions import replace as substituted
 from piezo_sym.spec.tables import condition_text
-from piezo_sym.spec.text import spell
 
 
 def laws_of(iphs: IPHS) -> tuple[Law, ...]:

@@ -8,10 +8,10 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import combinations
 
+from piezo_sym.expressions.tree import ONE, ZERO, Cmp
 from piezo_sym.proofs.branches import Branch, opposite
 from piezo_sym.proofs.obligations import Question
 from piezo_sym.proofs.solvers import Asks
-from piezo_sym.spec.expressions import ONE, ZERO, Cmp
 
 
 def needed(questions: tuple[Question, ...], solver: Asks) -> Iterator[Question]:

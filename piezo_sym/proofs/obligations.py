@@ -14,6 +14,7 @@ from typing import final
 
 import sympy as sp
 
+from piezo_sym.expressions.tree import Call, Cmp, Expr, Num, Sym, names
 from piezo_sym.proofs.branches import (
     Branch,
     TooManyBranchesError,
@@ -25,7 +26,6 @@ from piezo_sym.proofs.branches import (
 )
 from piezo_sym.proofs.query import Query, connected, query
 from piezo_sym.proofs.rational import cleared, implied, parts_of
-from piezo_sym.spec.expressions import Call, Cmp, Expr, Num, Sym, names
 
 
 @final

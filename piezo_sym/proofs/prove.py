@@ -13,6 +13,8 @@ from fractions import Fraction
 
 import sympy as sp
 
+from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tree import Cmp, Expr
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.asked import Asked, tried
 from piezo_sym.proofs.exactly import TooCloseError, holds, value_of
@@ -24,9 +26,7 @@ from piezo_sym.proofs.signs import Case
 from piezo_sym.proofs.solvers import Answer, Asks, opinions
 from piezo_sym.proofs.total import negative_total
 from piezo_sym.proofs.whole import whole_sign
-from piezo_sym.spec.expressions import Cmp, Expr
 from piezo_sym.spec.tables import condition_text
-from piezo_sym.spec.text import spell
 
 #: Lanes a refutation is written out for; one lane hides what couples two.
 LANES = 2
@@ -53,10 +53,13 @@ def prove(
     solver : for its questions; z3, and cvc5 where z3 does not know, if none is given.
     """
     asked = solver or opinions()
-    decided = _decide(obligation, iphs, tuple(before), asked)
+    known = tuple(before)
+    decided = _decide(obligation, iphs, known, asked)
     verdict, witness, reason, method, certificate = decided
     if verdict is Verdict.REFUTED and obligation.loose in (witness or {}):
         verdict, witness, reason = Verdict.OPEN, None, LOOSE
+    if verdict is Verdict.REFUTED and obligation.id == "continuous":
+        verdict, witness, reason = _with_values(obligation, known) or (verdict, witness, reason)
     return Row(
         obligation.id,
         obligation.element,
@@ -139,6 +142,16 @@ def _grounded(obligation: Obligation, before: tuple[Row, ...]) -> Found | None:
         for verdict in verdicts:
             if verdict is not Verdict.PROVED:
                 return Verdict.OPEN, None, f"it rests on {name}, which is {verdict.value}"
+    return None
+
+
+def _with_values(obligation: Obligation, before: tuple[Row, ...]) -> Found | None:
+    """Return that a jump is none yet, if a branch may have no values beside the edge."""
+    for row in before:
+        welldef = (row.id, row.element) == ("welldef", obligation.element)
+        if welldef and row.verdict is not Verdict.PROVED:
+            name = f"welldef of {row.element}"
+            return Verdict.OPEN, None, f"it rests on {name}, which is {row.verdict.value}"
     return None
 
 

@@ -14,18 +14,33 @@ from fractions import Fraction
 import sympy as sp
 
 from piezo_sym.algebra.sums import LaneSum as SymbolicSum
+from piezo_sym.expressions.calculus import add, div, mul, power
+from piezo_sym.expressions.functions import FUNCTIONS as WRITTEN
+from piezo_sym.expressions.text import ATOM, SPEC, write
+from piezo_sym.expressions.tree import (
+    ONE,
+    Call,
+    Cmp,
+    Expr,
+    If,
+    LaneSum,
+    Mul,
+    Num,
+    Sym,
+    rename,
+    replace,
+)
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name, heated
-from piezo_sym.spec.calculus import add, div, mul, power
 from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, Resistor, Storage
-from piezo_sym.spec.expressions import ONE, Call, Cmp, Expr, If, LaneSum, Num, Sym, rename, replace
-from piezo_sym.spec.text import ATOM, SPEC, write
 
 #: The law language, and sums over the lanes of a bank.
 STYLE = changed(SPEC, lane_sum=lambda arg, bank: (f"sum({bank}, {arg[0]})", ATOM))
 COMPARISONS = {sp.Lt: "<", sp.Le: "<=", sp.Gt: ">", sp.Ge: ">="}
-FUNCTIONS = (sp.exp, sp.log, sp.sin, sp.cos, sp.tanh)
+FUNCTIONS = tuple(getattr(sp, name) for name, r in WRITTEN.items() if r.transcendental)
 HALF = sp.Rational(1, 2)
+#: SymPy makes it of atan(1).
+PI = Mul(Num(Fraction(4)), Call("atan", (ONE,)))
 
 
 def published(iphs: IPHS) -> dict[str, object]:
@@ -94,6 +109,10 @@ class _Trees:
     def __call__(self, expr: sp.Expr) -> Expr:
         """Return the tree of an expression."""
         match expr:
+            case sp.pi:
+                return PI
+            case sp.E:
+                return Call("exp", (ONE,))
             case sp.Rational():
                 return Num(Fraction(int(expr.p), int(expr.q)))
             case sp.Symbol():

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
+from piezo_sym.expressions.tree import Add, Cmp, Expr, If, Mul, Neg, Num, Pow, Sym, names
 from piezo_sym.proofs.facts import Clause
-from piezo_sym.spec.expressions import Add, Cmp, Expr, If, Mul, Neg, Num, Pow, Sym, names
 
 #: Stands before each name of a model in a query: no word of SMT-LIB or of a solver begins with it.
 MARK = "?"

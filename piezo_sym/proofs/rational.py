@@ -18,9 +18,9 @@ from fractions import Fraction
 from itertools import combinations
 from typing import final
 
-from piezo_sym.proofs.facts import Clause, facts_on, facts_on_two
-from piezo_sym.spec.calculus import add, mul, neg, power
-from piezo_sym.spec.expressions import (
+from piezo_sym.expressions.calculus import add, mul, neg, power
+from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.expressions.tree import (
     ONE,
     ZERO,
     Add,
@@ -38,6 +38,7 @@ from piezo_sym.spec.expressions import (
     rebuild,
     walk,
 )
+from piezo_sym.proofs.facts import Clause, facts_on, facts_on_two
 from piezo_sym.spec.names import fresh
 
 #: Of more functions than these nothing is said in pairs.
@@ -152,9 +153,9 @@ def _quotient(node: Node) -> tuple[str, Expr, Fraction] | None:
 def _function(node: Node) -> tuple[str, Expr, Fraction] | None:
     """Return a function or root as (name, argument, exponent), else None."""
     match node:
-        case Call("sqrt", (arg,)):
-            return "root", arg, Fraction(1, 2)
-        case Call("exp" | "log" | "tanh" | "sin" | "cos" as function, (arg,)):
+        case Call(function, (arg,)) if (exponent := RECORDS[function].power) is not None:
+            return "root", arg, exponent
+        case Call(function, (arg,)) if RECORDS[function].transcendental:
             return function, arg, Fraction(1)
         case Pow(base, exponent) if exponent.denominator != 1:
             return "root", base, exponent

@@ -6,8 +6,9 @@ argument as in the law itself, so that W(z) + W(-z) cancels by its form where it
 
 from __future__ import annotations
 
-from piezo_sym.spec.calculus import add, div, mul, neg, power
-from piezo_sym.spec.expressions import (
+from piezo_sym.expressions.calculus import add, div, mul, neg, power
+from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.expressions.tree import (
     Add,
     Call,
     Cmp,
@@ -19,9 +20,6 @@ from piezo_sym.spec.expressions import (
     Pow,
     Sym,
 )
-
-ODD = frozenset({"sin", "tanh", "sign", "deadzone", "saturate"})
-EVEN = frozenset({"cos", "abs"})
 
 
 def reflected(law: Expr, letter: str) -> Expr:
@@ -55,11 +53,11 @@ def reflected(law: Expr, letter: str) -> Expr:
             return power(inner, exponent)
         case Call(function, (first, *others)):
             inner, rest = turned(first), tuple(map(turned, others))
-            if isinstance(inner, Neg) and function in ODD:
-                return neg(Call(function, (inner.arg, *rest)))
-            if isinstance(inner, Neg) and function in EVEN:
-                inner = inner.arg
-            return Call(function, (inner, *rest))
+            parity = RECORDS[function].parity
+            if not isinstance(inner, Neg) or not parity:
+                return Call(function, (inner, *rest))
+            made = Call(function, (inner.arg, *rest))
+            return neg(made) if parity == "odd" else made
         case If(then, Cmp(op, left, right), other):
             return If(turned(then), Cmp(op, turned(left), turned(right)), turned(other))
     return law

@@ -89,6 +89,11 @@ class Report:
         return tuple(r for r in self.rows if r.required and r.verdict is not Verdict.PROVED)
 
     @property
+    def information(self) -> frozenset[tuple[str, str]]:
+        """(id, element) of the rows that `generate` does not insist on."""
+        return frozenset((row.id, row.element) for row in self.rows if not row.required)
+
+    @property
     def proved(self) -> bool:
         """Whether every required property is proved."""
         return not self.failures

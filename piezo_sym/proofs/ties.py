@@ -11,11 +11,11 @@ from functools import reduce
 
 import sympy as sp
 
+from piezo_sym.expressions.calculus import add, derivative, mul, neg, power
+from piezo_sym.expressions.tree import Cmp, Expr, Num, Sym, names, rename
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name
-from piezo_sym.spec.calculus import add, derivative, mul, neg, power
 from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, Resistor, Source, Storage
-from piezo_sym.spec.expressions import Cmp, Expr, Num, Sym, names, rename
 from piezo_sym.spec.tables import conditions
 
 

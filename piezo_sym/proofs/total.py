@@ -14,6 +14,7 @@ import sympy as sp
 
 from piezo_sym.algebra.sums import LaneSymbol
 from piezo_sym.errors import PiezoError
+from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Num, Sym
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.exactly import holds
 from piezo_sym.proofs.ground import ground_of
@@ -21,7 +22,6 @@ from piezo_sym.proofs.obligations import Question
 from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.proofs.solvers import Asks
 from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, Resistor, Source, Storage
-from piezo_sym.spec.expressions import ONE, ZERO, Cmp, Num, Sym
 from piezo_sym.spec.tables import banks, states
 
 Values = Mapping[str, Fraction]

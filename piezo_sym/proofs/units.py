@@ -15,9 +15,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
-from piezo_sym.iphs import IPHS
-from piezo_sym.proofs.report import Row, Verdict
-from piezo_sym.spec.dimensions import (
+from piezo_sym.expressions.dimensions import (
     NONE,
     Dimension,
     Match,
@@ -26,11 +24,13 @@ from piezo_sym.spec.dimensions import (
     faults,
     times,
 )
-from piezo_sym.spec.expressions import Cmp, Expr, Neg, Node, Num, Sym, names, walk
+from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tree import Cmp, Expr, Neg, Node, Num, Sym, names, walk
+from piezo_sym.iphs import IPHS
+from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.places import Place, places
 from piezo_sym.spec.tables import condition_text
-from piezo_sym.spec.text import spell
 from piezo_sym.spec.unit_text import quantity, unit_text
 
 STATEMENT = "every term of every equation has its row's unit"

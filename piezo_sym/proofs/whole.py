@@ -17,6 +17,20 @@ from fractions import Fraction
 from functools import reduce as fold
 from typing import final
 
+from piezo_sym.expressions.calculus import mul
+from piezo_sym.expressions.tree import (
+    ONE,
+    ZERO,
+    Add,
+    Cmp,
+    Expr,
+    If,
+    Mul,
+    Neg,
+    Num,
+    Sym,
+    names,
+)
 from piezo_sym.proofs.asked import Asked, Numbers, moved, tried
 from piezo_sym.proofs.obligations import SignOf
 from piezo_sym.proofs.report import Verdict
@@ -34,20 +48,6 @@ from piezo_sym.proofs.signs import (
     summands,
 )
 from piezo_sym.proofs.solvers import Asks
-from piezo_sym.spec.calculus import mul
-from piezo_sym.spec.expressions import (
-    ONE,
-    ZERO,
-    Add,
-    Cmp,
-    Expr,
-    If,
-    Mul,
-    Neg,
-    Num,
-    Sym,
-    names,
-)
 
 #: Functions of one variable that may fail before the search stops.
 MOST_FAILED = 12

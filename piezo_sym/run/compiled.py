@@ -6,33 +6,29 @@ step.  Output: a `Trajectory` whose samples lie in the domain, and the attribute
 """
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
 
 from piezo_sym.errors import RunError, UsageError
-from piezo_sym.run.adaptive import adaptive
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.discrete import METHOD, Runs, Watch, fixed
+from piezo_sym.run.collocation import with_tolerance
+from piezo_sym.run.discrete import fixed
 from piezo_sym.run.engine import Engine
 from piezo_sym.run.guard import NAME, crossing, depth, domain_error
 from piezo_sym.run.inputs import Segment
 from piezo_sym.run.integrate import Batch, Tolerance, batches
 from piezo_sym.run.ledger import Trajectory, record
+from piezo_sym.run.runs import METHOD, Watch
 from piezo_sym.run.scales import magnitudes
 from piezo_sym.run.system import System
 
-FINEST = (
-    "those of the finest run, exact: supplied_*, heat_*, produced_*, entropy_exchanged_*, "
-    "energy_residual, entropy_residual"
-)
 #: How a run that stopped is looked at again: to find the cause, not to take its place.
 LOOK_RTOL, LOOK_ATOL = 1e-8, 1e-11
 MOST_STEPS = 20_000
 #: Of a step: one that is shorter by less is rounded, not cut.
 SAME = 1e-6
-#: No finer mesh is asked for: the round-off of its steps would be all that is left to measure.
-LEAST_RTOL = 1e-11
+#: No better accuracy is asked for: round-off is all that would be left.
+LEAST_RTOL = 1e-12
 #: Inputs are looked at so often in each of the longest steps they allow, with so many numbers.
 LOOKS, MOST_NUMBERS = 4, 5_000_000
 
@@ -64,21 +60,20 @@ def compiled_run(
         what = f"model '{engine.module.NAME}' has no thermal_mass to take a loss, or no storage"
         remedy = "leave it out, or add a thermal_mass"
         raise UsageError(what, "simulate.dissipative_start", "False", remedy)
+    if starts and step is None:
+        what = "a run with a tolerance follows what a jump sets off, and damps nothing"
+        raise UsageError(what, "simulate.dissipative_start", "False", "leave it out, or give step")
     check_inputs(system, x, samples)
     rtol = max(rtol, LEAST_RTOL)
+    accuracy: dict[str, object]
     try:
         if step is None:
-            runs = adaptive([system], engine, x[None], samples, rtol, watch, starts=starts)
-            trajectory = inside(system, booked(runs))
-            accuracy: dict[str, object] = {
-                "rtol": rtol,
-                "extrapolated": extrapolated(system),
-                "balances": FINEST,
-            }
+            accuracy = {"rtol": rtol}
+            runs = with_tolerance([system], engine, x[None], samples, rtol, watch)
         else:
-            runs = fixed([system], engine, x[None], samples, step, watch, starts=starts)
-            trajectory = booked(runs)
             accuracy = {"step": step, "shortest_step": shortest_step(system, samples, step)}
+            runs = fixed([system], engine, x[None], samples, step, watch, starts=starts)
+        trajectory = runs.trajectory(0)
     except RunError as stopped:
         raise cause(system, x, samples, stopped) from stopped
     work = {
@@ -101,14 +96,6 @@ def shortest_step(system: System, samples: FloatArray, step: float) -> float:
     rounding = 4 * np.finfo(float).eps * edges[-1] / step
     taken = float(np.min(widths / np.maximum(1, np.ceil(widths / step - rounding))))
     return step if taken > step * (1 - SAME) else taken
-
-
-def booked(runs: Runs) -> Trajectory:
-    """Return the trajectory of a single run, with the entropy that heat exchanges brought."""
-    trajectory, rows = runs.trajectory(0), runs.batch.rows
-    sums = runs.batch.sums[0].T[: rows.ledger - rows.numerical]
-    balanced = trajectory.balanced if runs.extrapolated else None
-    return replace(trajectory, integrals=sums, balanced=balanced)
 
 
 def check_inputs(system: System, x: FloatArray, samples: FloatArray) -> None:
@@ -158,24 +145,6 @@ def looks(system: System, segment: Segment, samples: FloatArray, most: float) ->
     even = np.linspace(segment.start, segment.stop, 2 + int(min(number, most * part)))
     inner = samples[(samples > segment.start) & (samples < segment.stop)]
     return np.union1d(even, inner)
-
-
-def extrapolated(system: System) -> str:
-    """Return which quantities of a run with a tolerance are extrapolated from its three runs."""
-    states = ", ".join(record.name for record in system.module.STATES)
-    return f"{states}; and y_*, T_*, energy, entropy, which are computed from them"
-
-
-def inside(system: System, trajectory: Trajectory) -> Trajectory:
-    """Return a trajectory with the finest run's state where the extrapolated one is no state.
-
-    A state may come so near to the edge of the domain that the extrapolation crosses it.
-    """
-    x, u, finest = trajectory.states, trajectory.inputs, trajectory.balanced
-    outside = np.any(system.violated(x, u), axis=0) | ~np.all(system.finite(x, u), axis=0)
-    if finest is None or not np.any(outside):
-        return trajectory
-    return replace(trajectory, states=np.where(outside, finest, x))
 
 
 def cause(system: System, x: FloatArray, samples: FloatArray, stopped: RunError) -> RunError:

@@ -29,8 +29,6 @@ if TYPE_CHECKING:
 Variable: TypeAlias = tuple[tuple[str, ...], "NDArray[Any] | pandas.Index[Any]", dict[str, Any]]
 Named: TypeAlias = tuple[str, Variable]
 
-#: What the ledger says where states are extrapolated from three runs.
-FINEST = "; of the finest run"
 ENERGY_LEFT = "U - U(0) - energy put in"
 ENTROPY_LEFT = "S - S(0) - entropy produced - entropy exchanged"
 
@@ -94,28 +92,25 @@ def variables(system: System, trajectory: Trajectory) -> Iterator[Named]:
 def ledger(system: System, trajectory: Trajectory) -> Iterator[Named]:
     """Yield what the ports and processes did since t = 0, and what the two balances leave over."""
     module, p, start = system.module, system.parameters, trajectory.start
-    x = trajectory.states if trajectory.balanced is None else trajectory.balanced
-    note = "" if trajectory.balanced is None else FINEST
+    x = trajectory.states
     supplied, heat, produced, exchanged = integrals(system, trajectory)
     made = np.sum(produced, axis=0) + np.sum(exchanged, axis=0)
     brought = [module.OUTPUTS[n] for n in exchanges(module)]
+    yield from spread(system, module.OUTPUTS, supplied, "supplied_", ("J", "energy put in by {}"))
+    yield from spread(system, module.PROCESSES, heat, "heat_", ("J", "heat released by {}"))
     yield from spread(
-        system, module.OUTPUTS, supplied, "supplied_", ("J", "energy put in by {}", note)
-    )
-    yield from spread(system, module.PROCESSES, heat, "heat_", ("J", "heat released by {}", note))
-    yield from spread(
-        system, module.PROCESSES, produced, "produced_", ("J/K", "entropy produced by {}", note)
+        system, module.PROCESSES, produced, "produced_", ("J/K", "entropy produced by {}")
     )
     yield from spread(
-        system, brought, exchanged, "entropy_exchanged_", ("J/K", "entropy brought by {}", note)
+        system, brought, exchanged, "entropy_exchanged_", ("J/K", "entropy brought by {}")
     )
     if trajectory.numerical is not None:
-        yield from numerical(trajectory.numerical, note)
+        yield from numerical(trajectory.numerical)
         made = made + trajectory.numerical[1]
     energy = module.energy(x, p) - module.energy(start, p) - np.sum(supplied, axis=0)
     entropy = module.entropy(x, p) - module.entropy(start, p) - made
-    yield "energy_residual", (("time",), energy, described("J", f"{ENERGY_LEFT}{note}"))
-    yield "entropy_residual", (("time",), entropy, described("J/K", f"{ENTROPY_LEFT}{note}"))
+    yield "energy_residual", (("time",), energy, described("J", f"{ENERGY_LEFT}"))
+    yield "entropy_residual", (("time",), entropy, described("J/K", f"{ENTROPY_LEFT}"))
 
 
 def integrals(system: System, trajectory: Trajectory) -> list[FloatArray]:
@@ -126,9 +121,9 @@ def integrals(system: System, trajectory: Trajectory) -> list[FloatArray]:
     return np.split(trajectory.integrals, np.cumsum([ports, size, size]))
 
 
-def numerical(rows: FloatArray, note: str) -> Iterator[Named]:
+def numerical(rows: FloatArray) -> Iterator[Named]:
     """Yield heat and entropy production of dissipative starts."""
-    about = f"by dissipative starts since t = 0{note}"
+    about = "by dissipative starts since t = 0"
     yield "heat_numerical", (("time",), rows[0], described("J", f"heat released {about}"))
     text = f"entropy produced {about}"
     yield "produced_numerical", (("time",), rows[1], described("J/K", text))
@@ -139,14 +134,14 @@ def spread(
     records: Sequence[Record],
     values: FloatArray,
     prefix: str = "",
-    integral: tuple[str, str, str] | None = None,
+    integral: tuple[str, str] | None = None,
 ) -> Iterator[Named]:
-    """Yield the rows of `values` (rows, nt) by record; `integral`: its unit, text and note."""
+    """Yield the rows of `values` (rows, nt) by record; `integral`: its unit and text."""
     for record, part in zip(records, system.rows(records), strict=True):
         attrs = described(record.unit, record.doc or record.name)
         if integral:
-            unit, text, note = integral
-            attrs = described(unit, f"{text.format(quote(record.name))} since t = 0{note}")
+            unit, text = integral
+            attrs = described(unit, f"{text.format(quote(record.name))} since t = 0")
         dims = ("time", record.bank) if record.bank else ("time",)
         yield (
             f"{prefix}{record.name}",

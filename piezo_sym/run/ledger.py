@@ -38,7 +38,6 @@ class Trajectory:
     integrals: FloatArray
     steps: int
     evaluations: int
-    balanced: FloatArray | None = None  # (n, nt): states whose balances are exact, if others
     halvings: int = 0
     numerical: FloatArray | None = None  # (2, nt): heat and entropy that dissipative starts produce
 

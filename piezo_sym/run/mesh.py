@@ -7,7 +7,7 @@ inputs.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import final
 
@@ -44,34 +44,13 @@ class Block:
         """Return the number of intervals."""
         return self.starts.size
 
-    def part(self, first: int, stop: int) -> Block:
-        """Return some of the intervals."""
-        here = slice(first, stop)
-        return Block(self.segment, self.starts[here], self.lengths[here], self.samples[here])
+    def middles(self) -> FloatArray:
+        """Return the inputs at the middles of the intervals, (k, m)."""
+        return np.ascontiguousarray(self.segment.over(self.starts + 0.5 * self.lengths).T)
 
-    def cut(self, parts: int) -> Block:
-        """Return the only interval in equal parts."""
-        lengths = np.repeat(self.lengths / parts, parts)
-        samples = np.where(np.arange(parts) == parts - 1, self.samples, -1)
-        return Block(self.segment, self.starts + np.arange(parts) * lengths, lengths, samples)
-
-    def middles(self, steps: Sequence[int] = (1,)) -> list[FloatArray]:
-        """Return the inputs at the middles of equal steps of each interval, (k*steps, m).
-
-        For each number of steps; signals are asked once for all of them.
-        """
-        places = np.concatenate([(np.arange(number) + 0.5) / number for number in steps])
-        times = self.starts + self.lengths * places[:, None]
-        u = self.segment.over(times)  # (m, places, k)
-        ends = np.cumsum(steps)
-        parts = zip(ends - steps, ends, strict=True)
-        size = len(self)
-        return [np.ascontiguousarray(u[:, a:b].T).reshape(size * (b - a), len(u)) for a, b in parts]
-
-    def quarters(self, steps: int = 1) -> FloatArray:
-        """Return the inputs at the middles of the quarters of the first of equal steps, (4, m)."""
-        places = (np.arange(4) + 0.5) / (4 * steps)
-        times = self.starts[0] + self.lengths[0] * places
+    def quarters(self) -> FloatArray:
+        """Return the inputs at the middles of the quarters of the first interval, (4, m)."""
+        times = self.starts[0] + self.lengths[0] * (np.arange(4) + 0.5) / 4
         return np.ascontiguousarray(self.segment.over(times).T)
 
 

@@ -15,7 +15,6 @@ from piezo_sym.errors import UsageError, quote
 from piezo_sym.run.checks import number, positive
 from piezo_sym.run.compiled import compiled_run
 from piezo_sym.run.dataset import to_dataset
-from piezo_sym.run.discrete import METHOD
 from piezo_sym.run.guard import check_start
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.integrate import Tolerance, batches
@@ -23,6 +22,7 @@ from piezo_sym.run.ledger import record
 from piezo_sym.run.method import checked_method, way_of
 from piezo_sym.run.module import checked
 from piezo_sym.run.parameters import read_initial, read_parameters, sample_times
+from piezo_sym.run.runs import METHOD
 from piezo_sym.run.scales import magnitudes
 from piezo_sym.run.system import System
 
@@ -33,12 +33,12 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.discrete import Watch
     from piezo_sym.run.inputs import InputValue
     from piezo_sym.run.integrate import Batch
     from piezo_sym.run.ledger import Trajectory
     from piezo_sym.run.module import GeneratedModule
     from piezo_sym.run.parameters import LaneValue
+    from piezo_sym.run.runs import Watch
 
 RTOL = 1e-5
 RTOL_LEAST, RTOL_MOST = 1e-13, 0.1
@@ -63,18 +63,14 @@ def simulate(
     """Run a generated module from t = 0 and return all its quantities over time.
 
     The method is the discrete gradient, compiled, unless another is named. Both its balances close
-    to round-off at every step. With `rtol` there are three runs, with steps, halves and quarters;
-    what an interval adds to the error of the finest run's states is held below 5 rtol of the
-    largest magnitude of each state (of a bank: of any lane) in a coarse first run. The states given
-    are extrapolated from all, which mostly makes them far better than rtol; the ledger is the
-    finest run's. With `step` there is one run, and its error falls with the square of the step.
-    Steps that end far from what those before let expect tell of a law that all but jumps, and of
-    what is much faster than they are and rings from step to step: intervals are divided, and cut
-    into parts, until the error there is small too. The errors of intervals add up, where nothing
-    damps them: a mass that slides and sticks, with 5 N of friction, tanh(v/1e-4), is 10 rtol off
-    after twelve reversals, and what oscillates for hundreds of periods of its own is hundreds of
-    rtol off in phase. A run that rings throughout takes as many steps as that needs;
-    `dissipative_start` damps what a jump sets off.
+    to round-off at every sample, for the states given. With `rtol` it is Gauss collocation with
+    co-states' means over each step, of order six to ten: the largest error of a run is about rtol
+    of each state's largest magnitude (of a bank: of any lane). Steps end where a law has a kink or
+    a jump, or go over kinks where many lanes have some and rtol is 1e-6 or more. Errors of steps
+    add up where nothing damps them: what oscillates for hundreds of periods is off in phase by more
+    than rtol. With `step` the method is of order two: its error falls with the square of the step,
+    and what is much faster than a step rings from one to the next after a jump, see
+    `dissipative_start`.
 
     SciPy's methods hold the error of each step below rtol*|x| + atol. atol is rtol*1e-3 times the
     scale of the state, which is the largest magnitude that the state (for a bank: any of its
@@ -94,7 +90,7 @@ def simulate(
         SI units. Those left out keep the module's defaults.
     duration : length of the run [s].
     rtol : relative tolerance, 1e-13 to 0.1; 1e-5 when left out. The discrete gradient takes less
-        than 1e-11 as 1e-11, for below that it would measure its own round-off.
+        than 1e-12 as 1e-12, for below that there is only round-off.
     step : a fixed step [s] instead of rtol, for the discrete gradient alone. Steps end at samples,
         at breaks of inputs and at the end of the run: where the step does not divide what lies
         between two of these, steps there are equal and shorter, the attribute `shortest_step` the
@@ -111,15 +107,15 @@ def simulate(
     every : with `step`, instead of `times`: a sample every so many steps, and at the end.
     progress : a function, told the time [s] reached, now and then; `piezo_sym.simulate` also takes
         True, for a bar.
-    dissipative_start : for discrete_gradient. It reduces the error that a jump of an input leaves
-        in the states where a step is much longer than the fastest time constant: they ring from
-        step to step, for a long time. The first step after t = 0, and after each jump, is made of
-        four quarters that damp what is much faster than they are. What they lose on the way is
-        heat of the first thermal_mass, `heat_numerical` and `produced_numerical`; both balances
-        stay exact. On piezo_stack, the largest error of any state 2 ms after V_in jumps to 100 V,
-        each as a part of the state's size under load (2 mm for q), falls from 1.1e-2 to 1.3e-4 with
-        steps of 0.2 ms, from 2.8e-4 to 3.8e-5 with 0.1 ms. With 5 us, less than the fastest time
-        constant of 9 us, nothing rings and it grows, from 7e-7 to 4e-6.
+    dissipative_start : for discrete_gradient with `step`. It reduces the error that a jump of an
+        input leaves in the states where a step is much longer than the fastest time constant: they
+        ring from step to step, for a long time. The first step after t = 0, and after each jump,
+        is made of four quarters that damp what is much faster than they are. What they lose on the
+        way is heat of the first thermal_mass, `heat_numerical` and `produced_numerical`; both
+        balances stay exact. On piezo_stack, the largest error of any state 2 ms after V_in jumps to
+        100 V, each as a part of the state's size under load (2 mm for q), falls from 1.1e-2 to
+        1.3e-4 with steps of 0.2 ms, from 2.8e-4 to 3.8e-5 with 0.1 ms. With 5 us, less than the
+        fastest time constant of 9 us, nothing rings and it grows, from 7e-7 to 4e-6.
 
     Returns
     -------
@@ -133,7 +129,7 @@ def simulate(
         have their value after it, but at the end of the run their value before it. Attributes:
         units, model, parameters; `method`, `rtol`, or `step` and `shortest_step`, `engine` (its
         compiler, or why there is none), the work (`accepted_steps`, `newton_iterations`,
-        `halvings`; for SciPy `rhs_evaluations`), and which quantities are `extrapolated`.
+        `halvings`: steps refused; for SciPy `rhs_evaluations`).
 
     Raises
     ------

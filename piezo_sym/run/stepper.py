@@ -135,7 +135,7 @@ class Stepper:
         member = self._batch.members[0]
         arrays = at(self._u), at(self._y), self._h
         held = at(limits.margins), at(limits.conditions), at(limits.strict), limits.conditions.size
-        self._all = Tick(member.model, member.fine, *arrays, *held)
+        self._all = Tick(member.model, member.path, *arrays, *held)
         self._tick: Any = getattr(engine.library, f"{module.NAME}_tick")
         self._at = ctypes.byref(self._all)
 

@@ -83,7 +83,9 @@ Text = Annotated[StrictStr, StringConstraints(max_length=MAX_TEXT), AfterValidat
 
 UnitText = Annotated[
     StrictStr,
-    Field(description="Names joined by * and /, with whole powers: 'N*s/m', 'm**2', '1'."),
+    Field(
+        description="Names joined by * and /, with powers: 'N*s/m', 'm**2', 'N/(m/s)**(1/2)', '1'."
+    ),
 ]
 Doc = Annotated[Text, Field(description="What it is, on one line.")]
 

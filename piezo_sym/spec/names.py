@@ -11,7 +11,7 @@ import re
 from collections.abc import Collection
 
 from piezo_sym.errors import SpecError, quote
-from piezo_sym.spec.expressions import FUNCTIONS
+from piezo_sym.expressions.functions import FUNCTIONS
 
 MAX_NAME = 40
 NAME = re.compile(r"[A-Za-z](?:[A-Za-z0-9_]*[A-Za-z0-9])?")

@@ -8,11 +8,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import final
 
-from piezo_sym.spec.dimensions import Dimension, Match, matches
+from piezo_sym.expressions.dimensions import Dimension, Match, matches
+from piezo_sym.expressions.parse import parse_condition, parse_law
+from piezo_sym.expressions.tree import Cmp, Expr, Node, Sym
 from piezo_sym.spec.elements.base import state_symbol
 from piezo_sym.spec.elements.ports import Exchange, Source
-from piezo_sym.spec.expressions import Cmp, Expr, Node, Sym
-from piezo_sym.spec.parse import parse_condition, parse_law
 from piezo_sym.spec.tables import Tables, law_fields, temperatures
 from piezo_sym.spec.units import parse_unit
 

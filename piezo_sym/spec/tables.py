@@ -8,12 +8,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Protocol, final
 
+from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.expressions.parse import parse_condition, parse_law
+from piezo_sym.expressions.text import SPEC, write_comparison
+from piezo_sym.expressions.tree import ZERO, Call, Cmp, Expr, Node, Num, names, rename, walk
 from piezo_sym.spec.elements import Conduction, Element, ThermalMass
 from piezo_sym.spec.elements.base import Letters, Refers, state_symbol
-from piezo_sym.spec.expressions import ZERO, Call, Cmp, Expr, Node, Num, names, rename, walk
 from piezo_sym.spec.fields import Domain, Header, Input, Parameter
-from piezo_sym.spec.parse import parse_condition, parse_law
-from piezo_sym.spec.text import SPEC, write_comparison
 
 
 class Tables(Protocol):
@@ -154,7 +155,7 @@ def _not_negative(
 def _widths(law: Node) -> Iterator[Cmp]:
     """Yield that what stands as a half width is >= 0, but for plain numbers that are."""
     for node in walk(law):
-        if isinstance(node, Call) and node.function in {"deadzone", "saturate"}:
+        if isinstance(node, Call) and RECORDS[node.function].width:
             width = node.args[1]
             if not (isinstance(width, Num) and width.value >= 0):
                 yield Cmp(">=", width, ZERO)

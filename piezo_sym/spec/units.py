@@ -1,8 +1,8 @@
 """Unit strings: a grammar of our own, then pint.
 
 Input: text such as ``N*s/m``.  Output: a `Unit`, its exact factor to coherent SI and its dimension.
-The grammar knows names, ``*``, ``/``, and whole powers up to 9 (``m**2``); ``1`` is
-the unit of a pure number.  pint never sees anything else.
+The grammar knows names, ``*``, ``/``, parentheses and powers up to 9, whole (``m**2``) or rational
+(``N/(m/s)**(1/2)``); ``1`` is the unit of a pure number.  pint sees names alone.
 """
 
 import re
@@ -12,12 +12,13 @@ from functools import cache, lru_cache
 from typing import Any, final
 
 from piezo_sym.errors import SpecError, nearest, quote
+from piezo_sym.expressions.dimensions import BASES
 
 MAX_UNIT = 60
 ATOM = r"[A-Za-z]+"
-TERM = re.compile(rf"(?P<name>{ATOM}|1)(?:(?:\*\*|\^)(?P<power>-?[1-9]))?")
+POWER = re.compile(r"(?:\*\*|\^)(?P<power>-?[1-9]|\(-?[1-9]/[2-9]\))")
+MAX_DEPTH = 2
 COMMON = ("m", "kg", "s", "A", "K", "N", "J", "W", "V", "C", "F", "H", "Wb", "ohm", "Hz", "Pa")
-BASES = ("kg", "m", "s", "A", "K", "mol", "cd")
 #: The units known, by pint's long names; SI prefixes go with each.
 _UNITS = """meter gram second ampere kelvin mole candela hertz newton pascal joule watt coulomb volt
     farad ohm siemens weber tesla henry radian degree turn revolutions_per_minute minute hour day
@@ -98,38 +99,87 @@ def _read(text: str, where: str, value: float | None) -> Unit:
     factor, dimension = Fraction(1), [Fraction(0)] * len(BASES)
     terms = [(_named(name, where, value), power) for name, power in _terms(text, where)]
     for unit, power in terms:
-        factor *= unit.factor**power
+        factor *= _raised(unit.factor, power, text, where)
         dimension = [d + p * power for d, p in zip(dimension, unit.dimension, strict=True)]
     si = text if factor == 1 else _spelled([(unit.si, power) for unit, power in terms])
     return Unit(text, si, factor, tuple(dimension))
 
 
-def _spelled(terms: list[tuple[str, int]]) -> str:
-    first, *rest = terms
-    text = raised(*first)
-    for name, power in rest:
-        text += f"*{raised(name, power)}" if power > 0 else f"/{raised(name, -power)}"
+def _spelled(terms: list[tuple[str, Fraction]]) -> str:
+    text = ""
+    for name, power in terms:
+        if re.search("[*/]", name):  # a product of base units
+            part, sign = name if power == 1 else raised(f"({name})", power), "*"
+        else:
+            over = bool(text) and power < 0
+            part, sign = raised(name, -power if over else power), "/" if over else "*"
+        text += f"{sign}{part}" if text else part
     return text
 
 
-def _terms(text: str, where: str) -> list[tuple[str, int]]:
-    expected = "names joined by * and /, with whole powers up to 9, such as 'N*s/m' or 'm**2'"
-    fault = SpecError(f"{quote(text)} is not a unit", where, expected)
-    if not text or len(text) > MAX_UNIT:
-        raise fault
-    position, sign, terms = 0, 1, []
+def _terms(text: str, where: str) -> list[tuple[str, Fraction]]:
+    read = _product(text, 0, MAX_DEPTH) if len(text) <= MAX_UNIT else None
+    if read is None or read[1] != len(text) or any(_most(power) > 9 for _, power in read[0]):
+        expected = "names joined by * and /, with powers up to 9, such as 'N*s/m', 'm**2'"
+        expected += " or 'N/(m/s)**(1/2)'"
+        raise SpecError(f"{quote(text)} is not a unit", where, expected)
+    return read[0]
+
+
+def _most(power: Fraction) -> int:
+    return max(abs(power.numerator), power.denominator)
+
+
+def _product(text: str, at: int, depth: int) -> tuple[list[tuple[str, Fraction]], int] | None:
+    """Return names with their powers, and where the product ends; None if there is none.
+
+    Parentheses are for a power of what stands in them.
+    """
+    sign, terms = 1, list[tuple[str, Fraction]]()
     while True:
-        match = TERM.match(text, position)
-        if match is None:
-            raise fault
-        terms.append((match["name"], sign * int(match["power"] or 1)))
-        position = match.end()
-        if position == len(text):
-            return terms
-        if text[position] not in "*/":
-            raise fault
-        sign = -1 if text[position] == "/" else 1
-        position += 1
+        read = _factor(text, at, depth)
+        if read is None:
+            return None
+        inner, at = read
+        match = POWER.match(text, at)
+        if text[at - 1] == ")" and not match:
+            return None
+        power = sign * (Fraction(match["power"].strip("()")) if match else Fraction(1))
+        terms += [(name, own * power) for name, own in inner]
+        at = match.end() if match else at
+        if text[at : at + 1] not in {"*", "/"}:
+            return terms, at
+        sign, at = (1 if text[at] == "*" else -1), at + 1
+
+
+def _factor(text: str, at: int, depth: int) -> tuple[list[tuple[str, Fraction]], int] | None:
+    """Return a name, or what stands in parentheses, and where it ends."""
+    name = re.compile(rf"{ATOM}|1").match(text, at)
+    if name:
+        return [(name.group(), Fraction(1))], name.end()
+    inner = _product(text, at + 1, depth - 1) if depth and text[at : at + 1] == "(" else None
+    if inner is None or text[inner[1] : inner[1] + 1] != ")":
+        return None
+    return inner[0], inner[1] + 1
+
+
+def _raised(factor: Fraction, power: Fraction, text: str, where: str) -> Fraction:
+    """Return a power of a factor, which has to be a rational number."""
+    order, size = power.denominator, factor**power.numerator
+    parts = [_root(number, order) for number in (size.numerator, size.denominator)]
+    if None in parts:
+        what = f"unit {quote(text)} has a root of {factor}, which is no exact number"
+        raise SpecError(what, where, "a root of coherent SI units", "give the value in those")
+    return Fraction(*(number or 0 for number in parts))
+
+
+def _root(number: int, order: int) -> int | None:
+    """Return the whole root of a whole number, by halving, or None if it has none."""
+    low, high = 0, number
+    while low < high:
+        middle = (low + high + 1) // 2
+        low, high = (middle, high) if middle**order <= number else (low, middle - 1)
+    return low if low**order == number else None
 
 
 @cache

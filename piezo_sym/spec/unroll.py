@@ -10,12 +10,12 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from piezo_sym.errors import UsageError, nearest, quote
+from piezo_sym.expressions.parse import parse_condition, parse_law
+from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tree import Cmp, names, rename
 from piezo_sym.spec.elements.base import Element, state_symbol
-from piezo_sym.spec.expressions import Cmp, names, rename
 from piezo_sym.spec.model import Model
-from piezo_sym.spec.parse import parse_condition, parse_law
 from piezo_sym.spec.tables import banks, condition_text, lane_parameters, law_fields, states
-from piezo_sym.spec.text import spell
 
 
 def unroll(model: Model, counts: Mapping[str, int]) -> Model:

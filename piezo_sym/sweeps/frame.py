@@ -83,7 +83,7 @@ def frame_of(plan: Plan, module: GeneratedModule) -> Frame:
     UsageError : two quantities would have one name.
     """
     system = widest(plan, module)
-    known = layout(system, extrapolated=plan.extrapolated)
+    known = layout(system)
     inputs = dict(inputs_of(plan, module, system, known))
     results = [name for name in known if name not in {r.name for r in module.INPUTS}]
     coords: dict[str, Variable] = dict(coordinates(system, plan.samples))

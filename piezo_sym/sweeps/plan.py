@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.discrete import METHOD
 from piezo_sym.run.parameters import LaneValue
 from piezo_sym.run.signals import Signal
 from piezo_sym.sweeps.axes import Axis
@@ -95,11 +94,6 @@ class Plan:
     def with_most(self, most: int) -> Plan:
         """Return the same sweep in boxes of other sizes."""
         return replace(self, most=most)
-
-    @property
-    def extrapolated(self) -> bool:
-        """Whether states are extrapolated from three runs."""
-        return self.method == METHOD and self.step is None
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.dataset import variables
-from piezo_sym.run.discrete import Runs
 from piezo_sym.run.engine import Engine
 from piezo_sym.run.engine.members import Members
 from piezo_sym.run.ledger import Trajectory, row_counts
 from piezo_sym.run.module import Record, exchanges
+from piezo_sym.run.runs import Runs
 from piezo_sym.run.system import System
 
 
@@ -41,19 +41,11 @@ class Quantity:
 Quantities: TypeAlias = dict[str, Quantity]
 
 
-def layout(
-    system: System, *, extrapolated: bool
-) -> dict[str, tuple[tuple[str, ...], dict[str, Any]]]:
-    """Return dimensions and attributes of every quantity of a run, inputs among them, in order.
-
-    Parameters
-    ----------
-    extrapolated : whether states are extrapolated, so that the ledger is that of other ones.
-    """
+def layout(system: System) -> dict[str, tuple[tuple[str, ...], dict[str, Any]]]:
+    """Return dimensions and attributes of every quantity of a run, inputs among them, in order."""
     n, m, k = row_counts(system)
     states, inputs, integrals = (np.full((size, 1), np.nan) for size in (n, m, k))
-    finest = states if extrapolated else None
-    nothing = Trajectory(np.full(n, np.nan), states, inputs, integrals, 0, 0, finest)
+    nothing = Trajectory(np.full(n, np.nan), states, inputs, integrals, 0, 0)
     with np.errstate(all="ignore"):
         return {name: (dims, attrs) for name, (dims, _, attrs) in variables(system, nothing)}
 
@@ -81,16 +73,12 @@ def quantities(
     runs: Runs, engine: Engine, u: FloatArray, kept: slice
 ) -> Iterator[tuple[str, NDArray[Any]]]:
     """Yield the quantities in no certain order; rows of a bank stay together."""
-    system, batch = runs.systems[0], runs.batch
+    system = runs.systems[0]
     module = system.module
     call = Members(engine, runs.systems.parameters)
-    x = np.ascontiguousarray(batch.states[:, kept])
-    balanced = x
-    if runs.extrapolated:  # so near to the edge that the extrapolation may cross it
-        balanced = np.ascontiguousarray(batch.fine[:, kept])
-        x = np.where(call.inside(x, u)[..., None], x, balanced)
-    sums = batch.sums[:, kept]
-    ports, processes, exchanging = batch.rows.ports, batch.rows.processes, exchanges(module)
+    x, sums = np.ascontiguousarray(runs.states[:, kept]), runs.sums[:, kept]
+    ports, exchanging = len(module.OUTPUTS), exchanges(module)
+    processes = sum(part.stop - part.start for part in system.rows(module.PROCESSES))
     ends = np.cumsum([ports, processes, processes, len(exchanging)])
     supplied, heat, produced, exchanged, _ = np.split(sums, ends, axis=2)
     first = np.ascontiguousarray(runs.start[:, None])
@@ -107,7 +95,7 @@ def quantities(
     yield from spread(system, brought, exchanged, "entropy_exchanged_")
     made = np.sum(produced, axis=2) + np.sum(exchanged, axis=2)
     for name, booked in (("energy", np.sum(supplied, axis=2)), ("entropy", made)):
-        gained = call(name, balanced, 1)[..., 0] - call(name, first, 1)[..., 0]
+        gained = call(name, x, 1)[..., 0] - call(name, first, 1)[..., 0]
         yield f"{name}_residual", gained - booked
 
 

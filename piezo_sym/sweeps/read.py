@@ -13,7 +13,6 @@ from numpy.typing import ArrayLike
 
 from piezo_sym.errors import PiezoError, UsageError, listing, quote
 from piezo_sym.run.checks import FloatArray, positive
-from piezo_sym.run.discrete import METHOD
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.method import checked_method, way_of
 from piezo_sym.run.module import GeneratedModule, lanes
@@ -24,6 +23,7 @@ from piezo_sym.run.parameters import (
     read_sizes,
     sample_times,
 )
+from piezo_sym.run.runs import METHOD
 from piezo_sym.run.simulate import read_rtol, refuse_step
 from piezo_sym.sweeps.axes import Axis, read_axes, single_numbers
 from piezo_sym.sweeps.plan import (

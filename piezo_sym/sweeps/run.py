@@ -14,13 +14,14 @@ from typing import TYPE_CHECKING, Any, TypeAlias, final
 import numpy as np
 
 from piezo_sym.errors import PiezoError, RunError
-from piezo_sym.run.adaptive import adaptive
+from piezo_sym.run.collocation import with_tolerance
 from piezo_sym.run.compiled import cause, check_inputs, inputs_move
 from piezo_sym.run.dataset import coordinates
-from piezo_sym.run.discrete import METHOD, Runs, fixed
+from piezo_sym.run.discrete import fixed
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.mesh import inputs_at
 from piezo_sym.run.module import lanes
+from piezo_sym.run.runs import METHOD, Runs
 from piezo_sym.run.simulate import by_scipy
 from piezo_sym.sweeps.group import Group, group_at
 from piezo_sym.sweeps.quantities import (
@@ -141,7 +142,7 @@ def group_result(
     arrays = in_c(plan, group, engine, u, kept, watch) if engine else one_by_one(plan, group, watch)
     if not engine:
         arrays = {name: values[:, kept] for name, values in arrays.items()}
-    known = layout(system, extrapolated=plan.extrapolated)
+    known = layout(system)
     found = {n: Quantity(d, arrays[n], a) for n, (d, a) in known.items() if n in arrays}
     if plan.reduce is None:
         return found, {}
@@ -186,19 +187,21 @@ def in_c(
 
 
 def march(plan: Plan, systems: Systems, engine: Engine, x: FloatArray, watch: Watch) -> Runs:
-    """Return runs in C; one that stops may stop others, so those that stop are run again alone.
+    """Return runs in C; those with a fixed step that stop are run again alone.
 
-    Runs whose inputs leave the domain stop there, as those of `simulate` do.
+    For one of them may stop others.  Runs whose inputs leave the domain stop there, as those of
+    `simulate` do.
     """
     outside = input_errors(systems, x, plan.samples)
     runs = stepped(plan, systems, engine, x, watch)
-    errors, batch = [old or new for old, new in zip(outside, runs.errors, strict=True)], runs.batch
+    errors = [old or new for old, new in zip(outside, runs.errors, strict=True)]
     for k in (k for k, error in enumerate(runs.errors) if error and not outside[k]):
-        alone = stepped(plan, systems.some([k]), engine, x[k : k + 1], watch)
-        stopped = alone.errors[0]
+        stopped = runs.errors[k]
+        if plan.step is not None:
+            alone = stepped(plan, systems.some([k]), engine, x[k : k + 1], watch)
+            stopped = alone.errors[0]
+            runs.states[k], runs.sums[k] = alone.states[0], alone.sums[0]
         errors[k] = stopped and cause(systems[k], x[k], plan.samples, stopped)
-        for name in ("states", "fine", "sums"):
-            getattr(batch, name)[k] = getattr(alone.batch, name)[0]
     return replace(runs, errors=errors)
 
 
@@ -221,7 +224,9 @@ def input_error(system: System, x: FloatArray, samples: FloatArray) -> RunError 
 def stepped(plan: Plan, systems: Systems, engine: Engine, x: FloatArray, watch: Watch) -> Runs:
     """Return runs in C, with the plan's step or tolerance."""
     if plan.step is None:
-        return adaptive(systems, engine, x, plan.samples, plan.rtol, watch)
+        side_by_side = plan.side_by_side
+        given = systems, engine, x, plan.samples, plan.rtol, watch
+        return with_tolerance(*given, side_by_side=side_by_side)
     return fixed(systems, engine, x, plan.samples, plan.step, watch)
 
 
@@ -240,7 +245,7 @@ def spread_out(
     times = plan.samples[kept].size
     names = {record.name for record in system.module.INPUTS}
     whole = {}
-    for name, (dims, _) in layout(system, extrapolated=plan.extrapolated).items():
+    for name, (dims, _) in layout(system).items():
         if name not in names:
             sizes = (times, *(lanes(system.parameters, bank) for bank in dims[1:]))
             whole[name] = np.full((len(failed), *sizes), np.nan)
@@ -282,7 +287,7 @@ def dataset(
         for name, (values, attrs) in axis.coordinates():
             label = f"over_{name}" if name in found or name in coords else name
             coords[label] = (MEMBER, np.asarray(values)[points[:, n]], attrs)
-    known = layout(system, extrapolated=plan.extrapolated)
+    known = layout(system)
     order: Iterable[str] = [name for name in known if name in found]
     data = {n: ((MEMBER, *found[n].dims), found[n].values, found[n].attrs) for n in order}
     module = system.module

@@ -7,18 +7,19 @@ call of one of the file's own functions.  A sum over lanes has a value when its 
 from __future__ import annotations
 
 import ast
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import final
 
+from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.translation.change import moved
 from piezo_sym.translation.expressions import PLAIN, TEST, WHOLE, Expressions, Read, refused
 from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import Proved
 from piezo_sym.translation.zero import is_zero
 
-CALLS = {name: name for name in ("exp", "expm1", "log", "sqrt", "sin", "cos", "tanh", "pow")}
-CALLS |= {"fabs": "abs", "copysign": "copysign"}
+CALLS = {record.in_c: name for name, record in RECORDS.items() if record.smooth}
+CALLS |= {"pow": "pow", "fabs": "abs", "copysign": "copysign"}
 
 
 @final
@@ -74,7 +75,22 @@ class Listed:
     values: tuple[Value, ...]
 
 
-Meaning = Read | Argument | Variable | Lanes | Listed
+@final
+@dataclass(frozen=True)
+class Branches:
+    """A branch, or a pointer to one per lane of the bank in whose loop it is read."""
+
+    place: Value
+    shared: bool
+
+
+#: The place of a branch, of the first lane where it has some, and the bank of these.
+Branch = tuple[Value, str | None]
+Meaning = Read | Argument | Variable | Lanes | Listed | Branches
+
+
+class UnreadError(NotShownError):
+    """A name stands for what has not been read: more is to be read before."""
 
 
 @final
@@ -83,30 +99,37 @@ class Scope:
 
     Attributes
     ----------
-    roles : what each argument is: x, u, p or out.
+    roles : what each argument is: x, u, p, out, or of a stage g, b, rows, s, m.
     names : what else a name means.
     lanes : the open loops' variables and banks, outermost first.
     open : the numbers of the open loops, 0 outside of all.
+    branches : what branches are known to be, where choices are by branches alone.
     """
 
     def __init__(
-        self, known: Proved, helpers: Mapping[str, Helper], roles: Mapping[str, str]
+        self,
+        known: Proved,
+        helpers: Mapping[str, Helper],
+        roles: Mapping[str, str],
+        calls: Mapping[str, str],
+        branches: Mapping[Branch, Value] | None,
     ) -> None:
         self.known, self.helpers, self.roles = known, helpers, roles
+        self.calls, self.branches = calls, branches
         self.names: dict[str, Meaning] = {}
         self.lanes: list[tuple[str, str]] = []
         self.open = [0]
-        self.read = Expressions(known.field, known.numbers, known.real, self._leaf, CALLS, True)
+        self.read = Expressions(known.field, known.numbers, known.real, self._leaf, calls, True)
 
     def declare(self, name: str, meaning: Meaning) -> None:
         """Give a new name a meaning."""
-        taken = (self.names, self.roles, self.helpers, CALLS)
+        taken = (self.names, self.roles, self.helpers, self.calls)
         if any(name in table for table in taken):
             raise NotShownError(f"{name} is declared twice")
         self.names[name] = meaning
 
-    def pointer(self, node: ast.expr) -> Lanes:
-        """Return what a pointer to a parameter's, or a state's, lanes points to."""
+    def pointer(self, node: ast.expr) -> Lanes | Branches:
+        """Return what a pointer to the lanes of a parameter or a part of an array points to."""
         match node:
             case ast.Attribute(ast.Name(p), name) if self.roles.get(p) == "p":
                 name = name.rstrip("_")
@@ -116,8 +139,11 @@ class Scope:
                 while isinstance(left, ast.BinOp) and isinstance(left.op, ast.Add):
                     right = ast.BinOp(left.right, ast.Add(), right)
                     left = left.left
-                if isinstance(left, ast.Name) and self.roles.get(left.id) == "x":
-                    layout = self.known.layouts["x"]
+                role = self.roles.get(left.id, "") if isinstance(left, ast.Name) else ""
+                if role == "b":
+                    return Branches(self.read.whole(right), shared=False)
+                if role in {"x", "g"}:
+                    layout = self.known.layouts[role]
                     slot = layout.slots[layout.at(self.read.whole(right), bank=True)]
                     return Lanes(self.known.names[slot.label], slot.bank or "")
         raise refused(node, "a pointer")
@@ -129,8 +155,12 @@ class Scope:
             case ast.Attribute(ast.Name(p), name) if self.roles.get(p) == "p":
                 value, whole = self.known.parameter(name.rstrip("_"))  # names of a spec have none
                 return value, WHOLE if whole else PLAIN
-            case ast.Subscript(ast.Name(x), place) if self.roles.get(x) in {"x", "u"}:
+            case ast.Subscript(ast.Name(x), place) if self.roles.get(x) in {"x", "u", "g"}:
                 return self.known.part(self.roles[x], self.read.whole(place)), PLAIN
+            case ast.Call(ast.Name("chosen"), [condition, then, other], []):
+                if self.branches is None:
+                    return self.read.choice(condition, then, other)
+                return self.read.chosen(self._branch(condition, self.branches), then, other)
             case ast.Subscript(ast.Name(array), ast.Name(j)):
                 found, loops = self.names.get(array), [name for name, _ in self.lanes]
                 if isinstance(found, Lanes) and (j, found.bank) in self.lanes:
@@ -152,12 +182,45 @@ class Scope:
         if isinstance(found, Variable):
             outside = self.open[self.open.index(found.loop) + 1 :]
             found.read.update(outside)
-            if found.value is None or found.added & {*outside}:
+            if found.added & {*outside}:
                 raise refused(node, "a sum that is read before its loop ends")
+            if found.value is None:
+                raise UnreadError(f"{ast.unparse(node)} is read before it has a value")
             return found.value, PLAIN
         if isinstance(found, tuple):
             return found
         raise refused(node, "an array as a number")
+
+    def branch(self, place: Value, banks: Sequence[str]) -> Branch:
+        """Return what branch stands at a place, of each lane in a loop."""
+        if not banks:
+            return place, None
+        return place - self.known.field.name("index", banks[0]), banks[0]
+
+    def given(self, node: ast.expr) -> Branches | None:
+        """Return the branch that a declaration takes from what is given, if it does."""
+        match node:
+            case ast.Subscript(ast.Name(b), place) if self.roles.get(b) == "b":
+                return Branches(self.read.whole(place), shared=True)
+        return None
+
+    def _branch(self, condition: ast.expr, branches: Mapping[Branch, Value]) -> Value:
+        """Return 1 where a branch is taken: ``NAME > 0.0``, or ``NAME[j] > 0.0`` in a loop."""
+        match condition:
+            case ast.Compare(ast.Name(name), [ast.Gt()], [ast.Constant(0.0)]):
+                bank = None
+            case ast.Compare(
+                ast.Subscript(ast.Name(name), ast.Name(j)), [ast.Gt()], [ast.Constant(0.0)]
+            ) if [j] == [loop for loop, _ in self.lanes]:
+                bank = self.lanes[0][1]
+            case _:
+                raise refused(condition, "a choice by something else than a branch")
+        found = self.names.get(name)
+        if not isinstance(found, Branches) or found.shared != (bank is None):
+            raise refused(condition, "a choice by something else than a branch")
+        if (found.place, bank) not in branches:
+            raise UnreadError("a branch of no switching function")
+        return branches[found.place, bank]
 
     def _inlined(self, helper: Helper, args: list[ast.expr], node: ast.expr) -> Value:
         """Return what a helper gives for some arguments."""
@@ -179,11 +242,29 @@ class Scope:
         self.names, self.helpers = before
         return read
 
+    def helper_is(self, helper: str, function: Callable[..., Value], count: int) -> bool:
+        """Return whether a function of the file's own is a given one, of so many numbers."""
+        if helper not in self.helpers:
+            return False
+        names = {f"a{n}": self.known.field.name(f"{n} of {helper}") for n in range(count)}
+        call = ast.Call(ast.Name(helper), [ast.Name(name) for name in names], [])
+        meanings = {name: (value, PLAIN) for name, value in names.items()}
+        made = self._within(meanings, self.helpers, call)[0]
+        return is_zero(made - function(*names.values()))
+
     def lesser(self) -> bool:
         """Return whether the file's own ``min`` is the lesser of two numbers."""
-        if "min" not in self.helpers:
-            return False
-        names = {n: (self.known.field.name(f"{n} of min"), PLAIN) for n in ("a", "b")}
-        call = ast.Call(ast.Name("min"), [ast.Name("a"), ast.Name("b")], [])
-        made = self._within(names, self.helpers, call)[0]
-        return is_zero(made - self.read.apply("minimum", [value for value, _ in names.values()]))
+        return self.helper_is("min", lambda a, b: self.read.apply("minimum", [a, b]), 2)
+
+    def listed(self, node: ast.expr) -> tuple[Value, ...]:
+        """Return what ``j < n ? listed[j] : (double)NAN`` lists, n the list's length."""
+        match node:
+            case ast.IfExp(
+                ast.Compare(ast.Name(j), [ast.Lt()], [ast.Constant(n)]),
+                ast.Subscript(ast.Name(name), ast.Name(k)),
+                ast.Name("NAN"),
+            ) if self.lanes and j == k == self.lanes[-1][0]:
+                found = self.names.get(name)
+                if isinstance(found, Listed) and n == len(found.values) > 1:
+                    return found.values
+        return ()

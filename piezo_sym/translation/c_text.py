@@ -6,7 +6,9 @@ Input: the text of a C file.  Output: `Tokens`.  Comments are left out; of direc
 
 import ast
 import re
+from collections.abc import Mapping
 from keyword import iskeyword
+from types import MappingProxyType
 from typing import final
 
 from piezo_sym.translation.field import NotShownError
@@ -19,8 +21,8 @@ _TOKEN = re.compile(
     r"|(?P<sign>->|\|\||\+\+|--|\+=|[<>=!]=|[-+*/<>=?:,;(){}\[\]])",
     re.DOTALL | re.ASCII,
 )
-#: A comment, and the two headers: nothing of a file stands before them.
-_HEAD = r'\s*(?:/\*(?:(?!\*/)[^\\])*\*/)?\s*(?:#include (?:"{model}\.h"|<math\.h>)\n\s*){{2}}'
+#: Comments, and the two headers: nothing of a file stands before them.
+_HEAD = r'\s*(?:/\*(?:(?!\*/)[^\\])*\*/\s*)*(?:#include (?:"{model}\.h"|<math\.h>)\n\s*){{2}}'
 _SPELLED, _CLOSING = {"||": "or", "->": "."}, {"(": ")", "[": "]"}
 MOST_DIGITS = 9
 
@@ -33,18 +35,31 @@ class Tokens:
     ----------
     text : the file.
     model : its name, which its header has.
+    macros : what stands behind the headers and gives `spelled` their meaning.
+    spelled : words that stand for others, or for nothing before what is in brackets.
     """
 
-    def __init__(self, text: str, model: str) -> None:
+    def __init__(
+        self,
+        text: str,
+        model: str,
+        macros: str = "",
+        spelled: Mapping[str, str] = MappingProxyType({}),
+    ) -> None:
         head = re.match(_HEAD.format(model=re.escape(model)), text)
         for line in (f'#include "{model}.h"\n', "#include <math.h>\n"):
             if head is None or text.count(line) != 1:
                 raise NotShownError(f"the C file should begin with one line {line.strip()}")
         assert head is not None
-        first, text = text.count("\n", 0, head.end()), text[head.end() :]
+        if not text.startswith(macros, head.end()):
+            raise NotShownError("the C file should define its words behind the headers")
+        first, text = (
+            text.count("\n", 0, head.end() + len(macros)),
+            text[head.end() + len(macros) :],
+        )
         self.found: list[str] = []
         self.at = 0
-        self.sums: list[frozenset[str]] = []
+        self.sums: dict[int, frozenset[str]] = {}
         place = 0
         while place < len(text):
             match = _TOKEN.match(text, place)
@@ -53,13 +68,20 @@ class Tokens:
                 number = text.count("\n", 0, place) + first + 1
                 raise NotShownError(f"line {number} of the C file is outside the grammar")
             place = match.end()
-            if match["pragma"] is not None:
-                self.sums.append(
-                    frozenset(re.findall(r"\w+", match["pragma"][len(" reduction") :]))
-                )
-                self.found.append("#pragma")
-            elif match["space"] is None:
-                self.found.append(match[0])
+            self._keep(match, text, spelled)
+
+    def _keep(self, match: re.Match[str], text: str, spelled: Mapping[str, str]) -> None:
+        """Take a token as the next: a directive by its sums, a word by what it stands for."""
+        if match["pragma"] is not None:
+            self.sums[len(self.found)] = frozenset(re.findall(r"\w+", match["pragma"])[1:])
+            self.found.append("#pragma")
+        elif match["space"] is None:
+            word = spelled.get(match[0], match[0])
+            if match["word"] is not None and word == match[0] in spelled.values():
+                raise NotShownError(f"the C file has {match[0]!r}, and another word for it")
+            if not word and not text.startswith("(", match.end()):
+                raise NotShownError(f"the C file has {match[0]!r} without what it is of")
+            self.found += [word] if word else []
 
     def peek(self) -> str:
         """Return the next token, or nothing at the end."""

@@ -8,6 +8,9 @@ Signs have the derivative 0: what is said of derivatives holds inside the branch
 from collections.abc import Callable, Mapping
 from fractions import Fraction
 
+from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.expressions.parse import parse_rule
+from piezo_sym.expressions.tree import Add, Call, Div, Mul, Neg, Node, Num, Pow, Sym, children
 from piezo_sym.translation.field import Field, Generator, NotShownError, Value
 from piezo_sym.translation.functions import call, power
 from piezo_sym.translation.signs import compare, sign_of
@@ -48,6 +51,14 @@ def _put(field: Field, g: int, new: Mapping[int, Value]) -> Value:
         op = {1: ">", 0: "==", -1: "<"}[int(str(gen.mark))]
         return compare(op, arg, field.zero)
     return call(gen.kind, arg)
+
+
+def spelled(value: Value) -> Value:
+    """Return a value with what letters stand for in their place."""
+    gens = value.field.gens
+    while letters := {g: gens[g].arg for g in value.parts if gens[g].kind == "letter"}:
+        value = put(value, {g: arg for g, arg in letters.items() if arg is not None})
+    return value
 
 
 def moved(value: Value, bank: str, lane: int) -> Value:
@@ -117,13 +128,29 @@ def _slope(field: Field, g: int, state: int, own: Value, of_sum: Inner) -> Value
     inner = _chain(gen.arg, state, own, of_sum)
     if gen.kind in {"power", "letter"} or not inner.terms:
         return inner
-    match gen.kind:
-        case "exp":
-            return same * inner
-        case "log":
-            return power(gen.arg, Fraction(-1)) * inner
-        case "sin":
-            return call("cos", gen.arg) * inner
-        case "cos":
-            return -(call("sin", gen.arg) * inner)
-    return (field.one - same * same) * inner  # tanh
+    return _of_rule(parse_rule(RECORDS[gen.kind].slopes[0]), {"x": gen.arg, "y": same}) * inner
+
+
+def _of_rule(node: Node, words: Mapping[str, Value]) -> Value:
+    """Return the value of a derivative as a record states it."""
+    parts = [_of_rule(part, words) for part in children(node)]
+    field = words["x"].field
+    match node:
+        case Num(value):
+            return field.number(value)
+        case Sym(name):
+            return words[name]
+        case Neg():
+            return -parts[0]
+        case Add():
+            return field.total(parts)
+        case Mul():
+            return parts[0] * parts[1]
+        case Div():
+            return parts[0] * power(parts[1], Fraction(-1))
+        case Pow(_, exponent):
+            return power(parts[0], exponent)
+        case Call(function):
+            root = RECORDS[function].power
+            return call(function, parts[0]) if root is None else power(parts[0], root)
+    raise NotShownError("a derivative that chooses")

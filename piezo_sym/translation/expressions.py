@@ -140,20 +140,21 @@ class Expressions:
 
     def choice(self, condition: ast.expr, then: ast.expr, other: ast.expr) -> Read:
         """Return one value or the other; each is needed only where it is chosen."""
-        field, test, parts = self.field, self.test(condition), list[Read]()
+        value, shape = self.chosen(self.test(condition), then, other)
+        return value, joined(shape, self.shape_of(condition), condition)
+
+    def chosen(self, test: Value, then: ast.expr, other: ast.expr) -> Read:
+        """Return one value where `test` is 1, and the other where it is 0."""
+        field, parts = self.field, list[Read]()
         path, one = field.path, field.one
         for chosen, node in ((test, then), (one - test, other)):
             field.path = path and path * chosen
             parts.append(self.any(node))
         field.path = path
         if parts[0][1] == parts[1][1] == WHOLE:
-            raise refused(condition, "a choice of integers")
-        parts = [self._real(part) for part in parts]
-        (first, shape), (second, shape_of_other) = parts
-        shape = joined(
-            joined(shape, shape_of_other, condition), self.shape_of(condition), condition
-        )
-        return choose(test, first, second), shape
+            raise refused(then, "a choice of integers")
+        (first, shape), (second, shape_of_other) = map(self._real, parts)
+        return choose(test, first, second), joined(shape, shape_of_other, then)
 
     def shape_of(self, condition: ast.expr) -> Shape:
         """Return the shape of the numbers that a condition compares."""

@@ -1,10 +1,10 @@
-"""Powers, exponentials, logarithms, sine, cosine and tanh in normal form.
+"""Powers, exponentials, logarithms and other smooth functions in normal form.
 
 Input: values.  Output: values.  What a function needs of its argument is noted in `Field.needs`.
 Identities used, and their premises:
 exp(a + b) = exp(a) exp(b); exp(c log x) = x**c; log(exp z) = z;
 log(a b) = log a + log b and (a b)**c = a**c b**c for a, b > 0; (x**(1/n))**n = x for x >= 0;
-(x**2)**(1/2) = abs(x); sin and tanh are odd, cos is even.
+(x**2)**(1/2) = abs(x); f(-x) = -f(x) or f(x) where a record says that f is odd or even.
 """
 
 from collections.abc import Iterator
@@ -13,6 +13,7 @@ from functools import partial
 
 from sympy import factorint
 
+from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.translation.field import Exponent, Field, Need, NotShownError, Value
 from piezo_sym.translation.signs import factors, lifted, primitive, side_of, sign, sign_of
 
@@ -106,7 +107,7 @@ def _undefined(field: Field, kind: str) -> Value:
 
 
 def call(function: str, arg: Value) -> Value:
-    """Return exp, log, sin, cos or tanh of a value."""
+    """Return a smooth function of a value."""
     own = {"exp": _exp, "log": _log}.get(function)
     return lifted(own or partial(_even_or_odd, function), arg)
 
@@ -141,13 +142,13 @@ def _log(arg: Value) -> Value:
 
 
 def _even_or_odd(function: str, arg: Value) -> Value:
-    field = arg.field
-    if not arg.terms:
-        return field.one if function == "cos" else field.zero
-    if arg.lead > 0:
+    field, record = arg.field, RECORDS[function]
+    if not arg.terms and record.known and record.known[0] == 0:
+        return field.number(record.known[1])
+    if arg.lead > 0 or not record.parity:
         return field.generator(function, arg)
     made = field.generator(function, -arg)
-    return made if function == "cos" else -made
+    return made if record.parity == "even" else -made
 
 
 def size_of(value: Value) -> Value:

@@ -62,6 +62,7 @@ class Proved:
     margins : of the conditions of the domain, and whether each is strict.
     numbers : numbers of the spec that have to be rounded to be printed, by what they become.
     parameters, inputs : the names that are parameters, the rows of u.
+    means : of a stage, for each name that is a co-state's mean the co-state.
     """
 
     field: Field
@@ -74,6 +75,7 @@ class Proved:
     numbers: Mapping[float, Fraction]
     parameters: frozenset[str]
     inputs: tuple[Slot, ...]
+    means: Mapping[str, Value]
 
     @cached_property
     def layouts(self) -> dict[str, Layout]:

@@ -10,6 +10,7 @@ import re
 from collections.abc import Mapping
 from itertools import chain
 
+from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.elements.ports import Body
 from piezo_sym.spec.tables import banks, condition_text, conditions, lane_parameters
@@ -76,7 +77,8 @@ def numpy_functions(text: str, iphs: IPHS) -> Mapping[str, ast.FunctionDef]:
         module = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         raise NotShownError(f"the NumPy module cannot be parsed: {error}") from error
-    left, tables = _helpers(iphs), _tables(iphs)
+    called = (r.numpy_helper for r in RECORDS.values() if f"{r.numpy}(" in text)
+    left, tables = [*_helpers(iphs), *chain.from_iterable(called)], _tables(iphs)
     functions: dict[str, ast.FunctionDef] = {}
     for node in module.body[1:]:
         match node:

@@ -11,17 +11,19 @@ from collections.abc import Mapping, Sequence
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
+from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.translation.change import moved
 from piezo_sym.translation.expressions import PLAIN, WHOLE, Expressions, Read, Shape, refused
 from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import ALL, LEAST, SAME, Key, Layout, Proved
 from piezo_sym.translation.rows import Rows
+from piezo_sym.translation.signs import reading
 
 ARGUMENTS = dict.fromkeys(
     ["jacobian", "margins", "outputs", "supply", "heat", "entropy_production"], "x u p"
 ) | {"initial_state": "u p", "_rates": "x u p out", "temperatures": "x p"}
 ARGUMENTS |= {"energy": "x p", "entropy": "x p"}
-CALLS = {f"np.{name}": name for name in ("exp", "expm1", "log", "sqrt", "sin", "cos", "tanh")}
+CALLS = {record.numpy: name for name, record in RECORDS.items() if record.smooth}
 CALLS |= {"np.abs": "abs", "np.sign": "sign", "np.minimum": "minimum", "np.maximum": "maximum"}
 CALLS |= {"np.clip": "clip"}
 
@@ -38,7 +40,8 @@ def read_numpy(functions: Mapping[str, ast.FunctionDef], known: Proved) -> dict[
     for name, words in ARGUMENTS.items():
         if name not in functions:
             raise NotShownError(f"there is no function {name}")
-        rows |= _Function(functions[name], words.split(), known).rows()
+        with reading(known.field, name):
+            rows |= _Function(functions[name], words.split(), known).rows()
     return rows
 
 
@@ -122,6 +125,7 @@ class _Function:
             "_states",
             "_inputs",
             "_lanes",
+            *CALLS,
             *self.words.values(),
             *self.values,
             *self.roles,

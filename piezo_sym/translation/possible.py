@@ -7,10 +7,11 @@ says.  Generators are real numbers to it, of the signs that they are known to ha
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
+from piezo_sym.expressions.calculus import add, mul, power
+from piezo_sym.expressions.functions import RECORDS, Function
+from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Expr, Num, Sym
 from piezo_sym.proofs.query import query
 from piezo_sym.proofs.solvers import solver
-from piezo_sym.spec.calculus import add, mul, neg, power
-from piezo_sym.spec.expressions import ONE, ZERO, Cmp, Expr, Num, Sym
 from piezo_sym.translation.field import Exponent, Field, Value
 from piezo_sym.translation.signs import sign_of
 
@@ -60,12 +61,18 @@ def _of_generator(field: Field, part: tuple[int, Exponent]) -> Iterator[Cmp]:
     if gen.kind == "power" and part[1] == Fraction(1, 2):
         yield Cmp(">=", symbol, ZERO)
         yield Cmp("=", power(symbol, Fraction(2)), arg)
-    if gen.kind in {"tanh", "sin", "cos"} and part[1] == 1:
-        yield from (Cmp("<=", symbol, ONE), Cmp(">=", symbol, Num(Fraction(-1))))
-    if gen.kind in {"tanh", "exp"} and part[1] == 1:
-        yield Cmp(">=", mul(add(symbol, ZERO if gen.kind == "tanh" else neg(ONE)), arg), ZERO)
-    if gen.kind == "log" and part[1] == 1:
-        yield Cmp(">=", mul(symbol, add(arg, neg(ONE))), ZERO)
+    if gen.kind in RECORDS and part[1] == 1:
+        yield from _of_function(RECORDS[gen.kind], arg, symbol)
+
+
+def _of_function(record: Function, arg: Expr, value: Expr) -> Iterator[Cmp]:
+    """Yield between which numbers a function lies, and where it is above a value that it has."""
+    low, high = record.bounds
+    if isinstance(low, Fraction) and isinstance(high, Fraction):
+        yield from (Cmp("<=", value, Num(high)), Cmp(">=", value, Num(low)))
+    if record.monotone and record.known:
+        at, there = (Num(Fraction(-number)) for number in record.known)
+        yield Cmp(">=", mul(add(value, there), add(arg, at)), ZERO)
 
 
 def _symbol(part: tuple[int, Exponent]) -> Expr:

@@ -1,27 +1,32 @@
 """The row `program`: that printed modules compute the proved system.
 
-Input: an `IPHS`, and the text of its NumPy module and C file.  Output: a row.  PROVED if every
-function, read back, is the proved one for all real numbers of the domain, on every branch and for
-every size of every bank, and divides by nothing more than the laws do; REFUTED with numbers at
-which a row differs; OPEN with what was not understood or not shown.
+Input: an `IPHS`, and the text of its NumPy module, its C file and its step.  Output: a row.  PROVED
+if every function, read back, is the proved one for all real numbers of the domain, on every branch
+and for every size of every bank, and divides by nothing more than the laws do; of a step these are
+the stage and what its means are of, see `collocation`.  REFUTED with numbers at which a row
+differs; OPEN with what was not understood or not shown.
 """
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import final
 
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.translation.c_reader import read_c
+from piezo_sym.translation.c_step import read_step
 from piezo_sym.translation.change import moved
+from piezo_sym.translation.collocation import proved_step
 from piezo_sym.translation.field import Need, NotShownError, Value
 from piezo_sym.translation.known import Key, Proved
 from piezo_sym.translation.numpy_head import numpy_functions
 from piezo_sym.translation.numpy_reader import read_numpy
 from piezo_sym.translation.reference import proved
-from piezo_sym.translation.signs import compare
+from piezo_sym.translation.signs import compare, reading
 from piezo_sym.translation.witness import witness
 from piezo_sym.translation.zero import Edges, edges_of, is_zero
 
-STATEMENT = "the printed NumPy and C modules are the proved system (real arithmetic)"
+STATEMENT = "the printed NumPy, C and step files are the proved system (real arithmetic)"
 MOST_TEXT = 4_000_000
 #: So many rows that are not shown to be right are looked at for numbers at which they are wrong.
 MOST_TRIED = 4
@@ -32,7 +37,27 @@ _ENOUGH = {
 }
 
 
-def program_rows(iphs: IPHS, numpy_text: str, c_text: str) -> tuple[Row, ...]:
+@final
+@dataclass(frozen=True)
+class Reference:
+    """A proved system in normal form, and its stage."""
+
+    system: Proved
+    stage: Proved
+
+
+def reference_of(iphs: IPHS) -> Reference:
+    """Return what printed texts of a system are compared with.
+
+    Raises
+    ------
+    NotShownError
+        If something in it has no normal form.
+    """
+    return Reference(proved(iphs), proved_step(iphs))
+
+
+def program_rows(iphs: IPHS, numpy_text: str, c_text: str, step_text: str) -> tuple[Row, ...]:
     """Return the row `program` of a system and its printed modules.
 
     Parameters
@@ -40,10 +65,12 @@ def program_rows(iphs: IPHS, numpy_text: str, c_text: str) -> tuple[Row, ...]:
     iphs : from `derive`.
     numpy_text : from `numpy_module`.
     c_text : from `c_source`, without the step.
+    step_text : from `c_collocation`.
     """
+    texts = {"NumPy": numpy_text, "C": c_text, "step": step_text}
     try:
-        known = proved(iphs)
-        found = [*different("NumPy", numpy_text, iphs, known), *different("C", c_text, iphs, known)]
+        known = reference_of(iphs)
+        found = [row for name, text in texts.items() for row in different(name, text, iphs, known)]
     except (NotShownError, RecursionError) as error:
         found = [_open(str(error))]
     refuted = (row for row in found if row.verdict is Verdict.REFUTED)
@@ -54,23 +81,29 @@ def _open(reason: str) -> Row:
     return Row("program", "", STATEMENT, Verdict.OPEN, reason=reason)
 
 
-def different(language: str, text: str, iphs: IPHS, known: Proved) -> tuple[Row, ...]:
-    """Return a row on what differs in the NumPy or C text, if anything does."""
+def different(language: str, text: str, iphs: IPHS, reference: Reference) -> tuple[Row, ...]:
+    """Return a row on what differs in the NumPy or C text, or the step's, if anything does."""
+    known = reference.stage if language == "step" else reference.system
     try:
         if len(text) > MOST_TEXT:
             raise NotShownError("the text is too long")
         known.field.needs.clear()
         known.field.path = known.field.one  # whatever a refusal before has left
-        if language == "C":
-            rows = read_c(text, iphs.model.name, known)
-        else:
-            rows = read_numpy(numpy_functions(text, iphs), known)
+        rows = _read(language, text, iphs, known)
         needs = tuple(known.field.needs)
         found = list(_differences(language, rows, iphs, known))
         found += [_open(f"{language} {text}") for text in _unmet(needs, known)]
     except (NotShownError, RecursionError) as error:
         found = [_open(f"{language}: {error}")]
     return tuple(sorted(found, key=lambda row: row.verdict is not Verdict.REFUTED)[:1])
+
+
+def _read(language: str, text: str, iphs: IPHS, known: Proved) -> Mapping[Key, Value]:
+    if language == "step":
+        return read_step(text, iphs, known)
+    if language == "C":
+        return read_c(text, iphs.model.name, known)
+    return read_numpy(numpy_functions(text, iphs), known)
 
 
 def _differences(
@@ -84,7 +117,7 @@ def _differences(
         place = f"{language} {key[0]}{[_label(key, n, known) for n in range(1, len(key))]}"
         if not matrix and (key not in rows or key not in known.values):
             yield _open(f"{place} is not written")
-        elif found := _doubt(printed - wanted, edges_of(wanted) if matrix else frozenset()):
+        elif found := _doubt(key, printed - wanted, edges_of(wanted) if matrix else frozenset()):
             tried += 1
             at = witness(printed, wanted, known, iphs) if tried <= MOST_TRIED else None
             reason = f"{place} {found}"
@@ -96,10 +129,12 @@ def _differences(
                 return
 
 
-def _doubt(difference: Value, edges: Edges) -> str:
+def _doubt(key: Key, difference: Value, edges: Edges) -> str:
     """Return why a difference is not shown to be zero, or nothing if it is."""
     try:
-        return "" if is_zero(difference, edges=edges) else "is not shown to be the proved one"
+        with reading(difference.field, str(key[0])):
+            shown = is_zero(difference, edges=edges)
+        return "" if shown else "is not shown to be the proved one"
     except NotShownError as error:
         return f"is not shown to be the proved one: {error}"
 

@@ -3,7 +3,8 @@
 Input: values.  Output: values in which signs choose; a comparison is 1 where it holds, else 0.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from fractions import Fraction
 from functools import partial, reduce
 from itertools import product
@@ -14,7 +15,8 @@ from sympy import QQ
 from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyRing
 
-from piezo_sym.translation.field import Exponent, Field, Mono, Value
+from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.translation.field import Exponent, Field, Generator, Mono, Value
 
 MOST_FACTORED = 40
 SIDES = {"<": (-1,), "<=": (-1, 0), ">": (1,), ">=": (1, 0), "==": (0,), "!=": (1, -1)}
@@ -25,13 +27,21 @@ def sign_of(field: Field, g: int) -> int:
     """Return 2 if a generator is positive wherever it is defined, 1 if it is >= 0, else 0."""
     if g not in field.signed:
         gen = field.gens[g]
-        known = {"exp": 2, "sign": 1}.get(gen.kind, 0)
-        if gen.kind in {"power", "sum", "letter"} and gen.arg:
+        known = int(gen.kind == "sign")
+        if gen.kind in RECORDS and RECORDS[gen.kind].sign == ">":
+            known = 2
+        if gen.arg and (gen.kind in {"power", "sum", "letter"} or _bends(gen)):
             known = sign(gen.arg)
         if not known:  # the domain may say more later
             return field.assumed.get(field.raised(g, 1), 0)
         field.signed[g] = known
     return field.signed[g]
+
+
+def _bends(gen: Generator) -> bool:
+    """Return whether a function has the sign of its argument, as tanh has."""
+    record = RECORDS.get(gen.kind)
+    return record is not None and record.monotone and record.parity == "odd"
 
 
 def sign(value: Value) -> int:
@@ -58,6 +68,30 @@ def _sign_of_term(field: Field, mono: Mono, c: Exponent) -> int:
         even = e % 2 == 0 or Fraction(e).denominator != 1
         known = min(known, max(sign_of(field, g), int(even)))
     return known
+
+
+@contextmanager
+def reading(field: Field, function: str) -> Iterator[None]:
+    """Forget what the domain says of signs where a function is read that holds outside of it.
+
+    Margins say where the domain is; integrands are taken at nodes where nothing asks for it.
+    """
+    if function not in {"margins", "integrands"}:
+        yield
+        return
+    kept = field.signed, field.assumed, field.signs, field.forms, field.never, field.asked
+    counts = (g for g, gen in enumerate(field.gens) if gen.kind == "name" and _counts(gen))
+    field.signed, field.assumed = dict.fromkeys(counts, 2), {field.zero: 1}
+    field.signs, field.forms, field.never, field.asked = {}, {}, {}, {}
+    try:
+        yield
+    finally:
+        field.signed, field.assumed, field.signs, field.forms, field.never, field.asked = kept
+
+
+def _counts(gen: Generator) -> bool:
+    """Return whether a name is the size of a bank."""
+    return isinstance(gen.mark, tuple) and gen.mark[2] == -1
 
 
 def has_sign(value: Value) -> bool:
@@ -114,7 +148,9 @@ def _factored(value: Value) -> list[tuple[Value, int]]:
         table[tuple(int(powers.get(g, 0)) for g in numbers)] = QQ(c.numerator, c.denominator)
     found = []
     ring = PolyRing([f"g{g}" for g in numbers], QQ, lex)
-    for factor, times in ring.from_dict(table).factor_list()[1]:
+    scale, parts = ring.from_dict(table).factor_list()
+    whole = Fraction(int(scale.numerator), int(scale.denominator))
+    for factor, times in parts:
         terms = {
             tuple((g, e) for g, e in zip(numbers, powers, strict=True) if e): Fraction(
                 int(c.numerator), int(c.denominator)
@@ -123,7 +159,9 @@ def _factored(value: Value) -> list[tuple[Value, int]]:
         }
         made = Value(field, terms)
         found.append((made * field.number(1 / made.lead), times))
-    return found
+        whole = whole * made.lead**times
+    # the lead of a product need not be the product of leads: what is left over is a factor, too
+    return found if whole == 1 else [(field.number(whole), 1), *found]
 
 
 def compare(op: str, left: Value, right: Value) -> Value:
@@ -168,10 +206,10 @@ def _forms(d: Value) -> tuple[list[Value], int]:
 
 
 def _bent(factor: Value) -> tuple[list[Value], int]:
-    """Return what `_forms` does of a factor: tanh has the sign of its argument."""
+    """Return what `_forms` does of a factor: tanh has the sign of its argument, as others have."""
     (mono, c), *more = factor.terms.items()
     gen = factor.field.gens[mono[0][0]] if len(mono) == 1 and mono[0][1] == 1 else None
-    if not more and gen and gen.kind == "tanh" and gen.arg:
+    if not more and gen and gen.arg and _bends(gen):
         return _forms(gen.arg * factor.field.number(c))
     return [factor * factor.field.number(1 / factor.lead)], 1 if factor.lead > 0 else -1
 

@@ -11,11 +11,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import islice
+from math import isfinite
 from typing import Any, final
 
 from mpmath.ctx_iv import MPIntervalContext
 
+from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.iphs import IPHS
+from piezo_sym.proofs.balls import smooth
 from piezo_sym.translation.field import Value
 from piezo_sym.translation.known import Proved
 
@@ -77,7 +80,26 @@ def _points(known: Proved, iphs: IPHS) -> Iterator[Point]:
             listed = values if isinstance(values, tuple) else (values,)
             lanes = range(max(2, len(listed)) if name in known.banks else 1)
             numbers[name] = tuple(_number(listed[j % len(listed)], n, chance) for j in lanes)
-        yield Point(known, numbers)
+        try:
+            yield Point(known, numbers | _means(Point(known, numbers), known, n, chance))
+        except UndecidedError:
+            continue
+
+
+def _means(
+    point: Point, known: Proved, n: int, chance: random.Random
+) -> dict[str, tuple[Fraction, ...]]:
+    """Return numbers for means: their co-states at a point, or near them."""
+    found = {}
+    for name, costate in known.means.items():
+        bank = known.banks.get(name)
+        lanes = [{bank: j} for j in range(len(point.numbers[name]))] if bank else [{}]
+        values = [float(point.value(costate, lane).mid) for lane in lanes]
+        if not all(map(isfinite, values)):
+            raise UndecidedError
+        factors = [chance.choice(FACTORS) if n % 2 else Fraction(1) for _ in lanes]
+        found[name] = tuple(Fraction(v) * f for v, f in zip(values, factors, strict=True))
+    return found
 
 
 def _number(value: float | None, n: int, chance: random.Random) -> Fraction:
@@ -163,9 +185,7 @@ class Point:
             return self.exact(Fraction(int(side == gen.mark)))
         if gen.kind in {"power", "letter"}:
             return arg
-        if gen.kind == "log" and arg.a <= 0:
+        outside = RECORDS[gen.kind].domain and arg.a <= 0
+        if outside or abs(arg).b > MOST_EXPONENT:
             raise UndecidedError
-        if gen.kind in {"exp", "tanh"}:
-            made = self._exp(arg)
-            return made if gen.kind == "exp" else (made - 1 / made) / (made + 1 / made)
-        return getattr(self.interval, gen.kind)(arg)
+        return smooth(gen.kind, arg, self.interval)

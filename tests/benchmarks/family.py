@@ -14,7 +14,7 @@ import sympy as sp
 
 from piezo_sym.bench.problem import explicit
 from piezo_sym.errors import RunError
-from piezo_sym.run.adaptive import adaptive
+from piezo_sym.run.collocation import with_tolerance
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.module import lanes
 from piezo_sym.run.parameters import own_initial, read_parameters
@@ -123,11 +123,11 @@ def tight(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the states (members, n) at the end, and the scale of errors (n,)."""
     times = np.array([problem.duration])
-    runs = adaptive(systems, engine_of(problem.module), starts, times, TIGHT)
+    runs = with_tolerance(systems, engine_of(problem.module), starts, times, TIGHT)
     for error in runs.errors:
         if error:
             raise error
-    ends: FloatArray = runs.batch.states[:, -1].copy()
+    ends: FloatArray = runs.states[:, -1].copy()
     if case_p(problem.model.sha256, problem.inputs):
         return ends, problem.scale
     path = states(problem, whole(problem, 1e-6, 201))

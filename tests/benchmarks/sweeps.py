@@ -14,9 +14,9 @@ import numpy as np
 
 from piezo_sym.bench.contest import Contestant, Pair, compared
 from piezo_sym.errors import EngineError, RunError
-from piezo_sym.run.adaptive import adaptive
-from piezo_sym.run.discrete import METHOD
+from piezo_sym.run.collocation import with_tolerance
 from piezo_sym.run.engine.engine import engine_of
+from piezo_sym.run.runs import METHOD
 from piezo_sym.sweeps.plan import Plan
 from piezo_sym.sweeps.pool import threads_for
 from piezo_sym.sweeps.read import Asked, read_plan
@@ -119,7 +119,7 @@ def single_runs(family: Family) -> Solver:
 
     def solve(rtol: float) -> FloatArray:
         runs = (
-            adaptive([system], engine, start[None], times, rtol)
+            with_tolerance([system], engine, start[None], times, rtol)
             for system, start in zip(systems, family.starts, strict=True)
         )
         return np.array([run.trajectory(0).states[:, -1] for run in runs])

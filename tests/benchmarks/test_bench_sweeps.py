@@ -8,8 +8,6 @@ import pytest
 
 from piezo_sym import load, simulate
 from piezo_sym.errors import EngineError
-from piezo_sym.run.engine.engine import engine_of
-from piezo_sym.run.engine.march import Batch
 from tests.benchmarks.case_p import problem_of
 from tests.benchmarks.family import family_of, varied
 from tests.benchmarks.peers import PEERS
@@ -69,14 +67,6 @@ def test_every_way_to_sweep_computes_the_same(family, ways):
     assert family.error(swept(family, **ways)(1e-7)) <= 1e-6
     difference = swept(family, **ways)(1e-5) - single_runs(family)(1e-5)
     assert np.max(np.abs(difference) / family.problem.scale) <= 1e-11
-
-
-@pytest.mark.parametrize("wide", [True, False])
-def test_an_engine_says_whether_members_go_side_by_side(family, wide):
-    engine = replace(engine_of(family.problem.module), wide=wide)
-    assert (engine.side_by_side(2) is not None) is wide
-    batch = Batch(engine, [system.parameters for system in family.systems], family.starts, 1)
-    assert (batch._vectors_for("adapt") is not None) is wide
 
 
 @pytest.mark.parametrize(("peer", "way"), WAYS, ids=WAY_NAMES)

@@ -122,6 +122,20 @@ FLAWS = {
     "no windows": (lambda t: t["rays"].clear(), "cover the line"),
     "a gap": (lambda t: t["rays"][0]["windows"].pop(1), "cover the line"),
     "no infinity": (lambda t: t["rays"][0]["windows"].pop(2), "cover the line"),
+    "windows that turn": (
+        lambda t: t.update(
+            rays=[{"centre": c, "side": 1, "windows": [["0", "inf", 0]]} for c in "21"]
+        ),
+        "cover the line",
+    ),
+    "no side": (lambda t: t["rays"][0].update(side=0), "not shown to have its sign"),
+    "a side of two": (lambda t: t["rays"][0].update(side=2), "not shown to have its sign"),
+    "a number without end": (
+        lambda t: t["rays"][0].update(windows=[["0", "1e999999999", 0]]),
+        "too many digits",
+    ),
+    "a number by zero": (lambda t: t["rays"][0].update(centre="1/0"), "cannot be read"),
+    "a root of the scale": (lambda t: t.update(scale={"v_1": "1/2"}), "prefactor*f(s)"),
     "no number": (lambda t: t["rays"][0].update(centre="here"), "no finite number"),
     "nothing": (lambda t: t.clear(), "cannot be read"),
 }

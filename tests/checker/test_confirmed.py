@@ -34,6 +34,68 @@ def test_every_network_is_confirmed(path):
     assert refused(text, stated(text)) == {}
 
 
+COUPLED = """[model]
+name = "coupled"
+[parameters]
+n = { value = 2.0, unit = "1" }
+M = { value = 1.0, unit = "kg" }
+k = { value = 1.0, unit = "N/m" }
+L = { value = 1.0, unit = "H" }
+C = { value = 1.0, unit = "F" }
+[elements]
+m = { kind = "mass", at = "a", mass = "M" }
+lever = { kind = "lever", first = ["a", "b"], second = ["a", "wall"], ratio = "n" }
+s = { kind = "spring", between = ["b", "wall"], stiffness = "k" }
+c = { kind = "capacitor", between = ["e", "gnd"], capacitance = "C" }
+t = { kind = "transformer", first = ["f", "gnd"], second = ["e", "gnd"], ratio = "n" }
+l = { kind = "inductor", between = ["f", "gnd"], inductance = "L" }
+"""
+
+
+def test_levers_and_transformers_are_confirmed():
+    assert refused(COUPLED, stated(COUPLED)) == {}
+
+
+@pytest.mark.parametrize("element", ["lever", "t"])
+def test_another_ratio_is_not_confirmed(element):
+    lines = COUPLED.splitlines()
+    (place,) = (n for n, line in enumerate(lines) if line.startswith(f"{element} ="))
+    lines[place] = lines[place].replace('"n"', '"1/n"')
+    assert ("system", "") in refused("\n".join(lines), stated(COUPLED))
+
+
+LOADED = """[model]
+name = "loaded"
+[parameters]
+R = { value = 1.0, unit = "ohm" }
+L = { value = 1.0, unit = "H" }
+T_0 = { value = 300.0, unit = "K" }
+c = { value = 2.0, unit = "J/K" }
+[inputs]
+V = { unit = "V" }
+[domain]
+assume = ["R > 0", "L > 0", "T_0 > 0"]
+[elements]
+body = { kind = "thermal_mass", temperature = "T_0*exp(S/c)" }
+supply = { kind = "voltage_source", between = ["in", "gnd"], input = "V" }
+l = { kind = "inductor", between = ["a", "gnd"], inductance = "L" }
+[elements.r]
+kind = "resistor"
+between = ["in", "a"]
+voltage = "R*sqrt(T/T_0)*i"
+heats = "body"
+[elements.load]
+kind = "resistor"
+between = ["a", "gnd"]
+current = "v/(R*sqrt(T/T_0) + R)"
+heats = "body"
+"""
+
+
+def test_divisors_with_roots_are_those_of_the_network():
+    assert refused(LOADED, stated(LOADED)) == {}
+
+
 @pytest.mark.parametrize(
     "law",
     [

@@ -154,6 +154,19 @@ def test_a_wrong_unit_is_seen():
     assert "body" in refused(text, forged(PIEZO_STACK))["units", ""]
 
 
+def test_a_condition_of_two_units_is_seen():
+    text = PIEZO_STACK.replace('"d >= 0"', '"d >= T_0"')
+    assert "different units" in refused(text, stated(PIEZO_STACK))["units", ""]
+
+
+@pytest.mark.parametrize(
+    "unit", ["m,N*s/m", "m<N", "(m", "m m", "2*m", "m**2**9", "m**10", "", "m*"]
+)
+def test_odd_units_are_refused(unit):
+    with pytest.raises(InputError, match="is no unit"):
+        read_spec(PIEZO_STACK.replace('unit = "J/K"', f'unit = "{unit}"'))
+
+
 BAD = [
     ("", "{}"),
     ("[model", "{}"),

@@ -1,6 +1,7 @@
 """``verify --recheck`` and ``verify --junit``: a second opinion, and verdicts for pipelines."""
 
 import json
+import subprocess
 from collections import Counter
 from xml.etree import ElementTree as ET
 
@@ -30,18 +31,23 @@ def test_a_row_that_is_left_out_or_says_too_much_is_not_confirmed():
     text = read(find("piezo_stack"))
     rows = proofs["obligations"]
     proofs["obligations"] = [row for row in rows if (row["id"], row["element"]) != ("sigma", None)]
-    confirmed, said = recheck(text, json.dumps(proofs))
-    assert not confirmed
-    assert "not confirmed sigma" in said
+    found = recheck(text, json.dumps(proofs))
+    assert found.faults()[0].startswith("not confirmed sigma: ")
     wrong = text.replace('"d*v"', '"-d*v"')
-    confirmed, said = recheck(wrong, json.dumps({**proofs, "obligations": rows}))
-    assert not confirmed
-    assert "not confirmed passive damper" in said
+    found = recheck(wrong, json.dumps({**proofs, "obligations": rows}))
+    assert "not confirmed" in found.rows["passive", "damper"]
+
+
+def refusing(monkeypatch, *keys):
+    """Have a checker that confirms one row and does not confirm those given."""
+    said = ["confirmed skew", "stated program"]
+    said += [f"not confirmed {' '.join(key)}: cvc5 does not decide it" for key in keys]
+    done = subprocess.CompletedProcess([], 1, "\n".join(said), "")
+    monkeypatch.setattr(module.subprocess, "run", lambda *_, **__: done)
 
 
 def test_what_is_not_confirmed_is_one_line_and_exit_code_1(call, monkeypatch):
-    said = "confirmed skew\nnot confirmed passive damper: cvc5 does not decide it"
-    monkeypatch.setattr(module, "recheck", lambda *_: (False, said))
+    refusing(monkeypatch, ("passive", "damper"))
     answer = call("verify", "piezo_stack", "--recheck")
     assert answer.code == 1
     assert answer.err.endswith(
@@ -54,6 +60,44 @@ def test_rechecking_without_cvc5_is_one_line(refused, monkeypatch):
     said = refused("verify", "piezo_stack", "--recheck")
     assert "cvc5" in said
     assert "pip install 'piezo_sym[proof]'" in said
+
+
+def test_an_information_row_does_not_decide(call, monkeypatch):
+    refusing(monkeypatch, ("odd", "hysteron"))
+    answer = call("verify", "piezo_stack", "--recheck")
+    assert answer.code == 0
+    assert "not confirmed odd hysteron" in answer.err
+
+
+def test_a_checker_that_ends_without_rows_confirms_nothing(call, monkeypatch, tmp_path):
+    for code, said in ((2, "bad input: no table"), (0, ""), (-11, "confirmed skew")):
+        done = subprocess.CompletedProcess([], code, said, "")
+        with monkeypatch.context() as patch:
+            patch.setattr(module.subprocess, "run", lambda *_, done=done, **__: done)
+            answer = call("verify", "piezo_stack", "--recheck", "--junit", tmp_path / "p.xml")
+        assert answer.code == 1
+        assert "piezo-sym: piezo_stack: not confirmed: " in answer.err
+        suite = suites(tmp_path / "p.xml")["piezo_stack, rechecked"]
+        assert suite.get("failures") == "1"
+
+
+def test_json_and_junit_say_what_was_confirmed(call, monkeypatch, tmp_path):
+    path = tmp_path / "proofs.xml"
+    refusing(monkeypatch, ("passive", "damper"), ("odd", "hysteron"))
+    answer = call("verify", "piezo_stack", "--recheck", "--json", "--junit", path)
+    rows = {(row["id"], row["element"]): row["recheck"] for row in json.loads(answer.out)}
+    why = "not confirmed: cvc5 does not decide it"
+    assert rows["skew", None] == "confirmed"
+    assert rows["passive", "damper"] == why
+    suite = suites(path)["piezo_stack, rechecked"]
+    assert (suite.get("tests"), suite.get("failures"), suite.get("errors")) == ("4", "1", "0")
+    said = {case.get("name"): [(c.tag, c.get("message")) for c in case] for case in suite}
+    assert said == {
+        "skew": [],
+        "program": [("skipped", "stated")],
+        "passive damper": [("failure", why)],
+        "odd hysteron": [("skipped", why)],
+    }
 
 
 def suites(path):

@@ -130,12 +130,6 @@ def test_initial_values_are_those_given(call, tmp_path):
     assert run.phi.values[0].tolist() == [1e-4, 2e-4]
 
 
-def test_a_note_says_which_numbers_are_of_the_finest_run(call):
-    note = "States are extrapolated; sums since t = 0 and residuals are the finest of three runs'."
-    assert note in call(*DRIVEN).out.splitlines()
-    assert "finest" not in call(*DRIVEN, "--step", "1e-5").out
-
-
 def test_a_parameter_of_a_bank_takes_a_number_a_lane(call, tmp_path):
     words = ("-p", "L=1e-3,2e-3", "-i", "V_in=1")
     call(*SHORT, *words, "--out", tmp_path / "run.nc")

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from piezo_sym.spec.expressions import (
+from piezo_sym.expressions.tree import (
     COMPARISONS,
     Add,
     Call,
@@ -80,6 +80,10 @@ CALLS = {
     "sin": np.sin,
     "cos": np.cos,
     "tanh": np.tanh,
+    "atan": np.arctan,
+    "sinh": np.sinh,
+    "cosh": np.cosh,
+    "erf": np.vectorize(math.erf),
     "sqrt": np.sqrt,
     "abs": np.abs,
     "sign": np.sign,

@@ -12,12 +12,12 @@ from hypothesis import strategies as st
 from piezo_sym.algebra.symbols import to_sympy
 from piezo_sym.build import generate
 from piezo_sym.codegen.differences import sharp
+from piezo_sym.expressions.parse import parse_law
+from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tree import Add, Call, Div, Mul, Neg, Num, Sym, rebuild, walk
 from piezo_sym.modules import load_module
 from piezo_sym.run.engine.engine import engine_of
-from piezo_sym.spec.expressions import Add, Call, Div, Mul, Neg, Num, Sym, rebuild, walk
 from piezo_sym.spec.load import parse
-from piezo_sym.spec.parse import parse_law
-from piezo_sym.spec.text import spell
 
 SPEC = """
 [model]

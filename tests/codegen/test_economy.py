@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from piezo_sym.codegen.economy import BEFORE, economical, with_products
 from piezo_sym.codegen.program import Quantity
 from piezo_sym.codegen.step import Step
-from piezo_sym.spec.calculus import add, mul, neg
-from piezo_sym.spec.expressions import ONE, Call, Div, Mul, Sym, evaluate, names
+from piezo_sym.expressions.calculus import add, mul, neg
+from piezo_sym.expressions.tree import ONE, Call, Div, Mul, Sym, evaluate, names
 
 LETTERS = ("a", "b", "c", "d")
 EMPTY = Step("h", (), (), (), (), (), (), (), (), frozenset())

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from piezo_sym.codegen.mean import lead
-from piezo_sym.spec.expressions import Sym
-from piezo_sym.spec.parse import parse_law
+from piezo_sym.expressions.parse import parse_law
+from piezo_sym.expressions.tree import Sym
 from tests.codegen.evaluated import value
 
 numbers = st.fractions(-3, 3, max_denominator=64)

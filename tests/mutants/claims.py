@@ -189,12 +189,8 @@ a name keeps its sign
   +             case Call(
   = a*v*(exp(v/v_1) - 7.38*(v/v_1 - 1)) | v_1 > 0
 tanh is never below zero
-  - case Call("exp" | "abs" | "sqrt", _):
-  -                 return True
-  -             case Pow(base, e):
-  + case Call("exp" | "abs" | "sqrt" | "tanh", _):
-  +                 return True
-  +             case Pow(base, e):
+  - if RECORDS[function].sign:
+  + if RECORDS[function].sign or function == "tanh":
   = F_1*tanh(1000 - exp(b/a_1))*(v/v_1*(exp(v/v_1) - 7.38*(v/v_1 - 1))) | F_1 > 0; a_1 > 0; v_1
   = > 0; b > 0
   = | b=7.0

@@ -7,24 +7,24 @@ MUTANTS = mutants_of(
     r"""
 ## proofs/signs/intervals
 exp is at least what it is at the right end
-  - max(0.0, _down(_ball(min(a.lo, LARGEST_EXPONENT)).exp()))
-  + max(0.0, _down(_ball(min(a.hi, LARGEST_EXPONENT)).exp()))
+  - _at(min(a.lo, most), record)
+  + _at(min(a.hi if record.name == "exp" else a.lo, most), record)
   = F_1*(v/v_1)*(exp(v/v_1) - 7.4) if v > 2*v_1 else F_1*v/v_1 | F_1 > 0; v_1 > 0
 exp does not grow to infinity
-  - high = INF if a.hi > LARGEST_EXPONENT else _up(_ball(a.hi).exp())
-  + high = _up(_ball(a.lo if a.hi > LARGEST_EXPONENT else a.hi).exp())
+  - return low, high
+  + return low, high if a.hi <= most or record.name != "exp" else _up(_at(a.lo, record))
   = F_1*v/v_1*(3 - exp(v/(1000000*v_1))) | F_1 > 0; v_1 > 0
 log is at least what it is at the right end
-  - low = -INF if a.lo == 0 else _down(_ball(a.lo).log())
-  + low = -INF if a.lo == 0 else _down(_ball(min(a.hi, 1e9)).log())
+  - _at(min(a.lo, most), record)
+  + _at(min(a.hi, 1e9) if record.name == "log" else min(a.lo, most), record)
   = F_1*(v/v_1)*(log(v/v_1) - 0.7) if v > 2*v_1 else F_1*v/v_1 | F_1 > 0; v_1 > 0
 tanh is at least what it is at the right end
-  - max(-1.0, _down(_ball(a.lo).tanh()))
-  + max(-1.0, _down(_ball(min(a.hi, 9.0)).tanh()))
+  - _at(min(a.lo, most), record)
+  + _at(min(a.hi, 9.0) if record.name == "tanh" else min(a.lo, most), record)
   = F_1*(v/v_1)*(tanh(v/v_1) - 0.965) if v > 2*v_1 else F_1*v/v_1 | F_1 > 0; v_1 > 0
 log is at most what it is at the left end
-  - INF if a.hi == INF else _up(_ball(a.hi).log())
-  + INF if a.hi == INF else _up(_ball(max(a.lo, 1e-9)).log())
+  - _at(max(a.hi, -most), record)
+  + _at(max(a.lo, 1e-9) if record.name == "log" else max(a.hi, -most), record)
   = F_1*(v/v_1)*(5.5 - log(1 + (v/v_1)**2)) if abs(v) <= 16*v_1 else F_1*v/v_1 | F_1 > 0; v_1 > 0
 one trough alone is not seen
   - return math.ceil(first) <= math.floor(last)
@@ -53,8 +53,8 @@ a root is at least that of the right end
   = F_1*(v/v_1)*(sqrt(1 + exp(v/v_1)) - 2.9) if v > 2*v_1 else F_1*v/v_1 | F_1 > 0; v_1 > 0
 ## proofs/signs/jets
 tanh rises everywhere as at zero
-  - slope = iv.plus(iv.UNIT, fall) if m == 0 else fall
-  + slope = iv.UNIT if m == 0 else fall
+  - for m, s in enumerate(slopes, start=1)
+  + for m, s in enumerate((iv.UNIT, *slopes[1:]) if function == "tanh" else slopes, start=1)
   = F_1*(tanh(v/v_1) - 0.9*v/v_1) if abs(v) <= 0.625*v_1 else F_1*v/v_1 | F_1 > 0; v_1 > 0
 ## proofs/signs/enclosures
 what rises is above its right end

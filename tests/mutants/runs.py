@@ -72,7 +72,7 @@ def mutated(text: str, mutant: Mutant) -> Said:
     """Return what a mutant says of a spec: rows, proofs; and whether the net notices anything."""
     install(mutant)
     _answer_here()
-    from piezo_sym.codegen import c_source, lower, numpy_module
+    from piezo_sym.codegen import c_collocation, c_source, collocation_of, lower, numpy_module
     from piezo_sym.derivation import derive
     from piezo_sym.errors import ContradictionError
     from piezo_sym.falsify import falsify, module_from
@@ -84,7 +84,8 @@ def mutated(text: str, mutant: Mutant) -> Said:
     report = decide(iphs)
     program = lower(iphs, "")
     module = numpy_module(program)
-    rows = (*report.rows, *program_rows(iphs, module, c_source(program)))
+    texts = module, c_source(program), c_collocation(program, collocation_of(iphs))
+    rows = (*report.rows, *program_rows(iphs, *texts))
     whole = Report(report.model, rows, report.obligations, report.system)
     said = {"rows": _verdicts(whole), "system": _system(iphs, report), "net": ""}
     said["proofs"] = proofs_json(whole, iphs.model, "made by a test")

@@ -17,6 +17,10 @@ FUNCTIONS = {
     sp.tanh: (mp.tanh, lambda z: 1 - mp.tanh(z) ** 2),
     sp.sin: (mp.sin, mp.cos),
     sp.cos: (mp.cos, mp.sin),
+    sp.atan: (mp.atan, lambda z: 1 / (1 + z**2)),
+    sp.sinh: (mp.sinh, mp.cosh),
+    sp.cosh: (mp.cosh, mp.sinh),
+    sp.erf: (mp.erf, lambda z: 2 / mp.sqrt(mp.pi) * mp.exp(-(z**2))),
 }
 RELATIONS = {sp.Lt: operator.lt, sp.Le: operator.le, sp.Gt: operator.gt, sp.Ge: operator.ge}
 

@@ -96,11 +96,12 @@ def check_start(module, compiled, place):
     runs = fixed([system], compiled.engine, x[None], times, h, starts=True)
     if runs.errors[0]:
         return
-    rows, sums, states = runs.batch.rows, runs.batch.sums[0], runs.batch.states[0].T
+    sums, states, ports = runs.sums[0], runs.states[0].T, len(module.OUTPUTS)
+    processes = sum(part.stop - part.start for part in system.rows(module.PROCESSES))
     energy, entropy = (f(states, p) - f(x, p) for f in (module.energy, module.entropy))
-    powers = sums[:, : rows.ports]
+    powers = sums[:, :ports]
     size = np.abs(module.energy(states, p)).max() + np.abs(powers).max(initial=0.0)
-    parts = np.delete(sums[:, rows.ports + rows.processes :], -2, axis=1)
+    parts = np.delete(sums[:, ports + processes :], -2, axis=1)
     assert np.abs(energy - powers.sum(axis=1)).max() <= 1e-12 * size
     bound = 1e-12 * (np.abs(module.entropy(states, p)).max() + np.abs(parts).max(initial=0.0))
     assert np.abs(entropy - parts.sum(axis=1)).max() <= bound + 1e-15
@@ -136,7 +137,7 @@ def test_specs(path):
 
 
 def test_networks():
-    assert explore(8) >= 8
+    assert explore(5) >= 5
 
 
 @pytest.mark.long

@@ -3,6 +3,7 @@
 One test a notebook, in a process of its own: a notebook's kernel is none of the test's.
 """
 
+import ast
 import json
 import re
 import subprocess
@@ -16,6 +17,9 @@ ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "notebooks"
 EXECUTE = FOLDER / "execute.py"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
+#: Not executed in the fast tier, where their data have tests of their own: `reproduce` draws the
+#: figures, banks of any size are compared with NumPy, sweeps with single runs.
+LONG = {"04-figures", "05-many-hysterons", "07-sweeps"}
 
 
 def execute(*words, script=EXECUTE):
@@ -25,10 +29,26 @@ def execute(*words, script=EXECUTE):
     return done.returncode, done.stdout + done.stderr
 
 
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def executed():
+    for path in NOTEBOOKS:
+        marks = [pytest.mark.long] if path.stem in LONG else []
+        yield pytest.param(path, id=path.stem, marks=marks)
+
+
+@pytest.mark.parametrize("path", [*executed()])
 def test_a_notebook_shows_what_it_shows_when_executed(path):
     code, said = execute("--check", path.stem)
     assert code == 0, said
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_what_a_notebook_imports_is_there(path):
+    for cell in json.loads(path.read_text(encoding="utf-8"))["cells"]:
+        if cell["cell_type"] == "code":
+            lines = [line for line in cell["source"] if not line.startswith("%")]
+            tree = ast.parse("".join(lines))
+            tree.body = [n for n in tree.body if isinstance(n, ast.Import | ast.ImportFrom)]
+            exec(compile(tree, path.name, "exec"), {})
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)

@@ -7,6 +7,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from piezo_sym.expressions.parse import parse_condition, parse_law
+from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tree import Call, If, walk
 from piezo_sym.proofs.branches import (
     KINKED,
     OPPOSITE,
@@ -17,9 +20,6 @@ from piezo_sym.proofs.branches import (
     settled,
     with_choices,
 )
-from piezo_sym.spec.expressions import Call, If, walk
-from piezo_sym.spec.parse import parse_condition, parse_law
-from piezo_sym.spec.text import spell
 from tests.spec.spec_laws import laws, precise, steady
 
 COMPARE = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge}

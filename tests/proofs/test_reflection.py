@@ -4,10 +4,10 @@ import mpmath
 import pytest
 from hypothesis import assume, given
 
+from piezo_sym.expressions.calculus import neg
+from piezo_sym.expressions.parse import parse_law
+from piezo_sym.expressions.text import spell
 from piezo_sym.proofs.reflection import reflected
-from piezo_sym.spec.calculus import neg
-from piezo_sym.spec.parse import parse_law
-from piezo_sym.spec.text import spell
 from tests.proofs.test_branches import VALUES, close, value
 from tests.spec.spec_laws import laws, steady
 

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from piezo_sym.expressions.tree import Add, LaneSum, Mul, Num
 from piezo_sym.proofs import Verdict
 from piezo_sym.proofs.signs.decide import Domain, decide_sign
-from piezo_sym.spec.expressions import Add, LaneSum, Mul, Num
 from tests.proofs.sign_laws import X, law, laws, precise, steady
 
 #: W with W(x)*x >= 0 for every x.

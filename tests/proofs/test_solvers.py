@@ -13,12 +13,12 @@ from fractions import Fraction
 import pytest
 
 from piezo_sym import derive, load
+from piezo_sym.expressions.parse import parse_condition
+from piezo_sym.expressions.tree import Cmp, Num, Sym, names
 from piezo_sym.proofs import Verdict, decide, obligations, proofs_json, prove, solvers
 from piezo_sym.proofs.query import Query, query
 from piezo_sym.proofs.rational import cleared
 from piezo_sym.proofs.solvers import Answer, Opinions, Solver, solver
-from piezo_sym.spec.expressions import Cmp, Num, Sym, names
-from piezo_sym.spec.parse import parse_condition
 
 #: Each of them answers rightly from the second process on: the first one leaves a mark.
 FIRST_TIME = """

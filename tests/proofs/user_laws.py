@@ -2,10 +2,10 @@
 
 from fractions import Fraction
 
+from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.proofs.obligations import SignOf
 from piezo_sym.proofs.solvers import solver
 from piezo_sym.proofs.whole import whole_sign
-from piezo_sym.spec.parse import parse_condition, parse_law
 
 
 def split(text):

@@ -60,7 +60,6 @@ def turnover(found):
     [
         {"rtol": 1e-6},
         {"step": 1e-5},
-        {"rtol": 1e-6, "dissipative_start": True},
         {"step": 1e-4, "dissipative_start": True},
     ],
     ids=str,

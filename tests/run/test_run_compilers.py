@@ -6,6 +6,7 @@ are of the size that is asked for, and each of them is watched; gaps between par
 
 import os
 import shlex
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -14,7 +15,6 @@ import numpy as np
 import pytest
 
 from piezo_sym import load, sine
-from piezo_sym.build import render
 from piezo_sym.modules import load_module, module_of
 from piezo_sym.run import simulate
 from piezo_sym.run.engine.library import Sources
@@ -41,11 +41,10 @@ def name_of(path):
 @pytest.fixture(params=MODELS, ids=name_of, scope="module")
 def module(request, tmp_path_factory):
     """A module in a folder of its own, so that no other compiler's library is used."""
-    model, folder = load(request.param), tmp_path_factory.mktemp("made")
-    for name, text in render(model).items():
-        (folder / name).parent.mkdir(exist_ok=True)
-        (folder / name).write_text(text, encoding="utf-8")
-    return load_module(folder / model.name / f"{model.name}.py")
+    made = Path(module_of(load(request.param)).__file__)
+    folder = tmp_path_factory.mktemp("made") / made.stem
+    shutil.copytree(made.parent, folder)
+    return load_module(folder / made.name)
 
 
 @pytest.mark.parametrize("compiler", COMPILERS)

@@ -68,17 +68,6 @@ def test_values_are_the_modules_at_the_samples(ds, piezo):
 LEDGER = ("supplied_", "heat_", "produced_", "entropy_exchanged_", "energy_res", "entropy_res")
 
 
-@pytest.mark.parametrize(
-    ("how", "finest"), [({"rtol": 1e-5}, True), ({"step": 1e-5}, False), ({"method": "BDF"}, False)]
-)
-def test_what_is_of_the_finest_run_says_so(how, finest):
-    run = simulate_shipped("piezo_stack", duration=1e-4, times=2, **how)
-    for name, variable in run.data_vars.items():
-        said = variable.attrs["long_name"].endswith("; of the finest run")
-        assert said == (finest and name.startswith(LEDGER)), name
-    assert ("balances" in run.attrs) == finest
-
-
 def test_attributes(ds):
     assert ds.attrs["model"] == "piezo_stack"
     assert ds.attrs["spec_sha256"] == "0" * 64

@@ -12,14 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from piezo_sym import simulate, sine, step, sweep
-from piezo_sym.errors import RunError
 from piezo_sym.modules import module_of
-from piezo_sym.run import adaptive
-from piezo_sym.run.engine import march
-from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.jumps import QUESTIONS, jumps
-from piezo_sym.run.mesh import blocks
-from piezo_sym.run.system import System
 from piezo_sym.spec.load import parse
 
 SPECS = Path(__file__).parents[1] / "networks" / "specs"
@@ -177,7 +171,8 @@ def test_a_functions_own_jumps_are_as_good_as_known_ones(share):
     for name in ("q", "p", "Q_C", "phi", "S"):
         size = float(np.abs(wanted[name]).max())
         assert float(np.abs(found[name] - wanted[name]).max()) <= 5e-6 * size
-    assert len(asked) <= QUESTIONS + 5 * found.attrs["accepted_steps"]
+    solves = found.attrs["accepted_steps"] + found.sizes["time"]
+    assert len(asked) <= QUESTIONS + 20 * solves  # at stages, ends and where a kink is looked for
 
 
 @given(st.floats(1e-3, 1.0, exclude_max=True), st.floats(-3, 3))
@@ -201,8 +196,8 @@ def test_many_jumps_are_found_and_what_is_smooth_has_none():
     assert steep == pytest.approx(0.3001, abs=1e-11)
 
 
-def test_runs_that_are_cut_are_the_same_in_any_company():
-    """From friction that has to be cut to a damper that does not."""
+def test_stiff_runs_are_the_same_in_any_company():
+    """From friction that all but jumps to a damper that does not."""
     model, widths = model_of(FRICTION), np.geomspace(1e-5, 1e-1, 12)
     options = {"inputs": {"F": sine(20, 2)}, "duration": 1.0, "rtol": 1e-7, "times": 7}
     some = sweep(model, over={"w": widths}, **options)
@@ -213,38 +208,10 @@ def test_runs_that_are_cut_are_the_same_in_any_company():
         assert np.array_equal(some.p.values[k], alone.p.values)
 
 
-@pytest.mark.parametrize("most_states", [0, 32], ids=["one by one", "in vectors"])
-@pytest.mark.parametrize("start", [False, True], ids=["plain", "dissipative"])
-def test_runs_that_are_cut_have_all_samples_and_close_their_balances(
-    most_states, start, monkeypatch
-):
-    monkeypatch.setattr(adaptive, "MOST_LEVEL", 15)
-    monkeypatch.setattr(march, "MOST_STATES", most_states)
-    options = {"dissipative_start": start, "times": 301, "rtol": 1e-5}
-    found = simulate(model_of(CIRCUIT), **CHARGE, **options)
+def test_a_run_through_what_follows_at_once_has_all_samples_and_closes_its_balances():
+    found = simulate(model_of(CIRCUIT), **CHARGE, times=301, rtol=1e-5)
     assert not any(np.isnan(found[name]).any() for name in found)
     energy, entropy = found.energy.values, found.entropy.values
     bound = 1e-12 * float(np.ptp(energy)) + 4 * np.spacing(np.abs(energy).max())
     assert float(np.abs(found.energy_residual).max()) <= bound
     assert float(np.abs(found.entropy_residual).max()) <= 1e-12 * float(np.ptp(entropy))
-
-
-def test_an_interval_in_parts_is_the_same_interval():
-    module = module_of("piezo_stack")
-    inputs = read_inputs(module, {"V_in": sine(100, 100)}, 0.01)
-    system = System(module, module.Parameters(), inputs)
-    (whole,) = blocks(system, np.linspace(0, 0.01, 3), 1e-3, lambda: 100)
-    one = whole.part(4, 5)
-    cut = one.cut(8)
-    assert cut.starts[0] == one.starts[0]
-    assert np.allclose(np.diff(cut.starts), cut.lengths[:-1], rtol=1e-12)
-    assert cut.lengths.sum() == pytest.approx(one.lengths.sum(), rel=1e-14)
-    assert whole.samples[4] == 1
-    assert cut.samples.tolist() == [-1] * 7 + [1]
-
-
-def test_a_run_that_asks_for_cuts_without_end_says_so(monkeypatch):
-    monkeypatch.setattr(adaptive, "MOST_CUTS", 3)
-    with pytest.raises(RunError, match="the tolerance is out of reach") as caught:
-        simulate("piezo_stack", inputs={"V_in": 100.0}, parameters={"L": 1e-12}, duration=1.0)
-    assert "t = 0 s" in str(caught.value)

@@ -84,8 +84,7 @@ def test_the_discrete_gradient_is_the_default(module):
     assert run.attrs["method"] == "discrete_gradient"
     assert run.attrs["rtol"] == 1e-5
     assert run.attrs["engine"].startswith(("compiled by gcc ", "compiled by clang "))
-    assert run.attrs["extrapolated"].startswith("q, p, Q_C, phi, S;")
-    assert run.attrs["newton_iterations"] >= run.attrs["accepted_steps"] > 100
+    assert run.attrs["newton_iterations"] >= run.attrs["accepted_steps"] > 10
     assert run.attrs["halvings"] == 0
 
 
@@ -101,7 +100,6 @@ def test_a_step_alone_runs_the_discrete_gradient(module):
     run = simulate(module, **SHORT, step=1e-5)
     assert (run.attrs["method"], run.attrs["step"]) == ("discrete_gradient", 1e-5)
     assert "rtol" not in run.attrs
-    assert "extrapolated" not in run.attrs
 
 
 def test_a_method_of_scipy_is_run_and_says_so(module):
@@ -300,7 +298,7 @@ def test_what_is_kept_for_a_process_goes_with_it(tmp_path):
 
 def test_a_finer_tolerance_than_round_off_is_not_paid_for(module):
     run = simulate(module, inputs={"V_in": 50.0}, duration=1e-3, times=5, rtol=1e-13)
-    assert run.attrs["rtol"] == 1e-11
+    assert run.attrs["rtol"] == 1e-12
 
 
 def test_no_warning_is_left_over(module):

@@ -1,10 +1,8 @@
-"""Steps are of order two, of four and six extrapolated; kinks cost only what is known.
+"""Fixed steps are of order two, of four extrapolated; kinks cost only what is known.
 
 References are SciPy's Radau at 1e-13, and for case P the state that three solvers agree on.
 """
 
-import ctypes
-import re
 from itertools import pairwise
 from pathlib import Path
 
@@ -15,10 +13,6 @@ from piezo_sym import derive, load, simulate, sine
 from piezo_sym.codegen import c_header, c_source, c_step, lower, numpy_module, step_of
 from piezo_sym.modules import load_module, module_of
 from piezo_sym.run import simulate as run
-from piezo_sym.run.adaptive import MOST_LEVEL
-from piezo_sym.run.engine.compiler import build, compilers
-from piezo_sym.run.engine.march import coarser, steps_at, twice
-from piezo_sym.run.engine.texts import texts
 
 SPECS = Path(__file__).parents[1] / "networks" / "specs"
 CASE_P = {"inputs": {"V_in": sine(100, 100)}, "duration": 0.1}
@@ -88,27 +82,6 @@ def test_kinks_cost_what_is_known(finer):
     assert error_of_pair(module_of("piezo_stack"), finer) <= 1.5 * TABLE[finer][0]
 
 
-@pytest.mark.parametrize(("rtol", "bound"), [(2e-4, 1e-5), (5e-5, 1e-6), (2e-5, 2e-7)])
-def test_states_are_extrapolated_as_far_as_kinks_allow(rtol, bound):
-    """Order six does harm where a kink's error is not even in the step: 2e-5 instead of 3e-6."""
-    found = run(module_of("piezo_stack"), rtol=rtol, times=2, **CASE_P)
-    for name, wanted in ANSWER.items():
-        error = np.max(np.abs(found[name].values[-1] - wanted)) / SCALES[name]
-        assert error <= bound, name
-
-
-@pytest.mark.parametrize("spec", ["a2_oscillator", "transducer_between_moving_nodes"])
-def test_tolerances_give_order_six_where_all_is_smooth(spec):
-    """The error falls by 2^6 where the steps are halved: with the tolerance, by its cube."""
-    model = load(SPECS / f"{spec}.toml")
-    module, options = module_of(model), {"duration": 5.0, "times": 2}
-    wanted = at_the_end(module, simulate(model, method="Radau", rtol=1e-13, **options))
-    runs = [simulate(model, rtol=rtol, **options) for rtol in (1e-4, 1e-6)]
-    errors = [np.linalg.norm((at_the_end(module, x) - wanted) / np.abs(wanted)) for x in runs]
-    steps = [x.attrs["accepted_steps"] for x in runs]
-    assert np.log(errors[0] / errors[1]) / np.log(steps[1] / steps[0]) >= 5.0
-
-
 @pytest.fixture(scope="module")
 def without_means(tmp_path_factory):
     """The actuator with a step that takes each law at the mean current."""
@@ -127,33 +100,3 @@ def test_the_mean_law_is_what_makes_kinks_cheap(without_means, finer):
     error = error_of_pair(without_means, finer)
     assert rough / 1.5 <= error <= 1.5 * rough
     assert error >= 2 * known
-
-
-#: What C says of levels, three numbers each; finer ones than MOST_LEVEL are tried at most.
-FINEST = MOST_LEVEL + 16
-ASKED = """
-void asked(long *out)
-{
-    for (long level = 0; level <= %d; ++level, out += 3) {
-        out[0] = ladder_steps_at(level);
-        out[1] = ladder_twice(level);
-        out[2] = ladder_coarser(level);
-    }
-}
-"""
-
-
-def test_both_sides_have_the_same_ladder_of_steps(tmp_path):
-    text, parts = texts("paths.c"), ["#define MODEL(name) ladder_##name"]
-    for name in ("steps_at", "twice", "coarser"):
-        parts += re.findall(
-            rf"^static long MODEL\({name}\)\(long level\)$.*?^}}$", text, re.M | re.S
-        )
-    (tmp_path / "ladder.c").write_text("\n".join([*parts, ASKED % FINEST]))
-    build(next(compilers()), ("-shared", "-fPIC"), tmp_path / "ladder.c", tmp_path / "ladder.so")
-    found = np.zeros((FINEST + 1, 3), dtype="l")
-    ctypes.CDLL(str(tmp_path / "ladder.so")).asked(ctypes.c_void_p(found.ctypes.data))
-    for level, row in enumerate(found.tolist()):
-        assert row == [steps_at(level), twice(level), coarser(level)]
-        assert steps_at(twice(level)) == 2 * steps_at(level)
-        assert steps_at(coarser(level)) <= max(1, steps_at(level) // 2)

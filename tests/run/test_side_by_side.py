@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from piezo_sym import load, sine, sweep
+from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.modules import module_of
-from piezo_sym.run import adaptive as adapting
-from piezo_sym.run.adaptive import adaptive
+from piezo_sym.run.collocation import with_tolerance
 from piezo_sym.run.discrete import fixed
-from piezo_sym.run.engine import march, records
+from piezo_sym.run.engine import march
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.engine.vector import CALLS, OPENING, wide_source
 from piezo_sym.run.inputs import read_inputs
@@ -48,55 +48,15 @@ class Members:
 
     def run(self, monkeypatch, most_states, **how):
         monkeypatch.setattr(march, "MOST_STATES", most_states)
-        method = fixed if "step" in how else adaptive
-        return method(self.systems, self.engine, self.x, self.times, *how.values())
+        given = self.systems, self.engine, self.x, self.times, *how.values()
+        if "step" in how:
+            return fixed(*given)
+        return with_tolerance(*given, side_by_side=most_states > 0)
 
 
 def close(one, other):
     scale = np.nanmax(np.abs(one), axis=(0, 1), keepdims=True)
     return np.allclose(one / (scale + 1e-300), other / (scale + 1e-300), rtol=0, atol=1e-9)
-
-
-#: Networks without inputs, banks or exchanges; with friction; with two banks.
-WATCHED = ("a1_two_bodies", "a2_oscillator", "a10_maxwell_slip", "two_banks_heat_one_body")
-
-
-@pytest.mark.parametrize(
-    "path", [path for path in SPECS if path.stem in WATCHED], ids=lambda p: p.stem
-)
-@pytest.mark.parametrize("how", [{"rtol": 1e-6}, {"step": 1e-5}], ids=["rtol", "step"])
-@pytest.mark.parametrize(("size", "most_states"), [(1, 10**6), (3, 0), (11, 10**6)])
-def test_no_run_leaves_its_arrays(monkeypatch, path, how, size, most_states):
-    """What lies between two arrays of a member is no number: nobody writes there, or reads."""
-    members = Members(load(path), size)
-    usual = members.run(monkeypatch, most_states, **how).batch
-    monkeypatch.setattr(records, "GAP", 3)
-    apart = members.run(monkeypatch, most_states, **how).batch
-    for name in ("states", "fine", "sums", "x", "ledgers"):
-        assert np.array_equal(getattr(usual, name), getattr(apart, name), equal_nan=True), name
-    gaps = apart.x.base.size - usual.x.base.size
-    assert gaps > 3 * size
-    assert np.isnan(apart.x.base).sum() == np.isnan(usual.x.base).sum() + gaps
-
-
-@pytest.mark.parametrize("how", [{"rtol": 1e-5}, {"step": 1e-5}], ids=["rtol", "step"])
-@pytest.mark.parametrize("size", [1, 3, 11])
-def test_no_run_computes_with_what_lies_beside_its_inputs(monkeypatch, how, size):
-    members = Members("piezo_stack", size, inputs={"V_in": sine(100, 100)})
-    usual = members.run(monkeypatch, 10**6, **how).batch
-    pointers, kept = march._pointers, []
-
-    def among_nan(arrays, levels):
-        room = {"pad_width": [(3, 3), (0, 0)], "constant_values": np.nan}
-        there = {level: np.pad(u, **room) for level, u in arrays.items()}
-        kept.append(there)
-        return pointers({level: u[3:-3] for level, u in there.items()}, levels)
-
-    monkeypatch.setattr(march, "_pointers", among_nan)
-    beside = members.run(monkeypatch, 10**6, **how).batch
-    assert kept
-    for name in ("states", "sums", "x", "ledgers"):
-        assert np.array_equal(getattr(usual, name), getattr(beside, name)), name
 
 
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
@@ -106,24 +66,22 @@ def test_lanes_compute_what_members_alone_do(monkeypatch, path, how):
     alone, together = (members.run(monkeypatch, most, **how) for most in (0, 10**6))
     assert alone.errors == together.errors == (None,) * len(members.systems)
     for name in ("states", "sums"):
-        assert close(getattr(alone.batch, name), getattr(together.batch, name))
-    lanes = [member.model.iterations for member in together.batch.members]
-    assert together.batch._vectors_for("adapt") is not None
-    assert min(lanes) > 0
+        one, other = getattr(alone, name), getattr(together, name)
+        assert np.array_equal(one, other) if "rtol" in how else close(one, other)
+    assert together.work[:, 1].min() > 0
 
 
 def test_both_balances_of_every_member_close(monkeypatch):
     members = Members("piezo_stack", 37, 0.05, {"V_in": sine(100, 100)})
     runs = members.run(monkeypatch, 10**6, rtol=1e-5)
-    batch, module = runs.batch, members.module
+    module = members.module
     for k, system in enumerate(members.systems):
-        energy = module.energy(batch.fine[k].T, system.parameters)
-        supplied = batch.sums[k, :, :3].sum(axis=1)
+        states, sums = runs.states[k].T, runs.sums[k]
+        energy, supplied = module.energy(states, system.parameters), sums[:, :3].sum(axis=1)
         assert np.max(np.abs(energy - energy[0] - supplied)) <= 4 * np.spacing(energy.max()) + 1e-12
-        entropy = module.entropy(batch.fine[k].T, system.parameters)
-        produced = batch.sums[k, :, 3 + 3 :].sum(axis=1)
-        assert np.allclose(entropy - entropy[0], produced, rtol=0, atol=1e-15)
-        assert np.all(np.diff(batch.sums[k, :, 6:9], axis=0) >= 0)
+        entropy = module.entropy(states, system.parameters)
+        assert np.allclose(entropy - entropy[0], sums[:, 6:].sum(axis=1), rtol=0, atol=1e-15)
+        assert np.all(np.diff(sums[:, 6:9], axis=0) >= 0)
 
 
 def test_a_member_that_stops_leaves_the_others_alone(monkeypatch):
@@ -133,37 +91,36 @@ def test_a_member_that_stops_leaves_the_others_alone(monkeypatch):
     runs = members.run(monkeypatch, 10**6, rtol=1e-5)
     assert [error is not None for error in runs.errors] == [k == 4 for k in range(9)]
     others = [k for k in range(9) if k != 4]
-    assert np.array_equal(alone.batch.states[others], runs.batch.states[others])
+    assert np.array_equal(alone.states[others], runs.states[others])
 
 
 @pytest.mark.parametrize("how", [{"rtol": 1e-4}, {"step": 1e-4}], ids=["rtol", "step"])
 def test_the_number_of_members_changes_nothing(monkeypatch, how):
     """Few share a vector for both of their tracks; many have one for each."""
     members = Members("piezo_stack", 19, 0.01, {"V_in": sine(100, 100)})
-    whole = members.run(monkeypatch, 10**6, **how).batch
+    whole = members.run(monkeypatch, 10**6, **how)
     systems, x = members.systems, members.x
     for size in (2, 3, 4, 5, 8, 9, 16, 17):
         members.systems, members.x = systems[-size:], x[-size:]
-        found = members.run(monkeypatch, 10**6, **how).batch
+        found = members.run(monkeypatch, 10**6, **how)
         for one, other in ((found.states, whole.states), (found.sums, whole.sums)):
             assert np.array_equal(one, other[-size:])
-        counts = [(m.steps, m.model.iterations) for m in found.members]
-        assert counts == [(m.steps, m.model.iterations) for m in whole.members[-size:]]
+        assert np.array_equal(found.work[:, :2], whole.work[-size:, :2])
 
 
 def test_a_lane_whose_step_is_halved_goes_on_with_the_rest(monkeypatch):
     members = Members("piezo_stack", 9, 0.02, {"V_in": sine(100, 100), "T_e": 296.15 + 1e-6})
     alone, together = (members.run(monkeypatch, most, step=5e-4) for most in (0, 10**6))
-    halved = [member.model.halvings for member in together.batch.members]
-    assert sum(halved) > 0
-    assert close(alone.batch.states, together.batch.states)
+    assert together.work[:, 2].sum() > 0
+    assert close(alone.states, together.states)
 
 
 def test_every_function_of_a_step_has_its_vector():
     from piezo_sym.codegen import c_means, c_style
 
-    known = {*c_means.HELPERS, *c_style._HELPERS, "exp", "log", "sqrt", "sin", "cos", "tanh", "pow"}
-    assert known | {"fabs", "copysign", "expm1"} == set(CALLS)
+    smooth = {record.in_c for record in RECORDS.values() if record.smooth}
+    known = {*c_means.HELPERS, *c_style._HELPERS, *smooth, "pow"}
+    assert known | {"fabs", "copysign"} == set(CALLS)
 
 
 def test_long_numbers_in_a_law_are_read_at_once():
@@ -196,7 +153,7 @@ def test_functions_of_the_state_before_a_step_are_computed_once():
         assert source.count(value) == 1
         for user in ("newton", "means"):
             assert f"const real {name} = p_->{name}_;" in functions[user]
-    assert members.engine.side_by_side(11) is not None  # it compiles, with a parameter called x
+    assert members.engine.side_by_side() is not None  # it compiles, with a parameter called x
 
 
 def test_a_source_without_a_step_is_refused():
@@ -205,26 +162,25 @@ def test_a_source_without_a_step_is_refused():
 
 
 @pytest.mark.parametrize("most_states", [0, 10**6], ids=["one by one", "side by side"])
-@pytest.mark.parametrize(
-    ("name", "duration", "how"),
-    [
-        ("two_banks_heat_one_body", 5000.0, {"rtol": 1e-6}),
-        ("a1_two_bodies", 1000.0, {"rtol": 1e-3}),
-        ("two_banks_heat_one_body", 500.0, {"step": 0.1}),
-    ],
-)
-def test_states_at_rest_are_not_halved_for_their_noise(
-    monkeypatch, most_states, name, duration, how
-):
+def test_states_at_rest_are_not_halved_for_their_noise(monkeypatch, most_states):
+    path = next(path for path in SPECS if path.stem == "two_banks_heat_one_body")
+    runs = Members(load(path), 3, 500.0).run(monkeypatch, most_states, step=0.1)
+    steps, iterations, halvings = runs.work.T
+    assert np.all(halvings == 0)
+    assert np.all(iterations < 4 * steps)
+
+
+@pytest.mark.parametrize("name", ["two_banks_heat_one_body", "a1_two_bodies"])
+def test_a_state_that_has_come_to_rest_costs_next_to_nothing(monkeypatch, name):
     path = next(path for path in SPECS if path.stem == name)
-    members = Members(load(path), 3, duration).run(monkeypatch, most_states, **how).batch.members
-    assert [member.model.halvings for member in members] == [0, 0, 0]
-    assert all(member.model.iterations < 4 * member.steps for member in members)
+    short, long = (Members(load(path), 3, d).run(monkeypatch, 10**6, rtol=1e-6) for d in (1e3, 1e4))
+    assert np.all(long.work[:, 0] < short.work[:, 0] + 100)
+    assert np.all(long.work[:, 2] < long.work[:, 0] / 4)
 
 
 def test_a_step_of_a_module_at_rest_is_one_iteration(monkeypatch):
-    members = Members(load("piezo_stack"), 9, 1e6).run(monkeypatch, 10**6, step=1e3).batch.members
-    assert all(member.model.iterations == member.steps for member in members)
+    runs = Members(load("piezo_stack"), 9, 1e6).run(monkeypatch, 10**6, step=1e3)
+    assert np.array_equal(runs.work[:, 1], runs.work[:, 0])
 
 
 @pytest.mark.parametrize("above", [1e-3, 1e-6, 1e-9])
@@ -234,18 +190,3 @@ def test_balances_close_where_newton_overshoots(above):
     found = sweep("piezo_stack", over=over, inputs=inputs, duration=0.02, times=5, step=1e-3)
     assert np.abs(found.entropy_residual).max() <= 1e-16
     assert np.abs(found.energy_residual).max() <= 4 * np.spacing(found.energy.max().item())
-
-
-def test_a_member_that_asks_for_steps_without_end_leaves_the_others_alone(monkeypatch):
-    """An inductance of 1 fH follows at once: more cuts of an interval than are allowed here."""
-    monkeypatch.setattr(adapting, "MOST_CUTS", 3)
-    members = Members(load("piezo_stack"), 3, 1e-2, {"V_in": sine(100, 100)})
-    alone = members.run(monkeypatch, 10**6, rtol=1e-6)
-    stiff = read_parameters(members.module, {"L": 1e-15})
-    members.systems[1] = System(members.module, stiff, members.inputs)
-    found = members.run(monkeypatch, 10**6, rtol=1e-6)
-    assert alone.errors == (None, None, None)
-    assert "the tolerance is out of reach" in str(found.errors[1])
-    for k in (0, 2):
-        assert found.errors[k] is None
-        assert close(found.batch.states[k : k + 1], alone.batch.states[k : k + 1])

@@ -173,7 +173,7 @@ class Grammar:
         made = form.format(z=z, p=p, a=a, k=k, s=f"({s})", b=f"({b.text})", g=f"({g.text})")
         parts = [x for x, mark in ((b, "{b}"), (g, "{g}")) if mark in form]
         found = known(made, *parts, passive=False)
-        jumps = "sign" in form or (" if " in made and self.moves(made.split(" if ")[1]))
+        jumps = "sign" in form or any(map(self.moves, made.split(" if ")[1:]))
         return replace(found, continuous=None) if jumps else found
 
     def partial(self, depth):

@@ -17,7 +17,7 @@ from pathlib import Path
 #: Rows about laws; the others cost more than they tell, or follow from these.
 ROWS = ("temperature", "welldef", "continuous", "passive")
 #: Seconds for one answer of a solver in the stage "laws".
-PATIENCE = 2.0
+PATIENCE = 1.0
 ROOT = Path(__file__).parents[2]
 
 

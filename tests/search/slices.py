@@ -11,7 +11,7 @@ from collections import Counter
 import tomli_w
 
 from piezo_sym.errors import PiezoError
-from piezo_sym.spec.parse import parse_condition, parse_law
+from piezo_sym.expressions.parse import parse_condition, parse_law
 from tests.search.judge import Fault, judge
 from tests.search.laws import read
 from tests.search.shrink import shrunk

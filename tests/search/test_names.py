@@ -1,6 +1,5 @@
 """No meaning is read out of a name: under any names a model has the same verdicts and rates."""
 
-import importlib.util
 import tomllib
 from functools import cache
 from random import Random
@@ -12,6 +11,7 @@ import tomli_w
 from piezo_sym import derive
 from piezo_sym.codegen import lower, numpy_module
 from piezo_sym.errors import SpecError
+from piezo_sym.modules import load_module
 from piezo_sym.proofs import decide
 from piezo_sym.spec.load import parse
 from tests.search import names
@@ -119,9 +119,7 @@ def rates(data, folder):
     program = lower(derive(parse(tomli_w.dumps(data))), "")
     path = folder / "module.py"
     path.write_text(numpy_module(program))
-    spec = importlib.util.spec_from_file_location("named_module", path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    module = load_module(path)  # never the bytecode of what stood there a moment ago
     random, p = np.random.default_rng(0), module.Parameters()
     start = module.initial_state(np.array([0.0, 0.0, 310.0]), p)
     x = start[:, None] + random.uniform(0, 0.1, (len(start), 4))

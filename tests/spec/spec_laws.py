@@ -8,7 +8,7 @@ import mpmath
 from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 
-from piezo_sym.spec.expressions import (
+from piezo_sym.expressions.tree import (
     Add,
     Call,
     Cmp,
@@ -32,7 +32,7 @@ steady = settings(
     suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow],
 )
 
-SMOOTH = ("exp", "sin", "cos", "tanh", "log", "sqrt")
+SMOOTH = ("exp", "sin", "cos", "tanh", "log", "sqrt", "atan", "sinh", "cosh", "erf")
 KINKED = ("abs", "sign")
 TWO = ("min", "max")
 WIDE = ("deadzone", "saturate")
@@ -98,7 +98,15 @@ def _acceptable(tree):
         all(names(n) for n in composite)
         and not any(_is_zero(d) for d in divisors)
         and _degree(tree) <= 32
+        and _branches(tree) <= 18
     )
+
+
+def _branches(node):
+    """Return how many branches a law has at most, as one choice of all that it chooses."""
+    inner = math.prod(_branches(part) for part in children(node))
+    own = {**dict.fromkeys(TWO, 2), **dict.fromkeys(WIDE, 3), "abs": 2, "sign": 3}
+    return inner * (2 if isinstance(node, Cmp) else own.get(getattr(node, "function", ""), 1))
 
 
 def _constant(node):
@@ -144,6 +152,10 @@ def namespace(lib, real):
         "sin": lib.sin,
         "cos": lib.cos,
         "tanh": lib.tanh,
+        "atan": lib.atan,
+        "sinh": _real(lib.sinh, *((-30, 30) if lib is mpmath else (-1e9, 1e9))),
+        "cosh": _real(lib.cosh, *((-30, 30) if lib is mpmath else (-1e9, 1e9))),
+        "erf": lib.erf,
         "abs": abs,
         "sign": _sign,
         "min": lambda a, b: a if a <= b else b,

@@ -5,8 +5,8 @@ import time
 import pytest
 
 from piezo_sym.errors import PiezoError
+from piezo_sym.expressions.parse import parse_law
 from piezo_sym.spec.load import parse
-from piezo_sym.spec.parse import parse_law
 from piezo_sym.spec.source import MODELS
 
 SHIPPED = (MODELS / "piezo_stack.toml").read_text(encoding="utf-8")

@@ -11,8 +11,10 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from spec_laws import laws, python_value, steady
 
-from piezo_sym.spec.dimensions import NONE, dimension, faults, matches, times
-from piezo_sym.spec.expressions import (
+from piezo_sym.expressions.dimensions import BASES, NONE, dimension, faults, matches, times
+from piezo_sym.expressions.parse import parse_condition, parse_law
+from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tree import (
     ZERO,
     Add,
     Call,
@@ -26,10 +28,8 @@ from piezo_sym.spec.expressions import (
     Sym,
     names,
 )
-from piezo_sym.spec.parse import parse_condition, parse_law
-from piezo_sym.spec.text import spell
 from piezo_sym.spec.unit_text import unit_text
-from piezo_sym.spec.units import BASES, parse_unit
+from piezo_sym.spec.units import parse_unit
 
 UNITS = {"v": "m/s", "w": "m/s", "i": "A", "T": "K", "T_0": "K", "n": "1", "d": "N*s/m", "q": "m"}
 WORDS = {name: parse_unit(unit).dimension for name, unit in UNITS.items()}

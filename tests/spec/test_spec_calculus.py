@@ -8,11 +8,11 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from spec_laws import laws, precise, steady
 
-from piezo_sym.spec.calculus import derivative
-from piezo_sym.spec.expressions import ZERO, evaluate, names
-from piezo_sym.spec.integrals import antiderivative
-from piezo_sym.spec.parse import parse_law
-from piezo_sym.spec.text import spell
+from piezo_sym.expressions.calculus import derivative
+from piezo_sym.expressions.integrals import antiderivative
+from piezo_sym.expressions.parse import parse_law
+from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tree import ZERO, evaluate, names
 
 STEP = mpmath.mpf("1e-20")
 ODD = st.integers(-3000, 3000).map(lambda n: mpmath.mpf(2 * n + 1) / 1999)

@@ -5,10 +5,10 @@ import sympy as sp
 from spec_tools import refused_edit, refused_law
 
 from piezo_sym.algebra.symbols import to_sympy
-from piezo_sym.spec.calculus import derivative
-from piezo_sym.spec.expressions import evaluate, names
-from piezo_sym.spec.parse import parse_law
-from piezo_sym.spec.text import spell
+from piezo_sym.expressions.calculus import derivative
+from piezo_sym.expressions.parse import parse_law
+from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tree import evaluate, names
 
 DEEP = {
     "functions": "tanh(" * 8 + "x" + ")" * 8,

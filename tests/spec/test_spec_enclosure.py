@@ -9,9 +9,9 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from spec_laws import laws, precise, steady
 
-from piezo_sym.spec.enclosure import UndecidedError, holds_surely, interval_of
-from piezo_sym.spec.parse import parse_condition, parse_law
-from piezo_sym.spec.text import spell
+from piezo_sym.expressions.enclosure import UndecidedError, holds_surely, interval_of
+from piezo_sym.expressions.parse import parse_condition, parse_law
+from piezo_sym.expressions.text import spell
 
 WIDTH = {"x": Fraction(1, 7), "y": Fraction(0), "w": Fraction(1, 3)}
 ENDS = st.tuples(st.floats(-3, 3), st.floats(-3, 3), st.floats(0, 3))

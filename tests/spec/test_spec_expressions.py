@@ -10,7 +10,9 @@ from hypothesis import strategies as st
 from spec_laws import laws, python_value, steady
 
 from piezo_sym.algebra.symbols import to_sympy
-from piezo_sym.spec.expressions import (
+from piezo_sym.expressions.parse import parse_law
+from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tree import (
     Add,
     Cmp,
     LaneSum,
@@ -26,8 +28,6 @@ from piezo_sym.spec.expressions import (
     replace,
     walk,
 )
-from piezo_sym.spec.parse import parse_law
-from piezo_sym.spec.text import spell
 
 VALUES = st.floats(-3, 3).map(lambda value: round(value, 6))
 

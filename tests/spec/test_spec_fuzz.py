@@ -6,9 +6,9 @@ from spec_laws import laws, steady
 from spec_tools import refusal
 
 from piezo_sym.errors import SpecError
-from piezo_sym.spec.expressions import Expr
-from piezo_sym.spec.parse import parse_law
-from piezo_sym.spec.text import spell
+from piezo_sym.expressions.parse import parse_law
+from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tree import Expr
 
 PIECES = st.sampled_from(
     [

@@ -3,7 +3,7 @@
 import pytest
 from spec_tools import refused_law
 
-from piezo_sym.spec.parse import parse_law
+from piezo_sym.expressions.parse import parse_law
 
 TERMS = "has too many terms when it is multiplied out; expected at most 512"
 KINKS = "nests functions with kinks too deeply; expected at most 18 branches"

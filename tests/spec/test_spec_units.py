@@ -34,6 +34,10 @@ from piezo_sym.spec.units import base_units, parse_unit, to_si
         (0.0, "kV", 0.0),
         (96.15, "kN/m", 96150.0),
         (0.07, "mA", 7e-05),
+        (2, "N/(m/s)**(1/2)", 2.0),
+        (3, "um**(1/2)", 3e-3),
+        (3, "kN/(mm**2/s)^(1/2)", 3e6),
+        (2, "liter**2", 2e-6),
     ],
 )
 def test_values_in_si(value, unit, si):
@@ -159,6 +163,15 @@ def test_base_units():
         "1/1/",
         "m//s",
         "m**(2)",
+        "((m/s))",
+        "(((m/s)**2*K)**2*s)**2",
+        "(m/s",
+        "m/s)**2",
+        "(m**9)**2",
+        "m**(1/0)",
+        "m**(1/12)",
+        "m**1/2)",
+        "()**2",
     ],
 )
 def test_texts_that_are_no_units(text):
@@ -185,6 +198,17 @@ def test_texts_that_are_no_units(text):
 )
 def test_words_that_are_no_units(text, answer):
     assert answer in str(refusal(parse_unit, text, "parameters.M.unit"))
+
+
+def test_a_root_of_a_factor_that_is_no_exact_number_is_refused():
+    error = refusal(parse_unit, "N/(mm/s)**(1/2)", "parameters.d.unit")
+    assert "root of 1/1000" in error.what
+
+
+def test_a_rational_power_has_the_dimension_of_its_base_to_that_power():
+    half = parse_unit("(m/s)**(1/2)").dimension
+    assert half == tuple(power / 2 for power in parse_unit("m/s").dimension)
+    assert parse_unit(base_units(half)).dimension == half
 
 
 @pytest.mark.parametrize("unit", ["degC", "celsius", "degF", "kg/degC", "degC**2"])

@@ -10,9 +10,9 @@ import pytest
 from fuzz_texts import law_texts, spec_texts
 
 from piezo_sym.errors import PiezoError, SpecError
-from piezo_sym.spec.expressions import Expr
+from piezo_sym.expressions.parse import parse_law
+from piezo_sym.expressions.tree import Expr
 from piezo_sym.spec.load import parse
-from piezo_sym.spec.parse import parse_law
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]

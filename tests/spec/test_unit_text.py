@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from spec_laws import steady
 
 import piezo_sym.spec.elements as kinds
-from piezo_sym.spec.dimensions import NONE, times
+from piezo_sym.expressions.dimensions import NONE, times
 from piezo_sym.spec.elements import KINDS
 from piezo_sym.spec.elements.base import Letters
 from piezo_sym.spec.unit_text import PARTS, QUANTITIES, quantity, unit_text

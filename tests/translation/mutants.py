@@ -16,21 +16,31 @@ WORDS = {
     "sqrt": "exp", "abs": "sign", "fabs": "exp", "minimum": "maximum", "maximum": "minimum",
     "min": "max", "max": "min", "sum": "max", "empty": "zeros", "zeros": "empty", "axis": "where",
     "copysign": "pow", "power_2": "power_3", "power_3": "power_2", "sign": "fabs",
+    "exp_of": "cos_of", "expm1_of": "exp_of", "sqrt_of": "exp_of", "tanh_of": "sin_of",
+    "zero": "wide", "wide": "zero", "chosen": "least", "least": "chosen",
+    "out": "rows", "rows": "out", "m": "out", "s": "out",
 }  # fmt: skip
 FIXED = frozenset({"np", "p_", "p", "x", "u", "out", "for", "long", "const", "double", "return"})
+FIXED |= {"real", "g", "b", "rows", "s", "m"}
 HEADS = ("def ", "void ", "double ", "long ", "static ")
-DEFINED = re.compile(r"\s+(?:const )?(?:double |long )?(?:\*?(?:restrict )?)?(\w+) = ")
+#: Behind this line of a step stands what serves Newton's method alone.
+NEWTON = "/* Derivative of the rates"
+DEFINED = re.compile(r"\s+(?:const )?(?:double |long |real )?(?:\*?(?:restrict )?)?(\w+) = ")
 SAME = re.compile(r"\[[^]]*\+ 0\]|^\s*\(void\)|\(-1\)\*|out\[j\*n \+ j\] \+=")
 
 
 def mutants(text):
     """Yield the mutants of every line of the functions of a module."""
-    lines = text.split("\n")
+    lines, last = text.split("\n"), text.split(NEWTON)[0].count("\n")
     first = next(n for n, line in enumerate(lines) if line.startswith(("def initial", *HEADS[1:])))
     scopes = _scopes(lines, first)
-    for n in range(first, len(lines)):
+    for n in range(first, last + 1):
         plain = lines[n].strip()
-        if not plain or plain.startswith(("#", "/*", '"""', *HEADS[:2])) or SAME.search(plain):
+        if (
+            not plain
+            or plain.startswith(("#", "/*", "* ", '"""', *HEADS[:2]))
+            or SAME.search(plain)
+        ):
             continue
         yield from _of_line(lines, n, *scopes[n])
 

@@ -13,7 +13,8 @@ from piezo_sym.translation.expressions import PLAIN, Expressions
 from piezo_sym.translation.field import Field, NotShownError
 from piezo_sym.translation.witness import Point, UndecidedError
 
-CALLS = ("exp", "log", "sqrt", "sin", "cos", "tanh", "abs", "sign", "expm1")
+SMOOTH = ("exp", "log", "sqrt", "sin", "cos", "tanh", "expm1", "atan", "sinh", "cosh", "erf")
+CALLS = (*SMOOTH, "abs", "sign")
 TWO = ("minimum", "maximum")
 NAMES = {"a": 2, "b": 1, "x": 0, "y": 0}
 LEAVES = st.sampled_from([*NAMES, "2", "3", "0.5", "1"])
@@ -31,9 +32,7 @@ def _grown(inner):
 
 
 TEXTS = st.recursive(LEAVES, _grown, max_leaves=7)
-FUNCTIONS = {
-    name: getattr(math, name) for name in ("exp", "log", "sqrt", "sin", "cos", "tanh", "expm1")
-}
+FUNCTIONS = {name: getattr(math, name) for name in SMOOTH}
 FUNCTIONS |= {"abs": abs, "minimum": min, "maximum": max}
 FUNCTIONS["sign"] = lambda z: float((z > 0) - (z < 0))
 
@@ -86,3 +85,16 @@ def test_a_normal_form_has_the_value_of_its_text(text, point):
     except (UndecidedError, NotShownError):  # such as a power whose exponent is a root
         assume(False)
     assert float(found.mid) == pytest.approx(wanted, rel=1e-6, abs=1e-6)
+
+
+@pytest.mark.parametrize("text", ["(b + 2*x*b + a*(1 + 2*x))", "(a - 2*a*x + b*y - 2*b*x*y)"])
+@pytest.mark.parametrize("point", [(2, 3, 5, 7), (1, 2, -3, 4)])
+def test_factors_of_a_sum_lose_no_number(text, point):
+    """The last term of a product need not be the product of last terms: 1/(f g) had lost a 2."""
+    at = dict(zip(NAMES, map(Fraction, point), strict=True))
+    field, read = reader()
+    numbers = {name: (value,) for name, value in at.items()}
+    for whole in (f"1/{text}", f"where({text} > 0, 1.0, 2.0)"):
+        node = ast.parse(whole, mode="eval").body
+        found = Point(SimpleNamespace(field=field), numbers).value(read(node)[0], {})
+        assert float(found.mid) == pytest.approx(number(node, at))

@@ -9,15 +9,15 @@ from pathlib import Path
 import pytest
 
 from piezo_sym import derive, load
-from piezo_sym.codegen import c_source, lower, numpy_module
+from piezo_sym.codegen import lower
+from piezo_sym.expressions.calculus import add, mul
+from piezo_sym.expressions.tree import LaneSum, Num
 from piezo_sym.proofs.report import Verdict
-from piezo_sym.spec.calculus import add, mul
-from piezo_sym.spec.expressions import LaneSum, Num
 from piezo_sym.spec.load import parse
 from piezo_sym.translation import program_rows
-from piezo_sym.translation.program import different
-from piezo_sym.translation.reference import proved
+from piezo_sym.translation.program import different, reference_of
 from tests.translation.mutants import mutants
+from tests.translation.printed import TEXTS, printed
 
 SPECS = Path(__file__).parents[1] / "networks" / "specs"
 ALL = ["piezo_stack", *sorted(path.name for path in SPECS.glob("*.toml"))]
@@ -29,7 +29,6 @@ MUTATED = [
     "transducer_between_moving_nodes.toml",
     "two_banks_heat_one_body.toml",
 ]
-PRINT = {"NumPy": numpy_module, "C": c_source}
 
 
 def iphs_of(name):
@@ -45,25 +44,24 @@ def verdict(iphs, known, language, text):
 @pytest.mark.parametrize("name", ALL)
 def test_what_is_printed_is_proved(name):
     iphs = iphs_of(name)
-    program = lower(iphs, "")
-    (row,) = program_rows(iphs, numpy_module(program), c_source(program))
+    (row,) = program_rows(iphs, *printed(iphs).values())
     assert (row.id, row.verdict) == ("program", Verdict.PROVED), row.reason
 
 
 def survivors(name, language, sample=None):
     """Return the mutants that are proved, and how many are not, by verdict."""
     iphs = iphs_of(name)
-    made = list(mutants(PRINT[language](lower(iphs, ""))))
+    made = list(mutants(printed(iphs)[language]))
     made = random.Random(name).sample(made, sample) if sample else made
-    known, counts, alive = proved(iphs), Counter(), []
+    known, counts, alive = reference_of(iphs), Counter(), []
     for n, (what, text) in enumerate(made):
-        known = proved(iphs) if n % 100 == 99 else known  # it grows by what is read
+        known = reference_of(iphs) if n % 100 == 99 else known  # it grows by what is read
         counts[found := verdict(iphs, known, language, text)] += 1
         alive += [what] if found is Verdict.PROVED else []
     return alive, counts
 
 
-@pytest.mark.parametrize("language", PRINT)
+@pytest.mark.parametrize("language", TEXTS)
 @pytest.mark.parametrize("name", MUTATED[:3])
 def test_no_mutant_of_a_sample_is_proved(name, language):
     alive, counts = survivors(name, language, sample=10)
@@ -72,18 +70,18 @@ def test_no_mutant_of_a_sample_is_proved(name, language):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("language", PRINT)
+@pytest.mark.parametrize("language", TEXTS)
 @pytest.mark.parametrize("name", MUTATED)
 def test_no_mutant_is_proved(name, language):
     alive, _ = survivors(name, language)
     assert alive == []
 
 
-@pytest.mark.parametrize("language", PRINT)
+@pytest.mark.parametrize("language", TEXTS[:2])
 def test_a_change_of_a_quantity_before_it_is_printed_is_refuted(language):
     iphs = iphs_of("piezo_stack")
-    program, known = lower(iphs, ""), proved(iphs)
-    for n in range(PRINT[language] is c_source, len(program.quantities), 4):
+    program, known = lower(iphs, ""), reference_of(iphs)
+    for n in range(TEXTS.index(language), len(program.quantities), 4):
         quantity = program.quantities[n]
         value = quantity.value
         inner = value.arg if isinstance(value, LaneSum) else value
@@ -91,15 +89,15 @@ def test_a_change_of_a_quantity_before_it_is_printed_is_refuted(language):
         changed = LaneSum(inner, value.bank) if isinstance(value, LaneSum) else inner
         others = list(program.quantities)
         others[n] = replace(quantity, value=changed)
-        text = PRINT[language](replace(program, quantities=tuple(others)))
+        text = printed(iphs, replace(program, quantities=tuple(others)))[language]
         assert verdict(iphs, known, language, text) is Verdict.REFUTED, quantity.name
 
 
 def test_a_refuted_row_has_numbers():
     iphs = iphs_of("piezo_stack")
-    program = lower(iphs, "")
-    text = numpy_module(program).replace("V_in - V_capacitor - V_hys", "V_in + V_capacitor - V_hys")
-    (row,) = program_rows(iphs, text, c_source(program))
+    text, *others = printed(iphs).values()
+    text = text.replace("V_in - V_capacitor - V_hys", "V_in + V_capacitor - V_hys")
+    (row,) = program_rows(iphs, text, *others)
     assert row.verdict is Verdict.REFUTED
     assert "rhs['phi']" in row.reason
     assert {*row.witness} >= {"q", "p", "Q_C", "phi", "S", "V_in", "C"}
@@ -110,6 +108,5 @@ def test_a_long_condition_of_a_bank_is_printed_as_its_least_lane():
     sizes = " + ".join(f"{n}*L*i_0" for n in range(10, 20))
     model = parse(words.replace('"lam >= 0"', f'"lam >= 0", "phi < {sizes}"'))
     iphs = derive(model)
-    program = lower(iphs, "")
-    (row,) = program_rows(iphs, numpy_module(program), c_source(program))
+    (row,) = program_rows(iphs, *printed(iphs).values())
     assert row.verdict is Verdict.PROVED, row.reason

@@ -3,11 +3,13 @@
 import pytest
 
 from piezo_sym import derive, load
-from piezo_sym.codegen import c_source, lower, numpy_module
 from piezo_sym.proofs.report import Verdict
+from piezo_sym.spec.load import parse
 from piezo_sym.translation import program_rows
-from piezo_sym.translation.program import different
-from piezo_sym.translation.reference import proved
+from piezo_sym.translation.program import different, reference_of
+from tests.mutants.specs import spec_of
+from tests.translation.printed import printed
+from tests.translation.test_program import SPECS
 
 NUMPY = {
     "a name that the readers know": ("import numpy as np", "import numpy as np\nnp.exp = np.sin"),
@@ -102,8 +104,7 @@ C = {
 @pytest.fixture(scope="module")
 def made():
     iphs = derive(load("piezo_stack"))
-    program = lower(iphs, "")
-    return {"NumPy": numpy_module(program), "C": c_source(program)}, iphs, proved(iphs)
+    return printed(iphs), iphs, reference_of(iphs)
 
 
 def row(made, language, old, new):
@@ -135,6 +136,46 @@ def test_a_quotient_is_needed_only_where_it_is_chosen(made):
     assert row(made, "NumPy", "out[0] = v_mass\n", chosen) is None
 
 
+@pytest.mark.parametrize(
+    ("language", "old", "new"),
+    [
+        ("NumPy", "out[0] = T_minus_T_0\n", "out[0] = np.abs(T_minus_T_0)\n"),
+        ("NumPy", "out[2] = d\n", "out[2] = np.where(d > 0, d, 1)\n"),
+        ("NumPy", "out[3] = np.min(rho,", "out[3] = np.min(np.abs(rho),"),
+        ("C", "out[7] = M;", "out[7] = fabs(M);"),
+        ("C", "min(out[4], i_0[j])", "min(out[4], i_0[j] > 0.0 ? i_0[j] : 0.0)"),
+    ],
+)
+def test_margins_are_compared_outside_the_domain_too(made, language, old, new):
+    """A margin that is right inside the domain alone would hide that a state has left it."""
+    assert "margins" in row(made, language, old, new).reason
+
+
 def test_all_is_proved_without_a_change(made):
     texts, iphs, _ = made
     assert program_rows(iphs, *texts.values())[0].verdict is Verdict.PROVED
+
+
+def test_roots_in_the_domain_are_read_back():
+    """SymPy splits sqrt(a/d) where it knows that d > 0; a margin knows nothing."""
+    iphs = derive(parse(spec_of("d*v | d > 0; sqrt(a/d) >= 0 | a=1.0")))
+    (found,) = program_rows(iphs, *printed(iphs).values())
+    assert found.verdict is Verdict.PROVED
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("from math import erf\n", ""),
+        ("_erf = np.vectorize(erf, otypes=[float])\n", ""),
+        ("from math import erf\n", "from math import erfc as erf\n"),
+        ("otypes=[float])\n", "otypes=[int])\n"),
+        ("otypes=[float])\n", "otypes=[float])\n_erf = np.tanh\n"),
+    ],
+)
+def test_a_module_that_computes_erf_in_another_way_is_not_proved(old, new):
+    iphs = derive(load(str(SPECS / "smooth_functions.toml")))
+    text = printed(iphs)["NumPy"]
+    assert old in text
+    (row, *_) = different("NumPy", text.replace(old, new), iphs, reference_of(iphs))
+    assert row.verdict is Verdict.OPEN

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from piezo_sym.analysis.figures.figure import TEMPERATURES, ZERO_CELSIUS, PaperFigure
 from piezo_sym.analysis.style import COLOURS, DASHES, column_figure, legend, name_axes
 from piezo_sym.run import simulate, step
-from piezo_sym.run.discrete import METHOD
+from piezo_sym.run.runs import METHOD
 
 if TYPE_CHECKING:
     import xarray

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from piezo_sym.analysis import loops
 from piezo_sym.analysis.figures.figure import AMPLITUDE
 from piezo_sym.run import simulate, sine
-from piezo_sym.run.discrete import METHOD
+from piezo_sym.run.runs import METHOD
 
 if TYPE_CHECKING:
     import xarray

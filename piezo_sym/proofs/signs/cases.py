@@ -11,7 +11,8 @@ from collections.abc import Callable, Iterator
 from itertools import islice
 from typing import TypeAlias
 
-from piezo_sym.spec.expressions import (
+from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.expressions.tree import (
     Call,
     Cmp,
     Div,
@@ -80,7 +81,9 @@ def _total(condition: Cmp, positive: Positive) -> bool:
         match part:
             case Num() | Div(_, Num()):
                 continue
-            case Div(_, arg) | Call("log" | "sqrt", (arg,)) if not positive(arg):
+            case Div(_, arg) if not positive(arg):
+                return False
+            case Call(function, (arg,)) if RECORDS[function].domain and not positive(arg):
                 return False
             case Pow(base, e) if (e < 0 or e.denominator != 1) and not positive(base):
                 return False

@@ -14,9 +14,9 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import final
 
+from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tree import ZERO, Cmp, Expr, If, rename
 from piezo_sym.proofs.signs.intervals import INF
-from piezo_sym.spec.expressions import ZERO, Cmp, Expr, If, rename
-from piezo_sym.spec.text import spell
 
 #: The letter of f in a certificate.
 LETTER = "s"

@@ -16,12 +16,12 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import final
 
+from piezo_sym.expressions.tree import Expr, LaneSum, names, walk
 from piezo_sym.proofs.report import Verdict
 from piezo_sym.proofs.signs.certificate import Windows
 from piezo_sym.proofs.signs.enclosures import Window, enclose, value
 from piezo_sym.proofs.signs.intervals import INF
 from piezo_sym.proofs.signs.recentre import recentred
-from piezo_sym.spec.expressions import Expr, LaneSum, names, walk
 
 #: Derivatives on windows that are looked at before a decision is left open.
 BUDGET = 1000

@@ -8,17 +8,19 @@ most of the cancellation that intervals suffer from.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import final
 
+from piezo_sym.expressions.calculus import rule
+from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.expressions.tree import Add, Call, Cmp, Div, Expr, If, Mul, Neg, Num, Pow, Sym
 from piezo_sym.proofs.signs import intervals as iv
 from piezo_sym.proofs.signs import jets
 from piezo_sym.proofs.signs.intervals import INF, Interval
 from piezo_sym.proofs.signs.jets import Jet
 from piezo_sym.proofs.signs.vanish import vanishes
-from piezo_sym.spec.expressions import Add, Call, Cmp, Div, Expr, If, Mul, Neg, Num, Pow, Sym
 
 
 @final
@@ -92,8 +94,13 @@ def _enclose(node: Expr, x: Enclosure, order: int) -> Enclosure:
             return _product(of(left), _power(of(right), Fraction(-1)))
         case Pow(base, exponent):
             return _power(of(base), exponent)
+        case Call(function, args) if function in KINKED:
+            return KINKED[function](*map(of, args))
+        case Call(function, args) if RECORDS[function].smooth:
+            return _smooth(function, of(args[0]))
         case Call(function, args):
-            return _call(function, [of(arg) for arg in args])
+            record = RECORDS[function]
+            return of(rule(record.formula or record.choices, args[0], args[-1]))
         case If(then, Cmp(op, left, right), other):
             difference = _sum([of(left), _minus(of(right))])
             return _choice(of(then), op, difference.inner, of(other))
@@ -193,34 +200,14 @@ def _grown(a: Enclosure, growth: Interval | None) -> Enclosure:
     return Enclosure(inner, a.left, a.right, growth)
 
 
-def _call(function: str, args: list[Enclosure]) -> Enclosure:
-    if function in jets.OUTER:
-        found = _each(lambda jet: jets.applied(function, jet), args[0])
-        growth = args[0].inner[1] if function == "exp" and len(args[0].inner) > 1 else None
-        return _grown(found, growth)  # exp(a)'/exp(a) = a'
-    z, w = args[0], args[-1]
-    match function:
-        case "abs":
-            return _absolute(z)
-        case "sign":
-            return _sign(z)
-        case "max":
-            return _larger(z, w)
-        case "min":
-            return _smaller(z, w)
-        case "deadzone":
-            above = _larger(_sum([z, _minus(w)]), _nought(z))
-            return _sum([above, _smaller(_sum([z, w]), _nought(z))])
-    return _smaller(_larger(z, _minus(w)), w)  # saturate
+def _smooth(function: str, arg: Enclosure) -> Enclosure:
+    found = _each(lambda jet: jets.applied(function, jet), arg)
+    growth = arg.inner[1] if function == "exp" and len(arg.inner) > 1 else None
+    return _grown(found, growth)  # exp(a)'/exp(a) = a'
 
 
 def _minus(a: Enclosure) -> Enclosure:
     return replace(_each(jets.minus, a), growth=a.growth)
-
-
-def _nought(like: Enclosure) -> Enclosure:
-    jet = jets.constant(Fraction(0), max(len(like.inner) - 1, 0))
-    return Enclosure(jet, jet, jet)
 
 
 def _absolute(z: Enclosure) -> Enclosure:
@@ -271,6 +258,15 @@ def _larger_value(a: Interval, b: Interval) -> Interval:
 
 def _smaller(a: Enclosure, b: Enclosure) -> Enclosure:
     return _minus(_larger(_minus(a), _minus(b)))
+
+
+#: Those with kinks that others are made of.
+KINKED: Mapping[str, Callable[..., Enclosure]] = {
+    "abs": _absolute,
+    "sign": _sign,
+    "max": _larger,
+    "min": _smaller,
+}
 
 
 def _choice(then: Enclosure, op: str, difference: Jet, other: Enclosure) -> Enclosure:

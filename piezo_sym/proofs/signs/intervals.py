@@ -14,11 +14,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, final
 
+from piezo_sym.expressions.functions import RECORDS, Function
+
 INF = math.inf
 #: Exact values are kept as long as they have no more bits than this.
 EXACT_BITS = 256
-#: exp of more than this is above every double; FLINT gives up far beyond.
-LARGEST_EXPONENT = 1e4
 
 
 @final
@@ -176,57 +176,48 @@ def power(a: Interval, exponent: Fraction) -> Interval | None:
     return _increasing(base, lambda x: x.root(exponent.denominator) ** exponent.numerator)
 
 
-def exp(a: Interval) -> Interval:
-    """Return exp(a)."""
-    if a.exact == 0:
-        return UNIT
-    low = 0.0 if a.lo == -INF else max(0.0, _down(_ball(min(a.lo, LARGEST_EXPONENT)).exp()))
-    high = INF if a.hi > LARGEST_EXPONENT else _up(_ball(a.hi).exp())
-    return interval(low, high, nonzero=True)
-
-
-def log(a: Interval) -> Interval | None:
-    """Return log(a), where a is positive."""
-    if a.lo < 0 or not a.nonzero:
+def of(function: str, a: Interval) -> Interval | None:
+    """Return the values of a smooth function of laws; None if it has none on a part of a."""
+    record = RECORDS[function]
+    if record.power is not None:
+        return power(a, record.power)
+    if record.domain and (a.lo < 0 or not a.nonzero):
         return None
-    if a.exact == 1:
-        return NOUGHT
-    low = -INF if a.lo == 0 else _down(_ball(a.lo).log())
-    return interval(low, INF if a.hi == INF else _up(_ball(a.hi).log()))
+    if record.known and a.exact == record.known[0]:
+        return rational(Fraction(record.known[1]))
+    if not record.rises:
+        return _wave(a, record)
+    if record.parity == "even":
+        a = magnitude(a)
+    zero_at_zero = record.parity == "odd" and a.nonzero
+    return interval(*_rising(a, record), record.sign == ">" or zero_at_zero)
 
 
-def tanh(a: Interval) -> Interval:
-    """Return tanh(a), which lies between -1 and 1 and is zero where a is."""
-    if a.exact == 0:
-        return NOUGHT
-    low = -1.0 if a.lo == -INF else max(-1.0, _down(_ball(a.lo).tanh()))
-    return interval(low, 1.0 if a.hi == INF else min(1.0, _up(_ball(a.hi).tanh())), a.nonzero)
+def _rising(a: Interval, record: Function) -> tuple[float, float]:
+    """Return bounds on an increasing function, from its values at the ends."""
+    (low, high), most = map(float, record.bounds), record.largest
+    if a.lo != (0.0 if record.domain else -INF) and a.lo >= -most:
+        low = max(low, _down(_at(min(a.lo, most), record)))
+    if a.hi != INF and a.hi <= most:
+        high = min(high, _up(_at(max(a.hi, -most), record)))
+    return low, high
 
 
-def sin(a: Interval) -> Interval:
-    """Return sin(a)."""
-    if a.exact == 0:
-        return NOUGHT
-    return _wave(a, lambda x: x.sin(), Fraction(1, 4))
-
-
-def cos(a: Interval) -> Interval:
-    """Return cos(a)."""
-    if a.exact == 0:
-        return UNIT
-    return _wave(a, lambda x: x.cos(), Fraction(0))
-
-
-def _wave(a: Interval, function: Callable[[Any], Any], crest: Fraction) -> Interval:
-    """Return a wave of period 2*pi, 1 at the phases `crest` + k and -1 half a period later.
+def _wave(a: Interval, record: Function) -> Interval:
+    """Return sine or cosine: 1 at the phases `crest` + k turns, -1 half a turn later.
 
     Between two ends with no crest inside, the wave is at most the larger end; likewise below.
     """
     if math.isinf(a.lo) or math.isinf(a.hi):
         return interval(-1.0, 1.0)
-    ends = function(_ball(a.lo)), function(_ball(a.hi))
+    crest = Fraction(0) if record.parity == "even" else Fraction(1, 4)
+    ends = _at(a.lo, record), _at(a.hi, record)
     low = -1.0 if _meets(a, crest + Fraction(1, 2)) else max(-1.0, min(map(_down, ends)))
     return interval(low, 1.0 if _meets(a, crest) else min(1.0, max(map(_up, ends))))
+
+
+def _at(x: float, record: Function) -> Any:
+    return getattr(_ball(x), record.name)()
 
 
 def _meets(a: Interval, offset: Fraction) -> bool:

@@ -8,11 +8,13 @@ where f has k continuous derivatives.  Operations keep the shorter length.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from fractions import Fraction
-from math import factorial
+from functools import reduce
 from typing import TypeAlias
 
+from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.expressions.parse import parse_rule
+from piezo_sym.expressions.tree import Add, Call, Div, Mul, Neg, Node, Num, Pow, Sym, children
 from piezo_sym.proofs.signs import intervals as iv
 from piezo_sym.proofs.signs.intervals import Interval
 
@@ -66,7 +68,7 @@ def composed(outer: Jet, inner: Jet) -> Jet:
 
 def applied(function: str, a: Jet) -> Jet:
     """Return the jet of a smooth function of the law language."""
-    return composed(OUTER[function](a[0], len(a)), a) if a else ()
+    return composed(of(function, a[0], len(a)), a) if a else ()
 
 
 def power(a: Jet, exponent: Fraction) -> Jet:
@@ -92,52 +94,39 @@ def _power(a: Interval, length: int, exponent: Fraction) -> Jet:
     return tuple(found)
 
 
-def _exp(a: Interval, length: int) -> Jet:
-    return tuple(_part(iv.exp(a), m) for m in range(length))
+def of(function: str, a: Interval, length: int) -> Jet:
+    """Return f^(m)/m! of a smooth function of laws, by its derivative: f_(m+1) = f'_m/(m + 1)."""
+    record, value = RECORDS[function], iv.of(function, a)
+    if record.power is not None:
+        return _power(a, length, record.power)
+    if value is None or length <= 1:
+        return () if value is None else (value,)
+    slopes = _rule(parse_rule(record.slopes[0]), function, a, length - 1)
+    parts = (iv.times(iv.rational(Fraction(1, m)), s) for m, s in enumerate(slopes, start=1))
+    return (value, *parts)
 
 
-def _sin(a: Interval, length: int) -> Jet:
-    cycle = (iv.sin(a), iv.cos(a), iv.minus(iv.sin(a)), iv.minus(iv.cos(a)))
-    return tuple(_part(cycle[m % 4], m) for m in range(length))
-
-
-def _cos(a: Interval, length: int) -> Jet:
-    cycle = (iv.cos(a), iv.minus(iv.sin(a)), iv.minus(iv.cos(a)), iv.sin(a))
-    return tuple(_part(cycle[m % 4], m) for m in range(length))
-
-
-def _part(derivative: Interval, m: int) -> Interval:
-    return iv.times(iv.rational(Fraction(1, factorial(m))), derivative)
-
-
-def _log(a: Interval, length: int) -> Jet:
-    """Return log(a), then the series of 1/a integrated: (-1)^(m-1) a^-m / m."""
-    value = iv.log(a)
-    if value is None:
-        return ()
-    slopes = _power(a, length - 1, Fraction(-1))
-    weights = (iv.rational(Fraction(1, m)) for m in range(1, length))
-    return (value, *(iv.times(w, slope) for w, slope in zip(weights, slopes, strict=False)))
-
-
-def _tanh(a: Interval, length: int) -> Jet:
-    """Return the series of y = tanh, from y' = 1 - y^2: (m + 1) y_(m+1) = [m = 0] - (y^2)_m."""
-    found = [iv.tanh(a)]
-    for m in range(length - 1):
-        square = [iv.times(found[j], found[m - j]) for j in range(m + 1)]
-        if m == 0:
-            square = [iv.times(iv.magnitude(found[0]), iv.magnitude(found[0]))]
-        fall = iv.minus(_total(square))
-        slope = iv.plus(iv.UNIT, fall) if m == 0 else fall
-        found.append(iv.times(iv.rational(Fraction(1, m + 1)), slope))
-    return tuple(found)
-
-
-OUTER: dict[str, Callable[[Interval, int], Jet]] = {
-    "exp": _exp,
-    "log": _log,
-    "sin": _sin,
-    "cos": _cos,
-    "tanh": _tanh,
-    "sqrt": lambda a, length: _power(a, length, Fraction(1, 2)),
-}
+def _rule(node: Node, function: str, a: Interval, length: int) -> Jet:
+    """Return the jet of a record's text, in which x lies in `a` and y is `function` of it."""
+    match node:
+        case Num(number):
+            return constant(number, length - 1)
+        case Sym("x"):
+            return (a, *constant(Fraction(1), length - 2))[:length]
+        case Sym():
+            return of(function, a, length)
+    parts = [_rule(part, function, a, length) for part in children(node)]
+    match node:
+        case Neg():
+            return minus(parts[0])
+        case Add():
+            return reduce(plus, parts)
+        case Mul():
+            return times(*parts)
+        case Div():
+            return quotient(*parts)
+        case Pow(_, exponent):
+            return power(parts[0], exponent)
+        case Call(inner):
+            return applied(inner, parts[0])
+    raise TypeError(f"{type(node).__name__} is in no derivative")

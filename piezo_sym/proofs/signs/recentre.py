@@ -10,7 +10,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TypeAlias
 
-from piezo_sym.spec.expressions import (
+from piezo_sym.expressions.tree import (
     ZERO,
     Add,
     Cmp,

@@ -14,10 +14,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
-from piezo_sym.proofs.exactly import value_of
-from piezo_sym.proofs.signs.cases import Positive
-from piezo_sym.spec.calculus import power
-from piezo_sym.spec.expressions import (
+from piezo_sym.expressions.calculus import power
+from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.expressions.tree import (
     ONE,
     ZERO,
     Add,
@@ -36,9 +35,8 @@ from piezo_sym.spec.expressions import (
     rebuild,
     walk,
 )
-
-#: Functions with f(c z, c w) = c f(z, w) for every c > 0.
-HOMOGENEOUS = ("abs", "min", "max", "deadzone", "saturate")
+from piezo_sym.proofs.exactly import value_of
+from piezo_sym.proofs.signs.cases import Positive
 
 #: A product of powers: base -> exponent, none of them zero.
 Powers = Mapping[Expr, Fraction]
@@ -258,11 +256,12 @@ def _sum(terms: list[Product]) -> Product:
 
 def _call(function: str, args: list[Product], setting: Setting) -> Product:
     """Return a function of products, positive factors taken out where the function lets them."""
-    if function == "sqrt" and args[0].number:
-        return _raised(args[0], Fraction(1, 2), setting)
-    if function in HOMOGENEOUS or function == "sign":
+    record = RECORDS[function]
+    if record.power is not None and args[0].number:
+        return _raised(args[0], record.power, setting)
+    if record.degree is not None:
         free, parts = _shared(args, setting, positive=True)
-        outside = {} if function == "sign" else free
+        outside = free if record.degree else {}
         return Product(Fraction(1), outside, Call(function, parts))
     return Product(Fraction(1), {}, Call(function, tuple(_tree(arg) for arg in args)))
 

@@ -11,11 +11,11 @@ from collections.abc import Sequence
 from fractions import Fraction
 from functools import reduce as fold
 
+from piezo_sym.expressions.calculus import neg
+from piezo_sym.expressions.tree import ZERO, Add, Div, Expr, If, Mul, Neg, Num, names
 from piezo_sym.proofs.signs.cases import Positive
 from piezo_sym.proofs.signs.reduce import factored, reductions, settings
 from piezo_sym.proofs.signs.vanish import rational_at
-from piezo_sym.spec.calculus import neg
-from piezo_sym.spec.expressions import ZERO, Add, Div, Expr, If, Mul, Neg, Num, names
 
 #: Terms of a sum that is multiplied out.
 MOST_TERMS = 24

@@ -12,15 +12,12 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import TypeAlias
 
+from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.expressions.tree import ONE, Add, Call, Div, Expr, Mul, Neg, Num, Pow, Sym
 from piezo_sym.proofs.exactly import value_of
-from piezo_sym.spec.expressions import ONE, Add, Call, Div, Expr, Mul, Neg, Num, Pow, Sym
 
 #: part -> how often; the rational part stands at ONE, and no number of times is zero.
 Sum: TypeAlias = Mapping[Expr, Fraction]
-
-#: Functions of one number: where they are rational.
-KNOWN = {"exp": (0, 1), "log": (1, 0), "sin": (0, 0), "cos": (0, 1), "tanh": (0, 0), "sqrt": (0, 0)}
-KINKED = frozenset({"abs", "min", "max", "deadzone", "saturate"})
 
 
 @lru_cache(maxsize=4096)
@@ -52,7 +49,7 @@ def _value(node: Expr, at: Fraction) -> Sum | None:
             return _product(node, _value(left, at), _value(right, at))
         case Pow(base, exponent):
             return _power(_value(base, at), exponent)
-        case Call(function, args) if function != "sign":
+        case Call(function, args) if not RECORDS[function].jumps:
             return _call(function, [_value(arg, at) for arg in args])
     return None
 
@@ -105,9 +102,10 @@ def _call(function: str, args: list[Sum | None]) -> Sum | None:
     if len(known) < len(args):
         return None
     numbers = [number for arg in known if (number := _rational(arg)) is not None]
-    if function in KNOWN and numbers and numbers[0] == KNOWN[function][0]:
-        return _times({ONE: Fraction(1)}, Fraction(KNOWN[function][1]))
-    if function in KINKED and len(numbers) == len(args):
+    record = RECORDS[function]
+    if record.known and numbers and numbers[0] == record.known[0]:
+        return _times({ONE: Fraction(1)}, Fraction(record.known[1]))
+    if not record.smooth and len(numbers) == len(args):
         value = value_of(Call(function, tuple(map(Num, numbers))), {})
         return _times({ONE: Fraction(1)}, value)
     return {Call(function, tuple(map(_tree, known))): Fraction(1)}

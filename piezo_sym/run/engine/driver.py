@@ -4,7 +4,10 @@ Input: a model's name, and whether it has a dissipative step.  Output: text.  A 
 columns lie one after another.
 """
 
-from piezo_sym.run.engine.texts import STEPS, texts
+from piezo_sym.run.engine.texts import COLLOCATION, STEPS, texts
+
+#: Nodes for means over a step, beyond its stages.
+MORE_NODES = 2
 
 #: Functions of (x, u, p) and of (x, p), and those that give one number.
 DRIVEN = ("rhs", "jacobian", "outputs", "supply", "heat", "entropy_production", "margins")
@@ -72,6 +75,28 @@ def driver(model: str, *, starts: bool) -> str:
     parts.append(MEMBERS.format(model=model))
     parts.append(f"\n#define MODEL(name) {model}_##name\n#define STARTS {int(starts)}\n")
     return "".join([*parts, texts(*STEPS)])
+
+
+def collocation(model: str, stages: int, layout: str) -> str:
+    """Return the text of the file to compile for collocation steps of so many stages.
+
+    Parameters
+    ----------
+    layout : of `Sources`.
+    """
+    from piezo_sym.run.engine.tableau import tableau  # loads mpmath, once a compilation
+
+    head = [
+        "#if defined(PLAIN)" if layout == "many" else "#if 1",
+        "#define REAL_WIDTH 1",
+        "#endif",
+        texts("real.h"),
+        f'#include "{model}_step.c"',
+        f"#define MODEL(name) {model}_##name",
+        "extern const long MODEL(width);",
+        "const long MODEL(width) = REAL_WIDTH;",
+    ]
+    return "\n".join([*head, tableau(stages, stages + MORE_NODES), texts(*COLLOCATION)])
 
 
 def _loop(model: str, name: str, call: str, idle: str) -> str:

@@ -60,7 +60,7 @@ def engine_of(module: GeneratedModule) -> Engine:
 
 @lru_cache(maxsize=64)
 def _engine(module: GeneratedModule, sources: Sources) -> Engine:
-    return Engine(module, _loaded(sources), Layout(module), sources)
+    return Engine(module, shared_library(sources), Layout(module), sources)
 
 
 @lru_cache(maxsize=64)
@@ -68,12 +68,13 @@ def _with_vectors(module: GeneratedModule, sources: Sources) -> ctypes.CDLL | No
     """Return a module's library that computes with vectors; None, once and for all, without one."""
     del module  # libraries belong to modules: another one of the same source has its own
     try:
-        return _loaded(sources)
+        return shared_library(sources)
     except EngineError:
         return None
 
 
-def _loaded(sources: Sources) -> ctypes.CDLL:
+def shared_library(sources: Sources) -> ctypes.CDLL:
+    """Return the library of some texts, compiled if need be, loaded."""
     try:
         return ctypes.CDLL(str(library(sources)))
     except OSError:  # a damaged file in the cache
@@ -87,17 +88,25 @@ def _loaded(sources: Sources) -> ctypes.CDLL:
 
 def _sources(module: GeneratedModule) -> Sources:
     """Return the texts beside a module, checked to be of its spec."""
-    path = Path(getattr(module, "__file__", None) or f"{module.NAME}.py")
-    texts = []
-    for ending in (".h", ".c"):
-        file = path.with_name(f"{module.NAME}{ending}")
-        text = _text(file)
-        if text is None or f"spec sha256 {module.SPEC_SHA256}" not in text:
-            what = "is missing" if text is None else "is of another spec than the module"
-            raise EngineError(what, path_text(file), remedy="run `piezo-sym generate`")
-        texts.append(text)
-    header, source = texts
+    header, source = (read_source(module, ending) for ending in (".h", ".c"))
     return Sources(module.NAME, header, source)
+
+
+def read_source(module: GeneratedModule, ending: str) -> str:
+    """Return the text beside a module, ``<model>.c`` for ".c", checked to be of its spec.
+
+    Raises
+    ------
+    EngineError
+        If it is missing, or of another spec.
+    """
+    path = Path(getattr(module, "__file__", None) or f"{module.NAME}.py")
+    file = path.with_name(f"{module.NAME}{ending}")
+    text = _text(file)
+    if text is None or f"spec sha256 {module.SPEC_SHA256}" not in text:
+        what = "is missing" if text is None else "is of another spec than the module"
+        raise EngineError(what, path_text(file), remedy="run `piezo-sym generate`")
+    return text
 
 
 def _text(file: Path) -> str | None:
@@ -133,14 +142,12 @@ class Engine:
     sources: Sources
     wide: bool = True
 
-    def side_by_side(self, members: int) -> ctypes.CDLL | None:
-        """Return the library that runs paths of so many members side by side, if it can be made.
+    def side_by_side(self) -> ctypes.CDLL | None:
+        """Return the library that steps members side by side, if it can be made.
 
-        None also if `wide` says that paths are to go one by one.
+        None also if `wide` says that they are to go one by one.
         """
-        if not self.wide:
-            return None
-        found = self.library if members == 1 else self._with_vectors("members")
+        found = self._with_vectors("members") if self.wide else None
         return found if hasattr(found, f"{self.module.NAME}_run_wide") else None
 
     def _with_vectors(self, made: Made) -> ctypes.CDLL | None:

@@ -20,14 +20,16 @@ from typing import Literal, final
 from piezo_sym.errors import EngineError, FileError, one_line
 from piezo_sym.files import path_text, temporary_folder
 from piezo_sym.run.engine.compiler import FLAGS, Compiler, build, compilers, passed_by
-from piezo_sym.run.engine.driver import driver
+from piezo_sym.run.engine.driver import collocation, driver
 from piezo_sym.run.engine.processor import processor
 from piezo_sym.run.engine.rates import rates_text
+from piezo_sym.run.engine.texts import texts as texts_of
 from piezo_sym.run.engine.vector import has_step, wide_text
 
-#: What a library computes: states, steps, and the paths of one run side by side; the same and the
-#: paths of many members; or functions of many states alone.
-Made = Literal["single", "members", "rates"]
+#: What a library computes: states and fixed steps; the same, of many members side by side;
+#: functions of many states alone; or collocation steps.
+Made = Literal["single", "members", "rates", "collocation"]
+Layout = Literal["one", "many", "lanes"]
 ENDINGS = {"win32": ".dll", "darwin": ".dylib"}
 
 
@@ -42,26 +44,39 @@ class EngineWarning(UserWarning):
 @final
 @dataclass(frozen=True)
 class Sources:
-    """The texts of one module: its name, ``<name>.h``, ``<name>.c``; and what is made of them."""
+    """The texts of one module: its name, ``<name>.h``, ``<name>.c``; and what is made of them.
+
+    For collocation steps also ``<name>_step.c``, how many stages they have, and what lies in
+    vectors: numbers of "one" run do not, "many" runs side by side, or the "lanes" of its banks.
+    """
 
     name: str
     header: str
     source: str
     made: Made = "single"
+    step: str = ""
+    stages: int = 0
+    layout: Layout = "one"
 
     def files(self) -> dict[str, str]:
         """Return what to compile, by file name."""
         texts = {f"{self.name}.h": self.header, f"{self.name}.c": self.source}
+        if self.made == "collocation":
+            texts[f"{self.name}_step.c"] = self.step
+            texts["elimination.c"] = texts_of("elimination.c")
         return {**texts, "driver.c": self._driver()}
 
     def _driver(self) -> str:
+        if self.made == "collocation":
+            return collocation(self.name, self.stages, self.layout)
         if self.made == "rates":
             return rates_text(self.name, self.source)
         starts = f" {self.name}_newton_start(" in self.header
         text = driver(self.name, starts=starts)
-        lanes = "#define PAIR 1\n" if self.made == "single" else ""
-        vectors = wide_text(self.name, self.header, self.source) if has_step(self.source) else ""
-        return "\n".join((text, "#if !defined(PLAIN)", lanes, vectors, "#endif\n"))
+        if self.made == "single" or not has_step(self.source):
+            return text
+        vectors = wide_text(self.name, self.header, self.source)
+        return "\n".join((text, "#if !defined(PLAIN)", vectors, "#endif\n"))
 
 
 def library(sources: Sources, *, again: bool = False) -> Path:
@@ -79,7 +94,7 @@ def library(sources: Sources, *, again: bool = False) -> Path:
     """
     first: EngineError | None = None
     hung: set[Compiler] = set()
-    for compiler, flags in _ways():
+    for compiler, flags in _ways(sources):
         if compiler in hung:
             continue
         try:
@@ -100,10 +115,10 @@ def library(sources: Sources, *, again: bool = False) -> Path:
     raise EngineError("no C compiler is found", "engine", remedy=remedy)
 
 
-def _ways() -> Iterator[tuple[Compiler, tuple[str, ...]]]:
+def _ways(sources: Sources) -> Iterator[tuple[Compiler, tuple[str, ...]]]:
     for compiler in compilers():
         for flags in FLAGS:
-            yield compiler, flags
+            yield compiler, _flags(sources, flags)
 
 
 def cache_folder() -> Path:
@@ -115,6 +130,16 @@ def cache_folder() -> Path:
 
 def _ending() -> str:
     return ENDINGS.get(sys.platform, ".so")
+
+
+def _flags(sources: Sources, flags: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the flags for some texts.
+
+    What a compiler makes vectors of it may round otherwise: steps of many runs side by side, and of
+    one alone, shall give the same numbers.
+    """
+    alike = sources.made == "collocation" and sources.layout != "lanes"
+    return (*flags, "-fno-tree-vectorize", "-fno-openmp-simd") if alike else flags
 
 
 def _key(sources: Sources, compiler: Compiler, flags: tuple[str, ...]) -> str:

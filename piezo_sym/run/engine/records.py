@@ -1,4 +1,4 @@
-"""The records that paths.c works on, and the room that members have for their numbers.
+"""The records that march.c works on, and the room that members have for their numbers.
 
 Input: sizes.  Output: `Model`, `Path`, `Member`, `Intervals` as C has them, and `Room`: one row of
 numbers a member, and which part of it each pointer of its record points to.
@@ -19,7 +19,6 @@ from piezo_sym.run.checks import FloatArray
 
 POINTER, LONG, DOUBLE = ctypes.c_void_p, ctypes.c_long, ctypes.c_double
 NUMBER, WORD = ctypes.sizeof(DOUBLE), ctypes.sizeof(POINTER)
-PATHS = ("fine", "middle", "coarse", "trial")
 #: Numbers between two arrays of a row, no numbers themselves: tests see there who leaves an array.
 GAP = 0
 
@@ -32,18 +31,16 @@ class Model(ctypes.Structure):
         *((name, LONG) for name in ("n", "rows", "ports", "processes", "inputs")),
         *((name, POINTER) for name in ("space", "largest")),
         *((name, LONG) for name in ("iterations", "halvings", "begun", "start")),
-        ("slack", DOUBLE),
     ]
 
 
 class Path(ctypes.Structure):
-    """MODEL(path): a state, its last two changes, its ledger, and how far it strays."""
+    """MODEL(path): a state, its last two changes, its ledger."""
 
     _fields_ = [
         *((name, POINTER) for name in ("x", "last", "prior")),
         *((name, DOUBLE) for name in ("h", "h_prior")),
-        *((name, POINTER) for name in ("sums", "lost", "tolerance")),
-        ("surprise", DOUBLE),
+        *((name, POINTER) for name in ("sums", "lost")),
     ]
 
 
@@ -52,9 +49,9 @@ class Member(ctypes.Structure):
 
     _fields_ = [
         ("model", Model),
-        *((name, Path) for name in PATHS),
-        *((name, POINTER) for name in ("kept", "tolerance", "out_x", "out_fine", "out_sums")),
-        *((name, LONG) for name in ("level", "done", "steps", "failed")),
+        ("path", Path),
+        *((name, POINTER) for name in ("out_x", "out_sums")),
+        *((name, LONG) for name in ("done", "steps", "failed")),
     ]
 
 
@@ -62,7 +59,7 @@ class Intervals(ctypes.Structure):
     """MODEL(block): the intervals that members go through, and the inputs in them."""
 
     _fields_ = [
-        *((name, LONG) for name in ("intervals", "lowest", "highest")),
+        ("intervals", LONG),
         *((name, POINTER) for name in ("h", "u", "sample", "first")),
     ]
 
@@ -121,36 +118,28 @@ def room_of(n: int, ledger: int, samples: int, space: int) -> Room:
 def _room(n: int, ledger: int, samples: int, space: int, gap: int) -> Room:
     shapes = {
         "x": (n,),
-        "others": (len(PATHS) - 1, n),  # of the middle, the coarse and the trial path
-        "changes": (len(PATHS), 2, n),
+        "changes": (2, n),
         "ledgers": (2, ledger),
-        "kept": (n + 2 * ledger,),
-        "scale": (n,),
         "largest": (n,),
         "space": (space,),
         "states": (samples, n),
-        "fine": (samples, n),
         "sums": (samples, ledger),
     }
     ends = list(accumulate((prod(shape) + gap for shape in shapes.values()), initial=0))
     parts = dict(zip(shapes, zip(ends, shapes.values(), strict=False), strict=True))
     first = {name: place for name, (place, _) in parts.items()}
+    path = Member.path.offset
     pointers = {
         Member.model.offset + Model.space.offset: first["space"],
         Member.model.offset + Model.largest.offset: first["largest"],
-        Member.fine.offset + Path.sums.offset: first["ledgers"],
-        Member.fine.offset + Path.lost.offset: first["ledgers"] + ledger,
-        Member.kept.offset: first["kept"],
-        Member.tolerance.offset: first["scale"],
+        path + Path.x.offset: first["x"],
+        path + Path.last.offset: first["changes"],
+        path + Path.prior.offset: first["changes"] + n,
+        path + Path.sums.offset: first["ledgers"],
+        path + Path.lost.offset: first["ledgers"] + ledger,
         Member.out_x.offset: first["states"],
-        Member.out_fine.offset: first["fine"],
         Member.out_sums.offset: first["sums"],
     }
-    for k, name in enumerate(PATHS):
-        path, change = getattr(Member, name).offset, first["changes"] + 2 * k * n
-        pointers[path + Path.x.offset] = first["others"] + (k - 1) * n if k else first["x"]
-        pointers[path + Path.last.offset] = change
-        pointers[path + Path.prior.offset] = change + n
     words = np.array(list(pointers)) // WORD
     return Room(
         ends[-1], parts, gap, words, NUMBER * np.array(list(pointers.values()), dtype=np.uintp)

@@ -46,21 +46,15 @@ typedef struct {
     long n, rows, ports, processes, inputs;
     double *space, *largest; /* of n: the largest magnitude of each state so far */
     long iterations, halvings;
-    long begun;   /* the halvings there were before the step at hand */
-    long start;   /* whether the steps taken now are dissipative */
-    double slack; /* what Newton's method may leave on paths without a ledger, in 1e-9 of a step */
+    long begun; /* the halvings there were before the step at hand */
+    long start; /* whether the steps taken now are dissipative */
 } MODEL(model);
 
-/*
- * A state on its way: x[n], its last change and the one before, and the ledger (or none).  Where it
- * has a tolerance[n], `surprise` becomes how far, in these, a step has ended from its prediction.
- */
+/* A state on its way: x[n], its last change and the one before, and the ledger. */
 typedef struct {
     double *x, *last, *prior;
     double h, h_prior;
     double *sums, *lost;
-    const double *tolerance;
-    double surprise;
 } MODEL(path);
 
 /* How many numbers `space` of a model has to hold. */
@@ -80,7 +74,7 @@ static void MODEL(save)(MODEL(model) *m, const MODEL(path) *path)
 {
     double *ledger = MODEL(means_of)(m) + m->rows;
     memcpy(m->space + m->n, path->x, (size_t)m->n * sizeof(double));
-    for (long k = 0; path->sums && k < m->rows; ++k)
+    for (long k = 0; k < m->rows; ++k)
         ledger[k] = path->sums[k], ledger[m->rows + k] = path->lost[k];
 }
 
@@ -88,7 +82,7 @@ static void MODEL(restore)(const MODEL(model) *m, MODEL(path) *path)
 {
     const double *ledger = MODEL(means_of)(m) + m->rows;
     memcpy(path->x, m->space + m->n, (size_t)m->n * sizeof(double));
-    for (long k = 0; path->sums && k < m->rows; ++k)
+    for (long k = 0; k < m->rows; ++k)
         path->sums[k] = ledger[k], path->lost[k] = ledger[m->rows + k];
     path->h = path->h_prior = 0.0;
 }
@@ -109,10 +103,10 @@ static void MODEL(book)(const MODEL(model) *m, const MODEL(path) *path, double h
 /*
  * Newton's method for the state y after a step; whether it converged inside the domain.  A change is
  * measured in 1e-9 of the step's.  It stops when the last one was less, or, since its error falls
- * quadratically, when the next one would be `enough`.
+ * quadratically, when the next one would be EXACT.
  */
 static int MODEL(root)(MODEL(model) *m, const double *restrict x, double *restrict y,
-                       const double *u, double h, double enough, int most_iterations)
+                       const double *u, double h, int most_iterations)
 {
     double *restrict change = m->space + 2 * m->n;
     double before = 0.0;
@@ -143,7 +137,7 @@ static int MODEL(root)(MODEL(model) *m, const double *restrict x, double *restri
             for (long i = 0; i < m->n; ++i)
                 y[i] += share * change[i];
         }
-        if (share == 1.0 && (worst <= 1.0 || worst * (worst / before) * (worst / before) <= enough))
+        if (share == 1.0 && (worst <= 1.0 || worst * (worst / before) * (worst / before) <= EXACT))
             return 1;
         before = share == 1.0 ? fmin(worst, WHOLE) : 0.0;
     }
@@ -182,31 +176,17 @@ static void MODEL(predict)(const MODEL(model) *m, const MODEL(path) *path, doubl
         y[i] = path->x[i] + by_last * path->last[i] - by_prior * path->prior[i];
 }
 
-/* Compare the state after a step with what the two steps before have let expect. */
-static void MODEL(compare)(const MODEL(model) *m, MODEL(path) *path, double h, const double *y)
-{
-    double *expected = m->space + 2 * m->n; /* of Newton's changes, which are done with */
-    if (!path->tolerance || !(path->h_prior > 0.0))
-        return;
-    MODEL(predict)(m, path, h, expected);
-    for (long i = 0; i < m->n; ++i) {
-        const double missed = fabs(y[i] - expected[i]) / path->tolerance[i];
-        path->surprise = missed > path->surprise ? missed : path->surprise;
-    }
-}
-
 /* One step over h, halved where it has to be; 0, and the path as before, if that does not help. */
 static int MODEL(step)(MODEL(model) *m, MODEL(path) *path, const double *u, double h, int depth)
 {
     double *restrict y = m->space;
-    const double enough = path->sums ? EXACT : m->slack;
     const int most = MOST_ITERATIONS + MORE_ITERATIONS * depth;
     int found = 0;
     MODEL(predict)(m, path, h, y);
     for (int trial = path->h > 0.0 ? 0 : 1; trial < 2 && !found; ++trial) {
         if (trial == 1) /* not from a prediction */
             memcpy(y, path->x, (size_t)m->n * sizeof *y);
-        found = MODEL(inside)(y, u, m->p) && MODEL(root)(m, path->x, y, u, h, enough, most) &&
+        found = MODEL(inside)(y, u, m->p) && MODEL(root)(m, path->x, y, u, h, most) &&
                 MODEL(accepted)(m, path->x, y, u, h);
     }
     if (!found) {
@@ -223,9 +203,7 @@ static int MODEL(step)(MODEL(model) *m, MODEL(path) *path, const double *u, doub
             MODEL(restore)(m, path);
         return found;
     }
-    if (path->sums)
-        MODEL(book)(m, path, h);
-    MODEL(compare)(m, path, h, y);
+    MODEL(book)(m, path, h);
     double *kept = path->prior;
     path->prior = path->last;
     path->last = kept;
@@ -258,17 +236,9 @@ static int MODEL(quarters)(MODEL(model) *m, MODEL(path) *path, const double *u, 
     return found;
 }
 
-/*
- * Takes equal steps, the inputs at their middles one after another; 0 if one has no solution.  If
- * there are inputs `first`, the first step is a start, and they are those of its quarters.
- */
-static int MODEL(across)(MODEL(model) *m, MODEL(path) *path, const double *u, double h, long steps,
+/* The step over an interval; a start if there are inputs `first` of its quarters. */
+static int MODEL(across)(MODEL(model) *m, MODEL(path) *path, const double *u, double h,
                          const double *first)
 {
-    if (first && !MODEL(quarters)(m, path, first, h))
-        return 0;
-    for (long k = first ? 1 : 0; k < steps; ++k)
-        if (!MODEL(step)(m, path, u + k * m->inputs, h, 0))
-            return 0;
-    return 1;
+    return first ? MODEL(quarters)(m, path, first, h) : MODEL(step)(m, path, u, h, 0);
 }

@@ -15,7 +15,7 @@ RESULTS = frozenset({"time", "energy", "entropy", "energy_residual", "entropy_re
 LARGEST = Fraction(10) ** 300
 SMALLEST = 1 / LARGEST
 #: What generated modules import.
-IMPORTS = frozenset({"numpy", "typing", "dataclasses"})
+IMPORTS = frozenset({"numpy", "typing", "dataclasses", "math"})
 PREFIXES = ("y_", "supplied_", "heat_", "produced_", "entropy_exchanged_")
 
 

@@ -12,10 +12,10 @@ from fractions import Fraction
 from typing import TypeAlias
 
 from piezo_sym.errors import SpecError, quote
+from piezo_sym.expressions.enclosure import Interval, UndecidedError, holds_surely, interval_of
+from piezo_sym.expressions.parse import parse_law
+from piezo_sym.expressions.tree import Expr, Num, names
 from piezo_sym.spec.elements.base import state_symbol
-from piezo_sym.spec.enclosure import Interval, UndecidedError, holds_surely, interval_of
-from piezo_sym.spec.expressions import Expr, Num, names
-from piezo_sym.spec.parse import parse_law
 from piezo_sym.spec.tables import (
     Condition,
     Tables,

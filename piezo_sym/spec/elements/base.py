@@ -21,9 +21,9 @@ from pydantic import (
 )
 from pydantic_core import CoreSchema
 
+from piezo_sym.expressions.parse import parse_law
+from piezo_sym.expressions.tree import ZERO, Cmp, Expr
 from piezo_sym.spec.elements.ports import Port
-from piezo_sym.spec.expressions import ZERO, Cmp, Expr
-from piezo_sym.spec.parse import parse_law
 
 
 @final

@@ -2,6 +2,7 @@
 
 from typing import Annotated, ClassVar, Literal, final
 
+from piezo_sym.expressions.tree import Cmp, Div, Sym
 from piezo_sym.spec.elements.base import (
     Element,
     Law,
@@ -12,7 +13,6 @@ from piezo_sym.spec.elements.base import (
     state_symbol,
 )
 from piezo_sym.spec.elements.ports import Domain, Port, Storage, Variable
-from piezo_sym.spec.expressions import Cmp, Div, Sym
 
 
 @final

@@ -4,6 +4,7 @@ from typing import Annotated, ClassVar, Literal, final
 
 from pydantic import Field, StrictInt
 
+from piezo_sym.expressions.tree import Cmp, Div, Sym
 from piezo_sym.spec.elements.base import (
     BodyName,
     Element,
@@ -16,7 +17,6 @@ from piezo_sym.spec.elements.base import (
     state_symbol,
 )
 from piezo_sym.spec.elements.ports import Domain, Port, Resistor, Storage, Variable
-from piezo_sym.spec.expressions import Cmp, Div, Sym
 
 MAX_COUNT = 1_000_000
 Count = Annotated[

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import final
 
-from piezo_sym.spec.expressions import Expr
+from piezo_sym.expressions.tree import Expr
 
 Branch = tuple[str, str]
 

@@ -2,7 +2,8 @@
 
 from typing import Annotated, ClassVar, Literal, final
 
-from piezo_sym.spec.calculus import add, neg
+from piezo_sym.expressions.calculus import add, neg
+from piezo_sym.expressions.tree import Cmp, Mul, Sym
 from piezo_sym.spec.elements.base import (
     Element,
     Law,
@@ -13,7 +14,6 @@ from piezo_sym.spec.elements.base import (
     state_symbol,
 )
 from piezo_sym.spec.elements.ports import Domain, Port, Storage, Variable
-from piezo_sym.spec.expressions import Cmp, Mul, Sym
 
 
 @final

@@ -2,6 +2,7 @@
 
 from typing import Annotated, ClassVar, Literal, final
 
+from piezo_sym.expressions.tree import Cmp, Sym, names
 from piezo_sym.spec.elements.base import (
     Element,
     Law,
@@ -11,7 +12,6 @@ from piezo_sym.spec.elements.base import (
     state_symbol,
 )
 from piezo_sym.spec.elements.ports import Body, Port
-from piezo_sym.spec.expressions import Cmp, Sym, names
 
 
 @final

@@ -1,13 +1,17 @@
 """Sums, products and derivatives of laws, as trees that stay as short as a person would write.
 
-Input: trees, and a name to differentiate by.  Output: a tree.  Used for the generated Jacobians.
+Input: trees, and a name to differentiate by.  Output: a tree.  Used for the generated Jacobians,
+and for what the records of functions say in words.
 Constant factors are folded as exact rationals, so that the text does not depend on the version of
 any algebra system.
 """
 
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
-from piezo_sym.spec.expressions import (
+from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.expressions.parse import parse_clause, parse_rule
+from piezo_sym.expressions.tree import (
     ONE,
     ZERO,
     Add,
@@ -23,6 +27,7 @@ from piezo_sym.spec.expressions import (
     Pow,
     Sym,
     names,
+    rebuild,
 )
 
 
@@ -186,46 +191,64 @@ def _choice(then: Expr, condition: Cmp, other: Expr) -> Expr:
 
 def _slopes(function: str, args: tuple[Expr, ...]) -> tuple[Expr, ...]:
     """Return the derivative of a function by each of its arguments."""
+    if function in RECORDS:
+        value = Call(function, args)
+        texts = RECORDS[function].slopes
+        return tuple(rule(text, args[0], args[-1], value) for text in texts)
     z = args[0]
-    match function:
-        case "exp" | "expm1":  # lowering makes expm1; no spec can write it
-            return (Call("exp", args),)
-        case "log":
-            return (div(ONE, z),)
-        case "sqrt":
-            return (div(Num(Fraction(1, 2)), Call("sqrt", args)),)
-        case "sin":
-            return (Call("cos", args),)
-        case "cos":
-            return (neg(Call("sin", args)),)
-        case "tanh":
-            return (add(ONE, neg(power(Call("tanh", args), Fraction(2)))),)
-        case "abs":
-            return (Call("sign", args),)
-        case "sign":
-            return (ZERO,)
-        case "phi1":  # (exp(z) - 1)/z; lowering makes it, and those below
+    match function:  # what lowering makes
+        case "phi1":  # (exp(z) - 1)/z
             return (add(Call("phi1", args), neg(Call("phi2", args))),)
         case "phi2":  # (phi1(z) - 1)/z
             return (add(Call("phi2", args), neg(mul(Num(Fraction(2)), Call("phi3", args)))),)
-        case "ramp" | "mean_sign" | "mean_tanh":  # means over a step: its ends may change places
-            by_end = f"{function}_by_new"
-            return (Call(by_end, (args[1], z)), Call(by_end, args))
         case "mean_deadzone":
             by_end, w = f"{function}_by_new", args[2]
             by_old, by_new = Call(by_end, (args[1], z, w)), Call(by_end, args)
             return (by_old, by_new, Call(f"{function}_by_width", args))
-    return _slopes_of_two(function, z, args[1])
+    by_end = f"{function}_by_new"  # ramp, mean_...: means over a step, its ends may change places
+    return (Call(by_end, (args[1], z)), Call(by_end, args))
 
 
-def _slopes_of_two(function: str, z: Expr, w: Expr) -> tuple[Expr, Expr]:
-    beyond = Cmp(">", Call("abs", (z,)), w)
-    side = Call("sign", (z,))
-    match function:
-        case "min":
-            return If(ONE, Cmp("<=", z, w), ZERO), If(ZERO, Cmp("<=", z, w), ONE)
-        case "max":
-            return If(ONE, Cmp(">=", z, w), ZERO), If(ZERO, Cmp(">=", z, w), ONE)
-        case "deadzone":
-            return If(ONE, beyond, ZERO), If(neg(side), beyond, ZERO)
-    return If(ZERO, beyond, ONE), If(side, beyond, ZERO)  # saturate
+def rule(text: str, x: Expr, w: Expr = ZERO, value: Expr = ZERO) -> Expr:
+    """Return the tree of a record's text, its arguments and its value put in."""
+    return _put(parse_rule(text), {"x": x, "w": w, "y": value})
+
+
+def clause(text: str, x: Expr, value: Expr) -> tuple[Cmp, ...]:
+    """Return the comparisons of a record's text, the argument and the value put in."""
+    words = {"x": x, "y": value}
+    parts = parse_clause(text)
+    return tuple(Cmp(c.op, _put(c.left, words), _put(c.right, words)) for c in parts)
+
+
+def choices(node: Expr) -> Expr:
+    """Return a function with kinks as choices, of a width >= 0; other trees as they are."""
+    if isinstance(node, Call) and node.function in RECORDS and RECORDS[node.function].choices:
+        return rule(RECORDS[node.function].choices, node.args[0], node.args[-1])
+    return node
+
+
+def kinks(node: Expr) -> Iterator[Cmp]:
+    """Yield the comparisons by which a function with kinks chooses its branch."""
+    made = choices(node)
+    while isinstance(made, If):
+        yield made.condition
+        made = made.other
+
+
+def _put(node: Expr, words: Mapping[str, Expr]) -> Expr:
+    """Return a tree with names replaced, its sums and products made anew."""
+    match node:
+        case Sym(name):
+            return words[name]
+        case Neg(arg):
+            return neg(_put(arg, words))
+        case Add(terms):
+            return add(*(_put(term, words) for term in terms))
+        case Mul(left, right):
+            return mul(_put(left, words), _put(right, words))
+        case Div(left, right):
+            return div(_put(left, words), _put(right, words))
+        case Pow(base, exponent):
+            return power(_put(base, words), exponent)
+    return rebuild(node, lambda part: _put(part, words))

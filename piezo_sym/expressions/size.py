@@ -11,7 +11,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
-from piezo_sym.spec.expressions import (
+from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.expressions.lexis import MAX_MAGNITUDE, RefusedError
+from piezo_sym.expressions.tree import (
     Add,
     Call,
     Cmp,
@@ -27,7 +29,6 @@ from piezo_sym.spec.expressions import (
     names,
     walk,
 )
-from piezo_sym.spec.lexis import MAX_MAGNITUDE, RefusedError
 
 MAX_BRANCHES = 18
 MAX_DEGREE = 32
@@ -35,8 +36,6 @@ MAX_DIGITS = 2000
 MAX_NESTED = 8
 MAX_NESTED_CONSTANT = 4
 MAX_TERMS = 512
-#: Functions with kinks, and how many branches each has.
-KINKS = {"abs": 2, "min": 2, "max": 2, "sign": 3, "deadzone": 3, "saturate": 3}
 
 
 def check_size(tree: Expr) -> None:
@@ -121,7 +120,7 @@ def _most_branches(tree: Expr) -> int:
 
 
 def _kinks(node: Expr | Cmp) -> int:
-    return KINKS.get(node.function, 1) if isinstance(node, Call) else 1
+    return RECORDS[node.function].branches if isinstance(node, Call) else 1
 
 
 def _branches(node: Expr | Cmp) -> int:

@@ -14,6 +14,8 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Any, TypeVar, cast, dataclass_transform, final
 
+from piezo_sym.expressions.functions import FUNCTIONS
+
 Kind = TypeVar("Kind")
 
 
@@ -100,7 +102,7 @@ class Pow(_Tree):
 @final
 @_node
 class Call(_Tree):
-    """One of the functions of `FUNCTIONS` applied to its arguments."""
+    """One of `functions` applied to its arguments."""
 
     function: str
     args: tuple[Expr, ...]
@@ -210,34 +212,6 @@ def rename(node: Expr, mapping: Mapping[str, str]) -> Expr:
     return replace(node, {old: Sym(new) for old, new in mapping.items()})
 
 
-def _deadzone(z: float, w: float) -> float:
-    return max(z - w, 0.0) + min(z + w, 0.0)
-
-
-def _saturate(z: float, w: float) -> float:
-    return min(max(z, -w), w)
-
-
-def _sign(z: float) -> float:
-    return float((z > 0) - (z < 0))
-
-
-#: The functions of the law language: name -> (number of arguments, value).
-FUNCTIONS: Mapping[str, tuple[int, Callable[..., float]]] = {
-    "exp": (1, math.exp),
-    "log": (1, math.log),
-    "sqrt": (1, math.sqrt),
-    "sin": (1, math.sin),
-    "cos": (1, math.cos),
-    "tanh": (1, math.tanh),
-    "abs": (1, abs),
-    "sign": (1, _sign),
-    "min": (2, min),
-    "max": (2, max),
-    "deadzone": (2, _deadzone),
-    "saturate": (2, _saturate),
-}
-
 COMPARISONS: Mapping[str, Callable[[float, float], bool]] = {
     "<": lambda a, b: a < b,
     "<=": lambda a, b: a <= b,
@@ -284,7 +258,7 @@ def _evaluate(node: Expr, values: Mapping[str, float]) -> float:
         case Pow(base, exponent):
             return _power(_evaluate(base, values), exponent)
         case Call(function, args):
-            return float(FUNCTIONS[function][1](*(_evaluate(arg, values) for arg in args)))
+            return float(FUNCTIONS[function].value(*(_evaluate(arg, values) for arg in args)))
         case If(then, condition, other):
             return _evaluate(then if holds(condition, values) else other, values)
         case LaneSum():

@@ -6,8 +6,9 @@ Input: a tree and a name.  Output: a tree, or None where there is none of a simp
 from fractions import Fraction
 from math import comb
 
-from piezo_sym.spec.calculus import add, derivative, div, mul, neg, power
-from piezo_sym.spec.expressions import (
+from piezo_sym.expressions.calculus import add, derivative, div, mul, neg, power, rule
+from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.expressions.tree import (
     ONE,
     ZERO,
     Add,
@@ -55,9 +56,10 @@ def antiderivative(node: Expr, name: str) -> Expr | None:
             return None if inner is None else _over(inner, right)
         case Div(left, Div(top, bottom)) if name not in names(top):  # phi/(L/(1 + phi**2))
             return antiderivative(div(mul(left, bottom), top), name)
-        case Call("exp", (arg,)):
+        case Call(function, (arg,)) if RECORDS[function].integral:
             slope = _slope(arg, name)
-            return None if slope is None else _divided(node, slope)
+            whole = rule(RECORDS[function].integral, arg, value=node)
+            return None if slope is None else _divided(whole, slope)
     found = _power_rule(node, name)
     return _polynomial_rule(node, name) if found is None else found
 

@@ -15,10 +15,9 @@ from fractions import Fraction
 from itertools import product
 from typing import TypeAlias, final
 
-from piezo_sym.spec.expressions import (
-    FUNCTIONS,
-    ONE,
-    ZERO,
+from piezo_sym.expressions.calculus import rule
+from piezo_sym.expressions.functions import RECORDS, Function
+from piezo_sym.expressions.tree import (
     Add,
     Call,
     Cmp,
@@ -38,17 +37,6 @@ Interval: TypeAlias = tuple[Fraction, Fraction]
 LONGEST = 4096  # bits of a bound
 LARGEST, TINY = Fraction(sys.float_info.max), Fraction(sys.float_info.min)
 SLACK = Fraction(1, 2**40)
-#: Where the C library's functions have rational values.
-EXACT = {
-    (function, Fraction(at)): Fraction(value)
-    for function, at, value in [
-        ("exp", 0, 1),
-        ("log", 1, 0),
-        ("tanh", 0, 0),
-        ("sin", 0, 0),
-        ("cos", 0, 1),
-    ]
-}
 
 
 @final
@@ -124,38 +112,31 @@ def _either(then: Expr, other: Expr, values: Mapping[str, Interval]) -> Interval
 
 
 def _call(function: str, args: tuple[Expr, ...], values: Mapping[str, Interval]) -> Interval:
-    match function, args:
-        case "abs", (z,):
-            return interval_of(Call("max", (z, Neg(z))), values)
-        case "sign", (z,):
-            other = If(Neg(ONE), Cmp("<", z, ZERO), ZERO)
-            return interval_of(If(ONE, Cmp(">", z, ZERO), other), values)
-        case "deadzone", (z, w):
-            above = Call("max", (Add((z, Neg(w))), ZERO))
-            return interval_of(Add((above, Call("min", (Add((z, w)), ZERO)))), values)
-        case "saturate", (z, w):
-            return interval_of(Call("min", (Call("max", (z, Neg(w))), w)), values)
+    record = RECORDS[function]
+    if record.formula or record.jumps:
+        return interval_of(rule(record.formula or record.choices, args[0], args[-1]), values)
     lows, highs = zip(*(interval_of(arg, values) for arg in args), strict=True)
-    match function:
-        case "min" | "max":
-            choose = min if function == "min" else max
-            return choose(lows), choose(highs)
-        case "sqrt":
-            return _power((lows[0], highs[0]), Fraction(1, 2))
-    return _library(function, lows[0], highs[0])
+    if record.choices:  # min, max
+        return Fraction(record.value(*lows)), Fraction(record.value(*highs))
+    if record.power is not None:
+        return _power((lows[0], highs[0]), record.power)
+    return _library(record, lows[0], highs[0])
 
 
-def _library(function: str, low: Fraction, high: Fraction) -> Interval:
+def _library(record: Function, low: Fraction, high: Fraction) -> Interval:
     """Return the interval of a function of the C library."""
-    if low == high and (function, low) in EXACT:
-        return EXACT[function, low], EXACT[function, low]
-    if function == "log" and low <= 0 < high:
+    if record.known and low == high == record.known[0]:
+        return Fraction(record.known[1]), Fraction(record.known[1])
+    if record.domain and low <= 0 < high:
         raise UndecidedError
-    value = FUNCTIONS[function][1]
-    if function in {"sin", "cos"}:  # neither changes faster than its argument
-        near, off = Fraction(value(_beside(low, -1))), high - low + SLACK + abs(low) / 2**52
+    if not record.rises:  # sin, cos: neither changes faster than its argument
+        near, off = Fraction(record.value(_beside(low, -1))), high - low + SLACK + abs(low) / 2**52
         return near - off, near + off
-    return _near(value, low, -1), _near(value, high, 1)
+    if record.parity == "even":
+        low, high = (
+            (Fraction(0), max(-low, high)) if low < 0 < high else sorted(map(abs, (low, high)))
+        )
+    return _near(record.value, low, -1), _near(record.value, high, 1)
 
 
 def _near(function: Callable[[float], float], bound: Fraction, side: int) -> Fraction:

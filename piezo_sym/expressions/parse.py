@@ -9,12 +9,23 @@ from the source text as exact rationals.  Nothing is ever evaluated by Python.
 import ast
 from collections.abc import Callable
 from fractions import Fraction
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import TypeVar
 
 from piezo_sym.errors import SpecError, nearest, quote
-from piezo_sym.spec.expressions import (
-    FUNCTIONS,
+from piezo_sym.expressions.functions import FUNCTIONS
+from piezo_sym.expressions.lexis import (
+    LANGUAGE,
+    MAX_DEPTH,
+    MAX_MAGNITUDE,
+    TOKEN,
+    RefusedError,
+    check_letters,
+    check_tokens,
+)
+from piezo_sym.expressions.size import check_size
+from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tree import (
     Add,
     Call,
     Cmp,
@@ -30,19 +41,10 @@ from piezo_sym.spec.expressions import (
     evaluate,
     names,
 )
-from piezo_sym.spec.lexis import (
-    LANGUAGE,
-    MAX_DEPTH,
-    MAX_MAGNITUDE,
-    TOKEN,
-    RefusedError,
-    check_letters,
-    check_tokens,
-)
-from piezo_sym.spec.size import check_size
-from piezo_sym.spec.text import spell
 
 MAX_POWER = 16
+#: What functions are called elsewhere.
+ELSEWHERE = {"ln": "log", "arctan": "atan", "sgn": "sign", "fabs": "abs"}
 LARGEST = Fraction(10) ** MAX_MAGNITUDE
 SMALLEST = 1 / LARGEST
 
@@ -76,6 +78,19 @@ def parse_condition(text: str, where: str) -> Cmp:
         If the text is not one comparison of two laws.
     """
     return _located(_condition, text, where)
+
+
+@cache
+def parse_rule(text: str) -> Expr:
+    """Return the tree of a record's own text; no stranger's."""
+    return _expression(_parsed(text), text)
+
+
+@cache
+def parse_clause(text: str) -> tuple[Cmp, ...]:
+    """Return the comparisons of a record's own clause, of which one holds."""
+    parts = (part.strip() for part in text.split("|"))
+    return tuple(_condition(part) for part in parts)
 
 
 def _located(read: Callable[[str], Tree], text: str, where: str) -> Tree:
@@ -217,9 +232,9 @@ def _comparison(node: ast.Compare, text: str, depth: int = 0) -> Cmp:
 
 def _call(function: str, args: list[ast.expr], text: str, depth: int) -> Expr:
     if function not in FUNCTIONS:
-        known = nearest(function, FUNCTIONS)
+        known = nearest(ELSEWHERE.get(function, function), FUNCTIONS)
         raise RefusedError(f"calls {quote(function)}, which laws do not have", remedy=known)
-    count = FUNCTIONS[function][0]
+    count = len(FUNCTIONS[function].slopes)
     if len(args) != count:
         what = f"gives {function} {len(args)} arguments"
         raise RefusedError(what, f"{count}")

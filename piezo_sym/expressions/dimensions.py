@@ -1,8 +1,8 @@
 """Dimensions of laws: which parts must have equal units, and which do not.
 
 Input: a tree, and the dimension of each name in it.  Output: its dimension, and the `Match`es that
-fail.  A dimension is a vector of powers of the base units of `spec.units.BASES`, so the dimension
-of a product of powers is linear in those of its names: `powers` gives the coefficients, and what a
+fail.  A dimension is a vector of powers of the base units `BASES`, so the dimension of a
+product of powers is linear in those of its names: `powers` gives the coefficients, and what a
 rule asks for is one linear equation.  The rules:
 
     a + b, min, max, deadzone, saturate, a if c else b, a < b     equal units
@@ -19,7 +19,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeAlias, final
 
-from piezo_sym.spec.expressions import (
+from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.expressions.tree import (
     Add,
     Call,
     Cmp,
@@ -36,17 +37,13 @@ from piezo_sym.spec.expressions import (
     children,
     walk,
 )
-from piezo_sym.spec.units import BASES
 
+#: The SI base units whose powers a dimension is.
+BASES = ("kg", "m", "s", "A", "K", "mol", "cd")
 Dimension: TypeAlias = tuple[Fraction, ...]
 Powers: TypeAlias = Mapping[str, Fraction]
 
 NONE: Dimension = (Fraction(0),) * len(BASES)
-HALF = Fraction(1, 2)
-#: Functions whose argument and value have no unit.
-PURE = frozenset({"exp", "expm1", "log", "sin", "cos", "tanh"})
-#: Functions whose arguments and value have one unit.
-EQUAL = frozenset({"min", "max", "deadzone", "saturate"})
 
 
 def times(left: Dimension, right: Dimension, power: Fraction | int = 1) -> Dimension:
@@ -153,9 +150,10 @@ def _raised(base: Expr, exponent: Fraction) -> Powers | None:
 
 
 def _called(function: str, args: tuple[Expr, ...]) -> Powers | None:
-    if function in PURE or function == "sign":
+    record = RECORDS[function]
+    if record.units in {"pure", "none"}:
         return {}
-    return _raised(args[0], HALF) if function == "sqrt" else _first(args)
+    return _first(args) if record.power is None else _raised(args[0], record.power)
 
 
 def matches(node: Node) -> Iterator[Match]:
@@ -163,11 +161,11 @@ def matches(node: Node) -> Iterator[Match]:
     for part in children(node):
         yield from matches(part)
     match node:
-        case Call(function, (arg,)) if function in PURE:
+        case Call(function, (arg,)) if RECORDS[function].units == "pure":
             yield Match(node, arg)
         case Add(parts):
             yield from _equal(node, parts)
-        case Call(function, parts) if function in EQUAL:
+        case Call(function, parts) if RECORDS[function].units == "equal":
             yield from _equal(node, parts)
         case If(left, _, right) | Cmp(_, left, right):
             yield from _equal(node, (left, right))

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
-from piezo_sym.spec.expressions import (
+from piezo_sym.expressions.tree import (
     Add,
     Call,
     Cmp,

@@ -1,0 +1,65 @@
+"""The record of a step's parameters in C: numbers of one run, or of one per lane of vectors.
+
+Input: a `Program` and its names in C.  Output: the record, and the functions by which lanes get the
+parameters of their runs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from textwrap import wrap
+
+from piezo_sym.codegen.c_lines import WIDTH, indented
+from piezo_sym.codegen.program import Program
+
+
+def record_text(program: Program, names: Mapping[str, str]) -> str:
+    """Return the record of parameters, as the functions of a step take them."""
+    lines = [f"/* The parameters of {program.name}_parameters, of as many runs as real holds. */"]
+    lines += ["typedef struct {"]
+    for field in program.parameters:
+        lines.append(f"    {'real *' if field.bank else 'real '}{names[field.name]};")
+    lines += [f"    long {bank}_count;" for bank in program.counts]
+    if not program.parameters and not program.counts:
+        lines.append("    char none;")
+    return "\n".join([*lines, f"}} {program.name}_reals;"])
+
+
+def place_text(program: Program, names: Mapping[str, str]) -> str:
+    """Return the function that says where the parameters of lanes stand."""
+    body = [] if program.counts else ["(void)to;", "(void)from;"]
+    body += ["real *const begin = at;"]
+    body += [f"to->{bank}_count = from->{bank}_count;" for bank in program.counts]
+    for field in program.parameters:
+        if field.bank:
+            body.append(f"to->{names[field.name]} = at;")
+            body.append(f"at += from->{field.bank}_count;")
+    doc = "Sizes of banks, and room from `at` on for their parameters; how much that takes"
+    head = f"static long {program.name}_place_reals({program.name}_reals *to, "
+    head += f"const {program.name}_parameters *from, real *at)"
+    return "\n".join([*comment(doc), head, "{", *indented([*body, "return at - begin;"]), "}"])
+
+
+def give_text(program: Program, names: Mapping[str, str]) -> str:
+    """Return the function that gives a lane the parameters of a run."""
+    body = ["(void)lane;"]
+    for field in program.parameters:
+        name = names[field.name]
+        if field.bank:
+            body.append(f"for (long j = 0; j < from->{field.bank}_count; ++j)")
+            body.append(f"    OF(to->{name}[j], lane) = from->{name}[j];")
+        else:
+            body.append(f"OF(to->{name}, lane) = from->{name};")
+    body += [] if program.parameters else ["(void)to;", "(void)from;"]
+    head = f"static void {program.name}_give({program.name}_reals *to, "
+    head += f"const {program.name}_parameters *from, int lane)"
+    doc = "Give a lane the parameters of a run"
+    return "\n".join([*comment(doc), head, "{", *indented(body), "}"])
+
+
+def comment(doc: str) -> list[str]:
+    """Return a comment of one line, or of several."""
+    lines = wrap(f"{doc}.", WIDTH - 4)
+    if len(lines) == 1:
+        return [f"/* {lines[0]} */"]
+    return ["/*", *(f" * {line}" for line in lines), " */"]

@@ -1,0 +1,11 @@
+"""Laws as data: the language, the tree, its calculus and its spelling.
+
+    tree         the nodes, and the walks that every stage shares
+    parse        a stranger's text to a tree; `lexis` and `size` refuse what is too much
+    calculus     sums, products, derivatives; `integrals` their antiderivatives
+    dimensions   which parts must have equal units
+    enclosure    where a value lies, for certain
+    text         a tree to text, in the language of a `Style`
+
+Input and output: each file says its own.  Nothing here knows of elements or models.
+"""

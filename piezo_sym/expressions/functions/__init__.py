@@ -1,0 +1,18 @@
+"""The functions of laws, one record each: all that any stage has to know of a function.
+
+Input: nothing.  Output: the records, by name.  To add a function, add its record to `smooth` or
+`kinked`, and a test.
+"""
+
+from collections.abc import Mapping
+
+from piezo_sym.expressions.functions.kinked import KINKED
+from piezo_sym.expressions.functions.record import INF, Function
+from piezo_sym.expressions.functions.smooth import SMOOTH
+
+__all__ = ["FUNCTIONS", "INF", "RECORDS", "Function"]
+
+#: Every function, those that only lowering makes among them.
+RECORDS: Mapping[str, Function] = {record.name: record for record in (*SMOOTH, *KINKED)}
+#: The functions of the law language.
+FUNCTIONS: Mapping[str, Function] = {n: record for n, record in RECORDS.items() if record.written}

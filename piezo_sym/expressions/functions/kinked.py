@@ -1,0 +1,96 @@
+"""The functions of laws that have kinks.
+
+Input: nothing.  Output: `KINKED`, a record each; see `record` for what it says, and in which words.
+"""
+
+from piezo_sym.expressions.functions.record import Function
+
+_NAN = "not a number stays so"
+
+
+def _saturate(z: float, w: float) -> float:
+    return min(max(z, -w), w)
+
+
+def _deadzone(z: float, w: float) -> float:
+    return max(z - w, 0.0) + min(z + w, 0.0)
+
+
+def _sign(z: float) -> float:
+    return float((z > 0) - (z < 0))
+
+
+KINKED = (
+    Function(
+        "abs",
+        abs,
+        ("sign(x)",),
+        units="equal",
+        choices="x if x >= 0 else -x",
+        formula="max(x, -x)",
+        degree=1,
+        parity="even",
+        sign=">=",
+        numpy="np.abs",
+        c="fabs",
+    ),
+    Function(
+        "sign",
+        _sign,
+        ("0",),
+        units="none",
+        choices="1 if x > 0 else (-1 if x < 0 else 0)",
+        jumps=True,
+        degree=0,
+        parity="odd",
+        numpy="np.sign",
+        c_helper=("double z", "z > 0.0 ? 1.0 : z < 0.0 ? -1.0 : z"),
+    ),
+    Function(
+        "min",
+        min,
+        ("1 if x <= w else 0", "0 if x <= w else 1"),
+        units="equal",
+        choices="x if x <= w else w",
+        degree=1,
+        numpy="np.minimum",
+        c_helper=("double a, double b", f"a < b || a != a ? a : b; /* {_NAN} */"),
+    ),
+    Function(
+        "max",
+        max,
+        ("1 if x >= w else 0", "0 if x >= w else 1"),
+        units="equal",
+        choices="x if x >= w else w",
+        degree=1,
+        numpy="np.maximum",
+        c_helper=("double a, double b", f"a > b || a != a ? a : b; /* {_NAN} */"),
+    ),
+    Function(
+        "saturate",
+        _saturate,
+        ("0 if abs(x) > w else 1", "sign(x) if abs(x) > w else 0"),
+        units="equal",
+        choices="w if x > w else (-w if x < -w else x)",
+        formula="min(max(x, -w), w)",
+        width=True,
+        degree=1,
+        parity="odd",
+        numpy="np.clip({x}, -{w:atom}, {w})",
+        c_helper=("double z, double w", "z > w ? w : z < -w ? -w : z"),
+    ),
+    Function(
+        "deadzone",
+        _deadzone,
+        ("1 if abs(x) > w else 0", "-sign(x) if abs(x) > w else 0"),
+        units="equal",
+        choices="x - w if x > w else (x + w if x < -w else 0)",
+        formula="max(x - w, 0) + min(x + w, 0)",
+        width=True,
+        degree=1,
+        parity="odd",
+        numpy="{x:sum} - np.clip({x}, -{w:atom}, {w})",
+        binds="sum",
+        c_helper=("double z, double w", "z > w ? z - w : z < -w ? z + w : z - z"),
+    ),
+)

@@ -1,0 +1,103 @@
+"""What a record of a law function says.
+
+Input: nothing.  Output: the type `Function`.  Rules are texts of the law language, in which x and w
+are the arguments and y the value; `calculus` makes trees of them.  A fact is true for all real
+numbers: a clause of comparisons, with ``|`` between them, of which one holds; what is known on the
+function's domain alone has as first comparison that the argument is outside it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Literal, final
+
+INF = math.inf
+
+
+@final
+@dataclass(frozen=True)
+class Function:
+    """One function of laws.
+
+    Attributes
+    ----------
+    name : in laws, C and SymPy, and of its method of FLINT's balls, where nothing else is said.
+    value : in floating point.
+    slopes : its derivatives by its arguments; at a kink, those of one of its sides.
+    units : ``pure`` (neither argument nor value has one), ``equal`` (of all arguments and value),
+        ``none`` (any argument, a value without) or ``power`` (as the power `power`).
+    choices : its branches, if it has kinks; of a `width` they are for w >= 0.
+    formula : the same by functions with fewer kinks, for every w.
+    jumps : whether it is not continuous.
+    width : whether its second argument is a width, taken to be >= 0.
+    degree : f(c*x, c*w) = c**degree * f(x, w) for all c > 0, if there is such a number.
+    power : which power of its argument it is, if it is one.
+    parity : f(-x, w) = -f(x, w) is ``odd``, f(-x, w) = f(x, w) ``even``.
+    rises : 1 if a smooth function increases strictly (an even one: for x >= 0), else 0.
+    domain : where it has a value; "" is everywhere.
+    sign : y > 0, or y >= 0 and zero at zero alone, wherever it has a value.
+    known : a rational argument at which the value is rational, and that value.
+    bounds : between which rational numbers the values lie.
+    largest : arguments beyond it are not looked at one by one: the value is above every double.
+    integral : an antiderivative by x, where it is of use.
+    facts : what solvers are told, beside that it rises: see the comment at each.
+    numpy, c : how they spell it; NumPy's may be a text with places x and w, whose outermost
+        operator is `binds`.
+    numpy_helper : an import and a definition that a NumPy module needs to spell it so.
+    c_helper : parameters and value in C, where <math.h> lacks it.
+    written : whether a spec may write it; others are made by lowering.
+    """
+
+    name: str
+    value: Callable[..., float]
+    slopes: tuple[str, ...]
+    units: Literal["pure", "equal", "none", "power"] = "pure"
+    choices: str = ""
+    formula: str = ""
+    jumps: bool = False
+    width: bool = False
+    degree: int | None = None
+    power: Fraction | None = None
+    parity: Literal["", "odd", "even"] = ""
+    rises: int = 0
+    domain: Literal["", "x > 0", "x >= 0"] = ""
+    sign: Literal["", ">", ">="] = ""
+    known: tuple[int, int] | None = None
+    bounds: tuple[float | Fraction, float | Fraction] = (-INF, INF)
+    largest: float = INF
+    integral: str = ""
+    facts: tuple[str, ...] = ()
+    numpy: str = ""
+    binds: Literal["atom", "sum"] = "atom"
+    numpy_helper: tuple[()] | tuple[str, str] = ()
+    c: str = ""
+    c_helper: tuple[str, str] | None = None
+    written: bool = True
+
+    @property
+    def smooth(self) -> bool:
+        """Whether it has no kinks."""
+        return not self.choices
+
+    @property
+    def branches(self) -> int:
+        """How many branches it has."""
+        return 1 + self.choices.count(" if ")
+
+    @property
+    def transcendental(self) -> bool:
+        """Whether it is smooth and no power: solvers know it by its facts."""
+        return self.smooth and self.power is None
+
+    @property
+    def monotone(self) -> bool:
+        """Whether it increases strictly wherever it has a value."""
+        return self.rises > 0 and self.parity != "even"
+
+    @property
+    def in_c(self) -> str:
+        """The name in C."""
+        return self.c or self.name

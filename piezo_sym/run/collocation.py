@@ -1,0 +1,110 @@
+"""Runs of Gauss collocation with a tolerance: high order, both balances to round-off.
+
+Input: systems that differ in parameters, their engine, their states at t = 0, the sample times and
+a tolerance.  Output: `Runs`, whose states are those of their ledgers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from piezo_sym.errors import RunError
+from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.engine import Engine
+from piezo_sym.run.engine.collocation import Batch, Stepping
+from piezo_sym.run.engine.library import Layout
+from piezo_sym.run.runs import Runs, Watch, stuck
+from piezo_sym.run.scales import shared
+from piezo_sym.run.system import System, Systems
+
+#: The first step, and the longest of the survey of states' scales, in parts of the run.
+FIRST, SURVEYED = 1e-5, 1 / 64
+#: Numbers of state that are stepped between two looks at what the user wants: some milliseconds.
+CHUNK = 50_000
+#: Runs of more states have vectors for the lanes of their banks.
+MOST_STATES = 32
+#: For tolerances from here on, how many stages are cheapest, and what a step's estimated error may
+#: then be, in rtol: so that the largest error of a run is about rtol.
+CHOICE = ((1e-3, 3, 0.5), (1e-6, 4, 0.5), (0.0, 5, 1.0))
+#: Below this tolerance steps end at kinks, however many there are.
+LEAST_OVER = 1e-6
+#: A run of more steps would take days, and steps below round-off.
+MOST_STEPS = 1e12
+
+
+def with_tolerance(
+    systems: Sequence[System],
+    engine: Engine,
+    x: FloatArray,
+    times: FloatArray,
+    rtol: float,
+    watch: Watch | None = None,
+    *,
+    stages: int | None = None,
+    side_by_side: bool = True,
+) -> Runs:
+    """Return runs from their states x (runs, n) at t = 0 through the sample times (nt,).
+
+    A rough run shows how large each state becomes; errors are measured by that.
+
+    Parameters
+    ----------
+    systems : with equal inputs and sizes.
+    watch : told the time reached, now and then.
+    stages : of a step; when left out, those that are cheapest for the tolerance.
+    side_by_side : whether runs of few states lie in the lanes of vectors.
+
+    Raises
+    ------
+    RunError : inputs are so fast that no number of steps would do.
+    """
+    known = Systems.of(systems)
+    first = known[0]
+    batch = Batch(
+        engine,
+        known.parameters,
+        x,
+        first.inputs,
+        times,
+        stepping(first, rtol, stages),
+        layout_of(x, side_by_side=side_by_side),
+    )
+    batch.survey()
+    batch.largest[:] = shared(first, batch.largest)
+    records, more = batch.records, True
+    while more:
+        more = batch.go(max(1, CHUNK // x.shape[1]))
+        if watch:
+            watch(float(np.mean(records["t"])))
+    work = np.stack([records[n] for n in ("steps", "iterations", "rejected")], axis=1)
+    errors: list[RunError | None] = [None] * len(x)
+    for k in np.flatnonzero(records["failed"]).tolist():
+        errors[k] = stuck(known[k], float(records["t"][k]), batch.x[k])
+    return Runs(known, x, times, batch.states, batch.sums, work, tuple(errors))
+
+
+def stepping(system: System, rtol: float, stages: int | None) -> Stepping:
+    """Return how a run with a tolerance steps."""
+    inputs = system.inputs
+    if not inputs.duration / inputs.max_step <= MOST_STEPS:
+        step = f"steps of {inputs.max_step:g} s, over 10^12 of them"
+        what = f"a run of {inputs.duration:g} s would take {step}"
+        remedy = "a shorter run, or slower inputs"
+        raise RunError(what, f"model '{system.module.NAME}'", remedy=remedy)
+    best, caution = next((number, part) for least, number, part in CHOICE if rtol >= least)
+    return Stepping(
+        stages=stages or best,
+        tolerance=caution * rtol,
+        first=FIRST * inputs.duration,
+        longest=min(inputs.max_step, SURVEYED * inputs.duration),
+        kinks="either" if rtol >= LEAST_OVER else "end",
+    )
+
+
+def layout_of(x: FloatArray, *, side_by_side: bool) -> Layout:
+    """Return what lies in vectors, for runs of states x (runs, n); results do not depend on it."""
+    if x.shape[1] > MOST_STATES:
+        return "lanes"
+    return "many" if len(x) > 1 and side_by_side else "one"

@@ -1,0 +1,239 @@
+/*
+ * Batches of runs: lanes take runs one after another.  Behind ticks.c.
+ *
+ * A survey by rough midpoint steps tells first how large each state of a run becomes: by this its
+ * errors are measured.
+ */
+
+/* What a batch shall do, as Python gives it; see MODEL(batch). */
+typedef struct {
+    MODEL(run) *runs;
+    const double *times;
+    long count, samples, over, ways;
+    double duration, tolerance, first, longest, fixed;
+} MODEL(task);
+
+enum { ROUGH_ITERATIONS = 8 };
+/* With so many switches it may be better to step over kinks. */
+enum { MANY = 8 };
+/* How far Newton's method goes in a survey, and how short its steps may be, in parts of the longest. */
+#define ROUGH 1e-3
+#define SHORTEST 1e-6
+/* Steps of a survey: what comes later in a long run counts from when it comes. */
+enum { MOST_SURVEYED = 10000 };
+
+/* Sizes and places of a model's arrays, see the model's own function. */
+void MODEL(sizes_of)(const MODEL(parameters) *p, long *out);
+void MODEL(sizes_of)(const MODEL(parameters) *p, long *out)
+{
+    MODEL(reals) reals;
+    MODEL(place_reals)(&reals, p, NULL);
+    MODEL(sizes)(&reals, out);
+}
+
+/* Give a batch its places in memory that begins at `b`; returns how many bytes it takes. */
+static size_t MODEL(places)(MODEL(batch) *b, const MODEL(task) *task, real *memory)
+{
+    MODEL(block) *m = &b->m;
+    real *at = memory;
+    at += MODEL(place_reals)(&m->p, task->runs->p, at);
+    MODEL(sizes)(&m->p, b->sizes);
+    m->n = b->sizes[0], m->means = b->sizes[1], m->branches = b->sizes[2];
+    m->booked = b->sizes[3], m->processes = b->sizes[4], m->slopes = b->sizes[5];
+    m->inputs = MODEL(input_count);
+    m->lanes = b->sizes + 6, m->first = b->sizes + 6 + MODEL(banks);
+    at += MODEL(arrange)(m, at);
+#define PLACE(array, size) (b->array = at, at += (size))
+    PLACE(rate, m->n);
+    PLACE(side, m->branches);
+    PLACE(sums, m->booked);
+    PLACE(lost, m->booked);
+    PLACE(known, STAGES * m->n);
+    PLACE(end_rate, m->n);
+    PLACE(end_side, m->branches);
+    PLACE(end_branch, m->branches);
+    PLACE(part, m->booked);
+    PLACE(some_rate, m->n);
+    PLACE(some_share, m->n);
+    PLACE(some_side, m->branches);
+    PLACE(some_rows, m->booked);
+    PLACE(some_margin, MODEL(limits));
+    PLACE(some_inputs, m->inputs);
+#undef PLACE
+    return (size_t)(at - memory) * sizeof(real);
+}
+
+/* How many bytes a batch takes. */
+long MODEL(batch_size)(const MODEL(task) *task);
+long MODEL(batch_size)(const MODEL(task) *task)
+{
+    real none[1];
+    MODEL(batch) b;
+    return (long)(sizeof b + MODEL(places)(&b, task, none));
+}
+
+/* Make a batch in memory of its size, which is aligned as vectors are, and zero. */
+void MODEL(open)(MODEL(batch) *b, const MODEL(task) *task);
+void MODEL(open)(MODEL(batch) *b, const MODEL(task) *task)
+{
+    MODEL(places)(b, task, (real *)(b + 1));
+    b->runs = task->runs, b->times = task->times;
+    b->count = task->count, b->samples = task->samples;
+    b->duration = task->duration, b->tolerance = task->tolerance;
+    b->first = task->first, b->longest = task->longest, b->fixed = task->fixed;
+    b->ways = task->ways && b->m.branches >= MANY;
+    b->m.over = task->over ? none_of(nowhere) : nowhere;
+}
+
+/* Let a lane take a run: its parameters, and the state at its begin. */
+static void MODEL(load)(MODEL(batch) *b, int lane, MODEL(run) *run)
+{
+    MODEL(block) *m = &b->m;
+    MODEL(give)(&m->p, run->p, lane);
+    for (long k = 0; k < m->n; ++k) {
+        LANE(m->x, k, lane) = run->x[k];
+        LANE(m->largest, k, lane) = run->largest[k];
+    }
+    for (long k = 0; k < m->booked; ++k)
+        LANE(b->sums, k, lane) = LANE(b->lost, k, lane) = 0.0;
+    for (long k = 0; k < STAGES * m->branches; ++k)
+        LANE(m->branch, k, lane) = 0.0;
+    LANE(&m->iterations, 0, lane) = 0.0;
+    b->lane[lane] = (MODEL(lane)){.run = run, .segment = run->segments, .t = run->t, .phase = BEGIN};
+    b->lane[lane].h = b->fixed > 0.0 ? b->fixed : b->first;
+    b->lane[lane].which = -1;
+    b->lane[lane].since = run->t;
+    if (b->ways)
+        SET(b->m.over, lane, 0);
+    while (run->sample < b->samples && b->times[run->sample] <= run->t)
+        MODEL(sample)(b, lane, m->x, NULL);
+}
+
+/* Middles of steps over h at which f points to their ends, by Newton's method; returns who has one. */
+static mask MODEL(midpoint)(MODEL(batch) *b, real h, mask where)
+{
+    MODEL(block) *m = &b->m;
+    mask going = where;
+    memcpy(m->reached, m->x, (size_t)m->n * sizeof(real));
+    for (int iteration = 0; iteration < ROUGH_ITERATIONS && any(going); ++iteration) {
+        real worst = zero;
+        m->iterations += chosen(going, wide(1.0), zero);
+        for (int again = 0; again < 3; ++again) {
+            MODEL(point)(b, m->reached, m->branch, b->some_rate, b->some_side);
+            if (!any(MODEL(choose)(m->branches, b->some_side, m->branch, going)))
+                break;
+        }
+        MODEL(slopes)(m->reached, m->branch, b->some_inputs, &m->p, m->slope);
+        MODEL(factorise_real)(m, 0.5 * h, m->slope, m->real_factor);
+        for (long k = 0; k < m->n; ++k)
+            b->some_rate[k] = m->x[k] + 0.5 * h * b->some_rate[k] - m->reached[k];
+        MODEL(solve_real)(m, 0.5 * h, m->slope, m->real_factor, b->some_rate);
+        for (long k = 0; k < m->n; ++k) {
+            const real change = chosen(going, b->some_rate[k], zero);
+            m->reached[k] += change;
+            worst = largest_of(size_of(change) / (m->largest[k] + size_of(m->reached[k]) + 1e-300), worst);
+        }
+        const mask far = worst > ROUGH, lost = worst != worst;
+        where &= none_of(lost & going);
+        going &= far;
+    }
+    for (long k = 0; k < MODEL(limits); ++k) {
+        const mask inside = b->some_margin[k] > 0.0, edge = b->some_margin[k] == 0.0;
+        where &= MODEL(strict)[k] ? inside : (mask)(inside | edge);
+    }
+    return where & none_of(going);
+}
+
+/* Survey as many runs as there are lanes, from `first` on. */
+static void MODEL(survey_some)(MODEL(batch) *b, long first)
+{
+    MODEL(block) *m = &b->m;
+    mask going = nowhere;
+    for (int lane = 0; lane < REAL_WIDTH && first + lane < b->count; ++lane) {
+        MODEL(load)(b, lane, b->runs + first + lane);
+        b->lane[lane].h = b->longest;
+        SET(going, lane, 1);
+    }
+    for (long step = 0; step < MOST_SURVEYED && any(going); ++step) {
+        real h = zero;
+        for (int lane = 0; lane < REAL_WIDTH; ++lane) {
+            MODEL(lane) *l = b->lane + lane;
+            if (!IN(going, lane))
+                continue;
+            l->h = fmin(l->h, l->segment->stop - l->t);
+            MODEL(inputs_at)(l->segment, m->inputs, l->t + 0.5 * l->h, b->some_inputs, lane);
+            LANE(&h, 0, lane) = l->h;
+        }
+        const mask good = MODEL(midpoint)(b, h, going);
+        for (long k = 0; k < m->n; ++k) {
+            m->x[k] = chosen(good, 2.0 * m->reached[k] - m->x[k], m->x[k]);
+            m->largest[k] = largest_of(size_of(m->x[k]), m->largest[k]);
+        }
+        for (int lane = 0; lane < REAL_WIDTH; ++lane) {
+            MODEL(lane) *l = b->lane + lane;
+            const double stop = IN(going, lane) ? l->segment->stop : 0.0;
+            if (!IN(going, lane))
+                continue;
+            if (!IN(good, lane)) {
+                l->h *= 0.25;
+                SET(going, lane, l->h > b->longest * SHORTEST);
+                continue;
+            }
+            l->t = l->t + l->h < stop - 1e-9 * l->h ? l->t + l->h : stop;
+            l->h = fmin(2.0 * l->h, b->longest);
+            SET(going, lane, l->t < b->duration);
+            if (l->t >= stop && l->t < b->duration)
+                ++l->segment;
+        }
+    }
+    for (int lane = 0; lane < REAL_WIDTH && first + lane < b->count; ++lane) {
+        for (long k = 0; k < m->n; ++k)
+            b->runs[first + lane].largest[k] = LANE(m->largest, k, lane);
+        b->lane[lane].phase = IDLE;
+    }
+}
+
+/* Find how large the states of all runs become. */
+void MODEL(survey)(MODEL(batch) *b);
+void MODEL(survey)(MODEL(batch) *b)
+{
+    for (long first = 0; first < b->count; first += REAL_WIDTH)
+        MODEL(survey_some)(b, first);
+}
+
+/* Take at most so many steps in each lane; returns whether there is more to do. */
+int MODEL(go)(MODEL(batch) *b, long ticks);
+int MODEL(go)(MODEL(batch) *b, long ticks)
+{
+    for (; ticks > 0; --ticks) {
+        mask begins = nowhere;
+        int busy = 0;
+        for (int lane = 0; lane < REAL_WIDTH; ++lane) {
+            if (b->lane[lane].phase == IDLE && b->next < b->count)
+                MODEL(load)(b, lane, b->runs + b->next++);
+            busy |= b->lane[lane].phase != IDLE;
+            SET(begins, lane, b->lane[lane].phase == BEGIN);
+        }
+        if (!busy)
+            return 0;
+        if (any(begins)) {
+            MODEL(stand)(b, begins, begins);
+            for (int lane = 0; lane < REAL_WIDTH; ++lane)
+                if (IN(begins, lane)) {
+                    b->lane[lane].phase = STEP;
+                    b->lane[lane].known = 0.0;
+                }
+        }
+        MODEL(tick_once)(b);
+    }
+    return 1;
+}
+
+/* Where the runs stand that lanes have, (lanes, n). */
+void MODEL(here)(const MODEL(batch) *b, double *out);
+void MODEL(here)(const MODEL(batch) *b, double *out)
+{
+    for (int lane = 0; lane < REAL_WIDTH; ++lane)
+        for (long k = 0; k < b->m.n; ++k)
+            out[lane * b->m.n + k] = LANE(b->m.x, k, lane);
+}

@@ -1,0 +1,218 @@
+"""Collocation steps of runs in C: the library of a number of stages, and batches of runs.
+
+Input: a generated module with its ``<model>_step.c``, parameters, inputs and states of some runs.
+Output: `Batch`, which takes them through.  Arrays that C works on belong to it.
+"""
+
+import ctypes
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from math import nan
+from typing import Any, Literal, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from piezo_sym.errors import PiezoError
+from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.engine.engine import Engine, read_source, shared_library
+from piezo_sym.run.engine.library import Layout
+from piezo_sym.run.engine.records import DOUBLE, LONG, POINTER, at
+from piezo_sym.run.engine.structure import addresses, record_of
+from piezo_sym.run.inputs import Inputs, Segment
+from piezo_sym.run.signals import Chirp, Constant, Signal, Sine
+
+ASKED = ctypes.CFUNCTYPE(DOUBLE, DOUBLE)
+#: Vectors lie at multiples of so many bytes.
+ALIGNED = 64
+
+
+class Wave(ctypes.Structure):
+    """MODEL(signal) of trajectory.c."""
+
+    _fields_ = [
+        *((n, DOUBLE) for n in ("amplitude", "frequency", "rate", "phase", "offset")),
+        ("asked", ASKED),
+    ]
+
+
+class Piece(ctypes.Structure):
+    """MODEL(segment) of trajectory.c."""
+
+    _fields_ = [("stop", DOUBLE), ("signals", POINTER)]
+
+
+class Record(ctypes.Structure):
+    """MODEL(run) of trajectory.c."""
+
+    _fields_ = [
+        *((n, POINTER) for n in ("p", "segments", "x", "largest", "states", "sums")),
+        ("t", DOUBLE),
+        *((n, LONG) for n in ("sample", "steps", "rejected", "switched", "iterations", "failed")),
+    ]
+
+
+class Task(ctypes.Structure):
+    """MODEL(task) of batch.c."""
+
+    _fields_ = [
+        *((n, POINTER) for n in ("runs", "times")),
+        *((n, LONG) for n in ("count", "samples", "over", "ways")),
+        *((n, DOUBLE) for n in ("duration", "tolerance", "first", "longest", "fixed")),
+    ]
+
+
+@final
+@dataclass(frozen=True)
+class Stepping:
+    """How runs step.
+
+    Attributes
+    ----------
+    stages : of a step, 1 to 5; its order is twice that.
+    tolerance : of the estimate of a step's error, in scales of the states; not used with `fixed`.
+    fixed : the length of all steps [s], which then go over kinks; 0 if errors decide.
+    first, longest : the length of the first step, and of the longest [s].
+    kinks : whether steps end there, or go over them; or what gets further, where switches are many.
+    """
+
+    stages: int
+    tolerance: float
+    first: float
+    longest: float
+    fixed: float = 0.0
+    kinks: Literal["end", "over", "either"] = "either"
+
+
+@lru_cache(maxsize=64)
+def collocation_library(engine: Engine, stages: int, layout: Layout) -> ctypes.CDLL:
+    """Return the library of a module's collocation steps of so many stages.
+
+    Raises
+    ------
+    EngineError
+        If ``<model>_step.c`` is missing or of another spec, or cannot be compiled.
+    """
+    step = read_source(engine.module, "_step.c")
+    made = replace(engine.sources, made="collocation", step=step, stages=stages, layout=layout)
+    return shared_library(made)
+
+
+@final
+class Batch:
+    """Runs of equal sizes on their way.
+
+    Attributes
+    ----------
+    x : the states (runs, n): at t = 0, and then where runs stand.
+    largest : the largest magnitude of each state (runs, n).
+    states, sums : at samples, (runs, samples, n) and (runs, samples, rows), rows in the order of
+        `System.rates`; nan where a run did not get.
+    records : what else C tells of each run, by the names of `Record`.
+
+    Parameters
+    ----------
+    engine : of the module.
+    parameters : of each run.
+    x : their states (runs, n) at t = 0.
+    inputs : of all.
+    times : of samples (samples,).
+    layout : "one" run after another, "many" side by side in vectors, or "lanes" of one run's banks.
+    """
+
+    def __init__(
+        self,
+        engine: Engine,
+        parameters: Sequence[Any],
+        x: FloatArray,
+        inputs: Inputs,
+        times: FloatArray,
+        stepping: Stepping,
+        layout: Layout,
+    ) -> None:
+        self._library = collocation_library(engine, stepping.stages, layout)
+        self._name = engine.module.NAME
+        self._structures = engine.structure.many(parameters)
+        self.x, self.largest = np.array(x, dtype=float), np.abs(x)
+        self._raised: list[Exception] = []
+        self._pieces = [self._piece(segment, inputs.signals) for segment in inputs.segments]
+        self._segments = (Piece * len(self._pieces))(*(piece for piece, _ in self._pieces))
+        rows = self._sizes(engine)[3]
+        count, n = self.x.shape
+        self.states = np.full((count, times.size, n), np.nan)
+        self.sums = np.full((count, times.size, rows), np.nan)
+        self._times = np.ascontiguousarray(times, dtype=float)
+        self._runs = (Record * count)()
+        self.records: Any = np.frombuffer(memoryview(self._runs), record_of(Record))
+        self.records["p"] = self._structures.addresses
+        self.records["segments"] = ctypes.addressof(self._segments)
+        for name in ("x", "largest", "states", "sums"):
+            self.records[name] = addresses(getattr(self, name))
+        self._open(stepping, inputs.duration)
+
+    def _sizes(self, engine: Engine) -> NDArray[Any]:
+        """Return what the model's own function says of its arrays' sizes."""
+        module = engine.module
+        found = np.zeros(6 + len(module.BANKS) + len(module.STATES), dtype=np.dtype("l"))
+        first = ctypes.c_void_p(int(self._structures.addresses[0]))
+        getattr(self._library, f"{self._name}_sizes_of")(first, at(found))
+        return found
+
+    def _open(self, stepping: Stepping, duration: float) -> None:
+        given = (stepping.tolerance, stepping.first, stepping.longest, stepping.fixed)
+        arrays = ctypes.addressof(self._runs), at(self._times)
+        over = stepping.kinks == "over" or bool(stepping.fixed > 0)
+        sizes = len(self._runs), self._times.size, over, stepping.kinks == "either" and not over
+        task = Task(*arrays, *sizes, duration, *given)
+        size = getattr(self._library, f"{self._name}_batch_size")
+        size.restype = LONG
+        self._room = np.zeros(int(size(ctypes.byref(task))) + ALIGNED, dtype=np.uint8)
+        place = self._room.ctypes.data
+        self._batch = ctypes.c_void_p(place + -place % ALIGNED)
+        self._call("open", ctypes.byref(task))
+
+    def survey(self) -> None:
+        """Find by rough steps how large states become: `largest`."""
+        self._call("survey")
+
+    def go(self, ticks: int) -> bool:
+        """Take at most so many steps in each lane; return whether there is more to do."""
+        return bool(self._call("go", LONG(ticks)))
+
+    def here(self) -> FloatArray:
+        """Return where runs stand that are on their way, (lanes, n)."""
+        found = np.empty((1, self.x.shape[1]))
+        self._call("here", at(found))
+        return found
+
+    def _call(self, word: str, *more: Any) -> Any:
+        found = getattr(self._library, f"{self._name}_{word}")(self._batch, *more)
+        if self._raised:
+            raise self._raised[0]
+        return found
+
+    def _piece(self, segment: Segment, signals: Sequence[Signal]) -> tuple[Piece, Any]:
+        """Return a segment as C takes it, and the waves that it points to."""
+        waves = (self._wave(signal, segment.low, segment.high) for signal in signals)
+        found = (Wave * max(1, len(signals)))(*waves)
+        return Piece(segment.stop, ctypes.addressof(found)), found
+
+    def _wave(self, signal: Signal, low: float, high: float) -> Wave:
+        """Return a signal as C takes it: a wave, or a function that is asked within [low, high]."""
+        match signal:
+            case Constant(value):
+                return Wave(offset=value)
+            case Sine(amplitude, frequency, offset, phase):
+                return Wave(amplitude, frequency, 0.0, phase, offset)
+            case Chirp(amplitude, start, stop, duration, offset) if high <= duration:
+                return Wave(amplitude, start, (stop - start) / duration, 0.0, offset)
+
+        def asked(t: float) -> float:
+            try:
+                return float(signal(min(max(t, low), high)))
+            except PiezoError as error:  # C cannot pass it on: no step has a number that is none
+                self._raised.append(error)
+                return nan
+
+        return Wave(asked=ASKED(asked))

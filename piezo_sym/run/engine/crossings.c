@@ -1,0 +1,164 @@
+/*
+ * Switches that change on the way of a step: whether, which one first, and where.  Behind trajectory.c.
+ */
+
+/* A switch that changes: which one, between which parts of the step, and how far it is there. */
+typedef struct {
+    long which;
+    double low, high, at_low, at_high;
+    int guessed; /* whether the value at `high` is no more than interpolated */
+} MODEL(crossing);
+
+/* A switching function where a step looks for changes: at its begin, stages and end, and between. */
+enum { LOOKS = 1 + PARTS * (STAGES + 1) };
+
+/* Its values there, as positive as its branch is; returns the lanes where it may have changed. */
+static mask MODEL(looks)(const MODEL(batch) *b, long k, real *value)
+{
+    real low = wide(HUGE_VAL), high = wide(-HUGE_VAL);
+    const MODEL(block) *m = &b->m;
+    const mask on = m->branch[k] > 0.0;
+    const real turn = chosen(on, wide(1.0), wide(-1.0));
+    for (long i = 0; i <= STAGES + 1; ++i) {
+        const real side = i == 0 ? b->side[k]
+            : i <= STAGES        ? m->side[(i - 1) * m->branches + k]
+                                 : b->end_side[k];
+        value[i * PARTS] = turn * side;
+        low = least(value[i * PARTS], low);
+        high = largest_of(value[i * PARTS], high);
+    }
+    const mask near = low < high - low; /* else it is far from zero all the way */
+    if (!any(near))
+        return near;
+    for (long i = 0; i <= STAGES; ++i)
+        for (long part = 1; part < PARTS; ++part) {
+            const double *weight = from_others[i * (PARTS - 1) + part - 1];
+            real sum = zero;
+            for (long j = 0; j <= STAGES + 1; ++j)
+                sum += weight[j] * value[j * PARTS];
+            value[i * PARTS + part] = sum;
+        }
+    return near;
+}
+
+/* The lanes in which some switching function has changed its sign within a step. */
+static mask MODEL(crossed)(const MODEL(batch) *b, mask where)
+{
+    mask found = nowhere;
+    for (long k = 0; k < b->m.branches; ++k) {
+        real value[LOOKS];
+        if (!any(where & MODEL(looks)(b, k, value)))
+            continue;
+        for (long i = 1; i < LOOKS; ++i)
+            found |= value[i] < 0.0;
+    }
+    return found & where;
+}
+
+/* The switch of a lane that changes first. */
+static MODEL(crossing) MODEL(first_switch)(const MODEL(batch) *b, int lane)
+{
+    MODEL(crossing) found = {-1, 0.0, 1.0, 0.0, 0.0, 0};
+    double first = 2.0;
+    for (long k = 0; k < b->m.branches; ++k) {
+        real values[LOOKS];
+        if (!IN(MODEL(looks)(b, k, values), lane))
+            continue;
+        double at = 0.0, value = fmax(LANE(values, 0, lane), 0.0);
+        for (long i = 1; i < LOOKS; ++i) {
+            const long stage = i / PARTS, part = i % PARTS;
+            const double next = part ? between[stage * (PARTS - 1) + part - 1]
+                : stage <= STAGES    ? stage_at[stage - 1]
+                                     : 1.0;
+            const double side = LANE(values, i, lane);
+            if (side < 0.0) {
+                const double place = at + (next - at) * (value / (value - side));
+                if (place < first) {
+                    first = place;
+                    found = (MODEL(crossing)){k, at, next, value, side, part != 0};
+                }
+                break;
+            }
+            at = next, value = side;
+        }
+    }
+    return found;
+}
+
+/* Where on the known polynomials some lanes' switching functions are zero, as parts of the steps. */
+static void MODEL(locate)(MODEL(batch) *b, mask where, real h, MODEL(crossing) *crossing, double *part)
+{
+    MODEL(block) *m = &b->m;
+    int before[REAL_WIDTH] = {0};
+    real at = zero, weight[STAGES];
+    for (int again = 0; again < 60 && any(where); ++again) {
+        for (int lane = 0; lane < REAL_WIDTH; ++lane) {
+            const MODEL(crossing) c = crossing[lane];
+            if (!IN(where, lane))
+                continue;
+            part[lane] = c.guessed ? c.high
+                                   : c.low + (c.high - c.low) * (c.at_low / (c.at_low - c.at_high));
+            LANE(&at, 0, lane) = part[lane];
+            const MODEL(lane) *l = b->lane + lane;
+            MODEL(inputs_at)(l->segment, m->inputs, l->t + part[lane] * l->length, b->some_inputs, lane);
+        }
+        for (long j = 0; j < STAGES; ++j) {
+            weight[j] = zero;
+            for (long n = STAGES; n-- > 0;)
+                weight[j] = (weight[j] + along[j][n]) * at;
+        }
+        for (long k = 0; k < m->n; ++k) {
+            real sum = zero;
+            for (long j = 0; j < STAGES; ++j)
+                sum += weight[j] * b->known[j * m->n + k];
+            m->reached[k] = m->x[k] + h * sum;
+        }
+        MODEL(point)(b, m->reached, m->branch, b->some_rate, b->some_side);
+        for (int lane = 0; lane < REAL_WIDTH; ++lane) {
+            MODEL(crossing) *c = crossing + lane;
+            if (!IN(where, lane))
+                continue;
+            const double turn = LANE(m->branch, c->which, lane) > 0.0 ? 1.0 : -1.0;
+            const double value = turn * LANE(b->some_side, c->which, lane);
+            if (c->guessed) {
+                c->guessed = 0;
+                c->at_high = value;
+                if (value >= 0.0) { /* there is none */
+                    c->which = -1;
+                    SET(where, lane, 0);
+                }
+                continue;
+            }
+            if (value == 0.0 || part[lane] == c->low || part[lane] == c->high) {
+                SET(where, lane, 0);
+                continue;
+            }
+            if (value > 0.0) { /* Illinois: who stays twice counts half */
+                c->low = part[lane], c->at_low = value;
+                c->at_high *= before[lane] < 0 ? 0.5 : 1.0;
+                before[lane] = -1;
+            } else {
+                c->high = part[lane], c->at_high = value;
+                c->at_low *= before[lane] > 0 ? 0.5 : 1.0;
+                before[lane] = 1;
+            }
+            if (c->high - c->low <= AT_ONCE)
+                SET(where, lane, 0);
+        }
+    }
+}
+
+/* Change the branch of a switch, and of all that have come to it at the end of a lane's step. */
+static void MODEL(turn)(MODEL(batch) *b, int lane, long which, int others)
+{
+    MODEL(block) *m = &b->m;
+    for (long k = 0; k < m->branches; ++k) {
+        const double branch = LANE(m->branch, k, lane), end = LANE(b->end_side, k, lane);
+        const int there = fabs(end) <= 1e-8 * fabs(LANE(b->side, k, lane));
+        const int beyond = (end > 0.0) != (branch > 0.0);
+        if (k == which || (others && (there || beyond)))
+            for (long i = 0; i < STAGES; ++i)
+                LANE(m->branch, i * m->branches + k, lane) = 1.0 - branch;
+    }
+    ++b->lane[lane].run->switched;
+}

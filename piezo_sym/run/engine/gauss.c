@@ -1,0 +1,332 @@
+/*
+ * Steps of Gauss collocation that keep both balances: Newton's method for the rates at the stages,
+ * for the runs of all lanes at once.
+ *
+ * Behind real.h, a generated <model>_step.c and the tables of a number of stages.  With rates K_j
+ * the state goes along X(tau) = x + h sum_j K_j int_0^tau l_j; stage i has the co-states' means
+ * int_0^1 (l_i/b_i) dU/dx(X) dtau, taken at NODES nodes of Gauss's rule.  A root counts only if all
+ * is finite, each stage lies in the domain and no process takes entropy.
+ */
+
+#include <stddef.h>
+
+enum { MOST_ITERATIONS = 12 };
+/* What Newton's method may leave of a state's change, in parts of its largest magnitude. */
+#define NOISE 1e-16
+
+typedef struct {
+    real re, im;
+} MODEL(complex);
+
+/* The runs of all lanes, as they take a step: sizes, and the numbers that it works on. */
+typedef struct {
+    MODEL(reals) p;
+    long n, inputs, means, branches, booked, slopes, processes;
+    const long *lanes, *first; /* of each bank; of each state, its first row */
+    real *x, *end;             /* n: where the step begins, and where it ends */
+    real *rates;               /* STAGES*n */
+    real *branch;              /* STAGES*branches */
+    real *u;                   /* STAGES*inputs */
+    real *largest;             /* n: the largest magnitude of each state, by which errors count */
+    real *reached, *gap, *node, *mean, *side, *margin, *rows, *slope, *fresh, *real_factor;
+    mask over;                 /* lanes whose stages choose their branches: they step over kinks */
+    real iterations;           /* of Newton's method */
+    MODEL(complex) *factor, *right;
+} MODEL(block);
+
+#define NUMBER real
+#define NAMED(name) MODEL(name##_real)
+#define ONE wide(1.0)
+#define NONE zero
+#define PER(a) (1.0 / (a))
+#define TIMES(a, b) ((a) * (b))
+#define BY(a, b) ((a) * (b))
+#define MORE(a, b) ((a) + (b))
+#define LESS(a, b) ((a) - (b))
+#include "elimination.c"
+#undef NUMBER
+#undef NAMED
+#undef ONE
+#undef NONE
+#undef PER
+#undef TIMES
+#undef BY
+#undef MORE
+#undef LESS
+#define NUMBER MODEL(complex)
+#define NAMED(name) MODEL(name##_complex)
+#define ONE ((MODEL(complex)){wide(1.0), zero})
+#define NONE ((MODEL(complex)){zero, zero})
+#define PER(a) MODEL(per)(a)
+#define TIMES(a, b) MODEL(times)(a, b)
+#define BY(a, b) MODEL(by)(a, b)
+#define MORE(a, b) MODEL(more)(a, b)
+#define LESS(a, b) MODEL(less)(a, b)
+static inline MODEL(complex) MODEL(per)(MODEL(complex) a)
+{
+    const real size = a.re * a.re + a.im * a.im;
+    return (MODEL(complex)){a.re / size, -a.im / size};
+}
+static inline MODEL(complex) MODEL(times)(MODEL(complex) a, MODEL(complex) b)
+{
+    return (MODEL(complex)){a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
+}
+static inline MODEL(complex) MODEL(by)(MODEL(complex) a, real b)
+{
+    return (MODEL(complex)){a.re * b, a.im * b};
+}
+static inline MODEL(complex) MODEL(more)(MODEL(complex) a, MODEL(complex) b)
+{
+    return (MODEL(complex)){a.re + b.re, a.im + b.im};
+}
+static inline MODEL(complex) MODEL(less)(MODEL(complex) a, MODEL(complex) b)
+{
+    return (MODEL(complex)){a.re - b.re, a.im - b.im};
+}
+#include "elimination.c"
+
+/* Give the arrays of a block their places from `at` on; returns how many numbers they hold. */
+static long MODEL(arrange)(MODEL(block) *m, real *at)
+{
+    real *const begin = at;
+    const long n = m->n;
+#define PLACE(array, size) (m->array = at, at += (size))
+    PLACE(x, n);
+    PLACE(end, n);
+    PLACE(rates, STAGES * n);
+    PLACE(branch, STAGES * m->branches);
+    PLACE(u, STAGES * m->inputs);
+    PLACE(largest, n);
+    PLACE(reached, n);
+    PLACE(gap, STAGES * n);
+    PLACE(node, NODES * m->means);
+    PLACE(mean, STAGES * m->means);
+    PLACE(side, STAGES * m->branches);
+    PLACE(margin, STAGES * MODEL(limits));
+    PLACE(rows, STAGES * m->booked);
+    PLACE(slope, m->slopes);
+    PLACE(fresh, m->slopes);
+    PLACE(real_factor, MODEL(factor_size_real)(m));
+#undef PLACE
+    m->factor = (MODEL(complex) *)at;
+    m->right = m->factor + PAIRS * MODEL(factor_size_complex)(m);
+    return (real *)(m->right + n) - begin;
+}
+
+/* A state at a place of the step, reached by rates with these weights. */
+static inline real MODEL(reached_row)(const MODEL(block) *m, real h, const double *weight, long i)
+{
+    real sum = zero;
+    for (long j = 0; j < STAGES; ++j)
+        sum += weight[j] * m->rates[j * m->n + i];
+    return m->x[i] + h * sum;
+}
+
+/* All states at a place of the step. */
+static void MODEL(reach)(const MODEL(block) *m, real h, const double *weight, real *restrict out)
+{
+    for (long i = 0; i < m->n; ++i)
+        out[i] = MODEL(reached_row)(m, h, weight, i);
+}
+
+/* The states alone that integrands read. */
+static void MODEL(reach_read)(const MODEL(block) *m, real h, const double *weight)
+{
+    for (long r = 0; r < MODEL(reads); ++r) {
+        const long record = MODEL(read)[r];
+        const long end = record + 1 < MODEL(records) ? m->first[record + 1] : m->n;
+        for (long i = m->first[record]; i < end; ++i)
+            m->reached[i] = MODEL(reached_row)(m, h, weight, i);
+    }
+}
+
+/* Choose branches by their switching functions in some lanes; returns those where any changes. */
+static mask MODEL(choose)(long branches, const real *side, real *branch, mask where)
+{
+    mask changed = nowhere;
+    for (long k = 0; k < branches; ++k) {
+        const mask positive = side[k] > 0.0;
+        const real old = branch[k], new = chosen(positive, wide(1.0), zero);
+        changed |= where & (new != old);
+        branch[k] = chosen(where, new, old);
+    }
+    return changed;
+}
+
+/* What the rates at the stages have to be, less what they are; returns where branches change. */
+static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
+{
+    const mask over = m->over & going;
+    mask changed = nowhere;
+    for (long q = 0; q < NODES && m->means; ++q) {
+        MODEL(reach_read)(m, h, node_reach[q]);
+        MODEL(integrands)(m->reached, &m->p, m->node + q * m->means);
+    }
+    for (long i = 0; i < STAGES; ++i) {
+        real *gap = m->gap + i * m->n, *mean = m->mean + i * m->means;
+        real *side = m->side + i * m->branches, *branch = m->branch + i * m->branches;
+        for (long k = 0; k < m->means; ++k) {
+            mean[k] = zero;
+            for (long q = 0; q < NODES; ++q)
+                mean[k] += node_mean[i][q] * m->node[q * m->means + k];
+        }
+        MODEL(reach)(m, h, stage_reach[i], m->reached);
+        for (int again = 0; again < 3; ++again) {
+            MODEL(stage)(m->reached, mean, branch, m->u + i * m->inputs, &m->p, gap,
+                         m->rows + i * m->booked, side, m->margin + i * MODEL(limits));
+            if (!any(over))
+                break;
+            const mask other = MODEL(choose)(m->branches, side, branch, over);
+            if (!any(other))
+                break;
+            changed |= other;
+        }
+        for (long k = 0; k < m->n; ++k)
+            gap[k] -= m->rates[i * m->n + k];
+    }
+    return changed;
+}
+
+/* Newton's change of the rates, from the gaps; gaps become it. */
+static void MODEL(change)(const MODEL(block) *m, real h)
+{
+    const long n = m->n, size = MODEL(factor_size_complex)(m);
+    for (long k = 0; k < n; ++k) {
+        real one[STAGES];
+        for (long i = 0; i < STAGES; ++i) {
+            one[i] = zero;
+            for (long j = 0; j < STAGES; ++j)
+                one[i] += basis_stage[i][j] * m->gap[j * n + k];
+        }
+        for (long i = 0; i < STAGES; ++i)
+            m->gap[i * n + k] = one[i];
+    }
+#if STAGES % 2
+    MODEL(solve_real)(m, h * filter, m->slope, m->real_factor, m->gap);
+#endif
+    for (long pair = 0; pair < PAIRS; ++pair) {
+        const double *value = eigenvalue[STAGES % 2 + pair];
+        const MODEL(complex) gamma = {h * value[0], h * value[1]};
+        real *one = m->gap + (STAGES % 2 + 2 * pair) * n, *other = one + n;
+        for (long k = 0; k < n; ++k)
+            m->right[k] = (MODEL(complex)){one[k], -other[k]};
+        MODEL(solve_complex)(m, gamma, m->slope, m->factor + pair * size, m->right);
+        for (long k = 0; k < n; ++k)
+            one[k] = m->right[k].re, other[k] = -m->right[k].im;
+    }
+    for (long k = 0; k < n; ++k) {
+        real one[STAGES];
+        for (long i = 0; i < STAGES; ++i) {
+            one[i] = zero;
+            for (long j = 0; j < STAGES; ++j)
+                one[i] += stage_basis[i][j] * m->gap[j * n + k];
+        }
+        for (long i = 0; i < STAGES; ++i)
+            m->gap[i * n + k] = one[i];
+    }
+}
+
+/*
+ * Slopes in the middle of the step, on the branches of its middle stage, and what solves with them;
+ * lanes that are not in `where` keep theirs.
+ */
+static void MODEL(prepare)(const MODEL(block) *m, real h, mask where)
+{
+    const long middle = STAGES / 2, size = MODEL(factor_size_complex)(m);
+    MODEL(reach)(m, h, stage_reach[middle], m->reached);
+    MODEL(slopes)(m->reached, m->branch + middle * m->branches, m->u + middle * m->inputs, &m->p,
+                  m->fresh);
+    for (long k = 0; k < m->slopes; ++k)
+        m->slope[k] = chosen(where, m->fresh[k], m->slope[k]);
+    MODEL(factorise_real)(m, h * filter, m->slope, m->real_factor);
+    for (long pair = 0; pair < PAIRS; ++pair) {
+        const double *value = eigenvalue[STAGES % 2 + pair];
+        const MODEL(complex) gamma = {h * value[0], h * value[1]};
+        MODEL(factorise_complex)(m, gamma, m->slope, m->factor + pair * size);
+    }
+}
+
+/* The lanes whose stages all lie in the domain, and whose processes take no entropy. */
+static mask MODEL(accepted)(const MODEL(block) *m)
+{
+    const long processes = m->processes, ports = MODEL(output_count);
+    mask good = none_of(nowhere);
+    for (long i = 0; i < STAGES; ++i) {
+        const real *rows = m->rows + i * m->booked + ports + processes;
+        real total = zero, lowest = zero;
+        for (long k = 0; k < MODEL(limits); ++k) {
+            const real margin = m->margin[i * MODEL(limits) + k];
+            const mask strictly = margin > 0.0, edge = margin == 0.0;
+            good &= MODEL(strict)[k] ? strictly : (mask)(strictly | edge);
+        }
+        for (long k = 0; k < processes; ++k) {
+            const mask less = rows[k] < lowest;
+            total += size_of(rows[k]);
+            lowest = chosen(less, rows[k], lowest);
+        }
+        good &= lowest >= -1e-14 * total;
+    }
+    return good;
+}
+
+/*
+ * Newton's method for the rates in some lanes, begun where they are; returns those that found them.
+ * A lane that has found them stays as it is, however long the others take.
+ */
+static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
+{
+    mask going = where, found = nowhere;
+    real before = zero;
+    MODEL(gaps)(m, h, going);
+    MODEL(prepare)(m, h, going);
+    for (int iteration = 0; iteration < MOST_ITERATIONS && any(going); ++iteration) {
+        real worst = zero;
+        m->iterations += chosen(going, wide(1.0), zero);
+        MODEL(change)(m, h);
+        for (long k = 0; k < m->n; ++k) {
+            real moved = zero, changed = zero;
+            for (long j = 0; j < STAGES; ++j) {
+                real *const rate = m->rates + j * m->n + k;
+                const real change = chosen(going, m->gap[j * m->n + k], zero);
+                *rate += change;
+                moved = largest_of(moved, size_of(*rate));
+                changed += size_of(change);
+            }
+            const real size = NOISE * (m->largest[k] + size_of(m->x[k]) + h * moved) + 1e-300;
+            worst = largest_of(h * changed / size, worst);
+        }
+        const mask switched = MODEL(gaps)(m, h, going);
+        const mask smaller = worst < before, lost = none_of(worst < 1e300);
+        mask good = (worst <= 4.0) | (smaller & (worst * (worst / before) <= 1.0));
+        if (iteration > 1) { /* noise of what rates are made of, or no root */
+            const mask stays = (worst > 0.3 * before) & none_of(good);
+            good |= stays & (worst < 1e4);
+            going &= none_of(stays & none_of(good));
+        }
+        good &= none_of(lost);
+        found |= going & good;
+        going &= none_of(good | lost);
+        if (any(switched & going))
+            MODEL(prepare)(m, h, switched & going);
+        before = worst;
+    }
+    return found;
+}
+
+/* Rates on the polynomial through those of a step, at a part of the step. */
+static void MODEL(carry)(const MODEL(block) *m, const real *rates, real at, real *out)
+{
+    real weight[STAGES];
+    for (long j = 0; j < STAGES; ++j) {
+        weight[j] = wide(1.0);
+        for (long k = 0; k < STAGES; ++k)
+            if (k != j)
+                weight[j] *= (at - stage_at[k]) / (stage_at[j] - stage_at[k]);
+    }
+    for (long k = 0; k < m->n; ++k) {
+        real sum = zero;
+        for (long j = 0; j < STAGES; ++j)
+            sum += weight[j] * rates[j * m->n + k];
+        out[k] = sum;
+    }
+}

@@ -1,0 +1,181 @@
+/*
+ * Numbers of one run, or vectors of numbers of REAL_WIDTH runs that are computed side by side, and
+ * the functions that a step calls on them.  All texts behind this file hold for every width, and
+ * give a run the same numbers at each: rounding does not depend on the company.
+ */
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#if !defined(REAL_WIDTH)
+#if defined(__AVX512F__)
+#define REAL_WIDTH 8
+#elif defined(__AVX__)
+#define REAL_WIDTH 4
+#else
+#define REAL_WIDTH 2
+#endif
+#endif
+
+#if REAL_WIDTH == 1
+typedef double real;
+typedef int mask; /* 0 or 1 */
+typedef uint64_t pattern;
+#define zero 0.0
+#define nowhere 0
+#define wide(value) (value)
+#define chosen(where, then, other) ((where) ? (then) : (other))
+#define any(where) (where)
+
+static inline real size_of(real a)
+{
+    return fabs(a);
+}
+
+static inline pattern bits_of(real a)
+{
+    pattern found;
+    memcpy(&found, &a, sizeof a);
+    return found;
+}
+
+static inline real real_of(pattern a)
+{
+    real found;
+    memcpy(&found, &a, sizeof a);
+    return found;
+}
+#else
+typedef double real __attribute__((vector_size(8 * REAL_WIDTH), may_alias));
+typedef int64_t mask __attribute__((vector_size(8 * REAL_WIDTH), may_alias)); /* 0, or all bits */
+typedef uint64_t pattern __attribute__((vector_size(8 * REAL_WIDTH), may_alias));
+typedef signed char few __attribute__((vector_size(REAL_WIDTH)));
+
+static const real zero = {0.0};
+static const mask nowhere = {0};
+
+/* A number or a vector as a vector, unchanged: x - 0 is x, also for -0. */
+#define wide(value) ((real)((value) - zero))
+
+static inline real chosen(mask where, real then, real other)
+{
+    return (real)((where & (mask)then) | (~where & (mask)other));
+}
+
+static inline int any(mask where)
+{
+    const few small = __builtin_convertvector(where, few);
+    uint64_t found = 0;
+    memcpy(&found, &small, REAL_WIDTH);
+    return found != 0;
+}
+
+static inline real size_of(real a)
+{
+    return (real)((mask)a & ~(mask)wide(-0.0));
+}
+
+#define bits_of(a) ((pattern)(a))
+#define real_of(a) ((real)(a))
+#endif
+
+#define none_of(where) ((mask)((where) == nowhere))
+
+/* The number, or the mask, of one lane. */
+#define OF(value, lane) (((double *)&(value))[lane])
+#define LANE(array, i, lane) (((double *)(array))[(i) * REAL_WIDTH + (lane)])
+#if REAL_WIDTH == 1
+#define SET(where, lane, value) ((where) = (value))
+#define IN(where, lane) (where)
+#else
+#define SET(where, lane, value) ((where)[lane] = -(int64_t)(value))
+#define IN(where, lane) ((where)[lane] != 0)
+#endif
+
+/* 2^k for whole k from -1022 to 1023, given as k + 0x1.8p52. */
+static inline real power_of_two(real k)
+{
+    const pattern exponent = bits_of(k) - bits_of(wide(0x1.8p52)) + 1023;
+    return real_of(exponent << 52);
+}
+
+/* exp(r) - 1 for |r| <= log(2)/2, by its series; in pairs of terms, so that few wait for others. */
+static inline real small_expm1(real r)
+{
+    const real r2 = r * r, r4 = r2 * r2, r8 = r4 * r4;
+    const real from_3 = (1.0 / 6.0 + r * (1.0 / 24.0)) + r2 * (1.0 / 120.0 + r * (1.0 / 720.0));
+    const real from_7 = (1.0 / 5040.0 + r * (1.0 / 40320.0))
+        + r2 * (1.0 / 362880.0 + r * (1.0 / 3628800.0));
+    const real from_11 = (1.0 / 39916800.0 + r * (1.0 / 479001600.0)) + r2 * (1.0 / 6227020800.0);
+    return r + r2 * (0.5 + r * (from_3 + r4 * from_7 + r8 * from_11));
+}
+
+/* exp(d) = 2^k (1 + e); returns e, and 2^k in scale; d from -708 to 709. */
+static inline real reduced(real d, real *scale)
+{
+    const real shifted = d * 0x1.71547652b82fep0 + 0x1.8p52;
+    const real k = shifted - 0x1.8p52;
+    const real r = (d - k * 0x1.62e42fefa3800p-1) - k * 0x1.ef35793c76730p-45;
+    *scale = power_of_two(shifted);
+    return small_expm1(r);
+}
+
+static inline real exp_of(real d)
+{
+    real scale;
+    const real inner = chosen(d > 709.0, wide(709.0), chosen(d < -708.0, wide(-708.0), d));
+    const real e = reduced(inner, &scale);
+    return chosen(d > 709.0, wide(HUGE_VAL), chosen(d < -708.0, zero, scale + scale * e));
+}
+
+static inline real expm1_of(real d)
+{
+    real scale;
+    const real inner = chosen(d > 709.0, wide(709.0), chosen(d < -40.0, wide(-40.0), d));
+    const real e = reduced(inner, &scale);
+    return chosen(d > 709.0, wide(HUGE_VAL), scale * e + (scale - 1.0));
+}
+
+static inline real tanh_of(real z)
+{
+    const real e = expm1_of(-2.0 * size_of(z)), found = -e / (e + 2.0);
+    return chosen(z < 0.0, -found, chosen(z == 0.0, z, found));
+}
+
+#define LANE_BY_LANE(name, function)                                                               \
+    static inline real name(real a)                                                                \
+    {                                                                                              \
+        real found = a;                                                                            \
+        for (int lane = 0; lane < REAL_WIDTH; ++lane)                                              \
+            LANE(&found, 0, lane) = function(LANE(&a, 0, lane));                                   \
+        return found;                                                                              \
+    }
+LANE_BY_LANE(sqrt_of, sqrt)
+LANE_BY_LANE(log_of, log)
+LANE_BY_LANE(sin_of, sin)
+LANE_BY_LANE(cos_of, cos)
+LANE_BY_LANE(atan_of, atan)
+LANE_BY_LANE(sinh_of, sinh)
+LANE_BY_LANE(cosh_of, cosh)
+LANE_BY_LANE(erf_of, erf)
+
+static inline real pow_of(real a, real b)
+{
+    real found = a;
+    for (int lane = 0; lane < REAL_WIDTH; ++lane)
+        LANE(&found, 0, lane) = pow(LANE(&a, 0, lane), LANE(&b, 0, lane));
+    return found;
+}
+
+/* The smaller, or the larger, of two numbers; none if a is none. */
+static inline real least(real a, real b)
+{
+    const mask first = (a < b) | (a != a);
+    return chosen(first, a, b);
+}
+
+static inline real largest_of(real a, real b)
+{
+    const mask first = (a > b) | (a != a);
+    return chosen(first, a, b);
+}

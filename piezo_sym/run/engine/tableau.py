@@ -1,0 +1,141 @@
+"""The numbers of Gauss collocation with s stages, as tables of C.
+
+Input: the number of stages, and of nodes for means over a step.  Output: text.  Everything is found
+from Legendre's polynomials in 40 digits and rounded once.
+"""
+
+from functools import cache
+from itertools import pairwise
+from threading import Lock
+from typing import Any
+
+import mpmath
+
+DIGITS = 40
+#: Numbers of so many digits; of this file alone, and used by one thread at a time.
+mp = mpmath.mp.clone()
+mp.dps = DIGITS
+_ALONE = Lock()
+#: By what an even number of stages sees its error estimates: near the eigenvalues' real parts.
+EVEN = "0.15"
+#: Between two places where switching functions are known they are looked at in so many parts.
+PARTS = 3
+
+
+@cache
+def tableau(stages: int, nodes: int) -> str:
+    """Return the tables of a step with so many stages, its means taken at so many nodes."""
+    with _ALONE:
+        c, b = _gauss(stages)
+        t, w = _gauss(nodes)
+        lagrange = [_lagrange(c, i) for i in range(stages)]
+        reach = [_integral(part) for part in lagrange]
+        a = mp.matrix([[_at(reach[j], c[i]) for j in range(stages)] for i in range(stages)])
+        basis, values = _eigen(a)
+        tables = {
+            "stage_at": c,
+            "stage_weight": b,
+            "stage_start": [_at(part, mp.mpf(0)) for part in lagrange],
+            "stage_end": [_at(part, mp.mpf(1)) for part in lagrange],
+            "stage_last": _last(c, b),
+            "along": [part[1:] for part in reach],
+            "stage_reach": a.tolist(),
+            "node_reach": [[_at(reach[j], t[q]) for j in range(stages)] for q in range(nodes)],
+            "node_mean": [
+                [w[q] * _at(lagrange[i], t[q]) / b[i] for q in range(nodes)] for i in range(stages)
+            ],
+            "stage_basis": basis.tolist(),
+            "basis_stage": (basis**-1).tolist(),
+            "eigenvalue": values,
+            **_between([mp.mpf(0), *c, mp.mpf(1)]),
+        }
+        # the real eigenvalue, where there is one: the estimate of errors needs a real factor
+        filters = [mp.re(values[0][0]) if stages % 2 else mp.mpf(EVEN)]
+        sizes = {"STAGES": stages, "NODES": nodes, "PAIRS": stages // 2, "PARTS": PARTS}
+        head = [f"#define {name} {value}" for name, value in sizes.items()]
+        head += [f"static const double filter = {_numbers(filters)};"]
+        return "\n".join([*head, *(_table(name, rows) for name, rows in tables.items())])
+
+
+def _between(places: list[Any]) -> dict[str, list[Any]]:
+    """Return places between others, and how a function's values at those give it there."""
+    parts = [mp.mpf(n) / PARTS for n in range(1, PARTS)]
+    at = [a + part * (b - a) for a, b in pairwise(places) for part in parts]
+    polynomials = [_lagrange(places, i) for i in range(len(places))]
+    return {"between": at, "from_others": [[_at(one, x) for one in polynomials] for x in at]}
+
+
+def _gauss(n: int) -> tuple[list[Any], list[Any]]:
+    """Return nodes and weights of Gauss's rule on [0, 1]."""
+    # P_n(2x - 1) by its coefficients, which are whole
+    whole = [
+        mp.mpf((-1) ** (n + k)) * mp.binomial(n, k) * mp.binomial(n + k, k) for k in range(n + 1)
+    ]
+    roots = sorted(mp.re(r) for r in mp.polyroots(whole[::-1], maxsteps=500, extraprec=400))
+    slope = [k * v for k, v in enumerate(whole)][1:]
+    weights = [1 / (x * (1 - x) * _at(slope, x) ** 2) for x in roots]
+    return roots, weights
+
+
+def _last(nodes: list[Any], weights: list[Any]) -> list[Any]:
+    """Return what gives a polynomial's last term in Legendre's polynomials, at the ends."""
+    n = len(nodes) - 1
+    found = zip(nodes, weights, strict=True)
+    return [(2 * n + 1) * w * mp.legendre(n, 2 * x - 1) for x, w in found]
+
+
+def _lagrange(nodes: list[Any], i: int) -> list[Any]:
+    """Return the coefficients of the polynomial that is 1 at node i and 0 at the others."""
+    found = [mp.mpf(1)]
+    for k, node in enumerate(nodes):
+        if k != i:
+            scale = nodes[i] - node
+            found = [
+                ((found[n - 1] if n else 0) - node * (found[n] if n < len(found) else 0)) / scale
+                for n in range(len(found) + 1)
+            ]
+    return found
+
+
+def _integral(coefficients: list[Any]) -> list[Any]:
+    return [mp.mpf(0), *(value / (n + 1) for n, value in enumerate(coefficients))]
+
+
+def _at(coefficients: list[Any], x: Any) -> Any:
+    found = mp.mpf(0)
+    for value in reversed(coefficients):
+        found = found * x + value
+    return found
+
+
+def _eigen(a: Any) -> tuple[Any, list[list[Any]]]:
+    """Return a real basis in which `a` has blocks ((r, i), (-i, r)), and r and i of each.
+
+    The real eigenvalue, which an odd number of stages has, comes first.
+    """
+    values, vectors = mp.eig(a)
+    columns, found = [], []
+    for n in sorted(range(len(values)), key=lambda n: (abs(mp.im(values[n])), mp.re(values[n]))):
+        value, vector = values[n], vectors[:, n]
+        if abs(mp.im(value)) < mp.mpf(10) ** (-DIGITS // 2):
+            columns.append([mp.re(v / vector[0]) for v in vector])
+            found.append([mp.re(value), mp.mpf(0)])
+        elif mp.im(value) > 0:
+            columns += [
+                [mp.re(v / vector[0]) for v in vector],
+                [mp.im(v / vector[0]) for v in vector],
+            ]
+            found.append([mp.re(value), mp.im(value)])
+    return mp.matrix(columns).T, found
+
+
+def _table(name: str, rows: list[Any]) -> str:
+    """Return a vector or a matrix in C."""
+    if not isinstance(rows[0], list):
+        return f"static const double {name}[{len(rows)}] = {{{_numbers(rows)}}};"
+    inner = ",\n    ".join(f"{{{_numbers(row)}}}" for row in rows)
+    return f"static const double {name}[{len(rows)}][{len(rows[0])}] = {{\n    {inner}}};"
+
+
+def _numbers(values: list[Any]) -> str:
+    return ", ".join(mp.nstr(value, 17, min_fixed=1, max_fixed=0) for value in values)

@@ -1,0 +1,229 @@
+/*
+ * Runs of collocation steps, one in each lane.  Behind gauss.c; batch.c says which runs there are.
+ *
+ * A step keeps the branches that hold where it begins; if a switching function changes its sign on
+ * the way, the step is taken again to end there, and the next begins on the other branch.  Lanes of
+ * many switches may step over them instead: then each stage chooses its branches.  A sample is the
+ * end of a step of its own, from where the run's step begins, so that its balances close, too.
+ *
+ * In a tick each lane takes one step: what it is for differs from lane to lane, how it is solved
+ * does not.
+ */
+
+/* An input between its breaks: a wave whose frequency may move, or a function that is asked. */
+typedef struct {
+    double amplitude, frequency, rate, phase, offset;
+    double (*asked)(double);
+} MODEL(signal);
+
+/* Inputs until a time. */
+typedef struct {
+    double stop;
+    const MODEL(signal) *signals;
+} MODEL(segment);
+
+/* A run: what it is given, what it leaves at samples, and where it stands. */
+typedef struct {
+    const MODEL(parameters) *p;
+    const MODEL(segment) *segments;
+    double *x;                       /* n: at t = 0, and then where it stands */
+    double *largest;                 /* n: the largest magnitude of each state */
+    double *states, *sums;           /* (samples, n), (samples, booked) */
+    double t;
+    long sample, steps, rejected, switched, iterations, failed;
+} MODEL(run);
+
+/* What a lane's step is for: the next of its run, the same up to a switch, or a sample in it. */
+enum { IDLE, BEGIN, STEP, CUT, SAMPLE };
+
+/*
+ * Where a lane is.  `known` is the length of the step whose rates are known: it begins at t, or lies
+ * behind t and ends there; 0 if there is none.
+ */
+typedef struct {
+    MODEL(run) *run;
+    const MODEL(segment) *segment;
+    double t, h;
+    double length, whole, step, part; /* at hand, before cuts, accepted; part of it for a cut */
+    double known, longer, after_switch;
+    int phase, behind, fresh, last, cuts, refused;
+    long which; /* the switch at the end of the step; -1 if none */
+    double since, pace[2]; /* when the way over kinks was chosen; how fast each way was */
+    long ticks, looks;     /* steps solved since then; how often the ways were compared */
+} MODEL(lane);
+
+/* Runs on their way. */
+typedef struct {
+    MODEL(block) m;
+    MODEL(lane) lane[REAL_WIDTH];
+    MODEL(run) *runs;
+    const double *times; /* of samples */
+    long count, next, samples, ways;
+    double duration, tolerance, first, longest, fixed;
+    real *rate, *side, *sums, *lost, *known;       /* at the begin of a step; of the step before */
+    real *end_rate, *end_side, *end_branch, *part; /* at its end; what it adds to sums */
+    real *some_rate, *some_share, *some_side, *some_rows, *some_margin, *some_inputs;
+    long sizes[6 + MODEL(banks) + MODEL(records)];
+} MODEL(batch);
+
+enum { MOST_REFUSED = 200, MOST_CUTS = 4 };
+/* A way is tried for so many solves; the slower one again after so many trials of the faster. */
+enum { TRIED = 32, AGAIN = 12 };
+/* With kinks within, the error of a step falls about as this power tells. */
+/* About what comes after the last term of a series, as a part of that, by how much smaller it is. */
+#if STAGES == 3
+#define LIKE_THE_LAST(smooth) (smooth)
+#elif STAGES == 4
+#define LIKE_THE_LAST(smooth) sqrt_of(smooth)
+#else
+#define LIKE_THE_LAST(smooth) sqrt_of(sqrt_of(smooth))
+#endif
+#define OVER_KINKS (-1.0 / 3.0)
+/* Errors of kinks add up: as many steps as there are kinks share in what a run may have. */
+#define KINKS_WITHIN 3.0
+/* Parts of a step: so near to its end a switch is at its end; so near to its begin, at its begin. */
+/* So much slower than a step a state may be for its end to be of order 2s. */
+#define FAST 3.0
+#define AT_END 1e-9
+#define AT_ONCE 1e-12
+
+static void MODEL(inputs_at)(const MODEL(segment) *segment, long inputs, double t, real *u, int lane)
+{
+    for (long k = 0; k < inputs; ++k) {
+        const MODEL(signal) *s = segment->signals + k;
+        const double turns = (s->frequency + 0.5 * s->rate * t) * t;
+        double value = s->offset;
+        if (s->asked)
+            value = s->asked(t);
+        else if (s->amplitude != 0.0)
+            value += s->amplitude * sin(6.283185307179586476925 * turns + s->phase);
+        LANE(u, k, lane) = value;
+    }
+}
+
+/* Rates, switching functions and margins at a point, which is no part of a step. */
+static void MODEL(point)(MODEL(batch) *b, const real *x, const real *branch, real *rate, real *side)
+{
+    MODEL(integrands)(x, &b->m.p, b->m.node);
+    MODEL(stage)(x, b->m.node, branch, b->some_inputs, &b->m.p, rate, b->some_rows, side,
+                 b->some_margin);
+}
+
+static void MODEL(copy)(mask where, const real *from, real *to, long size)
+{
+    for (long k = 0; k < size; ++k)
+        to[k] = chosen(where, from[k], to[k]);
+}
+
+/* Rates and switching functions where lanes stand; those of `choosing` take the branches that hold. */
+static void MODEL(stand)(MODEL(batch) *b, mask where, mask choosing)
+{
+    MODEL(block) *m = &b->m;
+    for (int lane = 0; lane < REAL_WIDTH; ++lane)
+        if (IN(where, lane))
+            MODEL(inputs_at)(b->lane[lane].segment, m->inputs, b->lane[lane].t, b->some_inputs, lane);
+    for (int again = 0; again < 3; ++again) {
+        MODEL(point)(b, m->x, m->branch, b->some_rate, b->some_side);
+        if (!any(MODEL(choose)(m->branches, b->some_side, m->branch, choosing)))
+            break;
+    }
+    for (long i = 1; i < STAGES; ++i)
+        MODEL(copy)(choosing, m->branch, m->branch + i * m->branches, m->branches);
+    MODEL(copy)(where, b->some_rate, b->rate, m->n);
+    MODEL(copy)(where, b->some_side, b->side, m->branches);
+}
+
+/* What a lane's next step is: its length, and the inputs at its stages. */
+static void MODEL(plan)(const MODEL(batch) *b, MODEL(lane) *l, int lane)
+{
+    double until = l->segment->stop, longest = fmin(l->h, b->longest);
+    if (l->phase == STEP) {
+        if (b->fixed > 0.0) {
+            if (l->run->sample < b->samples && b->times[l->run->sample] < until)
+                until = b->times[l->run->sample];
+            const double left = until - l->t, steps = ceil(left / longest * (1.0 - 1e-9));
+            l->last = steps <= 1.0;
+            l->whole = l->last ? left : left / steps;
+        } else {
+            const double left = until - l->t;
+            l->last = longest >= left;
+            l->whole = l->last ? left : longest > 0.5 * left ? 0.5 * left : longest;
+        }
+        l->length = l->whole;
+        l->cuts = 0;
+        l->which = -1;
+    } else if (l->phase == CUT)
+        l->length = l->part * l->known;
+    else
+        l->length = b->times[l->run->sample] - l->t;
+    for (long i = 0; i < STAGES; ++i)
+        MODEL(inputs_at)(l->segment, b->m.inputs, l->t + stage_at[i] * l->length,
+                         b->m.u + i * b->m.inputs, lane);
+}
+
+/* Rates to begin Newton's method with: along the known step, or as they are at the begin. */
+static void MODEL(predict)(MODEL(batch) *b, real behind, real slope, mask known)
+{
+    const MODEL(block) *m = &b->m;
+    for (long i = 0; i < STAGES; ++i) {
+        real *const rates = m->rates + i * m->n;
+        MODEL(carry)(m, b->known, behind + slope * stage_at[i], rates);
+        MODEL(copy)(none_of(known), b->rate, rates, m->n);
+    }
+}
+
+static inline real power_4(real a)
+{
+    const real b = chosen(a > 0.0, a * a, zero);
+    return b * b;
+}
+
+/* The one that is further from zero. */
+static inline real further(real a, real b)
+{
+    const mask first = size_of(a) > size_of(b);
+    return chosen(first, a, b);
+}
+
+/*
+ * The errors of steps, in tolerances of each state's scale.
+ *
+ * The misfit is how far the polynomial of rates is from the rate at either end, or what comes next
+ * after its last term, if that is more.  Seen through the equations of the step it is an error of
+ * order s + 1.  Where all is smooth and slow the end is of order 2s: better by as much as the misfit
+ * is smaller than what the rate changes by over the step.  A state that is much faster than the step
+ * has no such gain: the equations tell, for they reduce its misfit.
+ */
+static real MODEL(error)(const MODEL(batch) *b, real h)
+{
+    const MODEL(block) *m = &b->m;
+    const real gamma = h * filter;
+    real *const share = b->some_share, worst = zero;
+    for (long k = 0; k < m->n; ++k) {
+        real low = -b->rate[k], high = -b->end_rate[k], mean = zero, last = zero, most = 1e-300 + zero;
+        for (long j = 0; j < STAGES; ++j) {
+            const real rate = m->rates[j * m->n + k];
+            low += stage_start[j] * rate;
+            high += stage_end[j] * rate;
+            last += stage_last[j] * rate;
+            mean += stage_weight[j] * rate;
+        }
+        for (long j = 0; j < STAGES; ++j)
+            most = largest_of(size_of(m->rates[j * m->n + k] - mean), most);
+        const real smooth = least(size_of(last) / most, wide(1.0));
+        const real next = STAGES > 2 ? (real)(last * LIKE_THE_LAST(smooth)) : (real)zero;
+        const real misfit = further(further(low, high), next);
+        share[k] = least(size_of(misfit) / most, wide(1.0));
+        b->some_rate[k] = m->gap[k] = gamma * misfit;
+    }
+    MODEL(solve_real)(m, gamma, m->slope, m->real_factor, m->gap);
+    for (long k = 0; k < m->n; ++k) {
+        const real size = largest_of(m->largest[k], largest_of(size_of(m->x[k]), size_of(m->end[k])));
+        const real misfit = size_of(b->some_rate[k]), error = size_of(m->gap[k]);
+        const real fast = (misfit / (error + 1e-300) - 1.0) / (FAST * filter);
+        const real gain = STAGES > 1 ? least(largest_of(share[k], power_4(fast)), wide(1.0)) : (real)wide(1.0);
+        const real counts = chosen(m->over, wide(KINKS_WITHIN), gain);
+        worst = largest_of(counts * error / (b->tolerance * size + 1e-300), worst);
+    }
+    return worst;
+}

@@ -1,0 +1,103 @@
+"""A stage of a collocation step as the proved system has it: what the printed step has to be.
+
+Input: an `IPHS`.  Output: a `Proved`, the rows of `integrands` and `stage`.  A stage computes
+
+    K = J0 Ebar - sum_k b_k W_k(zbar_k) + g u,    in a body's row heats/Tbar + exchanges
+
+at the state x = X(c) and the means Ebar of co-states over the step.  That is the proved system's
+right side with co-states as names.  Those affine in their state are functions of x, for their means
+are those values; the others are names that x says nothing of: what holds for all values of them
+holds for their means.  A stage is given g = Ebar + c, c free of the state: means of functions of
+the state, each a co-state and such a c.
+"""
+
+from collections.abc import Iterator
+
+from piezo_sym.algebra.lanes import Slot
+from piezo_sym.expressions.calculus import derivative
+from piezo_sym.expressions.tree import names, rename
+from piezo_sym.iphs import IPHS
+from piezo_sym.iphs.definitions import costate_name
+from piezo_sym.network import port_order
+from piezo_sym.spec.elements.ports import Body, Exchange, Storage
+from piezo_sym.spec.tables import conditions
+from piezo_sym.translation.change import spelled
+from piezo_sym.translation.field import NotShownError, Value
+from piezo_sym.translation.known import Key, Proved
+from piezo_sym.translation.reference import known_by, margins_of, of_system
+from piezo_sym.translation.system_reader import SystemReader
+
+
+def proved_step(iphs: IPHS) -> Proved:
+    """Return a stage of a system in normal form.
+
+    Raises
+    ------
+    NotShownError
+        If something in it has none, or a co-state is not shown to be affine where it should be.
+    """
+    read, given = SystemReader(iphs), [condition.tree for condition in conditions(iphs.model)]
+    means = dict(_means(read))
+    slots = {"integrands": tuple(slot for slot, _ in means.values())}
+    values: dict[Key, Value] = {
+        ("integrands", n): value for n, (_, value) in enumerate(means.values())
+    }
+    for costate, (slot, _) in means.items():
+        read.names[slot.label] = read.free(costate, slot.label, slot.bank)
+        read.banks |= {slot.label: slot.bank} if slot.bank else {}
+    domain = read.assume(given)
+    read.assume_temperatures()
+    moving = {slot.label for slot in iphs.system.states}
+    moving |= {port.temperature for _, port in iphs.circuit.of(Body)}
+    limits = [condition for condition in given if not moving.isdisjoint(names(condition))]
+    values |= dict(margins_of(read.margins(limits)))
+    for n, limit in enumerate(limits):
+        values["strict", n] = read.field.number("=" not in limit.op)
+    slots |= dict.fromkeys(("margins", "strict"), tuple(Slot(str(n)) for n in range(len(limits))))
+    listed = of_system(read)
+    ledger = dict(_ledger(read, listed))
+    slots |= {"rhs": iphs.system.states, "ledger": tuple(ledger), "g": slots["integrands"]}
+    for function, rows in {"rhs": listed["rhs"], "ledger": ledger.values()}.items():
+        values |= {(function, n): value for n, value in enumerate(rows)}
+    functions = {slot.label: value for slot, value in means.values()}
+    return known_by(read, slots, values, [*read.field.needs], domain, functions)
+
+
+def _means(read: SystemReader) -> Iterator[tuple[str, tuple[Slot, Value]]]:
+    """Yield each co-state that is not affine in its state: the slot of its mean, and its value."""
+    iphs, known = read.iphs, dict(read.iphs.costates)
+    for slot, (_, port) in zip(iphs.system.states, iphs.circuit.of(Storage, Body), strict=True):
+        costate, law = costate_name(port), rename(port.law, {port.letter: port.state})
+        if iphs.symbols.law(law, {}) != known[iphs.symbols[costate]]:
+            raise NotShownError(f"{costate} of the system is not its law")
+        value = spelled(read.law(law))
+        if port.state in names(derivative(law, port.state)):
+            yield costate, (Slot(f"mean of {costate}", slot.bank), value)
+        elif not _is_affine(value, *read.names[slot.label].parts):
+            raise NotShownError(f"{costate} is not shown to be affine in {slot.label}")
+
+
+def _is_affine(value: Value, state: int) -> bool:
+    """Return whether each term has the state once, as a factor, or is free of it."""
+    gens = value.field.gens
+    return all(
+        state not in gens[g].parts or (g, e) == (state, 1) for mono in value.terms for g, e in mono
+    )
+
+
+def _ledger(read: SystemReader, listed: dict[str, list[Value]]) -> Iterator[tuple[Slot, Value]]:
+    """Yield what the ledger takes of a stage."""
+    system = read.iphs.system
+    parts = {"power of": "supply", "heat of": "heat", "entropy produced by": "entropy_production"}
+    for words, function in parts.items():
+        for slot, value in zip(
+            system.ports if function == "supply" else system.processes,
+            listed[function],
+            strict=True,
+        ):
+            yield Slot(f"{words} {slot.label}", slot.bank), value
+    shares, inputs = system.G.T @ system.dS, system.u
+    for n, placed in enumerate(port_order(read.iphs.circuit)):
+        if isinstance(placed.port, Exchange):
+            brought = read(shares[n, 0]) * read(inputs[n, 0])
+            yield Slot(f"entropy brought by {placed.element}"), brought

@@ -1,0 +1,207 @@
+"""SymPy expressions of a system as values in normal form.
+
+Input: an `IPHS`.  Output: a `SystemReader`: the value of each name, of margins of the domain, of
+any expression.  A co-state can be made a name of its own, free of the state that it belongs to: at
+a stage of a collocation step it is a mean over the step.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from fractions import Fraction
+from typing import final
+
+import sympy as sp
+from sympy.logic.boolalg import Boolean
+
+from piezo_sym.algebra.lanes import LaneMatrix
+from piezo_sym.algebra.sums import LaneSum
+from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.expressions.parse import parse_law
+from piezo_sym.expressions.tree import Cmp, Expr, Num, walk
+from piezo_sym.iphs import IPHS
+from piezo_sym.spec.elements.ports import Body
+from piezo_sym.spec.tables import conditions, lane_parameters, law_fields, states
+from piezo_sym.translation.field import Field, NotShownError, Value
+from piezo_sym.translation.functions import call, power, size_of
+from piezo_sym.translation.signs import assume, compare, reading
+
+_RELATIONS = {sp.Gt: ">", sp.Ge: ">=", sp.Lt: "<", sp.Le: "<=", sp.Eq: "==", sp.Ne: "!="}
+
+
+@final
+class SystemReader:
+    """Reads the SymPy expressions of a system.
+
+    Attributes
+    ----------
+    field : of the values.
+    names : parameters, inputs and states, in lane 0 where they have one a lane.
+    banks : the bank of each of these that has.
+    costates : those that are names, by what the spec calls them.
+    """
+
+    def __init__(self, iphs: IPHS) -> None:
+        self.iphs, self.field = iphs, Field()
+        model, system = iphs.model, iphs.system
+        owners = {n: e for n, e in states(model).items() if e in iphs.symbols.counts}
+        self.banks = {**lane_parameters(model), **owners}
+        names = [*model.parameters, *model.inputs, *states(model)]
+        symbols = {name: iphs.symbols[name] for name in names}
+        if len({*iphs.symbols.symbols.values()}) < len(iphs.symbols.symbols):
+            raise NotShownError("two names of the system have one symbol")
+        self.costates = dict[str, Value]()
+        self.names = {name: self._name(name, symbol) for name, symbol in symbols.items()}
+        own = (self.names[slot.label].parts for slot in system.states)
+        self.field.states = frozenset().union(*own)
+        self._known = {symbols[name]: value for name, value in self.names.items()}
+        self._known |= {s: self.field.count(bank) for bank, s in iphs.symbols.counts.items()}
+        groups = (iphs.laws, iphs.shares, iphs.slopes, iphs.ratios, iphs.costates)
+        self._definitions = {symbol: expr for group in groups for symbol, expr in group}
+
+    def _name(self, name: str, symbol: sp.Symbol, bank: str | None = None) -> Value:
+        sign = 2 if symbol.is_positive else int(bool(symbol.is_nonnegative))
+        return self.field.name(name, bank or self.banks.get(name), 0, sign)
+
+    def free(self, costate: str, name: str, bank: str | None) -> Value:
+        """Return a co-state as a name: from now on it is no function of a state."""
+        self._forget()
+        symbol = self.iphs.symbols[costate]
+        del self._definitions[symbol]
+        self._known[symbol] = self.costates[costate] = self._name(name, symbol, bank)
+        return self.costates[costate]
+
+    # The domain
+
+    def assume(self, given: Iterable[Cmp]) -> tuple[tuple[Value, bool], ...]:
+        """Take some conditions as true; return their margins, and which are strict."""
+        found = [(self._margin(condition, {}), "=" not in condition.op) for condition in given]
+        for margin, strict in found:
+            assume(margin, 2 if strict else 1)
+        self._forget()
+        return tuple(found)
+
+    def assume_temperatures(self) -> None:
+        """Take all temperatures as positive."""
+        for _, port in self.iphs.circuit.of(Body):
+            assume(self(self.iphs.symbols[port.temperature]), 2)
+        self._forget()
+
+    def margins(self, given: Iterable[Cmp]) -> list[Value]:
+        """Return the margins of some conditions, of which nothing is taken as true."""
+        with self._outside() as letters:
+            return [self._margin(condition, letters) for condition in given]
+
+    def law(self, law: Expr) -> Value:
+        """Return a law, nothing taken as true."""
+        with self._outside() as letters:
+            return self(self.iphs.symbols.law(law, letters))
+
+    @contextmanager
+    def _outside(self) -> Iterator[Mapping[str, sp.Symbol]]:
+        """Give letters for names of which nothing is known, and forget what is known of signs."""
+        names = {**self.names, **self.costates}
+        unsigned = {name: sp.Dummy(name, real=True) for name in names}
+        self._known |= {letter: names[name] for name, letter in unsigned.items()}
+        with reading(self.field, "margins"):
+            yield unsigned
+        self._forget()
+
+    def _margin(self, condition: Cmp, letters: Mapping[str, sp.Symbol]) -> Value:
+        turn = self.field.number(1 if condition.op.startswith(">") else -1)
+        sides = condition.left, condition.right
+        left, right = (self(self.iphs.symbols.law(side, letters)) for side in sides)
+        return (left - right) * turn
+
+    def _forget(self) -> None:
+        """Forget definitions that were read when less, or more, was known of signs."""
+        self._known = {s: v for s, v in self._known.items() if s not in self._definitions}
+
+    # Expressions
+
+    def rows(self, matrix: LaneMatrix) -> list[Value]:
+        """Return the rows of a vector."""
+        return [self(entry) for entry in matrix]
+
+    def __call__(self, expr: sp.Expr) -> Value:
+        """Return an expression in normal form."""
+        field = self.field
+        if isinstance(expr, sp.Symbol):
+            if expr not in self._known:
+                path, field.path = field.path, field.one
+                self._known[expr] = field.letter(self(self._definitions[expr]))
+                field.path = path
+            return self._known[expr]
+        if isinstance(expr, sp.Rational):
+            return field.number(Fraction(int(expr.p), int(expr.q)))
+        if isinstance(expr, sp.Piecewise):
+            return self._chosen(expr)
+        if isinstance(expr, LaneSum):
+            return field.lane_sum(self(expr.args[0]), expr.args[1].name)
+        if expr is sp.E:
+            return call("exp", field.one)
+        if expr is sp.pi:
+            return call("atan", field.one) * field.number(4)
+        args = [self(arg) for arg in expr.args]
+        if isinstance(expr, sp.Add):
+            return field.total(args)
+        args = [field.letter(arg) for arg in args]
+        if isinstance(expr, sp.Mul):
+            product = field.one
+            for arg in args:
+                product = product * arg
+            return product
+        return self._function(expr, args)
+
+    def _function(self, expr: sp.Expr, args: Sequence[Value]) -> Value:
+        if isinstance(expr, sp.Pow):
+            exponent = args[1].constant
+            if exponent is not None:
+                return power(args[0], exponent)
+            return call("exp", args[1] * call("log", args[0]))
+        if isinstance(expr, sp.Abs):
+            return size_of(args[0])
+        function = type(expr).__name__
+        if function not in RECORDS or not RECORDS[function].transcendental:
+            raise NotShownError(f"{function} in the proved system")
+        return call(function, args[0])
+
+    def _chosen(self, expr: sp.Piecewise) -> Value:
+        field, path, left, parts = self.field, self.field.path, self.field.one, []
+        for value, condition in expr.args:
+            here = left * self._test(condition)
+            field.path = path and path * here
+            parts.append(here * self(value))
+            left = left - here
+        field.path = path
+        if left.terms:
+            raise NotShownError("a choice of the proved system leaves a case out")
+        return field.total(parts)
+
+    def _test(self, condition: Boolean) -> Value:
+        field = self.field
+        if condition in (sp.true, sp.false):
+            return field.number(int(bool(condition)))
+        if type(condition) in _RELATIONS:
+            left, right = map(self, condition.args)
+            return compare(_RELATIONS[type(condition)], left, right)
+        parts = [self._test(part) for part in condition.args]
+        if not isinstance(condition, sp.And | sp.Or | sp.Not):
+            raise NotShownError(f"{type(condition).__name__} in a condition of the proved system")
+        product = field.one
+        for part in parts:
+            product = product * (part if isinstance(condition, sp.And) else field.one - part)
+        return product if not isinstance(condition, sp.Or) else field.one - product
+
+
+def rounded(iphs: IPHS) -> Iterator[tuple[float, Fraction]]:
+    """Yield the numbers of a spec that no short decimal is, with the nearest machine number."""
+    model = iphs.model
+    trees = [law.tree for name, e in model.elements.items() for law in law_fields(name, e)]
+    trees += iphs.energies
+    trees += [side for c in conditions(model) for side in (c.tree.left, c.tree.right)]
+    starts = (s if isinstance(s, tuple) else (s,) for s in model.initial.values())
+    trees += [parse_law(part, "initial") for s in starts for part in s if isinstance(part, str)]
+    for tree in trees:
+        for node in walk(tree):
+            if isinstance(node, Num) and Fraction(repr(float(node.value))) != node.value:
+                yield float(node.value), node.value

@@ -1,0 +1,64 @@
+"""Laws of a rational power with a unit: orifices, and others whose force grows as a root."""
+
+import pytest
+
+from piezo_sym import derive, verify
+from piezo_sym.proofs import Verdict
+from piezo_sym.spec.load import parse
+
+TEXT = """
+[model]
+name = "orifice"
+[parameters]
+m = {{ value = 1.0, unit = "kg" }}
+k = {{ value = 4.0, unit = "N/m" }}
+d = {{ value = 0.4, unit = "{unit}" }}
+v_0 = {{ value = 0.1, unit = "m/s" }}
+T_0 = {{ value = 300.0, unit = "K" }}
+c = {{ value = 2.0, unit = "J/K" }}
+[domain]
+assume = ["d >= 0", "v_0 > 0"]
+[elements]
+spring = {{ kind = "spring", between = ["tip", "wall"], stiffness = "k", state = "q" }}
+mass = {{ kind = "mass", at = "tip", mass = "m", state = "p" }}
+damper = {{ kind = "damper", between = ["tip", "wall"], force = "{law}", heats = "body" }}
+body = {{ kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }}
+"""
+
+
+def verdicts(law, unit):
+    rows = verify(derive(parse(TEXT.format(law=law, unit=unit)))).rows
+    return {(row.id, row.element): row.verdict for row in rows}
+
+
+@pytest.mark.parametrize(
+    ("law", "unit"),
+    [
+        ("d*sign(v)*sqrt(abs(v))", "N/(m/s)**(1/2)"),
+        ("d*sign(v)*sqrt(abs(v))", "N*(s/m)^(1/2)"),
+        ("d*sign(v)*abs(v)**(1/3)", "N/(m/s)**(1/3)"),
+        ("d*v*abs(v)**(-1/2) if abs(v) > v_0 else d*v/sqrt(v_0)", "N/(m/s)**(1/2)"),
+    ],
+)
+def test_a_root_law_with_its_unit_is_passive(law, unit):
+    found = verdicts(law, unit)
+    assert found["units", ""] is Verdict.PROVED
+    assert found["passive", "damper"] is Verdict.PROVED
+
+
+def test_a_regular_root_law_is_proved_altogether():
+    assert set(verdicts("d*v/sqrt(abs(v) + v_0)", "N/(m/s)**(1/2)").values()) == {Verdict.PROVED}
+
+
+def test_the_slope_at_rest_of_a_root_is_left_open():
+    assert verdicts("d*sign(v)*sqrt(abs(v))", "N/(m/s)**(1/2)")["program", ""] is Verdict.OPEN
+
+
+@pytest.mark.parametrize("unit", ["N*s/m", "N", "N/(m/s)**(1/3)", "N*(m/s)**(1/2)"])
+def test_another_unit_is_refuted(unit):
+    assert verdicts("d*sign(v)*sqrt(abs(v))", unit)["units", "damper"] is Verdict.REFUTED
+
+
+@pytest.mark.parametrize("law", ["-d*sign(v)*sqrt(abs(v))", "d*sqrt(abs(v))", "d*sqrt(v)"])
+def test_a_root_law_that_may_give_work_is_not_proved(law):
+    assert verdicts(law, "N/(m/s)**(1/2)")["passive", "damper"] is not Verdict.PROVED
