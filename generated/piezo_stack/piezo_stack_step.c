@@ -294,7 +294,8 @@ static void piezo_stack_give(piezo_stack_reals *to, const piezo_stack_parameters
 enum {
     piezo_stack_limits = 1, /* margins of a stage */
     piezo_stack_reads = 1, /* states that integrands read */
-    piezo_stack_records = 5 /* states, a bank's counted once */
+    piezo_stack_records = 5, /* states, a bank's counted once */
+    piezo_stack_heated = 4 /* the state that takes a dissipative step's loss */
 };
 static const int piezo_stack_strict[] = {
     1,

@@ -23,7 +23,7 @@ from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run import simulate
 from piezo_sym.run.checks import known_keys
 from piezo_sym.run.compiled import check_inputs
-from piezo_sym.run.discrete import fixed
+from piezo_sym.run.discrete import FixedStep, fixed
 from piezo_sym.run.engine import compiled
 from piezo_sym.run.guard import check_start
 from piezo_sym.run.inputs import read_inputs
@@ -88,7 +88,7 @@ class Stroboscope:
         """Return the states (n, LOOKS + 1) of one period; in C, nothing else is made of the run."""
         if self.engine is None:
             return self.states_of(self.run(x, frequency, times=LOOKS + 1, rtol=FINE))
-        system, step = self._driven(frequency), 1 / frequency / self.steps
+        system, step = self._driven(frequency), FixedStep(1 / frequency / self.steps)
         check_start(system, x)
         times = np.linspace(0.0, 1 / frequency, LOOKS + 1)
         return fixed([system], self.engine, x[None], times, step).trajectory(0).states

@@ -40,6 +40,9 @@ Rtol: TypeAlias = Annotated[
     float | None, typer.Option(help="Relative tolerance; 1e-5 if left out.")
 ]
 Step: TypeAlias = Annotated[float | None, typer.Option(help="A fixed step [s] instead of --rtol.")]
+Order: TypeAlias = Annotated[
+    int | None, typer.Option(help="With --step: its order, 2 (if left out), 4, 6, 8 or 10.")
+]
 Method: TypeAlias = Annotated[str | None, typer.Option(help=METHODS)]
 Times: TypeAlias = Annotated[
     int | None, typer.Option(help="Number of samples; 1001, or ends of steps, if left out.")
@@ -63,6 +66,7 @@ def simulate(
     initial: Initial = None,
     rtol: Rtol = None,
     step: Step = None,
+    order: Order = None,
     method: Method = None,
     times: Times = None,
     every: Every = None,
@@ -91,6 +95,7 @@ def simulate(
             initial=dict(pairs(initial or (), "--initial", numbers)),
             rtol=rtol,
             step=step,
+            order=order,
             method=method,
             times=times,
             every=every,

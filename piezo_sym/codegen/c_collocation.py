@@ -177,7 +177,9 @@ class _Printer:
         used = {name for mean in self.made.means for name in names(mean.value)}
         read = [n for n, state in enumerate(self.program.states) if state.name in used]
         head += [f"    {self.name}_reads = {len(read)}, /* states that integrands read */"]
-        head += [f"    {self.name}_records = {records} /* states, a bank's counted once */", "};"]
+        head += [f"    {self.name}_records = {records}, /* states, a bank's counted once */"]
+        taker = f"{self.name}_heated = {self.made.heated}"
+        head += [f"    {taker} /* the state that takes a dissipative step's loss */", "};"]
         head += [*table(f"{self.name}_strict", limits), *table(f"{self.name}_read", read)]
         return "\n".join([*head, *self.coupling.tables(self.name)])
 

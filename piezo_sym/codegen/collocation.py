@@ -29,6 +29,7 @@ from piezo_sym.expressions.calculus import div, mul
 from piezo_sym.expressions.tree import names, rename
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name
+from piezo_sym.spec.elements.ports import Body, Storage
 from piezo_sym.spec.tables import lane_parameters
 
 
@@ -75,11 +76,14 @@ class Collocation:
     Attributes
     ----------
     means : the functions of the state whose weighted means a stage is given.
+    heated : the state whose row takes what a dissipative step loses, the first body's; -1 if there
+        is no body, or no store that could lose anything.
     """
 
     means: tuple[Quantity, ...]
     stage: Stage
     slopes: Slopes
+    heated: int
 
 
 def collocation_of(iphs: IPHS) -> Collocation:
@@ -87,7 +91,14 @@ def collocation_of(iphs: IPHS) -> Collocation:
     q = Quantities(iphs, given=True)
     stage = _stage(iphs, q)  # its conditions may be what asks for a difference of temperatures
     means = tuple(replace(mean, value=compared(mean.value)) for mean in q.means)
-    return Collocation(tuple(map(sharp_quantity, means)), stage, _slopes(iphs))
+    return Collocation(tuple(map(sharp_quantity, means)), stage, _slopes(iphs), _heated(iphs))
+
+
+def _heated(iphs: IPHS) -> int:
+    ports = [port for _, port in iphs.circuit.of(Storage, Body)]
+    lossy = any(isinstance(port, Storage) for port in ports)
+    bodies = (n for n, port in enumerate(ports) if isinstance(port, Body))
+    return next(bodies, -1) if lossy else -1
 
 
 def _stage(iphs: IPHS, q: Quantities) -> Stage:

@@ -73,16 +73,28 @@ def with_tolerance(
     )
     batch.survey()
     batch.largest[:] = shared(first, batch.largest)
-    records, more = batch.records, True
+    through(batch, watch)
+    return results(batch, known, x, times)
+
+
+def through(batch: Batch, watch: Watch | None = None) -> None:
+    """Take runs as far as they go; `watch` is told the time reached, now and then."""
+    more = True
     while more:
-        more = batch.go(max(1, CHUNK // x.shape[1]))
+        more = batch.go(max(1, CHUNK // batch.x.shape[1]))
         if watch:
-            watch(float(np.mean(records["t"])))
+            watch(float(np.mean(batch.records["t"])))
+
+
+def results(batch: Batch, systems: Systems, x: FloatArray, times: FloatArray) -> Runs:
+    """Return what runs have become that began at x (runs, n)."""
+    records = batch.records
     work = np.stack([records[n] for n in ("steps", "iterations", "rejected")], axis=1)
     errors: list[RunError | None] = [None] * len(x)
     for k in np.flatnonzero(records["failed"]).tolist():
-        errors[k] = stuck(known[k], float(records["t"][k]), batch.x[k])
-    return Runs(known, x, times, batch.states, batch.sums, work, tuple(errors))
+        errors[k] = stuck(systems[k], float(records["t"][k]), batch.x[k])
+    arrays = batch.states, batch.sums, work
+    return Runs(systems, x, times, *arrays, tuple(errors), numerical=batch.more > 0)
 
 
 def stepping(system: System, rtol: float, stages: int | None) -> Stepping:

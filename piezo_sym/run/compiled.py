@@ -12,8 +12,9 @@ import numpy as np
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.collocation import with_tolerance
-from piezo_sym.run.discrete import fixed
+from piezo_sym.run.discrete import FixedStep, fixed
 from piezo_sym.run.engine import Engine
+from piezo_sym.run.engine.collocation import is_lossy
 from piezo_sym.run.guard import NAME, crossing, depth, domain_error
 from piezo_sym.run.inputs import Segment
 from piezo_sym.run.integrate import Batch, Tolerance, batches
@@ -39,7 +40,7 @@ def compiled_run(
     x: FloatArray,
     samples: FloatArray,
     rtol: float,
-    step: float | None,
+    step: FixedStep | None,
     watch: Watch | None = None,
     *,
     starts: bool = False,
@@ -56,7 +57,7 @@ def compiled_run(
     UsageError : it shall be, but the model has no store to damp, or no body to take the loss.
     RunError : the state leaves the domain, or no step can go on; says when, and with which values.
     """
-    if starts and not engine.starts:
+    if starts and not is_lossy(engine):
         what = f"model '{engine.module.NAME}' has no thermal_mass to take a loss, or no storage"
         remedy = "leave it out, or add a thermal_mass"
         raise UsageError(what, "simulate.dissipative_start", "False", remedy)
@@ -71,7 +72,8 @@ def compiled_run(
             accuracy = {"rtol": rtol}
             runs = with_tolerance([system], engine, x[None], samples, rtol, watch)
         else:
-            accuracy = {"step": step, "shortest_step": shortest_step(system, samples, step)}
+            shortest = shortest_step(system, samples, step.length)
+            accuracy = {"step": step.length, "order": step.order, "shortest_step": shortest}
             runs = fixed([system], engine, x[None], samples, step, watch, starts=starts)
         trajectory = runs.trajectory(0)
     except RunError as stopped:

@@ -15,6 +15,7 @@ from piezo_sym.errors import UsageError, quote
 from piezo_sym.run.checks import number, positive
 from piezo_sym.run.compiled import compiled_run
 from piezo_sym.run.dataset import to_dataset
+from piezo_sym.run.discrete import FixedStep, read_order
 from piezo_sym.run.guard import check_start
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.integrate import Tolerance, batches
@@ -52,6 +53,7 @@ def simulate(
     duration: float,
     rtol: float | None = None,
     step: float | None = None,
+    order: int | None = None,
     parameters: Mapping[str, LaneValue] | None = None,
     initial: Mapping[str, LaneValue] | None = None,
     method: str | None = None,
@@ -68,9 +70,9 @@ def simulate(
     of each state's largest magnitude (of a bank: of any lane). Steps end where a law has a kink or
     a jump, or go over kinks where many lanes have some and rtol is 1e-6 or more. Errors of steps
     add up where nothing damps them: what oscillates for hundreds of periods is off in phase by more
-    than rtol. With `step` the method is of order two: its error falls with the square of the step,
-    and what is much faster than a step rings from one to the next after a jump, see
-    `dissipative_start`.
+    than rtol. With `step` the error falls with that power of the step that `order` says, where laws
+    and inputs are smooth; steps go over kinks; and what is much faster than a step rings from one
+    to the next after a jump, see `dissipative_start`.
 
     SciPy's methods hold the error of each step below rtol*|x| + atol. atol is rtol*1e-3 times the
     scale of the state, which is the largest magnitude that the state (for a bank: any of its
@@ -95,6 +97,7 @@ def simulate(
         at breaks of inputs and at the end of the run: where the step does not divide what lies
         between two of these, steps there are equal and shorter, the attribute `shortest_step` the
         shortest.
+    order : 2, 4, 6, 8 or 10, with `step` alone; 2 when left out.
     parameters : name -> number, for a bank's parameter also a list of one number a lane; and
         `<bank>_count` -> number of lanes. SI units.
     initial : state -> number, for a bank's state also a list of one number a lane. SI units.
@@ -127,8 +130,8 @@ def simulate(
         `entropy_residual` = S - S(0) - entropy produced - entropy exchanged: round-off with the
         discrete gradient, the error of solver and quadrature with SciPy's. At a jump, inputs
         have their value after it, but at the end of the run their value before it. Attributes:
-        units, model, parameters; `method`, `rtol`, or `step` and `shortest_step`, `engine` (its
-        compiler, or why there is none), the work (`accepted_steps`, `newton_iterations`,
+        units, model, parameters; `method`, `rtol`, or `step`, `order` and `shortest_step`, `engine`
+        (its compiler, or why there is none), the work (`accepted_steps`, `newton_iterations`,
         `halvings`: steps refused; for SciPy `rhs_evaluations`).
 
     Raises
@@ -140,7 +143,7 @@ def simulate(
     """
     checked(module)
     named, bound = checked_method(method), read_rtol(rtol)
-    refuse_step(step, named, rtol)
+    fixed = read_step(step, order, named, rtol)
     named = start_method(dissipative_start, named)
     end = positive(duration, "simulate.duration")
     refuse_progress(progress)
@@ -152,7 +155,7 @@ def simulate(
     way = way_of(module, named, step)
     if way.engine:
         trajectory, work = compiled_run(
-            system, way.engine, x, samples, bound, step, progress, starts=dissipative_start
+            system, way.engine, x, samples, bound, fixed, progress, starts=dissipative_start
         )
     else:
         trajectory, work = by_scipy(system, x, samples, way.method, bound, progress)
@@ -200,18 +203,28 @@ def read_rtol(rtol: object) -> float:
     return value
 
 
-def refuse_step(step: object, method: str | None, rtol: object) -> None:
-    """Raise `UsageError` if a fixed step was asked of a method that chooses its own."""
+def read_step(step: object, order: object, method: str | None, rtol: object) -> FixedStep | None:
+    """Return the fixed step, None without one.
+
+    Raises
+    ------
+    UsageError
+        If it is asked of a method that chooses its own, or there is no step of that order.
+    """
     if step is None:
-        return
+        if order is not None:
+            what = "there is no fixed step"
+            raise UsageError(what, "simulate.order", "nothing", "leave it out, or give step")
+        return None
     if method not in (None, METHOD):
         what = f"method {method} chooses its own steps"
         remedy = "leave out step, for rtol sets the accuracy; or leave out method"
         raise UsageError(what, "simulate.step", "nothing", remedy)
-    positive(step, "simulate.step")
+    length = positive(step, "simulate.step")
     if rtol is not None:
         what = "step and rtol are both given"
         raise UsageError(what, "simulate.step", "one of them", "leave out rtol for a fixed step")
+    return FixedStep(length, 2 if order is None else read_order(order, "simulate.order"))
 
 
 def refuse_progress(progress: object) -> None:

@@ -157,7 +157,9 @@ def attrs_of(plan: Plan, system: System) -> dict[str, Any]:
     """Return the attributes of the Dataset: model, parameters that are not swept, method."""
     swept = {f"parameter_{t.name}" for _, t in plan.swept() if t.kind == "parameters"}
     attrs = {name: value for name, value in model_attrs(system).items() if name not in swept}
-    accuracy = {"rtol": plan.rtol} if plan.step is None else {"step": plan.step}
+    accuracy: dict[str, Any] = {"rtol": plan.rtol}
+    if plan.step:
+        accuracy = {"step": plan.step.length, "order": plan.step.order}
     kept = plan.reduce if isinstance(plan.reduce, str) else ""
     reduction = {"reduction": kept} if kept else {}
     done = {"method": plan.method, **accuracy, **reduction, "duration": plan.duration}

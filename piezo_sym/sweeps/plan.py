@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.discrete import FixedStep
 from piezo_sym.run.parameters import LaneValue
 from piezo_sym.run.signals import Signal
 from piezo_sym.sweeps.axes import Axis
@@ -82,7 +83,7 @@ class Plan:
     samples: FloatArray
     method: str
     rtol: float
-    step: float | None
+    step: FixedStep | None
     reduce: Reduction | None
     each: bool
     largest_banks: Mapping[str, int]

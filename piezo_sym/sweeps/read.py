@@ -24,7 +24,7 @@ from piezo_sym.run.parameters import (
     sample_times,
 )
 from piezo_sym.run.runs import METHOD
-from piezo_sym.run.simulate import read_rtol, refuse_step
+from piezo_sym.run.simulate import read_rtol, read_step
 from piezo_sym.sweeps.axes import Axis, read_axes, single_numbers
 from piezo_sym.sweeps.plan import (
     ENOUGH_BOXES,
@@ -50,6 +50,7 @@ class Asked:
     duration: float
     rtol: float | None
     step: float | None
+    order: int | None
     parameters: Mapping[str, Any] | None
     initial: Mapping[str, Any] | None
     method: str | None
@@ -68,7 +69,7 @@ def read_plan(module: GeneratedModule, asked: Asked) -> Plan:
     """
     with named_sweep():
         named, rtol = checked_method(asked.method), read_rtol(asked.rtol)
-        refuse_step(asked.step, named, asked.rtol)
+        step = read_step(asked.step, asked.order, named, asked.rtol)
         end = positive(asked.duration, "sweep.duration")
         samples = sample_times(times_of(asked), asked.every, asked.step, end)
         inputs = read_inputs(module, asked.inputs, end)
@@ -79,7 +80,6 @@ def read_plan(module: GeneratedModule, asked: Asked) -> Plan:
         refuse_sizes(module, axes, *given, inputs.segments[0].at(0.0))
         refuse_reduction(asked)
         way = way_of(module, named, asked.step)
-        step = None if asked.step is None else float(asked.step)
         numbers = samples.size * row_numbers(module, base, axes)
         many = MOST_TOGETHER if way.method == METHOD else MOST_BY_SCIPY
         together = max(1, min(many, MOST_NUMBERS // numbers))

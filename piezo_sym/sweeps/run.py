@@ -101,7 +101,7 @@ def run_box(plan: Plan, module: GeneratedModule, box: Box, watch: Watch) -> Resu
 
 def engine_for(plan: Plan, module: GeneratedModule) -> Engine | None:
     """Return the engine that a plan's runs go through, or None if they go by SciPy."""
-    return replace(engine_of(module), wide=plan.side_by_side) if plan.method == METHOD else None
+    return engine_of(module) if plan.method == METHOD else None
 
 
 def together(plan: Plan, points: NDArray[np.intp]) -> Iterator[slice]:
@@ -187,20 +187,12 @@ def in_c(
 
 
 def march(plan: Plan, systems: Systems, engine: Engine, x: FloatArray, watch: Watch) -> Runs:
-    """Return runs in C; those with a fixed step that stop are run again alone.
-
-    For one of them may stop others.  Runs whose inputs leave the domain stop there, as those of
-    `simulate` do.
-    """
+    """Return runs in C; those whose inputs leave the domain stop there, as with `simulate`."""
     outside = input_errors(systems, x, plan.samples)
     runs = stepped(plan, systems, engine, x, watch)
     errors = [old or new for old, new in zip(outside, runs.errors, strict=True)]
     for k in (k for k, error in enumerate(runs.errors) if error and not outside[k]):
         stopped = runs.errors[k]
-        if plan.step is not None:
-            alone = stepped(plan, systems.some([k]), engine, x[k : k + 1], watch)
-            stopped = alone.errors[0]
-            runs.states[k], runs.sums[k] = alone.states[0], alone.sums[0]
         errors[k] = stopped and cause(systems[k], x[k], plan.samples, stopped)
     return replace(runs, errors=errors)
 
@@ -223,11 +215,10 @@ def input_error(system: System, x: FloatArray, samples: FloatArray) -> RunError 
 
 def stepped(plan: Plan, systems: Systems, engine: Engine, x: FloatArray, watch: Watch) -> Runs:
     """Return runs in C, with the plan's step or tolerance."""
+    given, side_by_side = (systems, engine, x, plan.samples), plan.side_by_side
     if plan.step is None:
-        side_by_side = plan.side_by_side
-        given = systems, engine, x, plan.samples, plan.rtol, watch
-        return with_tolerance(*given, side_by_side=side_by_side)
-    return fixed(systems, engine, x, plan.samples, plan.step, watch)
+        return with_tolerance(*given, plan.rtol, watch, side_by_side=side_by_side)
+    return fixed(*given, plan.step, watch, side_by_side=side_by_side)
 
 
 def spread_out(

@@ -52,6 +52,7 @@ def sweep(
     duration: float,
     rtol: float | None = None,
     step: float | None = None,
+    order: int | None = None,
     parameters: Mapping[str, LaneValue] | None = None,
     initial: Mapping[str, LaneValue] | None = None,
     method: str | None = None,
@@ -79,7 +80,7 @@ def sweep(
         mapping of labels (numbers or texts) to values gives the dimension these labels. A tuple of
         names -> a list of tuples, or an array (points, names): values that go together, one
         dimension "L_T_e", with coordinates L and T_e along it.
-    inputs, duration, rtol, step, parameters, initial, times, every : of all runs, as for
+    inputs, duration, rtol, step, order, parameters, initial, times, every : of all runs, as for
         `simulate`: 1001 samples when `times` is left out, each of which costs steps of its own;
         with `reduce="last"` and a tolerance the end alone.
     method : as for `simulate`; discrete_gradient when left out, and without a compiler LSODA.
@@ -124,7 +125,7 @@ def sweep(
     count = processors() if threads is None else whole(threads, "sweep.threads", 1)
     refuse_executor(executor, threads)
     module: Any = module_of(model)
-    runs = (inputs, duration, rtol, step, parameters, initial, method, times)
+    runs = (inputs, duration, rtol, step, order, parameters, initial, method, times)
     asked = Asked(over, *runs, reduce, reduce_by, every)
     plan = read_plan(module, asked)
     plan, sink = sink_of(plan, module, store, count)

@@ -21,7 +21,6 @@ from piezo_sym.spec.elements.ports import Body
 from piezo_sym.spec.tables import conditions
 from piezo_sym.translation.change import across, derivative
 from piezo_sym.translation.field import Need, NotShownError, Value
-from piezo_sym.translation.functions import divisors
 from piezo_sym.translation.known import ALL, LEAST, SAME, Key, Proved
 from piezo_sym.translation.system_reader import SystemReader, rounded
 from piezo_sym.translation.zero import is_zero
@@ -40,10 +39,7 @@ def proved(iphs: IPHS) -> Proved:
     read.assume_temperatures()
     slots = _slots(iphs)
     values = dict(_values(read, slots))
-    needs = [*read.field.needs]
-    for (function, *_), value in values.items():
-        needs += _derived(value) if function == "jacobian" else ()
-    return known_by(read, slots, values, needs, domain)
+    return known_by(read, slots, values, [*read.field.needs], domain)
 
 
 def known_by(
@@ -170,15 +166,3 @@ def _jacobian(
                     raise NotShownError("a rate depends on another bank's lane")
                 if kind is SAME or not own.terms:
                     yield ("jacobian", r, c, ALL), other
-
-
-def _derived(value: Value) -> Iterator[Need]:
-    """Yield what a derivative is divided by, in the branch where it is."""
-    field, gens = value.field, value.field.gens
-    for mono in value.terms:
-        below = [g for g, e in mono if e < 0]
-        path = field.one
-        for g, _ in mono:
-            path = path * field.raised(g, 1) if gens[g].kind == "sign" else path
-        for g in below:
-            yield from (Need("nonzero", d, path, True) for d in divisors(field, g))

@@ -22,7 +22,8 @@ from piezo_sym import derive, load
 from piezo_sym.codegen import c_header, c_source, c_step, lower, numpy_module, start_of, step_of
 from piezo_sym.errors import PiezoError
 from piezo_sym.modules import load_module, module_of
-from piezo_sym.run.discrete import fixed
+from piezo_sym.run.discrete import FixedStep, fixed
+from piezo_sym.run.engine.collocation import is_lossy
 from piezo_sym.run.engine.engine import OFFERED, engine_of
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.system import System
@@ -54,7 +55,7 @@ def twin(module):
     engine = engine_of(module)
     compiled = {name: getattr(engine, name) for name in OFFERED}
     return module, SimpleNamespace(
-        **{**vars(module), **compiled}, engine=engine, starts=engine.starts
+        **{**vars(module), **compiled}, engine=engine, starts=is_lossy(engine)
     )
 
 
@@ -93,7 +94,7 @@ def check_start(module, compiled, place):
     inputs = dict(zip((record.name for record in module.INPUTS), map(float, u), strict=True))
     system = System(module, p, read_inputs(module, inputs, 3 * h))
     times = np.array([0.0, h, 3 * h])
-    runs = fixed([system], compiled.engine, x[None], times, h, starts=True)
+    runs = fixed([system], compiled.engine, x[None], times, FixedStep(h), starts=True)
     if runs.errors[0]:
         return
     sums, states, ports = runs.sums[0], runs.states[0].T, len(module.OUTPUTS)

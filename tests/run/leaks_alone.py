@@ -53,31 +53,6 @@ def grown(call, times):
     return least
 
 
-class Repeated:
-    """A function of a library that is called once, and then as often again as it is told."""
-
-    def __init__(self, function, times, counted):
-        vars(self).update(function=function, times=times, counted=counted)
-
-    def __getattr__(self, name):
-        return getattr(self.function, name)
-
-    def __setattr__(self, name, value):
-        setattr(self.function, name, value)
-
-    def __call__(self, *args):
-        self.function(*args)
-        member = args[0][0]
-        done = member.done
-
-        def again():
-            member.done = 0
-            self.function(*args)
-
-        self.counted.append(grown(again, self.times))
-        member.done = done
-
-
 def test_a_leak_of_sixteen_bytes_is_seen():
     allocate = ctypes.CDLL(None).malloc
     allocate.restype, allocate.argtypes = ctypes.c_void_p, (ctypes.c_size_t,)
@@ -85,32 +60,15 @@ def test_a_leak_of_sixteen_bytes_is_seen():
     assert grown(lambda: kept.append(allocate(16)), CALLS) > 2 * MOST
 
 
-@pytest.mark.parametrize(
-    ("name", "times", "accuracy"),
-    [
-        ("march", CALLS, {"step": 1e-6}),
-    ],
-)
-def test_runs_in_c(monkeypatch, name, times, accuracy):
-    """The call that a run makes is made again, on the same arrays: each goes on from the last."""
-    engine, counted = engine_of(module_of("piezo_stack")), []
-    library = engine.library
-    function = getattr(library, f"piezo_stack_{name}")
-    monkeypatch.setattr(library, f"piezo_stack_{name}", Repeated(function, times, counted))
-    options = {"duration": 2e-6, "times": 2, "method": "discrete_gradient"}
-    simulate("piezo_stack", inputs={"V_in": 50.0}, **options, **accuracy)
-    assert counted
-    assert max(counted) < MOST
-
-
+@pytest.mark.parametrize("fixed", [0.0, 1e-6], ids=["tolerance", "fixed"])
 @pytest.mark.parametrize("layout", ["one", "many", "lanes"])
-def test_steps_with_a_tolerance(layout):
+def test_steps_of_runs(layout, fixed):
     """A batch that is done is asked to go on: it looks at its lanes; and one that is on its way."""
     module = module_of("piezo_stack")
     inputs = read_inputs(module, {"V_in": sine(100, 100)}, 1e4)
     p = module.Parameters()
     x = module.initial_state(inputs.segments[0].at(0.0), p)[None]
-    how = Stepping(3, 1e-3, 1e-6, 1e-3)
+    how = Stepping(3, 1e-3, 1e-6, 1e-3, fixed=fixed)
     batch = Batch(engine_of(module), [p], x, inputs, np.array([1e4]), how, layout)
     assert batch.go(1)
     assert grown(lambda: batch.go(1), CALLS) < MOST

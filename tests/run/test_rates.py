@@ -11,20 +11,20 @@ import pytest
 
 from piezo_sym import load
 from piezo_sym.codegen.c_names import KEPT
-from piezo_sym.errors import EngineError
 from piezo_sym.modules import module_of
 from piezo_sym.run.engine import engine as engines
 from piezo_sym.run.engine.compiler import FLAGS, build, compilers
-from piezo_sym.run.engine.driver import PLAIN, SCALARS
+from piezo_sym.run.engine.driver import DRIVEN, PLAIN, SCALARS
 from piezo_sym.run.engine.engine import engine_of
-from piezo_sym.run.engine.rates import DRIVEN, WIDE, rates_text
-from piezo_sym.run.engine.texts import VECTORS, texts
+from piezo_sym.run.engine.texts import texts
 from piezo_sym.run.parameters import read_parameters
 from piezo_sym.spec.model import Model
 
 SPECS = sorted((Path(__file__).parents[1] / "networks" / "specs").glob("*.toml"))
 BATCHES = [(), (1,), (7,), (16,), (17,), (1000,), (0,), (3, 11), (1, 5, 50)]
 MOST_ULPS = 2
+#: Functions of many states that give rows.
+FUNCTIONS = [name for name in (*DRIVEN, *PLAIN, *SCALARS) if name not in ("jacobian", "margins")]
 
 
 def states(module, batch, seed=0):
@@ -58,19 +58,6 @@ def same(found, wanted):
     assert np.allclose(found, wanted, rtol=1e-11, atol=1e-12 * size)
 
 
-@pytest.fixture
-def only_vectors(monkeypatch):
-    """Batches that could fill a vector fail if they are computed one by one."""
-
-    def refuse(function, x, u, p, out):
-        assert x.shape[1] < engines.FEWEST
-        return one_by_one(function, x, u, p, out)
-
-    one_by_one = engines.one_by_one
-    monkeypatch.setattr(engines, "one_by_one", refuse)
-
-
-@pytest.mark.usefixtures("only_vectors")
 @pytest.mark.parametrize(
     "path",
     ["piezo_stack", *SPECS],
@@ -86,12 +73,11 @@ def compare(module):
         x, own, p = states(module, batch, seed)
         for u in (own, states(module, (), seed)[1]):
             lifted = u if u.ndim == x.ndim else u.reshape(-1, *(1,) * len(batch))
-            for name in WIDE:
+            for name in FUNCTIONS:
                 found = getattr(engine, name)(*arguments(name, x, u, p))
                 same(found, np.asarray(getattr(module, name)(*arguments(name, x, lifted, p))))
 
 
-@pytest.mark.usefixtures("only_vectors")
 @pytest.mark.parametrize("lanes", [1, 3, 64])
 def test_a_state_has_the_same_rates_wherever_it_stands(lanes):
     """In any place of a tile, of a strided array, of one that ends within a tile."""
@@ -130,36 +116,16 @@ def test_what_is_no_number_stays_in_its_state():
     assert np.isnan(found).any(axis=0).nonzero()[0].tolist() == [37]
 
 
-def test_without_vectors_columns_are_computed_one_by_one(monkeypatch):
-    def refuse(sources):
-        raise EngineError("no vectors", sources.name)
-
-    module = module_of("piezo_stack")
-    engine = engine_of(module)
-    x, u, p = states(module, (1000,))
-    engines._with_vectors.cache_clear()
-    monkeypatch.setattr(engines, "shared_library", refuse)
-    same(engine.rhs(x, u, p), module.rhs(x, u, p))
-    engines._with_vectors.cache_clear()
-
-
-def test_a_source_without_the_functions_is_refused():
-    with pytest.raises(EngineError, match="no function rhs"):
-        rates_text("piezo_stack", "int main(void) { return 0; }\n")
-
-
 def test_functions_are_those_of_the_engine():
-    assert {*DRIVEN, *PLAIN, *SCALARS} == {*engines.OFFERED} - {
-        *("initial_state", "jacobian", "margins")
-    }
+    assert {*DRIVEN, *PLAIN, *SCALARS} == {*engines.OFFERED} - {"initial_state"}
 
 
 EXACT = """
-#include "wide.h"
+#include "real.h"
 void each(const double *x, double *e, double *m, long count);
 void each(const double *x, double *e, double *m, long count)
 {
-    for (long n = 0; n + WIDTH <= count; n += WIDTH) {
+    for (long n = 0; n + REAL_WIDTH <= count; n += REAL_WIDTH) {
         real v;
         memcpy(&v, x + n, sizeof v);
         const real a = exp_of(v), b = expm1_of(v);
@@ -174,7 +140,7 @@ void each(const double *x, double *e, double *m, long count)
 def exponentials(tmp_path_factory):
     """Return a function that gives exp(x) and exp(x) - 1 as vectors compute them."""
     folder = tmp_path_factory.mktemp("built")
-    (folder / "wide.h").write_text(texts(*VECTORS))
+    (folder / "real.h").write_text(texts("real.h"))
     (folder / "each.c").write_text(EXACT)
     build(next(compilers()), FLAGS[0], folder / "each.c", folder / "each.so")
     library = ctypes.CDLL(str(folder / "each.so"))
@@ -226,18 +192,17 @@ def test_exponentials_of_vectors_end_as_those_of_numbers_do(exponentials):
 
 def test_no_name_of_a_spec_is_one_of_the_vectors():
     """A parameter called `zero` is another name in C, so that it hides nothing."""
-    text = re.sub(r"/\*.*?\*/", "", texts(*VECTORS), flags=re.DOTALL)
+    text = re.sub(r"/\*.*?\*/", "", texts("real.h"), flags=re.DOTALL)
     defined = re.findall(r"static (?:inline|const) \w+ (\w+)", text)
     defined += re.findall(
         r"#define (\w+)|(?:LANE_BY_LANE\(|enum \{ )(\w+)|\b(\w+) __attribute__", text
     )
     words = {word for found in defined for word in ([found] if isinstance(found, str) else found)}
-    assert {"zero", "wide", "real", "mask", "WIDTH", "sqrt_of", "exp_of", "any"} <= words
+    assert {"zero", "wide", "real", "mask", "REAL_WIDTH", "sqrt_of", "exp_of", "any"} <= words
     assert words - {"", "name"} <= KEPT
-    assert {"PLAIN", "MODEL", "SIDE", "OF", "LANE"} <= KEPT  # macros of the engine
+    assert {"PLAIN", "MODEL", "OF", "LANE"} <= KEPT  # macros of the engine
 
 
-@pytest.mark.usefixtures("only_vectors")
 def test_parameters_may_be_called_like_parts_of_the_vectors():
     data = load("piezo_stack").model_dump()
     text = json.dumps(data)

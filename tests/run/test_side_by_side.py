@@ -1,23 +1,18 @@
 """Members in lanes of vectors run as they do one by one, whatever the network."""
 
-import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from piezo_sym import load, sine, sweep
-from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.modules import module_of
 from piezo_sym.run.collocation import with_tolerance
-from piezo_sym.run.discrete import fixed
-from piezo_sym.run.engine import march
+from piezo_sym.run.discrete import FixedStep, fixed
 from piezo_sym.run.engine.engine import engine_of
-from piezo_sym.run.engine.vector import CALLS, OPENING, wide_source
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.parameters import read_initial, read_parameters
 from piezo_sym.run.system import System
-from piezo_sym.spec.load import parse
 
 SPECS = sorted((Path(__file__).parents[1] / "networks" / "specs").glob("*.toml"))
 
@@ -46,34 +41,27 @@ class Members:
         u = self.inputs.segments[0].at(0.0)
         self.x = np.array([read_initial(self.module, s.parameters, u, None) for s in self.systems])
 
-    def run(self, monkeypatch, most_states, **how):
-        monkeypatch.setattr(march, "MOST_STATES", most_states)
-        given = self.systems, self.engine, self.x, self.times, *how.values()
-        if "step" in how:
-            return fixed(*given)
-        return with_tolerance(*given, side_by_side=most_states > 0)
-
-
-def close(one, other):
-    scale = np.nanmax(np.abs(one), axis=(0, 1), keepdims=True)
-    return np.allclose(one / (scale + 1e-300), other / (scale + 1e-300), rtol=0, atol=1e-9)
+    def run(self, *, together=True, **how):
+        given = self.systems, self.engine, self.x, self.times
+        if "length" in how:
+            return fixed(*given, FixedStep(**how), side_by_side=together)
+        return with_tolerance(*given, **how, side_by_side=together)
 
 
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
-@pytest.mark.parametrize("how", [{"rtol": 1e-6}, {"step": 1e-5}], ids=["rtol", "step"])
-def test_lanes_compute_what_members_alone_do(monkeypatch, path, how):
+@pytest.mark.parametrize("how", [{"rtol": 1e-6}, {"length": 1e-5}], ids=["rtol", "step"])
+def test_lanes_compute_what_members_alone_do(path, how):
     members = Members(load(path))
-    alone, together = (members.run(monkeypatch, most, **how) for most in (0, 10**6))
+    alone, together = (members.run(together=on, **how) for on in (False, True))
     assert alone.errors == together.errors == (None,) * len(members.systems)
     for name in ("states", "sums"):
-        one, other = getattr(alone, name), getattr(together, name)
-        assert np.array_equal(one, other) if "rtol" in how else close(one, other)
+        assert np.array_equal(getattr(alone, name), getattr(together, name))
     assert together.work[:, 1].min() > 0
 
 
-def test_both_balances_of_every_member_close(monkeypatch):
+def test_both_balances_of_every_member_close():
     members = Members("piezo_stack", 37, 0.05, {"V_in": sine(100, 100)})
-    runs = members.run(monkeypatch, 10**6, rtol=1e-5)
+    runs = members.run(rtol=1e-5)
     module = members.module
     for k, system in enumerate(members.systems):
         states, sums = runs.states[k].T, runs.sums[k]
@@ -84,102 +72,56 @@ def test_both_balances_of_every_member_close(monkeypatch):
         assert np.all(np.diff(sums[:, 6:9], axis=0) >= 0)
 
 
-def test_a_member_that_stops_leaves_the_others_alone(monkeypatch):
+def test_a_member_that_stops_leaves_the_others_alone():
     members = Members("piezo_stack", 9, 0.02, {"V_in": sine(100, 100)})
-    alone = members.run(monkeypatch, 10**6, rtol=1e-5)
+    alone = members.run(rtol=1e-5)
     members.x[4, 2] = np.nan
-    runs = members.run(monkeypatch, 10**6, rtol=1e-5)
+    runs = members.run(rtol=1e-5)
     assert [error is not None for error in runs.errors] == [k == 4 for k in range(9)]
     others = [k for k in range(9) if k != 4]
     assert np.array_equal(alone.states[others], runs.states[others])
 
 
-@pytest.mark.parametrize("how", [{"rtol": 1e-4}, {"step": 1e-4}], ids=["rtol", "step"])
-def test_the_number_of_members_changes_nothing(monkeypatch, how):
+@pytest.mark.parametrize("how", [{"rtol": 1e-4}, {"length": 1e-4}], ids=["rtol", "step"])
+def test_the_number_of_members_changes_nothing(how):
     """Few share a vector for both of their tracks; many have one for each."""
     members = Members("piezo_stack", 19, 0.01, {"V_in": sine(100, 100)})
-    whole = members.run(monkeypatch, 10**6, **how)
+    whole = members.run(**how)
     systems, x = members.systems, members.x
     for size in (2, 3, 4, 5, 8, 9, 16, 17):
         members.systems, members.x = systems[-size:], x[-size:]
-        found = members.run(monkeypatch, 10**6, **how)
+        found = members.run(**how)
         for one, other in ((found.states, whole.states), (found.sums, whole.sums)):
             assert np.array_equal(one, other[-size:])
         assert np.array_equal(found.work[:, :2], whole.work[-size:, :2])
 
 
-def test_a_lane_whose_step_is_halved_goes_on_with_the_rest(monkeypatch):
+def test_a_lane_whose_step_is_halved_goes_on_with_the_rest():
     members = Members("piezo_stack", 9, 0.02, {"V_in": sine(100, 100), "T_e": 296.15 + 1e-6})
-    alone, together = (members.run(monkeypatch, most, step=5e-4) for most in (0, 10**6))
+    alone, together = (members.run(together=on, length=5e-4) for on in (False, True))
     assert together.work[:, 2].sum() > 0
-    assert close(alone.states, together.states)
+    assert np.array_equal(alone.states, together.states)
 
 
-def test_every_function_of_a_step_has_its_vector():
-    from piezo_sym.codegen import c_means, c_style
-
-    smooth = {record.in_c for record in RECORDS.values() if record.smooth}
-    known = {*c_means.HELPERS, *c_style._HELPERS, *smooth, "pow"}
-    assert known | {"fabs", "copysign"} == set(CALLS)
-
-
-def test_long_numbers_in_a_law_are_read_at_once():
-    """A pattern that tries all ways to read a number would not come back."""
-    header = "typedef struct {\n    double m;\n} long_parameters;"
-    number = "1." + "0371" * 10
-    lines = [f"    const double a = {number}*m;", f"    const double b = {number} - 2.0e-05;"]
-    found = wide_source("long", header, "\n".join([OPENING, *lines]))
-    assert f"const real a = {number}*m;" in found
-    assert f"const real b = wide({number} - 2.0e-05);" in found
-
-
-def test_functions_of_the_state_before_a_step_are_computed_once():
-    """Newton's iterations, and the means for the ledger, find them in the record."""
-    text = (SPECS[0].parent / "a2_oscillator.toml").read_text()
-    changes = (
-        ('force = "d*v"', 'force = "d*sqrt(1 + a**2)*v"'),
-        ("[domain]", 'a = { value = 0.5, unit = "1" }\nx = { value = 1.0, unit = "1" }\n[domain]'),
-        ('mass = "m"', 'mass = "x*m"'),
-    )
-    for before, after in changes:
-        text = text.replace(before, after)
-    members = Members(parse(text))
-    path = Path(members.module.__file__)
-    source = wide_source("oscillator", *(path.with_suffix(e).read_text() for e in (".h", ".c")))
-    functions = dict(re.findall(r"oscillator_wide_(\w+)\(([^}]*)^}", source, re.MULTILINE))
-    for name, value in (("exp_S", "exp(S*per_c)"), ("sqrt_a", "sqrt(1.0 + power_2(a))")):
-        assert f"const real {name} = {value};" in functions["begin"]
-        assert f"p_->{name}_ = {name};" in functions["begin"]
-        assert source.count(value) == 1
-        for user in ("newton", "means"):
-            assert f"const real {name} = p_->{name}_;" in functions[user]
-    assert members.engine.side_by_side() is not None  # it compiles, with a parameter called x
-
-
-def test_a_source_without_a_step_is_refused():
-    with pytest.raises(ValueError, match="no step"):
-        wide_source("piezo_stack", "", "int main(void) { return 0; }")
-
-
-@pytest.mark.parametrize("most_states", [0, 10**6], ids=["one by one", "side by side"])
-def test_states_at_rest_are_not_halved_for_their_noise(monkeypatch, most_states):
+@pytest.mark.parametrize("together", [False, True], ids=["one by one", "side by side"])
+def test_states_at_rest_are_not_halved_for_their_noise(together):
     path = next(path for path in SPECS if path.stem == "two_banks_heat_one_body")
-    runs = Members(load(path), 3, 500.0).run(monkeypatch, most_states, step=0.1)
+    runs = Members(load(path), 3, 500.0).run(together=together, length=0.1)
     steps, iterations, halvings = runs.work.T
     assert np.all(halvings == 0)
     assert np.all(iterations < 4 * steps)
 
 
 @pytest.mark.parametrize("name", ["two_banks_heat_one_body", "a1_two_bodies"])
-def test_a_state_that_has_come_to_rest_costs_next_to_nothing(monkeypatch, name):
+def test_a_state_that_has_come_to_rest_costs_next_to_nothing(name):
     path = next(path for path in SPECS if path.stem == name)
-    short, long = (Members(load(path), 3, d).run(monkeypatch, 10**6, rtol=1e-6) for d in (1e3, 1e4))
+    short, long = (Members(load(path), 3, d).run(rtol=1e-6) for d in (1e3, 1e4))
     assert np.all(long.work[:, 0] < short.work[:, 0] + 100)
     assert np.all(long.work[:, 2] < long.work[:, 0] / 4)
 
 
-def test_a_step_of_a_module_at_rest_is_one_iteration(monkeypatch):
-    runs = Members(load("piezo_stack"), 9, 1e6).run(monkeypatch, 10**6, step=1e3)
+def test_a_step_of_a_module_at_rest_is_one_iteration():
+    runs = Members(load("piezo_stack"), 9, 1e6).run(length=1e3)
     assert np.array_equal(runs.work[:, 1], runs.work[:, 0])
 
 

@@ -10,7 +10,8 @@ typedef struct {
     MODEL(run) *runs;
     const double *times;
     long count, samples, over, ways;
-    double duration, tolerance, first, longest, fixed;
+    long more; /* rows of ledgers behind the model's own: a dissipative step books two */
+    double stop, tolerance, first, longest, fixed;
 } MODEL(task);
 
 enum { ROUGH_ITERATIONS = 8 };
@@ -39,7 +40,7 @@ static size_t MODEL(places)(MODEL(batch) *b, const MODEL(task) *task, real *memo
     at += MODEL(place_reals)(&m->p, task->runs->p, at);
     MODEL(sizes)(&m->p, b->sizes);
     m->n = b->sizes[0], m->means = b->sizes[1], m->branches = b->sizes[2];
-    m->booked = b->sizes[3], m->processes = b->sizes[4], m->slopes = b->sizes[5];
+    m->booked = b->sizes[3] + task->more, m->processes = b->sizes[4], m->slopes = b->sizes[5];
     m->inputs = MODEL(input_count);
     m->lanes = b->sizes + 6, m->first = b->sizes + 6 + MODEL(banks);
     at += MODEL(arrange)(m, at);
@@ -63,6 +64,10 @@ static size_t MODEL(places)(MODEL(batch) *b, const MODEL(task) *task, real *memo
     return (size_t)(at - memory) * sizeof(real);
 }
 
+/* Whether the model has dissipative steps. */
+extern const long MODEL(lossy);
+const long MODEL(lossy) = MODEL(heated) >= 0;
+
 /* How many bytes a batch takes. */
 long MODEL(batch_size)(const MODEL(task) *task);
 long MODEL(batch_size)(const MODEL(task) *task)
@@ -79,26 +84,31 @@ void MODEL(open)(MODEL(batch) *b, const MODEL(task) *task)
     MODEL(places)(b, task, (real *)(b + 1));
     b->runs = task->runs, b->times = task->times;
     b->count = task->count, b->samples = task->samples;
-    b->duration = task->duration, b->tolerance = task->tolerance;
+    b->stop = task->stop, b->tolerance = task->tolerance;
     b->first = task->first, b->longest = task->longest, b->fixed = task->fixed;
     b->ways = task->ways && b->m.branches >= MANY;
+    b->m.most = task->fixed > 0.0 ? MOST_OF_FIXED : MOST_ITERATIONS;
+    b->m.late = task->fixed > 0.0 ? LATE : SOON;
     b->m.over = task->over ? none_of(nowhere) : nowhere;
 }
 
-/* Let a lane take a run: its parameters, and the state at its begin. */
+/* Let a lane take a run: its parameters, its state, and its ledger. */
 static void MODEL(load)(MODEL(batch) *b, int lane, MODEL(run) *run)
 {
     MODEL(block) *m = &b->m;
     MODEL(give)(&m->p, run->p, lane);
+    m->own = run->p;
     for (long k = 0; k < m->n; ++k) {
         LANE(m->x, k, lane) = run->x[k];
         LANE(m->largest, k, lane) = run->largest[k];
     }
-    for (long k = 0; k < m->booked; ++k)
-        LANE(b->sums, k, lane) = LANE(b->lost, k, lane) = 0.0;
+    for (long k = 0; k < m->booked; ++k) {
+        LANE(b->sums, k, lane) = run->ledger[k];
+        LANE(b->lost, k, lane) = run->ledger[m->booked + k];
+    }
     for (long k = 0; k < STAGES * m->branches; ++k)
         LANE(m->branch, k, lane) = 0.0;
-    LANE(&m->iterations, 0, lane) = 0.0;
+    LANE(&m->iterations, 0, lane) = (double)run->iterations;
     b->lane[lane] = (MODEL(lane)){.run = run, .segment = run->segments, .t = run->t, .phase = BEGIN};
     b->lane[lane].h = b->fixed > 0.0 ? b->fixed : b->first;
     b->lane[lane].which = -1;
@@ -137,11 +147,7 @@ static mask MODEL(midpoint)(MODEL(batch) *b, real h, mask where)
         where &= none_of(lost & going);
         going &= far;
     }
-    for (long k = 0; k < MODEL(limits); ++k) {
-        const mask inside = b->some_margin[k] > 0.0, edge = b->some_margin[k] == 0.0;
-        where &= MODEL(strict)[k] ? inside : (mask)(inside | edge);
-    }
-    return where & none_of(going);
+    return where & MODEL(within)(b->some_margin) & none_of(going);
 }
 
 /* Survey as many runs as there are lanes, from `first` on. */
@@ -160,7 +166,7 @@ static void MODEL(survey_some)(MODEL(batch) *b, long first)
             MODEL(lane) *l = b->lane + lane;
             if (!IN(going, lane))
                 continue;
-            l->h = fmin(l->h, l->segment->stop - l->t);
+            l->h = fmin(l->h, MODEL(until)(b, l) - l->t);
             MODEL(inputs_at)(l->segment, m->inputs, l->t + 0.5 * l->h, b->some_inputs, lane);
             LANE(&h, 0, lane) = l->h;
         }
@@ -171,7 +177,7 @@ static void MODEL(survey_some)(MODEL(batch) *b, long first)
         }
         for (int lane = 0; lane < REAL_WIDTH; ++lane) {
             MODEL(lane) *l = b->lane + lane;
-            const double stop = IN(going, lane) ? l->segment->stop : 0.0;
+            const double stop = IN(going, lane) ? MODEL(until)(b, l) : 0.0;
             if (!IN(going, lane))
                 continue;
             if (!IN(good, lane)) {
@@ -181,8 +187,8 @@ static void MODEL(survey_some)(MODEL(batch) *b, long first)
             }
             l->t = l->t + l->h < stop - 1e-9 * l->h ? l->t + l->h : stop;
             l->h = fmin(2.0 * l->h, b->longest);
-            SET(going, lane, l->t < b->duration);
-            if (l->t >= stop && l->t < b->duration)
+            SET(going, lane, l->t < b->stop);
+            if (l->t >= stop && l->t < b->stop)
                 ++l->segment;
         }
     }
@@ -209,8 +215,11 @@ int MODEL(go)(MODEL(batch) *b, long ticks)
         mask begins = nowhere;
         int busy = 0;
         for (int lane = 0; lane < REAL_WIDTH; ++lane) {
-            if (b->lane[lane].phase == IDLE && b->next < b->count)
-                MODEL(load)(b, lane, b->runs + b->next++);
+            while (b->lane[lane].phase == IDLE && b->next < b->count) {
+                MODEL(run) *run = b->runs + b->next++;
+                if (!run->failed && run->t < b->stop)
+                    MODEL(load)(b, lane, run);
+            }
             busy |= b->lane[lane].phase != IDLE;
             SET(begins, lane, b->lane[lane].phase == BEGIN);
         }

@@ -47,7 +47,7 @@ class Record(ctypes.Structure):
     """MODEL(run) of trajectory.c."""
 
     _fields_ = [
-        *((n, POINTER) for n in ("p", "segments", "x", "largest", "states", "sums")),
+        *((n, POINTER) for n in ("p", "segments", "x", "largest", "ledger", "states", "sums")),
         ("t", DOUBLE),
         *((n, LONG) for n in ("sample", "steps", "rejected", "switched", "iterations", "failed")),
     ]
@@ -58,8 +58,8 @@ class Task(ctypes.Structure):
 
     _fields_ = [
         *((n, POINTER) for n in ("runs", "times")),
-        *((n, LONG) for n in ("count", "samples", "over", "ways")),
-        *((n, DOUBLE) for n in ("duration", "tolerance", "first", "longest", "fixed")),
+        *((n, LONG) for n in ("count", "samples", "over", "ways", "more")),
+        *((n, DOUBLE) for n in ("stop", "tolerance", "first", "longest", "fixed")),
     ]
 
 
@@ -75,6 +75,7 @@ class Stepping:
     fixed : the length of all steps [s], which then go over kinks; 0 if errors decide.
     first, longest : the length of the first step, and of the longest [s].
     kinks : whether steps end there, or go over them; or what gets further, where switches are many.
+    lossy : whether steps are dissipative, of one stage; one that does not succeed is not halved.
     """
 
     stages: int
@@ -83,10 +84,13 @@ class Stepping:
     longest: float
     fixed: float = 0.0
     kinks: Literal["end", "over", "either"] = "either"
+    lossy: bool = False
 
 
 @lru_cache(maxsize=64)
-def collocation_library(engine: Engine, stages: int, layout: Layout) -> ctypes.CDLL:
+def collocation_library(
+    engine: Engine, stages: int, layout: Layout, *, lossy: bool = False
+) -> ctypes.CDLL:
     """Return the library of a module's collocation steps of so many stages.
 
     Raises
@@ -95,8 +99,14 @@ def collocation_library(engine: Engine, stages: int, layout: Layout) -> ctypes.C
         If ``<model>_step.c`` is missing or of another spec, or cannot be compiled.
     """
     step = read_source(engine.module, "_step.c")
-    made = replace(engine.sources, made="collocation", step=step, stages=stages, layout=layout)
+    made = replace(engine.sources, step=step, stages=stages, layout=layout, lossy=lossy)
     return shared_library(made)
+
+
+def is_lossy(engine: Engine) -> bool:
+    """Return whether a module has dissipative steps: stores, and a body to take their loss."""
+    library = collocation_library(engine, 1, "one")
+    return bool(LONG.in_dll(library, f"{engine.module.NAME}_lossy").value)
 
 
 @final
@@ -107,8 +117,9 @@ class Batch:
     ----------
     x : the states (runs, n): at t = 0, and then where runs stand.
     largest : the largest magnitude of each state (runs, n).
+    ledgers : what is booked so far, and what rounding lost of it (runs, 2, rows).
     states, sums : at samples, (runs, samples, n) and (runs, samples, rows), rows in the order of
-        `System.rates`; nan where a run did not get.
+        `System.rates`, then `more`; nan where a run did not get.
     records : what else C tells of each run, by the names of `Record`.
 
     Parameters
@@ -119,6 +130,7 @@ class Batch:
     inputs : of all.
     times : of samples (samples,).
     layout : "one" run after another, "many" side by side in vectors, or "lanes" of one run's banks.
+    more : rows of ledgers behind the model's own, heat and entropy of dissipative steps: 2, or 0.
     """
 
     def __init__(
@@ -130,47 +142,72 @@ class Batch:
         times: FloatArray,
         stepping: Stepping,
         layout: Layout,
+        *,
+        more: int = 0,
     ) -> None:
-        self._library = collocation_library(engine, stepping.stages, layout)
+        self._engine, self._layout, self._inputs, self.more = engine, layout, inputs, more
         self._name = engine.module.NAME
         self._structures = engine.structure.many(parameters)
         self.x, self.largest = np.array(x, dtype=float), np.abs(x)
         self._raised: list[Exception] = []
         self._pieces = [self._piece(segment, inputs.signals) for segment in inputs.segments]
         self._segments = (Piece * len(self._pieces))(*(piece for piece, _ in self._pieces))
-        rows = self._sizes(engine)[3]
-        count, n = self.x.shape
-        self.states = np.full((count, times.size, n), np.nan)
-        self.sums = np.full((count, times.size, rows), np.nan)
         self._times = np.ascontiguousarray(times, dtype=float)
+        count, n = self.x.shape
         self._runs = (Record * count)()
         self.records: Any = np.frombuffer(memoryview(self._runs), record_of(Record))
         self.records["p"] = self._structures.addresses
-        self.records["segments"] = ctypes.addressof(self._segments)
+        self._take(stepping)
+        rows = self._sizes()[3] + more
+        self.states = np.full((count, times.size, n), np.nan)
+        self.sums = np.full((count, times.size, rows), np.nan)
+        self.ledgers = np.zeros((count, 2, rows))
         for name in ("x", "largest", "states", "sums"):
             self.records[name] = addresses(getattr(self, name))
-        self._open(stepping, inputs.duration)
+        self.records["ledger"] = addresses(self.ledgers)
+        self.go_on(stepping, inputs.duration)
 
-    def _sizes(self, engine: Engine) -> NDArray[Any]:
-        """Return what the model's own function says of its arrays' sizes."""
-        module = engine.module
-        found = np.zeros(6 + len(module.BANKS) + len(module.STATES), dtype=np.dtype("l"))
-        first = ctypes.c_void_p(int(self._structures.addresses[0]))
-        getattr(self._library, f"{self._name}_sizes_of")(first, at(found))
-        return found
+    def go_on(self, stepping: Stepping, stop: float) -> None:
+        """Go on from where runs stand until `stop` [s]; those that failed stay where they are.
 
-    def _open(self, stepping: Stepping, duration: float) -> None:
+        The others stand in one segment of the inputs, or beyond `stop`.
+        """
+        self._take(stepping)
+        t = self.records["t"].min(where=self.records["failed"] == 0, initial=stop)
+        now = sum(one.stop <= t for one in self._inputs.segments[:-1])
+        self.records["segments"] = ctypes.addressof(self._segments) + now * ctypes.sizeof(Piece)
         given = (stepping.tolerance, stepping.first, stepping.longest, stepping.fixed)
         arrays = ctypes.addressof(self._runs), at(self._times)
         over = stepping.kinks == "over" or bool(stepping.fixed > 0)
-        sizes = len(self._runs), self._times.size, over, stepping.kinks == "either" and not over
-        task = Task(*arrays, *sizes, duration, *given)
-        size = getattr(self._library, f"{self._name}_batch_size")
+        ways = stepping.kinks == "either" and not over
+        sizes = len(self._runs), self._times.size, over, ways, self.more
+        task = Task(*arrays, *sizes, stop, *given)
+        size = self.function("batch_size")
         size.restype = LONG
         self._room = np.zeros(int(size(ctypes.byref(task))) + ALIGNED, dtype=np.uint8)
         place = self._room.ctypes.data
         self._batch = ctypes.c_void_p(place + -place % ALIGNED)
         self._call("open", ctypes.byref(task))
+
+    def _take(self, stepping: Stepping) -> None:
+        given = self._engine, stepping.stages, "one" if stepping.lossy else self._layout
+        self._library = collocation_library(*given, lossy=stepping.lossy)
+
+    def _sizes(self) -> NDArray[Any]:
+        """Return what the model's own function says of its arrays' sizes."""
+        module = self._engine.module
+        found = np.zeros(6 + len(module.BANKS) + len(module.STATES), dtype=np.dtype("l"))
+        first = ctypes.c_void_p(int(self._structures.addresses[0]))
+        self.function("sizes_of")(first, at(found))
+        return found
+
+    def one(self) -> tuple[ctypes.c_void_p, int, int]:
+        """Return the addresses of the batch, of its first run, and of its first signals."""
+        return self._batch, ctypes.addressof(self._runs), self._segments[0].signals
+
+    def function(self, word: str) -> Any:
+        """Return one of the functions of C by its own name."""
+        return getattr(self._library, f"{self._name}_{word}")
 
     def survey(self) -> None:
         """Find by rough steps how large states become: `largest`."""
@@ -187,7 +224,7 @@ class Batch:
         return found
 
     def _call(self, word: str, *more: Any) -> Any:
-        found = getattr(self._library, f"{self._name}_{word}")(self._batch, *more)
+        found = self.function(word)(self._batch, *more)
         if self._raised:
             raise self._raised[0]
         return found

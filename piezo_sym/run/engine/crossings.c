@@ -45,7 +45,7 @@ static mask MODEL(looks)(const MODEL(batch) *b, long k, real *value)
 static mask MODEL(crossed)(const MODEL(batch) *b, mask where)
 {
     mask found = nowhere;
-    for (long k = 0; k < b->m.branches; ++k) {
+    for (long k = 0; k < b->m.branches && any(where); ++k) {
         real value[LOOKS];
         if (!any(where & MODEL(looks)(b, k, value)))
             continue;

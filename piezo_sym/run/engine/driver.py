@@ -1,10 +1,9 @@
-"""The C file that is compiled: a module, loops over the columns of a batch, and runs of steps.
+"""The C files that are compiled: a module with loops over many states, or a module's steps.
 
-Input: a model's name, and whether it has a dissipative step.  Output: text.  A column is one state;
-columns lie one after another.
+Input: a model's name.  Output: text.
 """
 
-from piezo_sym.run.engine.texts import COLLOCATION, STEPS, texts
+from piezo_sym.run.engine.texts import COLLOCATION, texts
 
 #: Nodes for means over a step, beyond its stages.
 MORE_NODES = 2
@@ -46,6 +45,38 @@ void {model}_of_members(
         loop(x + k*columns*n, u, p[k], out + k*columns*rows, columns, n, m, rows);
 }}
 """
+#: One of these loops for arrays whose row i lies i*columns further, those of u if `own`: some
+#: columns at a time are put where each is one piece, and rows put back.
+TILES = """
+enum {{ TILE = 16 }};
+extern const long {model}_tile;
+const long {model}_tile = TILE;
+static inline void gather(double *to, const double *from, long rows, long columns, long count)
+{{
+    for (long i = 0; i < rows; ++i)
+        for (long k = 0; k < count; ++k)
+            to[k*rows + i] = from[i*columns + k];
+}}
+void {model}_of_columns(
+    {model}_loop *loop, const double *x, const double *u, const {model}_parameters *p, double *out,
+    long columns, long n, long m, long rows, int own, double *space);
+void {model}_of_columns(
+    {model}_loop *loop, const double *x, const double *u, const {model}_parameters *p, double *out,
+    long columns, long n, long m, long rows, int own, double *space)
+{{
+    double *const from = space, *const given = from + TILE*n, *const to = given + TILE*m;
+    for (long first = 0; first < columns; first += TILE) {{
+        const long count = columns - first < TILE ? columns - first : TILE;
+        gather(from, x + first, n, columns, count);
+        if (own)
+            gather(given, u + first, m, columns, count);
+        loop(from, own ? given : u, p, to, count, n, own ? m : 0, rows);
+        for (long i = 0; i < rows; ++i)
+            for (long k = 0; k < count; ++k)
+                out[i*columns + first + k] = to[k*rows + i];
+    }}
+}}
+"""
 #: Who compiled the file, for the attributes of a run.
 MAKER = """
 #if defined(__clang__)
@@ -60,8 +91,8 @@ const char {model}_compiler[] = MAKER;
 """
 
 
-def driver(model: str, *, starts: bool) -> str:
-    """Return the text of the file to compile."""
+def driver(model: str) -> str:
+    """Return the text of the file to compile for the functions of a module."""
     at = "x + column*n, u + column*m, p, out + column*rows"
     parts = [HEAD.format(model=model), MAKER.format(model=model)]
     for name in DRIVEN:
@@ -72,17 +103,15 @@ def driver(model: str, *, starts: bool) -> str:
     for name in SCALARS:
         call = f"out[column*rows] = {model}_{name}(x + column*n, p);"
         parts.append(_loop(model, name, call, "(void)u; (void)m;"))
-    parts.append(MEMBERS.format(model=model))
-    parts.append(f"\n#define MODEL(name) {model}_##name\n#define STARTS {int(starts)}\n")
-    return "".join([*parts, texts(*STEPS)])
+    return "".join([*parts, MEMBERS.format(model=model), TILES.format(model=model)])
 
 
-def collocation(model: str, stages: int, layout: str) -> str:
+def collocation(model: str, stages: int, layout: str, *, lossy: bool = False) -> str:
     """Return the text of the file to compile for collocation steps of so many stages.
 
     Parameters
     ----------
-    layout : of `Sources`.
+    layout, lossy : of `Sources`.
     """
     from piezo_sym.run.engine.tableau import tableau  # loads mpmath, once a compilation
 
@@ -91,12 +120,14 @@ def collocation(model: str, stages: int, layout: str) -> str:
         "#define REAL_WIDTH 1",
         "#endif",
         texts("real.h"),
+        *([f'#include "{model}.c"'] if lossy else []),
         f'#include "{model}_step.c"',
         f"#define MODEL(name) {model}_##name",
         "extern const long MODEL(width);",
         "const long MODEL(width) = REAL_WIDTH;",
     ]
-    return "\n".join([*head, tableau(stages, stages + MORE_NODES), texts(*COLLOCATION)])
+    tables = tableau(stages, 1 if lossy else stages + MORE_NODES, lossy=lossy)
+    return "\n".join([*head, tables, texts(*COLLOCATION), *([texts("loss.c")] if lossy else [])])
 
 
 def _loop(model: str, name: str, call: str, idle: str) -> str:

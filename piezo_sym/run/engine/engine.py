@@ -9,7 +9,7 @@ from __future__ import annotations
 import ctypes
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, final
@@ -20,16 +20,12 @@ from numpy.typing import ArrayLike
 from piezo_sym.errors import EngineError, FileError
 from piezo_sym.files import path_text, read_text
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.engine.columns import at_once, one_by_one
+from piezo_sym.run.engine.columns import of_columns
 from piezo_sym.run.engine.driver import DRIVEN, PLAIN, SCALARS
-from piezo_sym.run.engine.library import EngineWarning, Made, Sources, library
-from piezo_sym.run.engine.rates import WIDE
+from piezo_sym.run.engine.library import EngineWarning, Sources, library
 from piezo_sym.run.engine.records import at
 from piezo_sym.run.engine.structure import Layout
 from piezo_sym.run.module import GeneratedModule, Record, lanes
-
-#: From so many columns on, all vectors of a library are full.
-FEWEST = 16
 
 
 def compiled(module: GeneratedModule) -> Engine | None:
@@ -61,16 +57,6 @@ def engine_of(module: GeneratedModule) -> Engine:
 @lru_cache(maxsize=64)
 def _engine(module: GeneratedModule, sources: Sources) -> Engine:
     return Engine(module, shared_library(sources), Layout(module), sources)
-
-
-@lru_cache(maxsize=64)
-def _with_vectors(module: GeneratedModule, sources: Sources) -> ctypes.CDLL | None:
-    """Return a module's library that computes with vectors; None, once and for all, without one."""
-    del module  # libraries belong to modules: another one of the same source has its own
-    try:
-        return shared_library(sources)
-    except EngineError:
-        return None
 
 
 def shared_library(sources: Sources) -> ctypes.CDLL:
@@ -132,27 +118,13 @@ def _read(file: Path, changed: int, size: int) -> str | None:
 class Engine:
     """The functions of a generated module, compiled; arguments and results as in the module.
 
-    x is (n, *batch); u is (inputs,) or (inputs, *batch); p is the module's `Parameters`.  `wide`
-    says whether members of a run may go side by side.
+    x is (n, *batch); u is (inputs,) or (inputs, *batch); p is the module's `Parameters`.
     """
 
     module: GeneratedModule
     library: ctypes.CDLL
     structure: Layout
     sources: Sources
-    wide: bool = True
-
-    def side_by_side(self) -> ctypes.CDLL | None:
-        """Return the library that steps members side by side, if it can be made.
-
-        None also if `wide` says that they are to go one by one.
-        """
-        found = self._with_vectors("members") if self.wide else None
-        return found if hasattr(found, f"{self.module.NAME}_run_wide") else None
-
-    def _with_vectors(self, made: Made) -> ctypes.CDLL | None:
-        sources = replace(self.sources, made=made)
-        return _with_vectors(self.module, sources)  # type: ignore[arg-type]  # as above
 
     def initial_state(self, u: ArrayLike, p: Any, /) -> FloatArray:
         """Return the state at t = 0, shape (n,), for the inputs u (inputs,) at t = 0."""
@@ -215,16 +187,6 @@ class Engine:
         rows = self._called("entropy", x, None, p, 1)
         return rows.reshape(rows.shape[1:])
 
-    @property
-    def exchanges(self) -> int:
-        """The number of heat exchanges, whose entropy the ledger of a run books last."""
-        return ctypes.c_long.in_dll(self.library, f"{self.module.NAME}_exchanges").value
-
-    @property
-    def starts(self) -> bool:
-        """Whether the model has a dissipative step: it has stores, and a body to heat."""
-        return bool(ctypes.c_long.in_dll(self.library, f"{self.module.NAME}_starts").value)
-
     def rows(self, records: Sequence[Record], p: Any) -> int:
         """Return the number of rows that records take, banks spread."""
         return sum(lanes(p, record.bank) if record.bank else 1 for record in records)
@@ -252,17 +214,8 @@ class Engine:
         columns = states.reshape(states.shape[0], width)
         found = _place(out, (rows, *batch))
         given = columns, self._inputs(u, batch), structure.value, found.reshape(rows, width)
-        vectors = self._rates(width) if name in WIDE else None
-        if vectors:
-            tile = ctypes.c_long.in_dll(vectors, f"{self.module.NAME}_tile").value
-            at_once(getattr(vectors, f"{self.module.NAME}_{name}_wide"), tile, *given)
-        else:
-            one_by_one(getattr(self.library, f"{self.module.NAME}_{name}_columns"), *given)
+        of_columns(self.library, self.module.NAME, name, *given)
         return found
-
-    def _rates(self, columns: int) -> ctypes.CDLL | None:
-        """Return the library for so many columns at once, if they fill its vectors."""
-        return self._with_vectors("rates") if columns >= FEWEST else None
 
     def _inputs(self, u: ArrayLike | None, batch: tuple[int, ...]) -> FloatArray:
         """Return inputs (inputs, columns), or (inputs,) for all columns."""

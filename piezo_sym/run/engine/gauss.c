@@ -4,13 +4,22 @@
  *
  * Behind real.h, a generated <model>_step.c and the tables of a number of stages.  With rates K_j
  * the state goes along X(tau) = x + h sum_j K_j int_0^tau l_j; stage i has the co-states' means
- * int_0^1 (l_i/b_i) dU/dx(X) dtau, taken at NODES nodes of Gauss's rule.  A root counts only if all
- * is finite, each stage lies in the domain and no process takes entropy.
+ * int_0^1 (l_i/b_i) dU/dx(X) dtau, taken at NODES nodes of Gauss's rule, or at FINE of them where the
+ * co-states ask for more.  A root counts only if all is finite, each stage lies in the domain and no
+ * process takes entropy.
  */
 
 #include <stddef.h>
 
-enum { MOST_ITERATIONS = 12 };
+/* Iterations, and after how many a step is given up whose changes do not become smaller. */
+enum { MOST_ITERATIONS = 12, SOON = 1 };
+/*
+ * A fixed step may begin far from its root: from beyond the bend of an exponential law Newton's method
+ * comes back by its width each time, however short the step.
+ */
+enum { MOST_OF_FIXED = 100, LATE = 60 };
+/* Where a change is more than so much of the one before, slopes are taken anew. */
+#define SLOW 0.1
 /* What Newton's method may leave of a state's change, in parts of its largest magnitude. */
 #define NOISE 1e-16
 
@@ -21,6 +30,7 @@ typedef struct {
 /* The runs of all lanes, as they take a step: sizes, and the numbers that it works on. */
 typedef struct {
     MODEL(reals) p;
+    const MODEL(parameters) *own; /* those of p, in the last lane that has taken some */
     long n, inputs, means, branches, booked, slopes, processes;
     const long *lanes, *first; /* of each bank; of each state, its first row */
     real *x, *end;             /* n: where the step begins, and where it ends */
@@ -29,8 +39,10 @@ typedef struct {
     real *u;                   /* STAGES*inputs */
     real *largest;             /* n: the largest magnitude of each state, by which errors count */
     real *reached, *gap, *node, *mean, *side, *margin, *rows, *slope, *fresh, *real_factor;
+    mask fine;                 /* lanes whose means are taken at FINE nodes */
     mask over;                 /* lanes whose stages choose their branches: they step over kinks */
     real iterations;           /* of Newton's method */
+    int most, late;            /* of them in a step; after which it may be given up */
     MODEL(complex) *factor, *right;
 } MODEL(block);
 
@@ -99,7 +111,7 @@ static long MODEL(arrange)(MODEL(block) *m, real *at)
     PLACE(largest, n);
     PLACE(reached, n);
     PLACE(gap, STAGES * n);
-    PLACE(node, NODES * m->means);
+    PLACE(node, FINE * m->means);
     PLACE(mean, STAGES * m->means);
     PLACE(side, STAGES * m->branches);
     PLACE(margin, STAGES * MODEL(limits));
@@ -140,6 +152,60 @@ static void MODEL(reach_read)(const MODEL(block) *m, real h, const double *weigh
     }
 }
 
+/* The functions of which stages are given means, at nodes of a step. */
+static void MODEL(integrate)(const MODEL(block) *m, real h, const double reach[][STAGES], long nodes)
+{
+    for (long q = 0; q < nodes; ++q) {
+        MODEL(reach_read)(m, h, reach[q]);
+        MODEL(integrands)(m->reached, &m->p, m->node + q * m->means);
+    }
+}
+
+/* What the last polynomial of Legendre has of a function at nodes, in parts of its size. */
+static real MODEL(last_part)(const MODEL(block) *m, long k, const double *last, long nodes)
+{
+    real sum = zero, most = 1e-300 + zero;
+    for (long q = 0; q < nodes; ++q) {
+        sum += last[q] * m->node[q * m->means + k];
+        most = largest_of(size_of(m->node[q * m->means + k]), most);
+    }
+    return size_of(sum) / most;
+}
+
+/* Means over the step, by the rule of each lane. */
+static void MODEL(average)(const MODEL(block) *m, real h)
+{
+    MODEL(integrate)(m, h, node_reach, NODES);
+    for (long i = 0; i < STAGES; ++i)
+        for (long k = 0; k < m->means; ++k) {
+            real *const mean = m->mean + i * m->means + k;
+            *mean = zero;
+            for (long q = 0; q < NODES; ++q)
+                *mean += node_mean[i][q] * m->node[q * m->means + k];
+        }
+    if (!any(m->fine))
+        return;
+    MODEL(integrate)(m, h, fine_reach, FINE);
+    for (long i = 0; i < STAGES; ++i)
+        for (long k = 0; k < m->means; ++k) {
+            real *const mean = m->mean + i * m->means + k, sum = zero;
+            for (long q = 0; q < FINE; ++q)
+                sum += fine_mean[i][q] * m->node[q * m->means + k];
+            *mean = chosen(m->fine, sum, *mean);
+        }
+}
+
+/* The lanes whose co-states ask for more nodes than NODES, for balances that are exact to round-off. */
+static mask MODEL(coarse)(const MODEL(block) *m, real h)
+{
+    mask found = nowhere;
+    if (m->means)
+        MODEL(integrate)(m, h, node_reach, NODES);
+    for (long k = 0; k < m->means; ++k)
+        found |= MODEL(last_part)(m, k, node_last, NODES) > COARSE;
+    return found;
+}
+
 /* Choose branches by their switching functions in some lanes; returns those where any changes. */
 static mask MODEL(choose)(long branches, const real *side, real *branch, mask where)
 {
@@ -153,23 +219,20 @@ static mask MODEL(choose)(long branches, const real *side, real *branch, mask wh
     return changed;
 }
 
+#if LOSSY /* see loss.c */
+static void MODEL(lose)(const MODEL(block) *m, real h, real *rate, real *rows);
+#endif
+
 /* What the rates at the stages have to be, less what they are; returns where branches change. */
 static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
 {
     const mask over = m->over & going;
     mask changed = nowhere;
-    for (long q = 0; q < NODES && m->means; ++q) {
-        MODEL(reach_read)(m, h, node_reach[q]);
-        MODEL(integrands)(m->reached, &m->p, m->node + q * m->means);
-    }
+    if (m->means)
+        MODEL(average)(m, h);
     for (long i = 0; i < STAGES; ++i) {
         real *gap = m->gap + i * m->n, *mean = m->mean + i * m->means;
         real *side = m->side + i * m->branches, *branch = m->branch + i * m->branches;
-        for (long k = 0; k < m->means; ++k) {
-            mean[k] = zero;
-            for (long q = 0; q < NODES; ++q)
-                mean[k] += node_mean[i][q] * m->node[q * m->means + k];
-        }
         MODEL(reach)(m, h, stage_reach[i], m->reached);
         for (int again = 0; again < 3; ++again) {
             MODEL(stage)(m->reached, mean, branch, m->u + i * m->inputs, &m->p, gap,
@@ -181,6 +244,9 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
                 break;
             changed |= other;
         }
+#if LOSSY
+        MODEL(lose)(m, h, gap, m->rows);
+#endif
         for (long k = 0; k < m->n; ++k)
             gap[k] -= m->rates[i * m->n + k];
     }
@@ -246,6 +312,17 @@ static void MODEL(prepare)(const MODEL(block) *m, real h, mask where)
     }
 }
 
+/* The lanes whose margins are those of a state in the domain. */
+static mask MODEL(within)(const real *margin)
+{
+    mask good = none_of(nowhere);
+    for (long k = 0; k < MODEL(limits); ++k) {
+        const mask inside = margin[k] > 0.0, edge = margin[k] == 0.0;
+        good &= MODEL(strict)[k] ? inside : (mask)(inside | edge);
+    }
+    return good;
+}
+
 /* The lanes whose stages all lie in the domain, and whose processes take no entropy. */
 static mask MODEL(accepted)(const MODEL(block) *m)
 {
@@ -254,16 +331,16 @@ static mask MODEL(accepted)(const MODEL(block) *m)
     for (long i = 0; i < STAGES; ++i) {
         const real *rows = m->rows + i * m->booked + ports + processes;
         real total = zero, lowest = zero;
-        for (long k = 0; k < MODEL(limits); ++k) {
-            const real margin = m->margin[i * MODEL(limits) + k];
-            const mask strictly = margin > 0.0, edge = margin == 0.0;
-            good &= MODEL(strict)[k] ? strictly : (mask)(strictly | edge);
-        }
+        good &= MODEL(within)(m->margin + i * MODEL(limits));
         for (long k = 0; k < processes; ++k) {
             const mask less = rows[k] < lowest;
             total += size_of(rows[k]);
             lowest = chosen(less, rows[k], lowest);
         }
+#if LOSSY
+        lowest = fmin(lowest, m->rows[m->booked - 1]);
+        good &= m->rows[m->booked - 1] == m->rows[m->booked - 1];
+#endif
         good &= lowest >= -1e-14 * total;
     }
     return good;
@@ -273,13 +350,13 @@ static mask MODEL(accepted)(const MODEL(block) *m)
  * Newton's method for the rates in some lanes, begun where they are; returns those that found them.
  * A lane that has found them stays as it is, however long the others take.
  */
-static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
+static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
 {
     mask going = where, found = nowhere;
     real before = zero;
     MODEL(gaps)(m, h, going);
     MODEL(prepare)(m, h, going);
-    for (int iteration = 0; iteration < MOST_ITERATIONS && any(going); ++iteration) {
+    for (int iteration = 0; iteration < m->most && any(going); ++iteration) {
         real worst = zero;
         m->iterations += chosen(going, wide(1.0), zero);
         MODEL(change)(m, h);
@@ -301,16 +378,32 @@ static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
         if (iteration > 1) { /* noise of what rates are made of, or no root */
             const mask stays = (worst > 0.3 * before) & none_of(good);
             good |= stays & (worst < 1e4);
-            going &= none_of(stays & none_of(good));
+            if (iteration > m->late)
+                going &= none_of(stays & none_of(good));
         }
         good &= none_of(lost);
         found |= going & good;
         going &= none_of(good | lost);
-        if (any(switched & going))
-            MODEL(prepare)(m, h, switched & going);
+        const mask slow = (worst > SLOW * before) & (before > 0.0);
+        if (any((switched | slow) & going))
+            MODEL(prepare)(m, h, (switched | slow) & going);
         before = worst;
     }
+#if LOSSY /* what rounding leaves of the loss, a difference of energies, is booked as it is taken */
+    m->rates[m->first[MODEL(heated)]] += m->gap[m->first[MODEL(heated)]];
+#endif
     return found;
+}
+
+/* The rates in some lanes, with means at as many nodes as they ask for; returns who has them. */
+static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
+{
+    m->fine &= none_of(where);
+    const mask found = MODEL(iterate)(m, h, where), more = MODEL(coarse)(m, h) & found;
+    if (LOSSY || !any(more))
+        return found;
+    m->fine |= more;
+    return (found & none_of(more)) | MODEL(iterate)(m, h, more);
 }
 
 /* Rates on the polynomial through those of a step, at a part of the step. */

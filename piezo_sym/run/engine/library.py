@@ -22,13 +22,8 @@ from piezo_sym.files import path_text, temporary_folder
 from piezo_sym.run.engine.compiler import FLAGS, Compiler, build, compilers, passed_by
 from piezo_sym.run.engine.driver import collocation, driver
 from piezo_sym.run.engine.processor import processor
-from piezo_sym.run.engine.rates import rates_text
 from piezo_sym.run.engine.texts import texts as texts_of
-from piezo_sym.run.engine.vector import has_step, wide_text
 
-#: What a library computes: states and fixed steps; the same, of many members side by side;
-#: functions of many states alone; or collocation steps.
-Made = Literal["single", "members", "rates", "collocation"]
 Layout = Literal["one", "many", "lanes"]
 ENDINGS = {"win32": ".dll", "darwin": ".dylib"}
 
@@ -46,37 +41,31 @@ class EngineWarning(UserWarning):
 class Sources:
     """The texts of one module: its name, ``<name>.h``, ``<name>.c``; and what is made of them.
 
-    For collocation steps also ``<name>_step.c``, how many stages they have, and what lies in
-    vectors: numbers of "one" run do not, "many" runs side by side, or the "lanes" of its banks.
+    A library has the module's functions; or, if it is one of steps, those of so many stages. For
+    steps there is also ``<name>_step.c``, and what lies in vectors: numbers of "one" run do not,
+    "many" runs side by side, or the "lanes" of its banks; and whether they are dissipative.
     """
 
     name: str
     header: str
     source: str
-    made: Made = "single"
     step: str = ""
     stages: int = 0
     layout: Layout = "one"
+    lossy: bool = False
 
     def files(self) -> dict[str, str]:
         """Return what to compile, by file name."""
         texts = {f"{self.name}.h": self.header, f"{self.name}.c": self.source}
-        if self.made == "collocation":
+        if self.stages:
             texts[f"{self.name}_step.c"] = self.step
             texts["elimination.c"] = texts_of("elimination.c")
         return {**texts, "driver.c": self._driver()}
 
     def _driver(self) -> str:
-        if self.made == "collocation":
-            return collocation(self.name, self.stages, self.layout)
-        if self.made == "rates":
-            return rates_text(self.name, self.source)
-        starts = f" {self.name}_newton_start(" in self.header
-        text = driver(self.name, starts=starts)
-        if self.made == "single" or not has_step(self.source):
-            return text
-        vectors = wide_text(self.name, self.header, self.source)
-        return "\n".join((text, "#if !defined(PLAIN)", vectors, "#endif\n"))
+        if not self.stages:
+            return driver(self.name)
+        return collocation(self.name, self.stages, self.layout, lossy=self.lossy)
 
 
 def library(sources: Sources, *, again: bool = False) -> Path:
@@ -138,7 +127,7 @@ def _flags(sources: Sources, flags: tuple[str, ...]) -> tuple[str, ...]:
     What a compiler makes vectors of it may round otherwise: steps of many runs side by side, and of
     one alone, shall give the same numbers.
     """
-    alike = sources.made == "collocation" and sources.layout != "lanes"
+    alike = sources.stages and sources.layout != "lanes"
     return (*flags, "-fno-tree-vectorize", "-fno-openmp-simd") if alike else flags
 
 

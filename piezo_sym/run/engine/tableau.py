@@ -18,18 +18,27 @@ mp.dps = DIGITS
 _ALONE = Lock()
 #: By what an even number of stages sees its error estimates: near the eigenvalues' real parts.
 EVEN = "0.15"
+#: Nodes of means where the nodes of a step are too few, and what these may leave out of a mean.
+FINE, LEFT_OUT = 16, "1e-15"
 #: Between two places where switching functions are known they are looked at in so many parts.
 PARTS = 3
 
 
 @cache
-def tableau(stages: int, nodes: int) -> str:
-    """Return the tables of a step with so many stages, its means taken at so many nodes."""
+def tableau(stages: int, nodes: int, *, lossy: bool = False) -> str:
+    """Return the tables of a step with so many stages, its means taken at so many nodes.
+
+    Parameters
+    ----------
+    lossy : a dissipative step: one stage, with the state and the co-states at the step's end, and
+        inputs at its middle.
+    """
     with _ALONE:
         c, b = _gauss(stages)
         t, w = _gauss(nodes)
         lagrange = [_lagrange(c, i) for i in range(stages)]
         reach = [_integral(part) for part in lagrange]
+        fine, many = _gauss(FINE)
         a = mp.matrix([[_at(reach[j], c[i]) for j in range(stages)] for i in range(stages)])
         basis, values = _eigen(a)
         tables = {
@@ -42,18 +51,32 @@ def tableau(stages: int, nodes: int) -> str:
             "stage_reach": a.tolist(),
             "node_reach": [[_at(reach[j], t[q]) for j in range(stages)] for q in range(nodes)],
             "node_mean": [
-                [w[q] * _at(lagrange[i], t[q]) / b[i] for q in range(nodes)] for i in range(stages)
+                [v * _at(part, x) / b[i] for x, v in zip(t, w, strict=True)]
+                for i, part in enumerate(lagrange)
+            ],
+            "node_last": _last(t, w),
+            "fine_reach": [[_at(one, x) for one in reach] for x in fine],
+            "fine_mean": [
+                [v * _at(part, x) / b[i] for x, v in zip(fine, many, strict=True)]
+                for i, part in enumerate(lagrange)
             ],
             "stage_basis": basis.tolist(),
             "basis_stage": (basis**-1).tolist(),
             "eigenvalue": values,
             **_between([mp.mpf(0), *c, mp.mpf(1)]),
         }
+        if lossy:
+            tables |= {name: [[mp.mpf(1)]] for name in ("stage_reach", "node_reach", "node_mean")}
+            tables["eigenvalue"] = values = [[mp.mpf(1), mp.mpf(0)]]
         # the real eigenvalue, where there is one: the estimate of errors needs a real factor
         filters = [mp.re(values[0][0]) if stages % 2 else mp.mpf(EVEN)]
         sizes = {"STAGES": stages, "NODES": nodes, "PAIRS": stages // 2, "PARTS": PARTS}
+        sizes |= {"FINE": FINE, "LOSSY": int(lossy)}
         head = [f"#define {name} {value}" for name, value in sizes.items()]
+        # means are of as many orders more as nodes are more: by the decay of what they are of
+        coarse = mp.mpf(LEFT_OUT) ** (mp.mpf(nodes - 1) / (2 * nodes + 1 - stages))
         head += [f"static const double filter = {_numbers(filters)};"]
+        head += [f"#define COARSE {_numbers([coarse])}"]
         return "\n".join([*head, *(_table(name, rows) for name, rows in tables.items())])
 
 

@@ -6,14 +6,8 @@ Input: their names.  Output: one text.
 from functools import cache
 from pathlib import Path
 
-#: Vectors of numbers, and the functions that a step calls on them.
-VECTORS = ("real.h", "wide.h", "wide_laws.h")
-#: Fixed steps of one state after another, a step at a time or through a mesh.
-STEPS = ("kinds.c", "stepper.c", "tick.c", "march.c")
-#: The same in lanes of vectors; behind those two, and the model's step for vectors.
-LANES = ("wide.c", "fleet.c")
 #: Collocation steps of runs in lanes, behind a model's own and the tables of their stages.
-COLLOCATION = ("gauss.c", "trajectory.c", "crossings.c", "ticks.c", "batch.c")
+COLLOCATION = ("gauss.c", "trajectory.c", "crossings.c", "ticks.c", "batch.c", "tick.c")
 
 
 @cache

@@ -10,6 +10,10 @@ static void MODEL(leave)(MODEL(batch) *b, int lane, int failed)
         l->run->x[k] = LANE(b->m.x, k, lane);
         l->run->largest[k] = LANE(b->m.largest, k, lane);
     }
+    for (long k = 0; k < b->m.booked; ++k) {
+        l->run->ledger[k] = LANE(b->sums, k, lane);
+        l->run->ledger[b->m.booked + k] = LANE(b->lost, k, lane);
+    }
     l->run->failed = failed;
     l->phase = IDLE;
 }
@@ -21,14 +25,26 @@ static void MODEL(refuse)(MODEL(batch) *b, int lane, double h)
     ++l->run->rejected;
     l->h = h;
     l->phase = STEP;
-    if (++l->refused > MOST_REFUSED || l->t + h <= l->t)
+    if (LOSSY || ++l->refused > MOST_REFUSED || l->t + h <= l->t)
         MODEL(leave)(b, lane, 1);
+}
+
+/* A fixed step is refused: it is tried again from no prediction, and then half of it. */
+static void MODEL(refuse_fixed)(MODEL(batch) *b, int lane)
+{
+    MODEL(lane) *l = b->lane + lane;
+    const int predicted = l->predicted;
+    l->known = 0.0;
+    if (predicted)
+        l->phase = STEP;
+    else
+        MODEL(refuse)(b, lane, 0.5 * l->whole);
 }
 
 /* Whether samples of a lane lie within its accepted step. */
 static int MODEL(samples_left)(const MODEL(batch) *b, const MODEL(lane) *l)
 {
-    const double end = l->last && l->step == l->whole ? l->segment->stop : l->t + l->step;
+    const double end = l->last && l->step == l->whole ? MODEL(until)(b, l) : l->t + l->step;
     return b->fixed == 0.0 && l->run->sample < b->samples && b->times[l->run->sample] < end;
 }
 
@@ -86,7 +102,7 @@ static int MODEL(on)(MODEL(batch) *b, int lane)
     MODEL(lane) *l = b->lane + lane;
     MODEL(run) *run = l->run;
     const int last = l->last && l->step == l->whole;
-    double until = l->segment->stop;
+    double until = MODEL(until)(b, l);
     if (b->fixed > 0.0 && run->sample < b->samples && b->times[run->sample] < until)
         until = b->times[run->sample];
     l->t = last ? until : l->t + l->step;
@@ -113,7 +129,7 @@ static int MODEL(on)(MODEL(batch) *b, int lane)
         l->known = 0.0;
     while (run->sample < b->samples && b->times[run->sample] <= l->t)
         MODEL(sample)(b, lane, b->m.x, NULL);
-    if (l->t >= b->duration)
+    if (l->t >= b->stop)
         MODEL(leave)(b, lane, 0);
     else if (l->t >= l->segment->stop) {
         ++l->segment;
@@ -183,6 +199,7 @@ static MODEL(tick) MODEL(planned)(MODEL(batch) *b)
         l->ticks += l->phase != SAMPLE;
         LANE(&t.h, 0, lane) = l->length;
         LANE(&t.behind, 0, lane) = l->behind;
+        l->predicted = l->known > 0.0;
         LANE(&t.slope, 0, lane) = l->known > 0.0 ? l->length / l->known : 0.0;
     }
     t.steps = t.busy & none_of(t.sampling);
@@ -239,6 +256,7 @@ static void MODEL(at_ends)(MODEL(batch) *b, MODEL(tick) *t)
         if (!any(MODEL(choose)(m->branches, b->some_side, b->end_branch, m->over)))
             break;
     }
+    t->good &= none_of(t->steps) | MODEL(within)(b->some_margin);
     MODEL(copy)(t->steps, b->some_rate, b->end_rate, m->n);
     MODEL(copy)(t->steps, b->some_side, b->end_side, m->branches);
 }
@@ -254,7 +272,10 @@ static void MODEL(judged)(MODEL(batch) *b, MODEL(tick) *t)
             continue;
         if (!IN(t->found, lane)) {
             l->known = 0.0;
-            MODEL(refuse)(b, lane, b->fixed > 0.0 ? 0.5 * l->whole : 0.25 * l->length);
+            if (b->fixed > 0.0)
+                MODEL(refuse_fixed)(b, lane);
+            else
+                MODEL(refuse)(b, lane, 0.25 * l->length);
             continue;
         }
         l->known = l->length;
@@ -290,8 +311,12 @@ static void MODEL(cut_and_accepted)(MODEL(batch) *b, MODEL(tick) *t)
             continue;
         const int good = IN(t->good, lane) != 0;
         SET(t->booked, lane, good && MODEL(accept)(b, lane));
-        if (!good)
-            MODEL(refuse)(b, lane, (b->fixed > 0.0 ? 0.5 : 0.25) * b->lane[lane].length);
+        if (good)
+            continue;
+        if (b->fixed > 0.0)
+            MODEL(refuse_fixed)(b, lane);
+        else
+            MODEL(refuse)(b, lane, 0.25 * b->lane[lane].length);
     }
 }
 

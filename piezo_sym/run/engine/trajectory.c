@@ -22,12 +22,13 @@ typedef struct {
     const MODEL(signal) *signals;
 } MODEL(segment);
 
-/* A run: what it is given, what it leaves at samples, and where it stands. */
+/* A run: what it is given, where it stands, and what it leaves at samples. */
 typedef struct {
     const MODEL(parameters) *p;
-    const MODEL(segment) *segments;
-    double *x;                       /* n: at t = 0, and then where it stands */
+    const MODEL(segment) *segments;  /* from the one that t lies in */
+    double *x;                       /* n: at t */
     double *largest;                 /* n: the largest magnitude of each state */
+    double *ledger;                  /* (2, booked): sums until t, and what rounding lost of them */
     double *states, *sums;           /* (samples, n), (samples, booked) */
     double t;
     long sample, steps, rejected, switched, iterations, failed;
@@ -46,7 +47,7 @@ typedef struct {
     double t, h;
     double length, whole, step, part; /* at hand, before cuts, accepted; part of it for a cut */
     double known, longer, after_switch;
-    int phase, behind, fresh, last, cuts, refused;
+    int phase, behind, predicted, fresh, last, cuts, refused;
     long which; /* the switch at the end of the step; -1 if none */
     double since, pace[2]; /* when the way over kinks was chosen; how fast each way was */
     long ticks, looks;     /* steps solved since then; how often the ways were compared */
@@ -59,7 +60,7 @@ typedef struct {
     MODEL(run) *runs;
     const double *times; /* of samples */
     long count, next, samples, ways;
-    double duration, tolerance, first, longest, fixed;
+    double stop, tolerance, first, longest, fixed;
     real *rate, *side, *sums, *lost, *known;       /* at the begin of a step; of the step before */
     real *end_rate, *end_side, *end_branch, *part; /* at its end; what it adds to sums */
     real *some_rate, *some_share, *some_side, *some_rows, *some_margin, *some_inputs;
@@ -133,10 +134,16 @@ static void MODEL(stand)(MODEL(batch) *b, mask where, mask choosing)
     MODEL(copy)(where, b->some_side, b->side, m->branches);
 }
 
+/* Until when inputs have no break, and the run goes on. */
+static double MODEL(until)(const MODEL(batch) *b, const MODEL(lane) *l)
+{
+    return fmin(l->segment->stop, b->stop);
+}
+
 /* What a lane's next step is: its length, and the inputs at its stages. */
 static void MODEL(plan)(const MODEL(batch) *b, MODEL(lane) *l, int lane)
 {
-    double until = l->segment->stop, longest = fmin(l->h, b->longest);
+    double until = MODEL(until)(b, l), longest = fmin(l->h, b->longest);
     if (l->phase == STEP) {
         if (b->fixed > 0.0) {
             if (l->run->sample < b->samples && b->times[l->run->sample] < until)
@@ -168,11 +175,12 @@ static void MODEL(predict)(MODEL(batch) *b, real behind, real slope, mask known)
     for (long i = 0; i < STAGES; ++i) {
         real *const rates = m->rates + i * m->n;
         MODEL(carry)(m, b->known, behind + slope * stage_at[i], rates);
-        MODEL(copy)(none_of(known), b->rate, rates, m->n);
+        for (long k = 0; k < m->n; ++k) /* a fixed step may be much longer than what is fast */
+            rates[k] = chosen(known, rates[k], b->fixed > 0.0 ? zero : b->rate[k]);
     }
 }
 
-static inline real power_4(real a)
+static inline real fourth_power(real a)
 {
     const real b = chosen(a > 0.0, a * a, zero);
     return b * b;
@@ -221,7 +229,7 @@ static real MODEL(error)(const MODEL(batch) *b, real h)
         const real size = largest_of(m->largest[k], largest_of(size_of(m->x[k]), size_of(m->end[k])));
         const real misfit = size_of(b->some_rate[k]), error = size_of(m->gap[k]);
         const real fast = (misfit / (error + 1e-300) - 1.0) / (FAST * filter);
-        const real gain = STAGES > 1 ? least(largest_of(share[k], power_4(fast)), wide(1.0)) : (real)wide(1.0);
+        const real gain = STAGES > 1 ? least(largest_of(share[k], fourth_power(fast)), wide(1.0)) : (real)wide(1.0);
         const real counts = chosen(m->over, wide(KINKS_WITHIN), gain);
         worst = largest_of(counts * error / (b->tolerance * size + 1e-300), worst);
     }
