@@ -17,12 +17,9 @@ from piezo_sym.codegen import (
     c_collocation,
     c_header,
     c_source,
-    c_step,
     collocation_of,
     lower,
     numpy_module,
-    start_of,
-    step_of,
 )
 from piezo_sym.derivation import derive
 from piezo_sym.errors import DriftError
@@ -83,22 +80,15 @@ def render(
     if not allow_unproved:
         report.raise_if_not_proved()
     program = lower(iphs, verdict_line(report))
-    step, declared = c_step(program, step_of(iphs, odd_laws(report)), start_of(iphs))
     made = f"{MARK} {VERSION}; do not edit: change the spec, then run `piezo-sym generate`."
     return {
         f"{model.name}/{model.name}.py": numpy_module(program),
-        f"{model.name}/{model.name}.h": c_header(program, declared),
-        f"{model.name}/{model.name}.c": c_source(program, step),
+        f"{model.name}/{model.name}.h": c_header(program),
+        f"{model.name}/{model.name}.c": c_source(program),
         f"{model.name}/{model.name}_step.c": c_collocation(program, collocation_of(iphs)),
         f"{model.name}/proofs.json": proofs_json(report, model, made),
         f"{model.name}/proofs.smt2": smt2(report, made),
     }
-
-
-def odd_laws(report: Report) -> frozenset[str]:
-    """Return the elements whose dissipative laws are proved odd: a step averages them."""
-    rows = [row for row in report.rows if row.id == "odd" and row.verdict is Verdict.PROVED]
-    return frozenset(row.element for row in rows)
 
 
 def verdict_line(report: Report) -> str:

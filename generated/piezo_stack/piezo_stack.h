@@ -170,51 +170,6 @@ void piezo_stack_margins(const double *x,
                          const piezo_stack_parameters *p_,
                          double *out);
 
-/*
- * The step of the discrete gradient: x to x_new over h, inputs u at its middle.
- * piezo_stack_newton: out[n], the change that Newton's method takes from x_new, in
- *     an array of piezo_stack_newton_size numbers; 0 if the step is too long.
- * piezo_stack_means: over the step, the mean power of each port [W], heat [W] and
- *     entropy production [W/K] of each process (of a bank: of each lane), and
- *     entropy rate of each of 1 heat exchanges [W/K].
- * piezo_stack_inside: whether a state lies in the domain.
- */
-enum { piezo_stack_exchange_count = 1 };
-long piezo_stack_newton_size(const piezo_stack_parameters *p_);
-int piezo_stack_newton(const double *x,
-                       const double *x_new,
-                       const double *u,
-                       double h,
-                       const piezo_stack_parameters *p_,
-                       double *out);
-void piezo_stack_means(const double *x,
-                       const double *x_new,
-                       const double *u,
-                       const piezo_stack_parameters *p_,
-                       double *out);
-int piezo_stack_inside(const double *x,
-                       const double *u,
-                       const piezo_stack_parameters *p_);
-
-/*
- * The dissipative step: co-states of stores at its end, for a start after a jump.
- * As piezo_stack_newton_size, piezo_stack_newton and piezo_stack_means; the means end with
- *     heat [W] and entropy production [W/K] of what the step itself loses.
- */
-long piezo_stack_newton_size_start(const piezo_stack_parameters *p_);
-int piezo_stack_newton_start(const double *x,
-                             const double *x_new,
-                             const double *u,
-                             double h,
-                             const piezo_stack_parameters *p_,
-                             double *out);
-void piezo_stack_means_start(const double *x,
-                             const double *x_new,
-                             const double *u,
-                             double h,
-                             const piezo_stack_parameters *p_,
-                             double *out);
-
 #ifdef __cplusplus
 }
 #endif

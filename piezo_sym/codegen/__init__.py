@@ -3,10 +3,8 @@
 from piezo_sym.codegen.c_collocation import c_collocation
 from piezo_sym.codegen.c_head import c_header
 from piezo_sym.codegen.c_printer import c_source
-from piezo_sym.codegen.c_step import c_step
 from piezo_sym.codegen.collocation import collocation_of
 from piezo_sym.codegen.lower import lower
-from piezo_sym.codegen.newton import start_of, step_of
 from piezo_sym.codegen.numpy_head import MARK
 from piezo_sym.codegen.numpy_printer import numpy_module
 
@@ -15,10 +13,7 @@ __all__ = [
     "c_collocation",
     "c_header",
     "c_source",
-    "c_step",
     "collocation_of",
     "lower",
     "numpy_module",
-    "start_of",
-    "step_of",
 ]

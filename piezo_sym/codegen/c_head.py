@@ -39,8 +39,8 @@ TAKES: Mapping[str, tuple[str, ...]] = {
 SCALARS = {"states": "long", "processes": "long", "energy": "double", "entropy": "double"}
 
 
-def c_header(program: Program, more: str = "") -> str:
-    """Return the text of a program's C header; `more` is declared at its end."""
+def c_header(program: Program) -> str:
+    """Return the text of a program's C header."""
     guard = f"PIEZO_SYM_{program.name}_H"
     parts = [
         f"{opening(program)}\n#ifndef {guard}\n#define {guard}",
@@ -48,7 +48,6 @@ def c_header(program: Program, more: str = "") -> str:
         "\n".join(_parameters(program)),
         "\n".join(_numbers(program)),
         *_declarations(program),
-        *([more] if more else []),
         f"#ifdef __cplusplus\n}}\n#endif\n\n#endif /* {guard} */",
     ]
     return "\n\n".join(parts) + "\n"

@@ -21,7 +21,7 @@ from piezo_sym.expressions.tree import Add, Expr, If, LaneSum
 WIDTH = 96
 #: Calls that take one lane at a time: a loop with them is not to be vectorised.
 _ALONE = "|".join(record.in_c for record in RECORDS.values() if record.transcendental)
-LIBRARY = re.compile(rf"\b(?:(?:{_ALONE}|pow)(?:_of)?|mean_tanh|mean_tanh_by_new)\(")
+LIBRARY = re.compile(rf"\b(?:{_ALONE}|pow)(?:_of)?\(")
 
 
 @final

@@ -30,23 +30,14 @@ ULONG_MAX LLONG_MIN LLONG_MAX ULLONG_MAX SIZE_MAX FLT_RADIX DECIMAL_DIG SIGABRT 
 SIGSEGV SIGTERM SIG_DFL SIG_ERR SIG_IGN CLOCKS_PER_SEC"""
 _FLOATS = "DIG EPSILON MANT_DIG MAX MAX_10_EXP MAX_EXP MIN MIN_10_EXP MIN_EXP"
 #: The functions that generated code calls, beside those that laws are written with.
-_CALLED = (
-    "copysign expm1 fabs pow phi1 phi2 phi3 ramp ramp_by_new mean_sign mean_sign_by_new "
-    "mean_tanh mean_tanh_by_new mean_deadzone mean_deadzone_by_new mean_deadzone_by_width "
-    + " ".join(f"power_{n}" for n in range(2, 9))
-)
-#: What the engine adds to a module's text where it reads it with vectors for numbers.
-_VECTORS = (
-    "PLAIN "
-    "WIDTH SIDE MODEL real mask zero nowhere wide chosen any size_of with_sign "
-    "power_of_two small_expm1 reduced exp_of expm1_of LANE_BY_LANE sqrt_of log_of sin_of cos_of "
-    "tanh_of atan_of sinh_of cosh_of erf_of pow_of whole_power least largest sign_of deadzone_of "
-    "saturate_of phi3_of share_above "
-    "ramp_of ramp_by_new_of mean_sign_of mean_sign_by_new_of bend_of "
-    "log1p_of atanh_of mean_tanh_of mean_tanh_by_new_of beyond_of mean_deadzone_of "
-    "mean_deadzone_by_new_of mean_deadzone_by_width_of way_of about_per few pattern "
-    "REAL_WIDTH LANE OF SET bits_of real_of none_of largest_of LANES NUMBER gathered pick deadzone "
-    "saturate sign"
+_CALLED = "copysign expm1 fabs pow " + " ".join(f"power_{n}" for n in range(2, 9))
+#: What a step's text and the engine's behind it have names for: numbers of one run, or vectors.
+_REALS = (
+    "PLAIN MODEL REAL_WIDTH LANE OF SET LANES NUMBER LANE_BY_LANE real mask pattern few zero "
+    "nowhere wide chosen any none_of size_of with_sign power_of_two small_expm1 reduced exp_of "
+    "expm1_of "
+    "sqrt_of log_of sin_of cos_of tanh_of atan_of sinh_of cosh_of erf_of pow_of whole_power least "
+    "largest_of bits_of real_of pick deadzone saturate sign"
 )
 _ENDS = (
     *("parameters", "states", "processes", "jacobian", "margins"),
@@ -54,7 +45,7 @@ _ENDS = (
 )
 
 KEPT = (
-    frozenset(f"{_CPLUSPLUS} {_MACROS} {_CALLED} {_VECTORS}".split())
+    frozenset(f"{_CPLUSPLUS} {_MACROS} {_CALLED} {_REALS}".split())
     | {f"{kind}_{word}" for kind in ("FLT", "DBL", "LDBL") for word in _FLOATS.split()}
     | {f"{r.in_c}{end}" for r in RECORDS.values() if r.transcendental for end in ("_of", "_each")}
     | {f"{word}{end}" for word in ("M_PI", "M_E", "M_SQRT2", "M_LN2") for end in ("l", "f")}

@@ -37,16 +37,15 @@ from piezo_sym.codegen.program import (
 from piezo_sym.expressions.tree import ZERO, Expr, Neg, Num
 
 
-def c_source(program: Program, more: str = "") -> str:
-    """Return the text of a program's C source file; `more` stands at its end."""
+def c_source(program: Program) -> str:
+    """Return the text of a program's C source file."""
     printer = _Printer(program)
     functions = [*printer.sizes(), *map(printer.function, program.functions)]
     functions += [printer.jacobian(), printer.margins()]
     parts = [
         f'{opening(program)}\n#include "{program.name}.h"\n\n#include <math.h>',
-        *helpers("\n".join([*functions, more])),
+        *helpers("\n".join(functions)),
         *functions,
-        *([more] if more else []),
     ]
     return "\n\n".join(parts) + "\n"
 

@@ -21,11 +21,10 @@ from piezo_sym.algebra.lanes import Slot
 from piezo_sym.codegen.differences import sharp_quantity
 from piezo_sym.codegen.functions import exchanges_of, limits_of, ports_of, rates_of
 from piezo_sym.codegen.jacobian import jacobian_of
-from piezo_sym.codegen.mean import is_affine
 from piezo_sym.codegen.program import Entry, Field, Limit, Quantity, Row, needed
 from piezo_sym.codegen.quantities import Quantities
 from piezo_sym.codegen.switches import Switch, Switches, compared, lanes_of
-from piezo_sym.expressions.calculus import div, mul
+from piezo_sym.expressions.calculus import div, is_affine, mul
 from piezo_sym.expressions.tree import names, rename
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name

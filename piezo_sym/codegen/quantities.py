@@ -16,15 +16,12 @@ import sympy as sp
 from piezo_sym.algebra.coefficients import coefficient
 from piezo_sym.algebra.lanes import LaneMatrix, Slot
 from piezo_sym.codegen.excess import with_excess
-from piezo_sym.codegen.mean import exponent, is_affine, mean, mean_across_kinks, mean_excess
 from piezo_sym.codegen.program import Quantity
-from piezo_sym.expressions.calculus import add, div, mul, neg
+from piezo_sym.expressions.calculus import add, div, is_affine, mul, neg
 from piezo_sym.expressions.tree import (
-    Call,
     Expr,
     LaneSum,
     Sym,
-    names,
     rebuild,
     rename,
     replace,
@@ -32,7 +29,6 @@ from piezo_sym.expressions.tree import (
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name, heated
 from piezo_sym.network import port_order
-from piezo_sym.spec.circuit import Placed
 from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, Resistor, Source, Storage
 from piezo_sym.spec.names import fresh
 
@@ -45,25 +41,15 @@ class Quantities:
     ----------
     defined : the definitions, in order.
     forces, outputs, heats : driving force, output W and heat of each process.
-    after : for a step, the name of each state after it; else empty.
+    means : at a stage of a step, the co-states that are given to it.
 
     Parameters
     ----------
     iphs : the system.
-    odd : for a step, the dissipative elements whose laws are odd; co-states are then means over the
-        step, and laws with kinks too.  None for the quantities at a point.
-    late : for a step, co-states of stores are those at its end; temperatures are still means.
-    given : for a stage of a collocation step: co-states not affine in the state are `means`, given.
+    given : for a stage of a step: co-states that are not affine in the state are `means`.
     """
 
-    def __init__(
-        self,
-        iphs: IPHS,
-        odd: frozenset[str] | None = None,
-        *,
-        late: bool = False,
-        given: bool = False,
-    ) -> None:
+    def __init__(self, iphs: IPHS, *, given: bool = False) -> None:
         self.system = iphs.system
         self.circuit = iphs.circuit
         self.stores = tuple(self.circuit.of(Storage, Body))
@@ -72,12 +58,9 @@ class Quantities:
         self.taken = set(self.circuit.names)
         self.taken |= {str(symbol.name) for symbol, _ in (*iphs.slopes, *iphs.shares)}
         self.defined: list[Quantity] = []
-        self.odd, self.late, self.given = odd or frozenset(), late, given
+        self.given = given
         self.means: list[Quantity] = []
-        stores = self.stores if odd is not None else ()
-        self.after = {port.state: self.name(f"{port.state}_new") for _, port in stores}
         self._sums: dict[LaneSum, Sym] = {}
-        self._functions: dict[Expr, Sym] = {}
         self._costates()
         self._ratios()
         self._loops(iphs)
@@ -133,10 +116,6 @@ class Quantities:
         base = f"{hot}_minus_{cold.name}"
         if self.given:
             return self._given_excess(hot, cold, value, base)
-        if self.after:
-            body = next(port for port in self.bodies.values() if port.temperature == hot)
-            value = mean_excess(value, cold, exponent(value), *self._ends(body.state))
-            value = self._functions_named(value, body)
         known = next((q for q in self.defined if q.value == value), None)
         if known:
             return Sym(known.name)
@@ -161,9 +140,6 @@ class Quantities:
 
     def known(self, expr: Expr) -> Expr:
         """Return an expression with each part that is a temperature written by its name."""
-        if self.after:  # T is a mean there, and no part of a derivative; functions have names
-            found = self._functions.get(expr)
-            return found if found else rebuild(expr, self.known)
         found = self._temperatures.get(expr)
         return found if found else rebuild(expr, self.known)
 
@@ -186,39 +162,13 @@ class Quantities:
             yield mul(coefficient(own), value)
 
     def _costates(self) -> None:
-        note = "mean co-states" if self.after and not self.late else "co-states dU/dx"
+        note = "co-states dU/dx"
         for placed, port in self.stores:
             law = rename(port.law, {port.letter: port.state})
             if self.given and not is_affine(law, {port.state}):
                 self.means.append(Quantity(costate_name(port), law, placed.bank, note))
                 continue
-            if self.late and isinstance(port, Storage):
-                law = rename(law, self.after)
-            elif self.after:
-                law = self._functions_named(mean(law, *self._ends(port.state)), port)
             self.defined_as(costate_name(port), law, placed.bank, note)
-
-    def _functions_named(self, law: Expr, port: Storage | Body) -> Expr:
-        """Return a mean law whose phi1 and phi2 are quantities, computed once; phi3 with them."""
-        match law:
-            case Call("phi1" | "phi2", (arg,)):
-                if law not in self._functions:
-                    self._define_functions(arg, costate_name(port))
-                return self._functions[law]
-        return rebuild(law, lambda part: self._functions_named(part, port))
-
-    def _define_functions(self, arg: Expr, name: str) -> None:
-        """Define phi3, phi2 and phi1 of a change."""
-        note = "means of exponentials"
-        change = self.define(f"change_{name}", arg, None, note)
-        for function in ("phi3", "phi2", "phi1"):
-            value = Call(function, (change,))
-            named = self.define(f"{function}_{name}", value, None, note)
-            self._functions[value] = self._functions[Call(function, (arg,))] = named
-
-    def _ends(self, state: str) -> tuple[dict[str, Expr], dict[str, Expr]]:
-        """Return what a state is before and after a step."""
-        return {state: Sym(state)}, {state: Sym(self.after[state])}
 
     def _ratios(self) -> None:
         for _, port in self.circuit.of(Coupling):
@@ -245,12 +195,12 @@ class Quantities:
         for k, (placed, port) in enumerate(self.circuit.of(Resistor, Conductor)):
             terms = [*self.row(states, k, self.costate)]
             terms += self.row(inputs, k, self.input)
-            effort = drive = add(*terms)
+            effort = add(*terms)
             if not isinstance(effort, Sym) and isinstance(port, Resistor):
                 effort = self.defined_as(port.effort, effort, placed.bank, "driving forces")
             if isinstance(port, Resistor):
                 force: Expr = effort
-                law = self._law(placed, port, drive, effort)
+                law = replace(self._at(port.law, port.heats), {port.letter: effort})
             else:
                 force = add(effort, neg(Sym(self.bodies[port.second].temperature)))
                 law = div(mul(port.conductance, force), effort)
@@ -259,35 +209,6 @@ class Quantities:
             outputs.append(output)
             heats.append(mul(output, effort))
         return forces, outputs, heats
-
-    def _law(self, placed: Placed, port: Resistor, drive: Expr, effort: Expr) -> Expr:
-        """Return a law at its driving force; over a step, averaged across the kinks of an odd law.
-
-        A mean law is passive if the force moves along a line, so its co-states have to be affine.
-        """
-        law = self._at(port.law, port.heats)
-        still = {*self.circuit.model.inputs, *(port.name for _, port in self.circuit.of(Coupling))}
-        used = {*names(drive)}
-        if placed.element in self.odd and used <= self._affine.keys() | still:
-            affine = {name: self._affine[name] for name in used & self._affine.keys()}
-            later = {name: rename(tree, self.after) for name, tree in affine.items()}
-            old, new = (replace(drive, ends) for ends in (affine, later))
-            if not is_affine(law, {port.letter}) and mean_across_kinks(law, port.letter, old, new):
-                note = "driving forces before and after the step"
-                base = f"{port.letter}_{placed.element}"
-                first = self.define(f"{base}_old", old, placed.bank, note)
-                last = self.define(f"{base}_new", new, placed.bank, note)
-                return mean_across_kinks(law, port.letter, first, last) or law
-        return replace(law, {port.letter: effort})
-
-    @cached_property
-    def _affine(self) -> dict[str, Expr]:
-        """The law of each co-state that is affine in its state."""
-        return {
-            costate_name(store): rename(store.law, {store.letter: store.state})
-            for _, store in self.stores
-            if is_affine(store.law, {store.letter})
-        }
 
     def heat(self, k: int) -> Sym:
         """Return the quantity that is the heat of process k, summed over the lanes of a bank."""

@@ -6,7 +6,7 @@ Constant factors are folded as exact rationals, so that the text does not depend
 any algebra system.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 
 from piezo_sym.expressions.functions import RECORDS
@@ -191,22 +191,8 @@ def _choice(then: Expr, condition: Cmp, other: Expr) -> Expr:
 
 def _slopes(function: str, args: tuple[Expr, ...]) -> tuple[Expr, ...]:
     """Return the derivative of a function by each of its arguments."""
-    if function in RECORDS:
-        value = Call(function, args)
-        texts = RECORDS[function].slopes
-        return tuple(rule(text, args[0], args[-1], value) for text in texts)
-    z = args[0]
-    match function:  # what lowering makes
-        case "phi1":  # (exp(z) - 1)/z
-            return (add(Call("phi1", args), neg(Call("phi2", args))),)
-        case "phi2":  # (phi1(z) - 1)/z
-            return (add(Call("phi2", args), neg(mul(Num(Fraction(2)), Call("phi3", args)))),)
-        case "mean_deadzone":
-            by_end, w = f"{function}_by_new", args[2]
-            by_old, by_new = Call(by_end, (args[1], z, w)), Call(by_end, args)
-            return (by_old, by_new, Call(f"{function}_by_width", args))
-    by_end = f"{function}_by_new"  # ramp, mean_...: means over a step, its ends may change places
-    return (Call(by_end, (args[1], z)), Call(by_end, args))
+    value = Call(function, args)
+    return tuple(rule(text, args[0], args[-1], value) for text in RECORDS[function].slopes)
 
 
 def rule(text: str, x: Expr, w: Expr = ZERO, value: Expr = ZERO) -> Expr:
@@ -252,3 +238,10 @@ def _put(node: Expr, words: Mapping[str, Expr]) -> Expr:
         case Pow(base, exponent):
             return power(_put(base, words), exponent)
     return rebuild(node, lambda part: _put(part, words))
+
+
+def is_affine(law: Expr, variables: Iterable[str]) -> bool:
+    """Return whether a law is affine in some variables together."""
+    known = set(variables)
+    slopes = [derivative(law, name) for name in known]
+    return all(known.isdisjoint(names(slope)) for slope in slopes)

@@ -7,11 +7,10 @@ the step, its length h.  Output: the state after it, and what it books.  With de
     Dq/h   = v
     Dp/h   = -k (q - q_l) - d v + alpha V_C + F_ext
     DQ_C/h = sum i_j - alpha v
-    Dphi/h = V_in - V_C - Wbar_j
-    DS/h   = (d v^2 + sum Wbar_j i_j)/Tbar + lam (T_e/Tbar - 1)
+    Dphi/h = V_in - V_C - W_j
+    DS/h   = (d v^2 + sum W_j i_j)/Tbar + lam (T_e/Tbar - 1)
 
-Wbar_j is the mean of rho/(Tbar - T_0) deadzone(i, i_0) for i from i- to i+: the difference of its
-integral Phi(i) = max(|i| - i_0, 0)^2/2, over that of i.
+W_j is rho/(Tbar - T_0) deadzone(i, i_0) at the middle of the step.
 """
 
 from dataclasses import dataclass
@@ -37,29 +36,21 @@ class Table1:
     lam: float = 2.0
 
 
-def mean_dead_zone(old, new, width):
-    """Return the mean of the dead zone from an old current to a new one."""
-
-    def potential(i):
-        return np.maximum(np.abs(i) - width, 0.0) ** 2 / 2
-
-    apart = np.abs(new - old) > 1e-7
-    middle = (old + new) / 2
-    value = np.sign(middle) * np.maximum(np.abs(middle) - width, 0.0)
-    moved = np.where(apart, new - old, 1.0)
-    return np.where(apart, (potential(new) - potential(old)) / moved, value)
+def dead_zone(i, width):
+    """Return what a current has beyond the dead zone."""
+    return np.sign(i) * np.maximum(np.abs(i) - width, 0.0)
 
 
 def rates(x, new, u, p):
     """Return Dx/h, and the mean heats of damper and hysterons, for a step from x to new."""
     q, momentum, charge = (x[:3] + new[:3]) / 2
-    old, young = x[3:-1] / p.L, new[3:-1] / p.L
+    i = (x[3:-1] + new[3:-1]) / 2 / p.L
     delta = (new[-1] - x[-1]) / p.c_0
     growth = np.expm1(delta) / delta if delta else 1.0
     hot = p.T_0 * np.exp(x[-1] / p.c_0) * growth
-    v, voltage, i = momentum / p.M, charge / p.C, (old + young) / 2
+    v, voltage = momentum / p.M, charge / p.C
     alpha = p.a * hot / p.T_0
-    law = p.rho / (hot - p.T_0) * mean_dead_zone(old, young, p.i_0)
+    law = p.rho / (hot - p.T_0) * dead_zone(i, p.i_0)
     heats = np.array([p.d * v * v, *(law * i)])
     force, supply, outside = u
     rows = [

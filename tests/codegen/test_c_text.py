@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from piezo_sym import Model, derive, load
-from piezo_sym.codegen import c_header, c_source, c_step, lower, start_of, step_of
+from piezo_sym.codegen import c_collocation, c_header, c_source, collocation_of, lower
 from piezo_sym.codegen.c_names import KEPT
 from piezo_sym.errors import SpecError
 from piezo_sym.spec.names import check_symbol
@@ -44,13 +44,13 @@ def called(words, folder):
 
 
 def written(model, folder):
-    """Write a model's C files, the step among their functions, and return their common name."""
+    """Write a model's C files, and return their common name."""
     iphs = derive(model)
     program = lower(iphs, "verdict")
-    steps = step_of(iphs, frozenset(iphs.model.elements)), start_of(iphs)
-    step, declared = c_step(program, *steps)
-    (folder / f"{model.name}.h").write_text(c_header(program, declared), encoding="utf-8")
-    (folder / f"{model.name}.c").write_text(c_source(program, step), encoding="utf-8")
+    texts = {".h": c_header(program), ".c": c_source(program)}
+    texts["_step.c"] = c_collocation(program, collocation_of(iphs))
+    for ending, text in texts.items():
+        (folder / f"{model.name}{ending}").write_text(text, encoding="utf-8")
     return model.name
 
 

@@ -19,7 +19,14 @@ from strategy import networks
 from test_specs import points
 
 from piezo_sym import derive, load
-from piezo_sym.codegen import c_header, c_source, c_step, lower, numpy_module, start_of, step_of
+from piezo_sym.codegen import (
+    c_collocation,
+    c_header,
+    c_source,
+    collocation_of,
+    lower,
+    numpy_module,
+)
 from piezo_sym.errors import PiezoError
 from piezo_sym.modules import load_module, module_of
 from piezo_sym.run.discrete import FixedStep, fixed
@@ -38,11 +45,11 @@ AGREEMENT = 1e-11
 def twins(iphs):
     """Return a module, and the same with its functions compiled."""
     program = lower(iphs, "verdict")
-    step, declared = c_step(program, step_of(iphs, frozenset()), start_of(iphs))
     texts = {
         ".py": numpy_module(program),
-        ".h": c_header(program, declared),
-        ".c": c_source(program, step),
+        ".h": c_header(program),
+        ".c": c_source(program),
+        "_step.c": c_collocation(program, collocation_of(iphs)),
     }
     with tempfile.TemporaryDirectory() as folder:
         for ending, text in texts.items():
