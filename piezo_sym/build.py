@@ -17,6 +17,7 @@ from piezo_sym.codegen import (
     c_collocation,
     c_header,
     c_source,
+    c_step_header,
     collocation_of,
     lower,
     numpy_module,
@@ -25,6 +26,7 @@ from piezo_sym.derivation import derive
 from piezo_sym.errors import DriftError
 from piezo_sym.files import folder_entries, path_of, path_text, read_bytes, write_together
 from piezo_sym.proofs import Report, Verdict, proofs_json, smt2
+from piezo_sym.run.engine.alone import step_alone
 from piezo_sym.spec.load import load
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.source import shipped
@@ -80,12 +82,14 @@ def render(
     if not allow_unproved:
         report.raise_if_not_proved()
     program = lower(iphs, verdict_line(report))
+    step = collocation_of(iphs)
     made = f"{MARK} {VERSION}; do not edit: change the spec, then run `piezo-sym generate`."
     return {
         f"{model.name}/{model.name}.py": numpy_module(program),
         f"{model.name}/{model.name}.h": c_header(program),
         f"{model.name}/{model.name}.c": c_source(program),
-        f"{model.name}/{model.name}_step.c": c_collocation(program, collocation_of(iphs)),
+        f"{model.name}/{model.name}_step.h": c_step_header(program, step),
+        f"{model.name}/{model.name}_step.c": c_collocation(program, step) + step_alone(model.name),
         f"{model.name}/proofs.json": proofs_json(report, model, made),
         f"{model.name}/proofs.smt2": smt2(report, made),
     }

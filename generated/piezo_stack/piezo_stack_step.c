@@ -19,6 +19,7 @@
 
 #if !defined(REAL_WIDTH) /* numbers of one run; run/engine has vectors of many */
 #define REAL_WIDTH 1
+#define ALONE
 typedef double real;
 #define zero 0.0
 #define wide(value) (value)
@@ -363,3 +364,645 @@ static const int piezo_stack_first[] = {
 static const int piezo_stack_meet[] = {
     7, 8, 10, 11,
 };
+
+#if defined(ALONE) /* the engine has a step of its own, of any order and for vectors */
+#include "piezo_stack_step.h"
+
+#include <string.h>
+
+#define MODEL(name) piezo_stack_##name
+#define LANE(array, k, lane) ((array)[k])
+#define any(where) (where)
+#define none_of(where) (!(where))
+#define size_of fabs
+#define nowhere 0
+typedef int mask; /* 0 or 1 */
+
+static inline real largest_of(real a, real b)
+{
+    return a > b || a != a ? a : b;
+}
+
+#define STAGES 1
+#define NODES 3
+#define PAIRS 0
+#define PARTS 3
+#define FINE 16
+#define LOSSY 0
+static const double filter = 5.0e-1;
+#define COARSE 1.0e-5
+static const double stage_weight[1] = {1.0};
+static const double stage_reach[1][1] = {
+    {5.0e-1}};
+static const double node_reach[3][1] = {
+    {1.1270166537925831e-1},
+    {5.0e-1},
+    {8.8729833462074169e-1}};
+static const double node_mean[1][3] = {
+    {2.7777777777777778e-1, 4.4444444444444444e-1, 2.7777777777777778e-1}};
+static const double node_last[3] = {5.5555555555555556e-1, -1.1111111111111111, 5.5555555555555556e-1};
+static const double fine_reach[16][1] = {
+    {5.2995325041750337e-3},
+    {2.7712488463383712e-2},
+    {6.7184398806084128e-2},
+    {1.2229779582249848e-1},
+    {1.9106187779867813e-1},
+    {2.7099161117138631e-1},
+    {3.5919822461037054e-1},
+    {4.5249374508118128e-1},
+    {5.4750625491881872e-1},
+    {6.4080177538962946e-1},
+    {7.2900838882861369e-1},
+    {8.0893812220132187e-1},
+    {8.7770220417750152e-1},
+    {9.3281560119391587e-1},
+    {9.7228751153661629e-1},
+    {9.9470046749582497e-1}};
+static const double fine_mean[1][16] = {
+    {1.3576229705877047e-2, 3.1126761969323946e-2, 4.7579255841246392e-2, 6.2314485627766936e-2, 7.4797994408288366e-2, 8.4578259697501269e-2, 9.1301707522461794e-2, 9.4725305227534248e-2, 9.4725305227534248e-2, 9.1301707522461794e-2, 8.4578259697501269e-2, 7.4797994408288366e-2, 6.2314485627766936e-2, 4.7579255841246392e-2, 3.1126761969323946e-2, 1.3576229705877047e-2}};
+static const double stage_basis[1][1] = {
+    {1.0}};
+static const double basis_stage[1][1] = {
+    {1.0}};
+
+/*
+ * Steps of Gauss collocation that keep both balances: Newton's method for the rates at the stages,
+ * for the runs of all lanes at once.
+ *
+ * Behind real.h, a generated <model>_step.c and the tables of a number of stages.  With rates K_j
+ * the state goes along X(tau) = x + h sum_j K_j int_0^tau l_j; stage i has the co-states' means
+ * int_0^1 (l_i/b_i) dU/dx(X) dtau, taken at NODES nodes of Gauss's rule, or at FINE of them where the
+ * co-states ask for more.  A root counts only if all is finite, each stage lies in the domain and no
+ * process takes entropy.
+ */
+
+#include <stddef.h>
+
+/* Iterations, and after how many a step is given up whose changes do not become smaller. */
+enum { MOST_ITERATIONS = 12, SOON = 1 };
+/*
+ * A fixed step may begin far from its root: from beyond the bend of an exponential law Newton's method
+ * comes back by its width each time, however short the step.
+ */
+enum { MOST_OF_FIXED = 100, LATE = 60 };
+/* Where a change is more than so much of the one before, slopes are taken anew. */
+#define SLOW 0.1
+/* What Newton's method may leave of a state's change, in parts of its largest magnitude. */
+#define NOISE 1e-16
+
+typedef struct {
+    real re, im;
+} MODEL(complex);
+
+/* The runs of all lanes, as they take a step: sizes, and the numbers that it works on. */
+typedef struct {
+    MODEL(reals) p;
+    const MODEL(parameters) *own; /* those of p, in the last lane that has taken some */
+    long n, inputs, means, branches, booked, slopes, processes;
+    const long *lanes, *first; /* of each bank; of each state, its first row */
+    real *x, *end;             /* n: where the step begins, and where it ends */
+    real *rates;               /* STAGES*n */
+    real *branch;              /* STAGES*branches */
+    real *u;                   /* STAGES*inputs */
+    real *largest;             /* n: the largest magnitude of each state, by which errors count */
+    real *reached, *gap, *node, *mean, *side, *margin, *rows, *slope, *fresh, *real_factor;
+    mask fine;                 /* lanes whose means are taken at FINE nodes */
+    mask over;                 /* lanes whose stages choose their branches: they step over kinks */
+    real iterations;           /* of Newton's method */
+    int most, late;            /* of them in a step; after which it may be given up */
+    MODEL(complex) *factor, *right;
+} MODEL(block);
+
+#define NUMBER real
+#define NAMED(name) MODEL(name##_real)
+#define ONE wide(1.0)
+#define NONE zero
+#define PER(a) (1.0 / (a))
+#define TIMES(a, b) ((a) * (b))
+#define BY(a, b) ((a) * (b))
+#define MORE(a, b) ((a) + (b))
+#define LESS(a, b) ((a) - (b))
+/*
+ * (1 - gamma J) d = r, solved: lanes of banks first, each by itself, then the shared unknowns in the
+ * order of the model's tables.  Included twice: NUMBER is `real`, or a complex number of reals, and
+ * NAMED(name) tells the two apart.
+ */
+
+/* How many numbers a factorisation holds, and where a bank's part of it begins. */
+static long NAMED(factor_size)(const MODEL(block) *m)
+{
+    long size = MODEL(slots) + MODEL(unknowns);
+    for (long k = 0; k < MODEL(banks); ++k) {
+        const long states = MODEL(lane_states_at)[k + 1] - MODEL(lane_states_at)[k];
+        const long columns = MODEL(lane_columns_at)[k + 1] - MODEL(lane_columns_at)[k];
+        size += states * (states + columns) * m->lanes[k];
+    }
+    return size;
+}
+
+/* Invert the blocks of lanes in place: entry (a, b) of each lane at m[(a*states + b)*lanes + j]. */
+static void NAMED(invert)(NUMBER *restrict m, long states, long lanes)
+{
+    for (long k = 0; k < states; ++k)
+        for (long j = 0; j < lanes; ++j) {
+            NUMBER *const pivot = m + (k * states + k) * lanes + j;
+            const NUMBER per = PER(*pivot);
+            *pivot = ONE;
+            for (long b = 0; b < states; ++b)
+                m[(k * states + b) * lanes + j] = TIMES(m[(k * states + b) * lanes + j], per);
+            for (long a = 0; a < states; ++a) {
+                NUMBER *const entry = m + (a * states + k) * lanes + j;
+                const NUMBER share = *entry;
+                if (a == k)
+                    continue;
+                *entry = NONE;
+                for (long b = 0; b < states; ++b) {
+                    NUMBER *const other = m + (a * states + b) * lanes + j;
+                    *other = LESS(*other, TIMES(share, m[(k * states + b) * lanes + j]));
+                }
+            }
+        }
+}
+
+/* Factorise 1 - gamma J. */
+static void NAMED(factorise)(const MODEL(block) *m, NUMBER gamma, const real *slopes,
+                             NUMBER *restrict f)
+{
+    NUMBER *restrict const slot = f;
+    const real *lane = slopes + MODEL(entries);
+    NUMBER *part = f + MODEL(slots) + MODEL(unknowns);
+    const int *update = MODEL(update);
+    for (long k = 0; k < MODEL(slots); ++k)
+        slot[k] = NONE;
+    for (long k = 0; k < MODEL(unknowns); ++k)
+        slot[MODEL(pivot)[k]] = ONE;
+    for (long k = 0; k < MODEL(entries); ++k)
+        slot[MODEL(place)[k]] = LESS(slot[MODEL(place)[k]], BY(gamma, slopes[k]));
+    for (long k = 0; k < MODEL(banks); ++k) {
+        const long lanes = m->lanes[k];
+        const long states = MODEL(lane_states_at)[k + 1] - MODEL(lane_states_at)[k];
+        const long columns = MODEL(lane_columns_at)[k + 1] - MODEL(lane_columns_at)[k];
+        const long rows = MODEL(lane_rows_at)[k + 1] - MODEL(lane_rows_at)[k];
+        const int *const column = MODEL(lane_columns) + MODEL(lane_columns_at)[k];
+        const real *const by = lane + states * states * lanes;
+        const real *const into = by + states * columns * lanes;
+        NUMBER *const reaction = part + states * states * lanes;
+        for (long a = 0; a < states; ++a)
+            for (long b = 0; b < states; ++b)
+                for (long j = 0; j < lanes; ++j) {
+                    const long at = (a * states + b) * lanes + j;
+                    part[at] = LESS(a == b ? ONE : NONE, BY(gamma, lane[at]));
+                }
+        NAMED(invert)(part, states, lanes);
+        for (long a = 0; a < states; ++a)
+            for (long c = 0; c < columns; ++c) {
+                const NUMBER factor = column[c] < MODEL(shared) ? gamma : ONE; /* or a border */
+                for (long j = 0; j < lanes; ++j) {
+                    NUMBER sum = NONE;
+                    for (long b = 0; b < states; ++b)
+                        sum = MORE(sum, BY(part[(a * states + b) * lanes + j],
+                                           by[(b * columns + c) * lanes + j]));
+                    reaction[(a * columns + c) * lanes + j] = TIMES(factor, sum);
+                }
+            }
+        for (long r = 0; r < rows; ++r)
+            for (long c = 0; c < columns; ++c) {
+                NUMBER *const meet = slot + MODEL(meet)[MODEL(first)[k] + r * columns + c];
+                NUMBER sum = NONE;
+                for (long b = 0; b < states; ++b)
+                    for (long j = 0; j < lanes; ++j)
+                        sum = MORE(sum, BY(reaction[(b * columns + c) * lanes + j],
+                                           into[(r * states + b) * lanes + j]));
+                *meet = LESS(*meet, TIMES(gamma, sum));
+            }
+        lane = into + rows * states * lanes;
+        part = reaction + states * columns * lanes;
+    }
+    for (long k = 0; k < MODEL(unknowns); ++k) {
+        const NUMBER per = PER(slot[MODEL(pivot)[k]]);
+        f[MODEL(slots) + k] = per;
+        for (long i = MODEL(below_at)[k]; i < MODEL(below_at)[k + 1]; i += 2) {
+            NUMBER *const share = slot + MODEL(below)[i + 1];
+            *share = TIMES(*share, per);
+            for (long c = MODEL(right_at)[k]; c < MODEL(right_at)[k + 1]; c += 2, ++update)
+                slot[*update] = LESS(slot[*update], TIMES(*share, slot[MODEL(right)[c + 1]]));
+        }
+    }
+}
+
+/* Put the solution for the right-hand side r (n) in its place. */
+static void NAMED(solve)(const MODEL(block) *m, NUMBER gamma, const real *slopes,
+                         const NUMBER *restrict f, NUMBER *restrict r)
+{
+    NUMBER y[MODEL(unknowns) + 1];
+    const real *lane = slopes + MODEL(entries);
+    const NUMBER *part = f + MODEL(slots) + MODEL(unknowns);
+    for (long k = 0; k < MODEL(unknowns); ++k)
+        y[k] = k < MODEL(shared) ? r[m->first[MODEL(state)[k]]] : NONE;
+    for (long k = 0; k < MODEL(banks); ++k) {
+        const long lanes = m->lanes[k];
+        const long states = MODEL(lane_states_at)[k + 1] - MODEL(lane_states_at)[k];
+        const long columns = MODEL(lane_columns_at)[k + 1] - MODEL(lane_columns_at)[k];
+        const long rows = MODEL(lane_rows_at)[k + 1] - MODEL(lane_rows_at)[k];
+        const int *const state = MODEL(lane_states) + MODEL(lane_states_at)[k];
+        const int *const row = MODEL(lane_rows) + MODEL(lane_rows_at)[k];
+        const real *const into = lane + states * (states + columns) * lanes;
+        for (long j = 0; j < lanes; ++j) {
+            NUMBER free[MODEL(most_states)];
+            for (long a = 0; a < states; ++a) {
+                free[a] = NONE;
+                for (long b = 0; b < states; ++b)
+                    free[a] = MORE(free[a], TIMES(part[(a * states + b) * lanes + j],
+                                                  r[m->first[state[b]] + j]));
+            }
+            for (long a = 0; a < states; ++a)
+                r[m->first[state[a]] + j] = free[a];
+        }
+        for (long i = 0; i < rows; ++i) {
+            NUMBER sum = NONE;
+            for (long b = 0; b < states; ++b)
+                for (long j = 0; j < lanes; ++j)
+                    sum = MORE(sum, BY(r[m->first[state[b]] + j], into[(i * states + b) * lanes + j]));
+            y[row[i]] = MORE(y[row[i]], TIMES(gamma, sum));
+        }
+        lane = into + rows * states * lanes;
+        part += states * (states + columns) * lanes;
+    }
+    for (long k = 0; k < MODEL(unknowns); ++k)
+        for (long i = MODEL(below_at)[k]; i < MODEL(below_at)[k + 1]; i += 2)
+            y[MODEL(below)[i]] = LESS(y[MODEL(below)[i]],
+                                      TIMES(f[MODEL(below)[i + 1]], y[MODEL(order)[k]]));
+    for (long k = MODEL(unknowns) - 1; k >= 0; --k) {
+        NUMBER sum = y[MODEL(order)[k]];
+        for (long c = MODEL(right_at)[k]; c < MODEL(right_at)[k + 1]; c += 2)
+            sum = LESS(sum, TIMES(f[MODEL(right)[c + 1]], y[MODEL(right)[c]]));
+        y[MODEL(order)[k]] = TIMES(sum, f[MODEL(slots) + k]);
+    }
+    for (long k = 0; k < MODEL(shared); ++k)
+        r[m->first[MODEL(state)[k]]] = y[k];
+    part = f + MODEL(slots) + MODEL(unknowns);
+    for (long k = 0; k < MODEL(banks); ++k) {
+        const long lanes = m->lanes[k];
+        const long states = MODEL(lane_states_at)[k + 1] - MODEL(lane_states_at)[k];
+        const long columns = MODEL(lane_columns_at)[k + 1] - MODEL(lane_columns_at)[k];
+        const int *const state = MODEL(lane_states) + MODEL(lane_states_at)[k];
+        const int *const column = MODEL(lane_columns) + MODEL(lane_columns_at)[k];
+        const NUMBER *const reaction = part + states * states * lanes;
+        for (long a = 0; a < states; ++a)
+            for (long c = 0; c < columns; ++c)
+                for (long j = 0; j < lanes; ++j) {
+                    NUMBER *const d = r + m->first[state[a]] + j;
+                    *d = MORE(*d, TIMES(reaction[(a * columns + c) * lanes + j], y[column[c]]));
+                }
+        part += states * (states + columns) * lanes;
+    }
+}
+#undef NUMBER
+#undef NAMED
+#undef ONE
+#undef NONE
+#undef PER
+#undef TIMES
+#undef BY
+#undef MORE
+#undef LESS
+
+/* The numbers that a block says of itself: sizes, lanes of banks, first rows of states. */
+enum { SIZES = 6 + MODEL(banks) + MODEL(records) };
+
+/*
+ * Make a block for runs of the sizes of p, `more` rows for the ledger behind the model's own.  Its
+ * numbers lie from `at` on; returns how many these are.
+ */
+static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, long *sizes, real *at)
+{
+    real *const begin = at;
+    at += MODEL(place_reals)(&m->p, p, at);
+    MODEL(sizes)(&m->p, sizes);
+    const long n = m->n = sizes[0];
+    m->means = sizes[1], m->branches = sizes[2], m->booked = sizes[3] + more;
+    m->processes = sizes[4], m->slopes = sizes[5];
+    m->inputs = MODEL(input_count);
+    m->lanes = sizes + 6, m->first = sizes + 6 + MODEL(banks);
+#define PLACE(array, size) (m->array = at, at += (size))
+    PLACE(x, n);
+    PLACE(end, n);
+    PLACE(rates, STAGES * n);
+    PLACE(branch, STAGES * m->branches);
+    PLACE(u, STAGES * m->inputs);
+    PLACE(largest, n);
+    PLACE(reached, n);
+    PLACE(gap, STAGES * n);
+    PLACE(node, FINE * m->means);
+    PLACE(mean, STAGES * m->means);
+    PLACE(side, STAGES * m->branches);
+    PLACE(margin, STAGES * MODEL(limits));
+    PLACE(rows, STAGES * m->booked);
+    PLACE(slope, m->slopes);
+    PLACE(fresh, m->slopes);
+    PLACE(real_factor, MODEL(factor_size_real)(m));
+#undef PLACE
+    return at - begin;
+}
+
+/* A state at a place of the step, reached by rates with these weights. */
+static inline real MODEL(reached_row)(const MODEL(block) *m, real h, const double *weight, long i)
+{
+    real sum = zero;
+    for (long j = 0; j < STAGES; ++j)
+        sum += weight[j] * m->rates[j * m->n + i];
+    return m->x[i] + h * sum;
+}
+
+/* All states at a place of the step. */
+static void MODEL(reach)(const MODEL(block) *m, real h, const double *weight, real *restrict out)
+{
+    for (long i = 0; i < m->n; ++i)
+        out[i] = MODEL(reached_row)(m, h, weight, i);
+}
+
+/* The states alone that integrands read. */
+static void MODEL(reach_read)(const MODEL(block) *m, real h, const double *weight)
+{
+    for (long r = 0; r < MODEL(reads); ++r) {
+        const long record = MODEL(read)[r];
+        const long end = record + 1 < MODEL(records) ? m->first[record + 1] : m->n;
+        for (long i = m->first[record]; i < end; ++i)
+            m->reached[i] = MODEL(reached_row)(m, h, weight, i);
+    }
+}
+
+/* The functions of which stages are given means, at nodes of a step. */
+static void MODEL(integrate)(const MODEL(block) *m, real h, const double reach[][STAGES], long nodes)
+{
+    for (long q = 0; q < nodes; ++q) {
+        MODEL(reach_read)(m, h, reach[q]);
+        MODEL(integrands)(m->reached, &m->p, m->node + q * m->means);
+    }
+}
+
+/* What the last polynomial of Legendre has of a function at nodes, in parts of its size. */
+static real MODEL(last_part)(const MODEL(block) *m, long k, const double *last, long nodes)
+{
+    real sum = zero, most = 1e-300 + zero;
+    for (long q = 0; q < nodes; ++q) {
+        sum += last[q] * m->node[q * m->means + k];
+        most = largest_of(size_of(m->node[q * m->means + k]), most);
+    }
+    return size_of(sum) / most;
+}
+
+/* Means over the step, by the rule of each lane. */
+static void MODEL(average)(const MODEL(block) *m, real h)
+{
+    MODEL(integrate)(m, h, node_reach, NODES);
+    for (long i = 0; i < STAGES; ++i)
+        for (long k = 0; k < m->means; ++k) {
+            real *const mean = m->mean + i * m->means + k;
+            *mean = zero;
+            for (long q = 0; q < NODES; ++q)
+                *mean += node_mean[i][q] * m->node[q * m->means + k];
+        }
+    if (!any(m->fine))
+        return;
+    MODEL(integrate)(m, h, fine_reach, FINE);
+    for (long i = 0; i < STAGES; ++i)
+        for (long k = 0; k < m->means; ++k) {
+            real *const mean = m->mean + i * m->means + k, sum = zero;
+            for (long q = 0; q < FINE; ++q)
+                sum += fine_mean[i][q] * m->node[q * m->means + k];
+            *mean = chosen(m->fine, sum, *mean);
+        }
+}
+
+/* The lanes whose co-states ask for more nodes than NODES, for balances that are exact to round-off. */
+static mask MODEL(coarse)(const MODEL(block) *m, real h)
+{
+    mask found = nowhere;
+    if (m->means)
+        MODEL(integrate)(m, h, node_reach, NODES);
+    for (long k = 0; k < m->means; ++k)
+        found |= MODEL(last_part)(m, k, node_last, NODES) > COARSE;
+    return found;
+}
+
+/* Choose branches by their switching functions in some lanes; returns those where any changes. */
+static mask MODEL(choose)(long branches, const real *side, real *branch, mask where)
+{
+    mask changed = nowhere;
+    for (long k = 0; k < branches; ++k) {
+        const mask positive = side[k] > 0.0;
+        const real old = branch[k], new = chosen(positive, wide(1.0), zero);
+        changed |= where & (new != old);
+        branch[k] = chosen(where, new, old);
+    }
+    return changed;
+}
+
+
+/* What the rates at the stages have to be, less what they are; returns where branches change. */
+static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
+{
+    const mask over = m->over & going;
+    mask changed = nowhere;
+    if (m->means)
+        MODEL(average)(m, h);
+    for (long i = 0; i < STAGES; ++i) {
+        real *gap = m->gap + i * m->n, *mean = m->mean + i * m->means;
+        real *side = m->side + i * m->branches, *branch = m->branch + i * m->branches;
+        MODEL(reach)(m, h, stage_reach[i], m->reached);
+        for (int again = 0; again < 3; ++again) {
+            MODEL(stage)(m->reached, mean, branch, m->u + i * m->inputs, &m->p, gap,
+                         m->rows + i * m->booked, side, m->margin + i * MODEL(limits));
+            if (!any(over))
+                break;
+            const mask other = MODEL(choose)(m->branches, side, branch, over);
+            if (!any(other))
+                break;
+            changed |= other;
+        }
+        for (long k = 0; k < m->n; ++k)
+            gap[k] -= m->rates[i * m->n + k];
+    }
+    return changed;
+}
+
+/* Newton's change of the rates, from the gaps; gaps become it. */
+static void MODEL(change)(const MODEL(block) *m, real h)
+{
+    const long n = m->n;
+    for (long k = 0; k < n; ++k) {
+        real one[STAGES];
+        for (long i = 0; i < STAGES; ++i) {
+            one[i] = zero;
+            for (long j = 0; j < STAGES; ++j)
+                one[i] += basis_stage[i][j] * m->gap[j * n + k];
+        }
+        for (long i = 0; i < STAGES; ++i)
+            m->gap[i * n + k] = one[i];
+    }
+#if STAGES % 2
+    MODEL(solve_real)(m, h * filter, m->slope, m->real_factor, m->gap);
+#endif
+    for (long k = 0; k < n; ++k) {
+        real one[STAGES];
+        for (long i = 0; i < STAGES; ++i) {
+            one[i] = zero;
+            for (long j = 0; j < STAGES; ++j)
+                one[i] += stage_basis[i][j] * m->gap[j * n + k];
+        }
+        for (long i = 0; i < STAGES; ++i)
+            m->gap[i * n + k] = one[i];
+    }
+}
+
+/*
+ * Slopes in the middle of the step, on the branches of its middle stage, and what solves with them;
+ * lanes that are not in `where` keep theirs.
+ */
+static void MODEL(prepare)(const MODEL(block) *m, real h, mask where)
+{
+    const long middle = STAGES / 2;
+    MODEL(reach)(m, h, stage_reach[middle], m->reached);
+    MODEL(slopes)(m->reached, m->branch + middle * m->branches, m->u + middle * m->inputs, &m->p,
+                  m->fresh);
+    for (long k = 0; k < m->slopes; ++k)
+        m->slope[k] = chosen(where, m->fresh[k], m->slope[k]);
+    MODEL(factorise_real)(m, h * filter, m->slope, m->real_factor);
+}
+
+/* The lanes whose margins are those of a state in the domain. */
+static mask MODEL(within)(const real *margin)
+{
+    mask good = none_of(nowhere);
+    for (long k = 0; k < MODEL(limits); ++k) {
+        const mask inside = margin[k] > 0.0, edge = margin[k] == 0.0;
+        good &= MODEL(strict)[k] ? inside : (mask)(inside | edge);
+    }
+    return good;
+}
+
+/* The lanes whose stages all lie in the domain, and whose processes take no entropy. */
+static mask MODEL(accepted)(const MODEL(block) *m)
+{
+    const long processes = m->processes, ports = MODEL(output_count);
+    mask good = none_of(nowhere);
+    for (long i = 0; i < STAGES; ++i) {
+        const real *rows = m->rows + i * m->booked + ports + processes;
+        real total = zero, lowest = zero;
+        good &= MODEL(within)(m->margin + i * MODEL(limits));
+        for (long k = 0; k < processes; ++k) {
+            const mask less = rows[k] < lowest;
+            total += size_of(rows[k]);
+            lowest = chosen(less, rows[k], lowest);
+        }
+        good &= lowest >= -1e-14 * total;
+    }
+    return good;
+}
+
+/*
+ * Newton's method for the rates in some lanes, begun where they are; returns those that found them.
+ * A lane that has found them stays as it is, however long the others take.
+ */
+static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
+{
+    mask going = where, found = nowhere;
+    real before = zero;
+    MODEL(gaps)(m, h, going);
+    MODEL(prepare)(m, h, going);
+    for (int iteration = 0; iteration < m->most && any(going); ++iteration) {
+        real worst = zero;
+        m->iterations += chosen(going, wide(1.0), zero);
+        MODEL(change)(m, h);
+        for (long k = 0; k < m->n; ++k) {
+            real moved = zero, changed = zero;
+            for (long j = 0; j < STAGES; ++j) {
+                real *const rate = m->rates + j * m->n + k;
+                const real change = chosen(going, m->gap[j * m->n + k], zero);
+                *rate += change;
+                moved = largest_of(moved, size_of(*rate));
+                changed += size_of(change);
+            }
+            const real size = NOISE * (m->largest[k] + size_of(m->x[k]) + h * moved) + 1e-300;
+            worst = largest_of(h * changed / size, worst);
+        }
+        const mask switched = MODEL(gaps)(m, h, going);
+        const mask smaller = worst < before, lost = none_of(worst < 1e300);
+        mask good = (worst <= 4.0) | (smaller & (worst * (worst / before) <= 1.0));
+        if (iteration > 1) { /* noise of what rates are made of, or no root */
+            const mask stays = (worst > 0.3 * before) & none_of(good);
+            good |= stays & (worst < 1e4);
+            if (iteration > m->late)
+                going &= none_of(stays & none_of(good));
+        }
+        good &= none_of(lost);
+        found |= going & good;
+        going &= none_of(good | lost);
+        const mask slow = (worst > SLOW * before) & (before > 0.0);
+        if (any((switched | slow) & going))
+            MODEL(prepare)(m, h, (switched | slow) & going);
+        before = worst;
+    }
+    return found;
+}
+
+/* The rates in some lanes, with means at as many nodes as they ask for; returns who has them. */
+static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
+{
+    m->fine &= none_of(where);
+    const mask found = MODEL(iterate)(m, h, where), more = MODEL(coarse)(m, h) & found;
+    if (LOSSY || !any(more))
+        return found;
+    m->fine |= more;
+    return (found & none_of(more)) | MODEL(iterate)(m, h, more);
+}
+
+/*
+ * A step of order two by itself, for programs in C; see <model>_step.h.
+ */
+
+static long MODEL(made)(MODEL(block) *m, const MODEL(parameters) *p, long *sizes, real *space)
+{
+    real *const reached = space + MODEL(make)(m, p, 0, sizes, space);
+    m->over = 1, m->most = MOST_OF_FIXED, m->late = LATE;
+    return reached - space;
+}
+
+long MODEL(step_size)(const MODEL(parameters) *p)
+{
+    MODEL(block) block;
+    long sizes[SIZES];
+    real none[1];
+    return MODEL(made)(&block, p, sizes, none);
+}
+
+int MODEL(step)(double *x, const double *u, double h, const MODEL(parameters) *p, double *booked,
+                double *space)
+{
+    MODEL(block) block = {0}, *const m = &block;
+    long sizes[SIZES];
+    memset(space, 0, (size_t)MODEL(step_size)(p) * sizeof *space);
+    MODEL(made)(m, p, sizes, space);
+    MODEL(give)(&m->p, p, 0);
+    for (long k = 0; k < m->n; ++k) {
+        m->x[k] = x[k];
+        m->largest[k] = size_of(x[k]);
+    }
+    for (long k = 0; k < m->inputs; ++k)
+        m->u[k] = u[k];
+    if (!MODEL(solve)(m, h, 1) || !MODEL(accepted)(m))
+        return 0;
+    for (long k = 0; k < m->booked; ++k)
+        booked[k] = h * m->rows[k];
+    MODEL(reach)(m, h, stage_weight, m->end);
+    MODEL(integrands)(m->end, &m->p, m->node);
+    MODEL(stage)(m->end, m->node, m->branch, u, &m->p, m->gap, m->rows, m->side, m->margin);
+    if (!MODEL(within)(m->margin))
+        return 0;
+    for (long k = 0; k < m->n; ++k)
+        x[k] = m->end[k];
+    return 1;
+}
+
+#endif /* ALONE */

@@ -75,14 +75,15 @@ def opening(program: Program) -> str:
         f"{MARK} {VERSION}; do not edit: change the spec, then run `piezo-sym generate`.",
         "C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.",
         "",
-        f"x = ({', '.join(_spread(field) for field in program.states)})",
+        f"x = ({', '.join(spread(field) for field in program.states)})",
         f"u = ({u})",
         *(f"{bank}: lanes j = 1 ... {bank}_count" for bank in program.counts),
     ]
     return "\n".join(["/*", *(f" * {line}".rstrip() for line in lines), " */"])
 
 
-def _spread(field: Field) -> str:
+def spread(field: Field) -> str:
+    """Return the rows of a field: those of a bank from its first lane to its last."""
     return f"{field.name}_1 ... {field.name}_{field.bank}_count" if field.bank else field.name
 
 
@@ -147,12 +148,13 @@ def _declarations(program: Program) -> Iterator[str]:
     words = added(("x", "u", "p", "out", "n", "j", "l", "left"), program, c_names(program))
     for name in _ORDER.split():
         arguments = TAKES.get(name, _ARGUMENTS["state"])
-        lines = [*_wrapped(f"{docs[name]}."), *_given(program, name, arguments, words)]
+        lines = [*wrapped(f"{docs[name]}."), *_given(program, name, arguments, words)]
         head = declaration(program, name, arguments, words)
         yield "\n".join(["/*", *(f" * {line}".rstrip() for line in lines), " */", f"{head};"])
 
 
-def _wrapped(text: str, first: str = "") -> list[str]:
+def wrapped(text: str, first: str = "") -> list[str]:
+    """Return a text of a comment in lines."""
     return wrap(text_of(text), WIDTH - 4, initial_indent=first, subsequent_indent="    ")
 
 
@@ -180,11 +182,11 @@ def _given(
         if argument == "p":
             continue
         size, fields = layouts[argument]
-        listed = ", ".join(f"{_spread(field)} [{field.unit}]" for field in fields)
+        listed = ", ".join(f"{spread(field)} [{field.unit}]" for field in fields)
         role = "written, overlaps nothing else" if argument == "out" else "read"
         units = f": {listed}" if listed else ""
-        yield from _wrapped(f"{words[argument]}[{size}], {role}{units}")
+        yield from wrapped(f"{words[argument]}[{size}], {role}{units}")
     if name == "margins":
         for n, limit in enumerate(program.limits):
             inside = "> 0" if limit.strict else ">= 0"
-            yield from _wrapped(f"{words['out']}[{n}]: {limit.text}; inside, {inside}")
+            yield from wrapped(f"{words['out']}[{n}]: {limit.text}; inside, {inside}")

@@ -28,7 +28,7 @@ from piezo_sym.expressions.text import (
 from piezo_sym.expressions.tree import Expr
 from piezo_sym.expressions.tree import names as names_in
 
-#: Functions of ``real``, one number or one per lane: the head of a step has the first, wide.h both.
+#: Functions of ``real``, one number or one per lane: the head of a step has the first, real.h both.
 REALS = {name: f"{record.in_c}_of" for name, record in RECORDS.items() if record.smooth}
 _CONSTANT = re.compile(r"-?[\d.]+(?:e[-+]?\d+)?(?:/[\d.]+)?")
 #: Beyond, a power calls the library; such exponents do not occur in laws of nature.

@@ -1,17 +1,20 @@
 """Where a function of time jumps: it says nothing of itself, so it is asked.
 
-Input: a function of one time, and the length of a run.  Output: the first times after its jumps,
+Input: a function of time, and the length of a run.  Output: the first times after its jumps,
 to the last digit, so that steps may end there.  A pulse shorter than the time between two questions
 is seen only by chance.
 """
 
 from collections.abc import Callable, Iterator
 from math import nextafter
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from piezo_sym.run.checks import FloatArray
 
+#: Of a time, or of many.
+Asked: TypeAlias = Callable[[Any], Any]
 #: How often the function is asked before a run.
 QUESTIONS = 2000
 #: A change is looked into if it is so many times the usual one nearby, and more than round-off.
@@ -23,16 +26,14 @@ SMOOTH = 0.7
 STEEP = 1e-6
 
 
-def jumps(function: Callable[[float], float], duration: float) -> tuple[float, ...]:
+def jumps(function: Asked, duration: float) -> tuple[float, ...]:
     """Return the times in (0, duration) from which on a function has jumped, in order."""
     times = np.linspace(0.0, nextafter(duration, 0.0), QUESTIONS + 1)
-    values = np.array([function(t) for t in times.tolist()])
+    values = function(times)
     return tuple(_found(function, times, values))
 
 
-def _found(
-    function: Callable[[float], float], times: FloatArray, values: FloatArray
-) -> Iterator[float]:
+def _found(function: Asked, times: FloatArray, values: FloatArray) -> Iterator[float]:
     changes = np.abs(np.diff(values))
     wide = np.pad(changes, NEARBY, mode="reflect")
     usual = np.median(np.lib.stride_tricks.sliding_window_view(wide, 2 * NEARBY + 1), axis=1)
@@ -44,14 +45,12 @@ def _found(
             yield found
 
 
-def _jump(
-    function: Callable[[float], float], ends: tuple[float, float], values: tuple[float, float]
-) -> float | None:
+def _jump(function: Asked, ends: tuple[float, float], values: tuple[float, float]) -> float | None:
     """Return the first time after a jump between two times, or None if there is none."""
     (a, b), (at_a, at_b) = ends, values
     steep, change = STEEP * (b - a), abs(at_b - at_a)
     while a < (middle := 0.5 * (a + b)) < b:
-        at_middle = function(middle)
+        at_middle = float(function(middle))
         first, second = abs(at_middle - at_a), abs(at_b - at_middle)
         if max(first, second) < SMOOTH * change:
             return b if b - a < steep else None

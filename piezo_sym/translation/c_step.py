@@ -39,6 +39,7 @@ from piezo_sym.translation.signs import compare, reading
 MACROS = """\
 #if !defined(REAL_WIDTH) /* numbers of one run; run/engine has vectors of many */
 #define REAL_WIDTH 1
+#define ALONE
 typedef double real;
 #define zero 0.0
 #define wide(value) (value)

@@ -8,9 +8,17 @@ from pathlib import Path
 import pytest
 
 from piezo_sym import Model, derive, load
-from piezo_sym.codegen import c_collocation, c_header, c_source, collocation_of, lower
+from piezo_sym.codegen import (
+    c_collocation,
+    c_header,
+    c_source,
+    c_step_header,
+    collocation_of,
+    lower,
+)
 from piezo_sym.codegen.c_names import KEPT
 from piezo_sym.errors import SpecError
+from piezo_sym.run.engine.alone import step_alone
 from piezo_sym.spec.names import check_symbol
 from tests.codegen.c_compilers import COMPILERS, SANITIZING
 
@@ -48,7 +56,9 @@ def written(model, folder):
     iphs = derive(model)
     program = lower(iphs, "verdict")
     texts = {".h": c_header(program), ".c": c_source(program)}
-    texts["_step.c"] = c_collocation(program, collocation_of(iphs))
+    made = collocation_of(iphs)
+    texts["_step.h"] = c_step_header(program, made)
+    texts["_step.c"] = c_collocation(program, made) + step_alone(model.name)
     for ending, text in texts.items():
         (folder / f"{model.name}{ending}").write_text(text, encoding="utf-8")
     return model.name
@@ -58,7 +68,8 @@ def written(model, folder):
 @pytest.mark.parametrize("path", ["piezo_stack", *SPECS], ids=lambda path: Path(path).stem)
 def test_there_is_no_warning(compiler, path, tmp_path):
     name = written(load(path), tmp_path)
-    assert called([*COMPILERS[compiler], *STRICT, "-c", f"{name}.c"], tmp_path) == ""
+    for source in (f"{name}.c", f"{name}_step.c"):
+        assert called([*COMPILERS[compiler], *STRICT, "-c", source], tmp_path) == ""
 
 
 @pytest.mark.parametrize("compiler", COMPILERS)

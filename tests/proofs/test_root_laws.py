@@ -54,6 +54,27 @@ def test_the_slope_at_rest_of_a_root_is_left_open():
     assert verdicts("d*sign(v)*sqrt(abs(v))", "N/(m/s)**(1/2)")["program", ""] is Verdict.OPEN
 
 
+@pytest.mark.parametrize(
+    "law",
+    [
+        "d*v/v_0*sqrt(1 - cos(v/v_0))",
+        "d*v/v_0*(cosh(v/v_0) - 1)**(1/3)",
+        "d*v/v_0*sqrt(cosh(v/v_0) - 1)",
+        "d*v/v_0*sqrt(log(1 + (v/v_0)**2))",
+        "d*(sqrt(v/v_0) if v > 0 else -sqrt(-v/v_0))",
+        "d*(sqrt(v/v_0 - 1) if v >= v_0 else 0)",
+    ],
+)
+def test_a_slope_that_is_divided_by_a_root_that_may_be_zero_is_left_open(law):
+    """The printed Jacobian is 0/0 there, also where the law has a slope."""
+    assert verdicts(law, "N")["program", ""] is Verdict.OPEN
+
+
+@pytest.mark.parametrize("law", ["d*v/v_0*sqrt(1 + (v/v_0)**2)", "d*v/v_0*sqrt(2 - cos(v/v_0))"])
+def test_a_root_that_is_never_zero_has_a_slope(law):
+    assert verdicts(law, "N")["program", ""] is Verdict.PROVED
+
+
 @pytest.mark.parametrize("unit", ["N*s/m", "N", "N/(m/s)**(1/3)", "N*(m/s)**(1/2)"])
 def test_another_unit_is_refuted(unit):
     assert verdicts("d*sign(v)*sqrt(abs(v))", unit)["units", "damper"] is Verdict.REFUTED

@@ -37,13 +37,7 @@ static size_t MODEL(places)(MODEL(batch) *b, const MODEL(task) *task, real *memo
 {
     MODEL(block) *m = &b->m;
     real *at = memory;
-    at += MODEL(place_reals)(&m->p, task->runs->p, at);
-    MODEL(sizes)(&m->p, b->sizes);
-    m->n = b->sizes[0], m->means = b->sizes[1], m->branches = b->sizes[2];
-    m->booked = b->sizes[3] + task->more, m->processes = b->sizes[4], m->slopes = b->sizes[5];
-    m->inputs = MODEL(input_count);
-    m->lanes = b->sizes + 6, m->first = b->sizes + 6 + MODEL(banks);
-    at += MODEL(arrange)(m, at);
+    at += MODEL(make)(m, task->runs->p, task->more, b->sizes, at);
 #define PLACE(array, size) (b->array = at, at += (size))
     PLACE(rate, m->n);
     PLACE(side, m->branches);

@@ -21,6 +21,7 @@ from piezo_sym.run.engine.library import Layout
 from piezo_sym.run.engine.records import DOUBLE, LONG, POINTER, at
 from piezo_sym.run.engine.structure import addresses, record_of
 from piezo_sym.run.inputs import Inputs, Segment
+from piezo_sym.run.pieces import Pieces, pieces_of
 from piezo_sym.run.signals import Chirp, Constant, Signal, Sine
 
 ASKED = ctypes.CFUNCTYPE(DOUBLE, DOUBLE)
@@ -33,6 +34,8 @@ class Wave(ctypes.Structure):
 
     _fields_ = [
         *((n, DOUBLE) for n in ("amplitude", "frequency", "rate", "phase", "offset")),
+        *((n, POINTER) for n in ("edges", "coefficients")),
+        *((n, LONG) for n in ("pieces", "terms")),
         ("asked", ASKED),
     ]
 
@@ -150,6 +153,7 @@ class Batch:
         self._structures = engine.structure.many(parameters)
         self.x, self.largest = np.array(x, dtype=float), np.abs(x)
         self._raised: list[Exception] = []
+        self._kept: list[Pieces] = []
         self._pieces = [self._piece(segment, inputs.signals) for segment in inputs.segments]
         self._segments = (Piece * len(self._pieces))(*(piece for piece, _ in self._pieces))
         self._times = np.ascontiguousarray(times, dtype=float)
@@ -236,7 +240,7 @@ class Batch:
         return Piece(segment.stop, ctypes.addressof(found)), found
 
     def _wave(self, signal: Signal, low: float, high: float) -> Wave:
-        """Return a signal as C takes it: a wave, or a function that is asked within [low, high]."""
+        """Return a signal as C takes it, within [low, high]."""
         match signal:
             case Constant(value):
                 return Wave(offset=value)
@@ -244,6 +248,11 @@ class Batch:
                 return Wave(amplitude, frequency, 0.0, phase, offset)
             case Chirp(amplitude, start, stop, duration, offset) if high <= duration:
                 return Wave(amplitude, start, (stop - start) / duration, 0.0, offset)
+
+        if found := pieces_of(signal, low, high):
+            self._kept.append(found)  # C reads it
+            places = found.edges.ctypes.data, found.coefficients.ctypes.data
+            return Wave(0.0, 0.0, 0.0, 0.0, 0.0, *places, *found.coefficients.shape)
 
         def asked(t: float) -> float:
             try:

@@ -65,6 +65,7 @@ typedef struct {
 #undef BY
 #undef MORE
 #undef LESS
+#if PAIRS
 #define NUMBER MODEL(complex)
 #define NAMED(name) MODEL(name##_complex)
 #define ONE ((MODEL(complex)){wide(1.0), zero})
@@ -96,12 +97,25 @@ static inline MODEL(complex) MODEL(less)(MODEL(complex) a, MODEL(complex) b)
     return (MODEL(complex)){a.re - b.re, a.im - b.im};
 }
 #include "elimination.c"
+#endif /* PAIRS */
 
-/* Give the arrays of a block their places from `at` on; returns how many numbers they hold. */
-static long MODEL(arrange)(MODEL(block) *m, real *at)
+/* The numbers that a block says of itself: sizes, lanes of banks, first rows of states. */
+enum { SIZES = 6 + MODEL(banks) + MODEL(records) };
+
+/*
+ * Make a block for runs of the sizes of p, `more` rows for the ledger behind the model's own.  Its
+ * numbers lie from `at` on; returns how many these are.
+ */
+static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, long *sizes, real *at)
 {
     real *const begin = at;
-    const long n = m->n;
+    at += MODEL(place_reals)(&m->p, p, at);
+    MODEL(sizes)(&m->p, sizes);
+    const long n = m->n = sizes[0];
+    m->means = sizes[1], m->branches = sizes[2], m->booked = sizes[3] + more;
+    m->processes = sizes[4], m->slopes = sizes[5];
+    m->inputs = MODEL(input_count);
+    m->lanes = sizes + 6, m->first = sizes + 6 + MODEL(banks);
 #define PLACE(array, size) (m->array = at, at += (size))
     PLACE(x, n);
     PLACE(end, n);
@@ -120,9 +134,12 @@ static long MODEL(arrange)(MODEL(block) *m, real *at)
     PLACE(fresh, m->slopes);
     PLACE(real_factor, MODEL(factor_size_real)(m));
 #undef PLACE
+#if PAIRS
     m->factor = (MODEL(complex) *)at;
     m->right = m->factor + PAIRS * MODEL(factor_size_complex)(m);
-    return (real *)(m->right + n) - begin;
+    at = (real *)(m->right + n);
+#endif /* PAIRS */
+    return at - begin;
 }
 
 /* A state at a place of the step, reached by rates with these weights. */
@@ -256,7 +273,7 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
 /* Newton's change of the rates, from the gaps; gaps become it. */
 static void MODEL(change)(const MODEL(block) *m, real h)
 {
-    const long n = m->n, size = MODEL(factor_size_complex)(m);
+    const long n = m->n;
     for (long k = 0; k < n; ++k) {
         real one[STAGES];
         for (long i = 0; i < STAGES; ++i) {
@@ -270,6 +287,8 @@ static void MODEL(change)(const MODEL(block) *m, real h)
 #if STAGES % 2
     MODEL(solve_real)(m, h * filter, m->slope, m->real_factor, m->gap);
 #endif
+#if PAIRS
+    const long size = MODEL(factor_size_complex)(m);
     for (long pair = 0; pair < PAIRS; ++pair) {
         const double *value = eigenvalue[STAGES % 2 + pair];
         const MODEL(complex) gamma = {h * value[0], h * value[1]};
@@ -280,6 +299,7 @@ static void MODEL(change)(const MODEL(block) *m, real h)
         for (long k = 0; k < n; ++k)
             one[k] = m->right[k].re, other[k] = -m->right[k].im;
     }
+#endif /* PAIRS */
     for (long k = 0; k < n; ++k) {
         real one[STAGES];
         for (long i = 0; i < STAGES; ++i) {
@@ -298,18 +318,21 @@ static void MODEL(change)(const MODEL(block) *m, real h)
  */
 static void MODEL(prepare)(const MODEL(block) *m, real h, mask where)
 {
-    const long middle = STAGES / 2, size = MODEL(factor_size_complex)(m);
+    const long middle = STAGES / 2;
     MODEL(reach)(m, h, stage_reach[middle], m->reached);
     MODEL(slopes)(m->reached, m->branch + middle * m->branches, m->u + middle * m->inputs, &m->p,
                   m->fresh);
     for (long k = 0; k < m->slopes; ++k)
         m->slope[k] = chosen(where, m->fresh[k], m->slope[k]);
     MODEL(factorise_real)(m, h * filter, m->slope, m->real_factor);
+#if PAIRS
+    const long size = MODEL(factor_size_complex)(m);
     for (long pair = 0; pair < PAIRS; ++pair) {
         const double *value = eigenvalue[STAGES % 2 + pair];
         const MODEL(complex) gamma = {h * value[0], h * value[1]};
         MODEL(factorise_complex)(m, gamma, m->slope, m->factor + pair * size);
     }
+#endif /* PAIRS */
 }
 
 /* The lanes whose margins are those of a state in the domain. */
@@ -404,22 +427,4 @@ static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
         return found;
     m->fine |= more;
     return (found & none_of(more)) | MODEL(iterate)(m, h, more);
-}
-
-/* Rates on the polynomial through those of a step, at a part of the step. */
-static void MODEL(carry)(const MODEL(block) *m, const real *rates, real at, real *out)
-{
-    real weight[STAGES];
-    for (long j = 0; j < STAGES; ++j) {
-        weight[j] = wide(1.0);
-        for (long k = 0; k < STAGES; ++k)
-            if (k != j)
-                weight[j] *= (at - stage_at[k]) / (stage_at[j] - stage_at[k]);
-    }
-    for (long k = 0; k < m->n; ++k) {
-        real sum = zero;
-        for (long j = 0; j < STAGES; ++j)
-            sum += weight[j] * rates[j * m->n + k];
-        out[k] = sum;
-    }
 }

@@ -37,6 +37,8 @@ static void MODEL(refuse_fixed)(MODEL(batch) *b, int lane)
     l->known = 0.0;
     if (predicted)
         l->phase = STEP;
+    else if (++l->halved > MOST_HALVED)
+        MODEL(leave)(b, lane, 1);
     else
         MODEL(refuse)(b, lane, 0.5 * l->whole);
 }
@@ -112,9 +114,10 @@ static int MODEL(on)(MODEL(batch) *b, int lane)
     const double most = l->refused ? 1.0 : 4.0; /* what was refused just now is not tried again */
     l->refused = 0;
     l->phase = STEP;
-    if (b->fixed > 0.0)
+    if (b->fixed > 0.0) {
+        l->halved = l->h < b->fixed ? l->halved : 0;
         l->h = fmin(b->fixed, 2.0 * l->h);
-    else {
+    } else {
         if (l->fresh) /* switches differ: the shorter steps count */
             l->after_switch = l->after_switch > 0.0 ? fmin(l->step, 1.5 * l->after_switch) : l->step;
         l->fresh = l->which >= 0;

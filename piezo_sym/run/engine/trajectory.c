@@ -10,9 +10,14 @@
  * does not.
  */
 
-/* An input between its breaks: a wave whose frequency may move, or a function that is asked. */
+/*
+ * An input between its breaks: a wave whose frequency may move; polynomials of Chebyshev, so many
+ * terms each, between edges; or a function that is asked.
+ */
 typedef struct {
     double amplitude, frequency, rate, phase, offset;
+    const double *edges, *coefficients;
+    long pieces, terms;
     double (*asked)(double);
 } MODEL(signal);
 
@@ -47,7 +52,7 @@ typedef struct {
     double t, h;
     double length, whole, step, part; /* at hand, before cuts, accepted; part of it for a cut */
     double known, longer, after_switch;
-    int phase, behind, predicted, fresh, last, cuts, refused;
+    int phase, behind, predicted, fresh, last, cuts, refused, halved;
     long which; /* the switch at the end of the step; -1 if none */
     double since, pace[2]; /* when the way over kinks was chosen; how fast each way was */
     long ticks, looks;     /* steps solved since then; how often the ways were compared */
@@ -64,10 +69,12 @@ typedef struct {
     real *rate, *side, *sums, *lost, *known;       /* at the begin of a step; of the step before */
     real *end_rate, *end_side, *end_branch, *part; /* at its end; what it adds to sums */
     real *some_rate, *some_share, *some_side, *some_rows, *some_margin, *some_inputs;
-    long sizes[6 + MODEL(banks) + MODEL(records)];
+    long sizes[SIZES];
 } MODEL(batch);
 
 enum { MOST_REFUSED = 200, MOST_CUTS = 4 };
+/* So often a fixed step may be halved in all before one of full length succeeds: else a run creeps. */
+enum { MOST_HALVED = 1000 };
 /* A way is tried for so many solves; the slower one again after so many trials of the faster. */
 enum { TRIED = 32, AGAIN = 12 };
 /* With kinks within, the error of a step falls about as this power tells. */
@@ -88,6 +95,28 @@ enum { TRIED = 32, AGAIN = 12 };
 #define AT_END 1e-9
 #define AT_ONCE 1e-12
 
+/* The value of a signal in pieces. */
+static double MODEL(piece_at)(const MODEL(signal) *s, double t)
+{
+    long low = 0, high = s->pieces;
+    double last = 0.0, before = 0.0;
+    while (high - low > 1) {
+        const long middle = (low + high) / 2;
+        if (t < s->edges[middle])
+            high = middle;
+        else
+            low = middle;
+    }
+    const double begin = s->edges[low], end = s->edges[low + 1];
+    const double z = fmin(fmax((2.0 * t - begin - end) / (end - begin), -1.0), 1.0);
+    const double *const term = s->coefficients + low * s->terms;
+    for (long k = s->terms - 1; k > 0; --k) {
+        const double now = term[k] + 2.0 * z * last - before;
+        before = last, last = now;
+    }
+    return term[0] + z * last - before;
+}
+
 static void MODEL(inputs_at)(const MODEL(segment) *segment, long inputs, double t, real *u, int lane)
 {
     for (long k = 0; k < inputs; ++k) {
@@ -96,6 +125,8 @@ static void MODEL(inputs_at)(const MODEL(segment) *segment, long inputs, double 
         double value = s->offset;
         if (s->asked)
             value = s->asked(t);
+        else if (s->pieces)
+            value = MODEL(piece_at)(s, t);
         else if (s->amplitude != 0.0)
             value += s->amplitude * sin(6.283185307179586476925 * turns + s->phase);
         LANE(u, k, lane) = value;
@@ -166,6 +197,24 @@ static void MODEL(plan)(const MODEL(batch) *b, MODEL(lane) *l, int lane)
     for (long i = 0; i < STAGES; ++i)
         MODEL(inputs_at)(l->segment, b->m.inputs, l->t + stage_at[i] * l->length,
                          b->m.u + i * b->m.inputs, lane);
+}
+
+/* Rates on the polynomial through those of a step, at a part of the step. */
+static void MODEL(carry)(const MODEL(block) *m, const real *rates, real at, real *out)
+{
+    real weight[STAGES];
+    for (long j = 0; j < STAGES; ++j) {
+        weight[j] = wide(1.0);
+        for (long k = 0; k < STAGES; ++k)
+            if (k != j)
+                weight[j] *= (at - stage_at[k]) / (stage_at[j] - stage_at[k]);
+    }
+    for (long k = 0; k < m->n; ++k) {
+        real sum = zero;
+        for (long j = 0; j < STAGES; ++j)
+            sum += weight[j] * rates[j * m->n + k];
+        out[k] = sum;
+    }
 }
 
 /* Rates to begin Newton's method with: along the known step, or as they are at the begin. */

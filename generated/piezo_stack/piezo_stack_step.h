@@ -1,0 +1,53 @@
+/*
+ * Piezoelectric stack actuator with hysterons: irreversible port-Hamiltonian system.
+ *
+ * Source:  Caballeria, Ramirez, Le Gorrec (2021), eqs. (9)-(13), Table 1
+ * Model:   piezo_stack, spec sha256 9c0235a60e02072bc451611ffa723f273272c8e4536a3089081866f47c89389c
+ * Proofs:  skew, casimir, temperature, energy, entropy, welldef, continuous, passive, odd, sigma, exergy, environment, invariant, units, program PROVED
+ *
+ * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
+ * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
+ *
+ * x = (q, p, Q_C, phi_1 ... phi_hysteron_count, S)
+ * u = (F_ext, V_in, T_e)
+ * hysteron: lanes j = 1 ... hysteron_count
+ */
+#ifndef PIEZO_SYM_piezo_stack_STEP_H
+#define PIEZO_SYM_piezo_stack_STEP_H
+
+#include "piezo_stack.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/*
+ * Numbers that a step needs to work with.
+ */
+long piezo_stack_step_size(const piezo_stack_parameters *p_);
+
+/*
+ * Takes a step of order two: energy-preserving Gauss collocation of one stage, by Newton's
+ *     method. What is booked closes both balances to round-off. Returns 1; or 0 where no such
+ *     step lies in the domain, with x as it is: try a shorter one.
+ * x[n], read and written: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S
+ *     [J/K]
+ * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]; held in the step
+ * h, read: its length [s]
+ * booked, written: energy put in [J] by load, supply, ambient; then heat [J], and then entropy
+ *     produced [J/K], by hysteron_1 ... hysteron_hysteron_count, damper; then the entropy
+ *     [J/K] that each heat exchange brings
+ * space[piezo_stack_step_size(p_)], written; nothing has to be kept there between steps
+ */
+int piezo_stack_step(double *x,
+                     const double *u,
+                     double h,
+                     const piezo_stack_parameters *p_,
+                     double *booked,
+                     double *space);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* PIEZO_SYM_piezo_stack_STEP_H */

@@ -1,0 +1,77 @@
+"""The header of a model's step in C: what it takes and books.
+
+Input: a `Program`, and what a step books.  Output: the text of ``<model>_step.h``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from piezo_sym.codegen.c_head import opening, spread, wrapped
+from piezo_sym.codegen.collocation import Collocation
+from piezo_sym.codegen.program import Program
+
+_TEXT = """{opening}
+#ifndef PIEZO_SYM_{model}_STEP_H
+#define PIEZO_SYM_{model}_STEP_H
+
+#include "{model}.h"
+
+#ifdef __cplusplus
+extern "C" {{
+#endif
+
+/*
+ * Numbers that a step needs to work with.
+ */
+long {model}_step_size(const {model}_parameters *p_);
+
+/*
+{doc}
+ */
+int {model}_step(double *x,
+{indent}const double *u,
+{indent}double h,
+{indent}const {model}_parameters *p_,
+{indent}double *booked,
+{indent}double *space);
+
+#ifdef __cplusplus
+}}
+#endif
+
+#endif /* PIEZO_SYM_{model}_STEP_H */
+"""
+
+
+def c_step_header(program: Program, made: Collocation) -> str:
+    """Return the text of the header of a model's step."""
+    doc = "\n".join(f" * {line}".rstrip() for line in _doc(program, made))
+    indent = " " * len(f"int {program.name}_step(")
+    return _TEXT.format(opening=opening(program), model=program.name, doc=doc, indent=indent)
+
+
+def _doc(program: Program, made: Collocation) -> Iterator[str]:
+    """Yield the lines of what a step does, with the unit of each argument."""
+    yield from wrapped(
+        "Takes a step of order two: energy-preserving Gauss collocation of one stage, by Newton's "
+        "method. What is booked closes both balances to round-off. Returns 1; or 0 where no such "
+        "step lies in the domain, with x as it is: try a shorter one."
+    )
+    states = ", ".join(f"{spread(field)} [{field.unit}]" for field in program.states)
+    inputs = ", ".join(f"{field.name} [{field.unit}]" for field in program.inputs)
+    yield from wrapped(f"x[n], read and written: {states}")
+    yield from wrapped(f"u[{program.name}_input_count], read: {inputs or 'none'}; held in the step")
+    yield from wrapped("h, read: its length [s]")
+    ports = ", ".join(field.name for field in program.outputs)
+    processes = ", ".join(spread(field) for field in program.processes)
+    known = len(program.outputs) + 2 * len(program.processes)
+    exchanges = len(made.stage.booked) - known
+    yield from wrapped(
+        f"booked, written: energy put in [J] by {ports or 'no port'}; then heat [J], and then "
+        f"entropy produced [J/K], by {processes or 'no process'}"
+        + ("; then the entropy [J/K] that each heat exchange brings" if exchanges else "")
+    )
+    yield from wrapped(
+        f"space[{program.name}_step_size(p_)], written; nothing has to be kept there between steps"
+    )

@@ -1,0 +1,46 @@
+/*
+ * A step of order two by itself, for programs in C; see <model>_step.h.
+ */
+
+static long MODEL(made)(MODEL(block) *m, const MODEL(parameters) *p, long *sizes, real *space)
+{
+    real *const reached = space + MODEL(make)(m, p, 0, sizes, space);
+    m->over = 1, m->most = MOST_OF_FIXED, m->late = LATE;
+    return reached - space;
+}
+
+long MODEL(step_size)(const MODEL(parameters) *p)
+{
+    MODEL(block) block;
+    long sizes[SIZES];
+    real none[1];
+    return MODEL(made)(&block, p, sizes, none);
+}
+
+int MODEL(step)(double *x, const double *u, double h, const MODEL(parameters) *p, double *booked,
+                double *space)
+{
+    MODEL(block) block = {0}, *const m = &block;
+    long sizes[SIZES];
+    memset(space, 0, (size_t)MODEL(step_size)(p) * sizeof *space);
+    MODEL(made)(m, p, sizes, space);
+    MODEL(give)(&m->p, p, 0);
+    for (long k = 0; k < m->n; ++k) {
+        m->x[k] = x[k];
+        m->largest[k] = size_of(x[k]);
+    }
+    for (long k = 0; k < m->inputs; ++k)
+        m->u[k] = u[k];
+    if (!MODEL(solve)(m, h, 1) || !MODEL(accepted)(m))
+        return 0;
+    for (long k = 0; k < m->booked; ++k)
+        booked[k] = h * m->rows[k];
+    MODEL(reach)(m, h, stage_weight, m->end);
+    MODEL(integrands)(m->end, &m->p, m->node);
+    MODEL(stage)(m->end, m->node, m->branch, u, &m->p, m->gap, m->rows, m->side, m->margin);
+    if (!MODEL(within)(m->margin))
+        return 0;
+    for (long k = 0; k < m->n; ++k)
+        x[k] = m->end[k];
+    return 1;
+}

@@ -1,0 +1,47 @@
+"""A step that works alone: what stands behind a model's own text in ``<model>_step.c``.
+
+Input: a model's name.  Output: text, the engine's step of order two for numbers of one run.  The
+engine itself, which has its own, passes over it.
+"""
+
+import re
+
+from piezo_sym.run.engine.driver import MORE_NODES
+from piezo_sym.run.engine.tableau import tableau
+from piezo_sym.run.engine.texts import texts
+
+_TABLE = re.compile(r"static const double (\w+)\[[^;]*;\n?", re.DOTALL)
+_INCLUDE = '#include "elimination.c"\n'
+_HEAD = """
+#if defined(ALONE) /* the engine has a step of its own, of any order and for vectors */
+#include "{model}_step.h"
+
+#include <string.h>
+
+#define MODEL(name) {model}_##name
+#define LANE(array, k, lane) ((array)[k])
+#define any(where) (where)
+#define none_of(where) (!(where))
+#define size_of fabs
+#define nowhere 0
+typedef int mask; /* 0 or 1 */
+
+static inline real largest_of(real a, real b)
+{{
+    return a > b || a != a ? a : b;
+}}
+"""
+
+
+def step_alone(model: str) -> str:
+    """Return the text of a model's step for programs in C."""
+    solver = re.sub(r"#if PAIRS\n.*?#endif /\* PAIRS \*/\n", "", texts("gauss.c"), flags=re.DOTALL)
+    solver = re.sub(r"#if LOSSY.*?#endif\n", "", solver, flags=re.DOTALL)
+    solver = solver.replace(_INCLUDE, texts("elimination.c"))
+    text = f"{solver}\n{texts('alone.c')}"
+    bare = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
+    tables = tableau(1, 1 + MORE_NODES)
+    for table in _TABLE.finditer(tables):
+        if not re.search(rf"\b{table[1]}\b", bare):
+            tables = tables.replace(table[0], "")
+    return "\n".join([_HEAD.format(model=model), tables, text, "#endif /* ALONE */\n"])

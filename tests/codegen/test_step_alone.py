@@ -1,0 +1,71 @@
+"""The step that a program in C calls is the one that Python takes, and closes both balances."""
+
+import ctypes
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from piezo_sym import Stepper, load
+from piezo_sym.modules import module_of
+from piezo_sym.run.engine.compiler import build, compilers
+from piezo_sym.run.engine.records import at
+from piezo_sym.run.engine.structure import Layout
+
+SPECS = sorted((Path(__file__).parents[1] / "networks" / "specs").glob("*.toml"))
+
+
+class Alone:
+    """``<model>_step.c`` compiled by itself, and what a step in C is given."""
+
+    def __init__(self, module, folder):
+        source = Path(module.__file__)
+        build(
+            next(compilers()),
+            ("-O2", "-shared", "-fPIC"),
+            source.with_name(f"{module.NAME}_step.c"),
+            folder / "step.so",
+        )
+        library = ctypes.CDLL(str(folder / "step.so"))
+        self.structure = Layout(module)(module.Parameters())
+        self.function = getattr(library, f"{module.NAME}_step")
+        size = getattr(library, f"{module.NAME}_step_size")
+        size.restype = ctypes.c_long
+        self.space = np.full(size(ctypes.byref(self.structure.value)), np.nan)
+        self.booked = np.full(100, np.nan)
+
+    def __call__(self, x, u, h):
+        given = at(x), at(u), ctypes.c_double(h), ctypes.byref(self.structure.value)
+        return self.function(*given, at(self.booked), at(self.space))
+
+
+@pytest.mark.parametrize("path", ["piezo_stack", *SPECS[::4]], ids=lambda path: Path(path).stem)
+def test_it_takes_the_steps_of_a_stepper(path, tmp_path):
+    model, h = load(path), 1e-6
+    module = module_of(model)
+    steps, step = Stepper(model, step=h), Alone(module, tmp_path)
+    u, x = np.array([entry.si for entry in model.inputs.values()]), steps.x
+    u = u if model.name != "piezo_stack" else np.array([1.0, 60.0, 298.15])
+    booked = np.zeros(100)
+    p, start = module.Parameters(), x.copy()
+    for _ in range(50):
+        steps.step(u)
+        assert step(x, u, h)
+        booked += step.booked
+    size = np.abs(x).max()
+    assert np.allclose(x, steps.x, rtol=1e-11, atol=1e-14 * size)
+    ports = len(module.OUTPUTS)
+    gained = float(module.energy(x, p) - module.energy(start, p))
+    gross = float(np.abs(module.energy(x, p))) + np.abs(booked[:ports]).sum()
+    assert abs(gained - booked[:ports].sum()) <= 1e-13 * gross
+
+
+def test_a_step_that_leaves_the_domain_leaves_the_state(tmp_path):
+    module = module_of(load("piezo_stack"))
+    step, p = Alone(module, tmp_path), module.Parameters()
+    x = module.initial_state(np.array([0.0, 0.0, 296.15 + 1e-9]), p)
+    before, u = x.copy(), np.array([0.0, 0.0, 200.0])
+    assert not step(x, u, 10.0)
+    assert np.array_equal(x, before)
+    assert step(x, np.array([0.0, 1.0, 298.15]), 1e-6)
+    assert not np.array_equal(x, before)
