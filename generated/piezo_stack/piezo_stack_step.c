@@ -394,13 +394,13 @@ static const double filter = 5.0e-1;
 static const double stage_weight[1] = {1.0};
 static const double stage_reach[1][1] = {
     {5.0e-1}};
+static const double node_last[3] = {5.5555555555555556e-1, -1.1111111111111111, 5.5555555555555556e-1};
 static const double node_reach[3][1] = {
     {1.1270166537925831e-1},
     {5.0e-1},
     {8.8729833462074169e-1}};
 static const double node_mean[1][3] = {
     {2.7777777777777778e-1, 4.4444444444444444e-1, 2.7777777777777778e-1}};
-static const double node_last[3] = {5.5555555555555556e-1, -1.1111111111111111, 5.5555555555555556e-1};
 static const double fine_reach[16][1] = {
     {5.2995325041750337e-3},
     {2.7712488463383712e-2},
@@ -444,9 +444,11 @@ enum { MOST_ITERATIONS = 12, SOON = 1 };
  * A fixed step may begin far from its root: from beyond the bend of an exponential law Newton's method
  * comes back by its width each time, however short the step.
  */
-enum { MOST_OF_FIXED = 100, LATE = 60 };
+enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
 /* Where a change is more than so much of the one before, slopes are taken anew. */
 #define SLOW 0.1
+/* Changes go to and fro where so much of one is left, with the other sign. */
+#define TO_AND_FRO 0.5
 /* What Newton's method may leave of a state's change, in parts of its largest magnitude. */
 #define NOISE 1e-16
 
@@ -465,11 +467,12 @@ typedef struct {
     real *branch;              /* STAGES*branches */
     real *u;                   /* STAGES*inputs */
     real *largest;             /* n: the largest magnitude of each state, by which errors count */
-    real *reached, *gap, *node, *mean, *side, *margin, *rows, *slope, *fresh, *real_factor;
+    real *reached, *gap, *prior, *node, *mean, *side, *margin, *rows, *slope, *fresh, *real_factor;
     mask fine;                 /* lanes whose means are taken at FINE nodes */
     mask over;                 /* lanes whose stages choose their branches: they step over kinks */
     real iterations;           /* of Newton's method */
     int most, late;            /* of them in a step; after which it may be given up */
+    double stays;              /* a change that is more than this part of the one before is noise */
     MODEL(complex) *factor, *right;
 } MODEL(block);
 
@@ -693,6 +696,7 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     PLACE(largest, n);
     PLACE(reached, n);
     PLACE(gap, STAGES * n);
+    PLACE(prior, STAGES * n);
     PLACE(node, FINE * m->means);
     PLACE(mean, STAGES * m->means);
     PLACE(side, STAGES * m->branches);
@@ -902,6 +906,27 @@ static mask MODEL(accepted)(const MODEL(block) *m)
 }
 
 /*
+ * How much of a change to take where changes go to and fro: slopes are those at one place of a step,
+ * with co-states there for means, and a long step has others.  What the change before has left says
+ * by how much it went too far.
+ */
+static real MODEL(damping)(const MODEL(block) *m)
+{
+    real both = zero, prior = 1e-300 + zero;
+    for (long k = 0; k < m->n; ++k) {
+        const real size = m->largest[k] + size_of(m->x[k]) + 1e-300;
+        for (long j = 0; j < STAGES; ++j) {
+            const real last = m->prior[j * m->n + k] / size;
+            both += last * (m->gap[j * m->n + k] / size);
+            prior += last * last;
+        }
+    }
+    const real left = both / prior;
+    const mask fro = left < -TO_AND_FRO;
+    return chosen(fro, 1.0 / (1.0 - left), wide(1.0));
+}
+
+/*
  * Newton's method for the rates in some lanes, begun where they are; returns those that found them.
  * A lane that has found them stays as it is, however long the others take.
  */
@@ -915,11 +940,13 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
         real worst = zero;
         m->iterations += chosen(going, wide(1.0), zero);
         MODEL(change)(m, h);
+        const real part = iteration && m->late > SOON ? MODEL(damping)(m) : (real)wide(1.0);
         for (long k = 0; k < m->n; ++k) {
             real moved = zero, changed = zero;
             for (long j = 0; j < STAGES; ++j) {
                 real *const rate = m->rates + j * m->n + k;
-                const real change = chosen(going, m->gap[j * m->n + k], zero);
+                const real change = chosen(going, part * m->gap[j * m->n + k], zero);
+                m->prior[j * m->n + k] = change;
                 *rate += change;
                 moved = largest_of(moved, size_of(*rate));
                 changed += size_of(change);
@@ -931,8 +958,8 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
         const mask smaller = worst < before, lost = none_of(worst < 1e300);
         mask good = (worst <= 4.0) | (smaller & (worst * (worst / before) <= 1.0));
         if (iteration > 1) { /* noise of what rates are made of, or no root */
-            const mask stays = (worst > 0.3 * before) & none_of(good);
-            good |= stays & (worst < 1e4);
+            const mask stays = (worst > m->stays * before) & none_of(good);
+            good |= stays & (worst < (m->late == SOON || iteration > NOISY ? 1e4 : 100.0));
             if (iteration > m->late)
                 going &= none_of(stays & none_of(good));
         }
@@ -965,7 +992,7 @@ static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
 static long MODEL(made)(MODEL(block) *m, const MODEL(parameters) *p, long *sizes, real *space)
 {
     real *const reached = space + MODEL(make)(m, p, 0, sizes, space);
-    m->over = 1, m->most = MOST_OF_FIXED, m->late = LATE;
+    m->over = 1, m->most = MOST_OF_FIXED, m->late = LATE, m->stays = 0.7;
     return reached - space;
 }
 
@@ -998,7 +1025,10 @@ int MODEL(step)(double *x, const double *u, double h, const MODEL(parameters) *p
     MODEL(reach)(m, h, stage_weight, m->end);
     MODEL(integrands)(m->end, &m->p, m->node);
     MODEL(stage)(m->end, m->node, m->branch, u, &m->p, m->gap, m->rows, m->side, m->margin);
-    if (!MODEL(within)(m->margin))
+    int good = MODEL(within)(m->margin);
+    for (long k = 0; k < m->n; ++k)
+        good &= size_of(m->gap[k]) < 1e300;
+    if (!good)
         return 0;
     for (long k = 0; k < m->n; ++k)
         x[k] = m->end[k];

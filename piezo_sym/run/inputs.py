@@ -43,8 +43,20 @@ class Function(Signal):
         times = np.asarray(t, dtype=float)
         values = self._at_once(times) if times.size > MANY else None
         if values is None:
-            values = np.array([self.value(float(time)) for time in times.flat])
+            values = self._one_by_one(times.ravel().tolist())
         return values.reshape(times.shape)[()]
+
+    def _one_by_one(self, times: list[float]) -> FloatArray:
+        """Return the values; whatever is odd about one is told by `value`."""
+        try:
+            found = [self.function(time) for time in times]
+            plain = {type(value) for value in found} <= {float, int, np.float64}
+            values: FloatArray = np.array(found if plain else [], dtype=float)
+        except Exception:  # the user's own code: it may raise anything
+            plain = False
+        if plain and np.all(np.isfinite(values)):
+            return values
+        return np.array([self.value(time) for time in times])
 
     def _at_once(self, times: FloatArray) -> FloatArray | None:
         """Return the values of a function that takes arrays; None of one that does not."""

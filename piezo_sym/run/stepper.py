@@ -24,7 +24,7 @@ from piezo_sym.run.engine.collocation import Batch, Stepping
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.engine.records import LONG, POINTER, at
 from piezo_sym.run.guard import check_start, domain_error
-from piezo_sym.run.inputs import read_inputs
+from piezo_sym.run.inputs import Inputs, read_inputs
 from piezo_sym.run.ledger import Trajectory
 from piezo_sym.run.module import GeneratedModule, checked, row_names
 from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
@@ -60,6 +60,14 @@ class Limits:
         """Return whether the last step's inputs lay in the domain; a margin of nan does not."""
         found = self.margins[self.conditions]
         return bool(np.all((found > 0) | ((found == 0) & (self.strict == 0))))
+
+
+def refuse_signals(module: GeneratedModule, known: Inputs) -> None:
+    """Raise `UsageError` if an input at t = 0 is no number."""
+    for record, signal in zip(module.INPUTS, known.signals, strict=True):
+        if not isinstance(signal, Constant):
+            where, remedy = f"Stepper.inputs.{record.name}", "give the others to step(u)"
+            raise UsageError("this is no number", where, "the input at t = 0", remedy)
 
 
 @final
@@ -115,10 +123,7 @@ class Stepper:
         engine = engine_of(module)
         values = read_parameters(module, parameters)
         known = read_inputs(module, inputs, self._h)
-        for record, signal in zip(module.INPUTS, known.signals, strict=True):
-            if not isinstance(signal, Constant):
-                where, remedy = f"Stepper.inputs.{record.name}", "give the others to step(u)"
-                raise UsageError("this is no number", where, "the input at t = 0", remedy)
+        refuse_signals(module, known)
         system = self._system = System(module, values, known)
         x = read_initial(module, values, system.inputs.segments[0].at(0.0), initial)
         check_start(system, x)
@@ -133,18 +138,22 @@ class Stepper:
         self._kept = np.zeros(x.size + self._batch.ledgers.size)
         self._put, self._buffer = struct.Struct(f"{self._u.size}d").pack_into, self._u.data
         self._copied: Callable[[], FloatArray] = self._y.copy
-        limits = self._limits = Limits(system)
+        self._limits = Limits(system)
         functions = (getattr(engine.library, f"{module.NAME}_{n}") for n in ("outputs", "margins"))
-        self._call = Call(
-            *(*self._batch.one(), at(self._u), at(self._y)),
-            *(ctypes.cast(function, POINTER) for function in functions),
-            *(at(self._kept), at(limits.margins), at(limits.conditions), at(limits.strict)),
-            limits.conditions.size,
-        )
+        self._call = self._made(*(ctypes.cast(function, POINTER) for function in functions))
         self._at = ctypes.byref(self._call)
         self._once: Any = self._batch.function("step_once")
         self._forget: Any = self._batch.function("forget")
         self._forget(self._at)
+
+    def _made(self, outputs: Any, margins: Any) -> Call:
+        """Return what a call needs, all in one place; functions are those of ``<model>.c``."""
+        limits = self._limits
+        return Call(
+            *(*self._batch.one(), at(self._u), at(self._y), outputs, margins),
+            *(at(self._kept), at(limits.margins), at(limits.conditions), at(limits.strict)),
+            limits.conditions.size,
+        )
 
     @property
     def x(self) -> FloatArray:

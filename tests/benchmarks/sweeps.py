@@ -102,6 +102,7 @@ def _plan(family: Family, rtol: float) -> Plan:
             duration=problem.duration,
             rtol=rtol,
             step=None,
+            order=None,
             parameters=problem.counts,
             initial=None,
             method=METHOD,

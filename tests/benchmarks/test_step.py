@@ -102,8 +102,8 @@ def test_a_step_of_a_stepper_costs_little_more_than_a_call_of_c(moving):
         actuator.step(second)
 
     def bare():
-        actuator._tick(actuator._at)
-        actuator._tick(actuator._at)
+        actuator._once(actuator._at)
+        actuator._once(actuator._at)
 
     ratio = np.inf
     for _ in range(4):  # a busy machine blurs the ratio

@@ -66,10 +66,11 @@ def test_a_changed_file_is_found_with_the_difference(model, file, out):
 def test_a_changed_spec_is_found(spec, out):
     spec["parameters"]["M"]["value"] = 4e-3
     found = drift([Model(**spec)], out)  # the queries hold for any
-    module, header, source, step, proofs = found
+    module, header, source, step_header, step, proofs = found
     assert "+    M: float = 0.004" in module.diff
     assert "+    double M; /* moving mass [kg]; 0.004 */" in header.diff
     assert "sha256" in source.diff
+    assert "sha256" in step_header.diff
     assert "sha256" in step.diff
     assert proofs.path.name == "proofs.json"
 

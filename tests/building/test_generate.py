@@ -14,6 +14,7 @@ from piezo_sym.errors import FileError, ProofError
 ROOT = Path(__file__).parents[2]
 COMMITTED = ROOT / "generated" / "piezo_stack" / "piezo_stack.py"
 FILES = ["piezo_stack.c", "piezo_stack.h", "piezo_stack.py", "piezo_stack_step.c"]
+FILES += ["piezo_stack_step.h"]
 FILES += ["proofs.json", "proofs.smt2"]
 
 

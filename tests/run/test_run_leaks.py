@@ -14,4 +14,4 @@ def test_runs_keep_no_memory():
         command, cwd=ALONE.parents[2], capture_output=True, text=True, check=False, timeout=600
     )
     assert done.returncode == 0, done.stdout
-    assert re.search(r"^8 passed", done.stdout, re.MULTILINE), done.stdout
+    assert re.search(r"^10 passed", done.stdout, re.MULTILINE), done.stdout

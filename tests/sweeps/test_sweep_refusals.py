@@ -1,15 +1,13 @@
 """What a sweep refuses, in one line, before anything runs; and runs that fail."""
 
 import re
-from dataclasses import replace
 
 import numpy as np
 import pytest
-import xarray
 
 from piezo_sym import ramp, simulate, sine, step, sweep
 from piezo_sym.errors import FileError, RunError, UsageError
-from piezo_sym.sweeps import SweepWarning, run
+from piezo_sym.sweeps import SweepWarning
 from piezo_sym.sweeps.targets import Target, find
 
 NAN, INF = float("nan"), float("inf")
@@ -178,26 +176,6 @@ def test_a_run_that_stops_does_not_stop_others(reduce):
         np.testing.assert_allclose(found.q.values[4], alone.q.values, rtol=0, atol=1e-14)
     else:
         assert np.isfinite(found.q.values[[0, 2, 4]]).all()
-
-
-def test_runs_that_stop_together_are_run_again_alone(monkeypatch):
-    """A run with a fixed step that cannot go on stops those that share its call of C."""
-    real = run.stepped
-
-    def stopped(plan, systems, engine, x, watch):
-        found = real(plan, systems, engine, x, watch)
-        if len(systems) == 1:
-            return found
-        found.states[:] = found.sums[:] = np.nan
-        return replace(found, errors=[RunError("stopped by another")] * len(systems))
-
-    options = {"inputs": {"V_in": sine(100, 100)}, "duration": 0.01, "times": 5, "threads": 1}
-    options["step"] = 1e-4
-    over = {"L": [1e-3, 2e-3, 3e-3, 4e-3]}
-    expected = sweep("piezo_stack", over=over, **options)
-    monkeypatch.setattr(run, "stepped", stopped)
-    found = sweep("piezo_stack", over=over, **options)
-    xarray.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-14)
 
 
 @pytest.mark.parametrize("reduce", [None, "last", lambda run: run[["q"]]])

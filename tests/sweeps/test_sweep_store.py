@@ -120,7 +120,7 @@ OTHERS = [
     ({"duration": 2e-3}, "others are duration"),
     ({"times": 4}, UNTOLD),
     ({"rtol": 1e-6}, "others are rtol"),
-    ({"step": 1e-5}, "others are step, rtol"),
+    ({"step": 1e-5}, "others are step, order, rtol"),
     ({"parameters": {"d": 401}}, "others are d"),
     ({"initial": {"q": 1e-6}}, UNTOLD),
     ({"inputs": {"F_ext": step(1e-4, 0, 1)}}, UNTOLD),

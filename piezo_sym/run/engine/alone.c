@@ -5,7 +5,7 @@
 static long MODEL(made)(MODEL(block) *m, const MODEL(parameters) *p, long *sizes, real *space)
 {
     real *const reached = space + MODEL(make)(m, p, 0, sizes, space);
-    m->over = 1, m->most = MOST_OF_FIXED, m->late = LATE;
+    m->over = 1, m->most = MOST_OF_FIXED, m->late = LATE, m->stays = 0.7;
     return reached - space;
 }
 
@@ -38,7 +38,10 @@ int MODEL(step)(double *x, const double *u, double h, const MODEL(parameters) *p
     MODEL(reach)(m, h, stage_weight, m->end);
     MODEL(integrands)(m->end, &m->p, m->node);
     MODEL(stage)(m->end, m->node, m->branch, u, &m->p, m->gap, m->rows, m->side, m->margin);
-    if (!MODEL(within)(m->margin))
+    int good = MODEL(within)(m->margin);
+    for (long k = 0; k < m->n; ++k)
+        good &= size_of(m->gap[k]) < 1e300;
+    if (!good)
         return 0;
     for (long k = 0; k < m->n; ++k)
         x[k] = m->end[k];

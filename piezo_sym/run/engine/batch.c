@@ -83,6 +83,7 @@ void MODEL(open)(MODEL(batch) *b, const MODEL(task) *task)
     b->ways = task->ways && b->m.branches >= MANY;
     b->m.most = task->fixed > 0.0 ? MOST_OF_FIXED : MOST_ITERATIONS;
     b->m.late = task->fixed > 0.0 ? LATE : SOON;
+    b->m.stays = task->fixed > 0.0 ? 0.7 : 0.3;
     b->m.over = task->over ? none_of(nowhere) : nowhere;
 }
 

@@ -35,10 +35,8 @@ def tableau(stages: int, nodes: int, *, lossy: bool = False) -> str:
     """
     with _ALONE:
         c, b = _gauss(stages)
-        t, w = _gauss(nodes)
         lagrange = [_lagrange(c, i) for i in range(stages)]
         reach = [_integral(part) for part in lagrange]
-        fine, many = _gauss(FINE)
         a = mp.matrix([[_at(reach[j], c[i]) for j in range(stages)] for i in range(stages)])
         basis, values = _eigen(a)
         tables = {
@@ -49,17 +47,9 @@ def tableau(stages: int, nodes: int, *, lossy: bool = False) -> str:
             "stage_last": _last(c, b),
             "along": [part[1:] for part in reach],
             "stage_reach": a.tolist(),
-            "node_reach": [[_at(reach[j], t[q]) for j in range(stages)] for q in range(nodes)],
-            "node_mean": [
-                [v * _at(part, x) / b[i] for x, v in zip(t, w, strict=True)]
-                for i, part in enumerate(lagrange)
-            ],
-            "node_last": _last(t, w),
-            "fine_reach": [[_at(one, x) for one in reach] for x in fine],
-            "fine_mean": [
-                [v * _at(part, x) / b[i] for x, v in zip(fine, many, strict=True)]
-                for i, part in enumerate(lagrange)
-            ],
+            "node_last": _last(*_gauss(nodes)),
+            **_means("node", nodes, lagrange, b),
+            **_means("fine", FINE, lagrange, b),
             "stage_basis": basis.tolist(),
             "basis_stage": (basis**-1).tolist(),
             "eigenvalue": values,
@@ -78,6 +68,19 @@ def tableau(stages: int, nodes: int, *, lossy: bool = False) -> str:
         head += [f"static const double filter = {_numbers(filters)};"]
         head += [f"#define COARSE {_numbers([coarse])}"]
         return "\n".join([*head, *(_table(name, rows) for name, rows in tables.items())])
+
+
+def _means(name: str, nodes: int, lagrange: list[Any], b: list[Any]) -> dict[str, list[Any]]:
+    """Return how nodes are reached by rates, and by what of them the mean of a stage is made."""
+    t, w = _gauss(nodes)
+    reach = [_integral(part) for part in lagrange]
+    parts = zip(lagrange, b, strict=True)
+    return {
+        f"{name}_reach": [[_at(one, x) for one in reach] for x in t],
+        f"{name}_mean": [
+            [v * _at(part, x) / own for x, v in zip(t, w, strict=True)] for part, own in parts
+        ],
+    }
 
 
 def _between(places: list[Any]) -> dict[str, list[Any]]:

@@ -259,7 +259,10 @@ static void MODEL(at_ends)(MODEL(batch) *b, MODEL(tick) *t)
         if (!any(MODEL(choose)(m->branches, b->some_side, b->end_branch, m->over)))
             break;
     }
-    t->good &= none_of(t->steps) | MODEL(within)(b->some_margin);
+    mask ends_well = MODEL(within)(b->some_margin); /* and has rates there to go on with */
+    for (long k = 0; k < m->n; ++k)
+        ends_well &= size_of(b->some_rate[k]) < 1e300;
+    t->good &= none_of(t->steps) | ends_well;
     MODEL(copy)(t->steps, b->some_rate, b->end_rate, m->n);
     MODEL(copy)(t->steps, b->some_side, b->end_side, m->branches);
 }
