@@ -426,8 +426,8 @@ static const double basis_stage[1][1] = {
     {1.0}};
 
 /*
- * Steps of Gauss collocation that keep both balances: Newton's method for the rates at the stages,
- * for the runs of all lanes at once.
+ * Steps of Gauss collocation that keep both balances: the rates that stages have to have, for the runs
+ * of all lanes at once; newton.c finds them.
  *
  * Behind real.h, a generated <model>_step.c and the tables of a number of stages.  With rates K_j
  * the state goes along X(tau) = x + h sum_j K_j int_0^tau l_j; stage i has the co-states' means
@@ -437,20 +437,6 @@ static const double basis_stage[1][1] = {
  */
 
 #include <stddef.h>
-
-/* Iterations, and after how many a step is given up whose changes do not become smaller. */
-enum { MOST_ITERATIONS = 12, SOON = 1 };
-/*
- * A fixed step may begin far from its root: from beyond the bend of an exponential law Newton's method
- * comes back by its width each time, however short the step.
- */
-enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
-/* Where a change is more than so much of the one before, slopes are taken anew. */
-#define SLOW 0.1
-/* Changes go to and fro where so much of one is left, with the other sign. */
-#define TO_AND_FRO 0.5
-/* What Newton's method may leave of a state's change, in parts of its largest magnitude. */
-#define NOISE 1e-16
 
 typedef struct {
     real re, im;
@@ -831,6 +817,22 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     return changed;
 }
 
+/* Newton's method for the rates at the stages of a step.  Behind gauss.c. */
+
+/* Iterations, and after how many a step is given up whose changes do not become smaller. */
+enum { MOST_ITERATIONS = 12, SOON = 1 };
+/*
+ * A fixed step may begin far from its root: from beyond the bend of an exponential law Newton's method
+ * comes back by its width each time, however short the step.
+ */
+enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
+/* Where a change is more than so much of the one before, slopes are taken anew. */
+#define SLOW 0.1
+/* Changes go to and fro where so much of one is left, with the other sign. */
+#define TO_AND_FRO 0.5
+/* What Newton's method may leave of a state's change, in parts of its largest magnitude. */
+#define NOISE 1e-16
+
 /* Newton's change of the rates, from the gaps; gaps become it. */
 static void MODEL(change)(const MODEL(block) *m, real h)
 {
@@ -991,9 +993,8 @@ static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
 
 static long MODEL(made)(MODEL(block) *m, const MODEL(parameters) *p, long *sizes, real *space)
 {
-    real *const reached = space + MODEL(make)(m, p, 0, sizes, space);
     m->over = 1, m->most = MOST_OF_FIXED, m->late = LATE, m->stays = 0.7;
-    return reached - space;
+    return MODEL(make)(m, p, 0, sizes, space);
 }
 
 long MODEL(step_size)(const MODEL(parameters) *p)
@@ -1001,7 +1002,8 @@ long MODEL(step_size)(const MODEL(parameters) *p)
     MODEL(block) block;
     long sizes[SIZES];
     real none[1];
-    return MODEL(made)(&block, p, sizes, none);
+    const long size = MODEL(made)(&block, p, sizes, none);
+    return size + block.n; /* the largest magnitudes stay from step to step */
 }
 
 int MODEL(step)(double *x, const double *u, double h, const MODEL(parameters) *p, double *booked,
@@ -1009,12 +1011,13 @@ int MODEL(step)(double *x, const double *u, double h, const MODEL(parameters) *p
 {
     MODEL(block) block = {0}, *const m = &block;
     long sizes[SIZES];
-    memset(space, 0, (size_t)MODEL(step_size)(p) * sizeof *space);
-    MODEL(made)(m, p, sizes, space);
+    const long size = MODEL(made)(m, p, sizes, space);
+    real *const largest = space + size;
+    memset(space, 0, (size_t)size * sizeof *space);
     MODEL(give)(&m->p, p, 0);
     for (long k = 0; k < m->n; ++k) {
         m->x[k] = x[k];
-        m->largest[k] = size_of(x[k]);
+        m->largest[k] = largest[k] = largest_of(size_of(x[k]), largest[k]);
     }
     for (long k = 0; k < m->inputs; ++k)
         m->u[k] = u[k];

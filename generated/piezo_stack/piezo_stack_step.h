@@ -37,7 +37,8 @@ long piezo_stack_step_size(const piezo_stack_parameters *p_);
  * booked, written: energy put in [J] by load, supply, ambient; then heat [J], and then entropy
  *     produced [J/K], by hysteron_1 ... hysteron_hysteron_count, damper; then the entropy
  *     [J/K] that each heat exchange brings
- * space[piezo_stack_step_size(p_)], written; nothing has to be kept there between steps
+ * space[piezo_stack_step_size(p_)], read and written: zero before the first step, then left
+ *     alone; it keeps how large states became, for what rounding leaves is a part of that
  */
 int piezo_stack_step(double *x,
                      const double *u,

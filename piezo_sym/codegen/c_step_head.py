@@ -73,5 +73,6 @@ def _doc(program: Program, made: Collocation) -> Iterator[str]:
         + ("; then the entropy [J/K] that each heat exchange brings" if exchanges else "")
     )
     yield from wrapped(
-        f"space[{program.name}_step_size(p_)], written; nothing has to be kept there between steps"
+        f"space[{program.name}_step_size(p_)], read and written: zero before the first step, then "
+        "left alone; it keeps how large states became, for what rounding leaves is a part of that"
     )

@@ -31,7 +31,7 @@ class Alone:
         self.function = getattr(library, f"{module.NAME}_step")
         size = getattr(library, f"{module.NAME}_step_size")
         size.restype = ctypes.c_long
-        self.space = np.full(size(ctypes.byref(self.structure.value)), np.nan)
+        self.space = np.zeros(size(ctypes.byref(self.structure.value)))
         self.booked = np.full(100, np.nan)
 
     def __call__(self, x, u, h):
@@ -48,7 +48,7 @@ def test_it_takes_the_steps_of_a_stepper(path, tmp_path):
     u = u if model.name != "piezo_stack" else np.array([1.0, 60.0, 298.15])
     booked = np.zeros(100)
     p, start = module.Parameters(), x.copy()
-    for _ in range(50):
+    for _ in range(200):
         steps.step(u)
         assert step(x, u, h)
         booked += step.booked

@@ -4,9 +4,8 @@
 
 static long MODEL(made)(MODEL(block) *m, const MODEL(parameters) *p, long *sizes, real *space)
 {
-    real *const reached = space + MODEL(make)(m, p, 0, sizes, space);
     m->over = 1, m->most = MOST_OF_FIXED, m->late = LATE, m->stays = 0.7;
-    return reached - space;
+    return MODEL(make)(m, p, 0, sizes, space);
 }
 
 long MODEL(step_size)(const MODEL(parameters) *p)
@@ -14,7 +13,8 @@ long MODEL(step_size)(const MODEL(parameters) *p)
     MODEL(block) block;
     long sizes[SIZES];
     real none[1];
-    return MODEL(made)(&block, p, sizes, none);
+    const long size = MODEL(made)(&block, p, sizes, none);
+    return size + block.n; /* the largest magnitudes stay from step to step */
 }
 
 int MODEL(step)(double *x, const double *u, double h, const MODEL(parameters) *p, double *booked,
@@ -22,12 +22,13 @@ int MODEL(step)(double *x, const double *u, double h, const MODEL(parameters) *p
 {
     MODEL(block) block = {0}, *const m = &block;
     long sizes[SIZES];
-    memset(space, 0, (size_t)MODEL(step_size)(p) * sizeof *space);
-    MODEL(made)(m, p, sizes, space);
+    const long size = MODEL(made)(m, p, sizes, space);
+    real *const largest = space + size;
+    memset(space, 0, (size_t)size * sizeof *space);
     MODEL(give)(&m->p, p, 0);
     for (long k = 0; k < m->n; ++k) {
         m->x[k] = x[k];
-        m->largest[k] = size_of(x[k]);
+        m->largest[k] = largest[k] = largest_of(size_of(x[k]), largest[k]);
     }
     for (long k = 0; k < m->inputs; ++k)
         m->u[k] = u[k];

@@ -1,0 +1,197 @@
+/* Newton's method for the rates at the stages of a step.  Behind gauss.c. */
+
+/* Iterations, and after how many a step is given up whose changes do not become smaller. */
+enum { MOST_ITERATIONS = 12, SOON = 1 };
+/*
+ * A fixed step may begin far from its root: from beyond the bend of an exponential law Newton's method
+ * comes back by its width each time, however short the step.
+ */
+enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
+/* Where a change is more than so much of the one before, slopes are taken anew. */
+#define SLOW 0.1
+/* Changes go to and fro where so much of one is left, with the other sign. */
+#define TO_AND_FRO 0.5
+/* What Newton's method may leave of a state's change, in parts of its largest magnitude. */
+#define NOISE 1e-16
+
+/* Newton's change of the rates, from the gaps; gaps become it. */
+static void MODEL(change)(const MODEL(block) *m, real h)
+{
+    const long n = m->n;
+    for (long k = 0; k < n; ++k) {
+        real one[STAGES];
+        for (long i = 0; i < STAGES; ++i) {
+            one[i] = zero;
+            for (long j = 0; j < STAGES; ++j)
+                one[i] += basis_stage[i][j] * m->gap[j * n + k];
+        }
+        for (long i = 0; i < STAGES; ++i)
+            m->gap[i * n + k] = one[i];
+    }
+#if STAGES % 2
+    MODEL(solve_real)(m, h * filter, m->slope, m->real_factor, m->gap);
+#endif
+#if PAIRS
+    const long size = MODEL(factor_size_complex)(m);
+    for (long pair = 0; pair < PAIRS; ++pair) {
+        const double *value = eigenvalue[STAGES % 2 + pair];
+        const MODEL(complex) gamma = {h * value[0], h * value[1]};
+        real *one = m->gap + (STAGES % 2 + 2 * pair) * n, *other = one + n;
+        for (long k = 0; k < n; ++k)
+            m->right[k] = (MODEL(complex)){one[k], -other[k]};
+        MODEL(solve_complex)(m, gamma, m->slope, m->factor + pair * size, m->right);
+        for (long k = 0; k < n; ++k)
+            one[k] = m->right[k].re, other[k] = -m->right[k].im;
+    }
+#endif /* PAIRS */
+    for (long k = 0; k < n; ++k) {
+        real one[STAGES];
+        for (long i = 0; i < STAGES; ++i) {
+            one[i] = zero;
+            for (long j = 0; j < STAGES; ++j)
+                one[i] += stage_basis[i][j] * m->gap[j * n + k];
+        }
+        for (long i = 0; i < STAGES; ++i)
+            m->gap[i * n + k] = one[i];
+    }
+}
+
+/*
+ * Slopes in the middle of the step, on the branches of its middle stage, and what solves with them;
+ * lanes that are not in `where` keep theirs.
+ */
+static void MODEL(prepare)(const MODEL(block) *m, real h, mask where)
+{
+    const long middle = STAGES / 2;
+    MODEL(reach)(m, h, stage_reach[middle], m->reached);
+    MODEL(slopes)(m->reached, m->branch + middle * m->branches, m->u + middle * m->inputs, &m->p,
+                  m->fresh);
+    for (long k = 0; k < m->slopes; ++k)
+        m->slope[k] = chosen(where, m->fresh[k], m->slope[k]);
+    MODEL(factorise_real)(m, h * filter, m->slope, m->real_factor);
+#if PAIRS
+    const long size = MODEL(factor_size_complex)(m);
+    for (long pair = 0; pair < PAIRS; ++pair) {
+        const double *value = eigenvalue[STAGES % 2 + pair];
+        const MODEL(complex) gamma = {h * value[0], h * value[1]};
+        MODEL(factorise_complex)(m, gamma, m->slope, m->factor + pair * size);
+    }
+#endif /* PAIRS */
+}
+
+/* The lanes whose margins are those of a state in the domain. */
+static mask MODEL(within)(const real *margin)
+{
+    mask good = none_of(nowhere);
+    for (long k = 0; k < MODEL(limits); ++k) {
+        const mask inside = margin[k] > 0.0, edge = margin[k] == 0.0;
+        good &= MODEL(strict)[k] ? inside : (mask)(inside | edge);
+    }
+    return good;
+}
+
+/* The lanes whose stages all lie in the domain, and whose processes take no entropy. */
+static mask MODEL(accepted)(const MODEL(block) *m)
+{
+    const long processes = m->processes, ports = MODEL(output_count);
+    mask good = none_of(nowhere);
+    for (long i = 0; i < STAGES; ++i) {
+        const real *rows = m->rows + i * m->booked + ports + processes;
+        real total = zero, lowest = zero;
+        good &= MODEL(within)(m->margin + i * MODEL(limits));
+        for (long k = 0; k < processes; ++k) {
+            const mask less = rows[k] < lowest;
+            total += size_of(rows[k]);
+            lowest = chosen(less, rows[k], lowest);
+        }
+#if LOSSY
+        lowest = fmin(lowest, m->rows[m->booked - 1]);
+        good &= m->rows[m->booked - 1] == m->rows[m->booked - 1];
+#endif
+        good &= lowest >= -1e-14 * total;
+    }
+    return good;
+}
+
+/*
+ * How much of a change to take where changes go to and fro: slopes are those at one place of a step,
+ * with co-states there for means, and a long step has others.  What the change before has left says
+ * by how much it went too far.
+ */
+static real MODEL(damping)(const MODEL(block) *m)
+{
+    real both = zero, prior = 1e-300 + zero;
+    for (long k = 0; k < m->n; ++k) {
+        const real size = m->largest[k] + size_of(m->x[k]) + 1e-300;
+        for (long j = 0; j < STAGES; ++j) {
+            const real last = m->prior[j * m->n + k] / size;
+            both += last * (m->gap[j * m->n + k] / size);
+            prior += last * last;
+        }
+    }
+    const real left = both / prior;
+    const mask fro = left < -TO_AND_FRO;
+    return chosen(fro, 1.0 / (1.0 - left), wide(1.0));
+}
+
+/*
+ * Newton's method for the rates in some lanes, begun where they are; returns those that found them.
+ * A lane that has found them stays as it is, however long the others take.
+ */
+static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
+{
+    mask going = where, found = nowhere;
+    real before = zero;
+    MODEL(gaps)(m, h, going);
+    MODEL(prepare)(m, h, going);
+    for (int iteration = 0; iteration < m->most && any(going); ++iteration) {
+        real worst = zero;
+        m->iterations += chosen(going, wide(1.0), zero);
+        MODEL(change)(m, h);
+        const real part = iteration && m->late > SOON ? MODEL(damping)(m) : (real)wide(1.0);
+        for (long k = 0; k < m->n; ++k) {
+            real moved = zero, changed = zero;
+            for (long j = 0; j < STAGES; ++j) {
+                real *const rate = m->rates + j * m->n + k;
+                const real change = chosen(going, part * m->gap[j * m->n + k], zero);
+                m->prior[j * m->n + k] = change;
+                *rate += change;
+                moved = largest_of(moved, size_of(*rate));
+                changed += size_of(change);
+            }
+            const real size = NOISE * (m->largest[k] + size_of(m->x[k]) + h * moved) + 1e-300;
+            worst = largest_of(h * changed / size, worst);
+        }
+        const mask switched = MODEL(gaps)(m, h, going);
+        const mask smaller = worst < before, lost = none_of(worst < 1e300);
+        mask good = (worst <= 4.0) | (smaller & (worst * (worst / before) <= 1.0));
+        if (iteration > 1) { /* noise of what rates are made of, or no root */
+            const mask stays = (worst > m->stays * before) & none_of(good);
+            good |= stays & (worst < (m->late == SOON || iteration > NOISY ? 1e4 : 100.0));
+            if (iteration > m->late)
+                going &= none_of(stays & none_of(good));
+        }
+        good &= none_of(lost);
+        found |= going & good;
+        going &= none_of(good | lost);
+        const mask slow = (worst > SLOW * before) & (before > 0.0);
+        if (any((switched | slow) & going))
+            MODEL(prepare)(m, h, (switched | slow) & going);
+        before = worst;
+    }
+#if LOSSY /* what rounding leaves of the loss, a difference of energies, is booked as it is taken */
+    m->rates[m->first[MODEL(heated)]] += m->gap[m->first[MODEL(heated)]];
+#endif
+    return found;
+}
+
+/* The rates in some lanes, with means at as many nodes as they ask for; returns who has them. */
+static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
+{
+    m->fine &= none_of(where);
+    const mask found = MODEL(iterate)(m, h, where), more = MODEL(coarse)(m, h) & found;
+    if (LOSSY || !any(more))
+        return found;
+    m->fine |= more;
+    return (found & none_of(more)) | MODEL(iterate)(m, h, more);
+}
