@@ -158,6 +158,15 @@ class Inputs:
         )
         return Segment(first[0], stop, low, nextafter(last[0], 0.0), base, varying)
 
+    def at_samples(self, times: FloatArray) -> FloatArray:
+        """Return the inputs (m, nt): at a jump those after it, at the end those before."""
+        starts = np.array([segment.start for segment in self.segments])
+        place = np.maximum(np.searchsorted(starts, times, side="right") - 1, 0)
+        found = np.empty((len(self.signals), times.size))
+        for n in np.unique(place):
+            found[:, place == n] = self.segments[n].over(times[place == n])
+        return found
+
     @cached_property
     def jumps(self) -> frozenset[float]:
         """Starts of the segments before which an input jumps; 0, for a run starts anywhere."""

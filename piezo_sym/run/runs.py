@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from piezo_sym.errors import RunError
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.ledger import Trajectory
-from piezo_sym.run.mesh import inputs_at
 from piezo_sym.run.system import System, Systems
 
 METHOD = "discrete_gradient"
@@ -57,7 +56,7 @@ class Runs:
         return Trajectory(
             start=self.start[k],
             states=self.states[k].T,
-            inputs=inputs_at(self.systems[k], self.times),
+            inputs=self.systems[k].inputs.at_samples(self.times),
             integrals=sums[:-2] if self.numerical else sums,
             steps=steps,
             evaluations=evaluations,

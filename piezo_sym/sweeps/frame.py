@@ -12,7 +12,6 @@ import numpy as np
 
 from piezo_sym.errors import UsageError
 from piezo_sym.run.dataset import coordinates, described, model_attrs
-from piezo_sym.run.mesh import inputs_at
 from piezo_sym.run.parameters import read_parameters
 from piezo_sym.run.system import System
 from piezo_sym.sweeps.group import inputs_at_point
@@ -132,7 +131,7 @@ def inputs_of(
     for row, record in enumerate(module.INPUTS):
         attrs = known[record.name][1]
         if record.name not in swept:
-            wave = reduced(plan, inputs_at(system, plan.samples)[row])
+            wave = reduced(plan, system.inputs.at_samples(plan.samples)[row])
             yield record.name, (("time",)[: wave.ndim], wave, attrs)
             continue
         n = swept[record.name]
@@ -141,7 +140,7 @@ def inputs_of(
             point = first_point(plan)
             point[n] = k
             here = System(module, system.parameters, inputs_at_point(plan, module, point))
-            waves.append(reduced(plan, inputs_at(here, plan.samples)[row]))
+            waves.append(reduced(plan, here.inputs.at_samples(plan.samples)[row]))
         dims = (plan.axes[n].dim, *("time",)[: waves[0].ndim])
         yield f"u_{record.name}", (dims, np.array(waves), attrs)
 

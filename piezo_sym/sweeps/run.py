@@ -19,7 +19,6 @@ from piezo_sym.run.compiled import cause, check_inputs, inputs_move
 from piezo_sym.run.dataset import coordinates
 from piezo_sym.run.discrete import fixed
 from piezo_sym.run.engine.engine import engine_of
-from piezo_sym.run.mesh import inputs_at
 from piezo_sym.run.module import lanes
 from piezo_sym.run.runs import METHOD, Runs
 from piezo_sym.run.simulate import by_scipy
@@ -138,7 +137,7 @@ def group_result(
     """Return what is kept of a group, its errors filled in, and a function's coordinates."""
     kept = slice(-1, None) if plan.reduce == "last" else slice(None)
     system = group.systems[0]
-    u = inputs_at(system, plan.samples)
+    u = system.inputs.at_samples(plan.samples)
     arrays = in_c(plan, group, engine, u, kept, watch) if engine else one_by_one(plan, group, watch)
     if not engine:
         arrays = {name: values[:, kept] for name, values in arrays.items()}

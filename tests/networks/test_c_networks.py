@@ -42,8 +42,8 @@ PLAIN = {"energy", "entropy", "temperatures"}
 AGREEMENT = 1e-11
 
 
-def twins(iphs):
-    """Return a module, and the same with its functions compiled."""
+def twins(iphs, folder):
+    """Return a module, written into a folder, and the same with its functions compiled."""
     program = lower(iphs, "verdict")
     texts = {
         ".py": numpy_module(program),
@@ -51,10 +51,9 @@ def twins(iphs):
         ".c": c_source(program),
         "_step.c": c_collocation(program, collocation_of(iphs)),
     }
-    with tempfile.TemporaryDirectory() as folder:
-        for ending, text in texts.items():
-            (Path(folder) / f"{program.name}{ending}").write_text(text, encoding="utf-8")
-        return twin(load_module(Path(folder) / f"{program.name}.py"))
+    for ending, text in texts.items():
+        (Path(folder) / f"{program.name}{ending}").write_text(text, encoding="utf-8")
+    return twin(load_module(Path(folder) / f"{program.name}.py"))
 
 
 def twin(module):
@@ -79,7 +78,13 @@ def check_twins(first, second, x, u):
 
 def check(spec, iphs, seed):
     """Check the compiled module of a network at two states."""
-    module, compiled = twins(iphs)
+    with tempfile.TemporaryDirectory() as folder:
+        check_in(folder, spec, iphs, seed)
+
+
+def check_in(folder, spec, iphs, seed):
+    """Check the module of a network that is written into a folder."""
+    module, compiled = twins(iphs, folder)
     places = [point(spec, iphs, seed + n) for n in range(2)]
     systems = [iphs.expand(), *([iphs] if banks(iphs.model) else [])]
     for x, u in places:

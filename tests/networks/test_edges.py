@@ -4,6 +4,7 @@ Errors are measured against the sum of the absolute terms of a row.
 """
 
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
@@ -35,7 +36,9 @@ class Compared:
     def __init__(self, model, module=None):
         iphs = derive(model)
         self.model, self.exact = model, iphs.expand()
-        self.module, self.compiled = twins(iphs) if module is None else twin(module)
+        with TemporaryDirectory() as folder:
+            both = twins(iphs, folder) if module is None else twin(module)
+        self.module, self.compiled = both
         self.rows = explicit(self.exact.rhs, {})
         self.names = [symbol.name for symbol in self.exact.x]
 
