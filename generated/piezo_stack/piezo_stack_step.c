@@ -980,8 +980,9 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
 static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
 {
     m->fine &= none_of(where);
-    const mask found = MODEL(iterate)(m, h, where), more = MODEL(coarse)(m, h) & found;
-    if (LOSSY || !any(more))
+    const mask found = MODEL(iterate)(m, h, where);
+    const mask more = LOSSY ? nowhere : MODEL(coarse)(m, h) & found; /* a dissipative step has no means */
+    if (!any(more))
         return found;
     m->fine |= more;
     return (found & none_of(more)) | MODEL(iterate)(m, h, more);
@@ -1017,7 +1018,7 @@ int MODEL(step)(double *x, const double *u, double h, const MODEL(parameters) *p
     MODEL(give)(&m->p, p, 0);
     for (long k = 0; k < m->n; ++k) {
         m->x[k] = x[k];
-        m->largest[k] = largest[k] = largest_of(size_of(x[k]), largest[k]);
+        m->largest[k] = largest_of(size_of(x[k]), largest[k]);
     }
     for (long k = 0; k < m->inputs; ++k)
         m->u[k] = u[k];
@@ -1033,8 +1034,10 @@ int MODEL(step)(double *x, const double *u, double h, const MODEL(parameters) *p
         good &= size_of(m->gap[k]) < 1e300;
     if (!good)
         return 0;
-    for (long k = 0; k < m->n; ++k)
+    for (long k = 0; k < m->n; ++k) {
         x[k] = m->end[k];
+        largest[k] = m->largest[k];
+    }
     return 1;
 }
 

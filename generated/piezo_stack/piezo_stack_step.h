@@ -29,7 +29,8 @@ long piezo_stack_step_size(const piezo_stack_parameters *p_);
 /*
  * Takes a step of order two: energy-preserving Gauss collocation of one stage, by Newton's
  *     method. What is booked closes both balances to round-off. Returns 1; or 0 where no such
- *     step lies in the domain, with x as it is: try a shorter one.
+ *     step lies in the domain, with x as it is: try a shorter one. It takes two or three
+ *     iterations as a rule, and some thousand at most.
  * x[n], read and written: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S
  *     [J/K]
  * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]; held in the step

@@ -26,7 +26,7 @@ InputValue: TypeAlias = float | Signal | tuple[ArrayLike, ArrayLike] | Callable[
 
 FUNCTION_STEPS = 500  # a function of t says nothing about itself: so many steps at least
 CLOSE = 1e-12  # of the duration: breaks nearer than this are one
-MANY, LOOKED_AT, ROUNDING = 16, 5, 1e-12  # arrays of so many; where, how well they are checked
+MANY, LOOKED_AT, ROUNDING = 16, 40, 1e-12  # arrays of so many; where, how well they are checked
 LEAST_JUMP = 1e-6  # of an input's size nearby: a smaller difference is a corner's round-off
 
 
@@ -64,13 +64,15 @@ class Function(Signal):
         try:
             with np.errstate(all="ignore"):
                 given: Any = self.function
-                found: FloatArray = np.asarray(given(flat), dtype=float)
+                found: FloatArray = np.array(given(flat.copy()), dtype=float)  # it may write there
         except Exception:  # the user's own code: it may raise anything
             return None
         if found.shape != flat.shape or not np.all(np.isfinite(found)):
             return None
         size = np.abs(found).max()
-        some = np.linspace(0, flat.size - 1, LOOKED_AT).astype(int)
+        steepest = int(np.argmax(np.abs(np.diff(found))))
+        some = {*np.linspace(0, flat.size - 1, LOOKED_AT).astype(int).tolist()}
+        some |= {steepest, steepest + 1, int(np.argmax(found)), int(np.argmin(found))}
         same = (abs(self.value(float(flat[n])) - found[n]) <= ROUNDING * size for n in some)
         return found if all(same) else None
 
@@ -172,11 +174,6 @@ class Inputs:
         """Starts of the segments before which an input jumps; 0, for a run starts anywhere."""
         pairs = pairwise(self.segments)
         return frozenset({0.0, *(later.start for first, later in pairs if jump(first, later))})
-
-    @cached_property
-    def asked(self) -> bool:
-        """Whether a user's function is among them, which takes its time."""
-        return any(isinstance(signal, Function) for signal in self.signals)
 
     @cached_property
     def max_step(self) -> float:

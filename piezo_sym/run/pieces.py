@@ -7,18 +7,19 @@ the signal has no such form of some thousand pieces.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import ceil
 from typing import final
 
 import numpy as np
 
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.samples import Samples
-from piezo_sym.run.signals import Signal
+from piezo_sym.run.signals import Ramp, Signal, Step
 
 #: Terms of a piece, and what the last of them may have, in parts of the signal's size.
-TERMS, EXACT = 12, 1e-14
-#: Pieces to begin with, so that nothing is missed that is as long as the time between two questions
-#: of `jumps`; how often they may be halved, and how many there may be.
+TERMS, EXACT = 12, 1e-13
+#: Pieces of a run to begin with, so that nothing is missed that is as long as the time between two
+#: questions of `jumps`; how often they may be halved, and how many there may be.
 FIRST, ROUNDS, MOST = 192, 16, 5000
 
 
@@ -34,13 +35,14 @@ class Pieces:
     coefficients: FloatArray
 
 
-def pieces_of(signal: Signal, low: float, high: float) -> Pieces | None:
-    """Return a signal on [low, high] to round-off; None if that takes too many pieces."""
+def pieces_of(signal: Signal, low: float, high: float, duration: float) -> Pieces | None:
+    """Return a signal on [low, high], part of a run; None if that takes too many pieces."""
     if isinstance(signal, Samples):
         return _lines(signal, low, high)
     at = np.cos(np.pi * (np.arange(TERMS) + 0.5) / TERMS)
     to_terms = np.linalg.inv(np.polynomial.chebyshev.chebvander(at, TERMS - 1)).T
-    edges = np.linspace(low, high, FIRST + 1)
+    first = 1 if isinstance(signal, Step | Ramp) else ceil(FIRST * (high - low) / duration)
+    edges = np.linspace(low, high, max(1, min(first, FIRST)) + 1)
     starts, stops = edges[:-1], edges[1:]
     done: list[tuple[FloatArray, FloatArray]] = []
     size = 0.0

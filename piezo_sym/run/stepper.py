@@ -135,7 +135,7 @@ class Stepper:
         layout = layout_of(x[None], side_by_side=False)
         self._batch = Batch(engine, [values], x[None], system.inputs, np.empty(0), stepping, layout)
         self._u, self._y = np.zeros(len(self.inputs)), np.zeros(len(self.outputs))
-        self._kept = np.zeros(x.size + self._batch.ledgers.size)
+        self._kept = np.zeros(2 * x.size + self._batch.ledgers.size)
         self._put, self._buffer = struct.Struct(f"{self._u.size}d").pack_into, self._u.data
         self._copied: Callable[[], FloatArray] = self._y.copy
         self._limits = Limits(system)
@@ -212,7 +212,7 @@ class Stepper:
 
         Parameters
         ----------
-        x : the state to start from (n,), in the order of `states`; that at first when left out.
+        x : the state to start from (n,), in the order of `states`; the last one when left out.
 
         Raises
         ------

@@ -215,3 +215,32 @@ def test_a_run_through_what_follows_at_once_has_all_samples_and_closes_its_balan
     bound = 1e-12 * float(np.ptp(energy)) + 4 * np.spacing(np.abs(energy).max())
     assert float(np.abs(found.energy_residual).max()) <= bound
     assert float(np.abs(found.entropy_residual).max()) <= 1e-12 * float(np.ptp(entropy))
+
+
+def shifted(t):
+    t -= 0.01
+    return 50 * np.sin(600 * t)
+
+
+def wrapped(t):
+    t %= 0.01
+    return 5e3 * t
+
+
+def pulsed(t):
+    return 40.0 if np.all((t > 0.0031) & (t < 0.0042)) else 0.0 * t
+
+
+@pytest.mark.parametrize("function", [shifted, wrapped, pulsed])
+def test_a_function_that_treats_arrays_otherwise_is_asked_time_by_time(function):
+    """It may write into what it is given, or take a whole array for one time."""
+    found = simulate("piezo_stack", inputs={"V_in": function}, duration=0.03, times=301)
+    wanted = [float(function(t)) for t in found.time.values.tolist()]
+    assert np.array_equal(found.V_in.values[:-1], wanted[:-1])
+    again = simulate(
+        "piezo_stack",
+        inputs={"V_in": lambda t: float(function(float(t)))},
+        duration=0.03,
+        times=301,
+    )
+    assert np.allclose(found.q, again.q, rtol=0, atol=1e-12)

@@ -28,7 +28,7 @@ int MODEL(step)(double *x, const double *u, double h, const MODEL(parameters) *p
     MODEL(give)(&m->p, p, 0);
     for (long k = 0; k < m->n; ++k) {
         m->x[k] = x[k];
-        m->largest[k] = largest[k] = largest_of(size_of(x[k]), largest[k]);
+        m->largest[k] = largest_of(size_of(x[k]), largest[k]);
     }
     for (long k = 0; k < m->inputs; ++k)
         m->u[k] = u[k];
@@ -44,7 +44,9 @@ int MODEL(step)(double *x, const double *u, double h, const MODEL(parameters) *p
         good &= size_of(m->gap[k]) < 1e300;
     if (!good)
         return 0;
-    for (long k = 0; k < m->n; ++k)
+    for (long k = 0; k < m->n; ++k) {
         x[k] = m->end[k];
+        largest[k] = m->largest[k];
+    }
     return 1;
 }

@@ -14,7 +14,6 @@ from typing import Any, Literal, final
 import numpy as np
 from numpy.typing import NDArray
 
-from piezo_sym.errors import PiezoError
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.engine.engine import Engine, read_source, shared_library
 from piezo_sym.run.engine.library import Layout
@@ -75,7 +74,8 @@ class Stepping:
     ----------
     stages : of a step, 1 to 5; its order is twice that.
     tolerance : of the estimate of a step's error, in scales of the states; not used with `fixed`.
-    fixed : the length of all steps [s], which then go over kinks; 0 if errors decide.
+    fixed : the longest step [s], where steps divide what lies between samples and breaks evenly,
+        and go over kinks; 0 if errors decide.
     first, longest : the length of the first step, and of the longest [s].
     kinks : whether steps end there, or go over them; or what gets further, where switches are many.
     lossy : whether steps are dissipative, of one stage; one that does not succeed is not halved.
@@ -249,7 +249,7 @@ class Batch:
             case Chirp(amplitude, start, stop, duration, offset) if high <= duration:
                 return Wave(amplitude, start, (stop - start) / duration, 0.0, offset)
 
-        if found := pieces_of(signal, low, high):
+        if found := pieces_of(signal, low, high, self._inputs.duration):
             self._kept.append(found)  # C reads it
             places = found.edges.ctypes.data, found.coefficients.ctypes.data
             return Wave(0.0, 0.0, 0.0, 0.0, 0.0, *places, *found.coefficients.shape)
@@ -257,7 +257,7 @@ class Batch:
         def asked(t: float) -> float:
             try:
                 return float(signal(min(max(t, low), high)))
-            except PiezoError as error:  # C cannot pass it on: no step has a number that is none
+            except Exception as error:  # C cannot pass it on: no step has a number that is none
                 self._raised.append(error)
                 return nan
 

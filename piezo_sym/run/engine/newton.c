@@ -189,8 +189,9 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
 static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
 {
     m->fine &= none_of(where);
-    const mask found = MODEL(iterate)(m, h, where), more = MODEL(coarse)(m, h) & found;
-    if (LOSSY || !any(more))
+    const mask found = MODEL(iterate)(m, h, where);
+    const mask more = LOSSY ? nowhere : MODEL(coarse)(m, h) & found; /* a dissipative step has no means */
+    if (!any(more))
         return found;
     m->fine |= more;
     return (found & none_of(more)) | MODEL(iterate)(m, h, more);

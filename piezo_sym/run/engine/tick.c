@@ -10,7 +10,7 @@ typedef struct {
     /* functions of <model>.c, whose numbers are those of one run */
     void (*outputs)(const double *, const double *, const MODEL(parameters) *, double *);
     void (*margins)(const double *, const double *, const MODEL(parameters) *, double *);
-    double *kept;                    /* n and 2 booked: state and ledger before a step */
+    double *kept; /* n, n, 2 booked: state, largest magnitudes and ledger before a step */
     double *margin;                  /* of each condition of the domain */
     const long *conditions, *strict; /* those on inputs alone, and whether equality is outside */
     long limits;
@@ -53,14 +53,16 @@ int MODEL(step_once)(MODEL(stepper) *t)
         l->t = run->t = 0.0;
     }
     memcpy(t->kept, run->x, n * sizeof(double));
-    memcpy(t->kept + n, run->ledger, booked * sizeof(double));
+    memcpy(t->kept + n, run->largest, n * sizeof(double));
+    memcpy(t->kept + 2 * n, run->ledger, booked * sizeof(double));
     for (long k = 0; k < b->m.inputs; ++k)
         t->signals[k].offset = t->u[k];
     while (MODEL(go)(b, 1))
         ;
     if (run->failed) {
         memcpy(run->x, t->kept, n * sizeof(double));
-        memcpy(run->ledger, t->kept + n, booked * sizeof(double));
+        memcpy(run->largest, t->kept + n, n * sizeof(double));
+        memcpy(run->ledger, t->kept + 2 * n, booked * sizeof(double));
         MODEL(forget)(t);
         return 0;
     }

@@ -25,7 +25,7 @@ static void MODEL(refuse)(MODEL(batch) *b, int lane, double h)
     ++l->run->rejected;
     l->h = h;
     l->phase = STEP;
-    if (LOSSY || ++l->refused > MOST_REFUSED || l->t + h <= l->t)
+    if (LOSSY || ++l->refused > MOST_REFUSED || l->t + h <= l->t || h < SHORTEST_PART * b->fixed)
         MODEL(leave)(b, lane, 1);
 }
 

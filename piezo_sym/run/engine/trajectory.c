@@ -75,9 +75,10 @@ typedef struct {
 enum { MOST_REFUSED = 200, MOST_CUTS = 4 };
 /* So often a fixed step may be halved in all before one of full length succeeds: else a run creeps. */
 enum { MOST_HALVED = 1000 };
+/* No part of a fixed step is shorter. */
+#define SHORTEST_PART 1e-15
 /* A way is tried for so many solves; the slower one again after so many trials of the faster. */
 enum { TRIED = 32, AGAIN = 12 };
-/* With kinks within, the error of a step falls about as this power tells. */
 /* About what comes after the last term of a series, as a part of that, by how much smaller it is. */
 #if STAGES == 3
 #define LIKE_THE_LAST(smooth) (smooth)
@@ -86,12 +87,13 @@ enum { TRIED = 32, AGAIN = 12 };
 #else
 #define LIKE_THE_LAST(smooth) sqrt_of(sqrt_of(smooth))
 #endif
+/* With kinks within, the error of a step falls about as this power tells. */
 #define OVER_KINKS (-1.0 / 3.0)
 /* Errors of kinks add up: as many steps as there are kinks share in what a run may have. */
 #define KINKS_WITHIN 3.0
-/* Parts of a step: so near to its end a switch is at its end; so near to its begin, at its begin. */
 /* So much slower than a step a state may be for its end to be of order 2s. */
 #define FAST 3.0
+/* Parts of a step: so near to its end a switch is at its end; so near to its begin, at its begin. */
 #define AT_END 1e-9
 #define AT_ONCE 1e-12
 
