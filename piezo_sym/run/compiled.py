@@ -57,13 +57,13 @@ def compiled_run(
     UsageError : it shall be, but the model has no store to damp, or no body to take the loss.
     RunError : the state leaves the domain, or no step can go on; says when, and with which values.
     """
-    if starts and step is None:
-        what = "a run with a tolerance follows what a jump sets off, and damps nothing"
-        raise UsageError(what, "simulate.dissipative_start", "False", "leave it out, or give step")
     if starts and not is_lossy(engine):
         what = f"model '{engine.module.NAME}' has no thermal_mass to take a loss, or no storage"
         remedy = "leave it out, or add a thermal_mass"
         raise UsageError(what, "simulate.dissipative_start", "False", remedy)
+    if starts and step is None:
+        what = "a run with a tolerance follows what a jump sets off, and damps nothing"
+        raise UsageError(what, "simulate.dissipative_start", "False", "leave it out, or give step")
     check_inputs(system, x, samples)
     rtol = max(rtol, LEAST_RTOL)
     accuracy: dict[str, object]
