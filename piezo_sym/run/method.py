@@ -20,7 +20,7 @@ from typing import final
 from piezo_sym.errors import EngineError, UsageError, listing, one_line, quote
 from piezo_sym.files import path_text
 from piezo_sym.run.engine import Engine, EngineWarning
-from piezo_sym.run.engine.engine import engine_of
+from piezo_sym.run.engine.engine import engine_of, read_source
 from piezo_sym.run.engine.library import cache_folder
 from piezo_sym.run.integrate import METHODS
 from piezo_sym.run.module import GeneratedModule
@@ -111,7 +111,7 @@ def _has_source(module: GeneratedModule) -> bool:
 def _surroundings(module: GeneratedModule) -> tuple[object, ...]:
     """Return what an attempt to compile depends on: it is not made twice for the same."""
     stamps: list[int] = []
-    for ending in (".h", ".c"):
+    for ending in (".h", ".c", "_step.c"):
         try:
             stamps.append(_source(module, ending).stat().st_mtime_ns)
         except OSError:
@@ -128,6 +128,7 @@ def _tried(module: GeneratedModule, surroundings: tuple[object, ...]) -> Engine 
         remedy = f"check that {path_text(cache_folder())} can be written"
         return EngineError("its C source was not kept", remedy=remedy)
     try:
+        read_source(module, "_step.c")
         return engine_of(module)
     except EngineError as error:
         return EngineError(error.what, error.where, error.expected, error.remedy)

@@ -177,7 +177,7 @@ def in_c(
     found: dict[str, NDArray[Any]] = {}
     if good:
         systems = group.systems.some(good)
-        runs = march(plan, systems, engine, group.start[good], watch)
+        runs = stopped_runs_explained(plan, systems, engine, group.start[good], watch)
         for k, error in zip(good, runs.errors, strict=True):
             group.errors[k] = str(error or "")
         found = of_runs(runs, engine, u, kept)
@@ -185,14 +185,16 @@ def in_c(
     return spread_out(plan, group, found, good, failed, kept)
 
 
-def march(plan: Plan, systems: Systems, engine: Engine, x: FloatArray, watch: Watch) -> Runs:
+def stopped_runs_explained(
+    plan: Plan, systems: Systems, engine: Engine, x: FloatArray, watch: Watch
+) -> Runs:
     """Return runs in C; those whose inputs leave the domain stop there, as with `simulate`."""
     outside = input_errors(systems, x, plan.samples)
     runs = stepped(plan, systems, engine, x, watch)
-    errors = [old or new for old, new in zip(outside, runs.errors, strict=True)]
-    for k in (k for k, error in enumerate(runs.errors) if error and not outside[k]):
-        stopped = runs.errors[k]
-        errors[k] = stopped and cause(systems[k], x[k], plan.samples, stopped)
+    errors = [
+        left or (stopped and cause(systems[k], x[k], plan.samples, stopped))
+        for k, (left, stopped) in enumerate(zip(outside, runs.errors, strict=True))
+    ]
     return replace(runs, errors=errors)
 
 

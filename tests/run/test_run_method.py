@@ -116,6 +116,16 @@ def test_a_module_without_c_runs_by_lsoda_and_says_nothing(piezo, module):
     assert (run.attrs["method"], run.attrs["engine"][:5]) == ("LSODA", "none:")
 
 
+def test_a_module_whose_step_is_missing_runs_by_lsoda_and_says_so(module):
+    path = Path(module.__file__)
+    path.with_name(f"{path.stem}_step.c").unlink()
+    with pytest.warns(EngineWarning, match=r"_step\.c': is missing; run `piezo-sym generate`"):
+        run = simulate(module, **SHORT)
+    assert run.attrs["method"] == "LSODA"
+    with pytest.raises(EngineError, match=r"_step\.c': is missing"):
+        simulate(module, **SHORT, step=1e-5)
+
+
 def test_functions_changed_in_python_are_those_that_run(module, variant):
     """The C beside the module is not of them."""
     changed = variant(module, rhs=lambda x, u, p, /: 0 * module.rhs(x, u, p))

@@ -13,7 +13,7 @@ DRIVEN = ("rhs", "jacobian", "outputs", "supply", "heat", "entropy_production", 
 PLAIN = ("temperatures",)
 SCALARS = ("energy", "entropy")
 
-HEAD = '#include "{model}.c"\n\n#include <string.h>\n'
+HEAD = '#include "{model}.c"\n'
 #: Columns of x, u and the result are n, m and rows apart; m is 0 where all columns share u.
 LOOP = """
 void {model}_{name}_columns(
