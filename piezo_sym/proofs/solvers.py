@@ -8,9 +8,12 @@ from __future__ import annotations
 
 import atexit
 import json
+import os
+import select
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -25,6 +28,9 @@ from piezo_sym.proofs.query import MARK, Query, marked
 PATIENCE = 20.0
 #: The most seconds to wait for a second opinion, which is asked for only where there is no first.
 LESS_PATIENCE = 5.0
+#: For the C library of Linux: what one query used is there for the next.  To get it anew from the
+#: system takes longer than most answers.
+KEEP_MEMORY = {"MALLOC_TRIM_THRESHOLD_": "256000000", "MALLOC_MMAP_THRESHOLD_": "256000000"}
 RESULTS = frozenset({"unsat", "sat", "unknown"})
 
 
@@ -58,7 +64,7 @@ class Solver:
 
     def __init__(self, name: str, command: tuple[str, ...], patience: float = PATIENCE) -> None:
         self.name, self.command, self.patience = name, command, patience
-        self._process: subprocess.Popen[str] | None = None
+        self._process: subprocess.Popen[bytes] | None = None
         self._lock = threading.Lock()
 
     def ask(self, query: Query) -> Answer:
@@ -86,28 +92,38 @@ class Solver:
 
     def _exchange(self, request: str) -> str:
         """Send one line and read one; what comes is no whole line if the process stops or hangs."""
+        left, read, end = f"{request}\n".encode(), b"", time.monotonic() + self.patience
         try:
             process = self._running()
-        except OSError:
-            return ""
-        watch = threading.Timer(self.patience, process.kill)
-        watch.start()
-        try:
             assert process.stdin is not None
             assert process.stdout is not None
-            process.stdin.write(request + "\n")
-            process.stdin.flush()
-            return process.stdout.readline()
-        except (OSError, ValueError):
+            to, back = process.stdin.fileno(), process.stdout.fileno()
+            ready = select.poll()
+            ready.register(to, select.POLLOUT)
+            ready.register(back, select.POLLIN)
+            while not read.endswith(b"\n"):
+                events = dict(ready.poll(max(0.0, 1000 * (end - time.monotonic()))))
+                if back in events and (part := os.read(back, select.PIPE_BUF)):
+                    read += part
+                elif to in events:
+                    left = left[os.write(to, left[: select.PIPE_BUF]) :]
+                    if not left:
+                        ready.unregister(to)
+                else:  # it took too long, or ended
+                    break
+        except OSError:
             return ""
-        finally:
-            watch.cancel()
+        return read.decode(errors="replace")
 
-    def _running(self) -> subprocess.Popen[str]:
+    def _running(self) -> subprocess.Popen[bytes]:
         if self._process is None or self._process.poll() is not None:
             self.close()
             self._process = subprocess.Popen(
-                self.command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+                self.command,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                bufsize=0,
+                env={**os.environ, **KEEP_MEMORY},
             )
         return self._process
 

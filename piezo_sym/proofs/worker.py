@@ -31,12 +31,18 @@ SIMPLE = (
 Answer = dict[str, Any]
 
 
-def ask_z3(text: str, order: Sequence[str]) -> Answer:
+def start_z3() -> Any:
+    """Return what one query is asked in: nothing that was asked before changes its answer."""
+    import z3
+
+    return z3.Solver(ctx=z3.Context())
+
+
+def ask_z3(solver: Any, text: str, order: Sequence[str]) -> Answer:
     """Return z3's answer, with values of the names in `order`, made simple one after the other."""
     import z3
 
-    context = z3.Context()  # of its own: nothing that was asked before changes the answer
-    solver = z3.Solver(ctx=context)
+    context = solver.ctx
     solver.set("rlimit", Z3_LIMIT)
     solver.from_string(text)
     result = str(solver.check())
@@ -78,12 +84,18 @@ def _exact(z3: Any, model: Any, symbol: Any) -> str:
     return str(value.as_fraction())
 
 
-def ask_cvc5(text: str, order: Sequence[str]) -> Answer:
+def start_cvc5() -> Any:
+    """Return what one query is asked in."""
+    import cvc5
+
+    return cvc5.Solver(cvc5.TermManager())
+
+
+def ask_cvc5(solver: Any, text: str, order: Sequence[str]) -> Answer:
     """Return cvc5's answer, without a model."""
     import cvc5
 
     del order
-    solver = cvc5.Solver(cvc5.TermManager())
     solver.setOption("rlimit-per", str(CVC5_LIMIT))
     parser = cvc5.InputParser(solver)
     parser.setStringInput(cvc5.InputLanguage.SMT_LIB_2_6, f"(set-logic QF_NRA)\n{text}", "query")
@@ -95,26 +107,44 @@ def ask_cvc5(text: str, order: Sequence[str]) -> Answer:
     return {"result": kind, "reason": "" if kind == result else f"cvc5: {result}"}
 
 
-SOLVERS: dict[str, Callable[[str, Sequence[str]], Answer]] = {"z3": ask_z3, "cvc5": ask_cvc5}
+#: How each solver is made ready for one query, and asked it.
+SOLVERS: dict[str, tuple[Callable[[], Any], Callable[[Any, str, Sequence[str]], Answer]]] = {
+    "z3": (start_z3, ask_z3),
+    "cvc5": (start_cvc5, ask_cvc5),
+}
+
+
+def prepared(name: str) -> Any:
+    """Return a solver ready for one query, or why there is none."""
+    try:
+        return SOLVERS[name][0]()
+    except Exception as error:
+        return error
+
+
+def answered(name: str, line: str, solver: Any) -> str:
+    """Return the answer to a request, both a line; whatever a solver does, it is an answer."""
+    request = json.loads(line)
+    try:
+        if isinstance(solver, Exception):
+            raise solver
+        answer = SOLVERS[name][1](solver, request["text"], request["order"])
+    except Exception as error:  # the claim is left open
+        answer = {"result": "unknown", "reason": f"{name} failed: {type(error).__name__}"}
+    return json.dumps(answer)
 
 
 def main() -> None:
     """Answer requests until stdin ends; Ctrl-C is for who asks, and ends stdin."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    ask = SOLVERS[sys.argv[1]]
+    name = sys.argv[1]
+    ready = [prepared(name)]
     for line in sys.stdin:
-        request = json.loads(line)
         try:
-            answer = ask(request["text"], request["order"])
-        except Exception as error:  # whatever a solver does, the claim is left open
-            answer = {
-                "result": "unknown",
-                "reason": f"{sys.argv[1]} failed: {type(error).__name__}",
-            }
-        try:
-            print(json.dumps(answer), flush=True)  # noqa: T201 - the answer
+            print(answered(name, line, ready.pop()), flush=True)  # noqa: T201 - the answer
         except BrokenPipeError:  # who asked is gone; leave without a word on that
             os._exit(0)
+        ready.append(prepared(name))  # ahead: to make one takes longer than most answers
 
 
 if __name__ == "__main__":

@@ -8,6 +8,8 @@ values.  So a name such as ``np`` or ``_lanes`` means in every function what it 
 import ast
 import re
 from collections.abc import Mapping
+from copy import copy
+from functools import cache
 from itertools import chain
 
 from piezo_sym.expressions.functions import RECORDS
@@ -90,8 +92,8 @@ def numpy_functions(text: str, iphs: IPHS) -> Mapping[str, ast.FunctionDef]:
             case ast.ClassDef("Parameters"):
                 _check_parameters(node, iphs)
                 tables.pop("Parameters", None)
-            case _ if _bare(node) in left:
-                left.remove(_bare(node))
+            case _ if (bare := _bare(node)) in left:
+                left.remove(bare)
             case _:
                 raise NotShownError(f"line {node.lineno} of the NumPy module is unexpected")
     if tables or left or not _is_text(module.body[0]):
@@ -110,22 +112,24 @@ def _helpers(iphs: IPHS) -> list[str]:
     size = [str(sum(s.bank is None for s in slots))]
     size += [f"p.{s.bank}_count" for s in slots if s.bank]
     helpers = _HELPERS.format(size=" + ".join(size), inputs=len(iphs.model.inputs))
-    found = [_bare(node) for node in ast.parse(helpers).body]
+    found = _statements(helpers)
     if not banks(iphs.model):
         return [text for text in found if "_Lanes =" not in text and "_lanes(" not in text]
-    return found
+    return [*found]
+
+
+@cache
+def _statements(text: str) -> tuple[str, ...]:
+    return tuple(_bare(node) for node in ast.parse(text).body)
 
 
 def _bare(node: ast.stmt) -> str:
     """Return a statement as text, without its docstring."""
-    if isinstance(node, ast.FunctionDef | ast.ClassDef) and _is_text(node.body[0]):
-        body = ast.Module(node.body[1:], [])
-        head = ast.unparse(node).split("\n", maxsplit=1)[0]
-        return f"{head}\n{ast.unparse(body)}"
-    if isinstance(node, ast.FunctionDef | ast.ClassDef):
-        head = ast.unparse(node).split("\n", maxsplit=1)[0]
-        return f"{head}\n{ast.unparse(ast.Module(node.body, []))}"
-    return ast.unparse(node)
+    if not isinstance(node, ast.FunctionDef | ast.ClassDef):
+        return ast.unparse(node)
+    head, body = copy(node), node.body[_is_text(node.body[0]) :]
+    head.body = []
+    return f"{ast.unparse(head)}\n{ast.unparse(ast.Module(body, []))}"
 
 
 def _literal(node: ast.expr) -> object:

@@ -118,8 +118,9 @@ class _Function:
 
     def _assign(self, name: str, value: ast.expr) -> None:
         p, u = self.words["p"], self.words.get("u", "")
-        checks = {(self.x, f"_states({self.x}, {p})"): "x", (u, f"_inputs({u})"): "u"}
-        role = checks.get((name, ast.unparse(value)))
+        checks = {self.x: ("x", f"_states({self.x}, {p})"), u: ("u", f"_inputs({u})")}
+        role, checked = checks.get(name, ("", ""))
+        role = role if role and ast.unparse(value) == checked else ""
         kept = {
             "np",
             "_states",
@@ -131,8 +132,8 @@ class _Function:
             *self.roles,
         }
         if role in self.unchecked:
-            self.unchecked.remove(str(role))
-            self.roles[name] = str(role)
+            self.unchecked.remove(role)
+            self.roles[name] = role
         elif isinstance(value, ast.Call) and ast.unparse(value.func) == "np.arange":
             if name in kept or len(value.args) != 2 or value.keywords:
                 raise refused(value, "an index array")

@@ -6,10 +6,12 @@ Input: subjects on stdin, each after its length.  Output: messages on stdout in 
 
 from __future__ import annotations
 
+import gc
 import pickle
 import resource
 import signal
 import sys
+from itertools import count
 
 from piezo_sym.verification.process import answer, read, write
 
@@ -25,13 +27,16 @@ def main() -> None:
     resource.setrlimit(resource.RLIMIT_AS, (limit, most))
     given, out = sys.stdin.buffer, sys.stdout.buffer
     sys.stdout = sys.stderr
-    while True:
+    for number in count():
         try:
             subject = pickle.loads(read(given))
         except EOFError:
             return
         for message in answer(subject):
             write(out, pickle.dumps(message))
+        if number == 0:  # all that was imported stays: it need not be searched for garbage again
+            gc.collect()
+            gc.freeze()
 
 
 if __name__ == "__main__":

@@ -115,12 +115,7 @@ def _answer_here() -> None:
 
     class Here(solvers.Solver):
         def _exchange(self, request: str) -> str:
-            asked = json.loads(request)
-            try:
-                answer = worker.SOLVERS[self.name](asked["text"], asked["order"])
-            except Exception as error:
-                answer = {"result": "unknown", "reason": type(error).__name__}
-            return json.dumps(answer) + "\n"
+            return worker.answered(self.name, request, worker.prepared(self.name)) + "\n"
 
     worker.Z3_LIMIT = LIMIT
     solvers.solver = lambda name, *_: Here(name, ())
