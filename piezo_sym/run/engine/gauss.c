@@ -11,8 +11,21 @@
 
 #include <stddef.h>
 
+/* Numbers for pairs of eigenvalues: those of one run are solved with side by side. */
+#if REAL_WIDTH == 1 && PAIRS > 1 && !defined(PLAIN)
+#define TOGETHER PAIRS
+typedef double pairs __attribute__((vector_size(8 * PAIRS), aligned(8), may_alias));
+#define PAIR(number, k) (((double *)&(number))[k])
+#define PAIRS_OF(value) ((pairs){0.0} + (value))
+#else
+#define TOGETHER 1
+typedef real pairs;
+#define PAIR(number, k) (number)
+#define PAIRS_OF(value) wide(value)
+#endif
+
 typedef struct {
-    real re, im;
+    pairs re, im;
 } MODEL(complex);
 
 /* The runs of all lanes, as they take a step: sizes, and the numbers that it works on. */
@@ -57,8 +70,8 @@ typedef struct {
 #if PAIRS
 #define NUMBER MODEL(complex)
 #define NAMED(name) MODEL(name##_complex)
-#define ONE ((MODEL(complex)){wide(1.0), zero})
-#define NONE ((MODEL(complex)){zero, zero})
+#define ONE ((MODEL(complex)){PAIRS_OF(1.0), PAIRS_OF(0.0)})
+#define NONE ((MODEL(complex)){PAIRS_OF(0.0), PAIRS_OF(0.0)})
 #define PER(a) MODEL(per)(a)
 #define TIMES(a, b) MODEL(times)(a, b)
 #define BY(a, b) MODEL(by)(a, b)
@@ -66,7 +79,7 @@ typedef struct {
 #define LESS(a, b) MODEL(less)(a, b)
 static inline MODEL(complex) MODEL(per)(MODEL(complex) a)
 {
-    const real size = a.re * a.re + a.im * a.im;
+    const pairs size = a.re * a.re + a.im * a.im;
     return (MODEL(complex)){a.re / size, -a.im / size};
 }
 static inline MODEL(complex) MODEL(times)(MODEL(complex) a, MODEL(complex) b)

@@ -14,6 +14,20 @@ enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
 /* What Newton's method may leave of a state's change, in parts of its largest magnitude. */
 #define NOISE 1e-16
 
+#if PAIRS
+/* The eigenvalues of pairs from `first` on, times the step. */
+static inline MODEL(complex) MODEL(gamma)(real h, long first)
+{
+    MODEL(complex) gamma;
+    for (long j = 0; j < TOGETHER; ++j) {
+        const double *value = eigenvalue[STAGES % 2 + first + j];
+        PAIR(gamma.re, j) = h * value[0];
+        PAIR(gamma.im, j) = h * value[1];
+    }
+    return gamma;
+}
+#endif /* PAIRS */
+
 /* Newton's change of the rates, from the gaps; gaps become it. */
 static void MODEL(change)(const MODEL(block) *m, real h)
 {
@@ -33,15 +47,19 @@ static void MODEL(change)(const MODEL(block) *m, real h)
 #endif
 #if PAIRS
     const long size = MODEL(factor_size_complex)(m);
-    for (long pair = 0; pair < PAIRS; ++pair) {
-        const double *value = eigenvalue[STAGES % 2 + pair];
-        const MODEL(complex) gamma = {h * value[0], h * value[1]};
-        real *one = m->gap + (STAGES % 2 + 2 * pair) * n, *other = one + n;
+    for (long first = 0; first < PAIRS; first += TOGETHER) {
+        real *const one = m->gap + (STAGES % 2 + 2 * first) * n;
         for (long k = 0; k < n; ++k)
-            m->right[k] = (MODEL(complex)){one[k], -other[k]};
-        MODEL(solve_complex)(m, gamma, m->slope, m->factor + pair * size, m->right);
+            for (long j = 0; j < TOGETHER; ++j) {
+                PAIR(m->right[k].re, j) = one[2 * j * n + k];
+                PAIR(m->right[k].im, j) = -one[(2 * j + 1) * n + k];
+            }
+        MODEL(solve_complex)(m, MODEL(gamma)(h, first), m->slope, m->factor + first * size, m->right);
         for (long k = 0; k < n; ++k)
-            one[k] = m->right[k].re, other[k] = -m->right[k].im;
+            for (long j = 0; j < TOGETHER; ++j) {
+                one[2 * j * n + k] = PAIR(m->right[k].re, j);
+                one[(2 * j + 1) * n + k] = -PAIR(m->right[k].im, j);
+            }
     }
 #endif /* PAIRS */
     for (long k = 0; k < n; ++k) {
@@ -71,11 +89,8 @@ static void MODEL(prepare)(const MODEL(block) *m, real h, mask where)
     MODEL(factorise_real)(m, h * filter, m->slope, m->real_factor);
 #if PAIRS
     const long size = MODEL(factor_size_complex)(m);
-    for (long pair = 0; pair < PAIRS; ++pair) {
-        const double *value = eigenvalue[STAGES % 2 + pair];
-        const MODEL(complex) gamma = {h * value[0], h * value[1]};
-        MODEL(factorise_complex)(m, gamma, m->slope, m->factor + pair * size);
-    }
+    for (long first = 0; first < PAIRS; first += TOGETHER)
+        MODEL(factorise_complex)(m, MODEL(gamma)(h, first), m->slope, m->factor + first * size);
 #endif /* PAIRS */
 }
 
