@@ -79,6 +79,7 @@ void MODEL(open)(MODEL(batch) *b, const MODEL(task) *task)
     b->runs = task->runs, b->times = task->times;
     b->count = task->count, b->samples = task->samples;
     b->stop = task->stop, b->tolerance = task->tolerance;
+    b->beyond = fmax(AT_END, BEYOND * task->tolerance);
     b->first = task->first, b->longest = task->longest, b->fixed = task->fixed;
     b->ways = task->ways && b->m.branches >= MANY;
     b->m.most = task->fixed > 0.0 ? MOST_OF_FIXED : MOST_ITERATIONS;
@@ -106,6 +107,7 @@ static void MODEL(load)(MODEL(batch) *b, int lane, MODEL(run) *run)
     LANE(&m->iterations, 0, lane) = (double)run->iterations;
     b->lane[lane] = (MODEL(lane)){.run = run, .segment = run->segments, .t = run->t, .phase = BEGIN};
     b->lane[lane].h = b->fixed > 0.0 ? b->fixed : b->first;
+    b->lane[lane].steady = HUGE_VAL;
     b->lane[lane].which = -1;
     b->lane[lane].since = run->t;
     if (b->ways)

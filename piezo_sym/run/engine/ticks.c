@@ -124,12 +124,14 @@ static int MODEL(on)(MODEL(batch) *b, int lane)
         if (l->which >= 0)
             l->h = fmin(l->whole * fmin(l->longer, 2.0),
                         l->after_switch > 0.0 ? 1.2 * l->after_switch : 0.3 * l->whole);
-        else if (!last)
-            l->h = l->step * fmin(l->longer, most);
+        else if (!last) {
+            l->h = fmin(l->step * fmin(l->longer, most), SUDDEN * l->steady);
+            l->steady = l->step * l->longer;
+        }
     }
     l->behind = 1;
     if (l->which >= 0)
-        l->known = 0.0;
+        l->known = 0.0, l->steady = HUGE_VAL;
     while (run->sample < b->samples && b->times[run->sample] <= l->t)
         MODEL(sample)(b, lane, b->m.x, NULL);
     if (l->t >= b->stop)
@@ -156,7 +158,7 @@ static int MODEL(cut)(MODEL(batch) *b, int lane, const MODEL(crossing) *c, doubl
                 MODEL(leave)(b, lane, 1);
             return 0;
         }
-        if (1.0 - part < AT_END)
+        if (1.0 - part < b->beyond)
             return 1;
     } else if (l->which < 0)
         return 1;
@@ -170,7 +172,7 @@ static int MODEL(cut)(MODEL(batch) *b, int lane, const MODEL(crossing) *c, doubl
     }
     if (++l->cuts > MOST_CUTS)
         return 1;
-    l->part = part;
+    l->part = part * (1.0 + 0.5 * b->beyond);
     l->phase = CUT;
     return 0;
 }
@@ -291,7 +293,7 @@ static void MODEL(judged)(MODEL(batch) *b, MODEL(tick) *t)
             const double power = IN(b->m.over, lane) ? OVER_KINKS : -0.5 / STAGES;
             l->longer = error > 0.0 ? 0.9 * pow(error, power) : 8.0;
             if (!(error <= 1.0)) {
-                const double part = l->refused ? fmin(l->longer, 0.5) : l->longer;
+                const double part = l->refused > 1 ? fmin(l->longer, 0.5) : l->longer;
                 MODEL(refuse)(b, lane, l->length * fmax(0.1, part));
                 continue;
             }

@@ -52,6 +52,7 @@ typedef struct {
     double t, h;
     double length, whole, step, part; /* at hand, before cuts, accepted; part of it for a cut */
     double known, longer, after_switch;
+    double steady; /* the step that the errors of the step before ask for */
     int phase, behind, predicted, fresh, last, cuts, refused, halved;
     long which; /* the switch at the end of the step; -1 if none */
     double since, pace[2]; /* when the way over kinks was chosen; how fast each way was */
@@ -66,6 +67,7 @@ typedef struct {
     const double *times; /* of samples */
     long count, next, samples, ways;
     double stop, tolerance, first, longest, fixed;
+    double beyond; /* so much of a step may lie beyond the switch at its end: no stage does */
     real *rate, *side, *sums, *lost, *known;       /* at the begin of a step; of the step before */
     real *end_rate, *end_side, *end_branch, *part; /* at its end; what it adds to sums */
     real *some_rate, *some_share, *some_side, *some_rows, *some_margin, *some_inputs;
@@ -93,8 +95,12 @@ enum { TRIED = 32, AGAIN = 12 };
 #define KINKS_WITHIN 3.0
 /* So much slower than a step a state may be for its end to be of order 2s. */
 #define FAST 3.0
+/* An error may be small by chance: steps grow to no more than this, in what the one before asks for. */
+#define SUDDEN 1.5
 /* Parts of a step: so near to its end a switch is at its end; so near to its begin, at its begin. */
 #define AT_END 1e-9
+/* A step that is this part of the tolerance too long adds less to its error. */
+#define BEYOND 0.01
 #define AT_ONCE 1e-12
 
 /* The value of a signal in pieces. */
