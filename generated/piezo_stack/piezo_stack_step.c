@@ -438,9 +438,6 @@ static const double basis_stage[1][1] = {
 
 #include <stddef.h>
 
-typedef struct {
-    real re, im;
-} MODEL(complex);
 
 /* The runs of all lanes, as they take a step: sizes, and the numbers that it works on. */
 typedef struct {
@@ -459,7 +456,6 @@ typedef struct {
     real iterations;           /* of Newton's method */
     int most, late;            /* of them in a step; after which it may be given up */
     double stays;              /* a change that is more than this part of the one before is noise */
-    MODEL(complex) *factor, *right;
 } MODEL(block);
 
 #define NUMBER real
@@ -833,6 +829,7 @@ enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
 /* What Newton's method may leave of a state's change, in parts of its largest magnitude. */
 #define NOISE 1e-16
 
+
 /* Newton's change of the rates, from the gaps; gaps become it. */
 static void MODEL(change)(const MODEL(block) *m, real h)
 {
@@ -981,7 +978,9 @@ static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
 {
     m->fine &= none_of(where);
     const mask found = MODEL(iterate)(m, h, where);
-    const mask more = LOSSY ? nowhere : MODEL(coarse)(m, h) & found; /* a dissipative step has no means */
+    mask more = nowhere;
+    if (!LOSSY) /* a dissipative step has no means */
+        more = MODEL(coarse)(m, h) & found;
     if (!any(more))
         return found;
     m->fine |= more;

@@ -1,5 +1,6 @@
 """Members in lanes of vectors run as they do one by one, whatever the network."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,9 @@ from piezo_sym import load, sine, sweep
 from piezo_sym.modules import module_of
 from piezo_sym.run.collocation import with_tolerance
 from piezo_sym.run.discrete import FixedStep, fixed
-from piezo_sym.run.engine.engine import engine_of
+from piezo_sym.run.engine import library as libraries
+from piezo_sym.run.engine.compiler import FLAGS
+from piezo_sym.run.engine.engine import engine_of, read_source
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.parameters import read_initial, read_parameters
 from piezo_sym.run.system import System
@@ -132,3 +135,13 @@ def test_balances_close_where_newton_overshoots(above):
     found = sweep("piezo_stack", over=over, inputs=inputs, duration=0.02, times=5, step=1e-3)
     assert np.abs(found.entropy_residual).max() <= 1e-16
     assert np.abs(found.energy_residual).max() <= 4 * np.spacing(found.energy.max().item())
+
+
+@pytest.mark.parametrize("layout", ["one", "many", "lanes"])
+@pytest.mark.parametrize("stages", [1, 2, 5])
+def test_steps_in_vectors_are_compiled(layout, stages, monkeypatch):
+    engine = engine_of(module_of(load("piezo_stack")))
+    step = read_source(engine.module, "_step.c")
+    sources = replace(engine.sources, step=step, stages=stages, layout=layout)
+    monkeypatch.setattr(libraries, "FLAGS", FLAGS[:-1])  # the last are those without vectors
+    assert libraries.library(sources).is_file()

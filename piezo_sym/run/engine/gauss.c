@@ -11,6 +11,7 @@
 
 #include <stddef.h>
 
+#if PAIRS
 /* Numbers for pairs of eigenvalues: those of one run are solved with side by side. */
 #if REAL_WIDTH == 1 && PAIRS > 1 && !defined(PLAIN)
 #define TOGETHER PAIRS
@@ -27,6 +28,7 @@ typedef real pairs;
 typedef struct {
     pairs re, im;
 } MODEL(complex);
+#endif /* PAIRS */
 
 /* The runs of all lanes, as they take a step: sizes, and the numbers that it works on. */
 typedef struct {
@@ -45,7 +47,9 @@ typedef struct {
     real iterations;           /* of Newton's method */
     int most, late;            /* of them in a step; after which it may be given up */
     double stays;              /* a change that is more than this part of the one before is noise */
+#if PAIRS
     MODEL(complex) *factor, *right;
+#endif /* PAIRS */
 } MODEL(block);
 
 #define NUMBER real

@@ -205,7 +205,9 @@ static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
 {
     m->fine &= none_of(where);
     const mask found = MODEL(iterate)(m, h, where);
-    const mask more = LOSSY ? nowhere : MODEL(coarse)(m, h) & found; /* a dissipative step has no means */
+    mask more = nowhere;
+    if (!LOSSY) /* a dissipative step has no means */
+        more = MODEL(coarse)(m, h) & found;
     if (!any(more))
         return found;
     m->fine |= more;
