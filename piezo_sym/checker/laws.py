@@ -1,8 +1,7 @@
 """Laws as text to trees, read by Python's own parser and never run, and trees from trees.
 
-Input: text of the law grammar (numbers, names, + - * / **, ``a if x < y else b``, functions; in a
-published system ``sum(bank, law)`` too).  Output: `Node` trees with exact rationals.  Limits on
-length, nesting and digits keep hostile text from costing time.
+Input: text of the law grammar; in a published system ``sum(bank, law)`` too.  Output: `Node` trees
+with exact rationals.  Limits on length, nesting and digits keep hostile text from costing time.
 """
 
 import ast
@@ -18,16 +17,13 @@ PLAIN = re.compile(
     r"(?>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![A-Za-z0-9_.])|[A-Za-z_]\w*|[-+*/(),<>=]| )*+",
     re.ASCII,
 )
-SMOOTH = ("exp", "log", "sin", "cos", "tanh", "atan", "sinh", "cosh", "erf")
-FUNCTIONS = dict.fromkeys((*SMOOTH, "abs", "sign"), 1)
-FUNCTIONS |= dict.fromkeys(("min", "max", "deadzone", "saturate"), 2)
 OPERATORS = {ast.Mult: "*", ast.Div: "/", ast.USub: "neg", ast.UAdd: "+"}
 OPERATORS |= {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
 OPPOSITE = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
 #: What operations do in every algebra: numbers, rational functions, power series.
 ARITHMETIC: dict[str, Callable[..., Any]] = {"*": operator.mul, "/": operator.truediv}
 ARITHMETIC |= {"neg": operator.neg, "+": lambda *terms: sum(terms[1:], terms[0])}
-#: Functions with kinks, by their definition, and derivatives of y = f(x).
+#: Functions with kinks, by their definition; derivatives of smooth y = f(x) and of operations.
 KINKS = {
     "abs": "x if x >= 0 else -x",
     "sign": "1 if x > 0 else -1 if x < 0 else 0",
@@ -39,6 +35,8 @@ KINKS = {
 SLOPES = {"exp": "y", "log": "1/x", "sin": "cos(x)", "cos": "-sin(x)", "tanh": "1 - y**2"}
 SLOPES |= {"sinh": "cosh(x)", "cosh": "sinh(x)", "atan": "1/(1 + x**2)"}
 SLOPES["erf"] = "exp(-x**2)/sqrt(atan(1))"  # atan(1) = pi/4
+SMOOTH = tuple(SLOPES)
+FUNCTIONS = {name: 2 if "z" in KINKS.get(name, "") else 1 for name in (*SMOOTH, *KINKS)}
 SLOPES |= {"*": "dx*z + x*dz", "/": "dx/z - x*dz/z**2", "neg": "-dx"}
 
 
@@ -47,10 +45,9 @@ class InputError(Exception):
 
 
 class Node(NamedTuple):
-    """A part of a law: an operation, its arguments, and a value where it has one.
+    """A part of a law; its arguments (of ``if``: comparison, then, else), and its `value`.
 
-    ``num`` has a rational, ``sym`` a name, ``**`` an exponent (sqrt 1/2), ``cmp`` an operator and
-    ``sum`` a bank as `value`; ``if`` has the arguments (comparison, then, else).
+    That is a number, a name (sym), an exponent (``**``), an operator (cmp) or a bank (sum).
     """
 
     op: str
@@ -58,7 +55,7 @@ class Node(NamedTuple):
     value: Any = None
 
 
-def need(good: bool, reason: str) -> None:
+def need(good: object, reason: str) -> None:
     """Refuse what is not good."""
     if not good:
         raise InputError(reason)
@@ -127,14 +124,14 @@ def derivative(node: Node, by: Any) -> Node:
     if node.op == "/" and dz == num(0):
         return Node("/", (dx, z))
     slope = made(SLOPES[node.op], x=x, y=node, z=z, dx=dx, dz=dz)
-    return slope if node.op in ("*", "/", "neg") else Node("*", (slope, dx))
+    return Node("*", (slope, dx)) if node.op in SMOOTH else slope
 
 
 def number(text: str) -> Fraction:
     """Return the exact value of a decimal number."""
     mantissa, _, exponent = text.strip().lower().replace("_", "").partition("e")
     try:
-        short = len(mantissa) <= MAX_DIGITS and len(exponent) <= MAX_DIGITS
+        short = max(len(mantissa), len(exponent)) <= MAX_DIGITS
         small = short and abs(int(exponent or 0)) <= MAX_EXPONENT
         need(small, f"number {text[:40]!r} has too many digits")
         return Fraction(f"{mantissa}e{exponent or 0}")
@@ -146,13 +143,13 @@ def number(text: str) -> Fraction:
 def parse(text: Any, length: int = MAX_LENGTH, compares: bool | None = None) -> Node:
     """Return the tree of a law, or of a comparison if it `compares` (None: of either)."""
     plain = isinstance(text, str) and len(text) <= length and PLAIN.fullmatch(text)
-    need(bool(plain), f"{str(text)[:60]!r} is no law of plain text, or too long")
+    need(plain, f"{str(text)[:60]!r} is no law of plain text, or too long")
     try:
         tree = _tree(ast.parse(text.strip(), mode="eval").body, text.strip())
     except (SyntaxError, ValueError, LookupError, ArithmeticError, RecursionError, MemoryError):
         raise InputError(f"{text[:60]!r} is not of the law grammar") from None
-    sums = any(part.op == "sum" for part in walk(tree)) and length <= MAX_LENGTH
-    good = not sums and compares in (None, tree.op == "cmp")
+    good = length > MAX_LENGTH or all(part.op != "sum" for part in walk(tree))
+    good = good and compares in (None, tree.op == "cmp")
     need(good, f"{text[:60]!r} is a comparison, or should be one, or has sums")
     return tree
 
@@ -172,7 +169,7 @@ def _tree(node: ast.AST, text: str) -> Node:
         case ast.Name(name):
             return sym(name)
         case ast.BinOp(base, ast.Pow(), exponent):
-            power = Fraction(_value(of(exponent)[0]))
+            power = _value(*of(exponent))
             need(max(abs(power.numerator), power.denominator) <= MAX_POWER, "a power is too large")
             return Node("**", of(base), power)
         case ast.BinOp(_, ast.Add() | ast.Sub()):
@@ -182,12 +179,10 @@ def _tree(node: ast.AST, text: str) -> Node:
                 terms.append(term if isinstance(node.op, ast.Add) else Node("neg", (term,)))
                 node = node.left
             return Node("+", (*of(node), *reversed(terms)))
-        case ast.BinOp(left, op, right) if type(op) in OPERATORS:
-            return Node(OPERATORS[type(op)], of(left, right))
-        case ast.UnaryOp(op, arg) if type(op) in OPERATORS:
-            return Node(OPERATORS[type(op)], of(arg))
-        case ast.Compare(left, [op], [right]) if type(op) in OPERATORS:
-            return Node("cmp", of(left, right), OPERATORS[type(op)])
+        case ast.BinOp(op=op) | ast.UnaryOp(op=op) | ast.Compare(ops=[op]) if type(op) in OPERATORS:
+            args = of(*(part for part in ast.iter_child_nodes(node) if isinstance(part, ast.expr)))
+            name = OPERATORS[type(op)]
+            return Node("cmp", args, name) if name in OPPOSITE else Node(name, args)
         case ast.IfExp(ast.Compare() as test, then, other):
             return Node("if", (_tree(test, text), *of(then, other)))
         case ast.Call(ast.Name("sum"), [ast.Name(bank), law], []):
@@ -200,5 +195,6 @@ def _tree(node: ast.AST, text: str) -> Node:
 
 
 def _value(node: Node) -> Fraction:
+    """Return the number that an exponent is."""
     args = [_value(arg) for arg in node.args]
     return ARITHMETIC[node.op](*args) if args else Fraction(node.value)

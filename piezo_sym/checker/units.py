@@ -30,33 +30,34 @@ def _registry() -> Any:
 @cache
 def unit(text: str) -> tuple[Fraction, Dimension]:
     """Return the factor to SI and the dimension of a unit; raises `InputError` if it is none."""
-    need(bool(PLAIN.fullmatch(text)), f"{text[:60]!r} is no unit")
+    need(PLAIN.fullmatch(text), f"{text[:60]!r} is no unit")
     try:  # as a law, whose names are no words of Python
-        return _read(parse(re.sub("[A-Za-z]+", r"unit_\g<0>", text.replace("^", "**")), 400))
+        found = _read(parse(re.sub("[A-Za-z]+", r"unit_\g<0>", text.replace("^", "**")), 400))
+        return Fraction(found.magnitude), found.dimensionality
     except (InputError, TypeError, AttributeError, ValueError, ArithmeticError, AssertionError):
         raise InputError(f"{text!r} is no unit") from None
 
 
-def _read(node: Node) -> tuple[Fraction, Dimension]:
-    """Return the factor and the dimension of a product of powers of named units."""
+def _read(node: Node) -> Any:
+    """Return a product of powers of named units as a quantity in base units."""
     if node.op in ("sym", "num"):
         need(node.op == "sym" or node.value == 1, "a unit has no number")
         named = _registry().parse_units(str(node.value).removeprefix("unit_").strip("1"))
         zero, one = (_registry().Quantity(Fraction(n), named).to_base_units() for n in (0, 1))
         need(zero.magnitude == 0, "it has an offset")
-        return Fraction(one.magnitude), one.dimensionality
+        return one
     need(node.op in ("*", "/", "**"), "a unit is a product of powers")
-    (factor, dimension), *others = map(_read, node.args)
+    base, *others = map(_read, node.args)
     if others:
-        act = ARITHMETIC[node.op]
-        return act(factor, others[0][0]), act(dimension, others[0][1])
-    bits = max(factor.numerator, factor.denominator).bit_length() * abs(node.value.numerator)
+        return ARITHMETIC[node.op](base, *others)
+    factor, power = Fraction(base.magnitude), Fraction(node.value)
+    bits = max(factor.numerator, factor.denominator).bit_length() * abs(power.numerator)
     need(bits < MAX_BITS, "its factor is too long")
-    power, size = Fraction(node.value), factor**node.value.numerator
+    size = factor**power.numerator
     roots = (fmpz(n).root(power.denominator) for n in (size.numerator, size.denominator))
     root = Fraction(*map(int, roots))
     need(root**power.denominator == size, "its factor is no exact number")
-    return root, dimension**power
+    return _registry().Quantity(root, base.units**power)
 
 
 def faults(
@@ -64,12 +65,8 @@ def faults(
 ) -> list[str]:
     """Return the first fault of a tree's units, if there is one."""
     try:
-        found = _dimension(tree, units)
-        return (
-            []
-            if needed is None or found in (None, needed)
-            else [f"{where} has another unit than its row"]
-        )
+        fits = _dimension(tree, units) in (None, needed) or needed is None
+        return [] if fits else [f"{where} has another unit than its row"]
     except InputError as fault:
         return [f"{where}: {fault}"]
 
