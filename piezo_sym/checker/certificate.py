@@ -14,8 +14,8 @@ from typing import Any
 
 from . import laws
 from .field import Field
-from .laws import InputError, Node, compare, need, negated, num, put, sym, symbols
-from .prover import Claim, Prover, partial
+from .laws import InputError, Node, compare, need, num, put, sym, symbols
+from .prover import Claim, Prover, partial, taken, true
 from .signs import shown
 from .spec import Element, Spec
 
@@ -34,30 +34,25 @@ class _Certificate:
     def __init__(self, spec: Spec, element: Element, prover: Prover) -> None:
         self.law, self.prover, self.left = element.law or num(0), prover, MOST_WINDOWS
         self.real, self.letter = Prover(()), ("z", element.name)
-        self.words = {word: sym(meaning) for word, meaning in spec.words.items()}
-        self.words[element.letter] = sym(self.letter)
+        meanings = {**spec.words, element.letter: self.letter}
+        self.words = {word: sym(meaning) for word, meaning in meanings.items()}
 
     def read(self, text: str) -> Node:
         """Return a text of the certificate in the symbols of the spec."""
         tree = laws.parse(text)
-        need(all(name in self.words for name in symbols(tree)), "its certificate has other names")
+        need(symbols(tree).keys() <= self.words.keys(), "its certificate has other names")
         return put(tree, self.words)
 
     def check(self, cases: Any) -> None:
         need(len(cases) <= MOST_CASES, "its certificate has too many cases")
         guards = [tuple(self.read(text) for text in case["guards"]) for case in cases]
         free = all(g.op == "cmp" and self.letter not in symbols(g) for own in guards for g in own)
-        need(free and self._cover(guards, ()), "its cases are not shown to cover the domain")
+        held = Node("+", (num(0), *(taken(own, num(1)) for own in guards)))
+        covered = free and self.prover.proves(compare(held, ">"))
+        need(covered, "its cases are not shown to cover the domain")
         for own, case in zip(guards, cases, strict=True):
             if not self.prover.proves(compare(num(1), "<"), own):  # it holds somewhere
                 self._case(case["terms"], own)
-
-    def _cover(self, guards: list[tuple[Node, ...]], missed: tuple[Node, ...]) -> bool:
-        """Return whether nowhere a guard of each case is missed."""
-        if self.prover.proves(compare(num(1), "<"), missed):
-            return True
-        rest = guards[1:]
-        return bool(guards) and all(self._cover(rest, (*missed, negated(g))) for g in guards[0])
 
     def _case(self, terms: Any, guards: tuple[Node, ...]) -> None:
         """Refuse terms that do not add up to the law, or are not shown to take power in.
@@ -66,18 +61,14 @@ class _Certificate:
         """
 
         def known(condition: Node) -> bool:
-            free = self.letter not in symbols(condition)
-            return free and self.prover.proves(condition, guards)
-
-        def adds_up(found: list[Node]) -> bool:
-            return field.same(self.law, Node("+", (num(0), *found)))
+            return self.letter not in symbols(condition) and self.prover.proves(condition, guards)
 
         field, claims = Field(known, scales=True), list[Claim]()
-        parts = [self.read(term["law"]) for term in terms]
-        need(adds_up(parts), "its terms are not shown to make up the law")
-        products = [self._product(term, claims) for term in terms]
-        need(adds_up(products), "a term is not shown to be prefactor*f(s)")
-        good = all(self.prover.proves(claim, (*guards, *path)) for path, claim in claims)
+        parts = (num(0), *(self.read(term["law"]) for term in terms))
+        need(field.same(self.law, Node("+", parts)), "its terms are not shown to make up the law")
+        products = (num(0), *(self._product(term, claims) for term in terms))
+        need(field.same(self.law, Node("+", products)), "a term is not shown to be prefactor*f(s)")
+        good = all(self.prover.proves(claim, (*guards, *path)) for claim, path in claims)
         need(good, "the sign of a prefactor or scale is not shown")
         for term in terms:
             if term["f"] is not None:
@@ -87,14 +78,14 @@ class _Certificate:
         """Return prefactor*f(letter/scale), or prefactor/letter; book what is to be shown of it."""
         front, way, z = self.read(term["prefactor"]), term["sign"], sym(self.letter)
         need(way in (1, -1), "a term has no sign")
-        claims += [*partial(front), Claim((), compare(front, ">=" if way > 0 else "<="))]
+        claims += [*partial(front), true(front, ">=" if way > 0 else "<=")]
         if term["f"] is None:
             need(way > 0, "a term has no sign")
             return Node("/", (front, z))
         for text, power in term["scale"].items():
             base = self.read(text)
             need(self.letter not in symbols(base), "a scale has the letter in it")
-            claims += [*partial(base), Claim((), compare(base, ">"))]
+            claims += [*partial(base), true(base, ">")]
             z = Node("/", (z, Node("**", (base,), _number(power))))
         f = laws.parse(term["f"])
         need(set(symbols(f)) <= {"s"}, "f is not of s alone")
@@ -102,13 +93,11 @@ class _Certificate:
 
     def _rays(self, f: Node, rays: Any) -> None:
         """Refuse f if f(s)*s >= 0 is not shown for all real s: on windows that cover them."""
-        covered, reached, zero = list[tuple[Any, Any]](), -inf, Fraction(0)
+        covered, reached, zero = list[Any](), -inf, Fraction(0)
         for ray in rays:
             centre, side = _number(ray["centre"]), int(ray["side"])
-            windows: list[tuple[Any, Any]] = [
-                (_number(lo), inf if hi == "inf" else _number(hi)) for lo, hi, _ in ray["windows"]
-            ]
-            for lo, hi in [(zero, zero), *windows]:
+            for low, high, _ in [(zero, zero, 0), *ray["windows"]]:
+                lo, hi = _number(low), inf if high == "inf" else _number(high)
                 inside = side in (1, -1) and 0 <= lo <= hi
                 good = inside and self._window(f, centre, side, lo, hi)
                 need(good, f"f is not shown to have its sign from {lo} to {hi} of {centre}")

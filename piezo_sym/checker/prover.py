@@ -7,6 +7,7 @@ premise being the function's own domain: b != 0 -> q*b = a.  Nothing is assumed 
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from functools import reduce
 from time import monotonic
 from typing import Any, NamedTuple
 
@@ -14,7 +15,7 @@ import cvc5
 from cvc5 import Kind
 
 from .field import Field
-from .laws import KINKS, Node, compare, made, negated, num, symbols, unkinked
+from .laws import KINKS, Node, compare, made, negated, num, sym, symbols, unkinked
 
 EFFORT, MILLISECONDS, SECONDS, MOST_PAIRS = 100_000, 8000, 300, 12
 KINDS = {"+": Kind.ADD, "*": Kind.MULT, "neg": Kind.NEG, "if": Kind.ITE, "=": Kind.EQUAL}
@@ -52,8 +53,18 @@ PAIRS |= dict.fromkeys(("atan", "sinh", "erf"), PAIRS["tanh"]) | {"cosh": PAIRS[
 class Claim(NamedTuple):
     """A comparison (``!=`` and ``=`` too) that is to follow where `path` is taken."""
 
-    path: tuple[Node, ...]
     claim: Node
+    path: tuple[Node, ...] = ()
+
+
+def true(left: Node, operator: str, right: Node | int = 0, path: tuple[Node, ...] = ()) -> Claim:
+    """Return the claim that a comparison is true where `path` is taken."""
+    return Claim(compare(left, operator, right), path)
+
+
+def taken(path: tuple[Node, ...], tree: Node) -> Node:
+    """Return a tree where a path is taken, and zero elsewhere."""
+    return reduce(lambda inner, step: Node("if", (step, inner, num(0))), reversed(path), tree)
 
 
 class _Query:
@@ -80,11 +91,6 @@ class _Query:
             self.known[node] = self._term(node)
         return self.known[node]
 
-    def _fresh(self, node: Node) -> Node:
-        symbol = Node("sym", (), ("value", node))
-        self.known[symbol] = self.make.mkConst(self.real, f"y{len(self.known)}")
-        return symbol
-
     def _term(self, node: Node) -> Any:
         args, kind = node.args, KINDS.get(node.value if node.op == "cmp" else node.op)
         if node.op == "num":
@@ -101,7 +107,9 @@ class _Query:
             return self.term(Node("*", (num(1 / args[1].value), args[0])))
         if node.op == "/" and args[0].op == "neg":  # -(a/b), for a/b may be known
             return self.term(made("-(x/z)", x=args[0].args[0], z=args[1]))
-        y = self._fresh(node)
+        if node.op == "sym":
+            return self.make.mkConst(self.real, f"y{len(self.known)}")
+        y = sym(("value", node))
         if node.op == "/":
             self.add(compare(Node("*", (y, args[1])), "=", args[0]), compare(args[1], "!="))
         elif node.op in FACTS:
@@ -112,7 +120,7 @@ class _Query:
         """Return x**(p/q) in products, by y with x >= 0 -> y >= 0 and y**q = x."""
         y, order = x, exponent.denominator
         if order > 1:
-            y = self._fresh(Node("root", (x,), order))
+            y = sym(("root", x, order))
             self.add(compare(y, ">="), compare(x, ">="))
             self.add(compare(Node("*", (y,) * order), "=", x), compare(x, ">="))
         size = Node("*", (num(1), *[y] * abs(exponent.numerator)))
@@ -140,7 +148,7 @@ class Prover:
 
     def proves(self, claim: Node, path: tuple[Node, ...] = ()) -> bool:
         """Return whether a claim follows from the domain and a path."""
-        key = Claim(path, claim)
+        key = Claim(claim, path)
         if key not in self.answers:
             names = {name for tree in (claim, *path) for name in symbols(tree)}
             near = tuple(c for c in self.domain if set(symbols(c)) <= names)
@@ -160,11 +168,12 @@ class Prover:
 
 def partial(node: Node, path: tuple[Node, ...] = ()) -> Iterator[Claim]:
     """Yield what must hold for a tree to have a value, where each part is reached."""
-    condition = node.args[:1] if node.op == "if" else ()
-    for n, arg in enumerate(node.args):
-        side = condition if n == 1 else tuple(map(negated, condition)) if n == 2 else ()
+    sides = (
+        [(), node.args[:1], (negated(node.args[0]),)] if node.op == "if" else [()] * len(node.args)
+    )
+    for arg, side in zip(node.args, sides, strict=True):
         yield from partial(arg, (*path, *side))
-    yield from (Claim(path, claim) for claim in needed(node))
+    yield from (Claim(claim, path) for claim in needed(node))
 
 
 def needed(node: Node) -> Iterator[Node]:

@@ -12,7 +12,7 @@ from . import laws
 from .certificate import check_certificate
 from .field import ZERO, Field
 from .laws import KINKS, InputError, Node, compare, made, need, negated, num, put, sym, symbols
-from .prover import Claim, Prover, needed, partial
+from .prover import Claim, Prover, needed, partial, taken, true
 from .spec import Element, Spec
 from .system import check_system
 
@@ -47,12 +47,12 @@ class _Audit:
         """Yield the rows, each after those that it rests on."""
         spec, reasons, system = self.spec, self.found.reasons, [("system", "")]
         yield self._row("domain", "", self._own_values())
-        divisors = [_true(tree, "!=") for tree in self.found.divisors]
+        divisors = [true(tree, "!=") for tree in self.found.divisors]
         yield self._row("system", "", divisors, why=reasons.get("system", ""))
         for body in spec.of("body"):
             law, name = body.laws["temperature"], body.name
             slope = laws.derivative(law, ("x", name))
-            claims = [*partial(law), *partial(slope), _true(law, ">"), _true(slope, ">")]
+            claims = [*partial(law), *partial(slope), true(law, ">"), true(slope, ">")]
             yield self._row("temperature", name, claims)
         if not any(why for key, why in self.done.items() if key[0] == "temperature"):
             warm = (compare(sym(("T", body.name)), ">") for body in spec.of("body"))
@@ -71,7 +71,7 @@ class _Audit:
         cooled = list[Claim]()
         for e in spec.of("ambient"):  # a conductance that is not negative, T_e above zero
             law, hot = e.laws["conductance"], sym(("u", e.input))
-            cooled += [*partial(law), _true(law, ">="), _true(hot, ">")]
+            cooled += [*partial(law), true(law, ">="), true(hot, ">")]
         for name in ("exergy", "environment") if cooled else ():
             yield self._row(name, "", cooled, [("sigma", ""), ("energy", "")])
         yield self._row("units", why=next(iter(spec.faults), ""))
@@ -94,7 +94,7 @@ class _Audit:
             need(not why, why)
             for key in rests:
                 need(not self.done[key], f"it rests on {' '.join(key)}, which is not confirmed")
-            for path, claim in dict.fromkeys(claims):
+            for claim, path in dict.fromkeys(claims):
                 names = ", ".join(str(name[1]) for name in symbols(claim))[:80]
                 shown = prover.proves(claim, path)
                 need(shown, f"a comparison ({claim.value}) of {names} does not follow")
@@ -112,7 +112,7 @@ class _Audit:
         own |= {("T", b.name): [b.laws["temperature"]] for b in spec.of("body")}
         for lane in range(max(map(len, own.values()))):
             here = [compare(sym(n), "=", found[lane % len(found)]) for n, found in own.items()]
-            yield from (Claim(tuple(here), tree) for tree in spec.conditions)
+            yield from (Claim(tree, tuple(here)) for tree in spec.conditions)
 
     def _element(self, element: Element) -> Iterator[tuple[str, str, str]]:
         own, name = [tree for tree in (element.costate, element.law) if tree], element.name
@@ -127,7 +127,7 @@ class _Audit:
         if element.law:
             yield self._row("passive", name, self._passive(element, z), [("welldef", name)])
         elif element.kind.form == "conduction":
-            yield self._row("passive", name, [*claims, _true(trees[0], ">=")])
+            yield self._row("passive", name, [*claims, true(trees[0], ">=")])
 
     def _passive(self, element: Element, z: Key) -> Iterator[Claim]:
         """Yield that a law takes power in, after its certificate if it has one."""
@@ -135,15 +135,15 @@ class _Audit:
         for certificate in filter(None, given):
             check_certificate(self.spec, element, certificate, self.prover)
         for side in "<>" if not any(given) else "":
-            yield Claim((compare(sym(z), side),), compare(element.law or num(0), side + "="))
+            yield true(element.law or num(0), side + "=", path=(compare(sym(z), side),))
 
     def _information(self, name: str, owner: str) -> tuple[str, str, str]:
         """Return a row that is looked at where it is claimed."""
         element, z = self.spec.elements.get(owner), sym(("z", owner))
         if name == "odd" and element and element.law:
             turned = put(element.law, {("z", owner): made("-z", z=z)})
-            claim = Claim((), compare(turned, "=", made("-x", x=element.law)))
-            return self._row(name, owner, [*partial(turned), claim], [("welldef", owner)])
+            claims = [*partial(turned), true(turned, "=", made("-x", x=element.law))]
+            return self._row(name, owner, claims, [("welldef", owner)])
         if name == "invariant" and element and element.kind.form == "body":
             return self._row(name, owner, self._invariant(owner), [("sigma", "")])
         return self._row(name, owner, why="the checker knows no such row")
@@ -158,19 +158,15 @@ class _Audit:
             gains = [made("lam*(a/T - 1)", lam=lam, a=hot, T=x) for x in (T, m)]
             between = (compare(T, "<=", m), compare(m, "<", hot))
             if others:
-                yield Claim((compare(T, "<=", hot),), compare(gains[0], ">="))
+                yield true(gains[0], ">=", path=(compare(T, "<=", hot),))
             else:
-                yield Claim(between, compare(gains[0], ">=", gains[1]))
-                yield Claim(between, compare(gains[1], ">="))
+                yield true(gains[0], ">=", gains[1], between)
+                yield true(gains[1], ">=", path=between)
         floors = [
             c for c in self.spec.conditions if T in (c.args[:1] if c.value == ">" else c.args[1:])
         ]
         strict = any(c.value in "<>" for c in floors) and any(e.input for e in around)
         need(strict, "no floor of T, or no environment")
-
-
-def _true(left: Node, operator: str) -> Claim:
-    return Claim((), compare(left, operator))
 
 
 def _continuous(trees: list[Node]) -> Iterator[Claim]:
@@ -179,7 +175,7 @@ def _continuous(trees: list[Node]) -> Iterator[Claim]:
         relaxed = closed.tree(tree, ())
         yield from closed.claims
         if relaxed != tree:
-            yield Claim(tuple(closed.where), compare(relaxed, "=", tree))
+            yield true(relaxed, "=", tree, tuple(closed.where))
 
 
 class _Closed:
@@ -199,7 +195,7 @@ class _Closed:
             return self.tree(laws.unkinked(node), path, kinks)
         if node.op != "if":
             here = Node(node.op, tuple(self.tree(a, path, kinks) for a in node.args), node.value)
-            self.claims += [Claim((*self.where, *path), c) for c in needed(here)]
+            self.claims += [Claim(c, (*self.where, *path)) for c in needed(here)]
             return here
         sides = tuple(self.tree(arg, path, KINKS) for arg in node.args[0].args)
         side = Node("cmp", sides, node.args[0].value)
@@ -220,7 +216,5 @@ class _Closed:
         edge = made("b*d", b=Node("if", (chosen, num(1), num(-1))), d=difference)
         there = [Node("if", (put(condition, moved), *map(num, n))) for n in ((0, -1), (-1, 0))]
         for tree in (edge, Node("if", (side, *there))):
-            for step in reversed(path):
-                tree = Node("if", (step, tree, num(0)))
-            self.where.append(compare(tree, ">="))
+            self.where.append(compare(taken(path, tree), ">="))
         return side
