@@ -14,7 +14,7 @@ from .field import ZERO, Field
 from .laws import KINKS, InputError, Node, compare, made, need, negated, num, put, sym, symbols
 from .prover import Claim, Prover, needed, partial, taken, true
 from .spec import Element, Spec
-from .system import check_system
+from .system import Finding
 
 #: The row that has to be stated, and is not looked at.
 STATED = "program"
@@ -37,7 +37,7 @@ class _Audit:
         for entry in entries or ():
             key = str(entry.get("id")), str(entry.get("element") or "")
             self.stated.setdefault(key, []).append(entry)
-        self.found = check_system(spec, proofs.get("system"))
+        self.found = Finding(spec, proofs.get("system"))
         known = {("T", body.name): body.laws["temperature"] for body in spec.of("body")}
         known |= {("z", name): tree for name, tree in self.found.letters.items()}
         self.ties = tuple(compare(sym(name), "=", law) for name, law in known.items())

@@ -10,7 +10,7 @@ says: no two sums, and no two functions of sums, are then equal for some counts 
 
 from collections.abc import Mapping
 from operator import mul
-from typing import Any, NamedTuple
+from typing import Any
 
 from . import laws
 from .field import ONE, ZERO, Field, Ratio
@@ -22,18 +22,6 @@ from .spec import Element, Spec
 MAX_TEXT, MOST_SUMS, LANES, MAX_NAMES, MAX_CHAIN = 100_000, 2, 3, 1000, 50
 
 
-class Finding(NamedTuple):
-    """Reasons by subject ("system", "energy"), what must not be zero, letters by states.
-
-    `values` is what must hold for the energy to have a value.
-    """
-
-    reasons: dict[str, str]
-    divisors: dict[Node, None]
-    letters: dict[str, Node]
-    values: list[Claim]
-
-
 class _Published:
     """The published text, parsed; no more sums over lanes are multiplied than can be checked."""
 
@@ -41,19 +29,21 @@ class _Published:
         self.states = [(s["name"], s["element"], s["bank"]) for s in system["states"]]
         self.names = {n: (e["element"], e["role"], e["bank"]) for n, e in system["names"].items()}
         self.energy, self.order = parse(system["energy"], MAX_TEXT, False), dict[str, int]()
-        texts = (
-            {n: e["law"] for n, e in system["names"].items()},
-            system["rates"],
-            system["outputs"],
-        )
+        named = {name: entry["law"] for name, entry in system["names"].items()}
         self.laws, self.rates, self.outputs = (
-            {name: parse(text, MAX_TEXT, False) for name, text in table.items()} for table in texts
+            {name: parse(text, MAX_TEXT, False) for name, text in table.items()}
+            for table in (named, system["rates"], system["outputs"])
         )
         free = not any(n in spec.words and spec.words[n][0] != "T" for n in self.names)
         need(free and len(self.names) <= MAX_NAMES, "a published name is taken, or too many are")
         for table in (self.laws, self.rates, self.outputs, {"": self.energy}):
             for tree in table.values():
                 self.sums(tree, 0)
+        banks = {e.name for e in spec.elements.values() if e.lanes}
+        expected = [(s, name, name if name in banks else None) for s, name in spec.states.items()]
+        ports = {e.name for e in spec.of("source", "ambient")}
+        tables = set(self.rates) == set(spec.states) and set(self.outputs) == ports
+        need(self.states == expected and tables, "states or ports are not those of the spec")
 
     def sums(self, node: Node, depth: int) -> int:
         """Return how many sums over lanes are multiplied at most."""
@@ -76,13 +66,25 @@ class _Published:
         return int(found * power)
 
 
-class _Comparison:
-    """The comparison; the laws and symbols of its network."""
+class Finding:
+    """What is found of a published system, and the laws and symbols of its network.
 
-    def __init__(self, spec: Spec, text: _Published, finding: Finding) -> None:
-        self.spec, self.text, self.finding, self.one = spec, text, finding, ONE
+    `reasons` by subject ("system", "energy"); `divisors` must not be zero, `values` must hold for
+    the energy to have a value; `letters` are those that are functions of states.
+    """
+
+    def __init__(self, spec: Spec, system: Any) -> None:
+        self.spec, self.one, self.reasons = spec, ONE, dict[str, str]()
+        self.divisors, self.letters = dict[Node, None](), dict[str, Node]()
         self.counts = {e.name: LANES for e in spec.of("hysteron") if e.lanes is not None}
-        self.field, self.known = Field(), dict[Any, Ratio]()
+        self.field, self.known, self.values = Field(), dict[Any, Ratio](), list[Claim]()
+        try:
+            self.text = _Published(spec, system)
+            self._check()
+        except (InputError, SingularError, RecursionError) as error:
+            self.reasons.setdefault("system", str(error))
+        except (KeyError, TypeError, AttributeError) as error:
+            self.reasons.setdefault("system", f"the published system is not complete: {error}")
 
     def symbol(self, meaning: tuple[str, str], lane: int) -> Ratio:
         """Return a symbol, with its lane if it has one."""
@@ -94,11 +96,10 @@ class _Comparison:
     def law(self, element: Element, field: str, lane: int, letter: Ratio | None = None) -> Ratio:
         """Return a law of an element, its letter being given."""
         tree = element.law if field == "law" else element.laws.get(field, element.costate)
+        own = {("z", element.name): letter}
 
         def word(node: Node) -> Ratio:
-            if letter is not None and node.value[0] == "z":
-                return letter
-            return self.symbol(node.value, lane)
+            return own.get(node.value) or self.symbol(node.value, lane)
 
         return self.field.of(tree or num(0), word)
 
@@ -111,34 +112,34 @@ class _Comparison:
         return self.symbol((role, self.spec.elements[owner].input if role == "u" else owner), lane)
 
     def published(self, node: Node, bound: Mapping[str, int]) -> Ratio:
-        """Return a published text, its lanes bound."""
+        """Return a published text; `bound` is the lane of each bank, 0 outside of lanes."""
         return self.field.of(node, lambda part: self.word(part, bound))
 
     def word(self, node: Node, bound: Mapping[str, int]) -> Ratio:
         """Return a sum over lanes, or what a published name stands for."""
-        if node.op == "sum":
-            need(node.value in self.counts, f"{node.value!r} is no bank")
-            lanes = range(1, self.counts[node.value] + 1)
-            many = [self.like((node.value, lane)) for lane in lanes]
-            own = (self.published(node.args[0], {**bound, node.value: lane}) for lane in lanes)
-            return sum(map(mul, many, own), ZERO)
         name = node.value
+        if node.op == "sum":
+            need(name in self.counts, f"{name!r} is no bank")
+            lanes = range(1, self.counts[name] + 1)
+            own = (self.published(node.args[0], {**bound, name: lane}) for lane in lanes)
+            return sum(map(mul, [self.like((name, lane)) for lane in lanes], own), ZERO)
         if name in self.text.names:
             bank = self.text.names[name][2]
-            lane = bound.get(bank, 0) if bank else 0
+            lane = bound.get(bank, 0)
             need(lane > 0 or not bank, f"{name!r} is of a lane, and stands outside of lanes")
             if (name, lane) not in self.known:
-                self.known[name, lane] = self._named(name, {bank: lane} if bank else {})
+                self.known[name, lane] = self._named(name, lane)
             return self.known[name, lane]
         role, owner = self.spec.words.get(name, ("T", ""))
         need(role != "T", f"unknown published name {name[:60]!r}")
         bank = self.spec.lists.get(owner, "") if role == "p" else owner
         return self.symbol((role, owner), bound.get(bank, 0))
 
-    def _named(self, name: str, bound: Mapping[str, int]) -> Ratio:
+    def _named(self, name: str, lane: int) -> Ratio:
         """Return what a name is by its text; a co-state is itself, once it is compared."""
-        (owner, role, _), lane = self.text.names[name], max(bound.values(), default=0)
-        found, store = self.published(self.text.laws[name], bound), self.spec.elements.get(owner)
+        owner, role, bank = self.text.names[name]
+        found = self.published(self.text.laws[name], {bank: lane} if bank else {})
+        store = self.spec.elements.get(owner)
         if role not in ("costate", "temperature") or store is None or not store.costate:
             return found
         self._equal("system", found, self.law(store, "costate", lane), name)
@@ -147,7 +148,7 @@ class _Comparison:
     def _costate(self, store: Element, lane: int) -> Ratio:
         return self.symbol(("T" if store.kind.form == "body" else "E", store.name), lane)
 
-    def check(self) -> None:
+    def _check(self) -> None:
         """Compare rates and outputs, and close the balances."""
         own, power = flows(self.spec, self.counts, self), ZERO
         self._keep(own)
@@ -157,7 +158,7 @@ class _Comparison:
             power += given * inflow
         for (name, lane), rate in own.rates.items():
             element = self.spec.elements[name]
-            given = self.published(self.text.rates[element.state], {name: lane} if lane else {})
+            given = self.published(self.text.rates[element.state], {name: lane})
             self._equal("system", given, rate, f"rate of {element.state}")
             power -= self.like((name, lane)) * self._costate(element, lane) * given
         self._equal("energy", power, ZERO, "dU/dt - y^T u")
@@ -165,64 +166,37 @@ class _Comparison:
 
     def _equal(self, subject: str, given: Ratio, own: Ratio, what: str) -> None:
         if not self.field.is_zero(given - own):
-            self.finding.reasons.setdefault(subject, f"{what} is not that of the network")
+            self.reasons.setdefault(subject, f"{what} is not that of the network")
 
     def _keep(self, own: Flows) -> None:
         """Keep the divisors, and each letter that is one of states of its own lane."""
         for pivot in own.pivots:
-            self.finding.divisors[self.field.tree(pivot).args[0]] = None
+            self.divisors[self.field.tree(pivot).args[0]] = None
             self.field.nonzero |= {Ratio(factor) for factor, _ in pivot.top.factor()[1]}
         lists, elements = self.spec.lists, self.spec.elements
         for (name, lane), letter in own.letters.items():
             tree = self.field.tree(letter)
             costates = {key: elements[key[1]].costate for key in symbols(tree) if key[0] == "E"}
             words = {key: costates.get(key) or sym(key[:2]) for key in symbols(tree)}
-            self.finding.letters[name] = put(tree, words)
-            if not {(lists.get(k[1], k[1]), k[2]) for k in words if k[2:]} <= {(name, lane)}:
-                del self.finding.letters[name]
+            if {(lists.get(k[1], k[1]), k[2]) for k in words if k[2:]} <= {(name, lane)}:
+                self.letters[name] = put(tree, words)
 
     def _gradient(self) -> None:
         """Compare the energy's derivatives, of sums by the state of one lane, with co-states."""
         energy, states = self.text.energy, self.spec.states
         self.published(energy, {})  # whatever is of a lane is in a sum
-        for name in symbols(energy):
-            known = self.spec.words.get(name, ("", ""))[0] in ("p", "x")
-            need(known, "the energy has other names than states and parameters")
-        symbolic = {name: sym(self.spec.words[name]) for name in symbols(energy)}
+        words = {name: self.spec.words.get(name, ("", "")) for name in symbols(energy)}
+        known = all(role in ("p", "x") for role, _ in words.values())
+        need(known, "the energy has other names than states and parameters")
         for part in walk(energy):
-            owners = {
-                states[n] for n in symbols(part.args[0] if part.op == "if" else part) if n in states
-            }
+            names = symbols(part.args[0] if part.op == "if" else part)
+            owners = {states[name] for name in names if name in states}
             single = owners <= {part.value} and sum(inner.op == "sum" for inner in walk(part)) == 1
             need(part.op != "sum" or single, "a bank's energy has other states")
-            moves = bool(owners) and part.op in ("if", *KINKS)
-            need(not moves, "the energy has choices of states")
-        self.finding.values.extend(partial(_alone(put(energy, symbolic))))
+            need(not owners or part.op not in ("if", *KINKS), "the energy has choices of states")
+        self.values.extend(partial(put(energy, {name: sym(words[name]) for name in words})))
         for state, name in states.items():
             lane = int(name in self.counts)
-            given = self.published(laws.derivative(energy, state), {name: lane} if lane else {})
+            given = self.published(laws.derivative(energy, state), {name: lane})
             own = self.law(self.spec.elements[name], "costate", lane)
             self._equal("energy", given, own, f"dU/d{state}")
-
-
-def _alone(node: Node) -> Node:
-    """Return a tree in which any lane stands for the sum over all."""
-    inner = tuple(map(_alone, node.args))
-    return inner[0] if node.op == "sum" else Node(node.op, inner, node.value)
-
-
-def check_system(spec: Spec, system: Any) -> Finding:
-    """Return what is found of a published system."""
-    finding, banks = Finding({}, {}, {}, []), {e.name for e in spec.elements.values() if e.lanes}
-    try:
-        text = _Published(spec, system)
-        expected = [(s, name, name if name in banks else None) for s, name in spec.states.items()]
-        ports = {e.name for e in spec.of("source", "ambient")}
-        tables = set(text.rates) == set(spec.states) and set(text.outputs) == ports
-        need(text.states == expected and tables, "states or ports are not those of the spec")
-        _Comparison(spec, text, finding).check()
-    except (InputError, SingularError, RecursionError) as error:
-        finding.reasons.setdefault("system", str(error))
-    except (KeyError, TypeError, AttributeError) as error:
-        finding.reasons.setdefault("system", f"the published system is not complete: {error}")
-    return finding

@@ -12,7 +12,7 @@ from piezo_sym.checker import read_spec
 from piezo_sym.checker.field import Field
 from piezo_sym.checker.laws import parse
 from piezo_sym.checker.network import is_linear
-from piezo_sym.checker.system import check_system
+from piezo_sym.checker.system import Finding
 from piezo_sym.proofs import Verdict, decide
 from piezo_sym.spec.load import parse as load_text
 
@@ -44,9 +44,9 @@ FEW_LANES = (
 def test_what_vanishes_for_few_lanes_is_seen(zero):
     system = stated(PIEZO_STACK)["system"]
     system["names"]["N"] = COUNT
-    assert not check_system(SPEC, system).reasons
+    assert not Finding(SPEC, system).reasons
     system["rates"]["p"] += f" + F_ext*{zero}"
-    assert "system" in check_system(SPEC, system).reasons
+    assert "system" in Finding(SPEC, system).reasons
 
 
 def test_two_banks_need_not_have_as_many_lanes():
@@ -71,7 +71,7 @@ def test_an_energy_with_a_step_is_seen(root):
 def test_an_energy_of_many_lanes_is_seen(zero):
     system = stated(PIEZO_STACK)["system"]
     system["energy"] += f" + k*q*q_l*{zero.format('sum(hysteron, 1)')}"
-    assert check_system(SPEC, system).reasons
+    assert Finding(SPEC, system).reasons
 
 
 def _more_energy(system, text):
@@ -122,7 +122,7 @@ def test_a_forged_system_is_not_that_of_the_network(name):
     system = stated(PIEZO_STACK)["system"]
     FORGERIES[name](system)
     assert system != stated(PIEZO_STACK)["system"]
-    assert check_system(SPEC, system).reasons
+    assert Finding(SPEC, system).reasons
 
 
 @pytest.mark.parametrize("condition", ["d >= 0", "T > T_0", "rho >= 0", "T_e > T_0"])
