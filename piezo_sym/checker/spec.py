@@ -25,11 +25,9 @@ Symbol = tuple[str, str]
 
 
 class Element(NamedTuple):
-    """An element: its kind, its laws in symbols, its branches.
+    """An element: `laws` by field, `costate` dU/dx, a dissipative `law` of what it calls `letter`.
 
-    `costate` is dU/dx of a store or body, `law` that of a dissipative element and `letter` what the
-    law calls its variable; `across` is whether what it imposes is an across variable; `bodies` are
-    the body it heats or reads T of, or both of a conduction.
+    What it imposes is `across` or not; `bodies` it heats, reads T of, or conducts between.
     """
 
     name: str
@@ -81,8 +79,6 @@ def read_spec(text: str) -> Spec:
 
 
 class _Reader:
-    """Reads the tables in an order in which each knows the names it may use."""
-
     def __init__(self, tables: dict[str, dict[str, Any]]) -> None:
         self.tables, self.faults, self.units = tables, list[str](), dict[Symbol, Dimension]()
         self.parameters = self._values("parameters", "value", "p")
@@ -142,8 +138,8 @@ class _Reader:
         known = kind.needed <= set(entry) <= kind.fields and name.isidentifier()
         need(known, f"elements.{name[:60]} has a wrong key, or no name")
         heats = [entry[field] for field in ("heats", "body", "temperature") if field in entry]
-        bodies = tuple(entry["between"] if kind.form == "conduction" else heats)
-        bodies = () if kind.form == "body" else bodies
+        heats = entry["between"] if kind.form == "conduction" else heats
+        bodies = () if kind.form == "body" else tuple(heats)
         good = set(bodies) <= set(self.bodies) and len(set(bodies)) == len(bodies)
         need(good, f"elements.{name} names what is no thermal_mass")
         own = {field: self._law(name, field, bodies) for field in kind.laws if field in entry}
@@ -159,7 +155,11 @@ class _Reader:
             row = GIVES[kind.domains, kind.across] if kind.form == "source" else "K"
             fits = self.units["u", source] == unit(row)[1]
             self.faults += [] if fits else [f"elements.{name}.input is not in {row}"]
-        pairs = tuple(_pair(entry[key], key == "at") for key in kind.nodes)
+        pairs = tuple(
+            (entry[key], "wall") if key == "at" else tuple(entry[key]) for key in kind.nodes
+        )
+        good = all(a != b and isinstance(a + b, str) for a, b in pairs)
+        need(good, "no pair of nodes")
         state = next((word for word, owner in self.states.items() if owner == name), "")
         given = (pairs, across, bodies, source, count, entry.get("discontinuous", False))
         return Element(name, kind, own, state, costate, law, letter, *given)
@@ -224,9 +224,3 @@ class _Reader:
             owners = {banks[symbol] for symbol in symbols(tree) if symbol in banks}
             need(len(owners) < 2, "a condition mixes lanes of two banks")
         return lists
-
-
-def _pair(value: Any, at: bool) -> tuple[str, str]:
-    first, second = (value, "wall") if at else value
-    need(first != second and isinstance(first + second, str), "no pair of nodes")
-    return first, second
