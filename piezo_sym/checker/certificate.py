@@ -1,10 +1,9 @@
 """Certificates of laws decided by intervals: checked again, with bounds of the checker's own.
 
-Input: a law, and the cases of its certificate.  Output: `InputError` if it does not hold.  A case
-holds where its guards do; there the law is a sum of terms, each prefactor*f(s) with letter =
-scale*s, or prefactor/letter if it has no f.  cvc5 answers that the cases cover the domain, and for
-the prefactor's sign; that f(s)*s has that sign is shown by `signs` on windows lo < t <= hi of
-s = centre + side*t, which cover the line.
+Input: a law, and the cases of its certificate.  Output: `InputError` if it does not hold.  Where
+the guards of a case hold, the law is a sum of terms: prefactor*f(s) with letter = scale*s, or
+prefactor/letter.  cvc5 shows that the cases cover the domain, and the prefactor's sign; `signs`
+that f(s)*s has it on windows lo < t <= hi of s = centre + side*t, which cover the line.
 """
 
 from collections.abc import Mapping
@@ -55,10 +54,7 @@ class _Certificate:
                 self._case(case["terms"], own)
 
     def _case(self, terms: Any, guards: tuple[Node, ...]) -> None:
-        """Refuse terms that do not add up to the law, or are not shown to take power in.
-
-        The law is compared with what is shown to have values, too: f and all in front of it.
-        """
+        """Refuse terms that do not add up to the law, or are not shown to take power in."""
 
         def known(condition: Node) -> bool:
             return self.letter not in symbols(condition) and self.prover.proves(condition, guards)
@@ -66,6 +62,7 @@ class _Certificate:
         field, claims = Field(known, scales=True), list[Claim]()
         parts = (num(0), *(self.read(term["law"]) for term in terms))
         need(field.same(self.law, Node("+", parts)), "its terms are not shown to make up the law")
+        # and so do products that are shown to have values: f and all in front of it
         products = (num(0), *(self._product(term, claims) for term in terms))
         need(field.same(self.law, Node("+", products)), "a term is not shown to be prefactor*f(s)")
         good = all(self.prover.proves(claim, (*guards, *path)) for claim, path in claims)
@@ -93,10 +90,10 @@ class _Certificate:
 
     def _rays(self, f: Node, rays: Any) -> None:
         """Refuse f if f(s)*s >= 0 is not shown for all real s: on windows that cover them."""
-        covered, reached, zero = list[Any](), -inf, Fraction(0)
+        covered, reached = list[Any](), -inf
         for ray in rays:
             centre, side = _number(ray["centre"]), int(ray["side"])
-            for low, high, _ in [(zero, zero, 0), *ray["windows"]]:
+            for low, high, _ in [("0", "0", 0), *ray["windows"]]:
                 lo, hi = _number(low), inf if high == "inf" else _number(high)
                 inside = side in (1, -1) and 0 <= lo <= hi
                 good = inside and self._window(f, centre, side, lo, hi)

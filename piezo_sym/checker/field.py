@@ -1,17 +1,16 @@
 """Laws as rational functions over atoms, in a normal form: what has the same form is equal.
 
-Input: trees, and what each symbol stands for.  Output: `Ratio`, a reduced quotient of FLINT's
-polynomials.  Symbols and functions (of normal arguments) are atoms; a choice ``a if c else b`` is
-``[c]*a + (1 - [c])*b`` with an atom [c] of which [c]**2 = [c]; positive factors leave comparisons
-and roots.  An identity between atoms holds wherever both sides have values, whatever is divided by
-in branches that are not taken.
+Input: trees, and what each symbol stands for.  Output: `Ratio`, a reduced quotient of polynomials.
+Symbols and functions (of normal arguments) are atoms; a choice ``a if c else b`` is ``[c]*a +
+(1 - [c])*b`` with an atom [c] = [c]**2; positive factors leave comparisons and roots.  An identity
+holds wherever both sides have values, whatever is divided by in branches that are not taken.
 """
 
 from collections.abc import Callable
 from fractions import Fraction
 from functools import reduce
 from math import comb, prod
-from typing import Any
+from typing import Any, TypeAlias, cast
 
 from flint import fmpq, fmpq_mpoly_ctx
 
@@ -81,6 +80,8 @@ def constant(value: int | Fraction) -> Ratio:
 
 
 ZERO, ONE = constant(0), constant(1)
+Known: TypeAlias = Callable[[Node], bool]
+Words: TypeAlias = Callable[[Node], Ratio]
 
 
 class Field:
@@ -89,14 +90,10 @@ class Field:
     Comparisons lose their numeric factors only if it `scales`: some depend on the size of a bank.
     """
 
-    def __init__(
-        self, known: Callable[[Node], bool] = lambda _: False, *, scales: bool = False
-    ) -> None:
+    def __init__(self, known: Known = lambda _: False, *, scales: bool = False) -> None:
         self.atoms, self.known, self.scales = dict[Any, tuple[int, Node]](), known, scales
-        #: Polynomials that are zero: of choices, their own squares, and of roots.
-        self.relations = dict[Ratio, Any]()
-        #: Factors of what is zero nowhere, taken or not.
-        self.nonzero = set[Ratio]()
+        self.relations = dict[Ratio, Any]()  # zero: of choices, their own squares, and of roots
+        self.nonzero = set[Ratio]()  # factors of what is zero nowhere, taken or not
 
     def atom(self, key: Any, tree: Node) -> Ratio:
         """Return an atom, the same for the same key."""
@@ -104,7 +101,7 @@ class Field:
         need(place < SIZE, f"more than {SIZE} different symbols and functions")
         return Ratio(CTX.gen(place))
 
-    def of(self, node: Node, words: Callable[[Node], Ratio] | None = None) -> Ratio:
+    def of(self, node: Node, words: Words | None = None) -> Ratio:
         """Return the normal form of a tree, `words` giving that of its symbols and sums."""
         if node.op == "num":
             return constant(node.value)
@@ -127,13 +124,12 @@ class Field:
         if node.op == "/":
             return args[0] * self._inverse(args[1])
         if node.op in ARITHMETIC:
-            found: Ratio = ARITHMETIC[node.op](*args)
-            return found
+            return cast("Ratio", ARITHMETIC[node.op](*args))
         if args[0] == ZERO and node.op != "log":
             return ONE if node.op in ("exp", "cos", "cosh") else ZERO
         return self.atom((node.op, *args), node)
 
-    def _choice(self, condition: Node, words: Callable[[Node], Ratio] | None) -> Ratio:
+    def _choice(self, condition: Node, words: Words | None) -> Ratio:
         """Return the atom [difference > 0], or 1 less that of its opposite."""
         less = condition.value in ("<", ">=")
         left, right = condition.args[::-1] if less else condition.args
@@ -148,9 +144,9 @@ class Field:
         return found if condition.value in "<>" else ONE - found
 
     def _inverse(self, ratio: Ratio) -> Ratio:
-        """Return 1/ratio, in which factors that choices or roots can make zero are not cancelled.
+        """Return 1/ratio; factors that are zero in a branch not taken, or by roots, are atoms.
 
-        A branch that is not taken may divide by zero; what cancels that would be no identity.
+        What cancels them would be no identity.
         """
         if not self._places(ratio.top):
             return ONE / ratio

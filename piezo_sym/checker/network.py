@@ -1,11 +1,10 @@
 """Kirchhoff's and Newton's laws of a spec as one sparse tableau, solved in any field.
 
-Input: a `Spec`, the size of each bank, and the algebra in which the laws are written, numbers or
-rational functions: its `one`, ``law(element, field, lane, letter)`` ("law" the dissipative one),
-``given(role, owner, lane)`` of an input "u", a co-state "E" or a temperature "T", and how many
-lanes ``like(slot)`` there are.  Output: `Flows`.
-The through and the across variable of every branch and the potential of every node are unknowns; a
-law that is linear in its letter is an equation, in either causality.
+Input: a `Spec`, the size of each bank, and the algebra of the laws, numbers or rational functions:
+`one`, ``law(element, field, lane, letter)`` ("law" the dissipative one), ``given(role, owner,
+lane)`` of an input "u", a co-state "E" or a temperature "T", and ``like(slot)``, how many lanes are
+like one.  Output: `Flows`.  Unknown are the through and the across variable of every branch and
+the potential of every node; a law linear in its letter is an equation, in either causality.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -31,15 +30,10 @@ class Branch(NamedTuple):
     nodes: tuple[Any, Any]
     across: bool
 
-    @property
-    def imposed(self) -> tuple[str, "Branch"]:
-        """The variable that its law gives."""
-        return "across" if self.across else "through", self
-
-    @property
-    def answer(self) -> tuple[str, "Branch"]:
-        """The variable that the network gives it."""
-        return "through" if self.across else "across", self
+    def variables(self) -> tuple[tuple[str, "Branch"], tuple[str, "Branch"]]:
+        """Return the variable that its law gives, and that which the network gives it."""
+        across, through = ("across", self), ("through", self)
+        return (across, through) if self.across else (through, across)
 
 
 class SingularError(Exception):
@@ -66,7 +60,7 @@ def flows(spec: Spec, counts: Mapping[str, int], algebra: Any) -> Flows:
 
     def answer(branch: Branch) -> Any:
         total = zero
-        for (role, *slot), factor in unknowns[branch.answer].items():
+        for (role, *slot), factor in unknowns[branch.variables()[1]].items():
             if role == "W" and (*slot,) not in found.outputs:
                 raise SingularError("laws that are not linear depend on each other")
             total += factor * (found.outputs[*slot,] if role == "W" else algebra.given(role, *slot))
@@ -94,14 +88,13 @@ def _heat(spec: Spec, algebra: Any, found: Flows) -> None:
         (body,) = spec.elements[slot[0]].bodies
         found.rates[body, 0] += algebra.like(slot) * W * found.letters[slot] / T[body]
     for e in spec.of("ambient", "conduction"):
-        first, lam = e.bodies[0], algebra.law(e, "conductance", 0)
-        other = algebra.given("u", e.name, 0) if e.input else T[e.bodies[1]]
-        flow = lam * (other / T[first] - algebra.one)
-        found.rates[first, 0] += flow
-        if e.input:
-            found.ports[e.name] = T[first], flow
-        else:
-            found.rates[e.bodies[1], 0] += lam * (T[first] / other - algebra.one)
+        lam, ends = algebra.law(e, "conductance", 0), [T[body] for body in e.bodies]
+        ends += [algebra.given("u", e.name, 0)] if e.input else []
+        for body, own, other in zip(e.bodies, ends, reversed(ends), strict=False):
+            flow = lam * (other / own - algebra.one)
+            found.rates[body, 0] += flow
+            if e.input:
+                found.ports[e.name] = own, flow
 
 
 def _branches(e: Element, lanes: Iterable[int]) -> Iterator[Branch]:
@@ -128,22 +121,23 @@ def _equations(spec: Spec, branches: list[Branch], algebra: Any) -> Iterator[For
                 balances.setdefault(node, {})["through", branch] = sign * many
                 fall["potential", node] = -sign
         yield fall
-        yield {branch.imposed: one, **_law(spec.elements[branch.element], branch, algebra)}
+        yield _law(spec.elements[branch.element], branch, algebra)
     yield from balances.values()
 
 
 def _law(element: Element, branch: Branch, algebra: Any) -> Form:
-    """Return what a law adds to what it imposes, to make zero."""
+    """Return what a law imposes less what it says of that, to make zero."""
+    (imposed, answer), one = branch.variables(), algebra.one
     if branch.role in ("first", "second"):
         first, second = _branches(element, (0,))
         ratio = algebra.law(element, "ratio", 0)
         # first: across or through = ratio*across of the second; second: through = -ratio*answer
-        return {("across", second): -ratio} if branch == first else {first.answer: ratio}
+        other = ("across", second) if branch == first else first.variables()[1]
+        return {imposed: one, other: -ratio if branch == first else ratio}
     if branch.role == "linear":
-        return {branch.answer: -algebra.law(element, "law", branch.lane, algebra.one)}
+        return {imposed: one, answer: -algebra.law(element, "law", branch.lane, one)}
     given = {"store": "E", "law": "W", "source": "u"}[branch.role], element.name, branch.lane
-    drawn = branch.role == "source" and not branch.across
-    return {given: algebra.one if drawn else -algebra.one}
+    return {imposed: one, given: one if branch.role == "source" and not branch.across else -one}
 
 
 def _solved(left: list[Form]) -> tuple[dict[Any, Form], list[Any]]:

@@ -168,10 +168,9 @@ class Prover:
 
 def partial(node: Node, path: tuple[Node, ...] = ()) -> Iterator[Claim]:
     """Yield what must hold for a tree to have a value, where each part is reached."""
-    sides = (
-        [(), node.args[:1], (negated(node.args[0]),)] if node.op == "if" else [()] * len(node.args)
-    )
-    for arg, side in zip(node.args, sides, strict=True):
+    condition = node.args[:1] if node.op == "if" else ()
+    for n, arg in enumerate(node.args):
+        side = condition if n == 1 else tuple(map(negated, condition)) if n == 2 else ()
         yield from partial(arg, (*path, *side))
     yield from (Claim(claim, path) for claim in needed(node))
 

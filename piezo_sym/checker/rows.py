@@ -22,9 +22,11 @@ Key = tuple[str, str]
 MOVING, OWN = ("z", "x", "T"), ("domain", "system")  # rows that are not stated by the package
 
 
-def audit(spec: Spec, proofs: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
-    """Yield every row of a spec, and why it is not confirmed."""
-    return _Audit(spec, proofs).rows()
+def audit(spec: Spec, proofs: Mapping[str, Any]) -> list[tuple[str, str, str]]:
+    """Return every row of a spec, and why it is not confirmed."""
+    found = _Audit(spec, proofs)
+    found.look()
+    return [(name, element, why) for (name, element), why in found.done.items()]
 
 
 class _Audit:
@@ -43,48 +45,48 @@ class _Audit:
         self.ties = tuple(compare(sym(name), "=", law) for name, law in known.items())
         self.prover = Prover(spec.conditions, self.ties)
 
-    def rows(self) -> Iterator[tuple[str, str, str]]:
-        """Yield the rows, each after those that it rests on."""
+    def look(self) -> None:
+        """Look at the rows, each after those that it rests on."""
         spec, reasons, system = self.spec, self.found.reasons, [("system", "")]
-        yield self._row("domain", "", self._own_values())
+        self._row("domain", "", self._own_values())
         divisors = [true(tree, "!=") for tree in self.found.divisors]
-        yield self._row("system", "", divisors, why=reasons.get("system", ""))
+        self._row("system", "", divisors, why=reasons.get("system", ""))
         for body in spec.of("body"):
             law, name = body.laws["temperature"], body.name
             slope = laws.derivative(law, ("x", name))
             claims = [*partial(law), *partial(slope), true(law, ">"), true(slope, ">")]
-            yield self._row("temperature", name, claims)
+            self._row("temperature", name, claims)
         if not any(why for key, why in self.done.items() if key[0] == "temperature"):
             warm = (compare(sym(("T", body.name)), ">") for body in spec.of("body"))
             self.prover = Prover((*spec.conditions, *warm), self.ties)
         for name in ("skew", "casimir", "energy", "entropy"):
             why = reasons.get("energy", "") if name in ("skew", "energy") else ""
             claims = self.found.values if name in ("skew", "energy") else []
-            yield self._row(name, "", claims, system, why)
+            self._row(name, "", claims, system, why)
         domain = [claim for tree in spec.conditions for claim in partial(tree)]
         if domain or ("welldef", "") in self.stated:
-            yield self._row("welldef", "", domain, system)
+            self._row("welldef", "", domain, system)
         for element in spec.elements.values():
-            yield from self._element(element)
+            self._element(element)
         heat = [key for key in self.done if key[0] in ("domain", "temperature", "passive")]
-        yield self._row("sigma", "", (), heat)
+        self._row("sigma", "", (), heat)
         cooled = list[Claim]()
         for e in spec.of("ambient"):  # a conductance that is not negative, T_e above zero
             law, hot = e.laws["conductance"], sym(("u", e.input))
             cooled += [*partial(law), true(law, ">="), true(hot, ">")]
         for name in ("exergy", "environment") if cooled else ():
-            yield self._row(name, "", cooled, [("sigma", ""), ("energy", "")])
-        yield self._row("units", why=next(iter(spec.faults), ""))
-        yield self._row(STATED)
+            self._row(name, "", cooled, [("sigma", ""), ("energy", "")])
+        self._row("units", why=next(iter(spec.faults), ""))
+        self._row(STATED)
         for key, entries in self.stated.items():
             claimed = any(e.get("verdict") == "PROVED" or e.get("required", True) for e in entries)
             if claimed and key not in self.done:
-                yield self._information(*key)
+                self._information(*key)
 
     def _row(
         self, name: str, owner: str = "", claims: Any = (), rests: Iterable[Key] = (), why: str = ""
-    ) -> tuple[str, str, str]:
-        """Return a row: stated as PROVED, its claims follow, and what it rests on is confirmed."""
+    ) -> None:
+        """Look at a row: stated as PROVED, its claims follow, and what it rests on is confirmed."""
         verdicts = [str(entry.get("verdict")) for entry in self.stated.get((name, owner), ())]
         prover, reason = self.prover if name != "domain" else Prover(()), ""
         try:
@@ -101,7 +103,6 @@ class _Audit:
         except (InputError, ArithmeticError, RuntimeError) as error:
             reason = str(error) or type(error).__name__
         self.done[name, owner] = reason
-        return name, owner, reason
 
     def _own_values(self) -> Iterator[Claim]:
         """Yield that the spec's own values, in each lane, are in its domain."""
@@ -114,20 +115,20 @@ class _Audit:
             here = [compare(sym(n), "=", found[lane % len(found)]) for n, found in own.items()]
             yield from (Claim(tree, tuple(here)) for tree in spec.conditions)
 
-    def _element(self, element: Element) -> Iterator[tuple[str, str, str]]:
+    def _element(self, element: Element) -> None:
         own, name = [tree for tree in (element.costate, element.law) if tree], element.name
         trees, z = own or list(element.laws.values()), ("z", name)
         claims = [claim for tree in trees for claim in partial(tree)]
         if claims or element.law:
-            yield self._row("welldef", name, claims)
+            self._row("welldef", name, claims)
         kinks = [n for tree in trees for n in laws.walk(tree) if n.op in ("if", *KINKS)]
         choosers = (n.args[0] if n.op == "if" else n for n in kinks)
         if any(s[0] in MOVING for n in choosers for s in symbols(n)) and not element.jumps:
-            yield self._row("continuous", name, _continuous(trees))
+            self._row("continuous", name, _continuous(trees))
         if element.law:
-            yield self._row("passive", name, self._passive(element, z), [("welldef", name)])
+            self._row("passive", name, self._passive(element, z), [("welldef", name)])
         elif element.kind.form == "conduction":
-            yield self._row("passive", name, [*claims, true(trees[0], ">=")])
+            self._row("passive", name, [*claims, true(trees[0], ">=")])
 
     def _passive(self, element: Element, z: Key) -> Iterator[Claim]:
         """Yield that a law takes power in, after its certificate if it has one."""
@@ -137,16 +138,17 @@ class _Audit:
         for side in "<>" if not any(given) else "":
             yield true(element.law or num(0), side + "=", path=(compare(sym(z), side),))
 
-    def _information(self, name: str, owner: str) -> tuple[str, str, str]:
-        """Return a row that is looked at where it is claimed."""
+    def _information(self, name: str, owner: str) -> None:
+        """Look at a row that nothing asks for, as it is claimed."""
         element, z = self.spec.elements.get(owner), sym(("z", owner))
         if name == "odd" and element and element.law:
             turned = put(element.law, {("z", owner): made("-z", z=z)})
             claims = [*partial(turned), true(turned, "=", made("-x", x=element.law))]
-            return self._row(name, owner, claims, [("welldef", owner)])
-        if name == "invariant" and element and element.kind.form == "body":
-            return self._row(name, owner, self._invariant(owner), [("sigma", "")])
-        return self._row(name, owner, why="the checker knows no such row")
+            self._row(name, owner, claims, [("welldef", owner)])
+        elif name == "invariant" and element and element.kind.form == "body":
+            self._row(name, owner, self._invariant(owner), [("sigma", "")])
+        else:
+            self._row(name, owner, why="the checker knows no such row")
 
     def _invariant(self, body: str) -> Iterator[Claim]:
         """Yield that a body does not cool below its floor: T > floor, T <= m < T_e."""
@@ -162,9 +164,7 @@ class _Audit:
             else:
                 yield true(gains[0], ">=", gains[1], between)
                 yield true(gains[1], ">=", path=between)
-        floors = [
-            c for c in self.spec.conditions if T in (c.args[:1] if c.value == ">" else c.args[1:])
-        ]
+        floors = [c for c in self.spec.conditions if c.args[0 if c.value == ">" else 1] == T]
         strict = any(c.value in "<>" for c in floors) and any(e.input for e in around)
         need(strict, "no floor of T, or no environment")
 

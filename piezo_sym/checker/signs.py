@@ -15,7 +15,7 @@ from flint import arb, arb_series, ctx, fmpq
 
 from . import laws
 from .field import Field
-from .laws import InputError, Node, compare, made, need, negated, num, put, sym
+from .laws import InputError, Node, compare, made, need, num, put, sym
 from .prover import Prover
 
 BITS, ORDER = 192, 10
@@ -65,10 +65,10 @@ class Signs:
 
     def _branches(self, node: Node) -> tuple[Node, ...]:
         """Return the branch of a choice that is taken, or both."""
-        for branch, side in ((1, node.args[0]), (2, negated(node.args[0]))):
-            if self.of(made("x - z", x=side.args[0], z=side.args[1])) <= HOLD[side.value]:
-                return (node.args[branch],)
-        return node.args[1:]
+        condition, then, other = node.args
+        signs = self.of(made("x - z", x=condition.args[0], z=condition.args[1]))
+        hold = HOLD[condition.value]
+        return (then,) if signs <= hold else (then, other) if signs & hold else (other,)
 
     def _looked(self, node: Node) -> Found:
         """Return the signs of a tree as a whole."""

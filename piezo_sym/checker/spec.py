@@ -112,8 +112,7 @@ class _Reader:
         return found
 
     def _words(self) -> dict[str, Symbol]:
-        found = [(name, ("p", name)) for name in self.parameters]
-        found += [(name, ("u", name)) for name in self.inputs]
+        found = [(name, (role, name)) for role, name in self.units]
         for name, kind in self.kinds.items():
             for letter in (s for _, own in kind.laws.values() for s in own if s in STATES):
                 word = self.tables["elements"][name].get("state", f"{letter}_{name}")
@@ -151,15 +150,12 @@ class _Reader:
         across = kind.across and (kind.form != "law" or field in ("voltage", "velocity"))
         source, count = entry.get("input", ""), entry.get("count")
         need(count is None or count >= 1, f"elements.{name}.count is out of range")
-        if "input" in kind.fields:
-            row = GIVES[kind.domains, kind.across] if kind.form == "source" else "K"
-            fits = self.units["u", source] == unit(row)[1]
-            self.faults += [] if fits else [f"elements.{name}.input is not in {row}"]
-        pairs = tuple(
-            (entry[key], "wall") if key == "at" else tuple(entry[key]) for key in kind.nodes
-        )
-        good = all(a != b and isinstance(a + b, str) for a, b in pairs)
-        need(good, "no pair of nodes")
+        row = GIVES[kind.domains, kind.across] if kind.form == "source" else "K"
+        if "input" in kind.fields and self.units["u", source] != unit(row)[1]:
+            self.faults.append(f"elements.{name}.input is not in {row}")
+        ends = ((entry[key], "wall") if key == "at" else entry[key] for key in kind.nodes)
+        pairs = tuple((a, b) for a, b in ends)
+        need(all(a != b and isinstance(a + b, str) for a, b in pairs), "no pair of nodes")
         state = next((word for word, owner in self.states.items() if owner == name), "")
         given = (pairs, across, bodies, source, count, entry.get("discontinuous", False))
         return Element(name, kind, own, state, costate, law, letter, *given)
@@ -167,13 +163,12 @@ class _Reader:
     def _law(self, name: str, field: str, bodies: tuple[str, ...]) -> Node:
         words: dict[str, Symbol] = {p: ("p", p) for p in self.parameters}
         needed, letters = self.kinds[name].laws[field]
-        for letter in letters:
-            if letter == "T":
-                owner = bodies or (self.bodies if len(self.bodies) == 1 else ())
-                words |= dict([("T", ("T", body)) for body in owner][:1])
-                continue
+        owner = bodies or (self.bodies if len(self.bodies) == 1 else ())
+        across = GIVES.get((self.kinds[name].domains, True), "1")
+        if "T" in letters and owner:
+            words["T"] = "T", owner[0]
+        for letter in (letter for letter in letters if letter != "T"):
             words[letter] = ("x" if letter in STATES else "z", name)
-            across = GIVES.get((self.kinds[name].domains, True), "1")
             self.units[words[letter]] = unit(LETTERS.get(letter, across))[1]
         law = self._resolved(self.tables["elements"][name][field], words)
         self.faults += faults(law, self.units, unit(needed)[1], f"elements.{name}")

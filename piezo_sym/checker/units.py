@@ -60,9 +60,7 @@ def _read(node: Node) -> Any:
     return _registry().Quantity(root, base.units**power)
 
 
-def faults(
-    tree: Node, units: Mapping[Any, Dimension], needed: Dimension | None, where: str
-) -> list[str]:
+def faults(tree: Node, units: Mapping[Any, Dimension], needed: Any, where: str) -> list[str]:
     """Return the first fault of a tree's units, if there is one."""
     try:
         fits = _dimension(tree, units) in (None, needed) or needed is None
