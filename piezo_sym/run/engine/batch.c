@@ -62,20 +62,24 @@ static size_t MODEL(places)(MODEL(batch) *b, const MODEL(task) *task, real *memo
 extern const long MODEL(lossy);
 const long MODEL(lossy) = MODEL(heated) >= 0;
 
+/* Vectors lie at multiples of so many bytes. */
+enum { ALIGNED = 64 };
+
 /* How many bytes a batch takes. */
 long MODEL(batch_size)(const MODEL(task) *task);
 long MODEL(batch_size)(const MODEL(task) *task)
 {
     real none[1];
     MODEL(batch) b;
-    return (long)(sizeof b + MODEL(places)(&b, task, none));
+    return (long)(sizeof b + ALIGNED + MODEL(places)(&b, task, none));
 }
 
 /* Make a batch in memory of its size, which is aligned as vectors are, and zero. */
 void MODEL(open)(MODEL(batch) *b, const MODEL(task) *task);
 void MODEL(open)(MODEL(batch) *b, const MODEL(task) *task)
 {
-    MODEL(places)(b, task, (real *)(b + 1));
+    const uintptr_t place = (uintptr_t)(b + 1);
+    MODEL(places)(b, task, (real *)((place + ALIGNED - 1) / ALIGNED * ALIGNED));
     b->runs = task->runs, b->times = task->times;
     b->count = task->count, b->samples = task->samples;
     b->stop = task->stop, b->tolerance = task->tolerance;
@@ -94,6 +98,9 @@ static void MODEL(load)(MODEL(batch) *b, int lane, MODEL(run) *run)
     MODEL(block) *m = &b->m;
     MODEL(give)(&m->p, run->p, lane);
     m->own = run->p;
+#if defined(LANES)
+    MODEL(share)(m->shared, run->p);
+#endif
     for (long k = 0; k < m->n; ++k) {
         LANE(m->x, k, lane) = run->x[k];
         LANE(m->largest, k, lane) = run->largest[k];

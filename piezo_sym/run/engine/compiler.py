@@ -100,15 +100,17 @@ def _version(command: tuple[str, ...]) -> str:
     return done.stdout if done.returncode == 0 else ""
 
 
-def build(compiler: Compiler, flags: Sequence[str], source: Path, library: Path) -> None:
-    """Compile one source file into a shared library.
+def build(
+    compiler: Compiler, flags: Sequence[str], sources: Sequence[Path], library: Path
+) -> None:
+    """Compile source files into a shared library.
 
     Raises
     ------
     EngineError
         If the compiler fails; with the first line of what it says.
     """
-    words = [*compiler.command, *flags, str(source), "-o", str(library), "-lm"]
+    words = [*compiler.command, *flags, *map(str, sources), "-o", str(library), "-lm"]
     done = _call(words, MOST_SECONDS)
     if done.returncode != 0 or not library.is_file():
         said = [line for line in done.stderr.splitlines() if "error" in line] or [done.stderr]

@@ -106,6 +106,12 @@ def driver(model: str) -> str:
     return "".join([*parts, MEMBERS.format(model=model), TILES.format(model=model)])
 
 
+def lanes_of(stages: int, layout: str, *, lossy: bool) -> int:
+    """Return how many lanes vectors have that hold the stages of a step, or 0 if none do."""
+    several = layout == "one" and stages > 1 and not lossy
+    return 1 << (stages - 1).bit_length() if several else 0
+
+
 def collocation(model: str, stages: int, layout: str, *, lossy: bool = False) -> str:
     """Return the text of the file to compile for collocation steps of so many stages.
 
@@ -115,6 +121,7 @@ def collocation(model: str, stages: int, layout: str, *, lossy: bool = False) ->
     """
     from piezo_sym.run.engine.tableau import tableau  # loads mpmath, once a compilation
 
+    lanes = lanes_of(stages, layout, lossy=lossy)
     head = [
         "#if defined(PLAIN)" if layout == "many" else "#if 1",
         "#define REAL_WIDTH 1",
@@ -125,9 +132,30 @@ def collocation(model: str, stages: int, layout: str, *, lossy: bool = False) ->
         f"#define MODEL(name) {model}_##name",
         "extern const long MODEL(width);",
         "const long MODEL(width) = REAL_WIDTH;",
+        *(["#if !defined(PLAIN)", f"#define LANES {lanes}", texts("at_once.h"), "#endif"] * bool(lanes)),
     ]
-    tables = tableau(stages, 1 if lossy else stages + MORE_NODES, lossy=lossy)
-    return "\n".join([*head, tables, texts(*COLLOCATION), *([texts("loss.c")] if lossy else [])])
+    tables = tableau(stages, 1 if lossy else stages + MORE_NODES, lossy=lossy, lanes=lanes)
+    gaps = texts("gaps.c")
+    if lanes:
+        gaps = f"#if defined(LANES)\n{texts('gaps_at_once.c')}\n#else\n{gaps}\n#endif"
+    engine = [texts("gauss.c"), gaps, texts(*COLLOCATION), *([texts("loss.c")] if lossy else [])]
+    return "\n".join([*head, tables, *engine])
+
+
+def at_once(model: str, lanes: int) -> str:
+    """Return the text of a file to compile beside that of steps: stages in so many lanes."""
+    head = [
+        "#if !defined(PLAIN)",
+        f"#define REAL_WIDTH {lanes}",
+        "#if defined(__GNUC__) /* of what is printed, some is for the engine alone */",
+        '#pragma GCC diagnostic ignored "-Wunused-function"',
+        '#pragma GCC diagnostic ignored "-Wunused-variable"',
+        "#endif",
+        texts("real.h"),
+        f'#include "{model}_step.c"',
+        f"#define MODEL(name) {model}_##name",
+    ]
+    return "\n".join([*head, texts("at_once.h", "at_once.c"), "#endif"])
 
 
 def _loop(model: str, name: str, call: str, idle: str) -> str:

@@ -50,6 +50,11 @@ typedef struct {
 #if PAIRS
     MODEL(complex) *factor, *right;
 #endif /* PAIRS */
+#if defined(LANES) /* the same with all stages side by side, see gaps_at_once.c */
+    void *shared;
+    real *reached_lanes, *gap_lanes, *mean_lanes, *branch_lanes, *u_lanes, *side_lanes, *rows_lanes;
+    real *margin_lanes;
+#endif /* LANES */
 } MODEL(block);
 
 #define NUMBER real
@@ -140,6 +145,18 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     PLACE(slope, m->slopes);
     PLACE(fresh, m->slopes);
     PLACE(real_factor, MODEL(factor_size_real)(m));
+#if defined(LANES)
+    at = begin + (at - begin + LANES - 1) / LANES * LANES;
+    PLACE(reached_lanes, n * LANES);
+    PLACE(gap_lanes, n * LANES);
+    PLACE(mean_lanes, m->means * LANES);
+    PLACE(branch_lanes, m->branches * LANES);
+    PLACE(u_lanes, m->inputs * LANES);
+    PLACE(side_lanes, m->branches * LANES);
+    PLACE(rows_lanes, m->booked * LANES);
+    PLACE(margin_lanes, MODEL(limits) * LANES);
+    m->shared = at, at += MODEL(shared_size)(p) / sizeof(real);
+#endif /* LANES */
 #undef PLACE
 #if PAIRS
     m->factor = (MODEL(complex) *)at;
@@ -165,71 +182,6 @@ static void MODEL(reach)(const MODEL(block) *m, real h, const double *weight, re
         out[i] = MODEL(reached_row)(m, h, weight, i);
 }
 
-/* The states alone that integrands read. */
-static void MODEL(reach_read)(const MODEL(block) *m, real h, const double *weight)
-{
-    for (long r = 0; r < MODEL(reads); ++r) {
-        const long record = MODEL(read)[r];
-        const long end = record + 1 < MODEL(records) ? m->first[record + 1] : m->n;
-        for (long i = m->first[record]; i < end; ++i)
-            m->reached[i] = MODEL(reached_row)(m, h, weight, i);
-    }
-}
-
-/* The functions of which stages are given means, at nodes of a step. */
-static void MODEL(integrate)(const MODEL(block) *m, real h, const double reach[][STAGES], long nodes)
-{
-    for (long q = 0; q < nodes; ++q) {
-        MODEL(reach_read)(m, h, reach[q]);
-        MODEL(integrands)(m->reached, &m->p, m->node + q * m->means);
-    }
-}
-
-/* What the last polynomial of Legendre has of a function at nodes, in parts of its size. */
-static real MODEL(last_part)(const MODEL(block) *m, long k, const double *last, long nodes)
-{
-    real sum = zero, most = 1e-300 + zero;
-    for (long q = 0; q < nodes; ++q) {
-        sum += last[q] * m->node[q * m->means + k];
-        most = largest_of(size_of(m->node[q * m->means + k]), most);
-    }
-    return size_of(sum) / most;
-}
-
-/* Means over the step, by the rule of each lane. */
-static void MODEL(average)(const MODEL(block) *m, real h)
-{
-    MODEL(integrate)(m, h, node_reach, NODES);
-    for (long i = 0; i < STAGES; ++i)
-        for (long k = 0; k < m->means; ++k) {
-            real *const mean = m->mean + i * m->means + k;
-            *mean = zero;
-            for (long q = 0; q < NODES; ++q)
-                *mean += node_mean[i][q] * m->node[q * m->means + k];
-        }
-    if (!any(m->fine))
-        return;
-    MODEL(integrate)(m, h, fine_reach, FINE);
-    for (long i = 0; i < STAGES; ++i)
-        for (long k = 0; k < m->means; ++k) {
-            real *const mean = m->mean + i * m->means + k, sum = zero;
-            for (long q = 0; q < FINE; ++q)
-                sum += fine_mean[i][q] * m->node[q * m->means + k];
-            *mean = chosen(m->fine, sum, *mean);
-        }
-}
-
-/* The lanes whose co-states ask for more nodes than NODES, for balances that are exact to round-off. */
-static mask MODEL(coarse)(const MODEL(block) *m, real h)
-{
-    mask found = nowhere;
-    if (m->means)
-        MODEL(integrate)(m, h, node_reach, NODES);
-    for (long k = 0; k < m->means; ++k)
-        found |= MODEL(last_part)(m, k, node_last, NODES) > COARSE;
-    return found;
-}
-
 /* Choose branches by their switching functions in some lanes; returns those where any changes. */
 static mask MODEL(choose)(long branches, const real *side, real *branch, mask where)
 {
@@ -239,40 +191,6 @@ static mask MODEL(choose)(long branches, const real *side, real *branch, mask wh
         const real old = branch[k], new = chosen(positive, wide(1.0), zero);
         changed |= where & (new != old);
         branch[k] = chosen(where, new, old);
-    }
-    return changed;
-}
-
-#if LOSSY /* see loss.c */
-static void MODEL(lose)(const MODEL(block) *m, real h, real *rate, real *rows);
-#endif
-
-/* What the rates at the stages have to be, less what they are; returns where branches change. */
-static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
-{
-    const mask over = m->over & going;
-    mask changed = nowhere;
-    if (m->means)
-        MODEL(average)(m, h);
-    for (long i = 0; i < STAGES; ++i) {
-        real *gap = m->gap + i * m->n, *mean = m->mean + i * m->means;
-        real *side = m->side + i * m->branches, *branch = m->branch + i * m->branches;
-        MODEL(reach)(m, h, stage_reach[i], m->reached);
-        for (int again = 0; again < 3; ++again) {
-            MODEL(stage)(m->reached, mean, branch, m->u + i * m->inputs, &m->p, gap,
-                         m->rows + i * m->booked, side, m->margin + i * MODEL(limits));
-            if (!any(over))
-                break;
-            const mask other = MODEL(choose)(m->branches, side, branch, over);
-            if (!any(other))
-                break;
-            changed |= other;
-        }
-#if LOSSY
-        MODEL(lose)(m, h, gap, m->rows);
-#endif
-        for (long k = 0; k < m->n; ++k)
-            gap[k] -= m->rates[i * m->n + k];
     }
     return changed;
 }

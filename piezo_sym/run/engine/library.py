@@ -20,11 +20,13 @@ from typing import Literal, final
 from piezo_sym.errors import EngineError, FileError, one_line
 from piezo_sym.files import path_text, temporary_folder
 from piezo_sym.run.engine.compiler import FLAGS, Compiler, build, compilers, passed_by
-from piezo_sym.run.engine.driver import collocation, driver
+from piezo_sym.run.engine.driver import at_once, collocation, driver, lanes_of
 from piezo_sym.run.engine.processor import processor
 from piezo_sym.run.engine.texts import texts as texts_of
 
 Layout = Literal["one", "many", "lanes"]
+#: What is compiled; the other files are included there.
+UNITS = ("driver.c", "stages.c")
 ENDINGS = {"win32": ".dll", "darwin": ".dylib"}
 
 
@@ -60,6 +62,8 @@ class Sources:
         if self.stages:
             texts[f"{self.name}_step.c"] = self.step
             texts["elimination.c"] = texts_of("elimination.c")
+        if lanes := lanes_of(self.stages, self.layout, lossy=self.lossy):
+            texts["stages.c"] = at_once(self.name, lanes)
         return {**texts, "driver.c": self._driver()}
 
     def _driver(self) -> str:
@@ -175,7 +179,8 @@ def _build(sources: Sources, compiler: Compiler, flags: tuple[str, ...], path: P
             for name, text in sources.files().items():
                 (folder / name).write_text(text, encoding="utf-8")
             built = folder / path.name
-            build(compiler, flags, folder / "driver.c", built)
+            units = [folder / name for name in UNITS if (folder / name).is_file()]
+            build(compiler, flags, units, built)
             built.replace(path)
     except OSError:
         if os.path.isfile(path) and sys.platform == "win32":  # another process has it, and uses it

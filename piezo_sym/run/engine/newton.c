@@ -200,6 +200,28 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
     return found;
 }
 
+/* What the last polynomial of Legendre has of a function at nodes, in parts of its size. */
+static real MODEL(last_part)(const MODEL(block) *m, long k, const double *last, long nodes)
+{
+    real sum = zero, most = 1e-300 + zero;
+    for (long q = 0; q < nodes; ++q) {
+        sum += last[q] * m->node[q * m->means + k];
+        most = largest_of(size_of(m->node[q * m->means + k]), most);
+    }
+    return size_of(sum) / most;
+}
+
+/* The lanes whose co-states ask for more nodes than NODES, for balances that are exact to round-off. */
+static mask MODEL(coarse)(const MODEL(block) *m, real h)
+{
+    mask found = nowhere;
+    if (m->means && any(m->fine)) /* else they are those that the last gaps have left */
+        MODEL(integrate)(m, h, NODE_REACH, NODES);
+    for (long k = 0; k < m->means; ++k)
+        found |= MODEL(last_part)(m, k, node_last, NODES) > COARSE;
+    return found;
+}
+
 /* The rates in some lanes, with means at as many nodes as they ask for; returns who has them. */
 static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
 {

@@ -25,11 +25,12 @@ PARTS = 3
 
 
 @cache
-def tableau(stages: int, nodes: int, *, lossy: bool = False) -> str:
+def tableau(stages: int, nodes: int, *, lossy: bool = False, lanes: int = 0) -> str:
     """Return the tables of a step with so many stages, its means taken at so many nodes.
 
     Parameters
     ----------
+    lanes : of vectors that hold stages or nodes, for which some tables are written once more.
     lossy : a dissipative step: one stage, with the state and the co-states at the step's end, and
         inputs at its middle.
     """
@@ -55,13 +56,17 @@ def tableau(stages: int, nodes: int, *, lossy: bool = False) -> str:
             "eigenvalue": values,
             **_between([mp.mpf(0), *c, mp.mpf(1)]),
         }
+        for name in ("stage", "node", "fine") if lanes else ():
+            tables[f"{name}_lanes"] = _in_lanes(tables[f"{name}_reach"], lanes)
+        for name in ("node_mean", "fine_mean") if lanes else ():
+            tables[f"{name}_lanes"] = _in_lanes(tables[name], lanes)
         if lossy:
             tables |= {name: [[mp.mpf(1)]] for name in ("stage_reach", "node_reach", "node_mean")}
             tables["eigenvalue"] = values = [[mp.mpf(1), mp.mpf(0)]]
         # the real eigenvalue, where there is one: the estimate of errors needs a real factor
         filters = [mp.re(values[0][0]) if stages % 2 else mp.mpf(EVEN)]
         sizes = {"STAGES": stages, "NODES": nodes, "PAIRS": stages // 2, "PARTS": PARTS}
-        sizes |= {"FINE": FINE, "LOSSY": int(lossy)}
+        sizes |= {"FINE": FINE, "LOSSY": int(lossy)} | ({"LANES": lanes} if lanes else {})
         head = [f"#define {name} {value}" for name, value in sizes.items()]
         # means are of as many orders more as nodes are more: by the decay of what they are of
         coarse = mp.mpf(LEFT_OUT) ** (mp.mpf(nodes - 1) / (2 * nodes + 1 - stages))
@@ -81,6 +86,13 @@ def _means(name: str, nodes: int, lagrange: list[Any], b: list[Any]) -> dict[str
             [v * _at(part, x) / own for x, v in zip(t, w, strict=True)] for part, own in parts
         ],
     }
+
+
+def _in_lanes(rows: list[list[Any]], lanes: int) -> list[list[Any]]:
+    """Return the columns of some rows at a time, one row a lane; lanes left over have zeros."""
+    groups = [rows[n : n + lanes] for n in range(0, len(rows), lanes)]
+    rest = [mp.mpf(0)] * lanes
+    return [[*column, *rest][:lanes] for rows in groups for column in zip(*rows, strict=True)]
 
 
 def _between(places: list[Any]) -> dict[str, list[Any]]:

@@ -1,0 +1,39 @@
+/*
+ * The stages of one run's step, or nodes of its means, in the lanes of vectors.  A unit of its own,
+ * behind real.h and a generated <model>_step.c: `real` is a vector here, in the engine a number.
+ */
+
+/* Parameters, the same in all lanes. */
+typedef struct {
+    MODEL(reals) p;
+    real values[];
+} MODEL(shared_reals);
+
+size_t MODEL(shared_size)(const MODEL(parameters) *p)
+{
+    MODEL(reals) none;
+    return sizeof(MODEL(shared_reals)) + (size_t)MODEL(place_reals)(&none, p, NULL) * sizeof(real);
+}
+
+void MODEL(share)(void *space, const MODEL(parameters) *p)
+{
+    MODEL(shared_reals) *const to = space;
+    MODEL(place_reals)(&to->p, p, to->values);
+    for (int lane = 0; lane < REAL_WIDTH; ++lane)
+        MODEL(give)(&to->p, p, lane);
+}
+
+void MODEL(stages_at_once)(const void *space, const double *x, const double *mean,
+                           const double *branch, const double *u, double *rate, double *rows,
+                           double *side, double *margin)
+{
+    const MODEL(shared_reals) *const from = space;
+    MODEL(stage)((const real *)x, (const real *)mean, (const real *)branch, (const real *)u, &from->p,
+                 (real *)rate, (real *)rows, (real *)side, (real *)margin);
+}
+
+void MODEL(nodes_at_once)(const void *space, const double *x, double *value)
+{
+    const MODEL(shared_reals) *const from = space;
+    MODEL(integrands)((const real *)x, &from->p, (real *)value);
+}

@@ -1,0 +1,14 @@
+/* What a run computes for all stages at once, or for as many nodes: numbers lie lane by lane. */
+#include <stddef.h>
+#if defined(__GNUC__) && !defined(_WIN32)
+#pragma GCC visibility push(hidden)
+#endif
+size_t MODEL(shared_size)(const MODEL(parameters) *p);
+void MODEL(share)(void *space, const MODEL(parameters) *p);
+void MODEL(stages_at_once)(const void *space, const double *x, const double *mean,
+                           const double *branch, const double *u, double *rate, double *rows,
+                           double *side, double *margin);
+void MODEL(nodes_at_once)(const void *space, const double *x, double *value);
+#if defined(__GNUC__) && !defined(_WIN32)
+#pragma GCC visibility pop
+#endif

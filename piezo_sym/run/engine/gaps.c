@@ -1,0 +1,83 @@
+/*
+ * Means over a step, and what the rates at its stages have to be: stage by stage.  Behind gauss.c.
+ */
+
+/* How nodes of means are reached. */
+#define NODE_REACH node_reach
+
+/* The states alone that integrands read. */
+static void MODEL(reach_read)(const MODEL(block) *m, real h, const double *weight)
+{
+    for (long r = 0; r < MODEL(reads); ++r) {
+        const long record = MODEL(read)[r];
+        const long end = record + 1 < MODEL(records) ? m->first[record + 1] : m->n;
+        for (long i = m->first[record]; i < end; ++i)
+            m->reached[i] = MODEL(reached_row)(m, h, weight, i);
+    }
+}
+
+/* The functions of which stages are given means, at nodes of a step. */
+static void MODEL(integrate)(const MODEL(block) *m, real h, const double reach[][STAGES], long nodes)
+{
+    for (long q = 0; q < nodes; ++q) {
+        MODEL(reach_read)(m, h, reach[q]);
+        MODEL(integrands)(m->reached, &m->p, m->node + q * m->means);
+    }
+}
+
+/* Means over the step, by the rule of each lane. */
+static void MODEL(average)(const MODEL(block) *m, real h)
+{
+    MODEL(integrate)(m, h, node_reach, NODES);
+    for (long i = 0; i < STAGES; ++i)
+        for (long k = 0; k < m->means; ++k) {
+            real *const mean = m->mean + i * m->means + k;
+            *mean = zero;
+            for (long q = 0; q < NODES; ++q)
+                *mean += node_mean[i][q] * m->node[q * m->means + k];
+        }
+    if (!any(m->fine))
+        return;
+    MODEL(integrate)(m, h, fine_reach, FINE);
+    for (long i = 0; i < STAGES; ++i)
+        for (long k = 0; k < m->means; ++k) {
+            real *const mean = m->mean + i * m->means + k, sum = zero;
+            for (long q = 0; q < FINE; ++q)
+                sum += fine_mean[i][q] * m->node[q * m->means + k];
+            *mean = chosen(m->fine, sum, *mean);
+        }
+}
+
+#if LOSSY /* see loss.c */
+static void MODEL(lose)(const MODEL(block) *m, real h, real *rate, real *rows);
+#endif
+
+/* What the rates at the stages have to be, less what they are; returns where branches change. */
+static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
+{
+    const mask over = m->over & going;
+    mask changed = nowhere;
+    if (m->means)
+        MODEL(average)(m, h);
+    for (long i = 0; i < STAGES; ++i) {
+        real *gap = m->gap + i * m->n, *mean = m->mean + i * m->means;
+        real *side = m->side + i * m->branches, *branch = m->branch + i * m->branches;
+        MODEL(reach)(m, h, stage_reach[i], m->reached);
+        for (int again = 0; again < 3; ++again) {
+            MODEL(stage)(m->reached, mean, branch, m->u + i * m->inputs, &m->p, gap,
+                         m->rows + i * m->booked, side, m->margin + i * MODEL(limits));
+            if (!any(over))
+                break;
+            const mask other = MODEL(choose)(m->branches, side, branch, over);
+            if (!any(other))
+                break;
+            changed |= other;
+        }
+#if LOSSY
+        MODEL(lose)(m, h, gap, m->rows);
+#endif
+        for (long k = 0; k < m->n; ++k)
+            gap[k] -= m->rates[i * m->n + k];
+    }
+    return changed;
+}

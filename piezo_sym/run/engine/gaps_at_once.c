@@ -1,0 +1,102 @@
+/*
+ * Means over a step, and what the rates at its stages have to be: the stages of one run, or nodes, in
+ * the lanes of vectors of LANES numbers.  Behind gauss.c; at_once.c has what is computed.  The same
+ * sums in the same order as in gaps.c, so that a run has the same numbers beside others.
+ */
+
+/* How nodes of means are reached. */
+#define NODE_REACH node_lanes
+
+typedef double lanes __attribute__((vector_size(8 * LANES), aligned(8), may_alias));
+
+static inline lanes lanes_of(const double *values)
+{
+    return *(const lanes *)values;
+}
+
+/* A state in all lanes, each reached by rates with weights of its own. */
+static inline lanes MODEL(reached_lanes)(const MODEL(block) *m, real h, const double weight[][LANES], long i)
+{
+    lanes sum = {0.0};
+    for (long j = 0; j < STAGES; ++j)
+        sum += lanes_of(weight[j]) * m->rates[j * m->n + i];
+    return m->x[i] + h * sum;
+}
+
+/* The functions of which stages are given means, at nodes of a step. */
+static void MODEL(integrate)(const MODEL(block) *m, real h, const double weight[][LANES], long nodes)
+{
+    for (long q = 0; q < nodes; q += LANES) {
+        for (long r = 0; r < MODEL(reads); ++r) {
+            const long record = MODEL(read)[r];
+            const long end = record + 1 < MODEL(records) ? m->first[record + 1] : m->n;
+            for (long i = m->first[record]; i < end; ++i)
+                ((lanes *)m->reached_lanes)[i] =
+                    MODEL(reached_lanes)(m, h, weight + q / LANES * STAGES, i);
+        }
+        MODEL(nodes_at_once)(m->shared, m->reached_lanes, m->mean_lanes);
+        for (long lane = 0; lane < LANES && q + lane < nodes; ++lane)
+            for (long k = 0; k < m->means; ++k)
+                m->node[(q + lane) * m->means + k] = m->mean_lanes[k * LANES + lane];
+    }
+}
+
+/* Means over the step, by the rule that the run asks for. */
+static void MODEL(average)(const MODEL(block) *m, real h)
+{
+    const long nodes = m->fine ? FINE : NODES;
+    const double (*mean)[LANES] = m->fine ? fine_mean_lanes : node_mean_lanes;
+    MODEL(integrate)(m, h, m->fine ? fine_lanes : node_lanes, nodes);
+    for (long k = 0; k < m->means; ++k) {
+        lanes sum = {0.0};
+        for (long q = 0; q < nodes; ++q)
+            sum += lanes_of(mean[q]) * m->node[q * m->means + k];
+        ((lanes *)m->mean_lanes)[k] = sum;
+    }
+}
+
+/* Put numbers of stages one behind the other into lanes, or back. */
+static inline void MODEL(into_lanes)(const real *from, long size, real *to)
+{
+    for (long k = 0; k < size; ++k)
+        for (long i = 0; i < STAGES; ++i)
+            to[k * LANES + i] = from[i * size + k];
+}
+
+static inline void MODEL(from_lanes)(const real *from, long size, real *to)
+{
+    for (long k = 0; k < size; ++k)
+        for (long i = 0; i < STAGES; ++i)
+            to[i * size + k] = from[k * LANES + i];
+}
+
+/* What the rates at the stages have to be, less what they are; returns where branches change. */
+static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
+{
+    const mask over = m->over & going;
+    mask changed = nowhere;
+    if (m->means)
+        MODEL(average)(m, h);
+    for (long k = 0; k < m->n; ++k)
+        ((lanes *)m->reached_lanes)[k] = MODEL(reached_lanes)(m, h, stage_lanes, k);
+    MODEL(into_lanes)(m->u, m->inputs, m->u_lanes);
+    for (int again = 0; again < 3; ++again) {
+        mask other = nowhere;
+        MODEL(into_lanes)(m->branch, m->branches, m->branch_lanes);
+        MODEL(stages_at_once)(m->shared, m->reached_lanes, m->mean_lanes, m->branch_lanes, m->u_lanes,
+                              m->gap_lanes, m->rows_lanes, m->side_lanes, m->margin_lanes);
+        MODEL(from_lanes)(m->side_lanes, m->branches, m->side);
+        for (long i = 0; i < STAGES && over; ++i)
+            other |= MODEL(choose)(m->branches, m->side + i * m->branches,
+                                   m->branch + i * m->branches, over);
+        if (!other)
+            break;
+        changed = other;
+    }
+    for (long i = 0; i < STAGES; ++i)
+        for (long k = 0; k < m->n; ++k)
+            m->gap[i * m->n + k] = m->gap_lanes[k * LANES + i] - m->rates[i * m->n + k];
+    MODEL(from_lanes)(m->rows_lanes, m->booked, m->rows);
+    MODEL(from_lanes)(m->margin_lanes, MODEL(limits), m->margin);
+    return changed;
+}
