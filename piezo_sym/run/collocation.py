@@ -27,7 +27,7 @@ CHUNK = 50_000
 MOST_STATES = 32
 #: For tolerances from here on, how many stages are cheapest, and what a step's estimated error may
 #: then be, in rtol: so that the largest error of a run is about rtol.
-CHOICE = ((1e-3, 3, 0.5), (1e-6, 4, 0.5), (0.0, 5, 1.0))
+CHOICE = ((1e-5, 4, 0.5), (0.0, 5, 2.0))
 #: Below this tolerance steps end at kinks, however many there are.
 LEAST_OVER = 1e-6
 #: A run of more steps would take days, and steps below round-off.
