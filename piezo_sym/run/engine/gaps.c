@@ -2,8 +2,10 @@
  * Means over a step, and what the rates at its stages have to be: stage by stage.  Behind gauss.c.
  */
 
-/* How nodes of means are reached. */
+/* How nodes of means are reached, and from rates to the basis in which stages are solved for. */
 #define NODE_REACH node_reach
+#define BASIS_STAGE basis_stage
+#define STAGE_BASIS stage_basis
 
 /* The states alone that integrands read. */
 static void MODEL(reach_read)(const MODEL(block) *m, real h, const double *weight)
@@ -80,4 +82,19 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
             gap[k] -= m->rates[i * m->n + k];
     }
     return changed;
+}
+
+/* The gaps of each state, times a matrix. */
+static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES])
+{
+    for (long k = 0; k < m->n; ++k) {
+        real one[STAGES];
+        for (long i = 0; i < STAGES; ++i) {
+            one[i] = zero;
+            for (long j = 0; j < STAGES; ++j)
+                one[i] += matrix[i][j] * m->gap[j * m->n + k];
+        }
+        for (long i = 0; i < STAGES; ++i)
+            m->gap[i * m->n + k] = one[i];
+    }
 }

@@ -4,8 +4,10 @@
  * sums in the same order as in gaps.c, so that a run has the same numbers beside others.
  */
 
-/* How nodes of means are reached. */
+/* How nodes of means are reached, and from rates to the basis in which stages are solved for. */
 #define NODE_REACH node_lanes
+#define BASIS_STAGE basis_stage_lanes
+#define STAGE_BASIS stage_basis_lanes
 
 typedef double lanes __attribute__((vector_size(8 * LANES), aligned(8), may_alias));
 
@@ -99,4 +101,16 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     MODEL(from_lanes)(m->rows_lanes, m->booked, m->rows);
     MODEL(from_lanes)(m->margin_lanes, MODEL(limits), m->margin);
     return changed;
+}
+
+/* The gaps of each state, times a matrix. */
+static void MODEL(transform)(const MODEL(block) *m, const double column[][LANES])
+{
+    for (long k = 0; k < m->n; ++k) {
+        lanes sum = {0.0};
+        for (long j = 0; j < STAGES; ++j)
+            sum += lanes_of(column[j]) * m->gap[j * m->n + k];
+        for (long i = 0; i < STAGES; ++i)
+            m->gap[i * m->n + k] = sum[i];
+    }
 }

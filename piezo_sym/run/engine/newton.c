@@ -32,16 +32,7 @@ static inline MODEL(complex) MODEL(gamma)(real h, long first)
 static void MODEL(change)(const MODEL(block) *m, real h)
 {
     const long n = m->n;
-    for (long k = 0; k < n; ++k) {
-        real one[STAGES];
-        for (long i = 0; i < STAGES; ++i) {
-            one[i] = zero;
-            for (long j = 0; j < STAGES; ++j)
-                one[i] += basis_stage[i][j] * m->gap[j * n + k];
-        }
-        for (long i = 0; i < STAGES; ++i)
-            m->gap[i * n + k] = one[i];
-    }
+    MODEL(transform)(m, BASIS_STAGE);
 #if STAGES % 2
     MODEL(solve_real)(m, h * filter, m->slope, m->real_factor, m->gap);
 #endif
@@ -62,16 +53,7 @@ static void MODEL(change)(const MODEL(block) *m, real h)
             }
     }
 #endif /* PAIRS */
-    for (long k = 0; k < n; ++k) {
-        real one[STAGES];
-        for (long i = 0; i < STAGES; ++i) {
-            one[i] = zero;
-            for (long j = 0; j < STAGES; ++j)
-                one[i] += stage_basis[i][j] * m->gap[j * n + k];
-        }
-        for (long i = 0; i < STAGES; ++i)
-            m->gap[i * n + k] = one[i];
-    }
+    MODEL(transform)(m, STAGE_BASIS);
 }
 
 /*
@@ -179,7 +161,7 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
         }
         const mask switched = MODEL(gaps)(m, h, going);
         const mask smaller = worst < before, lost = none_of(worst < 1e300);
-        mask good = (worst <= 4.0) | (smaller & (worst * (worst / before) <= 1.0));
+        mask good = (worst <= 4.0) | (smaller & (worst * (worst / before) <= 4.0));
         if (iteration > 1) { /* noise of what rates are made of, or no root */
             const mask stays = (worst > m->stays * before) & none_of(good);
             good |= stays & (worst < (m->late == SOON || iteration > NOISY ? 1e4 : 100.0));

@@ -46,6 +46,7 @@ def tableau(stages: int, nodes: int, *, lossy: bool = False, lanes: int = 0) -> 
             "stage_start": [_at(part, mp.mpf(0)) for part in lagrange],
             "stage_end": [_at(part, mp.mpf(1)) for part in lagrange],
             "stage_last": _last(c, b),
+            "stage_lead": [part[-1] for part in lagrange],
             "along": [part[1:] for part in reach],
             "stage_reach": a.tolist(),
             "node_last": _last(*_gauss(nodes)),
@@ -58,7 +59,7 @@ def tableau(stages: int, nodes: int, *, lossy: bool = False, lanes: int = 0) -> 
         }
         for name in ("stage", "node", "fine") if lanes else ():
             tables[f"{name}_lanes"] = _in_lanes(tables[f"{name}_reach"], lanes)
-        for name in ("node_mean", "fine_mean") if lanes else ():
+        for name in ("node_mean", "fine_mean", "basis_stage", "stage_basis") if lanes else ():
             tables[f"{name}_lanes"] = _in_lanes(tables[name], lanes)
         if lossy:
             tables |= {name: [[mp.mpf(1)]] for name in ("stage_reach", "node_reach", "node_mean")}

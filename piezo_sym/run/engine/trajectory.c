@@ -212,10 +212,10 @@ static void MODEL(carry)(const MODEL(block) *m, const real *rates, real at, real
 {
     real weight[STAGES];
     for (long j = 0; j < STAGES; ++j) {
-        weight[j] = wide(1.0);
+        weight[j] = wide(stage_lead[j]);
         for (long k = 0; k < STAGES; ++k)
             if (k != j)
-                weight[j] *= (at - stage_at[k]) / (stage_at[j] - stage_at[k]);
+                weight[j] *= at - stage_at[k];
     }
     for (long k = 0; k < m->n; ++k) {
         real sum = zero;
