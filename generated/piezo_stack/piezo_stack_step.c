@@ -296,7 +296,8 @@ enum {
     piezo_stack_limits = 1, /* margins of a stage */
     piezo_stack_reads = 1, /* states that integrands read */
     piezo_stack_records = 5, /* states, a bank's counted once */
-    piezo_stack_heated = 4 /* the state that takes a dissipative step's loss */
+    piezo_stack_heated = 4, /* the state that takes a dissipative step's loss */
+    piezo_stack_jumps = 0 /* whether a law jumps */
 };
 static const int piezo_stack_strict[] = {
     1,
@@ -707,6 +708,28 @@ static void MODEL(reach)(const MODEL(block) *m, real h, const double *weight, re
         out[i] = MODEL(reached_row)(m, h, weight, i);
 }
 
+/* Choose branches by their switching functions in some lanes; returns those where any changes. */
+static mask MODEL(choose)(long branches, const real *side, real *branch, mask where)
+{
+    mask changed = nowhere;
+    for (long k = 0; k < branches; ++k) {
+        const mask positive = side[k] > 0.0;
+        const real old = branch[k], new = chosen(positive, wide(1.0), zero);
+        changed |= where & (new != old);
+        branch[k] = chosen(where, new, old);
+    }
+    return changed;
+}
+
+/*
+ * Means over a step, and what the rates at its stages have to be: stage by stage.  Behind gauss.c.
+ */
+
+/* How nodes of means are reached, and from rates to the basis in which stages are solved for. */
+#define NODE_REACH node_reach
+#define BASIS_STAGE basis_stage
+#define STAGE_BASIS stage_basis
+
 /* The states alone that integrands read. */
 static void MODEL(reach_read)(const MODEL(block) *m, real h, const double *weight)
 {
@@ -725,17 +748,6 @@ static void MODEL(integrate)(const MODEL(block) *m, real h, const double reach[]
         MODEL(reach_read)(m, h, reach[q]);
         MODEL(integrands)(m->reached, &m->p, m->node + q * m->means);
     }
-}
-
-/* What the last polynomial of Legendre has of a function at nodes, in parts of its size. */
-static real MODEL(last_part)(const MODEL(block) *m, long k, const double *last, long nodes)
-{
-    real sum = zero, most = 1e-300 + zero;
-    for (long q = 0; q < nodes; ++q) {
-        sum += last[q] * m->node[q * m->means + k];
-        most = largest_of(size_of(m->node[q * m->means + k]), most);
-    }
-    return size_of(sum) / most;
 }
 
 /* Means over the step, by the rule of each lane. */
@@ -759,30 +771,6 @@ static void MODEL(average)(const MODEL(block) *m, real h)
                 sum += fine_mean[i][q] * m->node[q * m->means + k];
             *mean = chosen(m->fine, sum, *mean);
         }
-}
-
-/* The lanes whose co-states ask for more nodes than NODES, for balances that are exact to round-off. */
-static mask MODEL(coarse)(const MODEL(block) *m, real h)
-{
-    mask found = nowhere;
-    if (m->means)
-        MODEL(integrate)(m, h, node_reach, NODES);
-    for (long k = 0; k < m->means; ++k)
-        found |= MODEL(last_part)(m, k, node_last, NODES) > COARSE;
-    return found;
-}
-
-/* Choose branches by their switching functions in some lanes; returns those where any changes. */
-static mask MODEL(choose)(long branches, const real *side, real *branch, mask where)
-{
-    mask changed = nowhere;
-    for (long k = 0; k < branches; ++k) {
-        const mask positive = side[k] > 0.0;
-        const real old = branch[k], new = chosen(positive, wide(1.0), zero);
-        changed |= where & (new != old);
-        branch[k] = chosen(where, new, old);
-    }
-    return changed;
 }
 
 
@@ -813,6 +801,21 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     return changed;
 }
 
+/* The gaps of each state, times a matrix. */
+static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES])
+{
+    for (long k = 0; k < m->n; ++k) {
+        real one[STAGES];
+        for (long i = 0; i < STAGES; ++i) {
+            one[i] = zero;
+            for (long j = 0; j < STAGES; ++j)
+                one[i] += matrix[i][j] * m->gap[j * m->n + k];
+        }
+        for (long i = 0; i < STAGES; ++i)
+            m->gap[i * m->n + k] = one[i];
+    }
+}
+
 /* Newton's method for the rates at the stages of a step.  Behind gauss.c. */
 
 /* Iterations, and after how many a step is given up whose changes do not become smaller. */
@@ -834,29 +837,11 @@ enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
 static void MODEL(change)(const MODEL(block) *m, real h)
 {
     const long n = m->n;
-    for (long k = 0; k < n; ++k) {
-        real one[STAGES];
-        for (long i = 0; i < STAGES; ++i) {
-            one[i] = zero;
-            for (long j = 0; j < STAGES; ++j)
-                one[i] += basis_stage[i][j] * m->gap[j * n + k];
-        }
-        for (long i = 0; i < STAGES; ++i)
-            m->gap[i * n + k] = one[i];
-    }
+    MODEL(transform)(m, BASIS_STAGE);
 #if STAGES % 2
     MODEL(solve_real)(m, h * filter, m->slope, m->real_factor, m->gap);
 #endif
-    for (long k = 0; k < n; ++k) {
-        real one[STAGES];
-        for (long i = 0; i < STAGES; ++i) {
-            one[i] = zero;
-            for (long j = 0; j < STAGES; ++j)
-                one[i] += stage_basis[i][j] * m->gap[j * n + k];
-        }
-        for (long i = 0; i < STAGES; ++i)
-            m->gap[i * n + k] = one[i];
-    }
+    MODEL(transform)(m, STAGE_BASIS);
 }
 
 /*
@@ -955,7 +940,7 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
         }
         const mask switched = MODEL(gaps)(m, h, going);
         const mask smaller = worst < before, lost = none_of(worst < 1e300);
-        mask good = (worst <= 4.0) | (smaller & (worst * (worst / before) <= 1.0));
+        mask good = (worst <= 4.0) | (smaller & (worst * (worst / before) <= 4.0));
         if (iteration > 1) { /* noise of what rates are made of, or no root */
             const mask stays = (worst > m->stays * before) & none_of(good);
             good |= stays & (worst < (m->late == SOON || iteration > NOISY ? 1e4 : 100.0));
@@ -970,6 +955,28 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
             MODEL(prepare)(m, h, (switched | slow) & going);
         before = worst;
     }
+    return found;
+}
+
+/* What the last polynomial of Legendre has of a function at nodes, in parts of its size. */
+static real MODEL(last_part)(const MODEL(block) *m, long k, const double *last, long nodes)
+{
+    real sum = zero, most = 1e-300 + zero;
+    for (long q = 0; q < nodes; ++q) {
+        sum += last[q] * m->node[q * m->means + k];
+        most = largest_of(size_of(m->node[q * m->means + k]), most);
+    }
+    return size_of(sum) / most;
+}
+
+/* The lanes whose co-states ask for more nodes than NODES, for balances that are exact to round-off. */
+static mask MODEL(coarse)(const MODEL(block) *m, real h)
+{
+    mask found = nowhere;
+    if (m->means && any(m->fine)) /* else they are those that the last gaps have left */
+        MODEL(integrate)(m, h, NODE_REACH, NODES);
+    for (long k = 0; k < m->means; ++k)
+        found |= MODEL(last_part)(m, k, node_last, NODES) > COARSE;
     return found;
 }
 

@@ -180,7 +180,8 @@ class _Printer:
         head += [f"    {self.name}_reads = {len(read)}, /* states that integrands read */"]
         head += [f"    {self.name}_records = {records}, /* states, a bank's counted once */"]
         taker = f"{self.name}_heated = {self.made.heated}"
-        head += [f"    {taker} /* the state that takes a dissipative step's loss */", "};"]
+        head += [f"    {taker}, /* the state that takes a dissipative step's loss */"]
+        head += [f"    {self.name}_jumps = {int(self.made.jumps)} /* whether a law jumps */", "};"]
         head += [*table(f"{self.name}_strict", limits), *table(f"{self.name}_read", read)]
         return "\n".join([*head, *self.coupling.tables(self.name)])
 

@@ -77,12 +77,14 @@ class Collocation:
     means : the functions of the state whose weighted means a stage is given.
     heated : the state whose row takes what a dissipative step loses, the first body's; -1 if there
         is no body, or no store that could lose anything.
+    jumps : whether a law says that it is discontinuous.
     """
 
     means: tuple[Quantity, ...]
     stage: Stage
     slopes: Slopes
     heated: int
+    jumps: bool
 
 
 def collocation_of(iphs: IPHS) -> Collocation:
@@ -90,7 +92,11 @@ def collocation_of(iphs: IPHS) -> Collocation:
     q = Quantities(iphs, given=True)
     stage = _stage(iphs, q)  # its conditions may be what asks for a difference of temperatures
     means = tuple(replace(mean, value=compared(mean.value)) for mean in q.means)
-    return Collocation(tuple(map(sharp_quantity, means)), stage, _slopes(iphs), _heated(iphs))
+    sharp = tuple(map(sharp_quantity, means))
+    jumps = any(
+        getattr(element, "discontinuous", False) for element in iphs.model.elements.values()
+    )
+    return Collocation(sharp, stage, _slopes(iphs), _heated(iphs), jumps)
 
 
 def _heated(iphs: IPHS) -> int:

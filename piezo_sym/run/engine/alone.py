@@ -36,7 +36,10 @@ static inline real largest_of(real a, real b)
 def step_alone(model: str) -> str:
     """Return the text of a model's step for programs in C."""
     solver = re.sub(
-        r"#if PAIRS\n.*?#endif /\* PAIRS \*/\n", "", texts("gauss.c", "gaps.c", "newton.c"), flags=re.DOTALL
+        r"#if PAIRS\n.*?#endif /\* PAIRS \*/\n",
+        "",
+        texts("gauss.c", "gaps.c", "newton.c"),
+        flags=re.DOTALL,
     )
     solver = re.sub(r"#if defined\(LANES\).*?#endif /\* LANES \*/\n", "", solver, flags=re.DOTALL)
     solver = re.sub(r"#if LOSSY.*?#endif\n", "", solver, flags=re.DOTALL)

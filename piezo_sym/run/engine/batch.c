@@ -83,7 +83,8 @@ void MODEL(open)(MODEL(batch) *b, const MODEL(task) *task)
     b->runs = task->runs, b->times = task->times;
     b->count = task->count, b->samples = task->samples;
     b->stop = task->stop, b->tolerance = task->tolerance;
-    b->beyond = fmax(AT_END, BEYOND * task->tolerance);
+    const double beyond = BEYOND * task->tolerance;
+    b->beyond = fmax(AT_END, MODEL(jumps) ? beyond : fmin(sqrt(beyond), BEYOND));
     b->first = task->first, b->longest = task->longest, b->fixed = task->fixed;
     b->ways = task->ways && b->m.branches >= MANY;
     b->m.most = task->fixed > 0.0 ? MOST_OF_FIXED : MOST_ITERATIONS;

@@ -100,9 +100,7 @@ def _version(command: tuple[str, ...]) -> str:
     return done.stdout if done.returncode == 0 else ""
 
 
-def build(
-    compiler: Compiler, flags: Sequence[str], sources: Sequence[Path], library: Path
-) -> None:
+def build(compiler: Compiler, flags: Sequence[str], sources: Sequence[Path], library: Path) -> None:
     """Compile source files into a shared library.
 
     Raises

@@ -132,7 +132,10 @@ def collocation(model: str, stages: int, layout: str, *, lossy: bool = False) ->
         f"#define MODEL(name) {model}_##name",
         "extern const long MODEL(width);",
         "const long MODEL(width) = REAL_WIDTH;",
-        *(["#if !defined(PLAIN)", f"#define LANES {lanes}", texts("at_once.h"), "#endif"] * bool(lanes)),
+        *(
+            ["#if !defined(PLAIN)", f"#define LANES {lanes}", texts("at_once.h"), "#endif"]
+            * bool(lanes)
+        ),
     ]
     tables = tableau(stages, 1 if lossy else stages + MORE_NODES, lossy=lossy, lanes=lanes)
     gaps = texts("gaps.c")

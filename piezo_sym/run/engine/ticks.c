@@ -166,7 +166,9 @@ static int MODEL(cut)(MODEL(batch) *b, int lane, const MODEL(crossing) *c, doubl
         const double begin = LANE(b->side, l->which, lane), end = LANE(b->end_side, l->which, lane);
         if (fabs(end) <= AT_END * fabs(begin))
             return 1;
-        part = begin / (begin - end); /* short of the switch: on by what is missing */
+        const double stage = LANE(b->m.side, (STAGES - 1) * b->m.branches + l->which, lane);
+        /* short of the switch: on by what is missing */
+        part = 1.0 + (1.0 - stage_at[STAGES - 1]) * (end / (stage - end));
         if (!(part > 1.0 && part < 1.5))
             return 1;
     }

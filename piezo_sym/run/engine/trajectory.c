@@ -99,9 +99,12 @@ enum { TRIED = 32, AGAIN = 12 };
 #define SUDDEN 1.5
 /* Parts of a step: so near to its end a switch is at its end; so near to its begin, at its begin. */
 #define AT_END 1e-9
-/* A step that is this part of the tolerance too long adds less to its error. */
-#define BEYOND 0.01
 #define AT_ONCE 1e-12
+/*
+ * How far a step may go beyond its switch, where no stage lies: what a kink adds to the error goes with
+ * the square of that, and is less than this part of the tolerance; what a jump adds, as it.
+ */
+#define BEYOND 0.01
 
 /* The value of a signal in pieces. */
 static double MODEL(piece_at)(const MODEL(signal) *s, double t)
