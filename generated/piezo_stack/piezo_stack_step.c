@@ -836,7 +836,6 @@ enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
 /* Newton's change of the rates, from the gaps; gaps become it. */
 static void MODEL(change)(const MODEL(block) *m, real h)
 {
-    const long n = m->n;
     MODEL(transform)(m, BASIS_STAGE);
 #if STAGES % 2
     MODEL(solve_real)(m, h * filter, m->slope, m->real_factor, m->gap);

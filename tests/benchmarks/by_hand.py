@@ -117,6 +117,6 @@ def _libraries(generated: Path) -> tuple[ctypes.CDLL, ctypes.CDLL]:
     with tempfile.TemporaryDirectory(prefix="piezo_sym-") as folder:
         paths = [Path(folder) / f"{name}.so" for name in ("loop", "batch")]
         for path in paths:
-            build(compiler, flags, FOLDER / f"{path.stem}.c", path)
+            build(compiler, flags, [FOLDER / f"{path.stem}.c"], path)
         loop, batch = (ctypes.CDLL(str(path)) for path in paths)
     return loop, batch

@@ -26,7 +26,7 @@ MOST = 2.5  # far above what is measured alone: the suite runs on all cores at o
 def by_hand(tmp_path_factory):
     """Return a function that computes the rates by hand."""
     path = tmp_path_factory.mktemp("built") / "batch.so"
-    build(next(compilers()), [*FLAGS[0], f"-I{FOLDER}", f"-I{HERE}"], HERE / "batch.c", path)
+    build(next(compilers()), [*FLAGS[0], f"-I{FOLDER}", f"-I{HERE}"], [HERE / "batch.c"], path)
     library = ctypes.CDLL(str(path))
 
     def call(x, u, p, out):

@@ -26,7 +26,7 @@ LANE_CALLS = 4_000_000  # lanes computed in one measurement
 def library(tmp_path_factory):
     path = tmp_path_factory.mktemp("built") / "loop.so"
     flags = [*FLAGS[0], f"-I{FOLDER}", f"-I{HERE}"]
-    build(next(compilers()), flags, HERE / "loop.c", path)
+    build(next(compilers()), flags, [HERE / "loop.c"], path)
     return ctypes.CDLL(str(path))
 
 

@@ -23,7 +23,7 @@ class Alone:
         build(
             next(compilers()),
             ("-O2", "-shared", "-fPIC"),
-            source.with_name(f"{module.NAME}_step.c"),
+            [source.with_name(f"{module.NAME}_step.c")],
             folder / "step.so",
         )
         library = ctypes.CDLL(str(folder / "step.so"))

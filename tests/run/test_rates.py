@@ -142,7 +142,7 @@ def exponentials(tmp_path_factory):
     folder = tmp_path_factory.mktemp("built")
     (folder / "real.h").write_text(texts("real.h"))
     (folder / "each.c").write_text(EXACT)
-    build(next(compilers()), FLAGS[0], folder / "each.c", folder / "each.so")
+    build(next(compilers()), FLAGS[0], [folder / "each.c"], folder / "each.so")
     library = ctypes.CDLL(str(folder / "each.so"))
 
     def call(x):

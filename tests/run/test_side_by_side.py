@@ -11,6 +11,7 @@ from piezo_sym.modules import module_of
 from piezo_sym.run.collocation import with_tolerance
 from piezo_sym.run.discrete import FixedStep, fixed
 from piezo_sym.run.engine import library as libraries
+from piezo_sym.run.engine.collocation import collocation_library
 from piezo_sym.run.engine.compiler import FLAGS
 from piezo_sym.run.engine.engine import engine_of, read_source
 from piezo_sym.run.inputs import read_inputs
@@ -145,3 +146,17 @@ def test_steps_in_vectors_are_compiled(layout, stages, monkeypatch):
     sources = replace(engine.sources, step=step, stages=stages, layout=layout)
     monkeypatch.setattr(libraries, "FLAGS", FLAGS[:-1])  # the last are those without vectors
     assert libraries.library(sources).is_file()
+
+
+@pytest.mark.parametrize("stages", [2, 3, 4, 5])
+def test_stages_in_vectors_compute_what_stages_one_by_one_do(stages, monkeypatch, tmp_path):
+    members = Members(load("piezo_stack"), size=1, duration=0.02, inputs={"V_in": sine(100, 100)})
+    found = members.run(rtol=1e-4, stages=stages)
+    monkeypatch.setattr(libraries, "FLAGS", FLAGS[-1:])  # without vectors
+    monkeypatch.setattr(libraries, "cache_folder", lambda: tmp_path)
+    collocation_library.cache_clear()
+    wanted = members.run(rtol=1e-4, stages=stages)
+    collocation_library.cache_clear()
+    assert np.array_equal(found.states, wanted.states)
+    assert np.array_equal(found.sums, wanted.sums)
+    assert np.array_equal(found.work, wanted.work)

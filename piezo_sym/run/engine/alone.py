@@ -33,16 +33,19 @@ static inline real largest_of(real a, real b)
 """
 
 
+#: What is for more stages, for stages in vectors, and for dissipative steps.
+_LEFT_OUT = (
+    r"#if PAIRS\n.*?#endif /\* PAIRS \*/\n",
+    r"#if defined\(LANES\).*?#endif /\* LANES \*/\n",
+    r"#if LOSSY.*?#endif\n",
+)
+
+
 def step_alone(model: str) -> str:
     """Return the text of a model's step for programs in C."""
-    solver = re.sub(
-        r"#if PAIRS\n.*?#endif /\* PAIRS \*/\n",
-        "",
-        texts("gauss.c", "gaps.c", "newton.c"),
-        flags=re.DOTALL,
-    )
-    solver = re.sub(r"#if defined\(LANES\).*?#endif /\* LANES \*/\n", "", solver, flags=re.DOTALL)
-    solver = re.sub(r"#if LOSSY.*?#endif\n", "", solver, flags=re.DOTALL)
+    solver = texts("gauss.c", "gaps.c", "newton.c")
+    for left_out in _LEFT_OUT:
+        solver = re.sub(left_out, "", solver, flags=re.DOTALL)
     solver = solver.replace(_INCLUDE, texts("elimination.c"))
     text = f"{solver}\n{texts('alone.c')}"
     bare = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)

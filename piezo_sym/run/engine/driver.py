@@ -122,6 +122,7 @@ def collocation(model: str, stages: int, layout: str, *, lossy: bool = False) ->
     from piezo_sym.run.engine.tableau import tableau  # loads mpmath, once a compilation
 
     lanes = lanes_of(stages, layout, lossy=lossy)
+    vectors = ["#if !defined(PLAIN)", f"#define LANES {lanes}", texts("at_once.h"), "#endif"]
     head = [
         "#if defined(PLAIN)" if layout == "many" else "#if 1",
         "#define REAL_WIDTH 1",
@@ -132,10 +133,7 @@ def collocation(model: str, stages: int, layout: str, *, lossy: bool = False) ->
         f"#define MODEL(name) {model}_##name",
         "extern const long MODEL(width);",
         "const long MODEL(width) = REAL_WIDTH;",
-        *(
-            ["#if !defined(PLAIN)", f"#define LANES {lanes}", texts("at_once.h"), "#endif"]
-            * bool(lanes)
-        ),
+        *(vectors * bool(lanes)),
     ]
     tables = tableau(stages, 1 if lossy else stages + MORE_NODES, lossy=lossy, lanes=lanes)
     gaps = texts("gaps.c")

@@ -31,13 +31,12 @@ static inline MODEL(complex) MODEL(gamma)(real h, long first)
 /* Newton's change of the rates, from the gaps; gaps become it. */
 static void MODEL(change)(const MODEL(block) *m, real h)
 {
-    const long n = m->n;
     MODEL(transform)(m, BASIS_STAGE);
 #if STAGES % 2
     MODEL(solve_real)(m, h * filter, m->slope, m->real_factor, m->gap);
 #endif
 #if PAIRS
-    const long size = MODEL(factor_size_complex)(m);
+    const long n = m->n, size = MODEL(factor_size_complex)(m);
     for (long first = 0; first < PAIRS; first += TOGETHER) {
         real *const one = m->gap + (STAGES % 2 + 2 * first) * n;
         for (long k = 0; k < n; ++k)

@@ -57,17 +57,14 @@ def tableau(stages: int, nodes: int, *, lossy: bool = False, lanes: int = 0) -> 
             "eigenvalue": values,
             **_between([mp.mpf(0), *c, mp.mpf(1)]),
         }
-        for name in ("stage", "node", "fine") if lanes else ():
-            tables[f"{name}_lanes"] = _in_lanes(tables[f"{name}_reach"], lanes)
-        for name in ("node_mean", "fine_mean", "basis_stage", "stage_basis") if lanes else ():
-            tables[f"{name}_lanes"] = _in_lanes(tables[name], lanes)
+        tables |= _lanes(tables, lanes) if lanes else {}
         if lossy:
             tables |= {name: [[mp.mpf(1)]] for name in ("stage_reach", "node_reach", "node_mean")}
             tables["eigenvalue"] = values = [[mp.mpf(1), mp.mpf(0)]]
         # the real eigenvalue, where there is one: the estimate of errors needs a real factor
         filters = [mp.re(values[0][0]) if stages % 2 else mp.mpf(EVEN)]
         sizes = {"STAGES": stages, "NODES": nodes, "PAIRS": stages // 2, "PARTS": PARTS}
-        sizes |= {"FINE": FINE, "LOSSY": int(lossy)} | ({"LANES": lanes} if lanes else {})
+        sizes |= {"FINE": FINE, "LOSSY": int(lossy)}
         head = [f"#define {name} {value}" for name, value in sizes.items()]
         # means are of as many orders more as nodes are more: by the decay of what they are of
         coarse = mp.mpf(LEFT_OUT) ** (mp.mpf(nodes - 1) / (2 * nodes + 1 - stages))
@@ -87,6 +84,15 @@ def _means(name: str, nodes: int, lagrange: list[Any], b: list[Any]) -> dict[str
             [v * _at(part, x) / own for x, v in zip(t, w, strict=True)] for part, own in parts
         ],
     }
+
+
+def _lanes(tables: dict[str, Any], lanes: int) -> dict[str, list[list[Any]]]:
+    """Return some tables once more, as vectors of so many lanes take them."""
+    reach = {
+        f"{n}_lanes": _in_lanes(tables[f"{n}_reach"], lanes) for n in ("stage", "node", "fine")
+    }
+    others = ("node_mean", "fine_mean", "basis_stage", "stage_basis")
+    return reach | {f"{name}_lanes": _in_lanes(tables[name], lanes) for name in others}
 
 
 def _in_lanes(rows: list[list[Any]], lanes: int) -> list[list[Any]]:
