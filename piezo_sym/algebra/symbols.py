@@ -16,6 +16,7 @@ import sympy as sp
 
 from piezo_sym.algebra.sums import LaneSum, LaneSymbol
 from piezo_sym.errors import SpecError, quote
+from piezo_sym.expressions.calculus import choices
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.parse import parse_rule
 from piezo_sym.expressions.text import spell
@@ -32,6 +33,7 @@ from piezo_sym.expressions.tree import (
     Num,
     Pow,
     Sym,
+    knots,
     names,
 )
 from piezo_sym.spec.circuit import Circuit
@@ -145,6 +147,8 @@ def to_sympy(node: Expr, table: Mapping[str, sp.Expr]) -> sp.Expr:
             return to_sympy(left, table) / to_sympy(right, table)
         case Pow(base, exponent):
             return to_sympy(base, table) ** sp.Rational(exponent.numerator, exponent.denominator)
+        case Call() if knots(node):
+            return to_sympy(choices(node), table)
         case Call(function, args):
             parts = tuple(to_sympy(arg, table) for arg in args)
             if RECORDS[function].smooth:

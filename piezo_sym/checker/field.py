@@ -107,7 +107,7 @@ class Field:
             return constant(node.value)
         if node.op in ("sym", "sum"):
             return words(node) if words else self.atom(("symbol", node.value), node)
-        if node.op in KINKS:
+        if node.op in KINKS and node.op != "table":  # whose pieces are no short sum
             return self.of(unkinked(node), words)
         if node.op == "if":
             for n, side in ((1, node.args[0]), (2, negated(node.args[0]))):
@@ -125,7 +125,7 @@ class Field:
             return args[0] * self._inverse(args[1])
         if node.op in ARITHMETIC:
             return cast("Ratio", ARITHMETIC[node.op](*args))
-        if args[0] == ZERO and node.op != "log":
+        if args[0] == ZERO and node.op not in ("log", "table"):
             return ONE if node.op in ("exp", "cos", "cosh") else ZERO
         return self.atom((node.op, *args), node)
 

@@ -10,9 +10,11 @@ import re
 from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
 from functools import cache
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 MAX_LENGTH, MAX_DIGITS, MAX_EXPONENT, MAX_POWER = 1000, 60, 400, 16
+MAX_TABLE, MAX_KNOTS = 4000, 64
 PLAIN = re.compile(
     r"(?>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![A-Za-z0-9_.])|[A-Za-z_]\w*|[-+*/(),<>=]| )*+",
     re.ASCII,
@@ -37,6 +39,7 @@ SLOPES |= {"sinh": "cosh(x)", "cosh": "sinh(x)", "atan": "1/(1 + x**2)"}
 SLOPES["erf"] = "exp(-x**2)/sqrt(atan(1))"  # atan(1) = pi/4
 SMOOTH = tuple(SLOPES)
 FUNCTIONS = {name: 2 if "z" in KINKS.get(name, "") else 1 for name in (*SMOOTH, *KINKS)}
+KINKS["table"] = ""  # its pieces are made by halves
 SLOPES |= {"*": "dx*z + x*dz", "/": "dx/z - x*dz/z**2", "neg": "-dx"}
 
 
@@ -107,7 +110,36 @@ def made(text: str, **parts: Node) -> Node:
 
 def unkinked(node: Node) -> Node:
     """Return a function with kinks written as a choice, by its definition."""
+    if node.op == "table":
+        return _pieces(node.args[0], tuple(zip(node.args[1::2], node.args[2::2], strict=True)))
     return made(KINKS[node.op], x=node.args[0], z=node.args[-1])
+
+
+def _pieces(x: Node, knots: tuple[tuple[Node, Node], ...]) -> Node:
+    if len(knots) > 2:
+        n = len(knots) // 2
+        sides = _pieces(x, knots[: n + 1]), _pieces(x, knots[n:])
+        return Node("if", (compare(x, "<", knots[n][0]), *sides))
+    (a, y), (b, z) = knots
+    known = [own for own in map(_plain, (a, b, y, z)) if own is not None]
+    slope = made("(z - y)/(b - a)", a=a, b=b, y=y, z=z)
+    slope = num((known[3] - known[2]) / (known[1] - known[0])) if len(known) == 4 else slope
+    return made("y + m*(x - a)", m=slope, x=x, a=a, y=y)
+
+
+def _plain(node: Node) -> Fraction | None:
+    """Return the number that a tree is, perhaps with a minus."""
+    if node.op == "neg" and node.args[0].op == "num":
+        return -Fraction(node.args[0].value)
+    return Fraction(node.value) if node.op == "num" else None
+
+
+def increasing(node: Node) -> Iterator[Node]:
+    """Yield that the knots of a table increase, but for plain numbers that do."""
+    for a, b in pairwise(node.args[1::2] if node.op == "table" else ()):
+        left, right = _plain(a), _plain(b)
+        if left is None or right is None or left >= right:
+            yield compare(a, "<", b)
 
 
 def derivative(node: Node, by: Any) -> Node:
@@ -142,8 +174,8 @@ def number(text: str) -> Fraction:
 @cache
 def parse(text: Any, length: int = MAX_LENGTH, compares: bool | None = None) -> Node:
     """Return the tree of a law, or of a comparison if it `compares` (None: of either)."""
-    plain = isinstance(text, str) and len(text) <= length and PLAIN.fullmatch(text)
-    need(plain, f"{str(text)[:60]!r} is no law of plain text, or too long")
+    plain = isinstance(text, str) and len(text) <= max(length, MAX_TABLE * ("table" in text))
+    need(plain and PLAIN.fullmatch(text), f"{str(text)[:60]!r} is no law of plain text, or too long")
     try:
         tree = _tree(ast.parse(text.strip(), mode="eval").body, text.strip())
     except (SyntaxError, ValueError, LookupError, ArithmeticError, RecursionError, MemoryError):
@@ -189,6 +221,9 @@ def _tree(node: ast.AST, text: str) -> Node:
             return Node("sum", of(law), bank)
         case ast.Call(ast.Name("sqrt"), [arg], []):
             return Node("**", of(arg), Fraction(1, 2))
+        case ast.Call(ast.Name("table"), args, []) if len(args) % 2:
+            need(2 <= len(args) // 2 <= MAX_KNOTS, "a table has too few knots, or too many")
+            return Node("table", of(*args))
         case ast.Call(ast.Name(name), args, []) if FUNCTIONS.get(name) == len(args):
             return Node(name, of(*args))
     raise ValueError(node)

@@ -15,7 +15,7 @@ import cvc5
 from cvc5 import Kind
 
 from .field import Field
-from .laws import KINKS, Node, compare, made, negated, num, sym, symbols, unkinked
+from .laws import KINKS, Node, compare, increasing, made, negated, num, sym, symbols, unkinked
 
 EFFORT, MILLISECONDS, SECONDS, MOST_PAIRS = 100_000, 8000, 300, 12
 KINDS = {"+": Kind.ADD, "*": Kind.MULT, "neg": Kind.NEG, "if": Kind.ITE, "=": Kind.EQUAL}
@@ -177,6 +177,7 @@ def partial(node: Node, path: tuple[Node, ...] = ()) -> Iterator[Claim]:
 
 def needed(node: Node) -> Iterator[Node]:
     """Yield what must hold of a function's arguments for it to have a value."""
+    yield from increasing(node)
     power = Fraction({"/": -1, "**": node.value}.get(node.op, 1))
     if node.op == "log" or power.denominator > 1:
         yield compare(node.args[0], ">" if node.op == "log" or power < 0 else ">=")

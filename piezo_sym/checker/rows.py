@@ -122,7 +122,7 @@ class _Audit:
         if claims or element.law:
             self._row("welldef", name, claims)
         kinks = [n for tree in trees for n in laws.walk(tree) if n.op in ("if", *KINKS)]
-        choosers = (n.args[0] if n.op == "if" else n for n in kinks)
+        choosers = (n.args[0] if n.op in ("if", "table") else n for n in kinks)
         if any(s[0] in MOVING for n in choosers for s in symbols(n)) and not element.jumps:
             self._row("continuous", name, _continuous(trees))
         if element.law:

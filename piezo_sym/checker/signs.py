@@ -44,7 +44,7 @@ class Signs:
     def _of(self, node: Node) -> Found:
         if node.op in ("num", "sym"):
             return frozenset([1 if node.op == "sym" else (node.value > 0) - (node.value < 0)])
-        if node.op in ("deadzone", "saturate"):
+        if node.op in ("deadzone", "saturate", "table"):
             return self.of(laws.unkinked(node))
         if node.op == "if":
             return frozenset().union(*map(self.of, self._branches(node)))

@@ -17,7 +17,7 @@ from .laws import ARITHMETIC, SMOOTH, InputError, Node, need, parse
 Dimension = Any  # of pint: a product of powers
 PLAIN = re.compile(r"[A-Za-z1-9*/^() -]{1,60}")
 MAX_BITS = 10_000
-EQUAL = ("+", "min", "max", "deadzone", "saturate", "cmp", "if")
+EQUAL = ("+", "min", "max", "deadzone", "saturate", "table", "cmp", "if")
 
 
 @cache
@@ -75,6 +75,10 @@ def _dimension(node: Node, units: Mapping[Any, Dimension]) -> Dimension | None:
     if node.op in ("num", "sym"):
         return units[node.value] if node.op == "sym" else pure if node.value else None
     parts = [_dimension(arg, units) for arg in node.args]
+    if node.op == "table":
+        x = [part for part in (*parts[:1], *parts[1::2]) if part is not None]
+        need(all(part == x[0] for part in x), "the knots of a table have different units")
+        parts = parts[2::2]
     known = [part for part in (parts[1:] if node.op == "if" else parts) if part is not None]
     need(node.op not in SMOOTH or known in ([], [pure]), f"the argument of {node.op} has a unit")
     equal = node.op not in EQUAL or all(part == known[0] for part in known)

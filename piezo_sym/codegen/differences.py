@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from piezo_sym.codegen.program import Entry, Outer, Program, Quantity, Row
-from piezo_sym.expressions.calculus import div, mul, neg
-from piezo_sym.expressions.tree import ONE, Add, Call, Div, Expr, Mul, Neg, rebuild
+from piezo_sym.expressions.calculus import choices, div, mul, neg
+from piezo_sym.expressions.tree import ONE, Add, Call, Div, Expr, Mul, Neg, knots, rebuild
 
 
 def sharp_program(program: Program) -> Program:
@@ -41,8 +41,8 @@ def _entry(entry: Entry) -> Entry:
 
 
 def sharp(node: Expr) -> Expr:
-    """Return an expression in which no exponential cancels."""
-    inner = rebuild(node, sharp)
+    """Return an expression in which no exponential cancels, tables written as their pieces."""
+    inner = rebuild(choices(node) if knots(node) else node, sharp)
     if not isinstance(inner, Add):
         return inner
     kept = dict(enumerate(map(_plain, inner.terms)))

@@ -8,6 +8,7 @@ any algebra system.
 
 from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
+from itertools import pairwise
 
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.parse import parse_clause, parse_rule
@@ -23,11 +24,15 @@ from piezo_sym.expressions.tree import (
     LaneSum,
     Mul,
     Neg,
+    Node,
     Num,
     Pow,
     Sym,
+    children,
+    knots,
     names,
     rebuild,
+    walk,
 )
 
 
@@ -174,6 +179,8 @@ def derivative(node: Expr, name: str) -> Expr:
         case Pow(base, exponent):
             outer = mul(Num(exponent), power(base, exponent - 1))
             return mul(outer, derivative(base, name))
+        case Call() if knots(node):
+            return derivative(choices(node), name)
         case Call(function, args):
             slopes = _slopes(function, args)
             inner = [derivative(arg, name) for arg in args]
@@ -209,17 +216,35 @@ def clause(text: str, x: Expr, value: Expr) -> tuple[Cmp, ...]:
 
 def choices(node: Expr) -> Expr:
     """Return a function with kinks as choices, of a width >= 0; other trees as they are."""
+    if found := knots(node):
+        return _pieces(children(node)[0], found)
     if isinstance(node, Call) and node.function in RECORDS and RECORDS[node.function].choices:
         return rule(RECORDS[node.function].choices, node.args[0], node.args[-1])
     return node
 
 
+def _pieces(x: Expr, found: tuple[tuple[Expr, Expr], ...]) -> Expr:
+    """Return a table by halves: of 64 knots, no piece is behind more than six comparisons."""
+    if len(found) > 2:
+        n = len(found) // 2
+        return If(_pieces(x, found[: n + 1]), Cmp("<", x, found[n][0]), _pieces(x, found[n:]))
+    (a, y), (b, z) = found
+    slope = div(add(z, neg(y)), add(b, neg(a)))
+    return add(y, mul(slope, add(x, neg(a))))
+
+
+def increasing(node: Node) -> Iterator[Cmp]:
+    """Yield that the knots of each table in a tree increase, but for plain numbers that do."""
+    for part in walk(node):
+        for (a, _), (b, _) in pairwise(knots(part)):
+            plain = all(isinstance(c.arg if isinstance(c, Neg) else c, Num) for c in (a, b))
+            if not (plain and isinstance(gap := add(b, neg(a)), Num) and gap.value > 0):
+                yield Cmp("<", a, b)
+
+
 def kinks(node: Expr) -> Iterator[Cmp]:
     """Yield the comparisons by which a function with kinks chooses its branch."""
-    made = choices(node)
-    while isinstance(made, If):
-        yield made.condition
-        made = made.other
+    yield from (part.condition for part in walk(choices(node)) if isinstance(part, If))
 
 
 def _put(node: Expr, words: Mapping[str, Expr]) -> Expr:

@@ -8,6 +8,7 @@ rule asks for is one linear equation.  The rules:
     a + b, min, max, deadzone, saturate, a if c else b, a < b     equal units
     exp log sin cos tanh expm1                                    an argument without unit, no unit
     sign                                                          any argument, no unit
+    table(x, x_1, y_1, ...)                                       x as all x_k; all y_k, as the value
     abs, -a                                                       keep
     a*b, a/b, a**(p/q), sqrt                                      add, subtract, multiply, halve
 
@@ -21,6 +22,7 @@ from typing import TypeAlias, final
 
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.tree import (
+    ZERO,
     Add,
     Call,
     Cmp,
@@ -35,6 +37,7 @@ from piezo_sym.expressions.tree import (
     Pow,
     Sym,
     children,
+    knots,
     walk,
 )
 
@@ -153,6 +156,8 @@ def _called(function: str, args: tuple[Expr, ...]) -> Powers | None:
     record = RECORDS[function]
     if record.units in {"pure", "none"}:
         return {}
+    if record.knots:
+        return _first(args[2::2])
     return _first(args) if record.power is None else _raised(args[0], record.power)
 
 
@@ -165,6 +170,9 @@ def matches(node: Node) -> Iterator[Match]:
             yield Match(node, arg)
         case Add(parts):
             yield from _equal(node, parts)
+        case Call(_, (x, *_)) if pairs := knots(node):
+            for parts in zip((x, ZERO), *pairs, strict=True):
+                yield from _equal(node, parts)
         case Call(function, parts) if RECORDS[function].units == "equal":
             yield from _equal(node, parts)
         case If(left, _, right) | Cmp(_, left, right):

@@ -15,7 +15,7 @@ from fractions import Fraction
 from itertools import product
 from typing import TypeAlias, final
 
-from piezo_sym.expressions.calculus import rule
+from piezo_sym.expressions.calculus import choices, increasing, rule
 from piezo_sym.expressions.functions import RECORDS, Function
 from piezo_sym.expressions.tree import (
     Add,
@@ -113,8 +113,14 @@ def _either(then: Expr, other: Expr, values: Mapping[str, Interval]) -> Interval
 
 def _call(function: str, args: tuple[Expr, ...], values: Mapping[str, Interval]) -> Interval:
     record = RECORDS[function]
-    if record.formula or record.jumps:
-        return interval_of(rule(record.formula or record.choices, args[0], args[-1]), values)
+    if record.formula:
+        return interval_of(rule(record.formula, args[0], args[-1]), values)
+    if record.jumps or record.knots:
+        node = Call(function, args)
+        for found in (holds_surely(order, values) for order in increasing(node)):
+            if not found:
+                raise UndecidedError if found is None else ArithmeticError
+        return interval_of(choices(node), values)
     lows, highs = zip(*(interval_of(arg, values) for arg in args), strict=True)
     if record.choices:  # min, max
         return Fraction(record.value(*lows)), Fraction(record.value(*highs))

@@ -11,6 +11,7 @@ LANGUAGE = "numbers, names, + - * / **, (), 'a if x < y else b', or a function a
 MAX_DEPTH = 40
 MAX_DIGITS = 40
 MAX_LENGTH = 1000
+MAX_LENGTH_OF_A_TABLE = 4000
 MAX_MAGNITUDE = 300
 MAX_PREFIXES = 8
 TOKEN = re.compile(
@@ -31,9 +32,10 @@ class RefusedError(Exception):
 
 def check_letters(text: str) -> None:
     """Refuse a text that is too long, empty, or not plain ASCII on one line."""
-    if len(text) > MAX_LENGTH:
+    most = MAX_LENGTH_OF_A_TABLE if "table" in text else MAX_LENGTH
+    if len(text) > most:
         what = f"is {len(text)} characters long"
-        raise RefusedError(what, f"at most {MAX_LENGTH}", "split the law into parameters")
+        raise RefusedError(what, f"at most {most}", "split the law into parameters")
     if not text.strip():
         raise RefusedError("is empty", "a law, such as 'd*v'")
     odd = next((c for c in text if not " " <= c <= "~"), None)

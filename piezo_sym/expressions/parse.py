@@ -42,6 +42,7 @@ from piezo_sym.expressions.tree import (
     names,
 )
 
+MAX_KNOTS = 64
 MAX_POWER = 16
 #: What functions are called elsewhere.
 ELSEWHERE = {"ln": "log", "arctan": "atan", "sgn": "sign", "fabs": "abs"}
@@ -234,9 +235,12 @@ def _call(function: str, args: list[ast.expr], text: str, depth: int) -> Expr:
     if function not in FUNCTIONS:
         known = nearest(ELSEWHERE.get(function, function), FUNCTIONS)
         raise RefusedError(f"calls {quote(function)}, which laws do not have", remedy=known)
-    count = len(FUNCTIONS[function].slopes)
-    if len(args) != count:
-        what = f"gives {function} {len(args)} arguments"
+    count, what = len(FUNCTIONS[function].slopes), f"gives {function} {len(args)} arguments"
+    if FUNCTIONS[function].knots:
+        if len(args) % 2 == 0 or not 2 <= len(args) // 2 <= MAX_KNOTS:
+            expected = f"{function}(x, x_1, y_1, x_2, y_2, ...) with 2 to {MAX_KNOTS} knots"
+            raise RefusedError(what, expected, "give each x_k its y_k")
+    elif len(args) != count:
         raise RefusedError(what, f"{count}")
     return Call(function, tuple(_expression(arg, text, depth) for arg in args))
 

@@ -26,6 +26,7 @@ from piezo_sym.expressions.tree import (
     Pow,
     Sym,
     children,
+    knots,
     names,
     walk,
 )
@@ -116,11 +117,16 @@ def _most_branches(tree: Expr) -> int:
     What stands in a condition is written out branch by branch, and so is all that chooses there.
     """
     kinked = [part for part in walk(tree) if isinstance(part, Cmp) or _kinks(part) > 1]
-    return max((_branches(part) for part in kinked), default=1)
+    return max((_branches(part) for part in kinked if not _plain_table(part)), default=1)
+
+
+def _plain_table(node: Expr | Cmp) -> bool:
+    """Return whether a tree is a table of arguments without kinks: it may have all its pieces."""
+    return bool(knots(node)) and all(_branches(part) == 1 for part in children(node))
 
 
 def _kinks(node: Expr | Cmp) -> int:
-    return RECORDS[node.function].branches if isinstance(node, Call) else 1
+    return RECORDS[node.function].branches(len(node.args)) if isinstance(node, Call) else 1
 
 
 def _branches(node: Expr | Cmp) -> int:

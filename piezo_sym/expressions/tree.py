@@ -143,6 +143,14 @@ Node = Expr | Cmp
 ZERO, ONE = Num(Fraction(0)), Num(Fraction(1))
 
 
+def knots(node: Node) -> tuple[tuple[Expr, Expr], ...]:
+    """Return the knots (x_k, y_k) of a table; none of what is no table."""
+    if not (isinstance(node, Call) and node.function in FUNCTIONS):
+        return ()
+    known = FUNCTIONS[node.function].knots
+    return tuple(zip(node.args[1::2], node.args[2::2], strict=True)) if known else ()
+
+
 def children(node: Node) -> tuple[Node, ...]:
     """Return the direct parts of `node`, from left to right."""
     match node:

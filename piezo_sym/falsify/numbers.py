@@ -12,7 +12,7 @@ from typing import Any
 
 from flint import arb, fmpq, fmpz
 
-from piezo_sym.checker.laws import KINKS, Node, made, unkinked
+from piezo_sym.checker.laws import KINKS, Node, increasing, made, unkinked
 
 MAX_BITS = 40_000
 HUGE = {"sin": 2**4096, "cos": 2**4096}
@@ -54,6 +54,8 @@ def compute(node: Node, words: Mapping[Any, Any]) -> Any:
         return exact(node.value) if node.op == "num" else words[node.value]
     if node.op == "if":
         return compute(node.args[1 if holds(node.args[0], words) else 2], words)
+    if not all(holds(order, words) for order in increasing(node)):
+        raise NoValue
     if node.op in KINKS and node.op not in ("min", "max"):
         return compute(
             unkinked(node) if node.op != "abs" else made("max(x, -x)", x=node.args[0]), words

@@ -22,7 +22,7 @@ from piezo_sym.codegen.functions import limits_of
 from piezo_sym.codegen.lower import program_of
 from piezo_sym.codegen.program import Function, Row, bank_of
 from piezo_sym.codegen.quantities import Quantities
-from piezo_sym.expressions.calculus import add, derivative, kinks, mul, neg
+from piezo_sym.expressions.calculus import add, choices, derivative, increasing, kinks, mul, neg
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.tree import (
     ONE,
@@ -41,6 +41,7 @@ from piezo_sym.expressions.tree import (
     Pow,
     Sym,
     children,
+    knots,
     rename,
     walk,
 )
@@ -202,6 +203,8 @@ def _size(node: Expr) -> Expr:
             return Pow(_size(base), exponent)
         case If(then, condition, other):
             return If(_size(then), condition, _size(other))
+        case Call() if knots(node):
+            return _size(choices(node))
     return _absolute(node)
 
 
@@ -228,6 +231,9 @@ def _hole(node: Node) -> Expr:
             return _any(
                 [_hole(condition), inside if {inside.then, inside.other} != {ZERO} else ZERO]
             )
+        case Call() if knots(node):
+            out = [If(ZERO, order, ONE) for order in increasing(node)]
+            return _any([*out, _hole(choices(node))])
         case Div(_, bottom) if not isinstance(bottom, Num):
             own: Cmp | None = Cmp("<=", _absolute(bottom), ZERO)
         case Pow(base, exponent) if exponent.denominator != 1:

@@ -10,6 +10,7 @@ from collections.abc import Container, Iterable, Iterator
 from dataclasses import dataclass
 from typing import final
 
+from piezo_sym.expressions.calculus import choices as by_cases
 from piezo_sym.expressions.calculus import clause, rule
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.tree import (
@@ -119,7 +120,7 @@ def with_choices(node: Expr, known: Container[Cmp] = ()) -> Expr:
     if not isinstance(inner, Call) or inner.function not in KINKED:
         return inner
     record, (z, *_), w = RECORDS[inner.function], inner.args, inner.args[-1]
-    made, wide = rule(record.choices, z, w), Cmp(">=", w, ZERO)
+    made, wide = by_cases(inner), Cmp(">=", w, ZERO)
     if not record.width or wide in known or (isinstance(w, Num) and w.value >= 0):
         return made
     return If(made, wide, with_choices(rule(record.formula, z, w)))

@@ -13,6 +13,7 @@ from typing import Any, final
 
 from mpmath import iv
 
+from piezo_sym.expressions.calculus import choices, increasing
 from piezo_sym.expressions.functions import RECORDS, Function
 from piezo_sym.expressions.parse import parse_rule
 from piezo_sym.expressions.tree import (
@@ -28,6 +29,7 @@ from piezo_sym.expressions.tree import (
     Num,
     Pow,
     Sym,
+    knots,
 )
 from piezo_sym.proofs.balls import smooth
 
@@ -125,6 +127,11 @@ def _value(node: Expr, values: Mapping[str, Value]) -> Value:
             return _quotient(a, b)
         case Pow(base, exponent):
             return _power(_value(base, values), exponent)
+        case Call() if knots(node):
+            if not all(holds(order, values) for order in increasing(node)):
+                msg = "the knots of a table do not increase"
+                raise ValueError(msg)
+            return _value(choices(node), values)
         case Call(function, args):
             return _call(function, [_value(arg, values) for arg in args])
         case If(then, condition, other):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from piezo_sym.expressions.calculus import add, mul, neg
+from piezo_sym.expressions.calculus import add, increasing, mul, neg
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import (
     ZERO,
@@ -94,7 +94,8 @@ def welldef(laws: tuple[Law, ...], ground: Ground) -> Obligation | None:
 def valued(law: Expr | Cmp, ground: Ground) -> tuple[Question, ...]:
     """Return the questions whether a law, or both sides of a comparison, have a value everywhere.
 
-    Each part is asked about where it is evaluated: under the conditions around it alone.
+    Each part is asked about where it is evaluated: under the conditions around it alone; of a table
+    that its knots increase is asked in all of the domain.
 
     Raises
     ------
@@ -104,6 +105,9 @@ def valued(law: Expr | Cmp, ground: Ground) -> tuple[Question, ...]:
     tree = Call("together", (law.left, law.right)) if isinstance(law, Cmp) else law
     pieces = branches(tree, ground.where)
     found: list[Question] = []
+    for order in increasing(law):
+        found += valued(order, ground)
+        found.append(Question(condition_text(order), ground.order, ground.where, order, order))
     for branch in pieces:
         where = ground.where
         for part in (*branch.conditions, branch.value):

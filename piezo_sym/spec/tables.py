@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Protocol, final
 
+from piezo_sym.expressions.calculus import increasing
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.text import SPEC, write_comparison
@@ -159,6 +160,17 @@ def _widths(law: Node) -> Iterator[Cmp]:
             width = node.args[1]
             if not (isinstance(width, Num) and width.value >= 0):
                 yield Cmp(">=", width, ZERO)
+
+
+def orders(spec: Tables) -> Iterator[Condition]:
+    """Yield that the knots of each table increase, wherever it stands in the spec."""
+    places: list[tuple[str, Node]] = [
+        (law.where, law.tree) for name, e in spec.elements.items() for law in law_fields(name, e)
+    ]
+    places += [(condition.where, condition.tree) for condition in conditions(spec)]
+    places += [(f"initial.{s}", tree) for s, start in spec.initial.items() for tree in _laws(start)]
+    found = (Condition(where, order) for where, tree in places for order in increasing(tree))
+    yield from dict.fromkeys(found)
 
 
 def _in_domain_words(

@@ -3,6 +3,9 @@
 Input: nothing.  Output: `KINKED`, a record each; see `record` for what it says, and in which words.
 """
 
+from bisect import bisect
+from itertools import pairwise
+
 from piezo_sym.expressions.functions.record import Function
 
 _NAN = "not a number stays so"
@@ -18,6 +21,15 @@ def _deadzone(z: float, w: float) -> float:
 
 def _sign(z: float) -> float:
     return float((z > 0) - (z < 0))
+
+
+def _table(z: float, *knots: float) -> float:
+    x, y = knots[::2], knots[1::2]
+    if any(a >= b for a, b in pairwise(x)):
+        msg = "the knots do not increase"
+        raise ArithmeticError(msg)
+    k = min(bisect(x, z, 1), len(x) - 1)
+    return y[k - 1] + (y[k] - y[k - 1]) / (x[k] - x[k - 1]) * (z - x[k - 1])
 
 
 KINKED = (
@@ -93,4 +105,5 @@ KINKED = (
         binds="sum",
         c_helper=("double z, double w", "z > w ? z - w : z < -w ? z + w : z - z"),
     ),
+    Function("table", _table, (), units="equal", knots=True),
 )

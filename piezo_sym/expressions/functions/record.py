@@ -31,6 +31,8 @@ class Function:
         ``none`` (any argument, a value without) or ``power`` (as the power `power`).
     choices : its branches, if it has kinks; of a `width` they are for w >= 0.
     formula : the same by functions with fewer kinks, for every w.
+    knots : whether its arguments are one number and the knots (x_k, y_k) of a piecewise linear
+        function, whose pieces `calculus` makes; the x_k have to increase.
     jumps : whether it is not continuous.
     width : whether its second argument is a width, taken to be >= 0.
     degree : f(c*x, c*w) = c**degree * f(x, w) for all c > 0, if there is such a number.
@@ -57,6 +59,7 @@ class Function:
     units: Literal["pure", "equal", "none", "power"] = "pure"
     choices: str = ""
     formula: str = ""
+    knots: bool = False
     jumps: bool = False
     width: bool = False
     degree: int | None = None
@@ -80,12 +83,11 @@ class Function:
     @property
     def smooth(self) -> bool:
         """Whether it has no kinks."""
-        return not self.choices
+        return not (self.choices or self.knots)
 
-    @property
-    def branches(self) -> int:
-        """How many branches it has."""
-        return 1 + self.choices.count(" if ")
+    def branches(self, arguments: int) -> int:
+        """Return how many branches it has, of so many arguments."""
+        return arguments // 2 - 1 if self.knots else 1 + self.choices.count(" if ")
 
     @property
     def transcendental(self) -> bool:

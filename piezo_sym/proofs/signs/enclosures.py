@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import final
 
-from piezo_sym.expressions.calculus import rule
+from piezo_sym.expressions.calculus import choices, rule
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.tree import Add, Call, Cmp, Div, Expr, If, Mul, Neg, Num, Pow, Sym
 from piezo_sym.proofs.signs import intervals as iv
@@ -99,8 +99,8 @@ def _enclose(node: Expr, x: Enclosure, order: int) -> Enclosure:
         case Call(function, args) if RECORDS[function].smooth:
             return _smooth(function, of(args[0]))
         case Call(function, args):
-            record = RECORDS[function]
-            return of(rule(record.formula or record.choices, args[0], args[-1]))
+            formula = RECORDS[function].formula
+            return of(rule(formula, args[0], args[-1]) if formula else choices(node))
         case If(then, Cmp(op, left, right), other):
             difference = _sum([of(left), _minus(of(right))])
             return _choice(of(then), op, difference.inner, of(other))

@@ -17,6 +17,7 @@ from piezo_sym.spec.tables import (
     bodies,
     conditions,
     law_fields,
+    orders,
     references,
     states,
     temperatures,
@@ -59,6 +60,8 @@ def check_laws(spec: Tables) -> None:
             if "T" in names(law.tree) and not one_body:
                 _check_body(element, law)
     _check_initial(spec)
+    for order in orders(spec):
+        _check_words(spec, order.tree, f"a knot of a table in {order.where}", (), spec.parameters)
     words = dict.fromkeys([*spec.parameters, *spec.inputs, *states(spec), *temperatures(spec)])
     sizes = banks(spec)
     lanes = {symbol: name for symbol, name in states(spec).items() if name in sizes}

@@ -23,6 +23,7 @@ from piezo_sym.spec.tables import (
     condition_text,
     conditions,
     lane_parameters,
+    orders,
     states,
     temperatures,
 )
@@ -32,10 +33,12 @@ Values: TypeAlias = tuple[Interval, ...]
 
 
 def check_values(spec: Tables) -> None:
-    """Check lists against banks, then every condition of the domain, lane by lane."""
+    """Check lists against banks, then knots and conditions of the domain, lane by lane."""
     _check_lists(spec)
     lanes: dict[str, Values] = {n: (_exactly(entry.si),) for n, entry in spec.inputs.items()}
     lanes |= {name: tuple(map(_exactly, p.lanes)) for name, p in spec.parameters.items()}
+    for order in orders(spec):
+        _check_condition(order, lanes, "the knots of a table do not increase", "sort the knots")
     lanes |= {symbol: tuple(_starts(spec, symbol, lanes)) for symbol in states(spec)}
     for symbol, body in temperatures(spec).items():
         element = spec.elements[body]
@@ -94,7 +97,12 @@ def _value(tree: Expr, values: Mapping[str, Interval], where: str) -> Interval:
         raise SpecError("has no finite real value", where, remedy=remedy) from None
 
 
-def _check_condition(condition: Condition, lanes: Mapping[str, Values]) -> None:
+def _check_condition(
+    condition: Condition,
+    lanes: Mapping[str, Values],
+    what: str = "the values given are outside the domain",
+    remedy: str = "change a value or the domain",
+) -> None:
     words = names(condition.tree)
     count = _count(words, lanes)
     for lane in range(count):
@@ -105,7 +113,7 @@ def _check_condition(condition: Condition, lanes: Mapping[str, Values]) -> None:
             outside = True
         if outside:
             given = ", ".join(f"{word} = {float(low):.6g}" for word, (low, _) in values.items())
-            what = f"the values given are outside the domain: {given or 'no value is inside'}"
+            what += f": {given}" * bool(given)
             at = f" in lane {lane + 1}" if count > 1 else ""
             expected = quote(condition_text(condition.tree)) + at
-            raise SpecError(what, condition.where, expected, "change a value or the domain")
+            raise SpecError(what, condition.where, expected, remedy)
