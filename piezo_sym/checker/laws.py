@@ -111,20 +111,21 @@ def made(text: str, **parts: Node) -> Node:
 def unkinked(node: Node) -> Node:
     """Return a function with kinks written as a choice, by its definition."""
     if node.op == "table":
-        return _pieces(node.args[0], tuple(zip(node.args[1::2], node.args[2::2], strict=True)))
+        return _halved(node.args[0], node.args[1:])
     return made(KINKS[node.op], x=node.args[0], z=node.args[-1])
 
 
-def _pieces(x: Node, knots: tuple[tuple[Node, Node], ...]) -> Node:
-    if len(knots) > 2:
-        n = len(knots) // 2
-        sides = _pieces(x, knots[: n + 1]), _pieces(x, knots[n:])
-        return Node("if", (compare(x, "<", knots[n][0]), *sides))
-    (a, y), (b, z) = knots
-    known = [own for own in map(_plain, (a, b, y, z)) if own is not None]
+def _halved(x: Node, knots: tuple[Node, ...]) -> Node:
+    """Return a table as a choice of two, or as its one piece."""
+    if len(knots) > 4:
+        n = len(knots) // 4 * 2
+        halves = (Node("table", (x, *own)) for own in (knots[: n + 2], knots[n:]))
+        return Node("if", (compare(x, "<", knots[n]), *halves))
+    a, y, b, z = knots
+    known = [own for own in map(_plain, knots) if own is not None]
     slope = made("(z - y)/(b - a)", a=a, b=b, y=y, z=z)
-    slope = num((known[3] - known[2]) / (known[1] - known[0])) if len(known) == 4 else slope
-    return made("y + m*(x - a)", m=slope, x=x, a=a, y=y)
+    slope = num((known[3] - known[1]) / (known[2] - known[0])) if len(known) == 4 else slope
+    return made("m*x" if b == z == num(0) else "y + m*(x - a)", m=slope, x=x, a=a, y=y)
 
 
 def _plain(node: Node) -> Fraction | None:
@@ -140,6 +141,24 @@ def increasing(node: Node) -> Iterator[Node]:
         left, right = _plain(a), _plain(b)
         if left is None or right is None or left >= right:
             yield compare(a, "<", b)
+
+
+def on_pieces(node: Node, path: tuple[Node, ...] = ()) -> Iterator[tuple[Node, tuple[Node, ...]]]:
+    """Yield a law on each piece of its tables, and where it is taken."""
+    table = next((part for part in walk(node) if part.op == "table"), None)
+    if table is None:
+        yield node, path
+        return
+    made = unkinked(table)
+    side, *halves = made.args if made.op == "if" else (made, made)
+    sides = ((side,), (negated(side),)) if made.op == "if" else ((),)
+    for taken, half in zip(sides, halves, strict=True):
+        yield from on_pieces(_swapped(node, table, half), (*path, *taken))
+
+
+def _swapped(node: Node, old: Node, new: Node) -> Node:
+    args = (_swapped(arg, old, new) for arg in node.args)
+    return new if node == old else Node(node.op, tuple(args), node.value)
 
 
 def derivative(node: Node, by: Any) -> Node:

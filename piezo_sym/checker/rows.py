@@ -135,8 +135,9 @@ class _Audit:
         given = [entry.get("certificate") for entry in self.stated["passive", element.name]]
         for certificate in filter(None, given):
             check_certificate(self.spec, element, certificate, self.prover)
-        for side in "<>" if not any(given) else "":
-            yield true(element.law or num(0), side + "=", path=(compare(sym(z), side),))
+        for law, path in laws.on_pieces(element.law or num(0)) if not any(given) else ():
+            for side in "<>":
+                yield true(law, side + "=", path=(compare(sym(z), side), *path))
 
     def _information(self, name: str, owner: str) -> None:
         """Look at a row that nothing asks for, as it is claimed."""

@@ -230,6 +230,8 @@ def _pieces(x: Expr, found: tuple[tuple[Expr, Expr], ...]) -> Expr:
         return If(_pieces(x, found[: n + 1]), Cmp("<", x, found[n][0]), _pieces(x, found[n:]))
     (a, y), (b, z) = found
     slope = div(add(z, neg(y)), add(b, neg(a)))
+    if (b, z) == (ZERO, ZERO):  # a law through the origin has its sign beside it, rounded too
+        return mul(slope, x)
     return add(y, mul(slope, add(x, neg(a))))
 
 

@@ -14,8 +14,9 @@ from itertools import combinations
 
 from piezo_sym.expressions.calculus import add, neg
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import Cmp, names
+from piezo_sym.expressions.tree import Call, Cmp, Expr, If, knots, names, walk
 from piezo_sym.proofs.branches import (
+    KINKED,
     Branch,
     TooManyBranchesError,
     branches,
@@ -43,13 +44,15 @@ def continuous(law: Law, ground: Ground) -> Obligation | None:
     latex = r"W_k(z^-) = W_k(z^+)"
     made = Obligation("continuous", law.element, statement, latex, ground.texts)
     ground = ground.about(law)
-    try:
-        found = branches(law.tree, ground.where)
-    except TooManyBranchesError:
-        return None if law.jumps else replace(made, open_because=too_many(law))
     edges = [c for c in choices(with_choices(law.tree)) if not {*names(c)} <= ground.fixed]
     if law.jumps or not edges:
         return None
+    if not _chooses(law.tree):
+        return replace(made, rests_on=(("welldef", law.element),))
+    try:
+        found = branches(law.tree, ground.where)
+    except TooManyBranchesError:
+        return replace(made, open_because=too_many(law))
     if len(found) > MOST:
         reason = f"the law of {law.element} has {len(found)} branches, too many to compare in pairs"
         return replace(made, open_because=f"{reason}; use fewer kinks")
@@ -63,6 +66,15 @@ def continuous(law: Law, ground: Ground) -> Obligation | None:
     whole = Cmp("=", law.tree, law.tree)
     covered = Question(statement, ground.order, ground.where, whole, whole).covered(found)
     return replace(made, questions=(*dict.fromkeys(questions), *([covered] * (len(found) > 1))))
+
+
+def _chooses(law: Expr) -> bool:
+    """Return whether a law chooses other than by tables, which are continuous in all arguments.
+
+    That holds where their knots increase, and a law has a value only there.
+    """
+    kinks = (n for n in walk(law) if isinstance(n, If) or (isinstance(n, Call) and not knots(n)))
+    return any(isinstance(n, If) or n.function in KINKED for n in kinks)
 
 
 def _apart(one: Branch, other: Branch, ground: Ground) -> bool:

@@ -219,6 +219,7 @@ def odd(law: Law, ground: Ground) -> Obligation:
     mirror = substituted(law.tree, {law.letter: neg(Sym(law.letter))})
     try:  # the mirrored law has values, too: `welldef` is about those that the letter takes
         found = valued(mirror, ground) if law.ties else ()
+        branches(total, ground.where)  # or there are too many
     except TooManyBranchesError:
         return replace(made, open_because=too_many(law))
     mirrored = on_branches(total, question) if total != ZERO else ()

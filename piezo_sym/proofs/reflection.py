@@ -19,6 +19,7 @@ from piezo_sym.expressions.tree import (
     Neg,
     Pow,
     Sym,
+    knots,
 )
 
 
@@ -53,6 +54,9 @@ def reflected(law: Expr, letter: str) -> Expr:
             return power(inner, exponent)
         case Call(function, (first, *others)):
             inner, rest = turned(first), tuple(map(turned, others))
+            if isinstance(inner, Neg) and knots(law):  # y(-x) is minus what has the mirrored knots
+                mirrored = (neg(turned(part)) for pair in reversed(knots(law)) for part in pair)
+                return neg(Call(function, (inner.arg, *mirrored)))
             parity = RECORDS[function].parity
             if not isinstance(inner, Neg) or not parity:
                 return Call(function, (inner, *rest))
