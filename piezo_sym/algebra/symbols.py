@@ -41,6 +41,8 @@ from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, Resistor, S
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import banks, conditions, greater, lane_parameters, states
 
+TABLE = sp.Function("table")
+
 
 @final
 @dataclass(frozen=True)
@@ -52,11 +54,13 @@ class SymbolTable:
     symbols : the symbol of every name; that of a bank's quantity is a `LaneSymbol`.
     banks : the bank of each lane symbol.
     counts : the size symbol of each bank.
+    whole : whether tables stay as they are written, to be read.
     """
 
     symbols: Mapping[str, sp.Symbol]
     banks: Mapping[LaneSymbol, str]
     counts: Mapping[str, sp.Symbol]
+    whole: bool = False
 
     def __getitem__(self, name: str) -> sp.Symbol:
         """Return the symbol of a name."""
@@ -70,8 +74,9 @@ class SymbolTable:
         SpecError
             If it compares what is not real, such as ``log(sign(v)) < 1`` where v is negative.
         """
+        words = {n: (letters if n in letters else self)[n] for n in names(tree)}
         try:
-            return to_sympy(tree, {n: (letters if n in letters else self)[n] for n in names(tree)})
+            return to_sympy(tree, words | {"table": TABLE} if self.whole else words)
         except TypeError as error:
             what = f"the law {quote(spell(tree))} compares what has no real value somewhere"
             remedy = "keep its logarithms, roots and quotients defined"
@@ -131,7 +136,10 @@ def _signs(model: Model) -> dict[str, dict[str, bool]]:
 
 
 def to_sympy(node: Expr, table: Mapping[str, sp.Expr]) -> sp.Expr:
-    """Return a law's tree as a SymPy expression over the symbols in `table`."""
+    """Return a law's tree as a SymPy expression over the symbols in `table`.
+
+    A function of laws that is in `table`, where no symbol has its name, is what it says there.
+    """
     match node:
         case Num(value):
             return sp.Rational(value.numerator, value.denominator)
@@ -147,10 +155,12 @@ def to_sympy(node: Expr, table: Mapping[str, sp.Expr]) -> sp.Expr:
             return to_sympy(left, table) / to_sympy(right, table)
         case Pow(base, exponent):
             return to_sympy(base, table) ** sp.Rational(exponent.numerator, exponent.denominator)
-        case Call() if knots(node):
+        case Call(function) if knots(node) and function not in table:
             return to_sympy(choices(node), table)
         case Call(function, args):
             parts = tuple(to_sympy(arg, table) for arg in args)
+            if function in table:
+                return table[function](*parts)
             if RECORDS[function].smooth:
                 return getattr(sp, function)(*parts)
             return _by_branches(partial(_kinked, function), parts)

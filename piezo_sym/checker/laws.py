@@ -193,8 +193,9 @@ def number(text: str) -> Fraction:
 @cache
 def parse(text: Any, length: int = MAX_LENGTH, compares: bool | None = None) -> Node:
     """Return the tree of a law, or of a comparison if it `compares` (None: of either)."""
-    plain = isinstance(text, str) and len(text) <= max(length, MAX_TABLE * ("table" in text))
-    need(plain and PLAIN.fullmatch(text), f"{str(text)[:60]!r} is no law of plain text, or too long")
+    most = max(length, MAX_TABLE) if "table" in str(text) else length
+    plain = isinstance(text, str) and len(text) <= most and PLAIN.fullmatch(text)
+    need(plain, f"{str(text)[:60]!r} is no law of plain text, or too long")
     try:
         tree = _tree(ast.parse(text.strip(), mode="eval").body, text.strip())
     except (SyntaxError, ValueError, LookupError, ArithmeticError, RecursionError, MemoryError):

@@ -28,7 +28,6 @@ from piezo_sym.expressions.tree import (
     Num,
     Pow,
     Sym,
-    children,
     knots,
     names,
     rebuild,
@@ -216,8 +215,8 @@ def clause(text: str, x: Expr, value: Expr) -> tuple[Cmp, ...]:
 
 def choices(node: Expr) -> Expr:
     """Return a function with kinks as choices, of a width >= 0; other trees as they are."""
-    if found := knots(node):
-        return _pieces(children(node)[0], found)
+    if isinstance(node, Call) and (found := knots(node)):
+        return _pieces(node.args[0], found)
     if isinstance(node, Call) and node.function in RECORDS and RECORDS[node.function].choices:
         return rule(RECORDS[node.function].choices, node.args[0], node.args[-1])
     return node

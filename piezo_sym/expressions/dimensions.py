@@ -8,7 +8,7 @@ rule asks for is one linear equation.  The rules:
     a + b, min, max, deadzone, saturate, a if c else b, a < b     equal units
     exp log sin cos tanh expm1                                    an argument without unit, no unit
     sign                                                          any argument, no unit
-    table(x, x_1, y_1, ...)                                       x as all x_k; all y_k, as the value
+    table(x, x_1, y_1, ...)                                       x as all x_k; value as all y_k
     abs, -a                                                       keep
     a*b, a/b, a**(p/q), sqrt                                      add, subtract, multiply, halve
 

@@ -8,7 +8,7 @@ state, the inputs and the parameters, which is what most users want to look at.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TypeAlias, final
 
@@ -224,7 +224,9 @@ class IPHS:
         hidden = {self.symbols[port.temperature] for _, port in self.circuit.of(Body)}
         shown = tuple((s, e) for s, e in self.costates if s not in hidden)
         heat = tuple((s, e) for s, e in self.costates if s in hidden)
-        named = (*self.laws, *self.shares, *self.slopes, *self.ratios, *heat)
+        whole = replace(self.symbols, whole=True)
+        laws = laws_of(self.circuit, whole, self.system)
+        named = (*laws, *self.shares, *self.slopes, *ratios_of(self.circuit, whole), *heat)
         return Reading(self.system, self._stored, shown, named, self._spelled(dict(shown)))
 
     def _spelled(self, shown: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, str]:

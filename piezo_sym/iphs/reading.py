@@ -14,8 +14,10 @@ import sympy as sp
 
 from piezo_sym.algebra.lanes import LaneMatrix
 from piezo_sym.algebra.notation import joined, latex, matrix_latex, slot_text, symbol_latex, text
+from piezo_sym.algebra.symbols import TABLE
 from piezo_sym.iphs.system import System
 
+BRANCHED = (sp.Piecewise, TABLE)
 Pairs = tuple[tuple[sp.Symbol, sp.Expr], ...]
 Print = Callable[[sp.Expr], str]
 
@@ -73,7 +75,7 @@ class Reading:
     def gamma(self, k: int) -> sp.Expr:
         """Return gamma_k = W_k/(T z_k), the law written out where it has no branches."""
         outputs = set(self.system.W)
-        laws = {s: e for s, e in self.named if s in outputs and not e.has(sp.Piecewise)}
+        laws = {s: e for s, e in self.named if s in outputs and not e.has(*BRANCHED)}
         return self.write(self.system.R[k, 0].xreplace(laws) / self.system.z[k, 0])
 
     def _heating(self, k: int) -> sp.Expr:
