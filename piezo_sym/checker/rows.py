@@ -122,6 +122,7 @@ class _Audit:
         if claims or element.law:
             self._row("welldef", name, claims)
         kinks = [n for tree in trees for n in laws.walk(tree) if n.op in ("if", *KINKS)]
+        kinks = [n for n in kinks if n.op != "table" or len(n.args) > 5]  # 5: of two knots, a line
         choosers = (n.args[0] if n.op in ("if", "table") else n for n in kinks)
         if any(s[0] in MOVING for n in choosers for s in symbols(n)) and not element.jumps:
             self._row("continuous", name, _continuous(trees))

@@ -107,7 +107,8 @@ def valued(law: Expr | Cmp, ground: Ground) -> tuple[Question, ...]:
     found: list[Question] = []
     for order in increasing(law):
         found += valued(order, ground)
-        found.append(Question(condition_text(order), ground.order, ground.where, order, order))
+        label = f"{condition_text(order)} in a table"
+        found.append(Question(label, ground.order, ground.where, order, order))
     for branch in pieces:
         where = ground.where
         for part in (*branch.conditions, branch.value):

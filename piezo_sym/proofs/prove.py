@@ -246,7 +246,7 @@ def _broken(question: Question, values: Mapping[str, Fraction]) -> Found:
     reason = f"{spell(left)} = {_value(left, values)}"
     if isinstance(question.law, Cmp):
         reason += f", where {condition_text(question.law)} has no value"
-    if question.original.op == "=":
+    if question.original.op in {"=", "<"}:
         reason = f"{question.label} is false: {_value(left, values)} and {_value(right, values)}"
         reason += "; a law that jumps on purpose says discontinuous = true" * bool(question.meeting)
     return Verdict.REFUTED, {name: str(value) for name, value in values.items()}, reason

@@ -27,7 +27,8 @@ class Function:
     name : in laws, C and SymPy, and of its method of FLINT's balls, where nothing else is said.
     value : in floating point.
     slopes : its derivatives by its arguments; at a kink, those of one of its sides.
-    units : ``pure`` (neither argument nor value has one), ``equal`` (of all arguments and value),
+    units : ``pure`` (neither argument nor value has one), ``equal`` (of all arguments and value;
+        those of a table's x, and of its y),
         ``none`` (any argument, a value without) or ``power`` (as the power `power`).
     choices : its branches, if it has kinks; of a `width` they are for w >= 0.
     formula : the same by functions with fewer kinks, for every w.
