@@ -227,7 +227,7 @@ def _pieces(x: Expr, found: tuple[tuple[Expr, Expr], ...]) -> Expr:
     if len(found) > 2:
         n = len(found) // 2
         return If(_pieces(x, found[: n + 1]), Cmp("<", x, found[n][0]), _pieces(x, found[n:]))
-    (a, y), (b, z) = found
+    (a, y), (b, z) = (tuple(map(_plain, pair)) for pair in found)
     slope = div(add(z, neg(y)), add(b, neg(a)))
     if (b, z) == (ZERO, ZERO):  # a law through the origin has its sign beside it, rounded too
         return mul(slope, x)
@@ -238,9 +238,15 @@ def increasing(node: Node) -> Iterator[Cmp]:
     """Yield that the knots of each table in a tree increase, but for plain numbers that do."""
     for part in walk(node):
         for (a, _), (b, _) in pairwise(knots(part)):
-            plain = all(isinstance(c.arg if isinstance(c, Neg) else c, Num) for c in (a, b))
-            if not (plain and isinstance(gap := add(b, neg(a)), Num) and gap.value > 0):
-                yield Cmp("<", a, b)
+            match _plain(a), _plain(b):
+                case Num(low), Num(high) if low < high:
+                    continue
+            yield Cmp("<", a, b)
+
+
+def _plain(node: Expr) -> Expr:
+    """Return a number with a minus as one number."""
+    return neg(node.arg) if isinstance(node, Neg) and isinstance(node.arg, Num) else node
 
 
 def kinks(node: Expr) -> Iterator[Cmp]:

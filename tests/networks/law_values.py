@@ -21,6 +21,16 @@ OPERATORS = {
     ast.GtE: operator.ge,
     ast.USub: operator.neg,
 }
+
+
+def table(z, *knots):
+    """Return NumPy's interpolation, continued by the slopes at both ends."""
+    x, y = knots[::2], knots[1::2]
+    low, high = (np.diff(y[s]) / np.diff(x[s]) for s in (slice(2), slice(-2, None)))
+    beyond = float(low[0] * min(z - x[0], 0) + high[0] * max(z - x[-1], 0))
+    return float(np.interp(z, x, y)) + beyond
+
+
 FUNCTIONS = {
     "exp": math.exp,
     "log": math.log,
@@ -37,6 +47,7 @@ FUNCTIONS = {
     "min": min,
     "max": max,
     "deadzone": lambda z, w: max(z - w, 0) + min(z + w, 0),
+    "table": table,
     "saturate": lambda z, w: min(max(z, -w), w),
 }
 
