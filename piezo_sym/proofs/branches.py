@@ -26,6 +26,7 @@ from piezo_sym.expressions.tree import (
     Num,
     Pow,
     children,
+    knots,
     rebuild,
     walk,
 )
@@ -119,8 +120,10 @@ def with_choices(node: Expr, known: Container[Cmp] = ()) -> Expr:
     inner = rebuild(node, lambda part: with_choices(part, known))
     if not isinstance(inner, Call) or inner.function not in KINKED:
         return inner
+    if knots(inner):
+        return by_cases(inner)
     record, (z, *_), w = RECORDS[inner.function], inner.args, inner.args[-1]
-    made, wide = by_cases(inner), Cmp(">=", w, ZERO)
+    made, wide = rule(record.choices, z, w), Cmp(">=", w, ZERO)
     if not record.width or wide in known or (isinstance(w, Num) and w.value >= 0):
         return made
     return If(made, wide, with_choices(rule(record.formula, z, w)))

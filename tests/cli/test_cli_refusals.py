@@ -10,6 +10,15 @@ EDITS = {
         ('"d*v"', '"(v+d+T+M+k)**16"', "has too many terms"),
         ('"d*v"', '"v*1e300*1e300"', "has numbers that multiply"),
     ],
+    "tables": [
+        (
+            '"d*v"',
+            '"table(v, 0, 0, d)"',
+            "damper.force: 'table(v, 0, 0, d)' gives table 4",
+        ),
+        ('"d*v"', '"table(v, 0, 0)"', "expected table(x, x_1, y_1, x_2, y_2, ...) with 2 to 64"),
+        ('"d*v"', '"d*table(v, 1, 2, 0, 3)"', "knots of a table do not increase; expected '1 < 0'"),
+    ],
     "names": [
         ('state = "phi"', 'state = "lambda"', "call it 'lam'"),
         ("[elements.damper]", '[elements."../up"]', "is not a name"),

@@ -1,9 +1,13 @@
-"""A model with many functions in its laws runs alone and side by side."""
+"""Models with many functions in their laws run alone and side by side."""
 
 from pathlib import Path
 
+import numpy as np
+from scipy.integrate import solve_ivp
+
 from piezo_sym import load, simulate, sine, sweep
 
+TABLES = Path(__file__).parents[1] / "networks" / "specs" / "tables.toml"
 SPEC = Path(__file__).parents[1] / "networks" / "specs" / "smooth_functions.toml"
 DRIVE = {"F_ext": sine(0.2, 1.0)}
 
@@ -24,3 +28,18 @@ def test_members_of_a_sweep_are_what_runs_alone_are():
         alone = simulate(SPEC, inputs=DRIVE, duration=1.0, rtol=1e-7, parameters={"F": force})
         end = runs.T_body.isel(F=n, time=-1)
         assert float(end) == float(alone.T_body[-1])
+
+
+def test_a_table_as_damper_runs_as_in_scipy():
+    x, y = [-6, 0, 0.2, 0.5, 9.5], [-9, 0, 0.3, 0.4, 3.4]  # its four knots, gone on straight
+
+    def rates(_, state):
+        q, p = state
+        return p, -4 * q - np.interp(p, x, y)
+
+    run = simulate(TABLES, duration=4.0, rtol=1e-10)
+    assert 0.5 < float(abs(run.p).max()) < 9.5
+    settings = {"method": "DOP853", "rtol": 1e-11, "atol": 1e-13, "max_step": 1e-3}
+    end = solve_ivp(rates, (0, 4), (0.5, 0.0), **settings).y[:, -1]
+    assert np.allclose([float(run.q[-1]), float(run.p[-1])], end, rtol=0, atol=1e-9)
+    assert abs(run.energy_residual).max() < 1e-12 * abs(run.energy).max()
