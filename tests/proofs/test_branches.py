@@ -31,9 +31,10 @@ FAULTS = (ArithmeticError, ValueError, TypeError, OverflowError)
 def value(tree, values):
     """Return the value of a law's text, or None where it has none."""
     try:
-        return precise(spell(tree), values)
+        found = precise(spell(tree), values)
     except FAULTS:
         return None
+    return found if mpmath.isfinite(found) else None  # 0**(-2/3) is inf to mpmath
 
 
 def holds(condition, values):
