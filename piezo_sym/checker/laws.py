@@ -124,7 +124,8 @@ def _halved(x: Node, knots: tuple[Node, ...]) -> Node:
     a, y, b, z = knots
     known = [own for own in map(_plain, knots) if own is not None]
     slope = made("(z - y)/(b - a)", a=a, b=b, y=y, z=z)
-    slope = num((known[3] - known[1]) / (known[2] - known[0])) if len(known) == 4 else slope
+    if len(known) == 4 and known[0] != known[2]:
+        slope = num((known[3] - known[1]) / (known[2] - known[0]))
     return made("m*x" if b == z == num(0) else "y + m*(x - a)", m=slope, x=x, a=a, y=y)
 
 
@@ -193,7 +194,7 @@ def number(text: str) -> Fraction:
 @cache
 def parse(text: Any, length: int = MAX_LENGTH, compares: bool | None = None) -> Node:
     """Return the tree of a law, or of a comparison if it `compares` (None: of either)."""
-    most = max(length, MAX_TABLE) if "table" in str(text) else length
+    most = max(length, MAX_TABLE) if re.search(r"\btable *\(", str(text)) else length
     plain = isinstance(text, str) and len(text) <= most and PLAIN.fullmatch(text)
     need(plain, f"{str(text)[:60]!r} is no law of plain text, or too long")
     try:

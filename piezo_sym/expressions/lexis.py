@@ -32,7 +32,7 @@ class RefusedError(Exception):
 
 def check_letters(text: str) -> None:
     """Refuse a text that is too long, empty, or not plain ASCII on one line."""
-    most = MAX_LENGTH_OF_A_TABLE if "table" in text else MAX_LENGTH
+    most = MAX_LENGTH_OF_A_TABLE if re.search(r"\btable *\(", text) else MAX_LENGTH
     if len(text) > most:
         what = f"is {len(text)} characters long"
         raise RefusedError(what, f"at most {most}", "split the law into parameters")

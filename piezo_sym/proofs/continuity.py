@@ -26,7 +26,7 @@ from piezo_sym.proofs.branches import (
     with_choices,
 )
 from piezo_sym.proofs.ground import Ground, Law
-from piezo_sym.proofs.laws import ask, too_many
+from piezo_sym.proofs.laws import ask, too_many, valued
 from piezo_sym.proofs.obligations import Meeting, Obligation, Question
 
 #: More branches than these are not compared, each with each.
@@ -47,9 +47,10 @@ def continuous(law: Law, ground: Ground) -> Obligation | None:
     edges = [c for c in choices(with_choices(law.tree)) if not {*names(c)} <= ground.fixed]
     if law.jumps or not edges:
         return None
-    if not _chooses(law.tree):
-        return replace(made, rests_on=(("welldef", law.element),))
     try:
+        if not _chooses(law.tree):
+            asked = law.letter or valued(law.tree, ground)  # else knots are numbers that increase
+            return replace(made, rests_on=(("welldef", law.element),) if asked else ())
         found = branches(law.tree, ground.where)
     except TooManyBranchesError:
         return replace(made, open_because=too_many(law))

@@ -101,7 +101,7 @@ class Solver:
             ready = select.poll()
             ready.register(to, select.POLLOUT)
             ready.register(back, select.POLLIN)
-            while not read.endswith(b"\n"):
+            while not read.endswith(b"\n") and time.monotonic() < end:
                 events = dict(ready.poll(max(0.0, 1000 * (end - time.monotonic()))))
                 if back in events and (part := os.read(back, select.PIPE_BUF)):
                     read += part
@@ -111,9 +111,9 @@ class Solver:
                         ready.unregister(to)
                 else:  # it took too long, or ended
                     break
-        except OSError:
+        except (OSError, ValueError):  # gone, or closed by another thread
             return ""
-        return read.decode(errors="replace")
+        return "" if left else read.decode(errors="replace")
 
     def _running(self) -> subprocess.Popen[bytes]:
         if self._process is None or self._process.poll() is not None:

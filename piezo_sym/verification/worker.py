@@ -35,6 +35,7 @@ def main() -> None:
         for message in answer(subject):
             write(out, pickle.dumps(message))
         if number == 0:  # all that was imported stays: it need not be searched for garbage again
+            del subject, message
             gc.collect()
             gc.freeze()
 

@@ -316,3 +316,14 @@ def test_a_report_does_not_depend_on_the_process():
     second = decide(derive(load("piezo_stack")))
     model = load("piezo_stack")
     assert json.loads(proofs_json(first, model, "")) == json.loads(proofs_json(second, model, ""))
+
+
+def test_a_solver_that_never_ends_its_line_is_stopped():
+    endless = "import os\nwhile True: os.write(1, b'no end ' * 100)"
+    talker = Solver("talker", (sys.executable, "-c", endless), patience=1.0)
+    started = time.monotonic()
+    assert (
+        talker.ask(Query("never", (), (), Cmp("<", Num(Fraction(1)), Num(Fraction(0))))).result
+        == "unknown"
+    )
+    assert time.monotonic() - started < 20

@@ -57,6 +57,20 @@ def test_the_whole_driver_has_no_warning(module, compiler, tmp_path):
 
 
 @pytest.mark.parametrize("compiler", COMPILERS)
+def test_stages_in_vectors_have_no_warning(module, compiler, tmp_path):
+    texts = [
+        Path(module.__file__).with_name(f"{module.NAME}{ending}").read_text()
+        for ending in (".h", ".c", "_step.c")
+    ]
+    for name, text in Sources(module.NAME, *texts, stages=5).files().items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    without = ["-fno-openmp-simd", "-Wno-unknown-pragmas", "-Wno-psabi"]  # as it is compiled
+    for plain in ([], ["-DPLAIN"]):
+        flags = [*STRICT, *without, *plain, "-c", "stages.c"]
+        assert called([*COMPILERS[compiler], *flags], tmp_path) == ""
+
+
+@pytest.mark.parametrize("compiler", COMPILERS)
 @pytest.mark.parametrize("accuracy", [{"rtol": 1e-6}, {"step": 1e-5}], ids=str)
 def test_runs_are_the_same_whoever_compiles(module, compiler, accuracy, monkeypatch):
     monkeypatch.setenv("CC", shlex.join(COMPILERS[compiler]))

@@ -151,12 +151,14 @@ def at_once(model: str, lanes: int) -> str:
         "#if defined(__GNUC__) /* of what is printed, some is for the engine alone */",
         '#pragma GCC diagnostic ignored "-Wunused-function"',
         '#pragma GCC diagnostic ignored "-Wunused-variable"',
+        '#pragma GCC diagnostic ignored "-Wunused-const-variable"',
         "#endif",
         texts("real.h"),
         f'#include "{model}_step.c"',
         f"#define MODEL(name) {model}_##name",
     ]
-    return "\n".join([*head, texts("at_once.h", "at_once.c"), "#endif"])
+    rest = ["#else", f"typedef int {model}_has_no_vectors;", "#endif"]
+    return "\n".join([*head, texts("at_once.h", "at_once.c"), *rest])
 
 
 def _loop(model: str, name: str, call: str, idle: str) -> str:

@@ -12,6 +12,9 @@
 #include <stddef.h>
 
 #if PAIRS
+#if PAIRS > 2
+#error "more pairs need another vector"
+#endif
 /* Numbers for pairs of eigenvalues: those of one run are solved with side by side. */
 #if REAL_WIDTH == 1 && PAIRS > 1 && !defined(PLAIN)
 #define TOGETHER PAIRS

@@ -107,12 +107,13 @@ static int MODEL(on)(MODEL(batch) *b, int lane)
     double until = MODEL(until)(b, l);
     if (b->fixed > 0.0 && run->sample < b->samples && b->times[run->sample] < until)
         until = b->times[run->sample];
+    const double before = l->t;
     l->t = last ? until : l->t + l->step;
     run->t = l->t;
     ++run->steps;
     run->iterations = (long)LANE(&b->m.iterations, 0, lane);
     const double most = l->refused ? 1.0 : 4.0; /* what was refused just now is not tried again */
-    l->refused = 0;
+    l->refused = l->t > before ? 0 : l->refused + 1; /* between switches that lead back to each other */
     l->phase = STEP;
     if (b->fixed > 0.0) {
         l->halved = l->h < b->fixed ? l->halved : 0;
@@ -136,6 +137,8 @@ static int MODEL(on)(MODEL(batch) *b, int lane)
         MODEL(sample)(b, lane, b->m.x, NULL);
     if (l->t >= b->stop)
         MODEL(leave)(b, lane, 0);
+    else if (l->refused > MOST_REFUSED)
+        MODEL(leave)(b, lane, 1);
     else if (l->t >= l->segment->stop) {
         ++l->segment;
         l->phase = BEGIN;
@@ -293,7 +296,7 @@ static void MODEL(judged)(MODEL(batch) *b, MODEL(tick) *t)
         if (l->phase == STEP && b->fixed == 0.0) {
             const double error = LANE(&worst, 0, lane);
             const double power = IN(b->m.over, lane) ? OVER_KINKS : -0.5 / STAGES;
-            l->longer = error > 0.0 ? 0.9 * pow(error, power) : 8.0;
+            l->longer = error > 0.0 ? 0.9 * pow(error, power) : error == 0.0 ? 8.0 : 0.25;
             if (!(error <= 1.0)) {
                 const double part = l->refused > 1 ? fmin(l->longer, 0.5) : l->longer;
                 MODEL(refuse)(b, lane, l->length * fmax(0.1, part));

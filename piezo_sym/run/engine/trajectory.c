@@ -101,8 +101,8 @@ enum { TRIED = 32, AGAIN = 12 };
 #define AT_END 1e-9
 #define AT_ONCE 1e-12
 /*
- * How far a step may go beyond its switch, where no stage lies: what a kink adds to the error goes with
- * the square of that, and is less than this part of the tolerance; what a jump adds, as it.
+ * How far a step may go beyond its switch, where no stage lies.  What a kink adds to the error goes
+ * with the square of that, about this part of the tolerance; what a jump adds, in proportion.
  */
 #define BEYOND 0.01
 
