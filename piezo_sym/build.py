@@ -14,13 +14,9 @@ from typing import final
 
 from piezo_sym.codegen import (
     MARK,
-    c_collocation,
-    c_header,
-    c_source,
-    c_step_header,
     collocation_of,
     lower,
-    numpy_module,
+    printed,
 )
 from piezo_sym.derivation import derive
 from piezo_sym.errors import DriftError
@@ -81,15 +77,11 @@ def render(
     report = report or verify(iphs)
     if not allow_unproved:
         report.raise_if_not_proved()
-    program = lower(iphs, verdict_line(report))
-    step = collocation_of(iphs)
+    texts = printed(lower(iphs, verdict_line(report)), collocation_of(iphs))
+    texts["_step.c"] += step_alone(model.name)
     made = f"{MARK} {VERSION}; do not edit: change the spec, then run `piezo-sym generate`."
     return {
-        f"{model.name}/{model.name}.py": numpy_module(program),
-        f"{model.name}/{model.name}.h": c_header(program),
-        f"{model.name}/{model.name}.c": c_source(program),
-        f"{model.name}/{model.name}_step.h": c_step_header(program, step),
-        f"{model.name}/{model.name}_step.c": c_collocation(program, step) + step_alone(model.name),
+        **{f"{model.name}/{model.name}{ending}": text for ending, text in texts.items()},
         f"{model.name}/proofs.json": proofs_json(report, model, made),
         f"{model.name}/proofs.smt2": smt2(report, made),
     }

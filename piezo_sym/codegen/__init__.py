@@ -1,21 +1,20 @@
 """Code generation: IPHS to program, program to text."""
 
-from piezo_sym.codegen.c_collocation import c_collocation
-from piezo_sym.codegen.c_head import c_header
-from piezo_sym.codegen.c_printer import c_source
-from piezo_sym.codegen.c_step_head import c_step_header
-from piezo_sym.codegen.collocation import collocation_of
+from piezo_sym.codegen import c, numpy
+from piezo_sym.codegen.backend import Backend
+from piezo_sym.codegen.collocation import Collocation, collocation_of
 from piezo_sym.codegen.lower import lower
-from piezo_sym.codegen.numpy_head import MARK
-from piezo_sym.codegen.numpy_printer import numpy_module
+from piezo_sym.codegen.numpy.head import MARK
+from piezo_sym.codegen.numpy.module import numpy_module
+from piezo_sym.codegen.program import Program
 
-__all__ = [
-    "MARK",
-    "c_collocation",
-    "c_header",
-    "c_source",
-    "c_step_header",
-    "collocation_of",
-    "lower",
-    "numpy_module",
-]
+#: Every language that is printed.
+BACKENDS: tuple[Backend, ...] = (numpy, c)
+
+
+def printed(program: Program, step: Collocation) -> dict[str, str]:
+    """Return the text of each file of a module, by how its name ends after the model's."""
+    return {end: text for b in BACKENDS for end, text in b.files(program, step).items()}
+
+
+__all__ = ["MARK", "collocation_of", "lower", "numpy_module", "printed"]

@@ -28,6 +28,8 @@ from piezo_sym.translation.zero import Edges, edges_of, is_zero
 
 STATEMENT = "the printed NumPy, C and step files are the proved system (real arithmetic)"
 MOST_TEXT = 4_000_000
+#: The texts that are read back, by how their files end.
+READ = {".py": "NumPy", ".c": "C", "_step.c": "step"}
 #: So many rows that are not shown to be right are looked at for numbers at which they are wrong.
 MOST_TRIED = 4
 _ENOUGH = {
@@ -57,20 +59,21 @@ def reference_of(iphs: IPHS) -> Reference:
     return Reference(proved(iphs), proved_step(iphs))
 
 
-def program_rows(iphs: IPHS, numpy_text: str, c_text: str, step_text: str) -> tuple[Row, ...]:
+def program_rows(iphs: IPHS, texts: Mapping[str, str]) -> tuple[Row, ...]:
     """Return the row `program` of a system and its printed modules.
 
     Parameters
     ----------
     iphs : from `derive`.
-    numpy_text : from `numpy_module`.
-    c_text : from `c_source`, without the step.
-    step_text : from `c_collocation`.
+    texts : from `printed`.
     """
-    texts = {"NumPy": numpy_text, "C": c_text, "step": step_text}
     try:
         known = reference_of(iphs)
-        found = [row for name, text in texts.items() for row in different(name, text, iphs, known)]
+        found = [
+            row
+            for ending, language in READ.items()
+            for row in different(language, texts[ending], iphs, known)
+        ]
     except (NotShownError, RecursionError) as error:
         found = [_open(str(error))]
     refuted = (row for row in found if row.verdict is Verdict.REFUTED)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from piezo_sym.codegen import c_collocation, c_source, collocation_of, lower, numpy_module
+from piezo_sym.codegen import collocation_of, lower, printed
 from piezo_sym.falsify import POINTS, Attack, falsify, module_from
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs import Report, Row, Verdict, decide
@@ -31,14 +31,12 @@ def examine(iphs: IPHS, points: int = POINTS) -> Iterator[Report]:
     """
     proved = decide(iphs)
     yield proved
-    program = lower(iphs, "")
-    numpy_text = numpy_module(program)
-    texts = numpy_text, c_source(program), c_collocation(program, collocation_of(iphs))
-    rows = (*proved.rows, *program_rows(iphs, *texts))
+    texts = printed(lower(iphs, ""), collocation_of(iphs))
+    rows = (*proved.rows, *program_rows(iphs, texts))
     yield replace(proved, rows=rows)
     proofs = (row for row in rows if row.id in ATTACKED and row.verdict is Verdict.PROVED)
     claims = tuple((row.id, row.element) for row in proofs)
-    attacks = falsify(iphs, module_from(numpy_text), claims, points=points)
+    attacks = falsify(iphs, module_from(texts[".py"]), claims, points=points)
     found = {(attack.id, attack.element): attack for attack in attacks}
     attacked = (_attacked(row, found.get((row.id, row.element))) for row in rows)
     rounding = (_rounding(attack) for attack in attacks if attack.rounding)

@@ -8,15 +8,8 @@ from pathlib import Path
 import pytest
 
 from piezo_sym import Model, derive, load
-from piezo_sym.codegen import (
-    c_collocation,
-    c_header,
-    c_source,
-    c_step_header,
-    collocation_of,
-    lower,
-)
-from piezo_sym.codegen.c_names import KEPT
+from piezo_sym.codegen import collocation_of, lower, printed
+from piezo_sym.codegen.c.names import KEPT
 from piezo_sym.errors import SpecError
 from piezo_sym.run.engine.alone import step_alone
 from piezo_sym.spec.names import check_symbol
@@ -54,11 +47,8 @@ def called(words, folder):
 def written(model, folder):
     """Write a model's C files, and return their common name."""
     iphs = derive(model)
-    program = lower(iphs, "verdict")
-    texts = {".h": c_header(program), ".c": c_source(program)}
-    made = collocation_of(iphs)
-    texts["_step.h"] = c_step_header(program, made)
-    texts["_step.c"] = c_collocation(program, made) + step_alone(model.name)
+    texts = printed(lower(iphs, "verdict"), collocation_of(iphs))
+    texts["_step.c"] += step_alone(model.name)
     for ending, text in texts.items():
         (folder / f"{model.name}{ending}").write_text(text, encoding="utf-8")
     return model.name

@@ -16,8 +16,8 @@ from hypothesis import strategies as st
 from mpmath import iv
 
 from piezo_sym.algebra.symbols import to_sympy
-from piezo_sym.codegen.c_style import c_piece, c_style, helpers
-from piezo_sym.codegen.numpy_style import numpy_text
+from piezo_sym.codegen.c.style import c_piece, c_style, helpers
+from piezo_sym.codegen.numpy.style import numpy_text
 from piezo_sym.expressions.calculus import clause, derivative, rule
 from piezo_sym.expressions.dimensions import dimension, matches
 from piezo_sym.expressions.enclosure import UndecidedError, interval_of

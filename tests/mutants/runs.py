@@ -72,7 +72,7 @@ def mutated(text: str, mutant: Mutant) -> Said:
     """Return what a mutant says of a spec: rows, proofs; and whether the net notices anything."""
     install(mutant)
     _answer_here()
-    from piezo_sym.codegen import c_collocation, c_source, collocation_of, lower, numpy_module
+    from piezo_sym.codegen import collocation_of, lower, printed
     from piezo_sym.derivation import derive
     from piezo_sym.errors import ContradictionError
     from piezo_sym.falsify import falsify, module_from
@@ -82,16 +82,14 @@ def mutated(text: str, mutant: Mutant) -> Said:
 
     iphs = derive(parse(text))
     report = decide(iphs)
-    program = lower(iphs, "")
-    module = numpy_module(program)
-    texts = module, c_source(program), c_collocation(program, collocation_of(iphs))
-    rows = (*report.rows, *program_rows(iphs, *texts))
+    texts = printed(lower(iphs, ""), collocation_of(iphs))
+    rows = (*report.rows, *program_rows(iphs, texts))
     whole = Report(report.model, rows, report.obligations, report.system)
     said = {"rows": _verdicts(whole), "system": _system(iphs, report), "net": ""}
     said["proofs"] = proofs_json(whole, iphs.model, "made by a test")
     claims = [key for key, verdict in said["rows"].items() if verdict == "PROVED"]
     try:
-        attacks = falsify(iphs, module_from(module), claims, points=POINTS)
+        attacks = falsify(iphs, module_from(texts[".py"]), claims, points=POINTS)
     except ContradictionError as error:
         said["net"] = str(error)
     else:

@@ -19,14 +19,7 @@ from strategy import networks
 from test_specs import points
 
 from piezo_sym import derive, load
-from piezo_sym.codegen import (
-    c_collocation,
-    c_header,
-    c_source,
-    collocation_of,
-    lower,
-    numpy_module,
-)
+from piezo_sym.codegen import collocation_of, lower, printed
 from piezo_sym.errors import PiezoError
 from piezo_sym.modules import load_module, module_of
 from piezo_sym.run.discrete import FixedStep, fixed
@@ -45,12 +38,7 @@ AGREEMENT = 1e-11
 def twins(iphs, folder):
     """Return a module, written into a folder, and the same with its functions compiled."""
     program = lower(iphs, "verdict")
-    texts = {
-        ".py": numpy_module(program),
-        ".h": c_header(program),
-        ".c": c_source(program),
-        "_step.c": c_collocation(program, collocation_of(iphs)),
-    }
+    texts = printed(program, collocation_of(iphs))
     for ending, text in texts.items():
         (Path(folder) / f"{program.name}{ending}").write_text(text, encoding="utf-8")
     return twin(load_module(Path(folder) / f"{program.name}.py"))

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from piezo_sym import load
-from piezo_sym.codegen.c_names import KEPT
+from piezo_sym.codegen.c.names import KEPT
 from piezo_sym.modules import module_of
 from piezo_sym.run.engine import engine as engines
 from piezo_sym.run.engine.compiler import FLAGS, build, compilers

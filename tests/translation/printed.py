@@ -1,12 +1,21 @@
 """What is printed of a system, by the name that the row `program` gives to the text."""
 
-from piezo_sym.codegen import c_collocation, c_source, collocation_of, lower, numpy_module
+from piezo_sym import codegen
+from piezo_sym.codegen import collocation_of, lower
+from piezo_sym.translation import program_rows
+from piezo_sym.translation.program import READ
 
-TEXTS = ("NumPy", "C", "step")
+TEXTS = tuple(READ.values())
 
 
 def printed(iphs, program=None):
     """Return each text of a system; the first two of another program, if there is one."""
-    program = program or lower(iphs, "")
-    step = c_collocation(lower(iphs, ""), collocation_of(iphs))
-    return dict(zip(TEXTS, (numpy_module(program), c_source(program), step), strict=True))
+    step = collocation_of(iphs)
+    texts = codegen.printed(program or lower(iphs, ""), step)
+    texts["_step.c"] = codegen.printed(lower(iphs, ""), step)["_step.c"]
+    return {language: texts[ending] for ending, language in READ.items()}
+
+
+def rows(iphs, texts):
+    """Return the rows `program` of a system and texts, by the names of `printed`."""
+    return program_rows(iphs, {ending: texts[language] for ending, language in READ.items()})

@@ -14,10 +14,9 @@ from piezo_sym.expressions.calculus import add, mul
 from piezo_sym.expressions.tree import LaneSum, Num
 from piezo_sym.proofs.report import Verdict
 from piezo_sym.spec.load import parse
-from piezo_sym.translation import program_rows
 from piezo_sym.translation.program import different, reference_of
 from tests.translation.mutants import mutants
-from tests.translation.printed import TEXTS, printed
+from tests.translation.printed import TEXTS, printed, rows
 
 SPECS = Path(__file__).parents[1] / "networks" / "specs"
 ALL = ["piezo_stack", *sorted(path.name for path in SPECS.glob("*.toml"))]
@@ -44,7 +43,7 @@ def verdict(iphs, known, language, text):
 @pytest.mark.parametrize("name", ALL)
 def test_what_is_printed_is_proved(name):
     iphs = iphs_of(name)
-    (row,) = program_rows(iphs, *printed(iphs).values())
+    (row,) = rows(iphs, printed(iphs))
     assert (row.id, row.verdict) == ("program", Verdict.PROVED), row.reason
 
 
@@ -95,9 +94,9 @@ def test_a_change_of_a_quantity_before_it_is_printed_is_refuted(language):
 
 def test_a_refuted_row_has_numbers():
     iphs = iphs_of("piezo_stack")
-    text, *others = printed(iphs).values()
-    text = text.replace("V_in - V_capacitor - V_hys", "V_in + V_capacitor - V_hys")
-    (row,) = program_rows(iphs, text, *others)
+    texts = printed(iphs)
+    wrong = texts["NumPy"].replace("V_in - V_capacitor - V_hys", "V_in + V_capacitor - V_hys")
+    (row,) = rows(iphs, {**texts, "NumPy": wrong})
     assert row.verdict is Verdict.REFUTED
     assert "rhs['phi']" in row.reason
     assert {*row.witness} >= {"q", "p", "Q_C", "phi", "S", "V_in", "C"}
@@ -108,5 +107,5 @@ def test_a_long_condition_of_a_bank_is_printed_as_its_least_lane():
     sizes = " + ".join(f"{n}*L*i_0" for n in range(10, 20))
     model = parse(words.replace('"lam >= 0"', f'"lam >= 0", "phi < {sizes}"'))
     iphs = derive(model)
-    (row,) = program_rows(iphs, *printed(iphs).values())
+    (row,) = rows(iphs, printed(iphs))
     assert row.verdict is Verdict.PROVED, row.reason

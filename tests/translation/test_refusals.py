@@ -5,10 +5,9 @@ import pytest
 from piezo_sym import derive, load
 from piezo_sym.proofs.report import Verdict
 from piezo_sym.spec.load import parse
-from piezo_sym.translation import program_rows
 from piezo_sym.translation.program import different, reference_of
 from tests.mutants.specs import spec_of
-from tests.translation.printed import printed
+from tests.translation.printed import printed, rows
 from tests.translation.test_program import SPECS
 
 NUMPY = {
@@ -153,13 +152,13 @@ def test_margins_are_compared_outside_the_domain_too(made, language, old, new):
 
 def test_all_is_proved_without_a_change(made):
     texts, iphs, _ = made
-    assert program_rows(iphs, *texts.values())[0].verdict is Verdict.PROVED
+    assert rows(iphs, texts)[0].verdict is Verdict.PROVED
 
 
 def test_roots_in_the_domain_are_read_back():
     """SymPy splits sqrt(a/d) where it knows that d > 0; a margin knows nothing."""
     iphs = derive(parse(spec_of("d*v | d > 0; sqrt(a/d) >= 0 | a=1.0")))
-    (found,) = program_rows(iphs, *printed(iphs).values())
+    (found,) = rows(iphs, printed(iphs))
     assert found.verdict is Verdict.PROVED
 
 

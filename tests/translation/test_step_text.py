@@ -8,10 +8,9 @@ import pytest
 from piezo_sym import derive, load
 from piezo_sym.proofs.report import Verdict
 from piezo_sym.spec.load import parse
-from piezo_sym.translation import program_rows
 from piezo_sym.translation.program import different, reference_of
 from tests.mutants.specs import spec_of
-from tests.translation.printed import printed
+from tests.translation.printed import printed, rows
 from tests.translation.test_program import iphs_of
 
 #: N is hysteron_count here; i_h and V_h are i_hysteron and V_hysteron.
@@ -208,7 +207,7 @@ def test_a_margin_of_a_bank_is_that_of_its_least_lane():
     iphs = derive(parse(words.replace('"lam >= 0"', '"lam >= 0", "phi < L*(i_0 + 10)"')))
     texts = printed(iphs)
     assert "least(m[" in texts["step"]
-    (found,) = program_rows(iphs, *texts.values())
+    (found,) = rows(iphs, texts)
     assert found.verdict is Verdict.PROVED, found.reason
 
 

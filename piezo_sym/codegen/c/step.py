@@ -12,11 +12,11 @@ from dataclasses import replace
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
-from piezo_sym.codegen.c_head import opening
-from piezo_sym.codegen.c_lines import Words, indented, stage_lines, statement, used_only
-from piezo_sym.codegen.c_names import added, c_names
-from piezo_sym.codegen.c_record import comment, give_text, place_text, record_text
-from piezo_sym.codegen.c_stages import Write, stages
+from piezo_sym.codegen.c.head import opening
+from piezo_sym.codegen.c.lines import Words, indented, stage_lines, statement, used_only
+from piezo_sym.codegen.c.names import added, c_names
+from piezo_sym.codegen.c.order import Write, stages
+from piezo_sym.codegen.c.record import comment, give_text, place_text, record_text
 from piezo_sym.codegen.collocation import Collocation
 from piezo_sym.codegen.coupling import coupling_of, table
 from piezo_sym.codegen.places import Places, places
@@ -45,7 +45,7 @@ NOTE = "/* A step of Gauss collocation; row program of the proofs covers integra
 _POWERS = "static inline real power_{n}_of(real z)\n{{\n    return {product};\n}}"
 
 
-def c_collocation(program: Program, made: Collocation) -> str:
+def c_step(program: Program, made: Collocation) -> str:
     """Return the text of a model's collocation step."""
     printer = _Printer(program, made)
     functions = [

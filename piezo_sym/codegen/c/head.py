@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from textwrap import wrap
 
-from piezo_sym.codegen.c_names import added, c_names
-from piezo_sym.codegen.numpy_head import MARK
+from piezo_sym.codegen.c.names import added, c_names
+from piezo_sym.codegen.numpy.head import MARK
 from piezo_sym.codegen.program import Field, Program
 from piezo_sym.errors import one_line
 from piezo_sym.version import VERSION

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from piezo_sym.codegen.c_head import opening, spread, wrapped
+from piezo_sym.codegen.c.head import opening, spread, wrapped
 from piezo_sym.codegen.collocation import Collocation
 from piezo_sym.codegen.program import Program
 

@@ -10,8 +10,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
-from piezo_sym.codegen.c_head import FUNCTIONS, declaration, opening, text_of
-from piezo_sym.codegen.c_lines import (
+from piezo_sym.codegen.c.head import FUNCTIONS, declaration, opening, text_of
+from piezo_sym.codegen.c.lines import (
     Words,
     define,
     indented,
@@ -20,9 +20,9 @@ from piezo_sym.codegen.c_lines import (
     used_only,
     write_lines,
 )
-from piezo_sym.codegen.c_names import added, c_names
-from piezo_sym.codegen.c_stages import Write, lane_quantities, stages
-from piezo_sym.codegen.c_style import helpers
+from piezo_sym.codegen.c.names import added, c_names
+from piezo_sym.codegen.c.order import Write, lane_quantities, stages
+from piezo_sym.codegen.c.style import helpers
 from piezo_sym.codegen.places import Places, places
 from piezo_sym.codegen.program import (
     Entry,

@@ -11,8 +11,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
-from piezo_sym.codegen.numpy_head import RATES, head
-from piezo_sym.codegen.numpy_style import NUMPY, numpy_text
+from piezo_sym.codegen.numpy.head import RATES, head
+from piezo_sym.codegen.numpy.style import NUMPY, numpy_text
 from piezo_sym.codegen.places import Places, places, size_in_words
 from piezo_sym.codegen.program import (
     Entry,

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from typing import final
 
 from piezo_sym.codegen.branches import with_branches
-from piezo_sym.codegen.c_stages import Loop, Stage, Write
-from piezo_sym.codegen.c_style import c_piece, c_style, is_constant, real_style, widened
+from piezo_sym.codegen.c.order import Loop, Stage, Write
+from piezo_sym.codegen.c.style import c_piece, c_style, is_constant, real_style, widened
 from piezo_sym.codegen.program import Quantity
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.text import PRODUCT, SUM, Style, enclose, signed, write_comparison

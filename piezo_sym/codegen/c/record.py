@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from textwrap import wrap
 
-from piezo_sym.codegen.c_lines import WIDTH, indented
+from piezo_sym.codegen.c.lines import WIDTH, indented
 from piezo_sym.codegen.program import Program
 
 
