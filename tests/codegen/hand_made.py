@@ -1,0 +1,242 @@
+"""Modules of models that no spec can write yet: energies, laws and banks are typed in.
+
+Input: states, an energy, rates in co-states.  Output: a generated module, loaded from a folder.
+Co-states are the energy's derivatives, as ``E_<state>``; all else is what a spec goes through:
+branches, slopes for Newton's method, printers, the engine.
+"""
+
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from pathlib import Path
+
+from piezo_sym.algebra.lanes import Slot
+from piezo_sym.codegen import printed
+from piezo_sym.codegen.collocation import Collocation, Slopes, Stage
+from piezo_sym.codegen.differences import sharp_program, sharp_quantity
+from piezo_sym.codegen.jacobian import jacobian_of
+from piezo_sym.codegen.program import Field, Function, Limit, Program, Quantity, Row
+from piezo_sym.codegen.switches import Switches, compared, lanes_of
+from piezo_sym.expressions.calculus import add, derivative, div, is_affine
+from piezo_sym.expressions.parse import parse_rule
+from piezo_sym.expressions.tree import LaneSum, Num, Sym, rebuild
+from piezo_sym.modules import load_module
+from piezo_sym.spec.names import fresh
+
+DRIVEN, STATE = ("x", "u", "p"), ("x", "p")
+
+
+@dataclass
+class HandMade:
+    """A model, law by law; texts are of the law language, `(text, bank)` where lanes differ.
+
+    Attributes
+    ----------
+    parameters : name -> value; of a bank, a tuple of values.
+    inputs : name -> value.
+    states : name -> (where it starts, its bank).
+    energies : terms of the Hamiltonian; a bank's is summed over its lanes.
+    laws : further names, in order, in parameters, states, inputs, co-states and each other.
+    rates : state -> its rate.
+    supply : port -> the power that it puts in.
+    heats : process -> (power turned into heat, the entropy that takes it).
+    counts : bank -> lanes.
+    limits : what must be positive, in states and laws.
+    """
+
+    name: str
+    parameters: dict
+    states: dict
+    energies: list
+    rates: dict
+    inputs: dict = field(default_factory=dict)
+    laws: dict = field(default_factory=dict)
+    supply: dict = field(default_factory=dict)
+    heats: dict = field(default_factory=dict)
+    counts: dict = field(default_factory=dict)
+    limits: tuple = ()
+
+    def module(self, folder):
+        """Write the module's files into a folder; return the module."""
+        texts = printed(sharp_program(self.program()), self.collocation())
+        for ending, text in texts.items():
+            (Path(folder) / f"{self.name}{ending}").write_text(text, encoding="utf-8")
+        return load_module(Path(folder) / f"{self.name}.py")
+
+    def program(self):
+        """Return what the module computes."""
+        q = _Quantities(self, self.costates())
+        rates = self._rows(self.rates, q)
+        jacobian = jacobian_of(rates, self.fields(), self.lanes(), q)
+        total = [
+            q.total(e, bank, f"energy_{n}") if bank else e for n, (e, bank) in self._energies()
+        ]
+        entropies = dict.fromkeys(body for _, body in self.heats.values())
+        produced = [Row(r.slot, div(r.value, Sym(f"E_{s}"))) for r, s in self._heated(q)]
+        ports = tuple(Row(Slot(name), read(text)) for name, text in self.supply.items())
+        starts = tuple(Row(Slot(s, b), _number(v)) for s, (v, b) in self.states.items())
+        temperatures = tuple(Row(Slot(s), Sym(f"E_{s}")) for s in entropies)
+        functions = (
+            Function("initial_state", "State at t = 0", ("u", "p"), starts),
+            Function("rhs", "Rates", DRIVEN, rates),
+            Function("outputs", "Power put in", DRIVEN, ports),
+            Function("supply", "Power put in [W], one a port", DRIVEN, ports),
+            Function("energy", "Hamiltonian U [J]", STATE, (Row(Slot("U"), add(*total)),), True),
+            Function("entropy", "Entropy", STATE, (_sum("S", entropies),), True),
+            Function("temperatures", "Temperatures [K]", STATE, temperatures),
+            Function("heat", "Heat [W]", DRIVEN, tuple(row for row, _ in self._heated(q))),
+            Function("entropy_production", "Production [W/K]", DRIVEN, tuple(produced)),
+        )
+        counts = {f"{name}_count": count for name, count in self.counts.items()}
+        return Program(
+            name=self.name,
+            title="",
+            source="",
+            sha256="0" * 64,
+            verdict="",
+            parameters=tuple(Field(n, "1", "", b) for n, (_, b) in self._parameters()),
+            inputs=tuple(Field(name, "1", "") for name in self.inputs),
+            states=self.fields(),
+            outputs=tuple(Field(name, "W", "") for name in self.supply),
+            processes=tuple(
+                Field(r.slot.label, "W/K", "", r.slot.bank) for r, _ in self._heated(q)
+            ),
+            bodies=tuple(Field(name, "K", "") for name in entropies),
+            defaults={**{n: v for n, (v, _) in self._parameters()}, **self.inputs, **counts},
+            counts=self.counts,
+            quantities=tuple(q.defined),
+            functions=functions,
+            jacobian=jacobian,
+            limits=self._limits(),
+            taken=frozenset(q.taken),
+        )
+
+    def collocation(self):
+        """Return the model's step."""
+        means = tuple(c for c in self.costates() if not self._affine(c))
+        q = _Quantities(self, [c for c in self.costates() if self._affine(c)])
+        q.taken |= {mean.name for mean in means}
+        lanes = {**self.lanes(), **{mean.name: mean.bank for mean in means if mean.bank}}
+        switches = Switches(lanes_of(lanes, q.defined), q.name)
+        quantities = [*switches.quantities(q.defined)]
+        rates = switches.rows(self._rows(self.rates, q))
+        heats = self._heated(q)
+        produced = tuple(Row(row.slot, div(row.value, Sym(f"E_{s}"))) for row, s in heats)
+        ports = tuple(Row(Slot(name), read(text)) for name, text in self.supply.items())
+        booked = switches.rows((*ports, *(row for row, _ in heats), *produced))
+        quantities += switches.new()
+        stage = Stage(
+            tuple(map(sharp_quantity, quantities)),
+            rates,
+            booked,
+            tuple(switches.found.values()),
+            self._limits(),
+            frozenset(q.taken),
+        )
+        means = tuple(sharp_quantity(replace(m, value=compared(m.value))) for m in means)
+        return Collocation(means, stage, self._slopes(), -1, False)
+
+    def _slopes(self):
+        q = _Quantities(self, self.costates())
+        free = {c.name for c in self.costates() if not self._affine(c)}
+        switches = Switches(lanes_of(self.lanes(), q.defined), q.name)
+        q.defined[:] = switches.quantities(q.defined, free)
+        rates = switches.rows(self._rows(self.rates, q))
+        q.defined += switches.new()
+        entries = jacobian_of(rates, self.fields(), switches.lanes, q).entries
+        found = tuple(switches.found.values())
+        return Slopes(tuple(map(sharp_quantity, q.defined)), entries, found, frozenset(q.taken))
+
+    def costates(self):
+        """Return the energy's derivatives, each one per lane if its state is."""
+        found = []
+        for state, (_, bank) in self.states.items():
+            terms = []
+            for _, (energy, own) in self._energies():
+                slope = derivative(energy, state)
+                terms.append(LaneSum(slope, own) if own and not bank else slope)
+            found.append(Quantity(f"E_{state}", add(*terms), bank, "co-states"))
+        return found
+
+    def fields(self):
+        """Return the states."""
+        return tuple(Field(name, "1", "", bank) for name, (_, bank) in self.states.items())
+
+    def lanes(self):
+        """Return the bank of each name that has a value per lane."""
+        found = {name: bank for name, (_, bank) in self._parameters() if bank}
+        return found | {name: bank for name, (_, bank) in self.states.items() if bank}
+
+    def _affine(self, costate):
+        return is_affine(costate.value, set(self.states))
+
+    def _energies(self):
+        return enumerate((read(text), bank) for text, bank in map(_with_bank, self.energies))
+
+    def _parameters(self):
+        for name, value in self.parameters.items():
+            yield name, value if isinstance(value, tuple) else (value, None)
+
+    def _rows(self, given, q):
+        return tuple(Row(Slot(n, self.states[n][1]), q.settled(read(t))) for n, t in given.items())
+
+    def _heated(self, q):
+        found = []
+        for name, (text, body) in self.heats.items():
+            text, bank = _with_bank(text)
+            found.append((Row(Slot(name, bank), q.settled(read(text))), body))
+        return found
+
+    def _limits(self):
+        return tuple(Limit(f"{text} > 0", True, read(text)) for text in self.limits)
+
+
+class _Quantities:
+    """Definitions in order, as `jacobian_of` lets them grow."""
+
+    def __init__(self, model, costates):
+        self.defined = []
+        self.taken = {*model.parameters, *model.states, *model.inputs, *model.laws, *model.counts}
+        self.taken |= {f"E_{state}" for state in model.states}
+        for costate in costates:
+            self.defined.append(replace(costate, value=self.settled(costate.value)))
+        for name, given in model.laws.items():
+            text, bank = _with_bank(given)
+            self.defined.append(Quantity(name, self.settled(read(text)), bank, "laws"))
+
+    def name(self, base):
+        found = fresh(base, self.taken)
+        self.taken.add(found)
+        return found
+
+    def define(self, base, value, bank, note):
+        self.defined.append(Quantity(self.name(base), value, bank, note))
+        return Sym(self.defined[-1].name)
+
+    def total(self, arg, bank, base):
+        return self.define(base, LaneSum(arg, bank), None, "sums over lanes")
+
+    def known(self, expr):
+        return expr
+
+    def settled(self, expr):
+        """Return an expression in which each sum over lanes is a name."""
+        if isinstance(expr, LaneSum):
+            return self.total(expr.arg, expr.bank, "total")
+        return rebuild(expr, self.settled)
+
+
+def read(text):
+    """Return a text of the law language as a tree; trees pass."""
+    return parse_rule(text) if isinstance(text, str) else text
+
+
+def _with_bank(given):
+    return given if isinstance(given, tuple) else (given, None)
+
+
+def _number(value):
+    return Num(Fraction(repr(float(value))))
+
+
+def _sum(name, states):
+    return Row(Slot(name), add(*map(Sym, states)))
