@@ -20,7 +20,10 @@
 #if !defined(REAL_WIDTH) /* numbers of one run; run/engine has vectors of many */
 #define REAL_WIDTH 1
 #define ALONE
-typedef double real;
+#if !defined(REAL)
+#define REAL double /* or float */
+#endif
+typedef REAL real;
 #define zero 0.0
 #define wide(value) (value)
 #define chosen(condition, then, other) ((condition) ? (then) : (other))
@@ -36,6 +39,8 @@ typedef double real;
 #define cosh_of cosh
 #define erf_of erf
 #define pow_of pow
+#define is_above(a, b) ((a) > (b))
+#define is_at_least(a, b) ((a) >= (b))
 #define least(a, b) ((a) < (b) || (a) != (a) ? (a) : (b))
 #define OF(value, lane) (value)
 #endif
@@ -131,9 +136,9 @@ static void piezo_stack_stage(const real *restrict x,
         const real switch_1 = -i_0[j] - i_hysteron;
         const real switch_2 = i_hysteron - i_0[j];
         const real chosen_V_hysteron = chosen(
-            branch_2[j] > 0.0,
+            is_above(branch_2[j], 0.0),
             i_hysteron - i_0[j],
-            chosen(branch_1[j] > 0.0, i_hysteron + i_0[j], wide(0.0)));
+            chosen(is_above(branch_1[j], 0.0), i_hysteron + i_0[j], wide(0.0)));
         const real V_hysteron = rho[j]/T_minus_T_0*chosen_V_hysteron;
         sum_i_hysteron += i_hysteron;
         heat_hysteron += V_hysteron*i_hysteron;
@@ -205,14 +210,14 @@ static void piezo_stack_slopes(const real *restrict x,
     for (long j = 0; j < hysteron_count; ++j) {
         const real i_hysteron = phi[j]/L[j];
         const real chosen_V_hysteron = chosen(
-            branch_2[j] > 0.0,
+            is_above(branch_2[j], 0.0),
             i_hysteron - i_0[j],
-            chosen(branch_1[j] > 0.0, i_hysteron + i_0[j], wide(0.0)));
+            chosen(is_above(branch_1[j], 0.0), i_hysteron + i_0[j], wide(0.0)));
         const real V_hysteron = rho[j]/T_minus_T_0*chosen_V_hysteron;
         const real dchosen_V_hysteron_dphi = chosen(
-            branch_2[j] > 0.0,
+            is_above(branch_2[j], 0.0),
             1.0/L[j],
-            chosen(branch_1[j] > 0.0, 1.0/L[j], wide(0.0)));
+            chosen(is_above(branch_1[j], 0.0), 1.0/L[j], wide(0.0)));
         const real dV_hysteron_dphi = rho[j]/T_minus_T_0*dchosen_V_hysteron_dphi;
         const real dheat_hysteron_dphi = i_hysteron*dV_hysteron_dphi + V_hysteron/L[j];
         const real dV_hysteron_dS = -rho[j]/power_2_of(T_minus_T_0)*chosen_V_hysteron*dT_minus_T_0_dS;
@@ -438,6 +443,12 @@ static const double basis_stage[1][1] = {
  */
 
 #include <stddef.h>
+
+/* What rounding leaves of a change, in parts of a state's size, and how much of it may be left where
+ * rates are made of much larger numbers; no size is less than the third. */
+#define NOISE (sizeof(real) < sizeof(double) ? 1e-7 : 1e-16)
+#define MOST_NOISE (sizeof(real) < sizeof(double) ? 1e5 : 1e4)
+#define NO_SIZE (sizeof(real) < sizeof(double) ? 1e-30 : 1e-300)
 
 
 /* The runs of all lanes, as they take a step: sizes, and the numbers that it works on. */
@@ -829,8 +840,6 @@ enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
 #define SLOW 0.1
 /* Changes go to and fro where so much of one is left, with the other sign. */
 #define TO_AND_FRO 0.5
-/* What Newton's method may leave of a state's change, in parts of its largest magnitude. */
-#define NOISE 1e-16
 
 
 /* Newton's change of the rates, from the gaps; gaps become it. */
@@ -895,9 +904,9 @@ static mask MODEL(accepted)(const MODEL(block) *m)
  */
 static real MODEL(damping)(const MODEL(block) *m)
 {
-    real both = zero, prior = 1e-300 + zero;
+    real both = zero, prior = NO_SIZE + zero;
     for (long k = 0; k < m->n; ++k) {
-        const real size = m->largest[k] + size_of(m->x[k]) + 1e-300;
+        const real size = m->largest[k] + size_of(m->x[k]) + NO_SIZE;
         for (long j = 0; j < STAGES; ++j) {
             const real last = m->prior[j * m->n + k] / size;
             both += last * (m->gap[j * m->n + k] / size);
@@ -934,7 +943,7 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
                 moved = largest_of(moved, size_of(*rate));
                 changed += size_of(change);
             }
-            const real size = NOISE * (m->largest[k] + size_of(m->x[k]) + h * moved) + 1e-300;
+            const real size = NOISE * (m->largest[k] + size_of(m->x[k]) + h * moved) + NO_SIZE;
             worst = largest_of(h * changed / size, worst);
         }
         const mask switched = MODEL(gaps)(m, h, going);
@@ -942,7 +951,7 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
         mask good = (worst <= 4.0) | (smaller & (worst * (worst / before) <= 4.0));
         if (iteration > 1) { /* noise of what rates are made of, or no root */
             const mask stays = (worst > m->stays * before) & none_of(good);
-            good |= stays & (worst < (m->late == SOON || iteration > NOISY ? 1e4 : 100.0));
+            good |= stays & (worst < (m->late == SOON || iteration > NOISY ? MOST_NOISE : 100.0));
             if (iteration > m->late)
                 going &= none_of(stays & none_of(good));
         }
@@ -960,7 +969,7 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
 /* What the last polynomial of Legendre has of a function at nodes, in parts of its size. */
 static real MODEL(last_part)(const MODEL(block) *m, long k, const double *last, long nodes)
 {
-    real sum = zero, most = 1e-300 + zero;
+    real sum = zero, most = NO_SIZE + zero;
     for (long q = 0; q < nodes; ++q) {
         sum += last[q] * m->node[q * m->means + k];
         most = largest_of(size_of(m->node[q * m->means + k]), most);
@@ -1000,7 +1009,7 @@ static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
 static long MODEL(made)(MODEL(block) *m, const MODEL(parameters) *p, long *sizes, real *space)
 {
     m->over = 1, m->most = MOST_OF_FIXED, m->late = LATE, m->stays = 0.7;
-    return MODEL(make)(m, p, 0, sizes, space);
+    return MODEL(make)(m, p, 0, sizes, (real *)space);
 }
 
 long MODEL(step_size)(const MODEL(parameters) *p)
@@ -1017,8 +1026,8 @@ int MODEL(step)(double *x, const double *u, double h, const MODEL(parameters) *p
 {
     MODEL(block) block = {0}, *const m = &block;
     long sizes[SIZES];
-    const long size = MODEL(made)(m, p, sizes, space);
-    real *const largest = space + size;
+    const long size = MODEL(made)(m, p, sizes, (real *)space);
+    real *const largest = (real *)space + size;
     memset(space, 0, (size_t)size * sizeof *space);
     MODEL(give)(&m->p, p, 0);
     for (long k = 0; k < m->n; ++k) {
@@ -1033,7 +1042,7 @@ int MODEL(step)(double *x, const double *u, double h, const MODEL(parameters) *p
         booked[k] = h * m->rows[k];
     MODEL(reach)(m, h, stage_weight, m->end);
     MODEL(integrands)(m->end, &m->p, m->node);
-    MODEL(stage)(m->end, m->node, m->branch, u, &m->p, m->gap, m->rows, m->side, m->margin);
+    MODEL(stage)(m->end, m->node, m->branch, m->u, &m->p, m->gap, m->rows, m->side, m->margin);
     int good = MODEL(within)(m->margin);
     for (long k = 0; k < m->n; ++k)
         good &= size_of(m->gap[k]) < 1e300;

@@ -34,6 +34,11 @@ MAX_PLACES = 340
 Piece = tuple[str, int]  # text, and how strongly its outermost operator binds
 
 
+def compared(left: Piece, op: str, right: Piece) -> str:
+    """Return a comparison as most languages write it."""
+    return f"{enclose(left, SUM)} {op} {enclose(right, SUM)}"
+
+
 @final
 @dataclass(frozen=True)
 class Style:
@@ -48,6 +53,7 @@ class Style:
     call: Callable[[str, tuple[Piece, ...]], Piece]
     choose: Callable[[Piece, str, Piece], Piece]
     lane_sum: Callable[[Piece, str], Piece]
+    compare: Callable[[Piece, str, Piece], str] = compared
 
 
 def enclose(piece: Piece, strength: int) -> str:
@@ -63,8 +69,7 @@ def write(node: Expr, style: Style) -> str:
 
 def write_comparison(condition: Cmp, style: Style) -> str:
     """Return a comparison as text in the language of `style`."""
-    left, right = piece(condition.left, style), piece(condition.right, style)
-    return f"{enclose(left, SUM)} {condition.op} {enclose(right, SUM)}"
+    return style.compare(piece(condition.left, style), condition.op, piece(condition.right, style))
 
 
 def piece(node: Expr, style: Style) -> Piece:

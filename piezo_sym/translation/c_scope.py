@@ -89,6 +89,18 @@ Branch = tuple[Value, str | None]
 Meaning = Read | Argument | Variable | Lanes | Listed | Branches
 
 
+#: What the step's own words for comparisons stand for.
+COMPARISONS: dict[str, ast.cmpop] = {"is_above": ast.Gt(), "is_at_least": ast.GtE()}
+
+
+def comparison(node: ast.expr) -> ast.expr:
+    """Return what a comparison of ``real`` stands for: ``is_above(a, b)`` for ``a > b``."""
+    match node:
+        case ast.Call(ast.Name(word), [left, right], []) if word in COMPARISONS:
+            return ast.Compare(left, [COMPARISONS[word]], [right])
+    raise refused(node, "a comparison")
+
+
 class UnreadError(NotShownError):
     """A name stands for what has not been read: more is to be read before."""
 
@@ -157,7 +169,8 @@ class Scope:
                 return value, WHOLE if whole else PLAIN
             case ast.Subscript(ast.Name(x), place) if self.roles.get(x) in {"x", "u", "g"}:
                 return self.known.part(self.roles[x], self.read.whole(place)), PLAIN
-            case ast.Call(ast.Name("chosen"), [condition, then, other], []):
+            case ast.Call(ast.Name("chosen"), [test, then, other], []):
+                condition = comparison(test)
                 if self.branches is None:
                     return self.read.choice(condition, then, other)
                 return self.read.chosen(self._branch(condition, self.branches), then, other)

@@ -40,7 +40,10 @@ MACROS = """\
 #if !defined(REAL_WIDTH) /* numbers of one run; run/engine has vectors of many */
 #define REAL_WIDTH 1
 #define ALONE
-typedef double real;
+#if !defined(REAL)
+#define REAL double /* or float */
+#endif
+typedef REAL real;
 #define zero 0.0
 #define wide(value) (value)
 #define chosen(condition, then, other) ((condition) ? (then) : (other))
@@ -56,6 +59,8 @@ typedef double real;
 #define cosh_of cosh
 #define erf_of erf
 #define pow_of pow
+#define is_above(a, b) ((a) > (b))
+#define is_at_least(a, b) ((a) >= (b))
 #define least(a, b) ((a) < (b) || (a) != (a) ? (a) : (b))
 #define OF(value, lane) (value)
 #endif

@@ -18,7 +18,7 @@ from piezo_sym.codegen.program import Field, Function, Limit, Program, Quantity,
 from piezo_sym.codegen.switches import Switches, compared, lanes_of
 from piezo_sym.expressions.calculus import add, derivative, div, is_affine
 from piezo_sym.expressions.parse import parse_rule
-from piezo_sym.expressions.tree import LaneSum, Num, Sym, rebuild
+from piezo_sym.expressions.tree import ZERO, LaneSum, Num, Sym, rebuild
 from piezo_sym.modules import load_module
 from piezo_sym.spec.names import fresh
 
@@ -117,9 +117,9 @@ class HandMade:
         q.taken |= {mean.name for mean in means}
         lanes = {**self.lanes(), **{mean.name: mean.bank for mean in means if mean.bank}}
         switches = Switches(lanes_of(lanes, q.defined), q.name)
+        rates, heats = self._rows(self.rates, q), self._heated(q)
         quantities = [*switches.quantities(q.defined)]
-        rates = switches.rows(self._rows(self.rates, q))
-        heats = self._heated(q)
+        rates = switches.rows(rates)
         produced = tuple(Row(row.slot, div(row.value, Sym(f"E_{s}"))) for row, s in heats)
         ports = tuple(Row(Slot(name), read(text)) for name, text in self.supply.items())
         booked = switches.rows((*ports, *(row for row, _ in heats), *produced))
@@ -138,9 +138,10 @@ class HandMade:
     def _slopes(self):
         q = _Quantities(self, self.costates())
         free = {c.name for c in self.costates() if not self._affine(c)}
+        rates = self._rows(self.rates, q)
         switches = Switches(lanes_of(self.lanes(), q.defined), q.name)
         q.defined[:] = switches.quantities(q.defined, free)
-        rates = switches.rows(self._rows(self.rates, q))
+        rates = switches.rows(rates)
         q.defined += switches.new()
         entries = jacobian_of(rates, self.fields(), switches.lanes, q).entries
         found = tuple(switches.found.values())
@@ -153,7 +154,7 @@ class HandMade:
             terms = []
             for _, (energy, own) in self._energies():
                 slope = derivative(energy, state)
-                terms.append(LaneSum(slope, own) if own and not bank else slope)
+                terms.append(LaneSum(slope, own) if own and not bank and slope != ZERO else slope)
             found.append(Quantity(f"E_{state}", add(*terms), bank, "co-states"))
         return found
 

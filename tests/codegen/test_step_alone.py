@@ -18,11 +18,11 @@ SPECS = sorted((Path(__file__).parents[1] / "networks" / "specs").glob("*.toml")
 class Alone:
     """``<model>_step.c`` compiled by itself, and what a step in C is given."""
 
-    def __init__(self, module, folder):
+    def __init__(self, module, folder, *flags):
         source = Path(module.__file__)
         build(
             next(compilers()),
-            ("-O2", "-shared", "-fPIC"),
+            ("-O2", "-shared", "-fPIC", *flags),
             [source.with_name(f"{module.NAME}_step.c")],
             folder / "step.so",
         )
@@ -58,6 +58,20 @@ def test_it_takes_the_steps_of_a_stepper(path, tmp_path):
     gained = float(module.energy(x, p) - module.energy(start, p))
     gross = float(np.abs(module.energy(x, p))) + np.abs(booked[:ports]).sum()
     assert abs(gained - booked[:ports].sum()) <= 1e-13 * gross
+
+
+def test_numbers_may_be_floats(tmp_path):
+    """For processors without doubles: a run of 5 ms as far off as floats are."""
+    model, h = load("piezo_stack"), 2e-6
+    module = module_of(model)
+    steps, step = Stepper(model, step=h), Alone(module, tmp_path, "-DREAL=float")
+    u, x = np.array([1.0, 60.0, 298.15]), steps.x
+    for _ in range(2500):
+        steps.step(u)
+        assert step(x, u, h)
+    size = np.array([1e-3, 1e-2, 1e-3, 1e-2, 1e-2, 1e-1])
+    error = np.abs(x - steps.x) / np.maximum(np.abs(steps.x), size)
+    assert 1e-9 < error.max() < 1e-3
 
 
 def test_a_step_that_leaves_the_domain_leaves_the_state(tmp_path):

@@ -79,10 +79,16 @@ def capacitor(draft):
     return {"between": draft.pair("e"), "capacitance": form, **draft.state()}
 
 
+def inductance(draft, lanes=None):
+    """Return an inductance; some saturate, and in a bank each lane by itself."""
+    linear = draft.parameter("L", "H", lanes=lanes)
+    return f"{linear}/(1 + phi**2)" if draft.one_in(8) else linear
+
+
 def inductor(draft):
     return {
         "between": draft.pair("e"),
-        "inductance": draft.parameter("L", "H"),
+        "inductance": inductance(draft),
         **draft.state(),
     }
 
@@ -102,7 +108,7 @@ def hysteron(draft):
     return {
         "between": draft.pair("e"),
         **bank,
-        "inductance": draft.parameter("L", "H", lanes=count),
+        "inductance": inductance(draft, count),
         "voltage": law(draft, "i", body, linear=draft.one_in(2), lanes=count),
         "heats": body,
         **draft.state(),

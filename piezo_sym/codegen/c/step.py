@@ -29,12 +29,17 @@ _REAL = """\
 #if !defined(REAL_WIDTH) /* numbers of one run; run/engine has vectors of many */
 #define REAL_WIDTH 1
 #define ALONE
-typedef double real;
+#if !defined(REAL)
+#define REAL double /* or float */
+#endif
+typedef REAL real;
 #define zero 0.0
 #define wide(value) (value)
 #define chosen(condition, then, other) ((condition) ? (then) : (other))
 {functions}
 #define pow_of pow
+#define is_above(a, b) ((a) > (b))
+#define is_at_least(a, b) ((a) >= (b))
 #define least(a, b) ((a) < (b) || (a) != (a) ? (a) : (b))
 #define OF(value, lane) (value)
 #endif"""
@@ -94,6 +99,9 @@ class _Printer:
         fields = (*program.parameters, *whole.states)
         self.arrays = {field.name: field.bank for field in fields if field.bank}
         self.lines = Words(self.names, self.arrays, self.words["j"], "real")
+        means = {mean.name for mean in self.means}  # slopes compute them
+        own = {name: bank for name, bank in self.arrays.items() if name not in means}
+        self.slope_lines = Words(self.names, own, self.words["j"], "real")
         self.coupling = coupling_of(program, slopes)
 
     # Functions
@@ -102,7 +110,8 @@ class _Printer:
         """Return what co-states that are given to a stage are means of."""
         rows = [Row(Slot(mean.name, mean.bank), mean.value) for mean in self.made.means]
         doc = "Functions of the state whose weighted means over a step its stages are given"
-        return self._function("integrands", doc, "x p out", self._written(rows, "out", ()))
+        body = self._computed((), self._writes(rows, "out"), self.lines)
+        return self._function("integrands", doc, "x p out", body, [*self._ends(rows)])
 
     def stage(self) -> str:
         """Return the function of a stage: rates, what the ledger books, switching functions."""
@@ -116,7 +125,7 @@ class _Printer:
             "of ports, heat and entropy production of processes, entropy rate of exchanges; "
             "switching functions s; margins m of what a state can leave"
         )
-        body = self._computed(stage.quantities, writes)
+        body = self._computed(stage.quantities, writes, self.lines)
         ends = [*self._ends(stage.rates), *self._ends(stage.booked), *self._ends(switches)]
         return self._function("stage", doc, "x g b u p out rows s m", body, ends)
 
@@ -134,7 +143,7 @@ class _Printer:
         for place in self.coupling.places:
             target = self._at(place.shared, place.lanes, place.bank)
             writes.append(Write(f"{self.words['out']}[{target}]", place.value, place.bank))
-        body = self._computed(self.made.slopes.quantities, writes)
+        body = self._computed(self.made.slopes.quantities, writes, self.slope_lines)
         doc = "Derivative of the rates by the state, on branches b; entries as the tables say"
         return self._function("slopes", doc, "x b u p out", body)
 
@@ -187,9 +196,6 @@ class _Printer:
 
     # Parts
 
-    def _written(self, rows: Sequence[Row], word: str, quantities: Sequence[Quantity]) -> list[str]:
-        return self._computed(quantities, self._writes(rows, word))
-
     def _writes(self, rows: Sequence[Row], word: str) -> list[Write]:
         at = places([row.slot for row in rows], f"row_{word}", self.made.stage.taken)
         array = self.words[word]
@@ -204,13 +210,15 @@ class _Printer:
             at = places([row.slot for row in rows], f"row_{word}", self.made.stage.taken)
             yield from ((line.split()[0], f"const long {line};") for line in at.definitions())
 
-    def _computed(self, quantities: Sequence[Quantity], writes: Sequence[Write]) -> list[str]:
+    def _computed(
+        self, quantities: Sequence[Quantity], writes: Sequence[Write], words: Words
+    ) -> list[str]:
         wanted = needed(quantities, [write.value for write in writes])[0]
         found = stages(wanted, [w for w in writes if w.bank], self.program.counts)
-        lines = [line for stage in found for line in stage_lines(stage, self.lines)]
+        lines = [line for stage in found for line in stage_lines(stage, words)]
         for write in writes:
             if not write.bank:
-                lines += statement(f"{write.target} =", write.value, self.lines)
+                lines += statement(f"{write.target} =", write.value, words)
         return lines
 
     def _row(self, at: Places, n: int) -> str:

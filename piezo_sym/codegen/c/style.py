@@ -30,6 +30,8 @@ from piezo_sym.expressions.tree import names as names_in
 
 #: Functions of ``real``, one number or one per lane: the head of a step has the first, real.h both.
 REALS = {name: f"{record.in_c}_of" for name, record in RECORDS.items() if record.smooth}
+#: How ``real`` is compared: by macros, since not all numbers that it may be know ``>``.
+ABOVE = {"": "is_above", "=": "is_at_least"}
 _CONSTANT = re.compile(r"-?[\d.]+(?:e[-+]?\d+)?(?:/[\d.]+)?")
 #: Beyond, a power calls the library; such exponents do not occur in laws of nature.
 MOST_FACTORS = 8
@@ -103,7 +105,11 @@ def real_style(plain: Style) -> Style:
     def choose(then: Piece, test: str, other: Piece) -> Piece:
         return f"chosen({test}, {widened(then)}, {widened(other)})", ATOM
 
-    return replace(plain, power=power, call=call, choose=choose)
+    def compare(left: Piece, op: str, right: Piece) -> str:
+        above, below = (left, right) if op.startswith(">") else (right, left)
+        return f"{ABOVE[op[1:]]}({above[0]}, {below[0]})"
+
+    return replace(plain, power=power, call=call, choose=choose, compare=compare)
 
 
 def widened(value: Piece) -> str:

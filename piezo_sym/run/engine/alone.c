@@ -5,7 +5,7 @@
 static long MODEL(made)(MODEL(block) *m, const MODEL(parameters) *p, long *sizes, real *space)
 {
     m->over = 1, m->most = MOST_OF_FIXED, m->late = LATE, m->stays = 0.7;
-    return MODEL(make)(m, p, 0, sizes, space);
+    return MODEL(make)(m, p, 0, sizes, (real *)space);
 }
 
 long MODEL(step_size)(const MODEL(parameters) *p)
@@ -22,8 +22,8 @@ int MODEL(step)(double *x, const double *u, double h, const MODEL(parameters) *p
 {
     MODEL(block) block = {0}, *const m = &block;
     long sizes[SIZES];
-    const long size = MODEL(made)(m, p, sizes, space);
-    real *const largest = space + size;
+    const long size = MODEL(made)(m, p, sizes, (real *)space);
+    real *const largest = (real *)space + size;
     memset(space, 0, (size_t)size * sizeof *space);
     MODEL(give)(&m->p, p, 0);
     for (long k = 0; k < m->n; ++k) {
@@ -38,7 +38,7 @@ int MODEL(step)(double *x, const double *u, double h, const MODEL(parameters) *p
         booked[k] = h * m->rows[k];
     MODEL(reach)(m, h, stage_weight, m->end);
     MODEL(integrands)(m->end, &m->p, m->node);
-    MODEL(stage)(m->end, m->node, m->branch, u, &m->p, m->gap, m->rows, m->side, m->margin);
+    MODEL(stage)(m->end, m->node, m->branch, m->u, &m->p, m->gap, m->rows, m->side, m->margin);
     int good = MODEL(within)(m->margin);
     for (long k = 0; k < m->n; ++k)
         good &= size_of(m->gap[k]) < 1e300;

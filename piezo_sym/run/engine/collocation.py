@@ -162,7 +162,7 @@ class Batch:
         self.records: Any = np.frombuffer(memoryview(self._runs), record_of(Record))
         self.records["p"] = self._structures.addresses
         self._take(stepping)
-        rows = self._sizes()[3] + more
+        rows = self.sizes()[3] + more
         self.states = np.full((count, times.size, n), np.nan)
         self.sums = np.full((count, times.size, rows), np.nan)
         self.ledgers = np.zeros((count, 2, rows))
@@ -197,7 +197,7 @@ class Batch:
         given = self._engine, stepping.stages, "one" if stepping.lossy else self._layout
         self._library = collocation_library(*given, lossy=stepping.lossy)
 
-    def _sizes(self) -> NDArray[Any]:
+    def sizes(self) -> NDArray[Any]:
         """Return what the model's own function says of its arrays' sizes."""
         module = self._engine.module
         found = np.zeros(6 + len(module.BANKS) + len(module.STATES), dtype=np.dtype("l"))
@@ -208,6 +208,11 @@ class Batch:
     def one(self) -> tuple[ctypes.c_void_p, int, int]:
         """Return the addresses of the batch, of its first run, and of its first signals."""
         return self._batch, ctypes.addressof(self._runs), self._segments[0].signals
+
+    @property
+    def segments(self) -> int:
+        """The address of the inputs' segments."""
+        return ctypes.addressof(self._segments)
 
     def function(self, word: str) -> Any:
         """Return one of the functions of C by its own name."""

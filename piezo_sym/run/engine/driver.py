@@ -121,6 +121,11 @@ def collocation(model: str, stages: int, layout: str, *, lossy: bool = False) ->
     """
     from piezo_sym.run.engine.tableau import tableau  # loads mpmath, once a compilation
 
+    if layout == "slopes":
+        model_text = [f'#include "{model}_step.c"', f"#define MODEL(name) {model}_##name"]
+        return "\n".join(
+            [texts("dual.h"), *model_text, tableau(stages, stages), texts("derivatives.c")]
+        )
     lanes = lanes_of(stages, layout, lossy=lossy)
     vectors = ["#if !defined(PLAIN)", f"#define LANES {lanes}", texts("at_once.h"), "#endif"]
     head = [

@@ -11,6 +11,12 @@
 
 #include <stddef.h>
 
+/* What rounding leaves of a change, in parts of a state's size, and how much of it may be left where
+ * rates are made of much larger numbers; no size is less than the third. */
+#define NOISE (sizeof(real) < sizeof(double) ? 1e-7 : 1e-16)
+#define MOST_NOISE (sizeof(real) < sizeof(double) ? 1e5 : 1e4)
+#define NO_SIZE (sizeof(real) < sizeof(double) ? 1e-30 : 1e-300)
+
 #if PAIRS
 #if PAIRS > 2
 #error "more pairs need another vector"

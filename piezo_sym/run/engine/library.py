@@ -24,7 +24,7 @@ from piezo_sym.run.engine.driver import at_once, collocation, driver, lanes_of
 from piezo_sym.run.engine.processor import processor
 from piezo_sym.run.engine.texts import texts as texts_of
 
-Layout = Literal["one", "many", "lanes"]
+Layout = Literal["one", "many", "lanes", "slopes"]
 #: What is compiled; the other files are included there.
 UNITS = ("driver.c", "stages.c")
 ENDINGS = {"win32": ".dll", "darwin": ".dylib"}
@@ -45,7 +45,8 @@ class Sources:
 
     A library has the module's functions; or, if it is one of steps, those of so many stages. For
     steps there is also ``<name>_step.c``, and what lies in vectors: numbers of "one" run do not,
-    "many" runs side by side, or the "lanes" of its banks; and whether they are dissipative.
+    "many" runs side by side, or the "lanes" of its banks; and whether they are dissipative. With
+    "slopes" it has no steps, but the derivatives of one.
     """
 
     name: str

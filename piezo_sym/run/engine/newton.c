@@ -11,8 +11,6 @@ enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
 #define SLOW 0.1
 /* Changes go to and fro where so much of one is left, with the other sign. */
 #define TO_AND_FRO 0.5
-/* What Newton's method may leave of a state's change, in parts of its largest magnitude. */
-#define NOISE 1e-16
 
 #if PAIRS
 /* The eigenvalues of pairs from `first` on, times the step. */
@@ -116,9 +114,9 @@ static mask MODEL(accepted)(const MODEL(block) *m)
  */
 static real MODEL(damping)(const MODEL(block) *m)
 {
-    real both = zero, prior = 1e-300 + zero;
+    real both = zero, prior = NO_SIZE + zero;
     for (long k = 0; k < m->n; ++k) {
-        const real size = m->largest[k] + size_of(m->x[k]) + 1e-300;
+        const real size = m->largest[k] + size_of(m->x[k]) + NO_SIZE;
         for (long j = 0; j < STAGES; ++j) {
             const real last = m->prior[j * m->n + k] / size;
             both += last * (m->gap[j * m->n + k] / size);
@@ -155,7 +153,7 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
                 moved = largest_of(moved, size_of(*rate));
                 changed += size_of(change);
             }
-            const real size = NOISE * (m->largest[k] + size_of(m->x[k]) + h * moved) + 1e-300;
+            const real size = NOISE * (m->largest[k] + size_of(m->x[k]) + h * moved) + NO_SIZE;
             worst = largest_of(h * changed / size, worst);
         }
         const mask switched = MODEL(gaps)(m, h, going);
@@ -163,7 +161,7 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
         mask good = (worst <= 4.0) | (smaller & (worst * (worst / before) <= 4.0));
         if (iteration > 1) { /* noise of what rates are made of, or no root */
             const mask stays = (worst > m->stays * before) & none_of(good);
-            good |= stays & (worst < (m->late == SOON || iteration > NOISY ? 1e4 : 100.0));
+            good |= stays & (worst < (m->late == SOON || iteration > NOISY ? MOST_NOISE : 100.0));
             if (iteration > m->late)
                 going &= none_of(stays & none_of(good));
         }
@@ -184,7 +182,7 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
 /* What the last polynomial of Legendre has of a function at nodes, in parts of its size. */
 static real MODEL(last_part)(const MODEL(block) *m, long k, const double *last, long nodes)
 {
-    real sum = zero, most = 1e-300 + zero;
+    real sum = zero, most = NO_SIZE + zero;
     for (long q = 0; q < nodes; ++q) {
         sum += last[q] * m->node[q * m->means + k];
         most = largest_of(size_of(m->node[q * m->means + k]), most);

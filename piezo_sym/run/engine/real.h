@@ -79,6 +79,8 @@ static inline real size_of(real a)
 #define real_of(a) ((real)(a))
 #endif
 
+#define is_above(a, b) ((a) > (b))
+#define is_at_least(a, b) ((a) >= (b))
 #define none_of(where) ((mask)((where) == nowhere))
 
 /* The number, or the mask, of one lane. */

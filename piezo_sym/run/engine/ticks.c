@@ -224,12 +224,7 @@ static void MODEL(solved)(MODEL(batch) *b, MODEL(tick) *t)
     t->found = MODEL(solve)(m, t->h, t->busy);
     t->good = t->found & MODEL(accepted)(m);
     MODEL(reach)(m, t->h, stage_weight, m->reached);
-    for (long k = 0; k < m->booked; ++k) {
-        real sum = zero;
-        for (long i = 0; i < STAGES; ++i)
-            sum += stage_weight[i] * m->rows[i * m->booked + k];
-        b->some_rows[k] = t->h * sum;
-    }
+    MODEL(adds)(b, t->h, b->some_rows);
 }
 
 /* Write samples; a run whose step has no more of them books it. */
@@ -337,6 +332,13 @@ static void MODEL(cut_and_accepted)(MODEL(batch) *b, MODEL(tick) *t)
 static void MODEL(book)(MODEL(batch) *b, MODEL(tick) *t)
 {
     MODEL(block) *m = &b->m;
+#if REAL_WIDTH == 1
+    if (b->tape && !MODEL(taped)(b)) {
+        b->lane->known = 0.0;
+        MODEL(refuse)(b, 0, 0.25 * b->lane->step);
+        return;
+    }
+#endif
     MODEL(copy)(t->booked, m->end, m->x, m->n);
     MODEL(copy)(t->booked, b->end_rate, b->rate, m->n);
     for (long k = 0; k < m->n; ++k)

@@ -59,9 +59,18 @@ typedef struct {
     long ticks, looks;     /* steps solved since then; how often the ways were compared */
 } MODEL(lane);
 
+/* What the steps of a run begin with, from the first on; see replay.c. */
+typedef struct {
+    const MODEL(segment) *segments; /* of the run, from its begin */
+    real *scale;                    /* n: by which changes of states count as noise */
+    double *t, *h, *x, *branch;     /* steps; (steps, n); (steps, STAGES, branches) */
+    long count;
+} MODEL(tape);
+
 /* Runs on their way. */
 typedef struct {
     MODEL(block) m;
+    MODEL(tape) *tape; /* of one run, or NULL */
     MODEL(lane) lane[REAL_WIDTH];
     MODEL(run) *runs;
     const double *times; /* of samples */
@@ -208,6 +217,18 @@ static void MODEL(plan)(const MODEL(batch) *b, MODEL(lane) *l, int lane)
     for (long i = 0; i < STAGES; ++i)
         MODEL(inputs_at)(l->segment, b->m.inputs, l->t + stage_at[i] * l->length,
                          b->m.u + i * b->m.inputs, lane);
+}
+
+/* What a step adds to the sums of a ledger. */
+static void MODEL(adds)(const MODEL(batch) *b, real h, real *out)
+{
+    const MODEL(block) *m = &b->m;
+    for (long k = 0; k < m->booked; ++k) {
+        real sum = zero;
+        for (long i = 0; i < STAGES; ++i)
+            sum += stage_weight[i] * m->rows[i * m->booked + k];
+        out[k] = h * sum;
+    }
 }
 
 /* Rates on the polynomial through those of a step, at a part of the step. */

@@ -1,0 +1,57 @@
+/*
+ * Numbers with a slope along a direction: a step's text, computed with them, gives its own derivatives,
+ * exact to round-off.  They are complex numbers whose imaginary part is the slope times a factor so
+ * small that its square is nothing beside 1.  As a vector of two lanes: the value, and the slope.
+ */
+#include <math.h>
+#include <stddef.h>
+
+#define REAL_WIDTH 2
+typedef double _Complex real;
+#define OF(number, lane) (((double *)&(number))[lane])
+#define zero ((real)0.0)
+#define wide(value) ((real)(value))
+#define chosen(condition, then, other) ((condition) ? (real)(then) : (real)(other))
+
+static inline double value_of(real a)
+{
+    return OF(a, 0);
+}
+
+#define is_above(a, b) (value_of(a) > value_of(b))
+#define is_at_least(a, b) (value_of(a) >= value_of(b))
+#define least(a, b) chosen(is_above(b, a), a, b)
+
+/* A function of x with the value y and a slope. */
+static inline real dual_of(real x, double y, double slope)
+{
+    real found = y;
+    OF(found, 1) = slope * OF(x, 1);
+    return found;
+}
+
+#define WITH_SLOPE(function, slope)                                                                \
+    static inline real function##_of(real a)                                                       \
+    {                                                                                              \
+        const double x = OF(a, 0), y = function(x);                                                \
+        (void)x;                                                                                   \
+        return dual_of(a, y, slope);                                                               \
+    }
+WITH_SLOPE(exp, y)
+WITH_SLOPE(expm1, y + 1.0)
+WITH_SLOPE(log, 1.0 / x)
+WITH_SLOPE(sqrt, 0.5 / y)
+WITH_SLOPE(sin, cos(x))
+WITH_SLOPE(cos, -sin(x))
+WITH_SLOPE(tanh, 1.0 - y * y)
+WITH_SLOPE(atan, 1.0 / (1.0 + x * x))
+WITH_SLOPE(sinh, cosh(x))
+WITH_SLOPE(cosh, sinh(x))
+WITH_SLOPE(erf, 1.1283791670955126 * exp(-x * x))
+
+/* Powers with a constant exponent. */
+static inline real pow_of(real a, real b)
+{
+    const double x = OF(a, 0), n = OF(b, 0);
+    return dual_of(a, pow(x, n), n * pow(x, n - 1.0));
+}

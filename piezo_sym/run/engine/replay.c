@@ -1,0 +1,73 @@
+/*
+ * Steps that can be taken again: from where one begins, its length and the branches of its stages, the
+ * same numbers to the bit, whatever was solved before.  A run on tape is made of such steps, and the
+ * tape keeps what they begin with.  For one run; behind crossings.c.
+ */
+#if REAL_WIDTH == 1
+
+/* Solve for the step that begins at m.x, on the branches of the block; whether it has rates. */
+static int MODEL(again)(MODEL(batch) *b, const MODEL(segment) *segment, double t, double h)
+{
+    MODEL(block) *m = &b->m;
+    const MODEL(block) before = *m;
+    m->most = MOST_OF_FIXED, m->late = LATE, m->stays = 0.7, m->over = nowhere;
+    m->largest = b->tape->scale;
+    MODEL(inputs_at)(segment, m->inputs, t, b->some_inputs, 0);
+    MODEL(point)(b, m->x, m->branch, b->some_rate, b->some_side);
+    for (long i = 0; i < STAGES; ++i) {
+        MODEL(inputs_at)(segment, m->inputs, t + stage_at[i] * h, m->u + i * m->inputs, 0);
+        memcpy(m->rates + i * m->n, b->some_rate, (size_t)m->n * sizeof(real));
+    }
+    const int found = MODEL(solve)(m, h, 1) && MODEL(accepted)(m);
+    m->most = before.most, m->late = before.late, m->stays = before.stays, m->over = before.over;
+    m->largest = before.largest;
+    MODEL(reach)(m, h, stage_weight, m->end);
+    return found;
+}
+
+/* Take the step that a lane is to book as it will be taken again, and keep it; 0 if it has no rates. */
+static int MODEL(taped)(MODEL(batch) *b)
+{
+    MODEL(block) *m = &b->m;
+    const MODEL(lane) *l = b->lane;
+    MODEL(tape) *to = b->tape;
+    const size_t n = (size_t)m->n, branches = STAGES * (size_t)m->branches;
+    if (!MODEL(again)(b, l->segment, l->t, l->step))
+        return 0;
+    memcpy(to->x + to->count * m->n, m->x, n * sizeof(real));
+    memcpy(to->branch + to->count * STAGES * m->branches, m->branch, branches * sizeof(real));
+    to->t[to->count] = l->t, to->h[to->count] = l->step;
+    ++to->count;
+    memcpy(b->known, m->rates, STAGES * n * sizeof(real));
+    MODEL(adds)(b, l->step, b->part);
+    return 1;
+}
+
+/* From now on steps go on a tape. */
+void MODEL(keep)(MODEL(batch) *b, MODEL(tape) *tape);
+void MODEL(keep)(MODEL(batch) *b, MODEL(tape) *tape)
+{
+    b->tape = tape;
+}
+
+/* Take a step of a tape again, of a batch whose run has begun; returns whether it has rates. */
+int MODEL(replay)(MODEL(batch) *b, double t, double h, const double *x, const double *branch,
+                  double *rates, double *u, double *end);
+int MODEL(replay)(MODEL(batch) *b, double t, double h, const double *x, const double *branch,
+                  double *rates, double *u, double *end)
+{
+    MODEL(block) *m = &b->m;
+    const size_t n = (size_t)m->n, inputs = (size_t)m->inputs;
+    const MODEL(segment) *segment = b->tape->segments;
+    while (t >= segment->stop)
+        ++segment;
+    memcpy(m->x, x, n * sizeof(real));
+    memcpy(m->branch, branch, STAGES * (size_t)m->branches * sizeof(real));
+    const int found = MODEL(again)(b, segment, t, h);
+    memcpy(rates, m->rates, STAGES * n * sizeof(real));
+    memcpy(u, m->u, STAGES * inputs * sizeof(real));
+    MODEL(inputs_at)(segment, m->inputs, t + h, u + STAGES * inputs, 0);
+    memcpy(end, m->end, n * sizeof(real));
+    return found;
+}
+#endif

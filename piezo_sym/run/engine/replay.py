@@ -1,0 +1,126 @@
+"""Runs whose steps can be taken again, to the bit, and looked at: for derivatives along them.
+
+Input: one run of a module.  Output: `Taped`, whose steps are `Step` records: what each begins with
+is all that it depends on, beside the run's parameters, inputs and scales of states.
+"""
+
+import ctypes
+from dataclasses import dataclass, replace
+from typing import Any, final
+
+import numpy as np
+
+from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.engine.collocation import Batch, Stepping
+from piezo_sym.run.engine.engine import Engine
+from piezo_sym.run.engine.records import DOUBLE, LONG, POINTER, at
+from piezo_sym.run.inputs import Inputs
+
+#: Steps that are taken before the tape is read.
+ROOM = 256
+
+
+class Record(ctypes.Structure):
+    """MODEL(tape) of trajectory.c."""
+
+    _fields_ = [
+        *((n, POINTER) for n in ("segments", "scale", "t", "h", "x", "branch")),
+        ("count", LONG),
+    ]
+
+
+@final
+@dataclass(frozen=True)
+class Step:
+    """What a step begins with: its time and length [s], the state (n,), branches (stages, ...)."""
+
+    t: float
+    h: float
+    x: FloatArray
+    branches: FloatArray
+
+
+@final
+@dataclass(frozen=True)
+class Solved:
+    """A step: rates (stages, n), inputs at its stages and its end (stages + 1, inputs), its end."""
+
+    rates: FloatArray
+    u: FloatArray
+    end: FloatArray
+
+
+@final
+class Taped:
+    """A run from x (n,) at t = 0, of steps that can be taken again.
+
+    Steps end at kinks, or go over them if they are fixed.
+
+    Parameters
+    ----------
+    engine, parameters, inputs : of the run.
+    x : the state at t = 0.
+    scale : the size of each state, by which changes count as noise; when left out, a survey's.
+    """
+
+    def __init__(
+        self,
+        engine: Engine,
+        parameters: Any,
+        x: FloatArray,
+        inputs: Inputs,
+        stepping: Stepping,
+        scale: FloatArray | None = None,
+    ) -> None:
+        self.engine, self.parameters, self.stages = engine, parameters, stepping.stages
+        stepping = stepping if stepping.fixed else replace(stepping, kinks="end")
+        given = [parameters], np.atleast_2d(x), inputs, np.empty(0), stepping, "one"
+        self._batch = Batch(engine, *given)
+        if scale is None:
+            self._batch.survey()
+            scale = self._batch.largest[0]
+        self._batch.largest[0] = scale
+        self.scale = np.array(scale)
+        branches = self._batch.sizes()[2]
+        self._t, self._h = np.empty(ROOM), np.empty(ROOM)
+        self._x = np.empty((ROOM, x.size))
+        self._branches = np.empty((ROOM, stepping.stages, branches))
+        arrays = (self.scale, self._t, self._h, self._x, self._branches)
+        self._record = Record(self._batch.segments, *(a.ctypes.data for a in arrays), 0)
+        self._call("keep", ctypes.byref(self._record))
+
+    def run(self) -> tuple[Step, ...]:
+        """Take the run as far as it goes; return its steps."""
+        steps: list[Step] = []
+        more = True
+        while more:
+            more = self._batch.go(ROOM)
+            arrays = zip(self._t, self._h, self._x, self._branches, strict=True)
+            for _, (t, h, x, b) in zip(range(self._record.count), arrays, strict=False):
+                steps.append(Step(float(t), float(h), x.copy(), b.copy()))
+            self._record.count = 0
+        return tuple(steps)
+
+    @property
+    def x(self) -> FloatArray:
+        """Where the run stands, (n,)."""
+        return self._batch.x[0]
+
+    def replay(self, step: Step) -> Solved:
+        """Take a step again; the same to the bit.
+
+        Raises
+        ------
+        ValueError
+            If it has no rates: it is no step of this run.
+        """
+        inputs = len(self.engine.module.INPUTS)
+        rates, u = np.empty((self.stages, step.x.size)), np.empty((self.stages + 1, inputs))
+        end = np.empty_like(step.x)
+        arrays = (step.x, step.branches, rates, u, end)
+        if not self._call("replay", DOUBLE(step.t), DOUBLE(step.h), *map(at, arrays)):
+            raise ValueError("the step has no rates")
+        return Solved(rates, u, end)
+
+    def _call(self, word: str, *given: Any) -> Any:
+        return self._batch.function(word)(self._batch.one()[0], *given)
