@@ -17,15 +17,7 @@ from typing import final
 
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.translation.c_form import Form
-from piezo_sym.translation.c_scope import (
-    COMPARISONS,
-    Branch,
-    Helper,
-    Listed,
-    Scope,
-    UnreadError,
-    Variable,
-)
+from piezo_sym.translation.c_scope import Branch, Helper, Listed, Scope, UnreadError, Variable
 from piezo_sym.translation.c_text import Tokens
 from piezo_sym.translation.expressions import PLAIN, WHOLE, refused
 from piezo_sym.translation.field import NotShownError, Value
@@ -133,7 +125,7 @@ class Function:
         parts = [*ast.walk(node)]
         words = {part.id for part in parts if isinstance(part, ast.Name)}
         called = {ast.unparse(part.func) for part in parts if isinstance(part, ast.Call)}
-        if not called <= {*self.scope.calls, *self.scope.helpers, "chosen", *COMPARISONS}:
+        if not called <= self.scope.callable:
             raise refused(node, "a call")
         self.uses.setdefault(name, set()).update(words)
         if self._is_read(name):

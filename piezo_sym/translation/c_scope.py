@@ -133,6 +133,11 @@ class Scope:
         self.open = [0]
         self.read = Expressions(known.field, known.numbers, known.real, self._leaf, calls, True)
 
+    @property
+    def callable(self) -> frozenset[str]:
+        """What an expression may call."""
+        return frozenset({*self.calls, *self.helpers, "chosen", *COMPARISONS})
+
     def declare(self, name: str, meaning: Meaning) -> None:
         """Give a new name a meaning."""
         taken = (self.names, self.roles, self.helpers, self.calls)

@@ -1,4 +1,4 @@
-"""Steps taken again are the same to the bit; their derivatives are those of closed forms and runs."""
+"""Steps taken again are the same to the bit; their derivatives are those of closed forms."""
 
 from dataclasses import replace
 

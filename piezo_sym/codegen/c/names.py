@@ -34,8 +34,8 @@ _CALLED = "copysign expm1 fabs pow " + " ".join(f"power_{n}" for n in range(2, 9
 #: What a step's text and the engine's behind it have names for: numbers of one run, or vectors.
 _REALS = (
     "PLAIN MODEL REAL_WIDTH LANE OF SET LANES NUMBER LANE_BY_LANE real mask pattern few zero "
-    "nowhere wide chosen is_above is_at_least any none_of size_of with_sign power_of_two small_expm1 reduced exp_of "
-    "expm1_of "
+    "nowhere wide chosen any none_of size_of with_sign power_of_two small_expm1 reduced exp_of "
+    "expm1_of is_above is_at_least "
     "sqrt_of log_of sin_of cos_of tanh_of atan_of sinh_of cosh_of erf_of pow_of whole_power least "
     "largest_of bits_of real_of pick deadzone saturate sign"
 )

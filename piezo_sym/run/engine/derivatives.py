@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from types import SimpleNamespace
-from typing import Any, final
+from typing import Any, Literal, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -144,7 +144,7 @@ class Derivatives:
         ZeroDivisionError
             If the function does not change with time there.
         """
-        by_time = self.tangent(h=1.0, u=self.places * changes).side[switch]
+        by_time = self.tangent(h=1.0, u=self.places * np.asarray(changes)).side[switch]
         if by_time == 0.0:
             raise ZeroDivisionError("the event is not crossed")
         return float(-self.tangent(**direction).side[switch] / by_time)
@@ -170,10 +170,11 @@ class Derivatives:
         factors: tuple[NDArray[Any], NDArray[Any]] = lu_factor(self.matrix)
         return factors
 
-    def _solved_by(self, right: ArrayLike, transposed: int) -> FloatArray:
+    def _solved_by(self, right: ArrayLike, transposed: Literal[0, 1]) -> FloatArray:
         from scipy.linalg import lu_solve
 
-        found: FloatArray = lu_solve(self._factors, np.asarray(right, float), trans=transposed)
+        given: Any = np.asarray(right, dtype=float)
+        found: FloatArray = lu_solve(self._factors, given, trans=transposed)
         return found
 
     def _structure(self, moved: Mapping[str, Any]) -> Any:

@@ -74,8 +74,8 @@ class Taped:
     ) -> None:
         self.engine, self.parameters, self.stages = engine, parameters, stepping.stages
         stepping = stepping if stepping.fixed else replace(stepping, kinks="end")
-        given = [parameters], np.atleast_2d(x), inputs, np.empty(0), stepping, "one"
-        self._batch = Batch(engine, *given)
+        starts, none = np.atleast_2d(x), np.empty(0)
+        self._batch = Batch(engine, [parameters], starts, inputs, none, stepping, "one")
         if scale is None:
             self._batch.survey()
             scale = self._batch.largest[0]
@@ -104,7 +104,8 @@ class Taped:
     @property
     def x(self) -> FloatArray:
         """Where the run stands, (n,)."""
-        return self._batch.x[0]
+        x: FloatArray = self._batch.x[0]
+        return x
 
     def replay(self, step: Step) -> Solved:
         """Take a step again; the same to the bit.
