@@ -5,7 +5,7 @@ or a `UsageError` that names the place.
 """
 
 from collections.abc import Iterable, Mapping
-from math import isfinite
+from math import isfinite, nan
 from numbers import Integral, Real
 from typing import TypeAlias
 
@@ -26,15 +26,13 @@ def is_number(value: object) -> bool:
 
 def number(value: object, where: str) -> float:
     """Return `value` as a finite float; raise `UsageError` otherwise."""
-    fault = UsageError(f"{quote(value)} is not a finite number", where, "a finite real number")
-    if not is_number(value):
-        raise fault
     try:
-        result = float(value)  # type: ignore[arg-type]  # a Real, or an array of none
-    except (OverflowError, TypeError, ValueError) as cause:
-        raise fault from cause
+        result = float(value) if is_number(value) else nan  # type: ignore[arg-type]  # a Real
+    except (OverflowError, TypeError, ValueError):
+        result = nan
     if not isfinite(result):
-        raise fault
+        what = f"{quote(value)} is not a finite number"
+        raise UsageError(what, where, "a finite real number")
     return result
 
 

@@ -6,7 +6,6 @@ coordinate `time` [s] and, for each bank, its lanes 1..r under the element's nam
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -56,7 +55,7 @@ def to_dataset(
 
 def model_attrs(system: System) -> dict[str, Any]:
     """Return the attributes that say what was run: the model and the parameters used."""
-    used = asdict(system.parameters).items()
+    used = vars(system.parameters).items()
     parameters = {f"parameter_{name}": np.asarray(value)[()] for name, value in used}
     module = system.module
     return {"model": module.NAME, "spec_sha256": module.SPEC_SHA256, **parameters}

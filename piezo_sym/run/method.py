@@ -21,7 +21,7 @@ from piezo_sym.errors import EngineError, UsageError, listing, one_line, quote
 from piezo_sym.files import path_text
 from piezo_sym.run.engine import Engine, EngineWarning
 from piezo_sym.run.engine.engine import engine_of, read_source
-from piezo_sym.run.engine.library import cache_folder
+from piezo_sym.run.engine.library import CACHE, cache_folder
 from piezo_sym.run.integrate import METHODS
 from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.runs import METHOD
@@ -116,7 +116,7 @@ def _surroundings(module: GeneratedModule) -> tuple[object, ...]:
             stamps.append(_source(module, ending).stat().st_mtime_ns)
         except OSError:
             stamps.append(-1)
-    return (*stamps, os.environ.get("CC"), os.environ.get("PATH"), cache_folder())
+    return (*stamps, *map(os.environ.get, ("CC", "PATH", CACHE, "HOME")))
 
 
 @lru_cache(maxsize=64)

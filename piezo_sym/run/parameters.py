@@ -5,7 +5,7 @@ the module's frozen `Parameters`, the state x (n,) at t = 0, and the times (nt,)
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -42,7 +42,7 @@ def read_parameters(module: GeneratedModule, given: Mapping[str, LaneValue] | No
     default = module.Parameters()
     banks = {record.name: record.bank for record in module.PARAMETERS}
     values, sizes = _known(module, given), read_sizes(module, given)
-    merged = {name: values.get(name, value) for name, value in asdict(default).items()}
+    merged = {name: values.get(name, value) for name, value in vars(default).items()}
     changed: dict[str, Any] = {
         name: lane_value(merged[name], sizes.get(bank or ""), f"simulate.parameters.{name}")
         for name, bank in banks.items()
