@@ -53,6 +53,7 @@ def c_step(program: Program, made: Collocation) -> str:
         printer.stage(),
         printer.slopes(),
         printer.sizes(),
+        *printer.paths(),
         place_text(program, printer.names),
         give_text(program, printer.names),
     ]
@@ -79,11 +80,12 @@ class _Printer:
         self.program, self.made, self.name = program, made, program.name
         stage, slopes = made.stage, made.slopes
         self.means = [Field(mean.name, "", "", mean.bank) for mean in made.means]
+        self.given = [*self.means, *(field for path in made.paths for field in path.given())]
         self.branches = [Field(s.branch, "", "", s.bank) for s in stage.switches]
         both = {q.name: q for q in (*stage.quantities, *slopes.quantities)}
         whole = replace(
             program,
-            states=(*program.states, *self.means, *self.branches),
+            states=(*program.states, *self.given, *self.branches),
             quantities=tuple(both.values()),
             taken=stage.taken | slopes.taken,
         )
@@ -136,7 +138,26 @@ class _Printer:
             writes.append(Write(f"{self.words['out']}[{target}]", place.value, place.bank))
         body = self._computed(self.made.slopes.quantities, writes)
         doc = "Derivative of the rates by the state, on branches b; entries as the tables say"
-        return self._function("slopes", doc, "x b u p out", body)
+        return self._function("slopes", doc, "x g b u p out", body)
+
+    def paths(self) -> Iterator[str]:
+        """Yield the table of path functionals, and the function of what they take, if any."""
+        if not self.made.paths:
+            return
+        index = {state.name: n for n, state in enumerate(self.program.states)}
+        banks, rows = [*self.program.counts], list[Row]()
+        lines = ["/* Path functionals: bank or -1, coordinate, whether one a lane, inner state. */"]
+        lines += [f"#define PATHS {len(self.made.paths)}"]
+        lines += [f"static const int {self.name}_path[PATHS][4] = {{"]
+        for path in self.made.paths:
+            n, bank = index[path.coordinate], banks.index(path.bank) if path.bank else -1
+            own = int(self.program.states[n].bank is not None)
+            lines.append(f"    {{{bank}, {n}, {own}, {index[path.inner]}}},")
+            rows += [Row(Slot(path.inner, path.bank), v) for v in (path.stiffness, path.limit)]
+        yield "\n".join([*lines, "};"])
+        doc = "Stiffness and limit of each path functional"
+        body = self._written(rows, "out", ())
+        yield self._function("path_parameters", doc, "x p out", body, [*self._ends(rows)])
 
     def sizes(self) -> str:
         """Return the function that tells how many numbers each array has."""
@@ -256,16 +277,21 @@ class _Printer:
         for field in self.program.parameters:
             kind = "const real *restrict " if field.bank else "const real "
             yield names[field.name], f"{kind}{names[field.name]} = {w['p']}->{names[field.name]};"
-        parts = {"x": self.program.states, "g": self.means, "b": self.branches}
+        parts = {"x": self.program.states, "g": self.given, "b": self.branches}
+        own = [] if "s" in given else self.means  # slopes compute these themselves
         for word, fields in parts.items():
-            yield from self._fields(fields, w[word]) if word in given else ()
+            yield from self._fields(fields, w[word], own) if word in given else ()
         for n, entry in enumerate(self.program.inputs):
             yield names[entry.name], f"const real {names[entry.name]} = {w['u']}[{n}];"
 
-    def _fields(self, fields: Sequence[Field], array: str) -> Iterator[tuple[str, str]]:
+    def _fields(
+        self, fields: Sequence[Field], array: str, without: Sequence[Field]
+    ) -> Iterator[tuple[str, str]]:
         at = places([Slot(f.name, f.bank) for f in fields], f"end_{array}", self.made.stage.taken)
         yield from ((line.split()[0], f"const long {line};") for line in at.definitions())
         for n, field in enumerate(fields):
+            if field in without:
+                continue
             name, place = self.names[field.name], at.position(n)
             pointer = f"const real *restrict {name} = {array} + {place};"
             yield name, pointer if field.bank else f"const real {name} = {array}[{place}];"

@@ -139,7 +139,7 @@ def collocation(model: str, stages: int, layout: str, *, lossy: bool = False) ->
     gaps = texts("gaps.c")
     if lanes:
         gaps = f"#if defined(LANES)\n{texts('gaps_at_once.c')}\n#else\n{gaps}\n#endif"
-    engine = [texts("gauss.c"), gaps, texts(*COLLOCATION), *([texts("loss.c")] if lossy else [])]
+    engine = [texts("gauss.c"), "#if defined(PATHS)", texts("stop.c"), "#endif", gaps, texts(*COLLOCATION), *([texts("loss.c")] if lossy else [])]
     return "\n".join([*head, tables, *engine])
 
 

@@ -147,9 +147,7 @@ static void MODEL(inputs_at)(const MODEL(segment) *segment, long inputs, double 
 /* Rates, switching functions and margins at a point, which is no part of a step. */
 static void MODEL(point)(MODEL(batch) *b, const real *x, const real *branch, real *rate, real *side)
 {
-    MODEL(integrands)(x, &b->m.p, b->m.node);
-    MODEL(stage)(x, b->m.node, branch, b->some_inputs, &b->m.p, rate, b->some_rows, side,
-                 b->some_margin);
+    MODEL(at_point)(&b->m, x, branch, b->some_inputs, rate, b->some_rows, side, b->some_margin);
 }
 
 static void MODEL(copy)(mask where, const real *from, real *to, long size)
