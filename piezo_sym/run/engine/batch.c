@@ -134,7 +134,7 @@ static mask MODEL(midpoint)(MODEL(batch) *b, real h, mask where)
         real worst = zero;
         m->iterations += chosen(going, wide(1.0), zero);
         for (int again = 0; again < 3; ++again) {
-            MODEL(point)(b, m->reached, m->branch, b->some_rate, b->some_side);
+            MODEL(point)(b, m->reached, m->branch, NULL, b->some_rate, b->some_side);
             if (!any(MODEL(choose)(m->branches, b->some_side, m->branch, going)))
                 break;
         }

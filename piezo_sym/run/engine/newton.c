@@ -1,14 +1,20 @@
 /* Newton's method for the rates at the stages of a step.  Behind gauss.c. */
 
-/* A stage at a point, which is no part of a step: co-states, and efforts of paths, are those there. */
+/*
+ * A stage at a point, with co-states and efforts as they are there.  At an end of a step rates of paths
+ * follow from those of its stages by weights: they may jump within the step, which has their means.
+ */
 static void MODEL(at_point)(const MODEL(block) *m, const real *x, const real *branch, const real *u,
-                            real *rate, real *rows, real *side, real *margin)
+                            const double *weight, real *rate, real *rows, real *side, real *margin)
 {
+    (void)weight;
     MODEL(integrands)(x, &m->p, m->node);
 #if defined(PATHS)
-    MODEL(standing)(m, x, NULL);
-    MODEL(stage)(x, m->node, branch, u, &m->p, rate, rows, side, margin);
-    MODEL(standing)(m, x, rate);
+    MODEL(standing)(m, x, weight, NULL);
+    if (!weight) {
+        MODEL(stage)(x, m->node, branch, u, &m->p, rate, rows, side, margin);
+        MODEL(standing)(m, x, NULL, rate);
+    }
 #endif /* PATHS */
     MODEL(stage)(x, m->node, branch, u, &m->p, rate, rows, side, margin);
 }

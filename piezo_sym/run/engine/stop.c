@@ -205,8 +205,12 @@ static void MODEL(along_paths)(const MODEL(block) *m, real h)
     }
 }
 
-/* What a point is given that is no part of a step, where coordinates have these rates, or none. */
-static void MODEL(standing)(const MODEL(block) *m, const real *x, const real *rates)
+/*
+ * What a point is given: where it is an end of a step, by weights of the stages' means; else from
+ * the rates of coordinates there, if they are known.
+ */
+static void MODEL(standing)(const MODEL(block) *m, const real *x, const double *weight,
+                            const real *rates)
 {
     const real *parameter = m->path;
     real *given = m->node + m->means;
@@ -223,6 +227,11 @@ static void MODEL(standing)(const MODEL(block) *m, const real *x, const real *ra
             given[RATE * lanes + j] = chosen(yields, zero, rate);
             given[HEAT * lanes + j] = chosen(yields, k * z * rate, zero);
             given[SHARE * lanes + j] = chosen(yields, zero, wide(1.0));
+            for (long i = 0; weight && i < STAGES; ++i) {
+                const real *const mean = m->mean + i * m->given + (given - m->node) + j;
+                given[RATE * lanes + j] += weight[i] * mean[RATE * lanes];
+                given[HEAT * lanes + j] += weight[i] * mean[HEAT * lanes];
+            }
         }
         given += GIVEN * lanes, parameter += PARAMETERS * lanes;
     }

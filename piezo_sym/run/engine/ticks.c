@@ -255,6 +255,13 @@ static void MODEL(at_ends)(MODEL(batch) *b, MODEL(tick) *t)
     MODEL(copy)(t->steps, m->reached, m->end, m->n);
     MODEL(copy)(t->steps, b->some_rows, b->part, m->booked);
     MODEL(copy)(t->steps & t->found, m->rates, b->known, STAGES * m->n);
+#if defined(PATHS) /* where it began, as its stages tell */
+    for (int lane = 0; lane < REAL_WIDTH; ++lane)
+        if (IN(t->steps, lane))
+            MODEL(inputs_at)(b->lane[lane].segment, m->inputs, b->lane[lane].t, b->some_inputs, lane);
+    MODEL(point)(b, m->x, m->branch, stage_start, b->some_rate, b->some_side);
+    MODEL(copy)(t->steps & t->found, b->some_rate, b->rate, m->n);
+#endif
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {
         const MODEL(lane) *l = b->lane + lane;
         if (IN(t->steps, lane))
@@ -262,7 +269,7 @@ static void MODEL(at_ends)(MODEL(batch) *b, MODEL(tick) *t)
     }
     memcpy(b->end_branch, m->branch + (STAGES - 1) * m->branches, (size_t)m->branches * sizeof(real));
     for (int again = 0; again < 3; ++again) {
-        MODEL(point)(b, m->end, b->end_branch, b->some_rate, b->some_side);
+        MODEL(point)(b, m->end, b->end_branch, stage_end, b->some_rate, b->some_side);
         if (!any(MODEL(choose)(m->branches, b->some_side, b->end_branch, m->over)))
             break;
     }

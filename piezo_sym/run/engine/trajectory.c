@@ -144,10 +144,12 @@ static void MODEL(inputs_at)(const MODEL(segment) *segment, long inputs, double 
     }
 }
 
-/* Rates, switching functions and margins at a point, which is no part of a step. */
-static void MODEL(point)(MODEL(batch) *b, const real *x, const real *branch, real *rate, real *side)
+/* Rates, switching functions and margins at a point; `weight` as in newton.c. */
+static void MODEL(point)(MODEL(batch) *b, const real *x, const real *branch, const double *weight,
+                         real *rate, real *side)
 {
-    MODEL(at_point)(&b->m, x, branch, b->some_inputs, rate, b->some_rows, side, b->some_margin);
+    MODEL(at_point)(&b->m, x, branch, b->some_inputs, weight, rate, b->some_rows, side,
+                    b->some_margin);
 }
 
 static void MODEL(copy)(mask where, const real *from, real *to, long size)
@@ -164,7 +166,7 @@ static void MODEL(stand)(MODEL(batch) *b, mask where, mask choosing)
         if (IN(where, lane))
             MODEL(inputs_at)(b->lane[lane].segment, m->inputs, b->lane[lane].t, b->some_inputs, lane);
     for (int again = 0; again < 3; ++again) {
-        MODEL(point)(b, m->x, m->branch, b->some_rate, b->some_side);
+        MODEL(point)(b, m->x, m->branch, NULL, b->some_rate, b->some_side);
         if (!any(MODEL(choose)(m->branches, b->some_side, m->branch, choosing)))
             break;
     }
