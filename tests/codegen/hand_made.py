@@ -23,6 +23,7 @@ from piezo_sym.expressions.parse import parse_rule
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, If, LaneSum, Num, Sym, rebuild
 from piezo_sym.expressions.tree import replace as put
 from piezo_sym.modules import load_module
+from piezo_sym.run.engine.alone import step_alone
 from piezo_sym.spec.names import fresh
 
 DRIVEN, STATE = ("x", "u", "p"), ("x", "p")
@@ -64,6 +65,7 @@ class HandMade:
     def module(self, folder):
         """Write the module's files into a folder; return the module."""
         texts = printed(sharp_program(self.program()), self.collocation())
+        texts["_step.c"] += step_alone(self.name, paths=bool(self.paths))
         for ending, text in texts.items():
             (Path(folder) / f"{self.name}{ending}").write_text(text, encoding="utf-8")
         return load_module(Path(folder) / f"{self.name}.py")
@@ -139,8 +141,8 @@ class HandMade:
             frozenset(q.taken),
         )
         means = tuple(sharp_quantity(replace(m, value=compared(m.value))) for m in means)
-        bodies = [n for n, state in enumerate(self.states) if state in dict(self.heats.values())]
-        heated = next(iter(bodies), -1)
+        first = next((body for _, body in self.heats.values()), None)
+        heated = list(self.states).index(first) if first else -1
         return Collocation(means, stage, self._slopes(), heated, False, self._paths())
 
     def _slopes(self):

@@ -54,7 +54,7 @@ typedef struct {
     real *u;                   /* STAGES*inputs */
     real *largest;             /* n: the largest magnitude of each state, by which errors count */
     real *reached, *gap, *prior, *node, *mean, *side, *margin, *rows, *slope, *fresh, *real_factor;
-    real *path;                /* parameters of path functionals */
+    real *path, *bend;         /* parameters of path functionals; where one first bends in a step */
     mask fine;                 /* lanes whose means are taken at FINE nodes */
     mask over;                 /* lanes whose stages choose their branches: they step over kinks */
     real iterations;           /* of Newton's method */
@@ -165,6 +165,7 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     PLACE(slope, m->slopes);
 #if defined(PATHS)
     PLACE(path, PARAMETERS * paths);
+    PLACE(bend, 1);
 #endif /* PATHS */
     PLACE(fresh, m->slopes);
     PLACE(real_factor, MODEL(factor_size_real)(m));

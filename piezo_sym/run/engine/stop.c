@@ -9,15 +9,17 @@
 
 /* Parts of a limit: so near to it an inner state has reached it, at points that are no part of a step. */
 #define AT_LIMIT 1e-9
+/* Parts of a step: a bend before is at its begin. */
+#define BEGUN 1e-6
 
 /*
  * How a coordinate goes along a step: C(tau) - C(0) and dC/dtau by their coefficients, from 1 on;
  * where it is at the stages, and how fast; no further than `most` from where it began.  It does not
- * turn between turn[k] and turn[k + 1].
+ * turn between turn[k] and turn[k + 1].  `bend` is the first place where z begins, or ends, to yield.
  */
 typedef struct {
     double gone[STAGES + 1], speed[STAGES], at_stage[STAGES], rate[STAGES], turn[STAGES + 1];
-    double h, most;
+    double h, most, bend;
     long pieces;
 } MODEL(way);
 
@@ -133,6 +135,7 @@ static double MODEL(stop)(MODEL(way) *w, double z, double k, double r, MODEL(mea
     const double begin = fmin(fmax(z, -r), r); /* r may be less than it was */
     double now = begin, heat = 0.5 * k * (z - begin) * (z + begin), moving = 0.0;
     double yielded = 0.0, moved = 0.0;
+    int yielding = 0;
     memset(mean, 0, sizeof(MODEL(means)));
     if (fabs(z) + w->most <= r) {
         for (long i = 0; i < STAGES; ++i) {
@@ -153,6 +156,10 @@ static double MODEL(stop)(MODEL(way) *w, double z, double k, double r, MODEL(mea
             : room == 0.0            ? low
                                      : MODEL(meets)(w->gone, STAGES, from + room, low, high);
         MODEL(add_piece)(w, low, until, k * (now - from), k, 0, mean);
+        const double bend = yielding && until > low ? low : yields ? until : 1.0;
+        if (bend > BEGUN)
+            w->bend = fmin(w->bend, bend);
+        yielding = yields;
         moving += until - low;
         now = yields ? limit : now + more;
         if (yields) {
@@ -181,12 +188,14 @@ static void MODEL(along_paths)(const MODEL(block) *m, real h)
 {
     const real *parameter = m->path;
     real *given = m->mean + m->means;
+    *m->bend = wide(1.0);
     for (long n = 0; n < PATHS; ++n) {
         const int *path = MODEL(path)[n];
         const long lanes = path[BANK] < 0 ? 1 : m->lanes[path[BANK]];
         for (int lane = 0; lane < REAL_WIDTH; ++lane) {
             MODEL(way) w;
             MODEL(means) mean;
+            w.bend = 1.0;
             for (long j = 0; j < lanes; ++j) {
                 const double z = LANE(m->x, m->first[path[INNER]] + j, lane);
                 const double k = LANE(parameter, STIFFNESS * lanes + j, lane);
@@ -199,6 +208,7 @@ static void MODEL(along_paths)(const MODEL(block) *m, real h)
                         LANE(given + i * m->given, what * lanes + j, lane) = mean[what][i];
                     LANE(given + i * m->given, SHARE * lanes + j, lane) = share;
                 }
+                LANE(m->bend, 0, lane) = fmin(LANE(m->bend, 0, lane), w.bend);
             }
         }
         given += GIVEN * lanes, parameter += PARAMETERS * lanes;

@@ -97,6 +97,8 @@ enum { TRIED = 32, AGAIN = 12 };
 #define FAST 3.0
 /* An error may be small by chance: steps grow to no more than this, in what the one before asks for. */
 #define SUDDEN 1.5
+/* A refused step is tried again up to where a path bends, if that is before this part of it. */
+#define BEND 0.999
 /* Parts of a step: so near to its end a switch is at its end; so near to its begin, at its begin. */
 #define AT_END 1e-9
 #define AT_ONCE 1e-12
