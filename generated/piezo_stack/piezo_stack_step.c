@@ -456,7 +456,7 @@ typedef struct {
     real *u;                   /* STAGES*inputs */
     real *largest;             /* n: the largest magnitude of each state, by which errors count */
     real *reached, *gap, *prior, *node, *mean, *side, *margin, *rows, *slope, *fresh, *real_factor;
-    real *path;                /* parameters of path functionals */
+    real *path, *bend;         /* parameters of path functionals; where one first bends in a step */
     mask fine;                 /* lanes whose means are taken at FINE nodes */
     mask over;                 /* lanes whose stages choose their branches: they step over kinks */
     real iterations;           /* of Newton's method */
@@ -824,10 +824,14 @@ static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES
 
 /* Newton's method for the rates at the stages of a step.  Behind gauss.c. */
 
-/* A stage at a point, which is no part of a step: co-states, and efforts of paths, are those there. */
+/*
+ * A stage at a point, with co-states and efforts as they are there.  At an end of a step rates of paths
+ * follow from those of its stages by weights: they may jump within the step, which has their means.
+ */
 static void MODEL(at_point)(const MODEL(block) *m, const real *x, const real *branch, const real *u,
-                            real *rate, real *rows, real *side, real *margin)
+                            const double *weight, real *rate, real *rows, real *side, real *margin)
 {
+    (void)weight;
     MODEL(integrands)(x, &m->p, m->node);
     MODEL(stage)(x, m->node, branch, u, &m->p, rate, rows, side, margin);
 }
@@ -1046,7 +1050,7 @@ int MODEL(step)(double *x, const double *u, double h, const MODEL(parameters) *p
     for (long k = 0; k < m->booked; ++k)
         booked[k] = h * m->rows[k];
     MODEL(reach)(m, h, stage_weight, m->end);
-    MODEL(at_point)(m, m->end, m->branch, u, m->gap, m->rows, m->side, m->margin);
+    MODEL(at_point)(m, m->end, m->branch, u, NULL, m->gap, m->rows, m->side, m->margin);
     int good = MODEL(within)(m->margin);
     for (long k = 0; k < m->n; ++k)
         good &= size_of(m->gap[k]) < 1e300;

@@ -167,7 +167,8 @@ class HandMade:
             terms = []
             for _, (energy, own) in self._energies():
                 slope = derivative(energy, state)
-                terms.append(LaneSum(slope, own) if own and not bank else slope)
+                summed = own and not bank and slope != ZERO
+                terms.append(LaneSum(slope, own) if summed else slope)
             found.append(Quantity(f"E_{state}", add(*terms), bank, "co-states"))
         return found
 
