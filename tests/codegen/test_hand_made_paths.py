@@ -15,12 +15,19 @@ from piezo_sym.run.parameters import read_parameters
 from piezo_sym.run.simulate import simulate
 from piezo_sym.run.system import System
 
+from .c_compilers import COMPILERS
 from .hand_made import HandMade
+from .test_c_text import STRICT, called
 from .test_step_alone import Alone
 
 BODY = {"T_0": 300.0, "c": 0.8}
 HEAT = "c*T_0*exp(S/c)"
 STIFF, LIMIT = 3000.0, 1e-3
+
+
+def total(name):
+    return LaneSum(Sym(name), "slip")
+
 
 #: A mass on a spring and a stop, driven by a force; damper and stop heat a body.
 MASS = HandMade(
@@ -49,7 +56,7 @@ MAXWELL = HandMade(
     },
     states={"q": (0.0, None), "p": (0.0, None), "z": (0.0, "slip"), "S": (0.01, None)},
     energies=["p**2/(2*m)", "k*q**2/2", ("k_s*z**2/2", "slip"), HEAT],
-    laws={n: LaneSum(Sym(f"slips_{w}"), "slip") for n, w in (("force", "effort"), ("lost", "heat"))},
+    laws={"force": total("slips_effort"), "lost": total("slips_heat")},
     rates={"q": "E_p", "p": "F - E_q - force", "z": "slips_rate", "S": "lost/E_S"},
     inputs={"F": 0.0},
     supply={"pull": "F*E_p"},
@@ -113,7 +120,7 @@ def test_balances_close(made, name, way):
 
 
 def stop_operator(places, r, z=0.0):
-    """Return the inner state of a stop at places that a coordinate goes to without a turn between."""
+    """Return z of a stop at places that a coordinate goes to without a turn between."""
     found = [z]
     for step in np.diff(places):
         found.append(np.clip(found[-1] + step, -r, r))
@@ -210,7 +217,7 @@ def test_fixed_steps_over_bends_converge(made):
 
 
 def test_lanes_do_what_single_stops_do(made):
-    """Whatever the limits: each of them follows its own operator of the coordinate that all share."""
+    """Each of them follows its own operator of the coordinate that all share."""
     parameters = {"a": 0.0}
     how = {"step": 2e-3, "order": 6, "parameters": parameters}
     run = simulate(made["maxwell"], duration=0.5, inputs={"F": sine(15.0, 6.0)}, **how)
@@ -276,6 +283,9 @@ def test_a_dissipative_start_takes_stops_too(made):
 def test_a_step_in_c_alone_takes_stops_too(made, tmp_path):
     module, h = made["stopped"], 2e-3
     step, x = Alone(module, tmp_path), np.array([0.0, 0.0, 0.0, 0.01])
+    called(
+        [*next(iter(COMPILERS.values())), *STRICT, "-c", module.__file__[:-3] + "_step.c"], tmp_path
+    )
     for _ in range(100):
         assert step(x, np.array([10.0]), h)
     run = simulate(module, duration=100 * h, inputs={"F": 10.0}, step=h, times=2)

@@ -16,6 +16,7 @@ from piezo_sym.codegen.c.head import opening
 from piezo_sym.codegen.c.lines import Words, indented, stage_lines, statement, used_only
 from piezo_sym.codegen.c.names import added, c_names
 from piezo_sym.codegen.c.order import Write, stages
+from piezo_sym.codegen.c.paths import path_rows, path_table
 from piezo_sym.codegen.c.record import comment, give_text, place_text, record_text
 from piezo_sym.codegen.collocation import Collocation
 from piezo_sym.codegen.coupling import coupling_of, table
@@ -142,22 +143,11 @@ class _Printer:
 
     def paths(self) -> Iterator[str]:
         """Yield the table of path functionals, and the function of what they take, if any."""
-        if not self.made.paths:
-            return
-        index = {state.name: n for n, state in enumerate(self.program.states)}
-        banks, rows = [*self.program.counts], list[Row]()
-        lines = ["/* Path functionals: bank or -1, coordinate, whether one a lane, inner state. */"]
-        lines += [f"#define PATHS {len(self.made.paths)}"]
-        lines += [f"static const int {self.name}_path[PATHS][4] = {{"]
-        for path in self.made.paths:
-            n, bank = index[path.coordinate], banks.index(path.bank) if path.bank else -1
-            own = int(self.program.states[n].bank is not None)
-            lines.append(f"    {{{bank}, {n}, {own}, {index[path.inner]}}},")
-            rows += [Row(Slot(path.inner, path.bank), v) for v in (path.stiffness, path.limit)]
-        yield "\n".join([*lines, "};"])
-        doc = "Stiffness and limit of each path functional"
-        body = self._written(rows, "out", ())
-        yield self._function("path_parameters", doc, "x p out", body, [*self._ends(rows)])
+        if self.made.paths:
+            rows, doc = path_rows(self.made.paths), "Stiffness and limit of each path functional"
+            body, ends = self._written(rows, "out", ()), [*self._ends(rows)]
+            yield path_table(self.program, self.made.paths)
+            yield self._function("path_parameters", doc, "x p out", body, ends)
 
     def sizes(self) -> str:
         """Return the function that tells how many numbers each array has."""

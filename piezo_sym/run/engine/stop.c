@@ -88,6 +88,7 @@ static void MODEL(find_turns)(MODEL(way) *w)
 static void MODEL(find_way)(const MODEL(block) *m, double h, long i, int lane, MODEL(way) *w)
 {
     double square = 0.0;
+    (void)lane; /* where there is one */
     w->h = h;
     w->gone[0] = 0.0;
     for (long j = 0; j < STAGES; ++j) {
