@@ -163,11 +163,13 @@ static void piezo_stack_stage(const real *restrict x,
 
 /* Derivative of the rates by the state, on branches b; entries as the tables say. */
 static void piezo_stack_slopes(const real *restrict x,
+                               const real *restrict g,
                                const real *restrict b,
                                const real *restrict u,
                                const piezo_stack_reals *restrict p_,
                                real *restrict out)
 {
+    (void)g;
     const long hysteron_count = p_->hysteron_count;
     const real M = p_->M;
     const real k = p_->k;
@@ -451,11 +453,13 @@ static const double basis_stage[1][1] = {
 #define NO_SIZE (sizeof(real) < sizeof(double) ? 1e-30 : 1e-300)
 
 
+
 /* The runs of all lanes, as they take a step: sizes, and the numbers that it works on. */
 typedef struct {
     MODEL(reals) p;
     const MODEL(parameters) *own; /* those of p, in the last lane that has taken some */
     long n, inputs, means, branches, booked, slopes, processes;
+    long given; /* to a stage: means, and what path functionals give */
     const long *lanes, *first; /* of each bank; of each state, its first row */
     real *x, *end;             /* n: where the step begins, and where it ends */
     real *rates;               /* STAGES*n */
@@ -463,6 +467,7 @@ typedef struct {
     real *u;                   /* STAGES*inputs */
     real *largest;             /* n: the largest magnitude of each state, by which errors count */
     real *reached, *gap, *prior, *node, *mean, *side, *margin, *rows, *slope, *fresh, *real_factor;
+    real *path, *bend;         /* parameters of path functionals; where one first bends in a step */
     mask fine;                 /* lanes whose means are taken at FINE nodes */
     mask over;                 /* lanes whose stages choose their branches: they step over kinks */
     real iterations;           /* of Newton's method */
@@ -681,6 +686,7 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     m->processes = sizes[4], m->slopes = sizes[5];
     m->inputs = MODEL(input_count);
     m->lanes = sizes + 6, m->first = sizes + 6 + MODEL(banks);
+    m->given = m->means;
 #define PLACE(array, size) (m->array = at, at += (size))
     PLACE(x, n);
     PLACE(end, n);
@@ -691,8 +697,8 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     PLACE(reached, n);
     PLACE(gap, STAGES * n);
     PLACE(prior, STAGES * n);
-    PLACE(node, FINE * m->means);
-    PLACE(mean, STAGES * m->means);
+    PLACE(node, FINE * m->means + m->given - m->means);
+    PLACE(mean, STAGES * m->given);
     PLACE(side, STAGES * m->branches);
     PLACE(margin, STAGES * MODEL(limits));
     PLACE(rows, STAGES * m->booked);
@@ -767,7 +773,7 @@ static void MODEL(average)(const MODEL(block) *m, real h)
     MODEL(integrate)(m, h, node_reach, NODES);
     for (long i = 0; i < STAGES; ++i)
         for (long k = 0; k < m->means; ++k) {
-            real *const mean = m->mean + i * m->means + k;
+            real *const mean = m->mean + i * m->given + k;
             *mean = zero;
             for (long q = 0; q < NODES; ++q)
                 *mean += node_mean[i][q] * m->node[q * m->means + k];
@@ -777,7 +783,7 @@ static void MODEL(average)(const MODEL(block) *m, real h)
     MODEL(integrate)(m, h, fine_reach, FINE);
     for (long i = 0; i < STAGES; ++i)
         for (long k = 0; k < m->means; ++k) {
-            real *const mean = m->mean + i * m->means + k, sum = zero;
+            real *const mean = m->mean + i * m->given + k, sum = zero;
             for (long q = 0; q < FINE; ++q)
                 sum += fine_mean[i][q] * m->node[q * m->means + k];
             *mean = chosen(m->fine, sum, *mean);
@@ -793,7 +799,7 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     if (m->means)
         MODEL(average)(m, h);
     for (long i = 0; i < STAGES; ++i) {
-        real *gap = m->gap + i * m->n, *mean = m->mean + i * m->means;
+        real *gap = m->gap + i * m->n, *mean = m->mean + i * m->given;
         real *side = m->side + i * m->branches, *branch = m->branch + i * m->branches;
         MODEL(reach)(m, h, stage_reach[i], m->reached);
         for (int again = 0; again < 3; ++again) {
@@ -829,6 +835,18 @@ static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES
 
 /* Newton's method for the rates at the stages of a step.  Behind gauss.c. */
 
+/*
+ * A stage at a point, with co-states and efforts as they are there.  At an end of a step rates of paths
+ * follow from those of its stages by weights: they may jump within the step, which has their means.
+ */
+static void MODEL(at_point)(const MODEL(block) *m, const real *x, const real *branch, const real *u,
+                            const double *weight, real *rate, real *rows, real *side, real *margin)
+{
+    (void)weight;
+    MODEL(integrands)(x, &m->p, m->node);
+    MODEL(stage)(x, m->node, branch, u, &m->p, rate, rows, side, margin);
+}
+
 /* Iterations, and after how many a step is given up whose changes do not become smaller. */
 enum { MOST_ITERATIONS = 12, SOON = 1 };
 /*
@@ -860,8 +878,8 @@ static void MODEL(prepare)(const MODEL(block) *m, real h, mask where)
 {
     const long middle = STAGES / 2;
     MODEL(reach)(m, h, stage_reach[middle], m->reached);
-    MODEL(slopes)(m->reached, m->branch + middle * m->branches, m->u + middle * m->inputs, &m->p,
-                  m->fresh);
+    MODEL(slopes)(m->reached, m->mean + middle * m->given, m->branch + middle * m->branches,
+                  m->u + middle * m->inputs, &m->p, m->fresh);
     for (long k = 0; k < m->slopes; ++k)
         m->slope[k] = chosen(where, m->fresh[k], m->slope[k]);
     MODEL(factorise_real)(m, h * filter, m->slope, m->real_factor);
@@ -1041,8 +1059,7 @@ int MODEL(step)(double *x, const double *u, double h, const MODEL(parameters) *p
     for (long k = 0; k < m->booked; ++k)
         booked[k] = h * m->rows[k];
     MODEL(reach)(m, h, stage_weight, m->end);
-    MODEL(integrands)(m->end, &m->p, m->node);
-    MODEL(stage)(m->end, m->node, m->branch, m->u, &m->p, m->gap, m->rows, m->side, m->margin);
+    MODEL(at_point)(m, m->end, m->branch, m->u, NULL, m->gap, m->rows, m->side, m->margin);
     int good = MODEL(within)(m->margin);
     for (long k = 0; k < m->n; ++k)
         good &= size_of(m->gap[k]) < 1e300;

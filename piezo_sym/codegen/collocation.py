@@ -21,6 +21,7 @@ from piezo_sym.algebra.lanes import Slot
 from piezo_sym.codegen.differences import sharp_quantity
 from piezo_sym.codegen.functions import exchanges_of, limits_of, ports_of, rates_of
 from piezo_sym.codegen.jacobian import jacobian_of
+from piezo_sym.codegen.paths import Path
 from piezo_sym.codegen.program import Entry, Field, Limit, Quantity, Row, needed
 from piezo_sym.codegen.quantities import Quantities
 from piezo_sym.codegen.switches import Switch, Switches, compared, lanes_of
@@ -78,6 +79,7 @@ class Collocation:
     heated : the state whose row takes what a dissipative step loses, the first body's; -1 if there
         is no body, or no store that could lose anything.
     jumps : whether a law says that it is discontinuous.
+    paths : what a stage is given behind the means.
     """
 
     means: tuple[Quantity, ...]
@@ -85,6 +87,7 @@ class Collocation:
     slopes: Slopes
     heated: int
     jumps: bool
+    paths: tuple[Path, ...] = ()
 
 
 def collocation_of(iphs: IPHS) -> Collocation:

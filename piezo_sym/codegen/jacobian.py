@@ -11,7 +11,7 @@ lies between them.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import final
 
@@ -30,8 +30,22 @@ class _Slope:
     outer: tuple[Outer, ...] = ()
 
 
+@final
+@dataclass(frozen=True)
+class Given:
+    """A name that stands for no expression, and its derivative by a state."""
+
+    name: str
+    state: str
+    slope: Expr
+
+
 def jacobian_of(
-    rates: tuple[Row, ...], states: tuple[Field, ...], lanes: Mapping[str, str], q: Quantities
+    rates: tuple[Row, ...],
+    states: tuple[Field, ...],
+    lanes: Mapping[str, str],
+    q: Quantities,
+    given: Iterable[Given] = (),
 ) -> Jacobian:
     """Return the derivative of `rates` by `states`; adds the named derivatives to `q`.
 
@@ -41,6 +55,7 @@ def jacobian_of(
     states : the states, in the same order.
     lanes : the bank of every parameter and state that has a value a lane.
     q : the quantities; grows by the derivatives that get a name.
+    given : names that are no quantities, and depend on a state all the same.
     """
     before, _ = needed(q.defined, (rate.value for rate in rates))
     known = {**lanes, **{item.name: item.bank for item in before if item.bank}}
@@ -49,6 +64,7 @@ def jacobian_of(
     found: list[Entry] = []
     for col, state in enumerate(states):
         chain = _Chain(state, dict(known), q)
+        chain.slopes |= {g.name: _Slope(g.slope) for g in given if g.state == state.name}
         for quantity, used in words:
             if not chain.slopes.keys().isdisjoint(used):
                 chain.differentiate(quantity)

@@ -85,7 +85,7 @@ _SPELLED |= {f"{name}_of": name for name in (*_LIBRARY, *(f"power_{n}" for n in 
 _LEAST = ast.parse("a if a < b or a != a else b", mode="eval").body
 _STAGE = "x g b u p out rows s m"
 FORM = Form(
-    {"integrands": "x p out", "stage": _STAGE, "slopes": "x b u p out"},
+    {"integrands": "x p out", "stage": _STAGE, "slopes": "x g b u p out"},
     "reals",
     {name: CALLS[name] for name in _LIBRARY},
     {"stage out": "rhs", "stage rows": "ledger", "stage m": "margins"},

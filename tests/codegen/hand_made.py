@@ -14,12 +14,16 @@ from piezo_sym.codegen import printed
 from piezo_sym.codegen.collocation import Collocation, Slopes, Stage
 from piezo_sym.codegen.differences import sharp_program, sharp_quantity
 from piezo_sym.codegen.jacobian import jacobian_of
+from piezo_sym.codegen.paths import Path as Stop
+from piezo_sym.codegen.paths import in_motion, slopes_of
 from piezo_sym.codegen.program import Field, Function, Limit, Program, Quantity, Row
 from piezo_sym.codegen.switches import Switches, compared, lanes_of
-from piezo_sym.expressions.calculus import add, derivative, div, is_affine
+from piezo_sym.expressions.calculus import add, derivative, div, is_affine, mul, neg
 from piezo_sym.expressions.parse import parse_rule
-from piezo_sym.expressions.tree import ZERO, LaneSum, Num, Sym, rebuild
+from piezo_sym.expressions.tree import ZERO, Call, Cmp, If, LaneSum, Num, Sym, rebuild
+from piezo_sym.expressions.tree import replace as put
 from piezo_sym.modules import load_module
+from piezo_sym.run.engine.alone import step_alone
 from piezo_sym.spec.names import fresh
 
 DRIVEN, STATE = ("x", "u", "p"), ("x", "p")
@@ -41,6 +45,8 @@ class HandMade:
     heats : process -> (power turned into heat, the entropy that takes it).
     counts : bank -> lanes.
     limits : what must be positive, in states and laws.
+    paths : name -> (coordinate, inner state, stiffness, limit of the inner state), stops; what
+        one gives are `<name>_effort`, `_rate`, `_heat`.
     """
 
     name: str
@@ -54,17 +60,19 @@ class HandMade:
     heats: dict = field(default_factory=dict)
     counts: dict = field(default_factory=dict)
     limits: tuple = ()
+    paths: dict = field(default_factory=dict)
 
     def module(self, folder):
         """Write the module's files into a folder; return the module."""
         texts = printed(sharp_program(self.program()), self.collocation())
+        texts["_step.c"] += step_alone(self.name, paths=bool(self.paths))
         for ending, text in texts.items():
             (Path(folder) / f"{self.name}{ending}").write_text(text, encoding="utf-8")
         return load_module(Path(folder) / f"{self.name}.py")
 
     def program(self):
         """Return what the module computes."""
-        q = _Quantities(self, self.costates())
+        q = _Quantities(self, [*self.costates(), *self._standing()])
         rates = self._rows(self.rates, q)
         jacobian = jacobian_of(rates, self.fields(), self.lanes(), q)
         total = [
@@ -133,7 +141,9 @@ class HandMade:
             frozenset(q.taken),
         )
         means = tuple(sharp_quantity(replace(m, value=compared(m.value))) for m in means)
-        return Collocation(means, stage, self._slopes(), -1, False)
+        first = next((body for _, body in self.heats.values()), None)
+        heated = list(self.states).index(first) if first else -1
+        return Collocation(means, stage, self._slopes(), heated, False, self._paths())
 
     def _slopes(self):
         q = _Quantities(self, self.costates())
@@ -142,8 +152,12 @@ class HandMade:
         switches = Switches(lanes_of(self.lanes(), q.defined), q.name)
         q.defined[:] = switches.quantities(q.defined, free)
         rates = switches.rows(rates)
+        mean = in_motion(self._paths(), {row.slot.label: row.value for row in rates})
+        rates = tuple(replace(row, value=put(row.value, mean)) for row in rates)
+        q.defined[:] = [replace(d, value=put(d.value, mean)) for d in q.defined]
         q.defined += switches.new()
-        entries = jacobian_of(rates, self.fields(), switches.lanes, q).entries
+        given = [*slopes_of(self._paths())]
+        entries = jacobian_of(rates, self.fields(), switches.lanes, q, given).entries
         found = tuple(switches.found.values())
         return Slopes(tuple(map(sharp_quantity, q.defined)), entries, found, frozenset(q.taken))
 
@@ -154,7 +168,8 @@ class HandMade:
             terms = []
             for _, (energy, own) in self._energies():
                 slope = derivative(energy, state)
-                terms.append(LaneSum(slope, own) if own and not bank and slope != ZERO else slope)
+                summed = own and not bank and slope != ZERO
+                terms.append(LaneSum(slope, own) if summed else slope)
             found.append(Quantity(f"E_{state}", add(*terms), bank, "co-states"))
         return found
 
@@ -165,7 +180,26 @@ class HandMade:
     def lanes(self):
         """Return the bank of each name that has a value per lane."""
         found = {name: bank for name, (_, bank) in self._parameters() if bank}
+        found |= {f.name: f.bank for path in self._paths() for f in path.given() if f.bank}
         return found | {name: bank for name, (_, bank) in self.states.items() if bank}
+
+    def _paths(self):
+        found = []
+        for name, (coordinate, inner, stiffness, limit) in self.paths.items():
+            given = (f"{name}_{what}" for what in ("effort", "rate", "heat", "share"))
+            taken = read(stiffness), compared(read(limit))
+            found.append(Stop(coordinate, inner, self.states[inner][1], *taken, *given))
+        return tuple(found)
+
+    def _standing(self):
+        """Yield what paths are at a point: a stop yields where it would leave its limit."""
+        for path in self._paths():
+            rate, force = read(self.rates[path.coordinate]), mul(path.stiffness, Sym(path.inner))
+            inside = If(rate, Cmp("<", Call("abs", (Sym(path.inner),)), path.limit), ZERO)
+            moved = If(rate, Cmp("<=", mul(Sym(path.inner), rate), ZERO), inside)
+            heat = mul(Sym(path.effort), add(rate, neg(Sym(path.rate))))
+            for name, value in ((path.effort, force), (path.rate, moved), (path.heat, heat)):
+                yield Quantity(name, value, path.bank, "paths")
 
     def _affine(self, costate):
         return is_affine(costate.value, set(self.states))
@@ -198,6 +232,7 @@ class _Quantities:
         self.defined = []
         self.taken = {*model.parameters, *model.states, *model.inputs, *model.laws, *model.counts}
         self.taken |= {f"E_{state}" for state in model.states}
+        self.taken |= {field.name for path in model._paths() for field in path.given()}
         for costate in costates:
             self.defined.append(replace(costate, value=self.settled(costate.value)))
         for name, given in model.laws.items():

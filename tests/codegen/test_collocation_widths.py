@@ -24,7 +24,7 @@ void all_of(const real *x, const real *g, const real *b, const real *u, const {n
 {{
     {name}_integrands(x, p, mean);
     {name}_stage(x, g, b, u, p, out, rows, s, m);
-    {name}_slopes(x, b, u, p, slopes);
+    {name}_slopes(x, g, b, u, p, slopes);
 }}
 """
 

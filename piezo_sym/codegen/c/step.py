@@ -16,6 +16,7 @@ from piezo_sym.codegen.c.head import opening
 from piezo_sym.codegen.c.lines import Words, indented, stage_lines, statement, used_only
 from piezo_sym.codegen.c.names import added, c_names
 from piezo_sym.codegen.c.order import Write, stages
+from piezo_sym.codegen.c.paths import path_rows, path_table
 from piezo_sym.codegen.c.record import comment, give_text, place_text, record_text
 from piezo_sym.codegen.collocation import Collocation
 from piezo_sym.codegen.coupling import coupling_of, table
@@ -58,6 +59,7 @@ def c_step(program: Program, made: Collocation) -> str:
         printer.stage(),
         printer.slopes(),
         printer.sizes(),
+        *printer.paths(),
         place_text(program, printer.names),
         give_text(program, printer.names),
     ]
@@ -84,11 +86,12 @@ class _Printer:
         self.program, self.made, self.name = program, made, program.name
         stage, slopes = made.stage, made.slopes
         self.means = [Field(mean.name, "", "", mean.bank) for mean in made.means]
+        self.given = [*self.means, *(field for path in made.paths for field in path.given())]
         self.branches = [Field(s.branch, "", "", s.bank) for s in stage.switches]
         both = {q.name: q for q in (*stage.quantities, *slopes.quantities)}
         whole = replace(
             program,
-            states=(*program.states, *self.means, *self.branches),
+            states=(*program.states, *self.given, *self.branches),
             quantities=tuple(both.values()),
             taken=stage.taken | slopes.taken,
         )
@@ -145,7 +148,16 @@ class _Printer:
             writes.append(Write(f"{self.words['out']}[{target}]", place.value, place.bank))
         body = self._computed(self.made.slopes.quantities, writes, self.slope_lines)
         doc = "Derivative of the rates by the state, on branches b; entries as the tables say"
-        return self._function("slopes", doc, "x b u p out", body)
+        return self._function("slopes", doc, "x g b u p out", body)
+
+    def paths(self) -> Iterator[str]:
+        """Yield the table of path functionals, and the function of what they take, if any."""
+        if self.made.paths:
+            rows, doc = path_rows(self.made.paths), "Stiffness and limit of each path functional"
+            body = self._computed((), self._writes(rows, "out"), self.lines)
+            ends = [*self._ends(rows)]
+            yield path_table(self.program, self.made.paths)
+            yield self._function("path_parameters", doc, "x p out", body, ends)
 
     def sizes(self) -> str:
         """Return the function that tells how many numbers each array has."""
@@ -264,16 +276,21 @@ class _Printer:
         for field in self.program.parameters:
             kind = "const real *restrict " if field.bank else "const real "
             yield names[field.name], f"{kind}{names[field.name]} = {w['p']}->{names[field.name]};"
-        parts = {"x": self.program.states, "g": self.means, "b": self.branches}
+        parts = {"x": self.program.states, "g": self.given, "b": self.branches}
+        own = [] if "s" in given else self.means  # slopes compute these themselves
         for word, fields in parts.items():
-            yield from self._fields(fields, w[word]) if word in given else ()
+            yield from self._fields(fields, w[word], own) if word in given else ()
         for n, entry in enumerate(self.program.inputs):
             yield names[entry.name], f"const real {names[entry.name]} = {w['u']}[{n}];"
 
-    def _fields(self, fields: Sequence[Field], array: str) -> Iterator[tuple[str, str]]:
+    def _fields(
+        self, fields: Sequence[Field], array: str, without: Sequence[Field]
+    ) -> Iterator[tuple[str, str]]:
         at = places([Slot(f.name, f.bank) for f in fields], f"end_{array}", self.made.stage.taken)
         yield from ((line.split()[0], f"const long {line};") for line in at.definitions())
         for n, field in enumerate(fields):
+            if field in without:
+                continue
             name, place = self.names[field.name], at.position(n)
             pointer = f"const real *restrict {name} = {array} + {place};"
             yield name, pointer if field.bank else f"const real {name} = {array}[{place}];"

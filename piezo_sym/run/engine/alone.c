@@ -37,8 +37,7 @@ int MODEL(step)(double *x, const double *u, double h, const MODEL(parameters) *p
     for (long k = 0; k < m->booked; ++k)
         booked[k] = h * m->rows[k];
     MODEL(reach)(m, h, stage_weight, m->end);
-    MODEL(integrands)(m->end, &m->p, m->node);
-    MODEL(stage)(m->end, m->node, m->branch, m->u, &m->p, m->gap, m->rows, m->side, m->margin);
+    MODEL(at_point)(m, m->end, m->branch, m->u, NULL, m->gap, m->rows, m->side, m->margin);
     int good = MODEL(within)(m->margin);
     for (long k = 0; k < m->n; ++k)
         good &= size_of(m->gap[k]) < 1e300;

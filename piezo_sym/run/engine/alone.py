@@ -39,12 +39,14 @@ _LEFT_OUT = (
     r"#if defined\(LANES\).*?#endif /\* LANES \*/\n",
     r"#if LOSSY.*?#endif\n",
 )
+#: What is for models with path functionals.
+_OF_PATHS = r"#if defined\(PATHS\)\n.*?#endif /\* PATHS \*/\n"
 
 
-def step_alone(model: str) -> str:
-    """Return the text of a model's step for programs in C."""
-    solver = texts("gauss.c", "gaps.c", "newton.c")
-    for left_out in _LEFT_OUT:
+def step_alone(model: str, *, paths: bool = False) -> str:
+    """Return the text of a model's step for programs in C; `paths` tells whether it has any."""
+    solver = texts("gauss.c", *(["stop.c"] if paths else []), "gaps.c", "newton.c")
+    for left_out in (*_LEFT_OUT, *([] if paths else [_OF_PATHS])):
         solver = re.sub(left_out, "", solver, flags=re.DOTALL)
     solver = solver.replace(_INCLUDE, texts("elimination.c"))
     text = f"{solver}\n{texts('alone.c')}"

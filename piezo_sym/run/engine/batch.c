@@ -134,11 +134,11 @@ static mask MODEL(midpoint)(MODEL(batch) *b, real h, mask where)
         real worst = zero;
         m->iterations += chosen(going, wide(1.0), zero);
         for (int again = 0; again < 3; ++again) {
-            MODEL(point)(b, m->reached, m->branch, b->some_rate, b->some_side);
+            MODEL(point)(b, m->reached, m->branch, NULL, b->some_rate, b->some_side);
             if (!any(MODEL(choose)(m->branches, b->some_side, m->branch, going)))
                 break;
         }
-        MODEL(slopes)(m->reached, m->branch, b->some_inputs, &m->p, m->slope);
+        MODEL(slopes)(m->reached, m->node, m->branch, b->some_inputs, &m->p, m->slope);
         MODEL(factorise_real)(m, 0.5 * h, m->slope, m->real_factor);
         for (long k = 0; k < m->n; ++k)
             b->some_rate[k] = m->x[k] + 0.5 * h * b->some_rate[k] - m->reached[k];

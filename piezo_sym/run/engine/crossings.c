@@ -113,7 +113,7 @@ static void MODEL(locate)(MODEL(batch) *b, mask where, real h, MODEL(crossing) *
                 sum += weight[j] * b->known[j * m->n + k];
             m->reached[k] = m->x[k] + h * sum;
         }
-        MODEL(point)(b, m->reached, m->branch, b->some_rate, b->some_side);
+        MODEL(point)(b, m->reached, m->branch, NULL, b->some_rate, b->some_side);
         for (int lane = 0; lane < REAL_WIDTH; ++lane) {
             MODEL(crossing) *c = crossing + lane;
             if (!IN(where, lane))

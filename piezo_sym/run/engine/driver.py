@@ -144,8 +144,9 @@ def collocation(model: str, stages: int, layout: str, *, lossy: bool = False) ->
     gaps = texts("gaps.c")
     if lanes:
         gaps = f"#if defined(LANES)\n{texts('gaps_at_once.c')}\n#else\n{gaps}\n#endif"
-    engine = [texts("gauss.c"), gaps, texts(*COLLOCATION), *([texts("loss.c")] if lossy else [])]
-    return "\n".join([*head, tables, *engine])
+    paths = ["#if defined(PATHS)", texts("stop.c"), "#endif"]
+    engine = [gaps, texts(*COLLOCATION), *([texts("loss.c")] if lossy else [])]
+    return "\n".join([*head, tables, texts("gauss.c"), *paths, *engine])
 
 
 def at_once(model: str, lanes: int) -> str:

@@ -33,7 +33,7 @@ static void MODEL(average)(const MODEL(block) *m, real h)
     MODEL(integrate)(m, h, node_reach, NODES);
     for (long i = 0; i < STAGES; ++i)
         for (long k = 0; k < m->means; ++k) {
-            real *const mean = m->mean + i * m->means + k;
+            real *const mean = m->mean + i * m->given + k;
             *mean = zero;
             for (long q = 0; q < NODES; ++q)
                 *mean += node_mean[i][q] * m->node[q * m->means + k];
@@ -43,7 +43,7 @@ static void MODEL(average)(const MODEL(block) *m, real h)
     MODEL(integrate)(m, h, fine_reach, FINE);
     for (long i = 0; i < STAGES; ++i)
         for (long k = 0; k < m->means; ++k) {
-            real *const mean = m->mean + i * m->means + k, sum = zero;
+            real *const mean = m->mean + i * m->given + k, sum = zero;
             for (long q = 0; q < FINE; ++q)
                 sum += fine_mean[i][q] * m->node[q * m->means + k];
             *mean = chosen(m->fine, sum, *mean);
@@ -61,8 +61,11 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     mask changed = nowhere;
     if (m->means)
         MODEL(average)(m, h);
+#if defined(PATHS)
+    MODEL(along_paths)(m, h);
+#endif /* PATHS */
     for (long i = 0; i < STAGES; ++i) {
-        real *gap = m->gap + i * m->n, *mean = m->mean + i * m->means;
+        real *gap = m->gap + i * m->n, *mean = m->mean + i * m->given;
         real *side = m->side + i * m->branches, *branch = m->branch + i * m->branches;
         MODEL(reach)(m, h, stage_reach[i], m->reached);
         for (int again = 0; again < 3; ++again) {

@@ -79,6 +79,12 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     mask changed = nowhere;
     if (m->means)
         MODEL(average)(m, h);
+#if defined(PATHS)
+    MODEL(along_paths)(m, h);
+    for (long k = m->means; k < m->given; ++k)
+        for (long i = 0; i < STAGES; ++i)
+            m->mean_lanes[k * LANES + i] = m->mean[i * m->given + k];
+#endif /* PATHS */
     for (long k = 0; k < m->n; ++k)
         ((lanes *)m->reached_lanes)[k] = MODEL(reached_lanes)(m, h, stage_lanes, k);
     MODEL(into_lanes)(m->u, m->inputs, m->u_lanes);

@@ -39,11 +39,20 @@ typedef struct {
 } MODEL(complex);
 #endif /* PAIRS */
 
+#if defined(PATHS)
+/* Of a path functional: its bank or -1, the state that is its coordinate, whether each lane has its
+ * own, its inner state; what a stage is given; what it takes. */
+enum { BANK, COORDINATE, OWN, INNER };
+enum { EFFORT, RATE, HEAT, SHARE, GIVEN };
+enum { STIFFNESS, LIMIT, PARAMETERS };
+#endif /* PATHS */
+
 /* The runs of all lanes, as they take a step: sizes, and the numbers that it works on. */
 typedef struct {
     MODEL(reals) p;
     const MODEL(parameters) *own; /* those of p, in the last lane that has taken some */
     long n, inputs, means, branches, booked, slopes, processes;
+    long given; /* to a stage: means, and what path functionals give */
     const long *lanes, *first; /* of each bank; of each state, its first row */
     real *x, *end;             /* n: where the step begins, and where it ends */
     real *rates;               /* STAGES*n */
@@ -51,6 +60,7 @@ typedef struct {
     real *u;                   /* STAGES*inputs */
     real *largest;             /* n: the largest magnitude of each state, by which errors count */
     real *reached, *gap, *prior, *node, *mean, *side, *margin, *rows, *slope, *fresh, *real_factor;
+    real *path, *bend;         /* parameters of path functionals; where one first bends in a step */
     mask fine;                 /* lanes whose means are taken at FINE nodes */
     mask over;                 /* lanes whose stages choose their branches: they step over kinks */
     real iterations;           /* of Newton's method */
@@ -136,6 +146,13 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     m->processes = sizes[4], m->slopes = sizes[5];
     m->inputs = MODEL(input_count);
     m->lanes = sizes + 6, m->first = sizes + 6 + MODEL(banks);
+    m->given = m->means;
+#if defined(PATHS)
+    long paths = 0;
+    for (long k = 0; k < PATHS; ++k)
+        paths += MODEL(path)[k][BANK] < 0 ? 1 : m->lanes[MODEL(path)[k][BANK]];
+    m->given += GIVEN * paths;
+#endif /* PATHS */
 #define PLACE(array, size) (m->array = at, at += (size))
     PLACE(x, n);
     PLACE(end, n);
@@ -146,19 +163,23 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     PLACE(reached, n);
     PLACE(gap, STAGES * n);
     PLACE(prior, STAGES * n);
-    PLACE(node, FINE * m->means);
-    PLACE(mean, STAGES * m->means);
+    PLACE(node, FINE * m->means + m->given - m->means);
+    PLACE(mean, STAGES * m->given);
     PLACE(side, STAGES * m->branches);
     PLACE(margin, STAGES * MODEL(limits));
     PLACE(rows, STAGES * m->booked);
     PLACE(slope, m->slopes);
+#if defined(PATHS)
+    PLACE(path, PARAMETERS * paths);
+    PLACE(bend, 1);
+#endif /* PATHS */
     PLACE(fresh, m->slopes);
     PLACE(real_factor, MODEL(factor_size_real)(m));
 #if defined(LANES)
     at = begin + (at - begin + LANES - 1) / LANES * LANES;
     PLACE(reached_lanes, n * LANES);
     PLACE(gap_lanes, n * LANES);
-    PLACE(mean_lanes, m->means * LANES);
+    PLACE(mean_lanes, m->given * LANES);
     PLACE(branch_lanes, m->branches * LANES);
     PLACE(u_lanes, m->inputs * LANES);
     PLACE(side_lanes, m->branches * LANES);

@@ -1,5 +1,24 @@
 /* Newton's method for the rates at the stages of a step.  Behind gauss.c. */
 
+/*
+ * A stage at a point, with co-states and efforts as they are there.  At an end of a step rates of paths
+ * follow from those of its stages by weights: they may jump within the step, which has their means.
+ */
+static void MODEL(at_point)(const MODEL(block) *m, const real *x, const real *branch, const real *u,
+                            const double *weight, real *rate, real *rows, real *side, real *margin)
+{
+    (void)weight;
+    MODEL(integrands)(x, &m->p, m->node);
+#if defined(PATHS)
+    MODEL(standing)(m, x, weight, NULL);
+    if (!weight) {
+        MODEL(stage)(x, m->node, branch, u, &m->p, rate, rows, side, margin);
+        MODEL(standing)(m, x, NULL, rate);
+    }
+#endif /* PATHS */
+    MODEL(stage)(x, m->node, branch, u, &m->p, rate, rows, side, margin);
+}
+
 /* Iterations, and after how many a step is given up whose changes do not become smaller. */
 enum { MOST_ITERATIONS = 12, SOON = 1 };
 /*
@@ -61,8 +80,8 @@ static void MODEL(prepare)(const MODEL(block) *m, real h, mask where)
 {
     const long middle = STAGES / 2;
     MODEL(reach)(m, h, stage_reach[middle], m->reached);
-    MODEL(slopes)(m->reached, m->branch + middle * m->branches, m->u + middle * m->inputs, &m->p,
-                  m->fresh);
+    MODEL(slopes)(m->reached, m->mean + middle * m->given, m->branch + middle * m->branches,
+                  m->u + middle * m->inputs, &m->p, m->fresh);
     for (long k = 0; k < m->slopes; ++k)
         m->slope[k] = chosen(where, m->fresh[k], m->slope[k]);
     MODEL(factorise_real)(m, h * filter, m->slope, m->real_factor);
@@ -136,6 +155,9 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
 {
     mask going = where, found = nowhere;
     real before = zero;
+#if defined(PATHS)
+    MODEL(path_parameters)(m->x, &m->p, m->path);
+#endif /* PATHS */
     MODEL(gaps)(m, h, going);
     MODEL(prepare)(m, h, going);
     for (int iteration = 0; iteration < m->most && any(going); ++iteration) {

@@ -13,7 +13,7 @@ static int MODEL(again)(MODEL(batch) *b, const MODEL(segment) *segment, double t
     m->most = MOST_OF_FIXED, m->late = LATE, m->stays = 0.7, m->over = nowhere;
     m->largest = b->tape->scale;
     MODEL(inputs_at)(segment, m->inputs, t, b->some_inputs, 0);
-    MODEL(point)(b, m->x, m->branch, b->some_rate, b->some_side);
+    MODEL(point)(b, m->x, m->branch, NULL, b->some_rate, b->some_side);
     for (long i = 0; i < STAGES; ++i) {
         MODEL(inputs_at)(segment, m->inputs, t + stage_at[i] * h, m->u + i * m->inputs, 0);
         memcpy(m->rates + i * m->n, b->some_rate, (size_t)m->n * sizeof(real));

@@ -250,6 +250,13 @@ static void MODEL(at_ends)(MODEL(batch) *b, MODEL(tick) *t)
     MODEL(copy)(t->steps, m->reached, m->end, m->n);
     MODEL(copy)(t->steps, b->some_rows, b->part, m->booked);
     MODEL(copy)(t->steps & t->found, m->rates, b->known, STAGES * m->n);
+#if defined(PATHS) /* where it began, as its stages tell */
+    for (int lane = 0; lane < REAL_WIDTH; ++lane)
+        if (IN(t->steps, lane))
+            MODEL(inputs_at)(b->lane[lane].segment, m->inputs, b->lane[lane].t, b->some_inputs, lane);
+    MODEL(point)(b, m->x, m->branch, stage_start, b->some_rate, b->some_side);
+    MODEL(copy)(t->steps & t->found, b->some_rate, b->rate, m->n);
+#endif
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {
         const MODEL(lane) *l = b->lane + lane;
         if (IN(t->steps, lane))
@@ -257,7 +264,7 @@ static void MODEL(at_ends)(MODEL(batch) *b, MODEL(tick) *t)
     }
     memcpy(b->end_branch, m->branch + (STAGES - 1) * m->branches, (size_t)m->branches * sizeof(real));
     for (int again = 0; again < 3; ++again) {
-        MODEL(point)(b, m->end, b->end_branch, b->some_rate, b->some_side);
+        MODEL(point)(b, m->end, b->end_branch, stage_end, b->some_rate, b->some_side);
         if (!any(MODEL(choose)(m->branches, b->some_side, b->end_branch, m->over)))
             break;
     }
@@ -293,8 +300,12 @@ static void MODEL(judged)(MODEL(batch) *b, MODEL(tick) *t)
             const double power = IN(b->m.over, lane) ? OVER_KINKS : -0.5 / STAGES;
             l->longer = error > 0.0 ? 0.9 * pow(error, power) : error == 0.0 ? 8.0 : 0.25;
             if (!(error <= 1.0)) {
-                const double part = l->refused > 1 ? fmin(l->longer, 0.5) : l->longer;
-                MODEL(refuse)(b, lane, l->length * fmax(0.1, part));
+                double part = fmax(0.1, l->refused > 1 ? fmin(l->longer, 0.5) : l->longer);
+#if defined(PATHS) /* most of the error may come from it */
+                if (LANE(b->m.bend, 0, lane) < BEND)
+                    part = LANE(b->m.bend, 0, lane);
+#endif
+                MODEL(refuse)(b, lane, l->length * part);
                 continue;
             }
         }

@@ -106,6 +106,8 @@ enum { TRIED = 32, AGAIN = 12 };
 #define FAST 3.0
 /* An error may be small by chance: steps grow to no more than this, in what the one before asks for. */
 #define SUDDEN 1.5
+/* A refused step is tried again up to where a path bends, if that is before this part of it. */
+#define BEND 0.999
 /* Parts of a step: so near to its end a switch is at its end; so near to its begin, at its begin. */
 #define AT_END 1e-9
 #define AT_ONCE 1e-12
@@ -153,12 +155,12 @@ static void MODEL(inputs_at)(const MODEL(segment) *segment, long inputs, double 
     }
 }
 
-/* Rates, switching functions and margins at a point, which is no part of a step. */
-static void MODEL(point)(MODEL(batch) *b, const real *x, const real *branch, real *rate, real *side)
+/* Rates, switching functions and margins at a point; `weight` as in newton.c. */
+static void MODEL(point)(MODEL(batch) *b, const real *x, const real *branch, const double *weight,
+                         real *rate, real *side)
 {
-    MODEL(integrands)(x, &b->m.p, b->m.node);
-    MODEL(stage)(x, b->m.node, branch, b->some_inputs, &b->m.p, rate, b->some_rows, side,
-                 b->some_margin);
+    MODEL(at_point)(&b->m, x, branch, b->some_inputs, weight, rate, b->some_rows, side,
+                    b->some_margin);
 }
 
 static void MODEL(copy)(mask where, const real *from, real *to, long size)
@@ -175,7 +177,7 @@ static void MODEL(stand)(MODEL(batch) *b, mask where, mask choosing)
         if (IN(where, lane))
             MODEL(inputs_at)(b->lane[lane].segment, m->inputs, b->lane[lane].t, b->some_inputs, lane);
     for (int again = 0; again < 3; ++again) {
-        MODEL(point)(b, m->x, m->branch, b->some_rate, b->some_side);
+        MODEL(point)(b, m->x, m->branch, NULL, b->some_rate, b->some_side);
         if (!any(MODEL(choose)(m->branches, b->some_side, m->branch, choosing)))
             break;
     }

@@ -1,0 +1,30 @@
+"""Path functionals in C: which states they go along, and what they take.
+
+Input: a `Program` and its paths.  Output: a table for the engine, and rows for the printer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from piezo_sym.algebra.lanes import Slot
+from piezo_sym.codegen.paths import Path
+from piezo_sym.codegen.program import Program, Row
+
+
+def path_table(program: Program, paths: Sequence[Path]) -> str:
+    """Return the table of path functionals."""
+    index, banks = {s.name: n for n, s in enumerate(program.states)}, [*program.counts]
+    lines = ["/* Path functionals: bank or -1, coordinate, whether one a lane, inner state. */"]
+    lines += [f"#define PATHS {len(paths)}", f"static const int {program.name}_path[PATHS][4] = {{"]
+    for path in paths:
+        n, bank = index[path.coordinate], banks.index(path.bank) if path.bank else -1
+        own = int(program.states[n].bank is not None)
+        lines.append(f"    {{{bank}, {n}, {own}, {index[path.inner]}}},")
+    return "\n".join([*lines, "};"])
+
+
+def path_rows(paths: Sequence[Path]) -> list[Row]:
+    """Return what each path functional takes."""
+    values = [(path, value) for path in paths for value in (path.stiffness, path.limit)]
+    return [Row(Slot(path.inner, path.bank), value) for path, value in values]

@@ -1,0 +1,249 @@
+/*
+ * Path functionals: what an element with an inner state does while its coordinate C goes along the
+ * polynomial of a step, number by number.  Behind gauss.c, for models that have PATHS.
+ *
+ * Stage i is given int_0^1 (l_i/b_i) ... dtau of the effort F, of the inner state's rate and of the
+ * heat.  So h sum_i b_i F_i K_i is the work int F dC, and the inner state ends where its path does,
+ * wherever the path has bends.
+ */
+
+/* Parts of a limit: so near to it an inner state has reached it, at points that are no part of a step. */
+#define AT_LIMIT 1e-9
+/* Parts of a step: a bend before is at its begin. */
+#define BEGUN 1e-6
+
+/*
+ * How a coordinate goes along a step: C(tau) - C(0) and dC/dtau by their coefficients, from 1 on;
+ * where it is at the stages, and how fast; no further than `most` from where it began.  It does not
+ * turn between turn[k] and turn[k + 1].  `bend` is the first place where z begins, or ends, to yield.
+ */
+typedef struct {
+    double gone[STAGES + 1], speed[STAGES], at_stage[STAGES], rate[STAGES], turn[STAGES + 1];
+    double h, most, bend;
+    long pieces;
+} MODEL(way);
+
+/* What stages are given, but the last. */
+typedef double MODEL(means)[SHARE][STAGES];
+
+static double MODEL(polynomial)(const double *a, long degree, double at)
+{
+    double sum = a[degree];
+    for (long n = degree; n-- > 0;)
+        sum = a[n] + at * sum;
+    return sum;
+}
+
+/* Where a polynomial that does not turn between two places has a value: Newton's method, or halves. */
+static double MODEL(meets)(const double *a, long degree, double value, double low, double high)
+{
+    const int rises = MODEL(polynomial)(a, degree, low) < MODEL(polynomial)(a, degree, high);
+    double at = 0.5 * (low + high);
+    for (int again = 0; again < 100; ++again) {
+        double sum = a[degree], slope = 0.0;
+        for (long n = degree; n-- > 0;) {
+            slope = sum + at * slope;
+            sum = a[n] + at * sum;
+        }
+        const double before = at;
+        if ((sum < value) == rises)
+            low = at;
+        else
+            high = at;
+        at -= (sum - value) / slope;
+        if (!(at > low && at < high))
+            at = 0.5 * (low + high);
+        if (fabs(at - before) <= 1e-16)
+            break;
+    }
+    return at;
+}
+
+/* Find where a coordinate turns: roots of its speed lie between those of the speed's derivative. */
+static void MODEL(find_turns)(MODEL(way) *w)
+{
+    w->turn[0] = 0.0, w->turn[1] = 1.0, w->pieces = 1;
+    for (long order = STAGES - 2; order >= 0; --order) {
+        double a[STAGES], found[STAGES + 1] = {0.0};
+        const long degree = STAGES - 1 - order;
+        long pieces = 0;
+        for (long n = 0; n <= degree; ++n) {
+            a[n] = w->speed[n + order];
+            for (long k = 1; k <= order; ++k)
+                a[n] *= (double)(n + k);
+        }
+        for (long k = 0; k < w->pieces; ++k) {
+            const double low = w->turn[k], high = w->turn[k + 1];
+            const double at_low = MODEL(polynomial)(a, degree, low);
+            if ((at_low < 0.0) != (MODEL(polynomial)(a, degree, high) < 0.0))
+                found[++pieces] = MODEL(meets)(a, degree, 0.0, low, high);
+        }
+        found[++pieces] = 1.0;
+        memcpy(w->turn, found, sizeof found);
+        w->pieces = pieces;
+    }
+}
+
+/* The way of a coordinate, which is state i, in one lane's step. */
+static void MODEL(find_way)(const MODEL(block) *m, double h, long i, int lane, MODEL(way) *w)
+{
+    double square = 0.0;
+    (void)lane; /* where there is one */
+    w->h = h;
+    w->gone[0] = 0.0;
+    for (long j = 0; j < STAGES; ++j) {
+        w->rate[j] = LANE(m->rates, j * m->n + i, lane);
+        square += stage_weight[j] * w->rate[j] * w->rate[j];
+    }
+    w->most = h * sqrt(square); /* the mean speed is not above the root of its square's mean */
+    for (long n = 0; n < STAGES; ++n) {
+        double sum = 0.0, at_stage = 0.0;
+        for (long j = 0; j < STAGES; ++j) {
+            sum += along[j][n] * w->rate[j];
+            at_stage += stage_reach[n][j] * w->rate[j];
+        }
+        w->gone[n + 1] = h * sum;
+        w->speed[n] = (double)(n + 1) * h * sum;
+        w->at_stage[n] = h * at_stage;
+    }
+    w->pieces = 0; /* not yet asked for */
+}
+
+/* Add what a piece of a step brings, in which F = at_begin + k (C - C(0)): z moves, or it yields. */
+static void MODEL(add_piece)(const MODEL(way) *w, double low, double high, double at_begin, double k,
+                             int yields, MODEL(means) mean)
+{
+    for (long q = 0; q < STAGES; ++q) { /* exact: of F l_i and F dC l_i no degree is above 2s - 1 */
+        const double at = low + (high - low) * stage_at[q];
+        const double effort = at_begin + k * MODEL(polynomial)(w->gone, STAGES, at);
+        const double rate = MODEL(polynomial)(w->speed, STAGES - 1, at) / w->h;
+        for (long i = 0; i < STAGES; ++i) {
+            double part = (high - low) * stage_weight[q] * stage_lead[i] / stage_weight[i];
+            for (long j = 0; j < STAGES; ++j)
+                part *= j == i ? 1.0 : at - stage_at[j];
+            mean[EFFORT][i] += part * effort;
+            mean[yields ? HEAT : RATE][i] += part * (yields ? effort * rate : rate);
+        }
+    }
+}
+
+/*
+ * A stop: F = k z, and z goes with C, but stays at -r or r while C goes on.  Returns which part of
+ * the step z goes with C for.
+ */
+static double MODEL(stop)(MODEL(way) *w, double z, double k, double r, MODEL(means) mean)
+{
+    const double begin = fmin(fmax(z, -r), r); /* r may be less than it was */
+    double now = begin, heat = 0.5 * k * (z - begin) * (z + begin), moving = 0.0;
+    double yielded = 0.0, moved = 0.0;
+    int yielding = 0;
+    memset(mean, 0, sizeof(MODEL(means)));
+    if (fabs(z) + w->most <= r) {
+        for (long i = 0; i < STAGES; ++i) {
+            mean[EFFORT][i] = k * (z + w->at_stage[i]);
+            mean[RATE][i] = w->rate[i];
+        }
+        return 1.0;
+    }
+    if (!w->pieces)
+        MODEL(find_turns)(w);
+    for (long n = 0; n < w->pieces; ++n) {
+        const double low = w->turn[n], high = w->turn[n + 1];
+        const double from = MODEL(polynomial)(w->gone, STAGES, low);
+        const double more = MODEL(polynomial)(w->gone, STAGES, high) - from;
+        const double limit = more > 0.0 ? r : -r, room = limit - now;
+        const int yields = fabs(more) > fabs(room);
+        const double until = !yields ? high
+            : room == 0.0            ? low
+                                     : MODEL(meets)(w->gone, STAGES, from + room, low, high);
+        MODEL(add_piece)(w, low, until, k * (now - from), k, 0, mean);
+        const double bend = yielding && until > low ? low : yields ? until : 1.0;
+        if (bend > BEGUN)
+            w->bend = fmin(w->bend, bend);
+        yielding = yields;
+        moving += until - low;
+        now = yields ? limit : now + more;
+        if (yields) {
+            MODEL(add_piece)(w, until, high, k * limit, 0.0, 1, mean);
+            heat += k * r * (fabs(more) - fabs(room));
+        }
+    }
+    /* means of the heat may be negative at a stage: the others then make up for it */
+    for (long i = 0; i < STAGES; ++i) {
+        mean[HEAT][i] = fmax(mean[HEAT][i], 0.0);
+        yielded += stage_weight[i] * mean[HEAT][i];
+        moved += stage_weight[i] * mean[RATE][i];
+    }
+    for (long i = 0; i < STAGES; ++i) {
+        mean[HEAT][i] = heat / w->h * (yielded > 0.0 ? mean[HEAT][i] / yielded : 1.0);
+        mean[RATE][i] += (now - z) / w->h - moved;
+#if LOSSY
+        mean[EFFORT][i] = k * now; /* as all co-states, at the step's end */
+#endif
+    }
+    return moving;
+}
+
+/* What stages are given by path functionals. */
+static void MODEL(along_paths)(const MODEL(block) *m, real h)
+{
+    const real *parameter = m->path;
+    real *given = m->mean + m->means;
+    *m->bend = wide(1.0);
+    for (long n = 0; n < PATHS; ++n) {
+        const int *path = MODEL(path)[n];
+        const long lanes = path[BANK] < 0 ? 1 : m->lanes[path[BANK]];
+        for (int lane = 0; lane < REAL_WIDTH; ++lane) {
+            MODEL(way) w;
+            MODEL(means) mean;
+            w.bend = 1.0;
+            for (long j = 0; j < lanes; ++j) {
+                const double z = LANE(m->x, m->first[path[INNER]] + j, lane);
+                const double k = LANE(parameter, STIFFNESS * lanes + j, lane);
+                const double limit = LANE(parameter, LIMIT * lanes + j, lane);
+                if (!j || path[OWN])
+                    MODEL(find_way)(m, OF(h, lane), m->first[path[COORDINATE]] + j, lane, &w);
+                const double share = MODEL(stop)(&w, z, k, limit, mean);
+                for (long i = 0; i < STAGES; ++i) {
+                    for (long what = 0; what < SHARE; ++what)
+                        LANE(given + i * m->given, what * lanes + j, lane) = mean[what][i];
+                    LANE(given + i * m->given, SHARE * lanes + j, lane) = share;
+                }
+                LANE(m->bend, 0, lane) = fmin(LANE(m->bend, 0, lane), w.bend);
+            }
+        }
+        given += GIVEN * lanes, parameter += PARAMETERS * lanes;
+    }
+}
+
+/*
+ * What a point is given: where it is an end of a step, by weights of the stages' means; else from
+ * the rates of coordinates there, if they are known.
+ */
+static void MODEL(standing)(const MODEL(block) *m, const real *x, const double *weight,
+                            const real *rates)
+{
+    const real *parameter = m->path;
+    real *given = m->node + m->means;
+    MODEL(path_parameters)(x, &m->p, m->path);
+    for (long n = 0; n < PATHS; ++n) {
+        const int *path = MODEL(path)[n];
+        const long lanes = path[BANK] < 0 ? 1 : m->lanes[path[BANK]];
+        for (long j = 0; j < lanes; ++j) {
+            const real k = parameter[STIFFNESS * lanes + j], r = parameter[LIMIT * lanes + j];
+            const real inner = x[m->first[path[INNER]] + j], z = least(largest_of(inner, -r), r);
+            const real rate = rates ? rates[m->first[path[COORDINATE]] + path[OWN] * j] : (real)zero;
+            const mask yields = (size_of(z) >= r * (1.0 - AT_LIMIT)) & (z * rate > 0.0);
+            given[EFFORT * lanes + j] = k * z;
+            given[RATE * lanes + j] = chosen(yields, zero, rate);
+            given[HEAT * lanes + j] = chosen(yields, k * z * rate, zero);
+            given[SHARE * lanes + j] = chosen(yields, zero, wide(1.0));
+            for (long i = 0; weight && i < STAGES; ++i) {
+                const real *const mean = m->mean + i * m->given + (given - m->node) + j;
+                given[RATE * lanes + j] += weight[i] * mean[RATE * lanes];
+                given[HEAT * lanes + j] += weight[i] * mean[HEAT * lanes];
+            }
+        }
+        given += GIVEN * lanes, parameter += PARAMETERS * lanes;
+    }
+}
