@@ -46,6 +46,7 @@ class Stage:
     switches : of the laws, in order.
     limits : conditions of the domain that a state can leave.
     taken : every name in use.
+    bends : what changes its sign where a function has a kink whose mean the stage is given.
     """
 
     quantities: tuple[Quantity, ...]
@@ -54,6 +55,7 @@ class Stage:
     switches: tuple[Switch, ...]
     limits: tuple[Limit, ...]
     taken: frozenset[str]
+    bends: tuple[Row, ...] = ()
 
 
 @final
@@ -121,10 +123,11 @@ def _stage(iphs: IPHS, q: Quantities) -> Stage:
     quantities = [*switches.quantities(q.defined)]
     rows = switches.rows(rates)
     booked = switches.rows((*supplies, *heats, *productions, *entropies))
+    bends = switches.bends(q.means)
     quantities += switches.new()
     found = tuple(switches.found.values())
     sharp = tuple(map(sharp_quantity, quantities))
-    return Stage(sharp, rows, booked, found, limits, frozenset(q.taken))
+    return Stage(sharp, rows, booked, found, limits, frozenset(q.taken), bends)
 
 
 def _moves(iphs: IPHS, q: Quantities, limit: Limit) -> bool:

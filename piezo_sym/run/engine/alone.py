@@ -19,7 +19,7 @@ _HEAD = """
 #include <string.h>
 
 #define MODEL(name) {model}_##name
-#define LANE(array, k, lane) ((array)[k])
+#define LANE(array, k, lane) ((array)[(k) + (lane)])
 #define any(where) (where)
 #define none_of(where) (!(where))
 #define size_of fabs
@@ -39,12 +39,13 @@ _LEFT_OUT = (
     r"#if defined\(LANES\).*?#endif /\* LANES \*/\n",
     r"#if LOSSY.*?#endif\n",
 )
+_BENDS = r"#if defined\(BENDS\).*?#endif /\* BENDS \*/\n"
 
 
-def step_alone(model: str) -> str:
-    """Return the text of a model's step for programs in C."""
-    solver = texts("gauss.c", "gaps.c", "newton.c")
-    for left_out in _LEFT_OUT:
+def step_alone(model: str, *, bends: bool = False) -> str:
+    """Return the text of a model's step for programs in C; `bends` if integrands have kinks."""
+    solver = texts("gauss.c", *(["bends.c"] * bends), "gaps.c", "newton.c")
+    for left_out in (*_LEFT_OUT, *([] if bends else [_BENDS])):
         solver = re.sub(left_out, "", solver, flags=re.DOTALL)
     solver = solver.replace(_INCLUDE, texts("elimination.c"))
     text = f"{solver}\n{texts('alone.c')}"

@@ -144,7 +144,8 @@ def collocation(model: str, stages: int, layout: str, *, lossy: bool = False) ->
     gaps = texts("gaps.c")
     if lanes:
         gaps = f"#if defined(LANES)\n{texts('gaps_at_once.c')}\n#else\n{gaps}\n#endif"
-    engine = [texts("gauss.c"), gaps, texts(*COLLOCATION), *([texts("loss.c")] if lossy else [])]
+    rest = texts(*COLLOCATION, *(["loss.c"] * lossy))
+    engine = [texts("gauss.c", "bends.c"), gaps, rest]
     return "\n".join([*head, tables, *engine])
 
 

@@ -61,6 +61,9 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     mask changed = nowhere;
     if (m->means)
         MODEL(average)(m, h);
+#if defined(BENDS)
+    MODEL(average_split)(m, h);
+#endif /* BENDS */
     for (long i = 0; i < STAGES; ++i) {
         real *gap = m->gap + i * m->n, *mean = m->mean + i * m->means;
         real *side = m->side + i * m->branches, *branch = m->branch + i * m->branches;

@@ -79,6 +79,10 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     mask changed = nowhere;
     if (m->means)
         MODEL(average)(m, h);
+#if defined(BENDS)
+    if (MODEL(average_split)(m, h))
+        MODEL(into_lanes)(m->mean, m->means, m->mean_lanes);
+#endif
     for (long k = 0; k < m->n; ++k)
         ((lanes *)m->reached_lanes)[k] = MODEL(reached_lanes)(m, h, stage_lanes, k);
     MODEL(into_lanes)(m->u, m->inputs, m->u_lanes);

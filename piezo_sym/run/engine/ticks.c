@@ -293,8 +293,12 @@ static void MODEL(judged)(MODEL(batch) *b, MODEL(tick) *t)
             const double power = IN(b->m.over, lane) ? OVER_KINKS : -0.5 / STAGES;
             l->longer = error > 0.0 ? 0.9 * pow(error, power) : error == 0.0 ? 8.0 : 0.25;
             if (!(error <= 1.0)) {
-                const double part = l->refused > 1 ? fmin(l->longer, 0.5) : l->longer;
-                MODEL(refuse)(b, lane, l->length * fmax(0.1, part));
+                double part = fmax(0.1, l->refused > 1 ? fmin(l->longer, 0.5) : l->longer);
+#if defined(BENDS)
+                if (IN(across, lane) && !l->refused)
+                    part = MODEL(to_kink)(b, lane, part);
+#endif
+                MODEL(refuse)(b, lane, l->length * part);
                 continue;
             }
         }

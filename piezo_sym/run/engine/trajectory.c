@@ -235,12 +235,7 @@ static void MODEL(adds)(const MODEL(batch) *b, real h, real *out)
 static void MODEL(carry)(const MODEL(block) *m, const real *rates, real at, real *out)
 {
     real weight[STAGES];
-    for (long j = 0; j < STAGES; ++j) {
-        weight[j] = wide(stage_lead[j]);
-        for (long k = 0; k < STAGES; ++k)
-            if (k != j)
-                weight[j] *= at - stage_at[k];
-    }
+    MODEL(rate_weights)(at, weight);
     for (long k = 0; k < m->n; ++k) {
         real sum = zero;
         for (long j = 0; j < STAGES; ++j)
