@@ -77,9 +77,8 @@ def render(
     report = report or verify(iphs)
     if not allow_unproved:
         report.raise_if_not_proved()
-    step = collocation_of(iphs)
-    texts = printed(lower(iphs, verdict_line(report)), step)
-    texts["_step.c"] += step_alone(model.name, paths=bool(step.paths))
+    texts = printed(lower(iphs, verdict_line(report)), collocation_of(iphs))
+    texts["_step.c"] += step_alone(model.name, texts["_step.c"])
     made = f"{MARK} {VERSION}; do not edit: change the spec, then run `piezo-sym generate`."
     return {
         **{f"{model.name}/{model.name}{ending}": text for ending, text in texts.items()},

@@ -379,7 +379,7 @@ static const int piezo_stack_meet[] = {
 #include <string.h>
 
 #define MODEL(name) piezo_stack_##name
-#define LANE(array, k, lane) ((array)[k])
+#define LANE(array, k, lane) ((array)[(k) + (lane)])
 #define any(where) (where)
 #define none_of(where) (!(where))
 #define size_of fabs
@@ -467,7 +467,7 @@ typedef struct {
     real *u;                   /* STAGES*inputs */
     real *largest;             /* n: the largest magnitude of each state, by which errors count */
     real *reached, *gap, *prior, *node, *mean, *side, *margin, *rows, *slope, *fresh, *real_factor;
-    real *path, *bend;         /* parameters of path functionals; where one first bends in a step */
+    real *path, *yield;        /* parameters of path functionals; where one first yields in a step */
     mask fine;                 /* lanes whose means are taken at FINE nodes */
     mask over;                 /* lanes whose stages choose their branches: they step over kinks */
     real iterations;           /* of Newton's method */
@@ -669,8 +669,8 @@ static void NAMED(solve)(const MODEL(block) *m, NUMBER gamma, const real *slopes
 #undef MORE
 #undef LESS
 
-/* The numbers that a block says of itself: sizes, lanes of banks, first rows of states. */
-enum { SIZES = 6 + MODEL(banks) + MODEL(records) };
+/* The numbers that a block says of itself: sizes, lanes of banks, first rows of states, bends. */
+enum { SIZES = 7 + MODEL(banks) + MODEL(records) };
 
 /*
  * Make a block for runs of the sizes of p, `more` rows for the ledger behind the model's own.  Its
@@ -998,8 +998,8 @@ static real MODEL(last_part)(const MODEL(block) *m, long k, const double *last, 
 /* The lanes whose co-states ask for more nodes than NODES, for balances that are exact to round-off. */
 static mask MODEL(coarse)(const MODEL(block) *m, real h)
 {
-    mask found = nowhere;
-    if (m->means && any(m->fine)) /* else they are those that the last gaps have left */
+    mask found = nowhere, other = m->fine;
+    if (m->means && any(other)) /* else they are those that the last gaps have left */
         MODEL(integrate)(m, h, NODE_REACH, NODES);
     for (long k = 0; k < m->means; ++k)
         found |= MODEL(last_part)(m, k, node_last, NODES) > COARSE;

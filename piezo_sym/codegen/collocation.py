@@ -47,6 +47,7 @@ class Stage:
     switches : of the laws, in order.
     limits : conditions of the domain that a state can leave.
     taken : every name in use.
+    bends : what changes its sign where a function has a kink whose mean the stage is given.
     """
 
     quantities: tuple[Quantity, ...]
@@ -55,6 +56,7 @@ class Stage:
     switches: tuple[Switch, ...]
     limits: tuple[Limit, ...]
     taken: frozenset[str]
+    bends: tuple[Row, ...] = ()
 
 
 @final
@@ -124,10 +126,11 @@ def _stage(iphs: IPHS, q: Quantities) -> Stage:
     quantities = [*switches.quantities(q.defined)]
     rows = switches.rows(rates)
     booked = switches.rows((*supplies, *heats, *productions, *entropies))
+    bends = switches.bends(q.means)
     quantities += switches.new()
     found = tuple(switches.found.values())
     sharp = tuple(map(sharp_quantity, quantities))
-    return Stage(sharp, rows, booked, found, limits, frozenset(q.taken))
+    return Stage(sharp, rows, booked, found, limits, frozenset(q.taken), bends)
 
 
 def _moves(iphs: IPHS, q: Quantities, limit: Limit) -> bool:

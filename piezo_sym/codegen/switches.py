@@ -12,8 +12,9 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import final
 
+from piezo_sym.algebra.lanes import Slot
 from piezo_sym.codegen.program import Quantity, Row, bank_of
-from piezo_sym.expressions.calculus import add, choices, neg
+from piezo_sym.expressions.calculus import add, choices, kinks, neg
 from piezo_sym.expressions.tree import ZERO, Cmp, Expr, If, Sym, names, rebuild
 
 NOTE = "switching functions"
@@ -84,6 +85,21 @@ class Switches:
             case If(then, condition, other):
                 return If(then, self._branch(condition), other)
         return inner
+
+    def bends(self, means: Iterable[Quantity]) -> tuple[Row, ...]:
+        """Return what changes its sign where `means` have kinks; each is a switching function, too.
+
+        Nobody takes its branch: a step ends there, as at a kink of a law.
+        """
+        found = list[Row]()
+        for condition in (kink for mean in means for kink in kinks(compared(mean.value))):
+            value = add(condition.left, neg(condition.right))
+            if any(row.value in (value, neg(value)) for row in found):
+                continue
+            bank = bank_of(value, self.lanes)
+            self._branch(Cmp(">", self.chosen(value, bank), ZERO))
+            found.append(Row(Slot(f"bend_{len(found) + 1}", bank), value))
+        return tuple(found)
 
     def _named(self, value: Expr, quantity: Quantity) -> Expr:
         """Return a value whose choices are quantities of their own."""

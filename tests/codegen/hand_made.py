@@ -65,7 +65,7 @@ class HandMade:
     def module(self, folder):
         """Write the module's files into a folder; return the module."""
         texts = printed(sharp_program(self.program()), self.collocation())
-        texts["_step.c"] += step_alone(self.name, paths=bool(self.paths))
+        texts["_step.c"] += step_alone(self.name, texts["_step.c"])
         for ending, text in texts.items():
             (Path(folder) / f"{self.name}{ending}").write_text(text, encoding="utf-8")
         return load_module(Path(folder) / f"{self.name}.py")
@@ -124,6 +124,7 @@ class HandMade:
         q = _Quantities(self, [c for c in self.costates() if self._affine(c)])
         q.taken |= {mean.name for mean in means}
         lanes = {**self.lanes(), **{mean.name: mean.bank for mean in means if mean.bank}}
+        rates, heats = self._rows(self.rates, q), self._heated(q)  # whose sums are quantities, too
         switches = Switches(lanes_of(lanes, q.defined), q.name)
         rates, heats = self._rows(self.rates, q), self._heated(q)
         quantities = [*switches.quantities(q.defined)]
@@ -131,6 +132,7 @@ class HandMade:
         produced = tuple(Row(row.slot, div(row.value, Sym(f"E_{s}"))) for row, s in heats)
         ports = tuple(Row(Slot(name), read(text)) for name, text in self.supply.items())
         booked = switches.rows((*ports, *(row for row, _ in heats), *produced))
+        bends = switches.bends(means)
         quantities += switches.new()
         stage = Stage(
             tuple(map(sharp_quantity, quantities)),
@@ -139,6 +141,7 @@ class HandMade:
             tuple(switches.found.values()),
             self._limits(),
             frozenset(q.taken),
+            bends,
         )
         means = tuple(sharp_quantity(replace(m, value=compared(m.value))) for m in means)
         first = next((body for _, body in self.heats.values()), None)

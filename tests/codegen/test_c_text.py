@@ -48,7 +48,7 @@ def written(model, folder):
     """Write a model's C files, and return their common name."""
     iphs = derive(model)
     texts = printed(lower(iphs, "verdict"), collocation_of(iphs))
-    texts["_step.c"] += step_alone(model.name)
+    texts["_step.c"] += step_alone(model.name, texts["_step.c"])
     for ending, text in texts.items():
         (folder / f"{model.name}{ending}").write_text(text, encoding="utf-8")
     return model.name

@@ -56,6 +56,7 @@ def c_step(program: Program, made: Collocation) -> str:
     printer = _Printer(program, made)
     functions = [
         printer.integrands(),
+        *printer.bends(),
         printer.stage(),
         printer.slopes(),
         printer.sizes(),
@@ -115,6 +116,14 @@ class _Printer:
         doc = "Functions of the state whose weighted means over a step its stages are given"
         body = self._computed((), self._writes(rows, "out"), self.lines)
         return self._function("integrands", doc, "x p out", body, [*self._ends(rows)])
+
+    def bends(self) -> Iterator[str]:
+        """Yield the function that tells where integrands have kinks, if they have some."""
+        rows = self.made.stage.bends
+        doc = "Functions of the state that change their sign where integrands have kinks"
+        if rows:
+            body = self._computed((), self._writes(rows, "out"), self.lines)
+            yield self._function("bends", doc, "x p out", body, [*self._ends(rows)])
 
     def stage(self) -> str:
         """Return the function of a stage: rates, what the ledger books, switching functions."""
@@ -182,6 +191,10 @@ class _Printer:
         at = places(counted["states"], "end_states", self.made.stage.taken)
         first += len(banks)
         body += [f"{out}[{first + n}] = {at.position(n)}; /* first row */" for n in states]
+        if self.made.stage.bends:
+            at = places([row.slot for row in self.made.stage.bends], "end_bends", stage.taken)
+            ends += ((line.split()[0], f"const long {line};") for line in at.definitions())
+            body.append(f"{out}[{first + len(states)}] = {at.size}; /* bends */")
         doc = (
             "Sizes of states, means, branches, rows for the ledger, processes and slopes; lanes of "
             "each bank; first row of each state"
@@ -194,7 +207,9 @@ class _Printer:
     def tables(self) -> str:
         """Return the tables by which the equations of a step are solved."""
         limits = [int(limit.strict) for limit in self.made.stage.limits]
-        head = ["enum {", f"    {self.name}_limits = {len(limits)}, /* margins of a stage */"]
+        head = ["#define BENDS /* integrands have kinks: see run/engine */"]
+        head = head if self.made.stage.bends else []
+        head += ["enum {", f"    {self.name}_limits = {len(limits)}, /* margins of a stage */"]
         records = len(self.program.states)
         used = {name for mean in self.made.means for name in names(mean.value)}
         read = [n for n, state in enumerate(self.program.states) if state.name in used]

@@ -19,7 +19,7 @@ _HEAD = """
 #include <string.h>
 
 #define MODEL(name) {model}_##name
-#define LANE(array, k, lane) ((array)[k])
+#define LANE(array, k, lane) ((array)[(k) + (lane)])
 #define any(where) (where)
 #define none_of(where) (!(where))
 #define size_of fabs
@@ -39,14 +39,16 @@ _LEFT_OUT = (
     r"#if defined\(LANES\).*?#endif /\* LANES \*/\n",
     r"#if LOSSY.*?#endif\n",
 )
-#: What is for models with path functionals.
-_OF_PATHS = r"#if defined\(PATHS\)\n.*?#endif /\* PATHS \*/\n"
+#: What few models need: kinks in energies, and path functionals; a step says so.
+_PARTS = {"BENDS": "bends.c", "PATHS": "stop.c"}
 
 
-def step_alone(model: str, *, paths: bool = False) -> str:
-    """Return the text of a model's step for programs in C; `paths` tells whether it has any."""
-    solver = texts("gauss.c", *(["stop.c"] if paths else []), "gaps.c", "newton.c")
-    for left_out in (*_LEFT_OUT, *([] if paths else [_OF_PATHS])):
+def step_alone(model: str, step: str) -> str:
+    """Return what makes a model's step one for programs in C, to stand behind its own text."""
+    needed = {word: file for word, file in _PARTS.items() if f"#define {word}" in step}
+    solver = texts("gauss.c", *needed.values(), "gaps.c", "newton.c")
+    others = (rf"#if defined\({w}\).*?#endif /\* {w} \*/\n" for w in _PARTS if w not in needed)
+    for left_out in (*_LEFT_OUT, *others):
         solver = re.sub(left_out, "", solver, flags=re.DOTALL)
     solver = solver.replace(_INCLUDE, texts("elimination.c"))
     text = f"{solver}\n{texts('alone.c')}"

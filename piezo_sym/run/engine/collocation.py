@@ -200,7 +200,7 @@ class Batch:
     def sizes(self) -> NDArray[Any]:
         """Return what the model's own function says of its arrays' sizes."""
         module = self._engine.module
-        found = np.zeros(6 + len(module.BANKS) + len(module.STATES), dtype=np.dtype("l"))
+        found = np.zeros(7 + len(module.BANKS) + len(module.STATES), dtype=np.dtype("l"))
         first = ctypes.c_void_p(int(self._structures.addresses[0]))
         self.function("sizes_of")(first, at(found))
         return found

@@ -85,12 +85,26 @@ static MODEL(crossing) MODEL(first_switch)(const MODEL(batch) *b, int lane)
     return found;
 }
 
+#if defined(BENDS)
+/*
+ * What part of a step is tried next whose error is too large, `part` by its size. No branch keeps an
+ * energy's kink out of a step: if one is on the way it may be why, and a step up to there will do.
+ */
+static double MODEL(to_kink)(const MODEL(batch) *b, int lane, double part)
+{
+    const MODEL(crossing) c = MODEL(first_switch)(b, lane);
+    const double place = c.low + (c.high - c.low) * (c.at_low / (c.at_low - c.at_high));
+    const int inside = place > AT_ONCE && place < 1.0 - b->beyond;
+    return inside ? place * (1.0 + 0.5 * b->beyond) : part;
+}
+#endif
+
 /* Where on the known polynomials some lanes' switching functions are zero, as parts of the steps. */
 static void MODEL(locate)(MODEL(batch) *b, mask where, real h, MODEL(crossing) *crossing, double *part)
 {
     MODEL(block) *m = &b->m;
     int before[REAL_WIDTH] = {0};
-    real at = zero, weight[STAGES];
+    real at = zero;
     for (int again = 0; again < 60 && any(where); ++again) {
         for (int lane = 0; lane < REAL_WIDTH; ++lane) {
             const MODEL(crossing) c = crossing[lane];
@@ -102,17 +116,7 @@ static void MODEL(locate)(MODEL(batch) *b, mask where, real h, MODEL(crossing) *
             const MODEL(lane) *l = b->lane + lane;
             MODEL(inputs_at)(l->segment, m->inputs, l->t + part[lane] * l->length, b->some_inputs, lane);
         }
-        for (long j = 0; j < STAGES; ++j) {
-            weight[j] = zero;
-            for (long n = STAGES; n-- > 0;)
-                weight[j] = (weight[j] + along[j][n]) * at;
-        }
-        for (long k = 0; k < m->n; ++k) {
-            real sum = zero;
-            for (long j = 0; j < STAGES; ++j)
-                sum += weight[j] * b->known[j * m->n + k];
-            m->reached[k] = m->x[k] + h * sum;
-        }
+        MODEL(reach_part)(m, h, b->known, at);
         MODEL(point)(b, m->reached, m->branch, NULL, b->some_rate, b->some_side);
         for (int lane = 0; lane < REAL_WIDTH; ++lane) {
             MODEL(crossing) *c = crossing + lane;

@@ -28,7 +28,7 @@ long MODEL(direction_space)(const MODEL(parameters) *p);
 long MODEL(direction_space)(const MODEL(parameters) *p)
 {
     MODEL(reals) none;
-    long sizes[6 + MODEL(banks) + MODEL(records)];
+    long sizes[7 + MODEL(banks) + MODEL(records)];
     MODEL(direction_sizes)(p, sizes);
     return MODEL(place_reals)(&none, p, NULL) + sizes[0] + (FINE + 1) * sizes[1] + sizes[2] + sizes[3]
         + MODEL(limits);
@@ -48,7 +48,7 @@ void MODEL(along)(const MODEL(direction) *d);
 void MODEL(along)(const MODEL(direction) *d)
 {
     MODEL(reals) p;
-    long sizes[6 + MODEL(banks) + MODEL(records)];
+    long sizes[7 + MODEL(banks) + MODEL(records)];
     MODEL(direction_sizes)(d->p, sizes);
     const long n = sizes[0], means = sizes[1], branches = sizes[2], inputs = MODEL(input_count);
     real *const reached = d->space + MODEL(place_reals)(&p, d->p, d->space);

@@ -145,8 +145,8 @@ def collocation(model: str, stages: int, layout: str, *, lossy: bool = False) ->
     if lanes:
         gaps = f"#if defined(LANES)\n{texts('gaps_at_once.c')}\n#else\n{gaps}\n#endif"
     paths = ["#if defined(PATHS)", texts("stop.c"), "#endif"]
-    engine = [gaps, texts(*COLLOCATION), *([texts("loss.c")] if lossy else [])]
-    return "\n".join([*head, tables, texts("gauss.c"), *paths, *engine])
+    rest = texts(*COLLOCATION, *(["loss.c"] * lossy))
+    return "\n".join([*head, tables, texts("gauss.c", "bends.c"), *paths, gaps, rest])
 
 
 def at_once(model: str, lanes: int) -> str:

@@ -61,6 +61,9 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     mask changed = nowhere;
     if (m->means)
         MODEL(average)(m, h);
+#if defined(BENDS)
+    MODEL(average_split)(m, h);
+#endif /* BENDS */
 #if defined(PATHS)
     MODEL(along_paths)(m, h);
 #endif /* PATHS */

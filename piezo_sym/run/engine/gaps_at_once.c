@@ -65,6 +65,16 @@ static inline void MODEL(into_lanes)(const real *from, long size, real *to)
             to[k * LANES + i] = from[i * size + k];
 }
 
+#if defined(BENDS) || defined(PATHS)
+/* Put some of what stages are given into lanes. */
+static void MODEL(means_into_lanes)(const MODEL(block) *m, long first, long end)
+{
+    for (long k = first; k < end; ++k)
+        for (long i = 0; i < STAGES; ++i)
+            m->mean_lanes[k * LANES + i] = m->mean[i * m->given + k];
+}
+#endif
+
 static inline void MODEL(from_lanes)(const real *from, long size, real *to)
 {
     for (long k = 0; k < size; ++k)
@@ -79,11 +89,13 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     mask changed = nowhere;
     if (m->means)
         MODEL(average)(m, h);
+#if defined(BENDS)
+    if (MODEL(average_split)(m, h))
+        MODEL(means_into_lanes)(m, 0, m->means);
+#endif /* BENDS */
 #if defined(PATHS)
     MODEL(along_paths)(m, h);
-    for (long k = m->means; k < m->given; ++k)
-        for (long i = 0; i < STAGES; ++i)
-            m->mean_lanes[k * LANES + i] = m->mean[i * m->given + k];
+    MODEL(means_into_lanes)(m, m->means, m->given);
 #endif /* PATHS */
     for (long k = 0; k < m->n; ++k)
         ((lanes *)m->reached_lanes)[k] = MODEL(reached_lanes)(m, h, stage_lanes, k);

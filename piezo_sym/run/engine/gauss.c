@@ -60,7 +60,11 @@ typedef struct {
     real *u;                   /* STAGES*inputs */
     real *largest;             /* n: the largest magnitude of each state, by which errors count */
     real *reached, *gap, *prior, *node, *mean, *side, *margin, *rows, *slope, *fresh, *real_factor;
-    real *path, *bend;         /* parameters of path functionals; where one first bends in a step */
+    real *path, *yield;        /* parameters of path functionals; where one first yields in a step */
+#if defined(BENDS)
+    long bends;
+    real *bend, *look, *cut, *piece_slope; /* see bends.c */
+#endif /* BENDS */
     mask fine;                 /* lanes whose means are taken at FINE nodes */
     mask over;                 /* lanes whose stages choose their branches: they step over kinks */
     real iterations;           /* of Newton's method */
@@ -129,8 +133,12 @@ static inline MODEL(complex) MODEL(less)(MODEL(complex) a, MODEL(complex) b)
 #include "elimination.c"
 #endif /* PAIRS */
 
-/* The numbers that a block says of itself: sizes, lanes of banks, first rows of states. */
-enum { SIZES = 6 + MODEL(banks) + MODEL(records) };
+/* The numbers that a block says of itself: sizes, lanes of banks, first rows of states, bends. */
+enum { SIZES = 7 + MODEL(banks) + MODEL(records) };
+#if defined(BENDS)
+/* Places where bends are looked at; between them each is about a parabola. */
+enum { BEND_LOOKS = 4 * STAGES + 3 };
+#endif /* BENDS */
 
 /*
  * Make a block for runs of the sizes of p, `more` rows for the ledger behind the model's own.  Its
@@ -171,10 +179,17 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     PLACE(slope, m->slopes);
 #if defined(PATHS)
     PLACE(path, PARAMETERS * paths);
-    PLACE(bend, 1);
+    PLACE(yield, 1);
 #endif /* PATHS */
     PLACE(fresh, m->slopes);
     PLACE(real_factor, MODEL(factor_size_real)(m));
+#if defined(BENDS)
+    m->bends = sizes[SIZES - 1];
+    PLACE(bend, m->bends);
+    PLACE(piece_slope, m->slopes);
+    PLACE(look, BEND_LOOKS * m->bends);
+    PLACE(cut, (BEND_LOOKS - 1) * m->bends + 1);
+#endif /* BENDS */
 #if defined(LANES)
     at = begin + (at - begin + LANES - 1) / LANES * LANES;
     PLACE(reached_lanes, n * LANES);

@@ -82,6 +82,10 @@ static void MODEL(prepare)(const MODEL(block) *m, real h, mask where)
     MODEL(reach)(m, h, stage_reach[middle], m->reached);
     MODEL(slopes)(m->reached, m->mean + middle * m->given, m->branch + middle * m->branches,
                   m->u + middle * m->inputs, &m->p, m->fresh);
+#if defined(BENDS)
+    if (!LOSSY)
+        MODEL(slopes_split)(m, h, middle);
+#endif /* BENDS */
     for (long k = 0; k < m->slopes; ++k)
         m->slope[k] = chosen(where, m->fresh[k], m->slope[k]);
     MODEL(factorise_real)(m, h * filter, m->slope, m->real_factor);
@@ -215,11 +219,25 @@ static real MODEL(last_part)(const MODEL(block) *m, long k, const double *last, 
 /* The lanes whose co-states ask for more nodes than NODES, for balances that are exact to round-off. */
 static mask MODEL(coarse)(const MODEL(block) *m, real h)
 {
-    mask found = nowhere;
-    if (m->means && any(m->fine)) /* else they are those that the last gaps have left */
+    mask found = nowhere, other = m->fine;
+#if defined(BENDS)
+    const mask split = m->cut[0] < 1.0;
+    other |= split;
+#endif /* BENDS */
+    if (m->means && any(other)) /* else they are those that the last gaps have left */
         MODEL(integrate)(m, h, NODE_REACH, NODES);
     for (long k = 0; k < m->means; ++k)
         found |= MODEL(last_part)(m, k, node_last, NODES) > COARSE;
+#if defined(BENDS)
+    found &= none_of(split);
+    real low = any(split) ? zero : (real)wide(1.0);
+    for (long j = 0; any(low < 1.0); low = m->cut[j++]) {
+        const real length = m->cut[j] - low;
+        MODEL(integrate_piece)(m, h, low, length, node_at, NODES);
+        for (long k = 0; k < m->means; ++k)
+            found |= split & (length > 0.0) & (MODEL(last_part)(m, k, node_last, NODES) > COARSE);
+    }
+#endif /* BENDS */
     return found;
 }
 

@@ -15,11 +15,11 @@
 /*
  * How a coordinate goes along a step: C(tau) - C(0) and dC/dtau by their coefficients, from 1 on;
  * where it is at the stages, and how fast; no further than `most` from where it began.  It does not
- * turn between turn[k] and turn[k + 1].  `bend` is the first place where z begins, or ends, to yield.
+ * turn between turn[k] and turn[k + 1].  `yields` is the first place where z begins, or ends, to yield.
  */
 typedef struct {
     double gone[STAGES + 1], speed[STAGES], at_stage[STAGES], rate[STAGES], turn[STAGES + 1];
-    double h, most, bend;
+    double h, most, yields;
     long pieces;
 } MODEL(way);
 
@@ -157,9 +157,9 @@ static double MODEL(stop)(MODEL(way) *w, double z, double k, double r, MODEL(mea
             : room == 0.0            ? low
                                      : MODEL(meets)(w->gone, STAGES, from + room, low, high);
         MODEL(add_piece)(w, low, until, k * (now - from), k, 0, mean);
-        const double bend = yielding && until > low ? low : yields ? until : 1.0;
-        if (bend > BEGUN)
-            w->bend = fmin(w->bend, bend);
+        const double place = yielding && until > low ? low : yields ? until : 1.0;
+        if (place > BEGUN)
+            w->yields = fmin(w->yields, place);
         yielding = yields;
         moving += until - low;
         now = yields ? limit : now + more;
@@ -189,14 +189,14 @@ static void MODEL(along_paths)(const MODEL(block) *m, real h)
 {
     const real *parameter = m->path;
     real *given = m->mean + m->means;
-    *m->bend = wide(1.0);
+    *m->yield = wide(1.0);
     for (long n = 0; n < PATHS; ++n) {
         const int *path = MODEL(path)[n];
         const long lanes = path[BANK] < 0 ? 1 : m->lanes[path[BANK]];
         for (int lane = 0; lane < REAL_WIDTH; ++lane) {
             MODEL(way) w;
             MODEL(means) mean;
-            w.bend = 1.0;
+            w.yields = 1.0;
             for (long j = 0; j < lanes; ++j) {
                 const double z = LANE(m->x, m->first[path[INNER]] + j, lane);
                 const double k = LANE(parameter, STIFFNESS * lanes + j, lane);
@@ -209,7 +209,7 @@ static void MODEL(along_paths)(const MODEL(block) *m, real h)
                         LANE(given + i * m->given, what * lanes + j, lane) = mean[what][i];
                     LANE(given + i * m->given, SHARE * lanes + j, lane) = share;
                 }
-                LANE(m->bend, 0, lane) = fmin(LANE(m->bend, 0, lane), w.bend);
+                LANE(m->yield, 0, lane) = fmin(LANE(m->yield, 0, lane), w.yields);
             }
         }
         given += GIVEN * lanes, parameter += PARAMETERS * lanes;

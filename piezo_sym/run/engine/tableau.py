@@ -79,6 +79,8 @@ def _means(name: str, nodes: int, lagrange: list[Any], b: list[Any]) -> dict[str
     reach = [_integral(part) for part in lagrange]
     parts = zip(lagrange, b, strict=True)
     return {
+        f"{name}_at": t,
+        f"{name}_weight": w,
         f"{name}_reach": [[_at(one, x) for one in reach] for x in t],
         f"{name}_mean": [
             [v * _at(part, x) / own for x, v in zip(t, w, strict=True)] for part, own in parts

@@ -302,8 +302,12 @@ static void MODEL(judged)(MODEL(batch) *b, MODEL(tick) *t)
             if (!(error <= 1.0)) {
                 double part = fmax(0.1, l->refused > 1 ? fmin(l->longer, 0.5) : l->longer);
 #if defined(PATHS) /* most of the error may come from it */
-                if (LANE(b->m.bend, 0, lane) < BEND)
-                    part = LANE(b->m.bend, 0, lane);
+                if (LANE(b->m.yield, 0, lane) < YIELDS)
+                    part = LANE(b->m.yield, 0, lane);
+#endif
+#if defined(BENDS)
+                if (IN(across, lane) && !l->refused)
+                    part = MODEL(to_kink)(b, lane, part);
 #endif
                 MODEL(refuse)(b, lane, l->length * part);
                 continue;

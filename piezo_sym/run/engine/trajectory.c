@@ -107,7 +107,7 @@ enum { TRIED = 32, AGAIN = 12 };
 /* An error may be small by chance: steps grow to no more than this, in what the one before asks for. */
 #define SUDDEN 1.5
 /* A refused step is tried again up to where a path bends, if that is before this part of it. */
-#define BEND 0.999
+#define YIELDS 0.999
 /* Parts of a step: so near to its end a switch is at its end; so near to its begin, at its begin. */
 #define AT_END 1e-9
 #define AT_ONCE 1e-12
@@ -237,12 +237,7 @@ static void MODEL(adds)(const MODEL(batch) *b, real h, real *out)
 static void MODEL(carry)(const MODEL(block) *m, const real *rates, real at, real *out)
 {
     real weight[STAGES];
-    for (long j = 0; j < STAGES; ++j) {
-        weight[j] = wide(stage_lead[j]);
-        for (long k = 0; k < STAGES; ++k)
-            if (k != j)
-                weight[j] *= at - stage_at[k];
-    }
+    MODEL(rate_weights)(at, weight);
     for (long k = 0; k < m->n; ++k) {
         real sum = zero;
         for (long j = 0; j < STAGES; ++j)
