@@ -10,6 +10,7 @@ from piezo_sym.expressions.tree import LaneSum, Sym
 from piezo_sym.run.simulate import simulate
 
 from .hand_made import HandMade, read
+from .tiers import tiers
 
 #: A gas under a piston on a spring: volume and entropy share one energy.
 GAS = HandMade(
@@ -31,7 +32,7 @@ def gas(tmp_path_factory):
 
 
 @pytest.mark.parametrize(
-    "way", [{"rtol": 1e-4}, {"rtol": 1e-9}, {"step": 2e-3}, {"step": 2e-3, "order": 6}]
+    "way", tiers([{"rtol": 1e-4}, {"rtol": 1e-9}, {"step": 2e-3}, {"step": 2e-3, "order": 6}], 1, 3)
 )
 def test_a_store_of_several_states_closes_its_balances(gas, way):
     run = simulate(gas, duration=0.2, inputs={"F": 20.0}, times=50, **way)
@@ -75,7 +76,7 @@ def cells(count):
     )
 
 
-@pytest.mark.parametrize("count", [1, 7])
+@pytest.mark.parametrize("count", tiers([1, 7], 1))
 def test_lanes_may_have_states_of_their_own_that_act_on_each_other(count, tmp_path):
     module = cells(count).module(tmp_path)
     p = module.Parameters()

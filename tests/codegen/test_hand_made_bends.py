@@ -21,6 +21,7 @@ from .c_compilers import COMPILERS
 from .hand_made import HandMade, read
 from .test_c_text import STRICT
 from .test_step_alone import Alone
+from .tiers import tiers
 
 #: A mass between two contacts; the right one becomes stiffer with temperature: q and S share it.
 BOUNCE = HandMade(
@@ -100,7 +101,7 @@ def ran(module, duration=3.0, **options):
     return run, x, np.abs(u - u[0]).max() / u.max()
 
 
-@pytest.mark.parametrize("way", WAYS, ids=str)
+@pytest.mark.parametrize("way", tiers(WAYS, 1, 2, 7, 10), ids=str)
 def test_balances_close_over_contacts(bounce, way):
     run, x, left = ran(bounce, **way)
     assert x[0].max() > 0.12
@@ -110,13 +111,13 @@ def test_balances_close_over_contacts(bounce, way):
     assert np.all(np.diff(run.produced_damper) >= 0)
 
 
-@pytest.mark.parametrize("way", FIXED, ids=str)
+@pytest.mark.parametrize("way", tiers(FIXED, 1), ids=str)
 def test_they_would_not_without_the_split(way, tmp_path):
     module = Plain(**{**vars(BOUNCE), "name": "plain"}).module(tmp_path)
     assert ran(module, **way)[2] > 1e-5
 
 
-@pytest.mark.parametrize("order", [2, 4, 6, 10])
+@pytest.mark.parametrize("order", tiers([2, 4, 6, 10], 0, 2))
 def test_a_step_goes_over_both_contacts(bounce, order):
     times, near = np.arange(101) * 0.03, {"d": 0.005}
     _, x, left = ran(bounce, times=times, step=0.03, order=order, parameters=near)
@@ -125,7 +126,7 @@ def test_a_step_goes_over_both_contacts(bounce, order):
     assert left <= 1e-13
 
 
-@pytest.mark.parametrize("order", [4, 6, 10])
+@pytest.mark.parametrize("order", tiers([4, 6, 10], 1))
 @pytest.mark.parametrize("beyond", [1e-6, 1e-4, 1e-2])
 def test_a_touch_within_a_step_is_found(bounce, order, beyond):
     """The mass turns back in the middle of a step, just behind a contact, or near its ends."""
@@ -163,7 +164,7 @@ def test_steps_that_end_at_kinks_are_fewer(bounce, tmp_path):
 
 
 @pytest.mark.parametrize("count", [3, 40], ids=["stages in vectors", "lanes in vectors"])
-@pytest.mark.parametrize("way", [WAYS[2], WAYS[7], WAYS[9], WAYS[11]], ids=str)
+@pytest.mark.parametrize("way", tiers([WAYS[2], WAYS[7], WAYS[9], WAYS[11]], 1), ids=str)
 def test_a_bank_of_contacts(tmp_path, way, count):
     module = BANK.module(tmp_path)
     gaps = {"n_count": count, "d": np.linspace(0.03, 0.2, count), "k_c": np.full(count, 2e3)}
@@ -178,7 +179,9 @@ def test_a_bank_of_contacts(tmp_path, way, count):
     assert np.abs(run.entropy_residual).max() <= 1e-13 * s.max()
 
 
-@pytest.mark.parametrize("how", [{"rtol": 1e-6}, {"length": 2e-2}, {"length": 2e-2, "order": 6}])
+@pytest.mark.parametrize(
+    "how", tiers([{"rtol": 1e-6}, {"length": 2e-2}, {"length": 2e-2, "order": 6}], 0)
+)
 def test_members_side_by_side_have_the_numbers_of_each_alone(bounce, how):
     """One never touches; the others do so at different times, and within the same steps."""
     known, times = read_inputs(bounce, None, 1.0), np.linspace(0.0, 1.0, 11)

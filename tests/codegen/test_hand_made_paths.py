@@ -18,6 +18,7 @@ from .c_compilers import COMPILERS
 from .hand_made_stops import LED, LIMIT, MASS, MAXWELL, RATIOS, RUBBING, SLIPS, STIFF
 from .test_c_text import STRICT, called
 from .test_step_alone import Alone
+from .tiers import tiers
 
 WAYS = [{"rtol": r} for r in (1e-4, 1e-6, 1e-9)] + [{"step": 5e-3, "order": n} for n in (2, 4, 6)]
 
@@ -41,7 +42,7 @@ def check_balances(run, process):
     assert np.all(produced[-1] > 0)
 
 
-@pytest.mark.parametrize("way", WAYS, ids=str)
+@pytest.mark.parametrize("way", tiers(WAYS, 1, 3, 5), ids=str)
 @pytest.mark.parametrize("name", ["stopped", "maxwell", "rubbing"])
 def test_balances_close(made, name, way):
     model = {"stopped": "stop", "maxwell": "slips", "rubbing": "rub"}
@@ -58,7 +59,7 @@ def stop_operator(places, r, z=0.0):
     return np.array(found)
 
 
-@pytest.mark.parametrize("order", [4, 6, 10])
+@pytest.mark.parametrize("order", tiers([4, 6, 10], 1))
 def test_a_stop_that_is_led_follows_the_stop_operator(made, order):
     """Rates are joined by straight lines: each step has a turn, at a time that is known."""
     rng = np.random.default_rng(order)
@@ -125,7 +126,7 @@ def by_events(times):
     return np.array(found)
 
 
-@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-8, 1e-10])
+@pytest.mark.parametrize("rtol", tiers([1e-4, 1e-6, 1e-8, 1e-10], 1, 3))
 def test_a_mass_moves_as_events_say(made, rtol):
     times, inputs = np.linspace(0.0, 0.5, 37), {"F": sine(20.0, 7.0)}
     run = simulate(made["stopped"], duration=0.5, inputs=inputs, times=times, rtol=rtol)
@@ -173,7 +174,7 @@ def batch(module, count):
     return systems, engine_of(module), x, np.linspace(0.0, 0.2, 5)
 
 
-@pytest.mark.parametrize("count", [8, 40])
+@pytest.mark.parametrize("count", tiers([8, 40], 0))
 @pytest.mark.parametrize("how", ["rtol", "step"])
 def test_runs_beside_others_have_the_numbers_that_they_have_alone(made, count, how):
     """In vectors of runs, and, where banks are large, of lanes."""

@@ -16,8 +16,8 @@ from tests.networks.test_specs import SPECS
 
 DRIVE = {"V_in": sine(100, 100)}
 OSCILLATOR = next(path for path in SPECS if path.stem == "a2_oscillator")
-#: With kinks, jumps, tables, banks, every smooth function.
-SOME = ("dry_friction", "smooth_functions", "tables", "two_banks_heat_one_body")
+#: With jumps, banks, every smooth function.
+SOME = ("dry_friction", "smooth_functions", "saturating_banks")
 SOME = [path for path in SPECS if path.stem in SOME]
 
 
@@ -31,7 +31,7 @@ def taped(spec, duration, rtol=1e-8, step=None, stages=None, scale=None, **optio
     return run, run.run()
 
 
-@pytest.mark.parametrize("way", [{"rtol": 1e-4}, {"rtol": 1e-10}, {"step": 3e-5, "stages": 2}])
+@pytest.mark.parametrize("way", [{"rtol": 1e-4}, {"step": 3e-5, "stages": 2}])
 def test_steps_taken_again_are_the_same_to_the_bit(way):
     run, steps = taped("piezo_stack", 0.02, inputs=DRIVE, **way)
     ends = [*(step.x for step in steps[1:]), run.x]

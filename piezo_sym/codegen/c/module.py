@@ -75,8 +75,8 @@ class _Printer:
             ("processes", self.program.processes),
         ):
             rows = places([Slot(f.name, f.bank) for f in fields], "row", self.program.taken)
-            body = [*self._places(rows), f"return {rows.size};"]
-            yield self._function(name, ("p",), body, [])
+            body = [f"return {rows.size};"]
+            yield self._function(name, ("p",), body, [*self._places(rows)])
 
     def function(self, function: Function) -> str:
         """Return one function with a row a slot."""
@@ -89,11 +89,11 @@ class _Printer:
         rows = self.states if same else places(slots, "row", self.program.taken)
         plain = [(n, row) for n, row in enumerate(function.rows) if not row.listed]
         writes = [self._write(rows, n, row.slot, row.value) for n, row in plain]
-        body = [] if same else list(self._places(rows))
-        body += self._computed([], writes)
+        ends = [] if same else [*self._places(rows)]
+        body = self._computed([], writes)
         for n, row in enumerate(function.rows):
             body += self._listed(rows, n, row) if row.listed else []
-        return self._function(function.name, (*function.arguments, "out"), body)
+        return self._function(function.name, (*function.arguments, "out"), body, ends)
 
     def jacobian(self) -> str:
         """Return the function that fills the Jacobian, row after row."""
@@ -154,11 +154,10 @@ class _Printer:
         p = self.words["p"]
         for bank in self.program.counts:
             yield f"{bank}_count", f"const long {bank}_count = {p}->{bank}_count;"
-        for line in self._places(self.states):
-            yield line.split()[2], line
+        yield from self._places(self.states)
 
-    def _places(self, rows: Places) -> Iterator[str]:
-        yield from (f"const long {line};" for line in rows.definitions())
+    def _places(self, rows: Places) -> Iterator[tuple[str, str]]:
+        yield from ((line.split()[0], f"const long {line};") for line in rows.definitions())
 
     def _unpacked(self) -> Iterator[tuple[str, str]]:
         program, names = self.program, self.names

@@ -17,38 +17,15 @@ from piezo_sym.codegen.c.lines import Words, indented, stage_lines, statement, u
 from piezo_sym.codegen.c.names import added, c_names
 from piezo_sym.codegen.c.order import Write, stages
 from piezo_sym.codegen.c.paths import path_rows, path_table
+from piezo_sym.codegen.c.real import REAL, powers_of
 from piezo_sym.codegen.c.record import comment, give_text, place_text, record_text
 from piezo_sym.codegen.collocation import Collocation
 from piezo_sym.codegen.coupling import coupling_of, table
 from piezo_sym.codegen.places import Places, places
 from piezo_sym.codegen.program import Field, Program, Quantity, Row, bank_of, needed
-from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.tree import names
 
-#: What a text needs of `real` where nobody has defined it: one number.
-_REAL = """\
-#if !defined(REAL_WIDTH) /* numbers of one run; run/engine has vectors of many */
-#define REAL_WIDTH 1
-#define ALONE
-#if !defined(REAL)
-#define REAL double /* or float */
-#endif
-typedef REAL real;
-#define zero 0.0
-#define wide(value) (value)
-#define chosen(condition, then, other) ((condition) ? (then) : (other))
-{functions}
-#define pow_of pow
-#define is_above(a, b) ((a) > (b))
-#define is_at_least(a, b) ((a) >= (b))
-#define least(a, b) ((a) < (b) || (a) != (a) ? (a) : (b))
-#define OF(value, lane) (value)
-#endif"""
-REAL = _REAL.replace(
-    "{functions}", "\n".join(f"#define {r.in_c}_of {r.in_c}" for r in RECORDS.values() if r.smooth)
-)
 NOTE = "/* A step of Gauss collocation; row program of the proofs covers integrands and stage. */"
-_POWERS = "static inline real power_{n}_of(real z)\n{{\n    return {product};\n}}"
 
 
 def c_step(program: Program, made: Collocation) -> str:
@@ -65,18 +42,9 @@ def c_step(program: Program, made: Collocation) -> str:
         give_text(program, printer.names),
     ]
     text = "\n\n".join(functions)
-    powers = [
-        _POWERS.format(n=n, product="*".join("z" * n))
-        for n in range(2, 9)
-        if f"power_{n}_of(" in text
-    ]
     head = f'{opening(program)}\n{NOTE}\n#include "{program.name}.h"\n\n#include <math.h>'
-    return (
-        "\n\n".join(
-            [head, REAL, record_text(program, printer.names), *powers, text, printer.tables()]
-        )
-        + "\n"
-    )
+    record = record_text(program, printer.names)
+    return "\n\n".join([head, REAL, record, *powers_of(text), text, printer.tables()]) + "\n"
 
 
 @final
