@@ -7,7 +7,10 @@ from functools import cache
 from pathlib import Path
 
 #: Collocation steps of runs in lanes, behind a model's own and the tables of their stages.
-COLLOCATION = ("newton.c", "trajectory.c", "crossings.c", "ticks.c", "batch.c", "tick.c")
+COLLOCATION = (
+    *("newton.c", "trajectory.c", "error.c", "crossings.c"),
+    *("ticks.c", "batch.c", "tick.c"),
+)
 
 
 @cache
