@@ -18,10 +18,10 @@
 #endif
 /*
  * What of an error of order s + 1 is left at the end.  SMOOTH: of a sum over time, from the misfit's
- * part of what the rate changes by.  PULL: of a state that goes round or falls by z in a step.  Their
- * highest powers are those of Gauss's rule and of its function of stability, times 1.3.  Series that
- * hardly fall yet get no more than their last part says.  The square counts for many steps: what
- * oscillates damps no error of the steps before.
+ * part of what the rate changes by.  PULL: of a state that goes round or falls by z in a step.  The
+ * term of the root of a root, and the highest power, are about those of Gauss's rule and of its
+ * function of stability.  The others are calibrated on test models: series that hardly fall yet get
+ * no more than their last part says, and what oscillates damps no error of the steps before.
  */
 #define FALLS(part) ((part) * least(300.0 * (part) * (part), wide(1.0)))
 #if STAGES == 4
