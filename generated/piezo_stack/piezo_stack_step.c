@@ -399,10 +399,16 @@ static inline real largest_of(real a, real b)
 #define LOSSY 0
 static const double filter = 5.0e-1;
 #define COARSE 1.0e-5
+#define TOO_COARSE 9.3057204092969898e-8
 static const double stage_weight[1] = {1.0};
 static const double stage_reach[1][1] = {
     {5.0e-1}};
-static const double node_last[3] = {5.5555555555555556e-1, -1.1111111111111111, 5.5555555555555556e-1};
+static const double node_last[2][3] = {
+    {5.5555555555555556e-1, -1.1111111111111111, 5.5555555555555556e-1},
+    {-2.0412414523193151e-5, 0.0, 2.0412414523193151e-5}};
+static const double fine_last[2][16] = {
+    {-3.2781304863961739e-2, 1.122209124505884e-1, -2.1159853063188444e-1, 3.1691961779722083e-1, -4.1664037702596137e-1, 5.0089334971596444e-1, -5.6174614482927911e-1, 5.9361592894280181e-1, -5.9361592894280181e-1, 5.6174614482927911e-1, -5.0089334971596444e-1, 4.1664037702596137e-1, -3.1691961779722083e-1, 2.1159853063188444e-1, -1.122209124505884e-1, 3.2781304863961739e-2},
+    {2.1308618399989913e-4, -6.9641319632671669e-4, 1.2033786136163721e-3, -1.5728430124492439e-3, 1.6912958862630305e-3, -1.5072434022893198e-3, 1.0392857343763955e-3, -3.705468071904169e-4, -3.705468071904169e-4, 1.0392857343763955e-3, -1.5072434022893198e-3, 1.6912958862630305e-3, -1.5728430124492439e-3, 1.2033786136163721e-3, -6.9641319632671669e-4, 2.1308618399989913e-4}};
 static const double node_reach[3][1] = {
     {1.1270166537925831e-1},
     {5.0e-1},
@@ -856,6 +862,10 @@ enum { MOST_ITERATIONS = 12, SOON = 1 };
 enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
 /* Where a change is more than so much of the one before, slopes are taken anew. */
 #define SLOW 0.1
+/* Where changes are smaller, in units of what is noise, the next is as much smaller as this one was. */
+#define NEAR 1e8
+/* What equations may leave, in parts of states: as much as changes below noise of what is very fast. */
+#define LEFT 0.01
 /* Changes go to and fro where so much of one is left, with the other sign. */
 #define TO_AND_FRO 0.5
 
@@ -937,6 +947,24 @@ static real MODEL(damping)(const MODEL(block) *m)
 }
 
 /*
+ * The lanes whose rates solve the equations, not only change no more: a change is small, too, where
+ * slopes are out of all proportion.
+ */
+static mask MODEL(solves)(const MODEL(block) *m, real h)
+{
+    mask good = none_of(nowhere);
+    for (long k = 0; k < m->n; ++k) {
+        real moved = zero, left = zero;
+        for (long j = 0; j < STAGES; ++j) {
+            moved = largest_of(moved, size_of(m->rates[j * m->n + k]));
+            left = largest_of(left, size_of(m->gap[j * m->n + k]));
+        }
+        good &= h * left <= LEFT * (m->largest[k] + size_of(m->x[k]) + h * moved);
+    }
+    return good;
+}
+
+/*
  * Newton's method for the rates in some lanes, begun where they are; returns those that found them.
  * A lane that has found them stays as it is, however long the others take.
  */
@@ -966,7 +994,8 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
         }
         const mask switched = MODEL(gaps)(m, h, going);
         const mask smaller = worst < before, lost = none_of(worst < 1e300);
-        mask good = (worst <= 4.0) | (smaller & (worst * (worst / before) <= 4.0));
+        const mask near = smaller & (worst < NEAR);
+        mask good = (worst <= 4.0) | (near & (worst * (worst / before) <= 4.0));
         if (iteration > 1) { /* noise of what rates are made of, or no root */
             const mask stays = (worst > m->stays * before) & none_of(good);
             good |= stays & (worst < (m->late == SOON || iteration > NOISY ? MOST_NOISE : 100.0));
@@ -974,6 +1003,8 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
                 going &= none_of(stays & none_of(good));
         }
         good &= none_of(lost);
+        if (any(good & going))
+            good &= MODEL(solves)(m, h);
         found |= going & good;
         going &= none_of(good | lost);
         const mask slow = (worst > SLOW * before) & (before > 0.0);
@@ -984,15 +1015,21 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
     return found;
 }
 
-/* What the last polynomial of Legendre has of a function at nodes, in parts of its size. */
-static real MODEL(last_part)(const MODEL(block) *m, long k, const double *last, long nodes)
+/*
+ * What the last two polynomials of Legendre have of a function at nodes, in parts of its size: of an
+ * even or odd one, every other has nothing.
+ */
+static real MODEL(last_part)(const MODEL(block) *m, long k, const double *last, const double *other,
+                             long nodes)
 {
-    real sum = zero, most = NO_SIZE + zero;
+    real sum = zero, sum_of_other = zero, most = NO_SIZE + zero;
     for (long q = 0; q < nodes; ++q) {
-        sum += last[q] * m->node[q * m->means + k];
-        most = largest_of(size_of(m->node[q * m->means + k]), most);
+        const real value = m->node[q * m->means + k];
+        sum += last[q] * value;
+        sum_of_other += other[q] * value;
+        most = largest_of(size_of(value), most);
     }
-    return size_of(sum) / most;
+    return largest_of(size_of(sum), size_of(sum_of_other)) / most;
 }
 
 /* The lanes whose co-states ask for more nodes than NODES, for balances that are exact to round-off. */
@@ -1002,8 +1039,17 @@ static mask MODEL(coarse)(const MODEL(block) *m, real h)
     if (m->means && any(other)) /* else they are those that the last gaps have left */
         MODEL(integrate)(m, h, NODE_REACH, NODES);
     for (long k = 0; k < m->means; ++k)
-        found |= MODEL(last_part)(m, k, node_last, NODES) > COARSE;
+        found |= MODEL(last_part)(m, k, node_last[0], node_last[1], NODES) > COARSE;
     return found;
+}
+
+/* The lanes whose co-states ask for more nodes than FINE: the step is too long. */
+static mask MODEL(too_coarse)(const MODEL(block) *m)
+{
+    mask found = nowhere; /* nodes are those that the last gaps have left */
+    for (long k = 0; k < m->means; ++k)
+        found |= MODEL(last_part)(m, k, fine_last[0], fine_last[1], FINE) > TOO_COARSE;
+    return found & m->fine;
 }
 
 /* The rates in some lanes, with means at as many nodes as they ask for; returns who has them. */
@@ -1017,7 +1063,8 @@ static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
     if (!any(more))
         return found;
     m->fine |= more;
-    return (found & none_of(more)) | MODEL(iterate)(m, h, more);
+    const mask again = MODEL(iterate)(m, h, more);
+    return (found & none_of(more)) | (again & none_of(MODEL(too_coarse)(m)));
 }
 
 /*

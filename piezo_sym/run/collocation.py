@@ -19,15 +19,15 @@ from piezo_sym.run.runs import Runs, Watch, stuck
 from piezo_sym.run.scales import shared
 from piezo_sym.run.system import System, Systems
 
-#: The first step, and the longest of the survey of states' scales, in parts of the run.
-FIRST, SURVEYED = 1e-5, 1 / 64
+#: The first step, the longest, and the longest of the survey of scales, in parts of the run.
+FIRST, LONGEST, SURVEYED = 1e-5, 0.25, 1 / 64
 #: Numbers of state that are stepped between two looks at what the user wants: some milliseconds.
 CHUNK = 50_000
 #: Runs of more states have vectors for the lanes of their banks.
 MOST_STATES = 32
 #: For tolerances from here on, how many stages are cheapest, and what a step's estimated error may
 #: then be, in rtol: so that the largest error of a run is about rtol.
-CHOICE = ((1e-5, 4, 0.5), (0.0, 5, 2.0))
+CHOICE = ((1e-5, 4, 0.3), (0.0, 5, 0.75))
 #: Below this tolerance steps end at kinks, however many there are.
 LEAST_OVER = 1e-6
 #: A run of more steps would take days, and steps below round-off.
@@ -71,7 +71,7 @@ def with_tolerance(
         stepping(first, rtol, stages),
         layout_of(x, side_by_side=side_by_side),
     )
-    batch.survey()
+    batch.survey(min(first.inputs.max_step, SURVEYED * first.inputs.duration))
     batch.largest[:] = shared(first, batch.largest)
     through(batch, watch)
     return results(batch, known, x, times)
@@ -110,7 +110,7 @@ def stepping(system: System, rtol: float, stages: int | None) -> Stepping:
         stages=stages or best,
         tolerance=caution * rtol,
         first=FIRST * inputs.duration,
-        longest=min(inputs.max_step, SURVEYED * inputs.duration),
+        longest=min(inputs.longest_step, LONGEST * inputs.duration),
         kinks="either" if rtol >= LEAST_OVER else "end",
     )
 

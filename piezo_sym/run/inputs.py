@@ -180,6 +180,11 @@ class Inputs:
         """Longest step [s] that resolves every input."""
         return min((signal.max_step(self.duration) for signal in self.signals), default=inf)
 
+    @cached_property
+    def longest_step(self) -> float:
+        """Longest step [s] that resolves every input by looking at it in several places."""
+        return min((signal.longest_step(self.duration) for signal in self.signals), default=inf)
+
 
 def jump(first: Segment, later: Segment) -> bool:
     """Return whether an input jumps between two segments, one after the other."""

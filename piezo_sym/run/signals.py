@@ -41,6 +41,10 @@ class Signal(ABC):
         """Return the longest step [s] that resolves the signal between its breaks: here any."""
         return inf
 
+    def longest_step(self, duration: float) -> float:
+        """Return the same for steps that look at the signal in several places each."""
+        return self.max_step(duration)
+
 
 @final
 @dataclass(frozen=True)
@@ -72,6 +76,10 @@ class Sine(Signal):
     def max_step(self, duration: float) -> float:  # noqa: ARG002
         """Return an eighth of a period."""
         return 1 / (STEPS_PER_PERIOD * self.frequency)
+
+    def longest_step(self, duration: float) -> float:  # noqa: ARG002
+        """Return half a period."""
+        return 0.5 / self.frequency
 
 
 @final
@@ -164,6 +172,10 @@ class Chirp(Signal):
     def max_step(self, duration: float) -> float:  # noqa: ARG002
         """Return an eighth of the shortest period."""
         return 1 / (STEPS_PER_PERIOD * max(self.f_start, self.f_stop))
+
+    def longest_step(self, duration: float) -> float:  # noqa: ARG002
+        """Return half of the shortest period."""
+        return 0.5 / max(self.f_start, self.f_stop)
 
 
 def inside(times: Iterable[float], duration: float) -> tuple[float, ...]:

@@ -80,10 +80,11 @@ def simulate(
     stops early never fails the run, and counts up to nine tenths of the time it reached.
 
     Steps end at every jump or corner of an input (samples: while they are at most 1000). With
-    rtol, none is longer than an eighth of a period of an input, than the median distance of more
-    than 1000 samples, or than 1/500 of the run where an input is a function. A function is asked
-    some thousand times before the run, with an array where it takes one: for its jumps, and for
-    polynomials that take its place. A pulse that is shorter than 1/2000 of the run is seen only by
+    rtol, none is longer than a quarter of the run, than half a period of a sine or chirp (SciPy's:
+    an eighth), an eighth of one of a triangle, than the median distance of more than 1000 samples,
+    or than 1/500 of the run where an input is a function. A function is asked some thousand times
+    before the run, with an array where it takes one: for its jumps, and for polynomials that take
+    its place. A pulse that is shorter than 1/2000 of the run is seen only by
     chance: give a signal, or (t, values).
 
     Parameters

@@ -5,6 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
+from piezo_sym.errors import RunError
 from piezo_sym.expressions.calculus import add, div, neg
 from piezo_sym.expressions.tree import LaneSum, Sym
 from piezo_sym.run.simulate import simulate
@@ -145,3 +146,34 @@ def test_a_chain_of_many_states_runs(links, tmp_path):
     assert np.abs(run.energy_residual).max() <= 1e-11 * run.energy.max()
     entries = (tmp_path / "chain_step.c").read_text(encoding="utf-8").partition("chain_slots = ")[2]
     assert int(entries.partition(",")[0]) <= 30 * links
+
+
+def well(energy):
+    """Return a mass in a well, whose damper heats a body."""
+    return HandMade(
+        name="well",
+        parameters={"m": 1.0, "k": 1.0, "d": 0.1, "c": 2.0, "T_0": 300.0},
+        states={"q": (0.0, None), "p": (5.0, None), "S": (0.0, None)},
+        energies=["p**2/(2*m)", energy, "c*T_0*exp(S/c)"],
+        rates={"q": "E_p", "p": "-E_q - d*E_p", "S": "d*E_p*E_p/E_S"},
+        heats={"damper": ("d*E_p*E_p", "S")},
+    )
+
+
+@pytest.mark.parametrize("energy", ["k*q**4/4", "k*log(1 + q**2)"])
+def test_very_long_steps_close_their_balances_or_are_halved(energy, tmp_path):
+    """Newton's method may end at what is no root, and quadrature miss a well within a step."""
+    module = well(energy).module(tmp_path)
+    draw = np.random.default_rng(1)
+    ran = 0
+    for _ in range(40):
+        h, k, p = 10.0 ** draw.uniform((-1, -1, -1), (1.5, 5, 3))
+        order = int(draw.choice([2, 4, 6]))
+        how = {"step": h, "order": order, "parameters": {"k": k}, "initial": {"p": p}}
+        try:
+            run = simulate(module, duration=20 * h, **how)
+        except RunError:  # a body cannot take in all that
+            continue
+        ran += 1
+        assert np.abs(run.energy_residual).max() <= 1e-11 * run.energy.max()
+    assert ran > 30

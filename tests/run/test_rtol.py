@@ -61,17 +61,50 @@ def exact(mass, damping, masses, frequency, times):
     return names, np.array([(expm(a * t) @ start)[:-2] for t in times]).T
 
 
-@pytest.mark.parametrize("chain", CHAINS)
-def test_the_error_of_a_run_is_about_rtol(chain):
-    mass, damping, masses, frequency, duration = CHAINS[chain]
-    text = HEAD.format(mass=mass, damping=damping) + (SECOND if masses == 2 else "")
+#: Damped, with and without a drive: what a user may ask of any one of them, and of most of them.
+DAMPED = {
+    "falls": (1.0, 10.0, 1, 0.0, 2.0),
+    "driven": (1.0, 10.0, 1, 3.0, 4.0),
+    "driven fast": (1.0, 20.0, 1, 15.0, 2.0),
+    "driven slowly": (0.2, 20.0, 1, 0.7, 5.0),
+    "overdamped": (0.1, 100.0, 1, 2.0, 4.0),
+    "two fall": (0.5, 4.0, 2, 0.0, 2.0),
+    "two driven": (0.1, 8.0, 2, 5.0, 2.0),
+    "two driven slowly": (0.1, 30.0, 2, 1.0, 4.0),
+}
+RTOLS = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)
+#: Runs of no more steps are too short for errors to be about rtol.
+FEW = 20
+
+
+def errors(chain):
+    """Return the largest error of a run in rtol, and its steps, for each rtol."""
+    mass, damping, masses, frequency, duration = chain
+    text = HEAD.format(mass=1.0, damping=1.0) + (SECOND if masses == 2 else "")
     times = np.linspace(0.0, duration, 101)
     names, wanted = exact(mass, damping, masses, frequency, times)
     drive = {"F": sine(DRIVE, frequency) if frequency else DRIVE}
-    errors = []
-    for rtol in (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9):
-        found = simulate(parse(text), inputs=drive, duration=duration, times=times, rtol=rtol)
+    options = {"inputs": drive, "duration": duration, "times": times}
+    options["parameters"] = {"m": mass, "d": damping}
+    for rtol in RTOLS:
+        found = simulate(parse(text), rtol=rtol, **options)
         states = np.array([found[name].values for name in names])
-        errors.append(np.max(np.abs(states - wanted) / np.abs(wanted).max(axis=1)[:, None]) / rtol)
-    assert max(errors) <= 10
-    assert np.median(errors) <= 3
+        parts = np.abs(states - wanted) / np.abs(wanted).max(axis=1)[:, None]
+        yield parts.max() / rtol, found.attrs["accepted_steps"]
+
+
+@pytest.mark.parametrize("chain", CHAINS)
+def test_the_error_of_a_run_is_about_rtol(chain):
+    found = [error for error, _ in errors(CHAINS[chain])]
+    assert max(found) <= 10
+    assert np.median(found) <= 3
+
+
+def test_nobody_pays_for_much_more_than_rtol():
+    """The lower side: steps are about as long as rtol allows, at every rtol."""
+    runs = [list(errors(chain)) for chain in DAMPED.values()]
+    for at_one in zip(*runs, strict=True):
+        found = [error for error, steps in at_one if steps > FEW]
+        assert len(found) >= 3
+        assert max(found) <= 10
+        assert 1 / 30 <= np.median(found) <= 3

@@ -50,6 +50,7 @@ static size_t MODEL(places)(MODEL(batch) *b, const MODEL(task) *task, real *memo
     PLACE(part, m->booked);
     PLACE(some_rate, m->n);
     PLACE(some_share, m->n);
+    PLACE(some_new, m->n);
     PLACE(some_side, m->branches);
     PLACE(some_rows, m->booked);
     PLACE(some_margin, MODEL(limits));
@@ -155,14 +156,14 @@ static mask MODEL(midpoint)(MODEL(batch) *b, real h, mask where)
     return where & MODEL(within)(b->some_margin) & none_of(going);
 }
 
-/* Survey as many runs as there are lanes, from `first` on. */
-static void MODEL(survey_some)(MODEL(batch) *b, long first)
+/* Survey as many runs as there are lanes, from `first` on, by steps of at most this length. */
+static void MODEL(survey_some)(MODEL(batch) *b, long first, double longest)
 {
     MODEL(block) *m = &b->m;
     mask going = nowhere;
     for (int lane = 0; lane < REAL_WIDTH && first + lane < b->count; ++lane) {
         MODEL(load)(b, lane, b->runs + first + lane);
-        b->lane[lane].h = b->longest;
+        b->lane[lane].h = longest;
         SET(going, lane, 1);
     }
     for (long step = 0; step < MOST_SURVEYED && any(going); ++step) {
@@ -187,11 +188,11 @@ static void MODEL(survey_some)(MODEL(batch) *b, long first)
                 continue;
             if (!IN(good, lane)) {
                 l->h *= 0.25;
-                SET(going, lane, l->h > b->longest * SHORTEST);
+                SET(going, lane, l->h > longest * SHORTEST);
                 continue;
             }
             l->t = l->t + l->h < stop - 1e-9 * l->h ? l->t + l->h : stop;
-            l->h = fmin(2.0 * l->h, b->longest);
+            l->h = fmin(2.0 * l->h, longest);
             SET(going, lane, l->t < b->stop);
             if (l->t >= stop && l->t < b->stop)
                 ++l->segment;
@@ -204,12 +205,12 @@ static void MODEL(survey_some)(MODEL(batch) *b, long first)
     }
 }
 
-/* Find how large the states of all runs become. */
-void MODEL(survey)(MODEL(batch) *b);
-void MODEL(survey)(MODEL(batch) *b)
+/* Find how large the states of all runs become, by steps of at most this length. */
+void MODEL(survey)(MODEL(batch) *b, double longest);
+void MODEL(survey)(MODEL(batch) *b, double longest)
 {
     for (long first = 0; first < b->count; first += REAL_WIDTH)
-        MODEL(survey_some)(b, first);
+        MODEL(survey_some)(b, first, longest);
 }
 
 /* Take at most so many steps in each lane; returns whether there is more to do. */

@@ -218,9 +218,9 @@ class Batch:
         """Return one of the functions of C by its own name."""
         return getattr(self._library, f"{self._name}_{word}")
 
-    def survey(self) -> None:
-        """Find by rough steps how large states become: `largest`."""
-        self._call("survey")
+    def survey(self, longest: float) -> None:
+        """Find by rough steps, none longer than that [s], how large states become: `largest`."""
+        self._call("survey", DOUBLE(longest))
 
     def go(self, ticks: int) -> bool:
         """Take at most so many steps in each lane; return whether there is more to do."""

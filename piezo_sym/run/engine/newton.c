@@ -28,6 +28,10 @@ enum { MOST_ITERATIONS = 12, SOON = 1 };
 enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
 /* Where a change is more than so much of the one before, slopes are taken anew. */
 #define SLOW 0.1
+/* Where changes are smaller, in units of what is noise, the next is as much smaller as this one was. */
+#define NEAR 1e8
+/* What equations may leave, in parts of states: as much as changes below noise of what is very fast. */
+#define LEFT 0.01
 /* Changes go to and fro where so much of one is left, with the other sign. */
 #define TO_AND_FRO 0.5
 
@@ -152,6 +156,24 @@ static real MODEL(damping)(const MODEL(block) *m)
 }
 
 /*
+ * The lanes whose rates solve the equations, not only change no more: a change is small, too, where
+ * slopes are out of all proportion.
+ */
+static mask MODEL(solves)(const MODEL(block) *m, real h)
+{
+    mask good = none_of(nowhere);
+    for (long k = 0; k < m->n; ++k) {
+        real moved = zero, left = zero;
+        for (long j = 0; j < STAGES; ++j) {
+            moved = largest_of(moved, size_of(m->rates[j * m->n + k]));
+            left = largest_of(left, size_of(m->gap[j * m->n + k]));
+        }
+        good &= h * left <= LEFT * (m->largest[k] + size_of(m->x[k]) + h * moved);
+    }
+    return good;
+}
+
+/*
  * Newton's method for the rates in some lanes, begun where they are; returns those that found them.
  * A lane that has found them stays as it is, however long the others take.
  */
@@ -184,7 +206,8 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
         }
         const mask switched = MODEL(gaps)(m, h, going);
         const mask smaller = worst < before, lost = none_of(worst < 1e300);
-        mask good = (worst <= 4.0) | (smaller & (worst * (worst / before) <= 4.0));
+        const mask near = smaller & (worst < NEAR);
+        mask good = (worst <= 4.0) | (near & (worst * (worst / before) <= 4.0));
         if (iteration > 1) { /* noise of what rates are made of, or no root */
             const mask stays = (worst > m->stays * before) & none_of(good);
             good |= stays & (worst < (m->late == SOON || iteration > NOISY ? MOST_NOISE : 100.0));
@@ -192,6 +215,8 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
                 going &= none_of(stays & none_of(good));
         }
         good &= none_of(lost);
+        if (any(good & going))
+            good &= MODEL(solves)(m, h);
         found |= going & good;
         going &= none_of(good | lost);
         const mask slow = (worst > SLOW * before) & (before > 0.0);
@@ -205,15 +230,21 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
     return found;
 }
 
-/* What the last polynomial of Legendre has of a function at nodes, in parts of its size. */
-static real MODEL(last_part)(const MODEL(block) *m, long k, const double *last, long nodes)
+/*
+ * What the last two polynomials of Legendre have of a function at nodes, in parts of its size: of an
+ * even or odd one, every other has nothing.
+ */
+static real MODEL(last_part)(const MODEL(block) *m, long k, const double *last, const double *other,
+                             long nodes)
 {
-    real sum = zero, most = NO_SIZE + zero;
+    real sum = zero, sum_of_other = zero, most = NO_SIZE + zero;
     for (long q = 0; q < nodes; ++q) {
-        sum += last[q] * m->node[q * m->means + k];
-        most = largest_of(size_of(m->node[q * m->means + k]), most);
+        const real value = m->node[q * m->means + k];
+        sum += last[q] * value;
+        sum_of_other += other[q] * value;
+        most = largest_of(size_of(value), most);
     }
-    return size_of(sum) / most;
+    return largest_of(size_of(sum), size_of(sum_of_other)) / most;
 }
 
 /* The lanes whose co-states ask for more nodes than NODES, for balances that are exact to round-off. */
@@ -227,7 +258,7 @@ static mask MODEL(coarse)(const MODEL(block) *m, real h)
     if (m->means && any(other)) /* else they are those that the last gaps have left */
         MODEL(integrate)(m, h, NODE_REACH, NODES);
     for (long k = 0; k < m->means; ++k)
-        found |= MODEL(last_part)(m, k, node_last, NODES) > COARSE;
+        found |= MODEL(last_part)(m, k, node_last[0], node_last[1], NODES) > COARSE;
 #if defined(BENDS)
     found &= none_of(split);
     real low = any(split) ? zero : (real)wide(1.0);
@@ -235,10 +266,22 @@ static mask MODEL(coarse)(const MODEL(block) *m, real h)
         const real length = m->cut[j] - low;
         MODEL(integrate_piece)(m, h, low, length, node_at, NODES);
         for (long k = 0; k < m->means; ++k)
-            found |= split & (length > 0.0) & (MODEL(last_part)(m, k, node_last, NODES) > COARSE);
+            found |= split & (length > 0.0) & (MODEL(last_part)(m, k, node_last[0], node_last[1], NODES) > COARSE);
     }
 #endif /* BENDS */
     return found;
+}
+
+/* The lanes whose co-states ask for more nodes than FINE: the step is too long. */
+static mask MODEL(too_coarse)(const MODEL(block) *m)
+{
+    mask found = nowhere; /* nodes are those that the last gaps have left */
+    for (long k = 0; k < m->means; ++k)
+        found |= MODEL(last_part)(m, k, fine_last[0], fine_last[1], FINE) > TOO_COARSE;
+#if defined(BENDS)
+    found &= none_of(m->cut[0] < 1.0);
+#endif /* BENDS */
+    return found & m->fine;
 }
 
 /* The rates in some lanes, with means at as many nodes as they ask for; returns who has them. */
@@ -252,5 +295,6 @@ static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
     if (!any(more))
         return found;
     m->fine |= more;
-    return (found & none_of(more)) | MODEL(iterate)(m, h, more);
+    const mask again = MODEL(iterate)(m, h, more);
+    return (found & none_of(more)) | (again & none_of(MODEL(too_coarse)(m)));
 }

@@ -77,7 +77,7 @@ class Taped:
         starts, none = np.atleast_2d(x), np.empty(0)
         self._batch = Batch(engine, [parameters], starts, inputs, none, stepping, "one")
         if scale is None:
-            self._batch.survey()
+            self._batch.survey(stepping.longest)
             scale = self._batch.largest[0]
         self._batch.largest[0] = scale
         self.scale = np.array(scale)

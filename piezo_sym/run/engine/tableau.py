@@ -45,11 +45,12 @@ def tableau(stages: int, nodes: int, *, lossy: bool = False, lanes: int = 0) -> 
             "stage_weight": b,
             "stage_start": [_at(part, mp.mpf(0)) for part in lagrange],
             "stage_end": [_at(part, mp.mpf(1)) for part in lagrange],
-            "stage_last": _last(c, b),
+            "stage_last": _last(c, b, 1),
             "stage_lead": [part[-1] for part in lagrange],
             "along": [part[1:] for part in reach],
             "stage_reach": a.tolist(),
-            "node_last": _last(*_gauss(nodes)),
+            "node_last": _two_last(nodes, stages),
+            "fine_last": _two_last(FINE, stages),
             **_means("node", nodes, lagrange, b),
             **_means("fine", FINE, lagrange, b),
             "stage_basis": basis.tolist(),
@@ -66,10 +67,9 @@ def tableau(stages: int, nodes: int, *, lossy: bool = False, lanes: int = 0) -> 
         sizes = {"STAGES": stages, "NODES": nodes, "PAIRS": stages // 2, "PARTS": PARTS}
         sizes |= {"FINE": FINE, "LOSSY": int(lossy)}
         head = [f"#define {name} {value}" for name, value in sizes.items()]
-        # means are of as many orders more as nodes are more: by the decay of what they are of
-        coarse = mp.mpf(LEFT_OUT) ** (mp.mpf(nodes - 1) / (2 * nodes + 1 - stages))
+        coarse = {"COARSE": nodes, "TOO_COARSE": FINE}
         head += [f"static const double filter = {_numbers(filters)};"]
-        head += [f"#define COARSE {_numbers([coarse])}"]
+        head += [f"#define {k} {_numbers([_term(n, n - 1, stages)])}" for k, n in coarse.items()]
         return "\n".join([*head, *(_table(name, rows) for name, rows in tables.items())])
 
 
@@ -124,9 +124,27 @@ def _gauss(n: int) -> tuple[list[Any], list[Any]]:
     return roots, weights
 
 
-def _last(nodes: list[Any], weights: list[Any]) -> list[Any]:
-    """Return what gives a polynomial's last term in Legendre's polynomials, at the ends."""
-    n = len(nodes) - 1
+def _term(nodes: int, term: int, stages: int) -> Any:
+    """Return how large a term of a series may be, if what nodes leave out of a mean is LEFT_OUT.
+
+    Means are of as many orders more as nodes are more: by the decay of what they are of.
+    """
+    return mp.mpf(LEFT_OUT) ** (mp.mpf(term) / (2 * nodes + 1 - stages))
+
+
+def _two_last(nodes: int, stages: int) -> list[list[Any]]:
+    """Return what gives the last term, and a hundredth of what the one before makes it expected.
+
+    Of even and odd functions every other term is zero; else the last one is the better judge.
+    """
+    part = _term(nodes, 1, stages) / 100
+    before = [part * value for value in _last(*_gauss(nodes), 2)]
+    return [_last(*_gauss(nodes), 1), before]
+
+
+def _last(nodes: list[Any], weights: list[Any], part: int) -> list[Any]:
+    """Return what gives a polynomial's last term, or that before, in Legendre's, at the ends."""
+    n = max(len(nodes) - part, 0)
     found = zip(nodes, weights, strict=True)
     return [(2 * n + 1) * w * mp.legendre(n, 2 * x - 1) for x, w in found]
 

@@ -297,8 +297,9 @@ static void MODEL(judged)(MODEL(batch) *b, MODEL(tick) *t)
         l->behind = 0;
         if (l->phase == STEP && b->fixed == 0.0) {
             const double error = LANE(&worst, 0, lane);
-            const double power = IN(b->m.over, lane) ? OVER_KINKS : -0.5 / STAGES;
-            l->longer = error > 0.0 ? 0.9 * pow(error, power) : error == 0.0 ? 8.0 : 0.25;
+            const int over = IN(b->m.over, lane) != 0;
+            const double grown = PART_OF(over) * pow(error, over ? OVER_KINKS : -0.5 / STAGES);
+            l->longer = error > 0.0 ? grown : error == 0.0 ? 8.0 : 0.25;
             if (!(error <= 1.0)) {
                 double part = fmax(0.1, l->refused > 1 ? fmin(l->longer, 0.5) : l->longer);
 #if defined(PATHS) /* most of the error may come from it */

@@ -79,7 +79,7 @@ typedef struct {
     double beyond; /* so much of a step may lie beyond the switch at its end: no stage does */
     real *rate, *side, *sums, *lost, *known;       /* at the begin of a step; of the step before */
     real *end_rate, *end_side, *end_branch, *part; /* at its end; what it adds to sums */
-    real *some_rate, *some_share, *some_side, *some_rows, *some_margin, *some_inputs;
+    real *some_rate, *some_share, *some_new, *some_side, *some_rows, *some_margin, *some_inputs;
     long sizes[SIZES];
 } MODEL(batch);
 
@@ -90,20 +90,13 @@ enum { MOST_HALVED = 1000 };
 #define SHORTEST_PART 1e-15
 /* A way is tried for so many solves; the slower one again after so many trials of the faster. */
 enum { TRIED = 32, AGAIN = 12 };
-/* About what comes after the last term of a series, as a part of that, by how much smaller it is. */
-#if STAGES == 3
-#define LIKE_THE_LAST(smooth) (smooth)
-#elif STAGES == 4
-#define LIKE_THE_LAST(smooth) sqrt_of(smooth)
-#else
-#define LIKE_THE_LAST(smooth) sqrt_of(sqrt_of(smooth))
-#endif
 /* With kinks within, the error of a step falls about as this power tells. */
 #define OVER_KINKS (-1.0 / 3.0)
-/* Errors of kinks add up: as many steps as there are kinks share in what a run may have. */
-#define KINKS_WITHIN 3.0
-/* So much slower than a step a state may be for its end to be of order 2s. */
-#define FAST 3.0
+/*
+ * The next step is this part of the one whose estimated error would be just what it may be: estimates
+ * of smooth steps are of high powers of their lengths, and a step may find what the last did not.
+ */
+#define PART_OF(over) ((over) ? 0.9 : 0.82)
 /* An error may be small by chance: steps grow to no more than this, in what the one before asks for. */
 #define SUDDEN 1.5
 /* A refused step is tried again up to where a path bends, if that is before this part of it. */
@@ -256,60 +249,4 @@ static void MODEL(predict)(MODEL(batch) *b, real behind, real slope, mask known)
         for (long k = 0; k < m->n; ++k) /* a fixed step may be much longer than what is fast */
             rates[k] = chosen(known, rates[k], b->fixed > 0.0 ? zero : b->rate[k]);
     }
-}
-
-static inline real fourth_power(real a)
-{
-    const real b = chosen(a > 0.0, a * a, zero);
-    return b * b;
-}
-
-/* The one that is further from zero. */
-static inline real further(real a, real b)
-{
-    const mask first = size_of(a) > size_of(b);
-    return chosen(first, a, b);
-}
-
-/*
- * The errors of steps, in tolerances of each state's scale.
- *
- * The misfit is how far the polynomial of rates is from the rate at either end, or what comes next
- * after its last term, if that is more.  Seen through the equations of the step it is an error of
- * order s + 1.  Where all is smooth and slow the end is of order 2s: better by as much as the misfit
- * is smaller than what the rate changes by over the step.  A state that is much faster than the step
- * has no such gain: the equations tell, for they reduce its misfit.
- */
-static real MODEL(error)(const MODEL(batch) *b, real h)
-{
-    const MODEL(block) *m = &b->m;
-    const real gamma = h * filter;
-    real *const share = b->some_share, worst = zero;
-    for (long k = 0; k < m->n; ++k) {
-        real low = -b->rate[k], high = -b->end_rate[k], mean = zero, last = zero, most = 1e-300 + zero;
-        for (long j = 0; j < STAGES; ++j) {
-            const real rate = m->rates[j * m->n + k];
-            low += stage_start[j] * rate;
-            high += stage_end[j] * rate;
-            last += stage_last[j] * rate;
-            mean += stage_weight[j] * rate;
-        }
-        for (long j = 0; j < STAGES; ++j)
-            most = largest_of(size_of(m->rates[j * m->n + k] - mean), most);
-        const real smooth = least(size_of(last) / most, wide(1.0));
-        const real next = STAGES > 2 ? (real)(last * LIKE_THE_LAST(smooth)) : (real)zero;
-        const real misfit = further(further(low, high), next);
-        share[k] = least(size_of(misfit) / most, wide(1.0));
-        b->some_rate[k] = m->gap[k] = gamma * misfit;
-    }
-    MODEL(solve_real)(m, gamma, m->slope, m->real_factor, m->gap);
-    for (long k = 0; k < m->n; ++k) {
-        const real size = largest_of(m->largest[k], largest_of(size_of(m->x[k]), size_of(m->end[k])));
-        const real misfit = size_of(b->some_rate[k]), error = size_of(m->gap[k]);
-        const real fast = (misfit / (error + 1e-300) - 1.0) / (FAST * filter);
-        const real gain = STAGES > 1 ? least(largest_of(share[k], fourth_power(fast)), wide(1.0)) : (real)wide(1.0);
-        const real counts = chosen(m->over, wide(KINKS_WITHIN), gain);
-        worst = largest_of(counts * error / (b->tolerance * size + 1e-300), worst);
-    }
-    return worst;
 }
