@@ -750,6 +750,7 @@ static mask MODEL(choose)(long branches, const real *side, real *branch, mask wh
 
 /* How nodes of means are reached, and from rates to the basis in which stages are solved for. */
 #define NODE_REACH node_reach
+#define FINE_REACH fine_reach
 #define BASIS_STAGE basis_stage
 #define STAGE_BASIS stage_basis
 
@@ -1016,40 +1017,79 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
 }
 
 /*
- * What the last two polynomials of Legendre have of a function at nodes, in parts of its size: of an
- * even or odd one, every other has nothing.
+ * How many nodes the means over a step ask for, and a step solved with as many.  Behind newton.c.
  */
-static real MODEL(last_part)(const MODEL(block) *m, long k, const double *last, const double *other,
-                             long nodes)
+
+/* How far aside of a state its co-states are looked at, in parts; what of their noise is more than that. */
+#define ASIDE 1e-3
+#define MUCH_NOISE 100.0
+/* A part of what is not zero, but no less than its noise: terms are sums over nodes. */
+#define ABOVE_NOISE(part) ((part) > MUCH_NOISE * NOISE ? (part) : MUCH_NOISE * NOISE)
+
+/* What is asked of a function whose mean is taken: how many nodes that are, and their tables. */
+typedef struct {
+    long nodes;
+    const double *last, *other; /* what gives the last term of Legendre's, and that before */
+    double part;                /* what the last may be, in parts of the function's size */
+} MODEL(rule);
+
+static const MODEL(rule) MODEL(few) = {NODES, node_last[0], node_last[1], ABOVE_NOISE(COARSE)};
+static const MODEL(rule) MODEL(many) = {FINE, fine_last[0], fine_last[1], ABOVE_NOISE(TOO_COARSE)};
+
+/*
+ * The lanes where functions whose means are taken, at the nodes at hand, ask for more nodes: where the
+ * last two terms are not small, for of an even or odd function every other is zero. Noise may be.
+ */
+static mask MODEL(rough)(const MODEL(block) *m, const MODEL(rule) *rule, const real *noise)
 {
-    real sum = zero, sum_of_other = zero, most = NO_SIZE + zero;
-    for (long q = 0; q < nodes; ++q) {
-        const real value = m->node[q * m->means + k];
-        sum += last[q] * value;
-        sum_of_other += other[q] * value;
-        most = largest_of(size_of(value), most);
+    mask found = nowhere;
+    for (long k = 0; k < m->means; ++k) {
+        real last = zero, other = zero, size = NO_SIZE + zero;
+        for (long q = 0; q < rule->nodes; ++q) {
+            const real value = m->node[q * m->means + k];
+            last += rule->last[q] * value;
+            other += rule->other[q] * value;
+            size = largest_of(size_of(value), size);
+        }
+        const real left = largest_of(size_of(last), size_of(other));
+        const mask bad = left > rule->part * size;
+        found |= noise ? bad & (left > MUCH_NOISE * noise[k]) : bad;
     }
-    return largest_of(size_of(sum), size_of(sum_of_other)) / most;
+    return found;
+}
+
+/* The same, of whole steps and of the pieces of those that are split. */
+static mask MODEL(rough_parts)(const MODEL(block) *m, real h, const MODEL(rule) *rule, const real *noise)
+{
+    MODEL(integrate)(m, h, rule->nodes == FINE ? FINE_REACH : NODE_REACH, rule->nodes);
+    mask found = MODEL(rough)(m, rule, noise);
+    return found;
 }
 
 /* The lanes whose co-states ask for more nodes than NODES, for balances that are exact to round-off. */
 static mask MODEL(coarse)(const MODEL(block) *m, real h)
 {
-    mask found = nowhere, other = m->fine;
-    if (m->means && any(other)) /* else they are those that the last gaps have left */
-        MODEL(integrate)(m, h, NODE_REACH, NODES);
-    for (long k = 0; k < m->means; ++k)
-        found |= MODEL(last_part)(m, k, node_last[0], node_last[1], NODES) > COARSE;
-    return found;
+    mask other = m->fine; /* lanes whose last gaps have left other nodes than NODES of the whole */
+    if (m->means && any(other))
+        return MODEL(rough_parts)(m, h, &MODEL(few), NULL);
+    return MODEL(rough)(m, &MODEL(few), NULL);
 }
 
-/* The lanes whose co-states ask for more nodes than FINE: the step is too long. */
-static mask MODEL(too_coarse)(const MODEL(block) *m)
+/*
+ * The lanes whose co-states ask for more nodes than FINE: the step is too long. A difference that goes
+ * to zero, such as that of a length and a rest, is all noise at last: what rounding leaves of its
+ * terms, which its slope along the state itself tells.
+ */
+static mask MODEL(too_coarse)(const MODEL(block) *m, real h)
 {
-    mask found = nowhere; /* nodes are those that the last gaps have left */
+    real *const noise = m->gap; /* of Newton's method, which is done */
+    MODEL(integrands)(m->x, &m->p, noise);
+    for (long k = 0; k < m->n; ++k)
+        m->reached[k] = m->x[k] * (1.0 + ASIDE);
+    MODEL(integrands)(m->reached, &m->p, m->node);
     for (long k = 0; k < m->means; ++k)
-        found |= MODEL(last_part)(m, k, fine_last[0], fine_last[1], FINE) > TOO_COARSE;
-    return found & m->fine;
+        noise[k] = (NOISE / ASIDE) * size_of(m->node[k] - noise[k]);
+    return m->fine & MODEL(rough_parts)(m, h, &MODEL(many), noise);
 }
 
 /* The rates in some lanes, with means at as many nodes as they ask for; returns who has them. */
@@ -1064,7 +1104,7 @@ static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
         return found;
     m->fine |= more;
     const mask again = MODEL(iterate)(m, h, more);
-    return (found & none_of(more)) | (again & none_of(MODEL(too_coarse)(m)));
+    return (found & none_of(more)) | (again & none_of(MODEL(too_coarse)(m, h)));
 }
 
 /*
@@ -1093,7 +1133,7 @@ int MODEL(step)(double *x, const double *u, double h, const MODEL(parameters) *p
     long sizes[SIZES];
     const long size = MODEL(made)(m, p, sizes, (real *)space);
     real *const largest = (real *)space + size;
-    memset(space, 0, (size_t)size * sizeof *space);
+    memset(space, 0, (size_t)size * sizeof(real));
     MODEL(give)(&m->p, p, 0);
     for (long k = 0; k < m->n; ++k) {
         m->x[k] = x[k];

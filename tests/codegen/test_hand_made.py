@@ -1,5 +1,7 @@
 """The step holds for models that no spec can write yet: each closes its balances to round-off."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -11,6 +13,7 @@ from piezo_sym.expressions.tree import LaneSum, Sym
 from piezo_sym.run.simulate import simulate
 
 from .hand_made import HandMade, read
+from .test_step_alone import Alone
 from .tiers import tiers
 
 #: A gas under a piston on a spring: volume and entropy share one energy.
@@ -177,3 +180,23 @@ def test_very_long_steps_close_their_balances_or_are_halved(energy, tmp_path):
         ran += 1
         assert np.abs(run.energy_residual).max() <= 1e-11 * run.energy.max()
     assert ran > 30
+
+
+def test_a_force_that_goes_to_zero_is_no_reason_to_halve_steps(tmp_path):
+    """At rest at a length that is not zero all of it is what rounding leaves."""
+    module = replace(well("k*(q - 0.1)**2/2 + k*(q - 0.1)**4"), name="rest").module(tmp_path)
+    start = {"parameters": {"k": 10.0, "d": 2.0}, "initial": {"q": 0.5, "p": 0.0}}
+    for way in ({"step": 0.05}, {"step": 0.05, "order": 4}, {"rtol": 1e-6}):
+        run = simulate(module, duration=100.0, times=11, **way, **start)
+        assert run.halvings <= 10
+        assert run.accepted_steps <= 2000
+        assert abs(run.q.values[-1] - 0.1) <= 1e-6
+
+
+def test_floats_do_for_energies_that_are_not_quadratic(gas, tmp_path):
+    step, x = Alone(gas, tmp_path, "-DREAL=float"), np.array([0.02, 0.0, 0.01])
+    exact, wanted = Alone(gas, tmp_path), x.copy()
+    for _ in range(300):
+        assert step(x, np.array([20.0]), 1e-3)
+        assert exact(wanted, np.array([20.0]), 1e-3)
+    assert np.abs(x - wanted).max() <= 1e-4 * np.abs(wanted).max()

@@ -79,10 +79,10 @@ def capacitor(draft):
     return {"between": draft.pair("e"), "capacitance": form, **draft.state()}
 
 
-def inductance(draft, lanes=None):
+def inductance(draft, lanes=None, *, saturates=True):
     """Return an inductance; some saturate, and in a bank each lane by itself."""
     linear = draft.parameter("L", "H", lanes=lanes)
-    return f"{linear}/(1 + phi**2)" if draft.one_in(8) else linear
+    return f"{linear}/(1 + phi**2)" if saturates and draft.one_in(8) else linear
 
 
 def inductor(draft):
@@ -105,11 +105,12 @@ def hysteron(draft):
     body = draft.body()
     count = None if draft.one_in(4) else draft.pick((1, 2, 3, 4))
     bank = {} if count is None else {"count": count}
+    linear = draft.one_in(2)  # row program stays open for a kink of a current that saturates
     return {
         "between": draft.pair("e"),
         **bank,
-        "inductance": inductance(draft, count),
-        "voltage": law(draft, "i", body, linear=draft.one_in(2), lanes=count),
+        "inductance": inductance(draft, count, saturates=linear),
+        "voltage": law(draft, "i", body, linear=linear, lanes=count),
         "heats": body,
         **draft.state(),
     }

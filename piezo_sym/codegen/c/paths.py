@@ -15,7 +15,7 @@ from piezo_sym.codegen.program import Program, Row
 def path_table(program: Program, paths: Sequence[Path]) -> str:
     """Return the table of path functionals."""
     index, banks = {s.name: n for n, s in enumerate(program.states)}, [*program.counts]
-    lines = ["/* Path functionals: bank or -1, coordinate, whether one a lane, inner state. */"]
+    lines = ["/* Path functionals: bank or -1, coordinate, whether one per lane, inner state. */"]
     lines += [f"#define PATHS {len(paths)}", f"static const int {program.name}_path[PATHS][4] = {{"]
     for path in paths:
         n, bank = index[path.coordinate], banks.index(path.bank) if path.bank else -1

@@ -24,7 +24,7 @@ int MODEL(step)(double *x, const double *u, double h, const MODEL(parameters) *p
     long sizes[SIZES];
     const long size = MODEL(made)(m, p, sizes, (real *)space);
     real *const largest = (real *)space + size;
-    memset(space, 0, (size_t)size * sizeof *space);
+    memset(space, 0, (size_t)size * sizeof(real));
     MODEL(give)(&m->p, p, 0);
     for (long k = 0; k < m->n; ++k) {
         m->x[k] = x[k];

@@ -46,7 +46,7 @@ _PARTS = {"BENDS": "bends.c", "PATHS": "stop.c"}
 def step_alone(model: str, step: str) -> str:
     """Return what makes a model's step one for programs in C, to stand behind its own text."""
     needed = {word: file for word, file in _PARTS.items() if f"#define {word}" in step}
-    solver = texts("gauss.c", *needed.values(), "gaps.c", "newton.c")
+    solver = texts("gauss.c", *needed.values(), "gaps.c", "newton.c", "nodes.c")
     others = (rf"#if defined\({w}\).*?#endif /\* {w} \*/\n" for w in _PARTS if w not in needed)
     for left_out in (*_LEFT_OUT, *others):
         solver = re.sub(left_out, "", solver, flags=re.DOTALL)

@@ -191,7 +191,7 @@ class Batch:
         self._room = np.zeros(int(size(ctypes.byref(task))) + ALIGNED, dtype=np.uint8)
         place = self._room.ctypes.data
         self._batch = ctypes.c_void_p(place + -place % ALIGNED)
-        self._call("open", ctypes.byref(task))
+        self.call("open", ctypes.byref(task))
 
     def _take(self, stepping: Stepping) -> None:
         given = self._engine, stepping.stages, "one" if stepping.lossy else self._layout
@@ -220,19 +220,20 @@ class Batch:
 
     def survey(self, longest: float) -> None:
         """Find by rough steps, none longer than that [s], how large states become: `largest`."""
-        self._call("survey", DOUBLE(longest))
+        self.call("survey", DOUBLE(longest))
 
     def go(self, ticks: int) -> bool:
         """Take at most so many steps in each lane; return whether there is more to do."""
-        return bool(self._call("go", LONG(ticks)))
+        return bool(self.call("go", LONG(ticks)))
 
     def here(self) -> FloatArray:
         """Return where runs stand that are on their way, (lanes, n)."""
         found = np.empty((1, self.x.shape[1]))
-        self._call("here", at(found))
+        self.call("here", at(found))
         return found
 
-    def _call(self, word: str, *more: Any) -> Any:
+    def call(self, word: str, *more: Any) -> Any:
+        """Call one of the functions of C on the batch; raise what an input has raised."""
         found = self.function(word)(self._batch, *more)
         if self._raised:
             raise self._raised[0]

@@ -4,6 +4,10 @@
  * <model>_step.c and the tables of a number of stages.  Branches are kept.
  */
 
+#if defined(BENDS) || defined(PATHS)
+#error "no derivatives yet of steps with kinks of energies or with path functionals"
+#endif
+
 /* What a step is made of; arrays of numbers with slopes. */
 typedef struct {
     const MODEL(parameters) *p, *slopes; /* the slopes of parameters are a record like theirs */

@@ -182,6 +182,8 @@ class Derivatives:
         module = self._run.engine.module
         counts = {f"{b}_count": getattr(self._run.parameters, f"{b}_count") for b in module.BANKS}
         zeros = {record.name: 0.0 for record in module.PARAMETERS}
+        if unknown := sorted({*moved} - {*zeros}):
+            raise ValueError(f"no parameter is called {unknown[0]}")
         scaled = {name: TINY * np.asarray(value, dtype=float) for name, value in moved.items()}
         return self._run.engine.structure(SimpleNamespace(**{**zeros, **counts, **scaled}))
 

@@ -4,6 +4,7 @@
 
 /* How nodes of means are reached, and from rates to the basis in which stages are solved for. */
 #define NODE_REACH node_reach
+#define FINE_REACH fine_reach
 #define BASIS_STAGE basis_stage
 #define STAGE_BASIS stage_basis
 

@@ -6,6 +6,7 @@
 
 /* How nodes of means are reached, and from rates to the basis in which stages are solved for. */
 #define NODE_REACH node_lanes
+#define FINE_REACH fine_lanes
 #define BASIS_STAGE basis_stage_lanes
 #define STAGE_BASIS stage_basis_lanes
 

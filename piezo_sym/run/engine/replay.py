@@ -73,6 +73,9 @@ class Taped:
         scale: FloatArray | None = None,
     ) -> None:
         self.engine, self.parameters, self.stages = engine, parameters, stepping.stages
+        if stepping.lossy:
+            raise ValueError("a dissipative step is not taken again")
+        self._duration = inputs.duration
         stepping = stepping if stepping.fixed else replace(stepping, kinks="end")
         starts, none = np.atleast_2d(x), np.empty(0)
         self._batch = Batch(engine, [parameters], starts, inputs, none, stepping, "one")
@@ -80,7 +83,7 @@ class Taped:
             self._batch.survey(stepping.longest)
             scale = self._batch.largest[0]
         self._batch.largest[0] = scale
-        self.scale = np.array(scale)
+        self.scale = np.array(np.broadcast_to(scale, x.shape), dtype=float)
         branches = self._batch.sizes()[2]
         self._t, self._h = np.empty(ROOM), np.empty(ROOM)
         self._x = np.empty((ROOM, x.size))
@@ -118,10 +121,12 @@ class Taped:
         inputs = len(self.engine.module.INPUTS)
         rates, u = np.empty((self.stages, step.x.size)), np.empty((self.stages + 1, inputs))
         end = np.empty_like(step.x)
-        arrays = (step.x, step.branches, rates, u, end)
-        if not self._call("replay", DOUBLE(step.t), DOUBLE(step.h), *map(at, arrays)):
+        own = (np.ascontiguousarray(a, dtype=float) for a in (step.x, step.branches))
+        arrays = (*own, rates, u, end)
+        inside = 0 <= step.t < self._duration
+        if not inside or not self._call("replay", DOUBLE(step.t), DOUBLE(step.h), *map(at, arrays)):
             raise ValueError("the step has no rates")
         return Solved(rates, u, end)
 
     def _call(self, word: str, *given: Any) -> Any:
-        return self._batch.function(word)(self._batch.one()[0], *given)
+        return self._batch.call(word, *given)
