@@ -50,7 +50,6 @@ static size_t MODEL(places)(MODEL(batch) *b, const MODEL(task) *task, real *memo
     PLACE(part, m->booked);
     PLACE(some_rate, m->n);
     PLACE(some_share, m->n);
-    PLACE(some_new, m->n);
     PLACE(some_side, m->branches);
     PLACE(some_rows, m->booked);
     PLACE(some_margin, MODEL(limits));

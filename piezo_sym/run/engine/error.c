@@ -36,16 +36,6 @@
 #endif
 /* The equations reduce an error, and what they leave of it, by more than this: the state is fast. */
 #define REDUCED 2.5
-/* A fast state counts less, for it damps its errors. */
-#define DAMPED 0.2
-/*
- * A state that is faster than a step by so much keeps what a jump has left, and all but turns its
- * sign with each step of an odd number of stages: no error of this step, as long as it only turns.
- * New ones cancel as they turn; without that they add up.
- */
-#define RINGS 60.0
-#define TURNED (STAGES % 2 ? -1.0 : 1.0)
-#define RINGING (STAGES % 2 ? 0.05 : 0.3)
 /* Errors of kinks add up: as many steps as there are kinks share in what a run may have. */
 #define KINKS_WITHIN (STAGES > 4 ? 1.3 : 1.8)
 
@@ -58,7 +48,7 @@ static inline real further(real a, real b)
 
 /*
  * The misfits of a step times its length and the filter, in some_rate; in some_share, as parts of
- * what the rate changes by over the step; and in some_new, what part of it does not just turn.
+ * what the rate changes by over the step.
  */
 static void MODEL(misfits)(const MODEL(batch) *b, real gamma)
 {
@@ -76,9 +66,8 @@ static void MODEL(misfits)(const MODEL(batch) *b, real gamma)
             most = largest_of(size_of(m->rates[j * m->n + k] - mean), most);
         const real smooth = least(size_of(last) / most, wide(1.0));
         const real next = STAGES > 2 ? (real)(last * LIKE_THE_LAST(smooth)) : (real)zero;
-        const real misfit = further(further(low, high), next), size = size_of(misfit);
-        b->some_share[k] = least(size / most, wide(1.0));
-        b->some_new[k] = least(size_of(high - TURNED * low) / (size + 1e-300), wide(1.0));
+        const real misfit = further(further(low, high), next);
+        b->some_share[k] = least(size_of(misfit) / most, wide(1.0));
         b->some_rate[k] = gamma * misfit;
     }
 }
@@ -118,9 +107,7 @@ static real MODEL(error)(const MODEL(batch) *b, real h)
     for (long k = 0; k < m->n; ++k) {
         const real fast = b->some_rate[k], z = largest_of(fast, pull);
         const real left = least(SMOOTH(b->some_share[k]) + PULL(z), wide(1.0));
-        const real damped = chosen(fast > 0.0, wide(DAMPED), wide(1.0));
-        const real part = chosen(fast > RINGS, RINGING * b->some_new[k], damped);
-        const real counts = chosen(m->over, wide(KINKS_WITHIN), part * left);
+        const real counts = chosen(m->over, wide(KINKS_WITHIN), left);
         worst = largest_of(counts * once[k] * per_tolerance, worst);
     }
     return worst;

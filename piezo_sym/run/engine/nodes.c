@@ -34,8 +34,10 @@ static mask MODEL(rough)(const MODEL(block) *m, const MODEL(rule) *rule, const r
             size = largest_of(size_of(value), size);
         }
         const real left = largest_of(size_of(last), size_of(other));
-        const mask bad = left > rule->part * size;
-        found |= noise ? bad & (left > MUCH_NOISE * noise[k]) : bad;
+        mask bad = left > rule->part * size;
+        if (noise)
+            bad &= left > MUCH_NOISE * noise[k];
+        found |= bad;
     }
     return found;
 }

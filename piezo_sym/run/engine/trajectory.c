@@ -79,7 +79,7 @@ typedef struct {
     double beyond; /* so much of a step may lie beyond the switch at its end: no stage does */
     real *rate, *side, *sums, *lost, *known;       /* at the begin of a step; of the step before */
     real *end_rate, *end_side, *end_branch, *part; /* at its end; what it adds to sums */
-    real *some_rate, *some_share, *some_new, *some_side, *some_rows, *some_margin, *some_inputs;
+    real *some_rate, *some_share, *some_side, *some_rows, *some_margin, *some_inputs;
     long sizes[SIZES];
 } MODEL(batch);
 
