@@ -22,6 +22,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import final
 
+from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.iphs import IPHS
 from piezo_sym.translation.c_form import Form
 from piezo_sym.translation.c_function import Function
@@ -36,6 +37,8 @@ from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import Key, Proved
 from piezo_sym.translation.signs import compare, reading
 
+_LIBRARY = (*(record.in_c for record in RECORDS.values() if record.smooth), "pow")
+#: What the words of a step stand for, for numbers of one run.
 MACROS = """\
 #if !defined(REAL_WIDTH) /* numbers of one run; run/engine has vectors of many */
 #define REAL_WIDTH 1
@@ -47,38 +50,12 @@ typedef REAL real;
 #define zero 0.0
 #define wide(value) (value)
 #define chosen(condition, then, other) ((condition) ? (then) : (other))
-#define exp_of exp
-#define expm1_of expm1
-#define log_of log
-#define sqrt_of sqrt
-#define sin_of sin
-#define cos_of cos
-#define tanh_of tanh
-#define atan_of atan
-#define sinh_of sinh
-#define cosh_of cosh
-#define erf_of erf
-#define pow_of pow
-#define is_above(a, b) ((a) > (b))
+{functions}#define is_above(a, b) ((a) > (b))
 #define is_at_least(a, b) ((a) >= (b))
 #define least(a, b) ((a) < (b) || (a) != (a) ? (a) : (b))
 #define OF(value, lane) (value)
 #endif
-"""
-_LIBRARY = (
-    "exp",
-    "expm1",
-    "log",
-    "sqrt",
-    "sin",
-    "cos",
-    "tanh",
-    "atan",
-    "sinh",
-    "cosh",
-    "erf",
-    "pow",
-)
+""".replace("{functions}", "".join(f"#define {name}_of {name}\n" for name in _LIBRARY))
 #: A choice is made by a branch alone: what stands for ``?`` is no word of C.
 _SPELLED = {"real": "double", "zero": "0.0", "wide": "", "least": "min", "?": "no choice"}
 _SPELLED |= {f"{name}_of": name for name in (*_LIBRARY, *(f"power_{n}" for n in range(2, 9)))}

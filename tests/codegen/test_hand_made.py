@@ -169,7 +169,7 @@ def test_very_long_steps_close_their_balances_or_are_halved(energy, tmp_path):
     module = well(energy).module(tmp_path)
     draw = np.random.default_rng(1)
     ran = 0
-    for _ in range(40):
+    for _ in range(15):
         h, k, p = 10.0 ** draw.uniform((-1, -1, -1), (1.5, 5, 3))
         order = int(draw.choice([2, 4, 6]))
         how = {"step": h, "order": order, "parameters": {"k": k}, "initial": {"p": p}}
@@ -179,7 +179,7 @@ def test_very_long_steps_close_their_balances_or_are_halved(energy, tmp_path):
             continue
         ran += 1
         assert np.abs(run.energy_residual).max() <= 1e-11 * run.energy.max()
-    assert ran > 30
+    assert ran > 10
 
 
 def test_a_force_that_goes_to_zero_is_no_reason_to_halve_steps(tmp_path):

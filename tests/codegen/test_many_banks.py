@@ -1,12 +1,13 @@
 """Rows of many banks stand where they should: the module against the banks written out."""
 
 import inspect
+from pathlib import Path
 
 import numpy as np
 import pytest
 import sympy as sp
 
-from piezo_sym import derive
+from piezo_sym import derive, load, simulate, verify
 from piezo_sym.modules import module_of
 from piezo_sym.spec.load import parse
 
@@ -66,3 +67,15 @@ def test_rows_of_many_banks(compared):
     ):
         numbers = np.array(sp.Matrix(wanted).xreplace(at).evalf(), dtype=float)
         assert np.allclose(np.ravel(found), np.ravel(numbers), rtol=1e-12, atol=1e-14)
+
+
+def test_banks_of_saturating_coils_run():
+    """Their currents are given to stages as means, each lane its own; ends of banks have names."""
+    model = load(Path(__file__).with_name("saturating_banks.toml"))
+    assert verify(derive(model)).proved
+    run = simulate(model, duration=0.5, rtol=1e-8, times=21)
+    assert run.engine.startswith("compiled")
+    assert np.ptp(run.phi_third.values) > 0.01
+    assert np.abs(run.energy_residual).max() <= 1e-12 * run.energy.max()
+    fixed = simulate(model, duration=0.5, step=1e-3, order=4, times=21)
+    assert np.allclose(fixed.phi_first, run.phi_first, rtol=0, atol=1e-6)

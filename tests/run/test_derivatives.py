@@ -16,8 +16,8 @@ from tests.networks.test_specs import SPECS
 
 DRIVE = {"V_in": sine(100, 100)}
 OSCILLATOR = next(path for path in SPECS if path.stem == "a2_oscillator")
-#: With jumps, banks, every smooth function.
-SOME = ("dry_friction", "smooth_functions", "saturating_banks")
+#: With jumps, and every smooth function.
+SOME = ("dry_friction", "smooth_functions")
 SOME = [path for path in SPECS if path.stem in SOME]
 
 
