@@ -111,7 +111,8 @@ def test_balances_close_over_contacts(bounce, way):
     assert np.all(np.diff(run.produced_damper) >= 0)
 
 
-@pytest.mark.parametrize("way", tiers(FIXED, 1), ids=str)
+@pytest.mark.long
+@pytest.mark.parametrize("way", FIXED, ids=str)
 def test_they_would_not_without_the_split(way, tmp_path):
     module = Plain(**{**vars(BOUNCE), "name": "plain"}).module(tmp_path)
     assert ran(module, **way)[2] > 1e-5

@@ -175,7 +175,7 @@ def batch(module, count):
 
 
 @pytest.mark.parametrize("count", tiers([8, 40], 0))
-@pytest.mark.parametrize("how", ["rtol", "step"])
+@pytest.mark.parametrize("how", tiers(["rtol", "step"], 0))
 def test_runs_beside_others_have_the_numbers_that_they_have_alone(made, count, how):
     """In vectors of runs, and, where banks are large, of lanes."""
     given = batch(made["maxwell"], count)
@@ -219,6 +219,7 @@ def test_stops_that_are_nearly_rigid_need_few_iterations(made):
     assert run.heat_stop.values[-1] > 0.1
 
 
+@pytest.mark.long
 def test_a_dissipative_start_takes_stops_too(made):
     """With efforts of a step's end: a stop that just yields is as one that just does not."""
 

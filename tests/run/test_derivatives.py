@@ -41,6 +41,7 @@ def test_steps_taken_again_are_the_same_to_the_bit(way):
     assert all(np.array_equal(run.replay(step).end, end) for step, end in backwards)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("spec", SOME, ids=lambda path: path.stem)
 def test_steps_of_other_networks_can_be_taken_again(spec):
     run, steps = taped(spec, 0.01, 1e-6)
