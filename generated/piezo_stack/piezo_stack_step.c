@@ -446,14 +446,16 @@ static const double basis_stage[1][1] = {
  * Behind real.h, a generated <model>_step.c and the tables of a number of stages.  With rates K_j
  * the state goes along X(tau) = x + h sum_j K_j int_0^tau l_j; stage i has the co-states' means
  * int_0^1 (l_i/b_i) dU/dx(X) dtau, taken at NODES nodes of Gauss's rule, or at FINE of them where the
- * co-states ask for more.  A root counts only if all is finite, each stage lies in the domain and no
- * process takes entropy.
+ * co-states ask for more, and piece by piece where energies have kinks.  A root counts only if it solves
+ * the equations, these nodes do, all is finite, each stage lies in the domain and no process takes entropy.
  */
 
 #include <stddef.h>
 
-/* What rounding leaves of a change, in parts of a state's size, and how much of it may be left where
- * rates are made of much larger numbers; no size is less than the third. */
+/*
+ * What rounding leaves of a change, in parts of a state's size; how much of that may be left where
+ * rates are made of much larger numbers; and the least size.
+ */
 #define NOISE (sizeof(real) < sizeof(double) ? 1e-7 : 1e-16)
 #define MOST_NOISE (sizeof(real) < sizeof(double) ? 1e5 : 1e4)
 #define NO_SIZE (sizeof(real) < sizeof(double) ? 1e-30 : 1e-300)

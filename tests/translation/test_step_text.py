@@ -78,6 +78,14 @@ NOT_READ = {
     ),
     "a choice by the law's own comparison": ("is_above(branch_2[j], 0.0)", "is_above(i_h, i_0[j])"),
     "a branch as a number": (RIGHT, RIGHT.replace("rho[j]", "branch_1[j]*rho[j]")),
+    "a word for a comparison that means another": (
+        "#define is_above(a, b) ((a) > (b))",
+        "#define is_above(a, b) ((b) > (a))",
+    ),
+    "a comparison that is true at zero": (
+        "is_above(branch_1[j], 0.0)",
+        "is_at_least(branch_1[j], 0.0)",
+    ),
     "a branch at one": ("is_above(branch_2[j], 0.0)", "is_above(branch_2[j], 1.0)"),
     "another choice": (T, "const real T = q > 0.0 ? T_0 + T_minus_T_0 : T_0 + T_minus_T_0;"),
     "a margin that is not written": ("m[0] = T_minus_T_0;", ""),

@@ -1,7 +1,8 @@
 /*
  * Numbers with a slope along a direction: a step's text, computed with them, gives its own derivatives,
  * exact to round-off.  They are complex numbers whose imaginary part is the slope times a factor so
- * small that its square is nothing beside 1.  As a vector of two lanes: the value, and the slope.
+ * small that its square is nothing beside 1: for OF, two lanes, the value and the slope.  Where a root
+ * or a power has no slope, at zero, there is none along any direction.
  */
 #include <math.h>
 #include <stddef.h>
