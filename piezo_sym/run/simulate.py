@@ -71,11 +71,12 @@ def simulate(
     a jump, or go over kinks where many lanes have some and rtol is 1e-6 or more. Errors of steps
     add up where nothing damps them: what oscillates for hundreds of periods is off in phase by more
     than rtol; and what is much faster than the steps may keep, after a jump, some tens of rtol. A
-    sample is the end of a step of its own: of two that lie close together, the later one's heat or
-    entropy produced may be less by what the tolerance leaves open. With `step` the error falls with
-    that power of the step that `order` says, where laws and inputs are smooth; steps go over kinks;
-    and what is much faster than a step rings from one to the next after a jump, see
-    `dissipative_start`.
+    sample is the end of a step of its own, which the run does not go by: other `times` change no
+    number at those that both have, but where that step, from where the run's begins, would show
+    less heat or entropy produced than the sample before, and is taken from there. With `step` the
+    error falls with that power of the step that `order` says, where laws and inputs are smooth;
+    steps go over kinks; and what is much faster than a step rings from one to the next after a
+    jump, see `dissipative_start`.
 
     SciPy's methods hold the error of each step below rtol*|x| + atol. atol is rtol*1e-3 times the
     scale of the state, which is the largest magnitude that the state (for a bank: any of its

@@ -73,6 +73,23 @@ def test_entropy_is_what_was_made_and_what_came_in(how):
     assert np.abs(found.entropy_exchanged_ambient.values).max() > 1e-3
 
 
+@pytest.mark.parametrize("times", [20_001, 200_001])
+@pytest.mark.parametrize("rtol", [1e-3, 1e-5])
+def test_production_never_falls_between_close_samples(rtol, times):
+    """Samples' own errors are larger than what is produced between two that are so close."""
+    options = {"inputs": {"V_in": sine(100, 100)}, "duration": 0.1, "rtol": rtol}
+    found = simulate("piezo_stack", times=times, **options)
+    check_production(found)
+    check_energy(found)
+    scale = turnover(found) + np.abs(found.entropy.values).max()
+    assert np.abs(found.entropy_residual.values).max() <= 1e-13 * scale
+    few = simulate("piezo_stack", times=11, **options)
+    for name in ("q", "p", "Q_C", "phi", "S"):
+        every = found[name].values[:: (times - 1) // 10]
+        assert np.abs(every - few[name].values).max() <= 10 * rtol * np.abs(every).max()
+        assert np.array_equal(every[-1], few[name].values[-1])  # runs do not go by samples
+
+
 def test_scipys_entropy_balance_closes_to_its_error():
     inputs = {"V_in": sine(100, 100)}
     loose, tight = (

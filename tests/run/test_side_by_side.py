@@ -24,12 +24,12 @@ SPECS = sorted((Path(__file__).parents[1] / "networks" / "specs").glob("*.toml")
 class Members:
     """Members of one model that differ in one parameter, more than the lanes of any vector."""
 
-    def __init__(self, model, size=11, duration=1e-3, inputs=None):
+    def __init__(self, model, size=11, duration=1e-3, inputs=None, times=5):
         self.module = module_of(model)
         self.engine = engine_of(self.module)
         fields = self.module.PARAMETERS
         self.inputs = read_inputs(self.module, inputs, duration)
-        self.times = np.linspace(0, duration, 5)
+        self.times = np.linspace(0, duration, times)
         factors = np.linspace(0.9, 1.1, size)
         name = next(
             (f.name for f in fields if f.name in {"L", "L_1", "m", "M", "k", "c", "C"}), None
@@ -74,6 +74,14 @@ def test_both_balances_of_every_member_close():
         entropy = module.entropy(states, system.parameters)
         assert np.allclose(entropy - entropy[0], sums[:, 6:].sum(axis=1), rtol=0, atol=1e-15)
         assert np.all(np.diff(sums[:, 6:9], axis=0) >= 0)
+
+
+def test_production_of_members_never_falls_between_close_samples():
+    members = Members("piezo_stack", 9, 0.02, {"V_in": sine(100, 100)}, times=10_001)
+    alone, together = (members.run(together=on, rtol=1e-3) for on in (False, True))
+    assert np.array_equal(alone.states, together.states)
+    assert np.array_equal(alone.sums, together.sums)
+    assert np.all(np.diff(together.sums[:, :, 3:9], axis=1) >= 0)
 
 
 def test_a_member_that_stops_leaves_the_others_alone():

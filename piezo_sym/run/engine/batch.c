@@ -44,6 +44,10 @@ static size_t MODEL(places)(MODEL(batch) *b, const MODEL(task) *task, real *memo
     PLACE(sums, m->booked);
     PLACE(lost, m->booked);
     PLACE(known, STAGES * m->n);
+    PLACE(kept, m->n);
+    PLACE(kept_branch, STAGES * m->branches);
+    PLACE(kept_sums, m->booked);
+    PLACE(kept_lost, m->booked);
     PLACE(end_rate, m->n);
     PLACE(end_side, m->branches);
     PLACE(end_branch, m->branches);
@@ -116,12 +120,12 @@ static void MODEL(load)(MODEL(batch) *b, int lane, MODEL(run) *run)
     b->lane[lane] = (MODEL(lane)){.run = run, .segment = run->segments, .t = run->t, .phase = BEGIN};
     b->lane[lane].h = b->fixed > 0.0 ? b->fixed : b->first;
     b->lane[lane].steady = HUGE_VAL;
+    b->lane[lane].kept = -HUGE_VAL;
     b->lane[lane].which = -1;
     b->lane[lane].since = run->t;
     if (b->ways)
         SET(b->m.over, lane, 0);
-    while (run->sample < b->samples && b->times[run->sample] <= run->t)
-        MODEL(sample)(b, lane, m->x, NULL);
+    MODEL(sample_here)(b, lane);
 }
 
 /* Middles of steps over h at which f points to their ends, by Newton's method; returns who has one. */

@@ -1,6 +1,6 @@
 /*
  * What becomes of the step of a lane: it is refused, accepted, sampled, cut at a switch, or booked, and
- * the lane goes on.  Behind replay.c.
+ * the lane goes on.  Behind samples.c.
  */
 
 /* A run's end: it came through, or no step stays. */
@@ -44,35 +44,11 @@ static void MODEL(refuse_fixed)(MODEL(batch) *b, int lane)
         MODEL(refuse)(b, lane, 0.5 * l->whole);
 }
 
-/* Whether samples of a lane lie within its accepted step. */
-static int MODEL(samples_left)(const MODEL(batch) *b, const MODEL(lane) *l)
-{
-    const double end = l->last && l->step == l->whole ? MODEL(until)(b, l) : l->t + l->step;
-    return b->fixed == 0.0 && l->run->sample < b->samples && b->times[l->run->sample] < end;
-}
-
 /* A step is accepted: samples within it come first.  Returns whether it is to be booked. */
 static int MODEL(accept)(MODEL(batch) *b, int lane)
 {
-    MODEL(lane) *l = b->lane + lane;
-    l->step = l->length;
-    if (!MODEL(samples_left)(b, l))
-        return 1;
-    l->phase = SAMPLE;
-    return 0;
-}
-
-/* Write a row of samples: the state, and sums with what a step adds to them. */
-static void MODEL(sample)(MODEL(batch) *b, int lane, const real *x, const real *more)
-{
-    const long n = b->m.n, booked = b->m.booked;
-    MODEL(run) *run = b->lane[lane].run;
-    double *const states = run->states + run->sample * n, *const sums = run->sums + run->sample * booked;
-    for (long k = 0; k < n; ++k)
-        states[k] = LANE(x, k, lane);
-    for (long k = 0; k < booked; ++k)
-        sums[k] = LANE(b->sums, k, lane) + (more ? LANE(more, k, lane) - LANE(b->lost, k, lane) : 0.0);
-    ++run->sample;
+    b->lane[lane].step = b->lane[lane].length;
+    return MODEL(all_sampled)(b, lane);
 }
 
 /*
@@ -105,11 +81,8 @@ static int MODEL(on)(MODEL(batch) *b, int lane)
     MODEL(lane) *l = b->lane + lane;
     MODEL(run) *run = l->run;
     const int last = l->last && l->step == l->whole;
-    double until = MODEL(until)(b, l);
-    if (b->fixed > 0.0 && run->sample < b->samples && b->times[run->sample] < until)
-        until = b->times[run->sample];
     const double before = l->t;
-    l->t = last ? until : l->t + l->step;
+    l->t = MODEL(step_end)(b, l);
     run->t = l->t;
     ++run->steps;
     run->iterations = (long)LANE(&b->m.iterations, 0, lane);
@@ -134,8 +107,7 @@ static int MODEL(on)(MODEL(batch) *b, int lane)
     l->behind = 1;
     if (l->which >= 0)
         l->known = 0.0, l->steady = HUGE_VAL;
-    while (run->sample < b->samples && b->times[run->sample] <= l->t)
-        MODEL(sample)(b, lane, b->m.x, NULL);
+    MODEL(sample_here)(b, lane);
     if (l->t >= b->stop)
         MODEL(leave)(b, lane, 0);
     else if (l->refused > MOST_REFUSED)

@@ -9,7 +9,7 @@ from pathlib import Path
 #: Collocation steps of runs in lanes, behind a model's own and the tables of their stages.
 COLLOCATION = (
     *("newton.c", "nodes.c", "trajectory.c", "error.c", "crossings.c", "replay.c"),
-    *("outcome.c", "ticks.c", "batch.c", "tick.c"),
+    *("samples.c", "outcome.c", "ticks.c", "batch.c", "tick.c"),
 )
 
 

@@ -6,6 +6,7 @@
 typedef struct {
     real h, behind, slope;
     mask busy, sampling, steps, known; /* lanes with a step; for samples; others; with a prediction */
+    mask resumed;                      /* whose step begins at the last sample */
     mask found, good;                  /* whose step has rates; and lies in the domain */
     mask search, switched;             /* where a switch has to be located; and a step may be cut */
     mask booked, turns, ends;          /* whose step counts; whose branches turn; who steps to kinks */
@@ -24,11 +25,12 @@ static MODEL(tick) MODEL(planned)(MODEL(batch) *b)
             continue;
         MODEL(plan)(b, l, lane);
         SET(t.busy, lane, 1);
-        SET(t.sampling, lane, l->phase == SAMPLE);
+        SET(t.sampling, lane, l->phase == SAMPLE || l->phase == RESUME);
+        SET(t.resumed, lane, l->phase == RESUME);
         SET(t.known, lane, l->known > 0.0);
-        l->ticks += l->phase != SAMPLE;
+        l->ticks += !IN(t.sampling, lane);
         LANE(&t.h, 0, lane) = l->length;
-        LANE(&t.behind, 0, lane) = l->behind;
+        LANE(&t.behind, 0, lane) = l->behind + (MODEL(begin)(l) - l->t) / (l->known > 0.0 ? l->known : 1.0);
         l->predicted = l->known > 0.0;
         LANE(&t.slope, 0, lane) = l->known > 0.0 ? l->length / l->known : 0.0;
     }
@@ -40,26 +42,29 @@ static MODEL(tick) MODEL(planned)(MODEL(batch) *b)
 static void MODEL(solved)(MODEL(batch) *b, MODEL(tick) *t)
 {
     MODEL(block) *m = &b->m;
+    const mask over = m->over;
+    if (any(t->resumed))
+        MODEL(begin_at_samples)(b, t->resumed);
     MODEL(predict)(b, t->behind, t->slope, t->known);
     t->found = MODEL(solve)(m, t->h, t->busy);
     t->good = t->found & MODEL(accepted)(m);
     MODEL(reach)(m, t->h, stage_weight, m->reached);
     MODEL(adds)(b, t->h, b->some_rows);
+    if (any(t->resumed))
+        MODEL(begin_at_runs)(b, t->resumed, over);
 }
 
 /* Write samples; a run whose step has no more of them books it. */
 static void MODEL(sampled)(MODEL(batch) *b, MODEL(tick) *t)
 {
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {
-        MODEL(lane) *l = b->lane + lane;
         if (!IN(t->sampling, lane))
             continue;
-        if (!IN(t->good, lane)) {
-            MODEL(refuse)(b, lane, 0.25 * l->step);
-            continue;
-        }
-        MODEL(sample)(b, lane, b->m.reached, b->some_rows);
-        SET(t->booked, lane, !MODEL(samples_left)(b, l));
+        const int good = IN(t->good, lane) != 0;
+        if (!good && b->lane[lane].phase == SAMPLE)
+            MODEL(refuse)(b, lane, 0.25 * b->lane[lane].step);
+        else if (MODEL(take_sample)(b, lane, good))
+            SET(t->booked, lane, MODEL(all_sampled)(b, lane));
     }
 }
 

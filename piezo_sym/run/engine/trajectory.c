@@ -3,8 +3,7 @@
  *
  * A step keeps the branches that hold where it begins; if a switching function changes its sign on
  * the way, the step is taken again to end there, and the next begins on the other branch.  Lanes of
- * many switches may step over them instead: then each stage chooses its branches.  A sample is the
- * end of a step of its own, from where the run's step begins, so that its balances close, too.
+ * many switches may step over them instead: then each stage chooses its branches.
  *
  * In a tick each lane takes one step: what it is for differs from lane to lane, how it is solved
  * does not.
@@ -39,8 +38,8 @@ typedef struct {
     long sample, steps, rejected, switched, iterations, failed;
 } MODEL(run);
 
-/* What a lane's step is for: the next of its run, the same up to a switch, or a sample in it. */
-enum { IDLE, BEGIN, STEP, CUT, SAMPLE };
+/* What a lane's step is for: the next of its run, the same up to a switch, or samples; see samples.c. */
+enum { IDLE, BEGIN, STEP, CUT, SAMPLE, RESUME };
 
 /*
  * Where a lane is.  `known` is the length of the step whose rates are known: it begins at t, or lies
@@ -52,6 +51,7 @@ typedef struct {
     double t, h;
     double length, whole, step, part; /* at hand, before cuts, accepted; part of it for a cut */
     double known, longer, after_switch;
+    double kept;   /* when the last sample was, or -HUGE_VAL */
     double steady; /* the step that the errors of the step before ask for */
     int phase, behind, predicted, fresh, last, cuts, refused, halved;
     long which; /* the switch at the end of the step; -1 if none */
@@ -78,6 +78,8 @@ typedef struct {
     double stop, tolerance, first, longest, fixed;
     double beyond; /* so much of a step may lie beyond the switch at its end: no stage does */
     real *rate, *side, *sums, *lost, *known;       /* at the begin of a step; of the step before */
+    real *kept, *kept_sums, *kept_lost; /* at the last sample */
+    real *kept_branch;                  /* of the run, while a step begins there */
     real *end_rate, *end_side, *end_branch, *part; /* at its end; what it adds to sums */
     real *some_rate, *some_share, *some_side, *some_rows, *some_margin, *some_inputs;
     long sizes[SIZES];
@@ -186,6 +188,38 @@ static double MODEL(until)(const MODEL(batch) *b, const MODEL(lane) *l)
     return fmin(l->segment->stop, b->stop);
 }
 
+/* Where the accepted step of a lane ends. */
+static double MODEL(step_end)(const MODEL(batch) *b, const MODEL(lane) *l)
+{
+    double until = MODEL(until)(b, l);
+    if (!(l->last && l->step == l->whole))
+        return l->t + l->step;
+    if (b->fixed > 0.0 && l->run->sample < b->samples && b->times[l->run->sample] < until)
+        until = b->times[l->run->sample];
+    return until;
+}
+
+/* Whether samples of a lane lie within its accepted step. */
+static int MODEL(samples_left)(const MODEL(batch) *b, const MODEL(lane) *l)
+{
+    return b->fixed == 0.0 && l->run->sample < b->samples
+        && b->times[l->run->sample] < MODEL(step_end)(b, l);
+}
+
+/*
+ * Where the step for a sample begins, and where it ends: one that begins at a sample may go on to the end
+ * of the run's step.
+ */
+static double MODEL(begin)(const MODEL(lane) *l)
+{
+    return l->phase == RESUME ? l->kept : l->t;
+}
+
+static double MODEL(target)(const MODEL(batch) *b, const MODEL(lane) *l)
+{
+    return MODEL(samples_left)(b, l) ? b->times[l->run->sample] : MODEL(step_end)(b, l);
+}
+
 /* What a lane's next step is: its length, and the inputs at its stages. */
 static void MODEL(plan)(const MODEL(batch) *b, MODEL(lane) *l, int lane)
 {
@@ -208,9 +242,9 @@ static void MODEL(plan)(const MODEL(batch) *b, MODEL(lane) *l, int lane)
     } else if (l->phase == CUT)
         l->length = l->part * l->known;
     else
-        l->length = b->times[l->run->sample] - l->t;
+        l->length = MODEL(target)(b, l) - MODEL(begin)(l);
     for (long i = 0; i < STAGES; ++i)
-        MODEL(inputs_at)(l->segment, b->m.inputs, l->t + stage_at[i] * l->length,
+        MODEL(inputs_at)(l->segment, b->m.inputs, MODEL(begin)(l) + stage_at[i] * l->length,
                          b->m.u + i * b->m.inputs, lane);
 }
 
