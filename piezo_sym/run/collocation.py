@@ -105,7 +105,7 @@ def stepping(system: System, rtol: float, stages: int | None) -> Stepping:
         what = f"a run of {inputs.duration:g} s would take {step}"
         remedy = "a shorter run, or slower inputs"
         raise RunError(what, f"model '{system.module.NAME}'", remedy=remedy)
-    best, caution = next((number, part) for least, number, part in CHOICE if rtol >= least)
+    best, caution = choice(rtol)
     return Stepping(
         stages=stages or best,
         tolerance=caution * rtol,
@@ -113,6 +113,11 @@ def stepping(system: System, rtol: float, stages: int | None) -> Stepping:
         longest=min(inputs.longest_step, LONGEST * inputs.duration),
         kinks="either" if rtol >= LEAST_OVER else "end",
     )
+
+
+def choice(rtol: float) -> tuple[int, float]:
+    """Return the stages of a run's steps, and what part of rtol a step's estimated error may be."""
+    return next((stages, part) for least, stages, part in CHOICE if rtol >= least)
 
 
 def layout_of(x: FloatArray, *, side_by_side: bool) -> Layout:

@@ -11,7 +11,7 @@ import numpy as np
 
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.collocation import with_tolerance
+from piezo_sym.run.collocation import choice, with_tolerance
 from piezo_sym.run.discrete import FixedStep, fixed
 from piezo_sym.run.engine import Engine
 from piezo_sym.run.engine.collocation import is_lossy
@@ -69,7 +69,7 @@ def compiled_run(
     accuracy: dict[str, object]
     try:
         if step is None:
-            accuracy = {"rtol": rtol}
+            accuracy = {"rtol": rtol, "order": 2 * choice(rtol)[0]}
             runs = with_tolerance([system], engine, x[None], samples, rtol, watch)
         else:
             shortest = shortest_step(system, samples, step.length)

@@ -150,7 +150,8 @@ def read_times(given: object, duration: float) -> FloatArray:
 
     Raises
     ------
-    UsageError : neither None, a number of samples >= 2, nor increasing times in [0, duration].
+    UsageError : neither None, a number of samples >= 2, nor increasing times in [0, duration];
+        a last one that is beyond by round-off alone is the end.
     """
     where = "simulate.times"
     if given is None:
@@ -158,10 +159,10 @@ def read_times(given: object, duration: float) -> FloatArray:
     if is_number(given) or isinstance(given, bool):
         return np.linspace(0.0, duration, whole(given, where, 2))
     times = increasing(vector(given, where), where)
-    if not times.size or times[0] < 0 or times[-1] > duration:
+    if not times.size or times[0] < 0 or times[-1] > duration * (1 + CLOSE):
         span = f"times span {times[0]:g} s to {times[-1]:g} s" if times.size else "no times"
         raise UsageError(span, where, f"times within 0 s to {duration:g} s")
-    return times
+    return np.minimum(times, duration)
 
 
 def read_every(every: object, times: object, step: float | None, duration: float) -> FloatArray:

@@ -136,8 +136,8 @@ def simulate(
         `entropy_residual` = S - S(0) - entropy produced - entropy exchanged: round-off with the
         discrete gradient, the error of solver and quadrature with SciPy's. At a jump, inputs
         have their value after it, but at the end of the run their value before it. Attributes:
-        units, model, parameters; `method`, `rtol`, or `step`, `order` and `shortest_step`, `engine`
-        (its compiler, or why there is none), the work (`accepted_steps`, `newton_iterations`,
+        units, model, parameters; `method`, `rtol`, or `step` and `shortest_step`, `order` of the
+        collocation, `engine` (its compiler, or why there is none), the work (`accepted_steps`, `newton_iterations`,
         `halvings`: steps refused; for SciPy `rhs_evaluations`).
 
     Raises

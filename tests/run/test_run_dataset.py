@@ -68,6 +68,19 @@ def test_values_are_the_modules_at_the_samples(ds, piezo):
 LEDGER = ("supplied_", "heat_", "produced_", "entropy_exchanged_", "energy_res", "entropy_res")
 
 
+@pytest.mark.parametrize(("rtol", "order"), [(1e-4, 8), (1e-9, 10)])
+def test_a_run_says_the_order_of_its_steps(rtol, order):
+    found = simulate_shipped("piezo_stack", duration=1e-3, times=2, rtol=rtol)
+    assert (found.attrs["method"], found.attrs["order"]) == ("discrete_gradient", order)
+
+
+def test_a_last_time_may_lie_beyond_the_end_by_round_off():
+    times = np.arange(0, 0.4, 0.1)
+    assert times[-1] > 0.3
+    found = simulate_shipped("piezo_stack", duration=0.3, times=times)
+    assert found.time.values[-1] == 0.3
+
+
 def test_attributes(ds):
     assert ds.attrs["model"] == "piezo_stack"
     assert ds.attrs["spec_sha256"] == "0" * 64
