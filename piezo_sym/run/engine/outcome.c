@@ -93,12 +93,13 @@ static int MODEL(on)(MODEL(batch) *b, int lane)
         l->halved = l->h < b->fixed ? l->halved : 0;
         l->h = fmin(b->fixed, 2.0 * l->h);
     } else {
-        if (l->fresh) /* switches differ: the shorter steps count */
-            l->after_switch = l->after_switch > 0.0 ? fmin(l->step, 1.5 * l->after_switch) : l->step;
+        if (l->fresh) /* what its error allowed; switches differ: the shorter steps count */
+            l->after_switch = fmin(l->whole * fmin(l->longer, most),
+                                   l->after_switch > 0.0 ? 1.5 * l->after_switch : HUGE_VAL);
         l->fresh = l->which >= 0;
         if (l->which >= 0)
             l->h = fmin(l->whole * fmin(l->longer, 2.0),
-                        l->after_switch > 0.0 ? 1.2 * l->after_switch : 0.3 * l->whole);
+                        l->after_switch > 0.0 ? l->after_switch : 0.3 * l->whole);
         else if (!last) {
             l->h = fmin(l->step * fmin(l->longer, most), SUDDEN * l->steady);
             l->steady = l->step * l->longer;
