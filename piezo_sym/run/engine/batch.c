@@ -15,6 +15,8 @@ typedef struct {
 } MODEL(task);
 
 enum { ROUGH_ITERATIONS = 8 };
+/* How well rates are solved for that only show where a switch is, in parts of the tolerance. */
+#define SKETCH 0.01
 /* With so many switches it may be better to step over kinks. */
 enum { MANY = 8 };
 /* How far Newton's method goes in a survey, and how short its steps may be, in parts of the longest. */
@@ -94,6 +96,8 @@ void MODEL(open)(MODEL(batch) *b, const MODEL(task) *task)
     b->m.most = task->fixed > 0.0 ? MOST_OF_FIXED : MOST_ITERATIONS;
     b->m.late = task->fixed > 0.0 ? LATE : SOON;
     b->m.stays = task->fixed > 0.0 ? 0.7 : 0.3;
+    b->m.sketch = b->m.sketched = nowhere;
+    b->m.enough = SKETCH * task->tolerance / NOISE;
     b->m.over = task->over ? none_of(nowhere) : nowhere;
 }
 

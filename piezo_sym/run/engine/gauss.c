@@ -69,6 +69,8 @@ typedef struct {
 #endif /* BENDS */
     mask fine;                 /* lanes whose means are taken at FINE nodes */
     mask over;                 /* lanes whose stages choose their branches: they step over kinks */
+    mask sketch, sketched;     /* lanes whose steps may be cut at a switch; those found to have one */
+    double enough;             /* what changes, in units of noise, have to be below to tell that */
     real iterations;           /* of Newton's method */
     int most, late;            /* of them in a step; after which it may be given up */
     double stays;              /* a change that is more than this part of the one before is noise */

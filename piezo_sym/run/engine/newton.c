@@ -32,6 +32,8 @@ enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
 #define NEAR 1e8
 /* What equations may leave, in parts of states: as much as changes below noise of what is very fast. */
 #define LEFT 0.01
+/* Where the second change is more, in units of noise, it pays to look already then for more nodes. */
+#define FAR 1e9
 /* Changes go to and fro where so much of one is left, with the other sign. */
 #define TO_AND_FRO 0.5
 
@@ -173,6 +175,43 @@ static mask MODEL(solves)(const MODEL(block) *m, real h)
     return good;
 }
 
+/* The lanes whose co-states ask for more nodes than they have, as the rates are now; see nodes.c. */
+static mask MODEL(coarse_by_now)(MODEL(block) *m, real h);
+
+/*
+ * The lanes whose stages, as their rates are now, lie beyond a switch: the step will be cut there, and
+ * where that is needs no rates that are solved to round-off.
+ */
+static mask MODEL(strayed)(const MODEL(block) *m)
+{
+    mask found = nowhere;
+    for (long k = 0; k < STAGES * m->branches; ++k) {
+        const mask above = m->side[k] > 0.0, on = m->branch[k] > 0.0;
+        found |= (above & none_of(on)) | (on & none_of(above));
+    }
+    return found;
+}
+
+/* Take part of a change; returns the largest one in any state, in units of what is noise. */
+static real MODEL(changed)(const MODEL(block) *m, real h, real part, mask where)
+{
+    real worst = zero;
+    for (long k = 0; k < m->n; ++k) {
+        real moved = zero, sum = zero;
+        for (long j = 0; j < STAGES; ++j) {
+            real *const rate = m->rates + j * m->n + k;
+            const real change = chosen(where, part * m->gap[j * m->n + k], zero);
+            m->prior[j * m->n + k] = change;
+            *rate += change;
+            moved = largest_of(moved, size_of(*rate));
+            sum += size_of(change);
+        }
+        const real size = NOISE * (m->largest[k] + size_of(m->x[k]) + h * moved) + NO_SIZE;
+        worst = largest_of(h * sum / size, worst);
+    }
+    return worst;
+}
+
 /*
  * Newton's method for the rates in some lanes, begun where they are; returns those that found them.
  * A lane that has found them stays as it is, however long the others take.
@@ -180,49 +219,49 @@ static mask MODEL(solves)(const MODEL(block) *m, real h)
 static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
 {
     mask going = where, found = nowhere;
-    real before = zero;
+    mask renewed = nowhere; /* who has new equations, whose changes earlier ones do not foretell */
+    real before = zero, left_before = zero; /* new slopes of a fixed step may help once, not again */
 #if defined(PATHS)
     MODEL(path_parameters)(m->x, &m->p, m->path);
 #endif /* PATHS */
     MODEL(gaps)(m, h, going);
     MODEL(prepare)(m, h, going);
     for (int iteration = 0; iteration < m->most && any(going); ++iteration) {
-        real worst = zero;
         m->iterations += chosen(going, wide(1.0), zero);
         MODEL(change)(m, h);
         const real part = iteration && m->late > SOON ? MODEL(damping)(m) : (real)wide(1.0);
-        for (long k = 0; k < m->n; ++k) {
-            real moved = zero, changed = zero;
-            for (long j = 0; j < STAGES; ++j) {
-                real *const rate = m->rates + j * m->n + k;
-                const real change = chosen(going, part * m->gap[j * m->n + k], zero);
-                m->prior[j * m->n + k] = change;
-                *rate += change;
-                moved = largest_of(moved, size_of(*rate));
-                changed += size_of(change);
-            }
-            const real size = NOISE * (m->largest[k] + size_of(m->x[k]) + h * moved) + NO_SIZE;
-            worst = largest_of(h * changed / size, worst);
-        }
+        const real worst = MODEL(changed)(m, h, part, going);
+        const mask far = going & (worst > FAR) & none_of(m->fine);
+        if (iteration == 1 && !LOSSY && any(far))
+            m->fine |= renewed = far & MODEL(coarse_by_now)(m, h);
+        else if (iteration > 2)
+            renewed = nowhere;
         const mask switched = MODEL(gaps)(m, h, going);
         const mask smaller = worst < before, lost = none_of(worst < 1e300);
         const mask near = smaller & (worst < NEAR);
-        mask good = (worst <= 4.0) | (near & (worst * (worst / before) <= 4.0));
+        const real left = worst / (before + NO_SIZE);
+        mask good = (worst <= 4.0) | (near & (worst * largest_of(left, left_before) <= 4.0));
         if (iteration > 1) { /* noise of what rates are made of, or no root */
             const mask stays = (worst > m->stays * before) & none_of(good);
             good |= stays & (worst < (m->late == SOON || iteration > NOISY ? MOST_NOISE : 100.0));
             if (iteration > m->late)
                 going &= none_of(stays & none_of(good));
         }
-        good &= none_of(lost);
+        good &= none_of(lost | renewed);
         if (any(good & going))
             good &= MODEL(solves)(m, h);
+        const mask enough = m->sketch & (worst < m->enough) & going & none_of(good | lost);
+        if (any(enough)) {
+            m->sketched |= enough & MODEL(strayed)(m);
+            good |= m->sketched;
+        }
         found |= going & good;
         going &= none_of(good | lost);
         const mask slow = (worst > SLOW * before) & (before > 0.0);
         if (any((switched | slow) & going))
             MODEL(prepare)(m, h, (switched | slow) & going);
         before = worst;
+        left_before = iteration && m->late > SOON ? left : (real)zero;
     }
 #if LOSSY /* what rounding leaves of the loss, a difference of energies, is booked as it is taken */
     m->rates[m->first[MODEL(heated)]] += m->gap[m->first[MODEL(heated)]];

@@ -61,6 +61,11 @@ static mask MODEL(rough_parts)(const MODEL(block) *m, real h, const MODEL(rule) 
     return found;
 }
 
+static mask MODEL(coarse_by_now)(MODEL(block) *m, real h)
+{
+    return m->means ? MODEL(rough_parts)(m, h, &MODEL(few), NULL) : nowhere;
+}
+
 /* The lanes whose co-states ask for more nodes than NODES, for balances that are exact to round-off. */
 static mask MODEL(coarse)(const MODEL(block) *m, real h)
 {
@@ -94,13 +99,17 @@ static mask MODEL(too_coarse)(const MODEL(block) *m, real h)
 static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
 {
     m->fine &= none_of(where);
-    const mask found = MODEL(iterate)(m, h, where);
-    mask more = nowhere;
-    if (!LOSSY) /* a dissipative step has no means */
-        more = MODEL(coarse)(m, h) & found;
-    if (!any(more))
+    m->sketched = nowhere;
+    mask found = MODEL(iterate)(m, h, where);
+    if (LOSSY) /* a dissipative step has no means */
         return found;
-    m->fine |= more;
-    const mask again = MODEL(iterate)(m, h, more);
-    return (found & none_of(more)) | (again & none_of(MODEL(too_coarse)(m, h)));
+    const mask more = MODEL(coarse)(m, h) & found & none_of(m->sketched | m->fine);
+    if (any(more)) {
+        m->fine |= more;
+        found &= none_of(more) | MODEL(iterate)(m, h, more);
+    }
+    const mask fine = m->fine & found & none_of(m->sketched);
+    if (any(fine))
+        found &= none_of(fine & MODEL(too_coarse)(m, h));
+    return found;
 }

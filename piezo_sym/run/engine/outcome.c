@@ -25,6 +25,7 @@ static void MODEL(refuse)(MODEL(batch) *b, int lane, double h)
     MODEL(lane) *l = b->lane + lane;
     ++l->run->rejected;
     l->h = h;
+    l->settled = 0;
     l->phase = STEP;
     if (LOSSY || ++l->refused > MOST_REFUSED || l->t + h <= l->t || h < SHORTEST_PART * b->fixed)
         MODEL(leave)(b, lane, 1);
@@ -106,6 +107,7 @@ static int MODEL(on)(MODEL(batch) *b, int lane)
         }
     }
     l->behind = 1;
+    l->settled = 0;
     if (l->which >= 0)
         l->known = 0.0, l->steady = HUGE_VAL;
     MODEL(sample_here)(b, lane);

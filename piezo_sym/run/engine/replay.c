@@ -10,7 +10,7 @@ static int MODEL(again)(MODEL(batch) *b, const MODEL(segment) *segment, double t
 {
     MODEL(block) *m = &b->m;
     const MODEL(block) before = *m;
-    m->most = MOST_OF_FIXED, m->late = LATE, m->stays = 0.7, m->over = nowhere;
+    m->most = MOST_OF_FIXED, m->late = LATE, m->stays = 0.7, m->over = m->sketch = nowhere;
     m->largest = b->tape->scale;
     MODEL(inputs_at)(segment, m->inputs, t, b->some_inputs, 0);
     MODEL(point)(b, m->x, m->branch, NULL, b->some_rate, b->some_side);

@@ -27,14 +27,17 @@ static MODEL(tick) MODEL(planned)(MODEL(batch) *b)
         SET(t.busy, lane, 1);
         SET(t.sampling, lane, l->phase == SAMPLE || l->phase == RESUME);
         SET(t.resumed, lane, l->phase == RESUME);
+        SET(b->m.sketch, lane, l->phase == STEP && b->fixed == 0.0 && !l->settled);
         SET(t.known, lane, l->known > 0.0);
         l->ticks += !IN(t.sampling, lane);
         LANE(&t.h, 0, lane) = l->length;
-        LANE(&t.behind, 0, lane) = l->behind + (MODEL(begin)(l) - l->t) / (l->known > 0.0 ? l->known : 1.0);
+        const double ahead = MODEL(begin)(l) - l->t; /* of the run */
+        LANE(&t.behind, 0, lane) = l->behind + (l->known > 0.0 ? ahead / l->known : 0.0);
         l->predicted = l->known > 0.0;
         LANE(&t.slope, 0, lane) = l->known > 0.0 ? l->length / l->known : 0.0;
     }
     t.steps = t.busy & none_of(t.sampling);
+    b->m.sketch &= t.steps & none_of(b->m.over);
     return t;
 }
 
@@ -157,6 +160,11 @@ static void MODEL(cut_and_accepted)(MODEL(batch) *b, MODEL(tick) *t)
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {
         if (IN(t->switched, lane))
             SET(t->booked, lane, MODEL(cut)(b, lane, t->crossing + lane, t->part[lane], &t->turns));
+        if (IN(t->booked, lane) && IN(b->m.sketched, lane)) { /* it had no switch, or none to cut at */
+            b->lane[lane].settled = 1;
+            b->lane[lane].phase = STEP;
+            SET(t->booked, lane, 0);
+        }
         if (!IN(t->booked, lane) || !IN(t->steps, lane))
             continue;
         const int good = IN(t->good, lane) != 0;

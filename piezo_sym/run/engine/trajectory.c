@@ -2,7 +2,8 @@
  * Runs of collocation steps, one in each lane.  Behind gauss.c; batch.c says which runs there are.
  *
  * A step keeps the branches that hold where it begins; if a switching function changes its sign on
- * the way, the step is taken again to end there, and the next begins on the other branch.  Lanes of
+ * the way, the step is taken again to end there, and the next begins on the other branch.  The first
+ * time it is not solved further than finding the place takes.  Lanes of
  * many switches may step over them instead: then each stage chooses its branches.
  *
  * In a tick each lane takes one step: what it is for differs from lane to lane, how it is solved
@@ -38,7 +39,7 @@ typedef struct {
     long sample, steps, rejected, switched, iterations, failed;
 } MODEL(run);
 
-/* What a lane's step is for: the next of its run, the same up to a switch, or samples; see samples.c. */
+/* What a lane's step is for: the run's next, the same up to a switch, or a sample; see samples.c. */
 enum { IDLE, BEGIN, STEP, CUT, SAMPLE, RESUME };
 
 /*
@@ -54,6 +55,7 @@ typedef struct {
     double kept;   /* when the last sample was, or -HUGE_VAL */
     double steady; /* the step that the errors of the step before ask for */
     int phase, behind, predicted, fresh, last, cuts, refused, halved;
+    int settled; /* whether there is no switch in the step after all, so that it is solved to its end */
     long which; /* the switch at the end of the step; -1 if none */
     double since, pace[2]; /* when the way over kinks was chosen; how fast each way was */
     long ticks, looks;     /* steps solved since then; how often the ways were compared */
@@ -207,8 +209,8 @@ static int MODEL(samples_left)(const MODEL(batch) *b, const MODEL(lane) *l)
 }
 
 /*
- * Where the step for a sample begins, and where it ends: one that begins at a sample may go on to the end
- * of the run's step.
+ * Where the step for a sample begins, and where it ends: one that begins at a sample may go on to
+ * the end of the run's step.
  */
 static double MODEL(begin)(const MODEL(lane) *l)
 {
