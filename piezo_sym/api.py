@@ -75,7 +75,7 @@ def simulate(
     duration : length of the run [s].
     rtol : about the largest error of a state, in its largest magnitude; 1e-5 when left out.
     step, order : a fixed step [s] instead of rtol, of order 2 (when left out), 4, 6, 8 or 10.
-    parameters, initial : name -> number, or for a bank a list of one number a lane; SI units.
+    parameters, initial : name -> number, or for a bank a list of one number per lane; SI units.
     method : discrete_gradient when left out, or one of SciPy's.
     times : the samples: a number of even ones, or increasing times [s].
     every : with `step`, instead of `times`: a sample every so many steps, and at the end.

@@ -38,7 +38,7 @@ long piezo_stack_states(const piezo_stack_parameters *restrict p_)
     return 4 + hysteron_count;
 }
 
-/* Number of rows of processes, a bank's one a lane. */
+/* Number of rows of processes; of a bank, one per lane. */
 long piezo_stack_processes(const piezo_stack_parameters *restrict p_)
 {
     const long hysteron_count = p_->hysteron_count;
@@ -126,7 +126,7 @@ void piezo_stack_rhs(const double *restrict x,
     out[3 + hysteron_count] = (heat_hysteron + heat_damper)/T + lam*(T_e/T - 1.0);
 }
 
-/* Outputs y, one a port, conjugate to its input. */
+/* Outputs y, one per port, conjugate to its input. */
 void piezo_stack_outputs(const double *restrict x,
                          const double *restrict u,
                          const piezo_stack_parameters *restrict p_,
@@ -158,7 +158,7 @@ void piezo_stack_outputs(const double *restrict x,
     out[2] = T;
 }
 
-/* Power put in [W], one a port; the sum is dU/dt. */
+/* Power put in [W], one per port; the sum is dU/dt. */
 void piezo_stack_supply(const double *restrict x,
                         const double *restrict u,
                         const piezo_stack_parameters *restrict p_,
@@ -246,7 +246,7 @@ void piezo_stack_temperatures(const double *restrict x,
     out[0] = T;
 }
 
-/* Power that each process turns into heat [W], a bank's a row a lane. */
+/* Power that each process turns into heat [W]; of a bank, one row per lane. */
 void piezo_stack_heat(const double *restrict x,
                       const double *restrict u,
                       const piezo_stack_parameters *restrict p_,
@@ -283,7 +283,7 @@ void piezo_stack_heat(const double *restrict x,
     out[hysteron_count] = F_damper*v_mass;
 }
 
-/* Entropy that each process produces [W/K], a bank's a row a lane. */
+/* Entropy that each process produces [W/K]; of a bank, one row per lane. */
 void piezo_stack_entropy_production(const double *restrict x,
                                     const double *restrict u,
                                     const piezo_stack_parameters *restrict p_,

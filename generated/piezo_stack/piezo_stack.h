@@ -26,9 +26,9 @@ typedef struct {
     double q_l; /* rest position of the spring [m]; 0.0 */
     double d; /* damping [N*s/m]; 400.0 */
     double C; /* capacitance [F]; 5e-06 */
-    const double *L; /* inductance of one hysteron [H], one a lane of hysteron; 0.001 */
-    const double *rho; /* resistance law: slope rho/(T - T_0) [ohm*K], one a lane of hysteron; 10.0 */
-    const double *i_0; /* half width of the dead zone [A], one a lane of hysteron; 0.5 */
+    const double *L; /* inductance of one hysteron [H], one per lane of hysteron; 0.001 */
+    const double *rho; /* resistance law: slope rho/(T - T_0) [ohm*K], one per lane of hysteron; 10.0 */
+    const double *i_0; /* half width of the dead zone [A], one per lane of hysteron; 0.5 */
     double a; /* transducer ratio at T_0 [C/m]; 10.0 */
     double T_0; /* reference temperature [K]; 296.15 */
     double c_0; /* heat capacity [J/K]; 5.0 */
@@ -49,7 +49,7 @@ enum {
 long piezo_stack_states(const piezo_stack_parameters *p_);
 
 /*
- * Number of rows of processes, a bank's one a lane.
+ * Number of rows of processes; of a bank, one per lane.
  */
 long piezo_stack_processes(const piezo_stack_parameters *p_);
 
@@ -84,7 +84,7 @@ void piezo_stack_jacobian(const double *x,
                           double *out);
 
 /*
- * Outputs y, one a port, conjugate to its input.
+ * Outputs y, one per port, conjugate to its input.
  * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
  * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
  * out[piezo_stack_output_count], written, overlaps nothing else: load [m/s], supply [A],
@@ -96,7 +96,7 @@ void piezo_stack_outputs(const double *x,
                          double *out);
 
 /*
- * Power put in [W], one a port; the sum is dU/dt.
+ * Power put in [W], one per port; the sum is dU/dt.
  * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
  * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
  * out[piezo_stack_output_count], written, overlaps nothing else
@@ -126,7 +126,7 @@ double piezo_stack_entropy(const double *x, const piezo_stack_parameters *p_);
 void piezo_stack_temperatures(const double *x, const piezo_stack_parameters *p_, double *out);
 
 /*
- * Power that each process turns into heat [W], a bank's a row a lane.
+ * Power that each process turns into heat [W]; of a bank, one row per lane.
  * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
  * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
  * out[piezo_stack_processes(p)], written, overlaps nothing else
@@ -137,7 +137,7 @@ void piezo_stack_heat(const double *x,
                       double *out);
 
 /*
- * Entropy that each process produces [W/K], a bank's a row a lane.
+ * Entropy that each process produces [W/K]; of a bank, one row per lane.
  * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
  * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
  * out[piezo_stack_processes(p)], written, overlaps nothing else

@@ -22,7 +22,7 @@ SPEC_SHA256 = "9c0235a60e02072bc451611ffa723f273272c8e4536a3089081866f47c89389c"
 
 
 class Record(NamedTuple):
-    """A row of an array: name, SI unit, a line on it, and its bank if it stands for one a lane."""
+    """A row of an array: name, SI unit, a line on it, its bank if it stands for one per lane."""
 
     name: str
     unit: str
@@ -93,7 +93,7 @@ DOMAIN = (
 )
 
 
-_Lanes = float | tuple[float, ...]  # a bank's parameter: one value, or one a lane
+_Lanes = float | tuple[float, ...]  # a bank's parameter: one value, or one per lane
 
 
 @dataclass(frozen=True)
@@ -220,7 +220,7 @@ def _rates(x, u, p_, out, /):
 
 
 def outputs(x, u, p_, /):
-    """Outputs y, one a port, conjugate to its input; shape (3, *batch)."""
+    """Outputs y, one per port, conjugate to its input; shape (3, *batch)."""
     x = _states(x, p_)
     hysteron_count = p_.hysteron_count
     M = p_.M
@@ -246,7 +246,7 @@ def outputs(x, u, p_, /):
 
 
 def supply(x, u, p_, /):
-    """Power put in [W], one a port; the sum is dU/dt; shape (3, *batch)."""
+    """Power put in [W], one per port; the sum is dU/dt; shape (3, *batch)."""
     x = _states(x, p_)
     u = _inputs(u)
     hysteron_count = p_.hysteron_count
@@ -322,7 +322,7 @@ def temperatures(x, p_, /):
 
 
 def heat(x, u, p_, /):
-    """Power that each process turns into heat [W], a bank's a row a lane; shape (1 + hysteron_count, *batch)."""
+    """Power that each process turns into heat [W]; of a bank, one row per lane; shape (1 + hysteron_count, *batch)."""
     x = _states(x, p_)
     hysteron_count = p_.hysteron_count
     M = p_.M
@@ -350,7 +350,7 @@ def heat(x, u, p_, /):
 
 
 def entropy_production(x, u, p_, /):
-    """Entropy that each process produces [W/K], a bank's a row a lane; shape (1 + hysteron_count, *batch)."""
+    """Entropy that each process produces [W/K]; of a bank, one row per lane; shape (1 + hysteron_count, *batch)."""
     x = _states(x, p_)
     hysteron_count = p_.hysteron_count
     M = p_.M

@@ -3,7 +3,7 @@
 Input: entries per pair of slots.  Output: `LaneMatrix` with the products that Definition 1 needs;
 sums over lanes are kept as `LaneSum`.
 
-A slot is one row or column, or, for a bank, one a lane.  The entry of rows (s, j) and (t, k) is
+A slot is one row or column, or, for a bank, one per lane.  The entry of rows (s, j) and (t, k) is
 ``full[s, t]``, the same for every pair of lanes, plus ``own[s, t]`` where j = k and s and t are of
 one bank.  An entry may use lane symbols of its own row's or column's lane.
 """
@@ -25,7 +25,7 @@ from piezo_sym.errors import UsageError, nearest, quote
 @final
 @dataclass(frozen=True)
 class Slot:
-    """A row or column: its label and, if it stands for one a lane, its bank."""
+    """A row or column: its label and, if it stands for one per lane, its bank."""
 
     label: str
     bank: str | None = None

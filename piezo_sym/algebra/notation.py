@@ -17,7 +17,7 @@ Entries = Mapping[tuple[int, int], sp.Expr]
 
 
 class Label(Protocol):
-    """A row or column: its label, and its bank if it stands for one a lane."""
+    """A row or column: its label, and its bank if it stands for one per lane."""
 
     @property
     def label(self) -> str:

@@ -73,7 +73,7 @@ class Branches:
         return f"Branches(curves: {len(self.curves)}, points: {points}, jumps: {jumps})"
 
     def table(self) -> dict[str, FloatArray]:
-        """Return columns, a row a point.
+        """Return columns, a row per point.
 
         The number of its curve, frequency [Hz], temperature (mean), coldest and hottest [K], stable
         (0 or 1), and at a fold the temperature that the body jumps to [K] (inf if beyond the

@@ -130,7 +130,7 @@ def _write(result: xarray.Dataset, path: Path) -> None:
 
 
 def columns(result: xarray.Dataset) -> Any:
-    """Return a result as a table with one column a quantity, one a lane for banks."""
+    """Return a result as a table with one column a quantity, one per lane for banks."""
     import pandas as pd
 
     found: Mapping[str, Any] = {"time": result.time.values}

@@ -89,13 +89,13 @@ def exchanges_of(q: Quantities) -> Iterator[tuple[str, Expr]]:
 
 
 def ports_of(q: Quantities) -> Iterator[Function]:
-    """Yield the outputs and the power put in, a row a port."""
+    """Yield the outputs and the power put in, a row per port."""
     slots = [Slot(placed.element) for placed in q.ports]
     outputs = [_output(n, q) for n in range(len(slots))]
     powers = [_power(n, q, y) for n, y in enumerate(outputs)]
-    doc = "Outputs y, one a port, conjugate to its input"
+    doc = "Outputs y, one per port, conjugate to its input"
     yield Function("outputs", doc, STATE_INPUT, _rows(slots, outputs))
-    doc = "Power put in [W], one a port; the sum is dU/dt"
+    doc = "Power put in [W], one per port; the sum is dU/dt"
     yield Function("supply", doc, STATE_INPUT, _rows(slots, powers))
 
 
@@ -133,11 +133,11 @@ def _of_stores(iphs: IPHS, q: Quantities) -> Iterator[Function]:
 
 def _of_processes(iphs: IPHS, q: Quantities) -> Iterator[Function]:
     slots = iphs.system.processes
-    doc = "Power that each process turns into heat [W], a bank's a row a lane"
+    doc = "Power that each process turns into heat [W]; of a bank, one row per lane"
     yield Function("heat", doc, STATE_INPUT, _rows(slots, q.heats))
     parts = zip(q.outputs, q.forces, q.system.heats, strict=True)
     produced = [div(mul(output, force), q.costate(n)) for output, force, n in parts]
-    doc = "Entropy that each process produces [W/K], a bank's a row a lane"
+    doc = "Entropy that each process produces [W/K]; of a bank, one row per lane"
     yield Function("entropy_production", doc, STATE_INPUT, _rows(slots, produced))
 
 

@@ -51,9 +51,9 @@ def jacobian_of(
 
     Parameters
     ----------
-    rates : rows of the right-hand side, one a state.
+    rates : rows of the right-hand side, one per state.
     states : the states, in the same order.
-    lanes : the bank of every parameter and state that has a value a lane.
+    lanes : the bank of every parameter and state that has a value per lane.
     q : the quantities; grows by the derivatives that get a name.
     given : names that are no quantities, and depend on a state all the same.
     """
@@ -104,7 +104,7 @@ class _Chain:
         self.slopes[quantity.name] = slope
 
     def of(self, value: Expr, bank: str | None) -> _Slope:
-        """Return the derivative of an expression, itself one a lane of `bank` or shared."""
+        """Return the derivative of an expression, itself one per lane of `bank` or shared."""
         if isinstance(value, LaneSum):
             return self._of_sum(self.of(value.arg, value.bank), value.bank)
         own: list[Expr] = []

@@ -25,7 +25,7 @@ class Places:
 
     Attributes
     ----------
-    slots : one a row, or one a bank of rows.
+    slots : one per row, or one per bank of rows.
     ends : the name of each bank's end, by the bank's slot; empty where sizes are spelled out.
     """
 

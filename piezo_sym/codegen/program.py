@@ -2,7 +2,7 @@
 
 Input: nothing; these are the types.  Output: frozen records that lowering fills and printers read.
 A program is a list of named quantities in an order in which each can be computed from earlier ones,
-and functions whose rows are expressions in them.  A quantity has one value, or one a lane of a
+and functions whose rows are expressions in them.  A quantity has one value, or one per lane of a
 bank; a sum over lanes is always a quantity of its own.  There is no algebra beyond this point.
 """
 
@@ -45,7 +45,7 @@ class Row:
 
     Attributes
     ----------
-    slot : which row; a bank's stands for one a lane.
+    slot : which row; a bank's stands for one per lane.
     value : may differ from lane to lane if the slot is a bank's.
     listed : instead, a value for each lane, where the spec lists them.
     """
@@ -122,7 +122,7 @@ class Program:
     ----------
     name, title, source, sha256, verdict : for the head.
     parameters, inputs, states, outputs, processes, bodies : fields in their order.
-    defaults : values of parameters (a tuple: one a lane), inputs and bank sizes.
+    defaults : values of parameters (a tuple: one per lane), inputs and bank sizes.
     banks : names, in order.
     quantities : in an order in which they can be computed.
     functions, jacobian, limits : what the module offers.
@@ -149,7 +149,7 @@ class Program:
     taken: frozenset[str]
 
     def lane_names(self) -> dict[str, str]:
-        """Return the bank of every name that has a value a lane."""
+        """Return the bank of every name that has a value per lane."""
         fields = (*self.parameters, *self.states)
         found = {field.name: field.bank for field in fields if field.bank}
         found |= {quantity.name: quantity.bank for quantity in self.quantities if quantity.bank}

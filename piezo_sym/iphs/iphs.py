@@ -46,7 +46,7 @@ class Process:
 
     Attributes
     ----------
-    name, bank : the element, and its bank if it stands for one a lane.
+    name, bank : the element, and its bank if it stands for one per lane.
     body : the thermal mass it heats.
     J : its skew structure matrix; for a bank that of lane j, ``J.explicit(counts, lane=j)``.
     bracket : its driving force {S, U}_J.
@@ -101,7 +101,7 @@ class IPHS:
 
     @cached_property
     def u(self) -> Matrix:
-        """Inputs of Definition 1, one a port; a heat exchange enters as lam*(T_e/T - 1)."""
+        """Inputs of Definition 1, one per port; a heat exchange enters as lam*(T_e/T - 1)."""
         return self._shown(self.system.u)
 
     @cached_property

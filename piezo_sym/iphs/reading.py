@@ -68,7 +68,7 @@ class Reading:
         return [self.write(term) for term in terms]
 
     def productions(self) -> list[sp.Expr]:
-        """Return the terms of the internal entropy production, one a process."""
+        """Return the terms of the internal entropy production, one per process."""
         R, z = self.system.R, self.system.z
         return [self.write(self._total(k, r * z[k, 0])) for k, r in enumerate(R)]
 

@@ -14,7 +14,7 @@ from piezo_sym.run.checks import FloatArray
 
 
 class Record(Protocol):
-    """What a row of an array is: name, SI unit, one line on it, its bank if it has a row a lane."""
+    """A row of an array: name, SI unit, one line on it, its bank if it has a row per lane."""
 
     @property
     def name(self) -> str: ...  # noqa: D102
@@ -82,7 +82,7 @@ def lanes(parameters: Any, bank: str) -> int:
 
 
 def rows(records: Sequence[Record], parameters: Any) -> tuple[slice, ...]:
-    """Return the rows of each record in an array that spreads banks: one, or one a lane."""
+    """Return the rows of each record in an array that spreads banks: one, or one per lane."""
     found: list[slice] = []
     start = 0
     for record in records:

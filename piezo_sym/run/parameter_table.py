@@ -25,7 +25,7 @@ class Table(Sequence[Any]):
     ----------
     base : those of one run.
     size : how many runs.
-    columns : of each parameter in which runs differ, one value a run; nobody writes to them.
+    columns : of each parameter in which runs differ, one value per run; nobody writes to them.
     """
 
     base: Any

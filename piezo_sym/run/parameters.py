@@ -1,6 +1,6 @@
 """The parameters, initial state and sample times of a run, from what a user wrote.
 
-Input: mappings of names to numbers, or for a bank to lists of one number a lane; times.  Output:
+Input: mappings of names to numbers, or for a bank to lists of one number per lane; times.  Output:
 the module's frozen `Parameters`, the state x (n,) at t = 0, and the times (nt,) of the samples.
 """
 
@@ -74,7 +74,7 @@ def _known(module: GeneratedModule, given: Mapping[str, LaneValue] | None) -> di
 
 
 def lane_value(value: object, size: int | None, where: str) -> float | tuple[float, ...]:
-    """Return a number, or where there is a bank of `size` lanes also a tuple of one a lane."""
+    """Return a number, or where there is a bank of `size` lanes also a tuple of one per lane."""
     if not is_vector(value):
         return number(value, where)
     if size is None:
@@ -82,7 +82,7 @@ def lane_value(value: object, size: int | None, where: str) -> float | tuple[flo
         raise UsageError(what, where, "one number: this belongs to no bank")
     values = tuple(vector(value, where).tolist())
     if len(values) != size:
-        remedy = "give one number for all lanes, or one a lane"
+        remedy = "give one number for all lanes, or one per lane"
         what = f"{len(values)} values for {size} lanes"
         raise UsageError(what, where, f"{size}", remedy)
     return values

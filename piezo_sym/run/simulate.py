@@ -104,9 +104,9 @@ def simulate(
         between two of these, steps there are equal and shorter, the attribute `shortest_step` the
         shortest.
     order : 2, 4, 6, 8 or 10, with `step` alone; 2 when left out.
-    parameters : name -> number, for a bank's parameter also a list of one number a lane; and
+    parameters : name -> number, for a bank's parameter also a list of one number per lane; and
         `<bank>_count` -> number of lanes. SI units.
-    initial : state -> number, for a bank's state also a list of one number a lane. SI units.
+    initial : state -> number, for a bank's state also a list of one number per lane. SI units.
         Those left out keep the module's initial state.
     method : discrete_gradient when left out, or one of SciPy's: RK23, RK45, DOP853, Radau, BDF,
         LSODA. Left out, a module without C beside it runs by LSODA; and so does one whose C cannot
@@ -137,8 +137,8 @@ def simulate(
         discrete gradient, the error of solver and quadrature with SciPy's. At a jump, inputs
         have their value after it, but at the end of the run their value before it. Attributes:
         units, model, parameters; `method`, `rtol`, or `step` and `shortest_step`, `order` of the
-        collocation, `engine` (its compiler, or why there is none), the work (`accepted_steps`, `newton_iterations`,
-        `halvings`: steps refused; for SciPy `rhs_evaluations`).
+        collocation, `engine` (its compiler, or why there is none), the work (`accepted_steps`,
+        `newton_iterations`, `halvings`: steps refused; for SciPy `rhs_evaluations`).
 
     Raises
     ------

@@ -168,7 +168,7 @@ class Stepper:
 
     @property
     def ledger(self) -> dict[str, Any]:
-        """The ledger since t = 0: numbers, or for a bank one a lane (lanes,).
+        """The ledger since t = 0: numbers, or for a bank one per lane (lanes,).
 
         `supplied_<port>`, `heat_<element>` [J], `produced_<element>` [J/K],
         `entropy_exchanged_<port>` [J/K]; `energy_residual` [J] and `entropy_residual` [J/K] are
@@ -185,7 +185,7 @@ class Stepper:
 
         Parameters
         ----------
-        u : one number an input, in the order of `inputs`, SI units.
+        u : one number per input, in the order of `inputs`, SI units.
 
         Returns
         -------
@@ -233,7 +233,7 @@ class Stepper:
         self._taken = 0
 
     def _no_inputs(self, u: object) -> UsageError:
-        """Return the error of something that is not one number an input."""
+        """Return the error of something that is not one number per input."""
         if isinstance(u, Sequence) and not isinstance(u, str) and len(u) == len(self.inputs):
             for name, value in zip(self.inputs, u, strict=True):
                 number(value, f"Stepper.step: input {quote(name)}")

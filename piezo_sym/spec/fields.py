@@ -109,7 +109,7 @@ class Header(Frozen):
 class Parameter(Frozen):
     """A constant of the model: value in its unit; a list is a value for each lane of one bank."""
 
-    value: Annotated[Values, Field(description="In `unit`; a list: one a lane of one bank.")]
+    value: Annotated[Values, Field(description="In `unit`; a list: one per lane of one bank.")]
     unit: UnitText
     doc: Doc = ""
 
@@ -120,7 +120,7 @@ class Parameter(Frozen):
 
     @property
     def lanes(self) -> tuple[float, ...]:
-        """The values in coherent SI, one or one a lane."""
+        """The values in coherent SI, one or one per lane."""
         values = self.value if isinstance(self.value, tuple) else (self.value,)
         return tuple(to_si(value, self.dimension) for value in values)
 

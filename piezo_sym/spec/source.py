@@ -71,7 +71,7 @@ def read(path: Path) -> str:
         reason = getattr(error, "strerror", None) or "not a path"
         raise FileError(f"cannot be read ({reason})", where, remedy="check the path") from error
     if len(raw) > MAX_BYTES:
-        remedy = "a bank needs one element, not one a lane"
+        remedy = "a bank needs one element, not one per lane"
         raise FileError("is too large", where, f"at most {MAX_BYTES} bytes", remedy)
     try:
         return raw.decode("utf-8-sig")

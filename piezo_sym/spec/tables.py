@@ -197,7 +197,7 @@ def condition_text(condition: Cmp) -> str:
 
 
 def lane_parameters(spec: Tables) -> dict[str, str]:
-    """Return the bank of each parameter that may take a value a lane: no other element uses it."""
+    """Return the bank of each parameter that may take a value per lane: no other element has it."""
     users: dict[str, set[str]] = {}
     for name, element in spec.elements.items():
         for law in law_fields(name, element):

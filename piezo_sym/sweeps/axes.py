@@ -140,7 +140,7 @@ def read_labels(keys: tuple[object, ...], where: str) -> tuple[float | str, ...]
 def unzipped(
     points: Sequence[object] | np.ndarray[Any, Any], words: tuple[object, ...], name: str
 ) -> list[Any]:
-    """Return the values of each name of a zip; each point has one a name."""
+    """Return the values of each name of a zip; each point has one per name."""
     if isinstance(points, np.ndarray) and points.ndim == 2 and points.shape[1] == len(words):
         return list(points.T)
     for n, point in enumerate(points):
@@ -151,7 +151,7 @@ def unzipped(
 
 
 def refuse_lists(axes: tuple[Axis, ...], lanes: Mapping[str, int]) -> None:
-    """Raise `UsageError` where one value a lane meets another number of lanes.
+    """Raise `UsageError` where one value per lane meets another number of lanes.
 
     A size that is swept along another axis than the lists meets all their lengths.
     """
@@ -167,7 +167,7 @@ def refuse_lists(axes: tuple[Axis, ...], lanes: Mapping[str, int]) -> None:
                     remedy = ""
                     if size and other is not axis:
                         remedy = f"zip both: ('{target.name}', '{size.name}')"
-                    raise UsageError(what, f"{WHERE}.{target.name}[{n}]", "one a lane", remedy)
+                    raise UsageError(what, f"{WHERE}.{target.name}[{n}]", "one per lane", remedy)
 
 
 def single_numbers(axes: tuple[Axis, ...]) -> dict[str, float]:

@@ -124,7 +124,7 @@ def refuse_sizes(
     initial: Mapping[str, Any],
     u: FloatArray,
 ) -> None:
-    """Raise what lists of one number a lane are refused for, at every size of their bank."""
+    """Raise what lists of one number per lane are refused for, at every size of their bank."""
     sizes = {t.name: t.values for axis in axes for t in axis.targets if t.is_size}
     one: list[dict[str, Any]] = [{name: n} for name, v in sizes.items() for n in dict.fromkeys(v)]
     for change in one or [{}]:

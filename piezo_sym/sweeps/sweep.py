@@ -76,9 +76,9 @@ def sweep(
     over : name -> list or array of values; a dimension each, their product is run. Names are
         those of parameters, `<bank>_count`, inputs and states (their values at t = 0); where two
         things share one, write "parameters.x", "inputs.x" or "initial.x". Values are what
-        `simulate` takes, SI units; beside a list of one value a lane, all are labelled by texts. A
-        mapping of labels (numbers or texts) to values gives the dimension these labels. A tuple of
-        names -> a list of tuples, or an array (points, names): values that go together, one
+        `simulate` takes, SI units; beside a list of one value per lane, all are labelled by texts.
+        A mapping of labels (numbers or texts) to values gives the dimension these labels. A tuple
+        of names -> a list of tuples, or an array (points, names): values that go together, one
         dimension "L_T_e", with coordinates L and T_e along it.
     inputs, duration, rtol, step, order, parameters, initial, times, every : of all runs, as for
         `simulate`: 1001 samples when `times` is left out, each of which costs steps of its own;

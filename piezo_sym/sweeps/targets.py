@@ -1,7 +1,7 @@
 """What can be swept: parameters, sizes of banks, inputs and initial values, by name.
 
 Input: a generated module, a user's name for a quantity and its values.  Output: a `Target`, whose
-values are checked and come one a point of an axis.
+values are checked and come one per point of an axis.
 
 A plain name is enough where only one thing has it; else "parameters.x", "inputs.x", "initial.x".
 """
@@ -39,7 +39,7 @@ class Target:
     unit, doc : of its values.
     bank : the bank that it belongs to, or whose size it is, if any.
     is_size : whether it is the number of lanes of a bank.
-    values : one a point: an array of numbers, or numbers, tuples of one a lane, and signals.
+    values : one per point: an array of numbers, or numbers, tuples of one per lane, and signals.
     texts : what stands for each value on a coordinate, where not all are numbers.
     """
 
@@ -63,7 +63,7 @@ class Target:
         return self.is_size or self.kind == "inputs"
 
     def along(self, values: FloatArray | tuple[Value, ...]) -> Target:
-        """Return it with values, one a point."""
+        """Return it with values, one per point."""
         numbers = isinstance(values, np.ndarray) or all(map(is_number, values))
         texts = () if numbers else distinct([label(value) for value in values])
         return replace(self, values=values, texts=tuple(texts))
@@ -117,7 +117,7 @@ def targets(module: GeneratedModule) -> Iterator[Target]:
 def read_values(
     target: Target, given: Sequence[object] | FloatArray, where: str, duration: float
 ) -> FloatArray | tuple[Value, ...]:
-    """Return a target's values, one a point; raise `UsageError` at the first that is none."""
+    """Return a target's values, one per point; raise `UsageError` at the first that is none."""
     if target.is_size:
         return tuple(whole(value, f"{where}[{n}]", 1) for n, value in enumerate(given))
     if isinstance(given, np.ndarray) and given.ndim == 1 and given.dtype.kind in "iuf":
@@ -133,7 +133,7 @@ def read_values(
 
 
 def read_value(target: Target, value: object, where: str, duration: float) -> Value:
-    """Return one value that need not be a number: a signal, or one number a lane."""
+    """Return one value that need not be a number: a signal, or one number per lane."""
     if is_number(value):
         return number(value, where)
     if target.kind == "inputs":

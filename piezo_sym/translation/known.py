@@ -54,7 +54,7 @@ class Proved:
     Attributes
     ----------
     field : of all values.
-    names : parameters, states and inputs, in lane 0 where they have one a lane.
+    names : parameters, states and inputs, in lane 0 where they have one per lane.
     banks : the bank of each of these that has.
     slots : the rows of each function.
     values : by function and row; what is not listed is zero.

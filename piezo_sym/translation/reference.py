@@ -4,7 +4,7 @@ Input: an `IPHS`.  Output: a `Proved`, the rows of every function and the entrie
 values, and what the laws themselves divide by.  The Jacobian is the derivative of the proved rates,
 made here; that the co-states are the gradient of the energy is checked here.
 
-A parameter of a bank is one number a lane, as it is in printed modules; the proofs close on named
+A parameter of a bank is one number per lane, as it is in printed modules; the proofs close on named
 co-states and laws of one lane, so they hold for lanes that differ.
 """
 

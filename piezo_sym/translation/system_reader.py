@@ -35,7 +35,7 @@ class SystemReader:
     Attributes
     ----------
     field : of the values.
-    names : parameters, inputs and states, in lane 0 where they have one a lane.
+    names : parameters, inputs and states, in lane 0 where they have one per lane.
     banks : the bank of each of these that has.
     costates : those that are names, by what the spec calls them.
     """

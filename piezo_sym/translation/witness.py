@@ -112,7 +112,7 @@ def _number(value: float | None, n: int, chance: random.Random) -> Fraction:
 
 @final
 class Point:
-    """Numbers for names, one a lane where they have lanes; values at them, as intervals."""
+    """Numbers for names, one per lane where they have lanes; values at them, as intervals."""
 
     def __init__(self, known: Proved, numbers: Mapping[str, Sequence[Fraction]]) -> None:
         self.known, self.numbers, self.gens = known, numbers, known.field.gens

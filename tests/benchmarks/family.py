@@ -43,7 +43,7 @@ class Family:
     Attributes
     ----------
     problem : its rates hold `symbol`, for which each member puts its own value.
-    name, symbol, values : of the parameter; a value a member (members,).
+    name, symbol, values : of the parameter; a value per member (members,).
     starts, ends : states (members, n) at t = 0 and at the end.
     good_to : how far the ends are known, in units of the scale.
     """

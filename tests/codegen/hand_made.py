@@ -87,7 +87,7 @@ class HandMade:
             Function("initial_state", "State at t = 0", ("u", "p"), starts),
             Function("rhs", "Rates", DRIVEN, rates),
             Function("outputs", "Power put in", DRIVEN, ports),
-            Function("supply", "Power put in [W], one a port", DRIVEN, ports),
+            Function("supply", "Power put in [W], one per port", DRIVEN, ports),
             Function("energy", "Hamiltonian U [J]", STATE, (Row(Slot("U"), add(*total)),), True),
             Function("entropy", "Entropy", STATE, (_sum("S", entropies),), True),
             Function("temperatures", "Temperatures [K]", STATE, temperatures),

@@ -248,7 +248,7 @@ def check_against_tableau(module, spec, x, u):
 
 
 def spread(records, p):
-    """Return the names of rows, a bank's one a lane."""
+    """Return the names of rows; of a bank, one per lane."""
     lanes = {r.bank: getattr(p, f"{r.bank}_count") for r in records if r.bank}
     return list(
         itertools.chain.from_iterable(

@@ -1,4 +1,4 @@
-"""Networks drawn in a line an element, and what a refusal of one must be like."""
+"""Networks drawn in a line per element, and what a refusal of one must be like."""
 
 import time
 

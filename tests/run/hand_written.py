@@ -14,7 +14,7 @@ SPEC_SHA256 = "0" * 64
 
 
 class Record(NamedTuple):
-    """What a row of an array is: name, SI unit, one line on it, its bank if it has a row a lane."""
+    """A row of an array: name, SI unit, one line on it, its bank if it has a row per lane."""
 
     name: str
     unit: str
@@ -42,7 +42,7 @@ INPUTS = (
     Record("T_e", "K", "temperature of the environment"),
 )
 INPUT_DEFAULTS = (0.0, 0.0, 298.15)
-OUTPUTS = (  # one a port, conjugate to its input
+OUTPUTS = (  # one per port, conjugate to its input
     Record("load", "m/s", "velocity at force_source 'load'"),
     Record("supply", "A", "current out of voltage_source 'supply'"),
     Record("ambient", "K", "temperature of 'body'"),
@@ -59,7 +59,7 @@ PARAMETERS = (
     Record("q_l", "m", "rest position of the spring"),
     Record("d", "N*s/m", "damping"),
     Record("C", "F", "capacitance"),
-    Record("L", "H", "inductance of one hysteron", "hysteron"),  # bank: a value, or one a lane
+    Record("L", "H", "inductance of one hysteron", "hysteron"),  # bank: a value, or one per lane
     Record("rho", "ohm*K", "resistance law: slope rho/(T - T_0)", "hysteron"),
     Record("i_0", "A", "half width of the dead zone", "hysteron"),
     Record("a", "C/m", "transducer ratio at T_0"),
@@ -103,7 +103,7 @@ class Parameters:
 
 
 def _lanes(value, x):
-    """A bank's parameter, one value or one a lane, shaped to meet lanes of shape (r, *batch)."""
+    """A bank's parameter, one value or one per lane, shaped to meet lanes of shape (r, *batch)."""
     value = np.asarray(value, dtype=float)
     return value if value.ndim == 0 else value.reshape(-1, *(1,) * (x.ndim - 1))
 
@@ -195,7 +195,7 @@ def jacobian(x, u, p_, /):
 
 
 def outputs(x, u, p_, /):
-    """Conjugate outputs y, one a port, shape (3, *batch)."""
+    """Conjugate outputs y, one per port, shape (3, *batch)."""
     x, u, r = _unpack(x, u, p_)
     y = np.empty((3, *x.shape[1:]))
     y[0] = x[1] / p_.M
@@ -252,7 +252,7 @@ def heat(x, u, p_, /):
 
 
 def entropy_production(x, u, p_, /):
-    """Entropy produced by each process [W/K], a bank a row a lane; shape (r + 1, *batch)."""
+    """Entropy that each process produces [W/K], of a bank a row per lane; shape (r + 1, *batch)."""
     return heat(x, u, p_) / temperatures(x, p_)
 
 

@@ -25,7 +25,7 @@ def module():
 
 @st.composite
 def runs(draw):
-    """Draw a number of lanes; and of some runs M, and L for all lanes or one a lane."""
+    """Draw a number of lanes; and of some runs M, and L for all lanes or one per lane."""
     count = draw(st.integers(1, 4))
     inductances = NUMBERS | st.tuples(*[NUMBERS] * count)
     return count, draw(st.lists(st.tuples(NUMBERS, inductances), min_size=1, max_size=6))
@@ -76,7 +76,7 @@ def test_c_has_of_a_table_what_it_has_of_each_run(module, drawn, data):
 
 
 def values(module, structure, p):
-    """Return all numbers of a C structure: its parameters, those of banks one a lane, its sizes."""
+    """Return all numbers of a C structure: its parameters, of banks one per lane, its sizes."""
     found = []
     for n, record in enumerate(module.PARAMETERS):
         value = getattr(structure, f"field_{n}")

@@ -187,7 +187,7 @@ def test_starts_of_a_bank(start, law):
 def test_starts_of_the_wrong_length(start):
     message = refused_edit(("[initial]", f"[initial]\nphi = {start}"))
     assert message.startswith("spec: initial.phi: ")
-    assert message.endswith("values are given; expected 2 values, one a lane")
+    assert message.endswith("values are given; expected 2 values, one per lane")
 
 
 def test_a_list_of_starts_outside_a_bank():

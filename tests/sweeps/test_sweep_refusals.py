@@ -31,7 +31,7 @@ REFUSED = [
     ({"over": {"phi": [[0.0] * 3]}}, "sweep.over.phi[0]: 3 values for 2 lanes"),
     (
         {"over": {"L": [[1e-3] * 2], "hysteron_count": [1, 2]}},
-        "sweep.over.L[0]: 2 values for 1, 2 lanes; expected one a lane; zip both",
+        "sweep.over.L[0]: 2 values for 1, 2 lanes; expected one per lane; zip both",
     ),
     ({"over": {("L", "hysteron_count"): [([1, 1], 3)]}}, "2 values for 3 lanes"),
     ({"over": {"hysteron_count": [1, 0]}}, "sweep.over.hysteron_count[1]: '0' is not allowed"),

@@ -19,7 +19,7 @@ WIDTH = 96
 #: What functions do that the program does not describe.
 FUNCTIONS = {
     "states": "Number of states n",
-    "processes": "Number of rows of processes, a bank's one a lane",
+    "processes": "Number of rows of processes; of a bank, one per lane",
     "jacobian": "Derivative of rhs by the state, n x n, row after row",
     "margins": "Margin of each condition of the domain, least over lanes",
 }
@@ -93,9 +93,9 @@ def _parameters(program: Program) -> Iterator[str]:
     yield "typedef struct {"
     for field in program.parameters:
         value = program.defaults[field.name]
-        spec = "one a lane" if isinstance(value, tuple) else repr(value)
+        spec = "one per lane" if isinstance(value, tuple) else repr(value)
         name = f"*{names[field.name]}" if field.bank else names[field.name]
-        lane = f", one a lane of {field.bank}" if field.bank else ""
+        lane = f", one per lane of {field.bank}" if field.bank else ""
         renamed = f"{field.name}: " if names[field.name] != field.name else ""
         doc = f"{field.doc} " if field.doc else ""
         note = text_of(f"{renamed}{doc}[{field.unit}]{lane}; {spec}")

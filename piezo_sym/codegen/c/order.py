@@ -19,7 +19,7 @@ from piezo_sym.expressions.tree import Expr, LaneSum, names
 @final
 @dataclass(frozen=True)
 class Write:
-    """A value and where it goes: `target` is text; `bank` if there is one a lane.
+    """A value and where it goes: `target` is text; `bank` if there is one per lane.
 
     `how` is "=", "+=", or "min" for the least over the lanes.
     """

@@ -81,7 +81,7 @@ def _lane_sum(arg: Piece, bank: str) -> Piece:
 
 
 def c_style(names: Mapping[str, str], arrays: Mapping[str, str], index: str) -> Style:
-    """Return the spelling of expressions; `arrays` have a value a lane, picked by `index`.
+    """Return the spelling of expressions; `arrays` have a value per lane, picked by `index`.
 
     A choice is a call of ``pick``, so that the text also holds where numbers are vectors of many
     states.

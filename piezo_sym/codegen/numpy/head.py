@@ -18,7 +18,7 @@ STANDARD = ("from dataclasses import dataclass", "from typing import NamedTuple"
 MARK = "Made by piezo_sym"
 
 RECORDS = '''class Record(NamedTuple):
-    """A row of an array: name, SI unit, a line on it, and its bank if it stands for one a lane."""
+    """A row of an array: name, SI unit, a line on it, its bank if it stands for one per lane."""
 
     name: str
     unit: str
@@ -48,7 +48,7 @@ def _inputs(u):
         raise ValueError(f"u has shape {{u.shape}}, but there are {inputs} inputs")
     return u'''
 
-LANES_TYPE = "_Lanes = float | tuple[float, ...]  # a bank's parameter: one value, or one a lane"
+LANES_TYPE = "_Lanes = float | tuple[float, ...]  # a bank's parameter: one value, or one per lane"
 
 LANES = '''def _lanes(value, count, ndim):
     """Return a bank's parameter: a number, or values of shape (count,) or (count, *batch)."""

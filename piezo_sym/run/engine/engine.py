@@ -154,7 +154,7 @@ class Engine:
         return found.reshape(n, n, *found.shape[1:])
 
     def outputs(self, x: ArrayLike, u: ArrayLike, p: Any, /) -> FloatArray:
-        """Return one y a port, shape (ports, *batch)."""
+        """Return one y per port, shape (ports, *batch)."""
         return self._called("outputs", x, u, p, len(self.module.OUTPUTS))
 
     def supply(self, x: ArrayLike, u: ArrayLike, p: Any, /) -> FloatArray:

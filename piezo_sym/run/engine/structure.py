@@ -1,7 +1,7 @@
 """The parameters of a module as the C structure of its header.
 
 Input: a module's `Parameters`, or a `Table` of many.  Output: a `Structure`, or `Structures` one
-after another: numbers, then a pointer for each parameter of a bank to one number a lane, in the
+after another: numbers, then a pointer for each parameter of a bank to one number per lane, in the
 order of the spec, then the sizes of banks.
 """
 
@@ -127,9 +127,9 @@ def addresses(array: NDArray[Any]) -> NDArray[np.uintp]:
 
 
 def _rows(values: Column, count: int) -> FloatArray:
-    """Return one number a lane, a row each; a value is a number or one a lane."""
+    """Return one number per lane, a row each; a value is a number or one per lane."""
     try:
-        array = np.array(values, dtype=float)  # all of them numbers, or all one a lane
+        array = np.array(values, dtype=float)  # all of them numbers, or all one per lane
     except ValueError:
         return np.array([_spread(value, count) for value in values])
     if array.ndim == 1:
@@ -138,7 +138,7 @@ def _rows(values: Column, count: int) -> FloatArray:
 
 
 def _spread(value: Any, count: int) -> FloatArray:
-    """Return one number a lane."""
+    """Return one number per lane."""
     array = np.array(value, dtype=float)
     if array.ndim and array.shape != (count,):
         msg = f"a parameter of a bank of {count} lanes has {array.size} values"

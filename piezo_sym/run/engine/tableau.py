@@ -98,7 +98,7 @@ def _lanes(tables: dict[str, Any], lanes: int) -> dict[str, list[list[Any]]]:
 
 
 def _in_lanes(rows: list[list[Any]], lanes: int) -> list[list[Any]]:
-    """Return the columns of some rows at a time, one row a lane; lanes left over have zeros."""
+    """Return the columns of some rows at a time, one row per lane; lanes left over have zeros."""
     groups = [rows[n : n + lanes] for n in range(0, len(rows), lanes)]
     rest = [mp.mpf(0)] * lanes
     return [[*column, *rest][:lanes] for rows in groups for column in zip(*rows, strict=True)]

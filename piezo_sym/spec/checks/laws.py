@@ -96,7 +96,7 @@ def _check_initial(spec: Tables) -> None:
         count = sizes.get(known[symbol])
         if isinstance(start, tuple) and len(start) != count:
             expected = (
-                f"{count} values, one a lane" if count else "one value: no bank has this state"
+                f"{count} values, one per lane" if count else "one value: no bank has this state"
             )
             raise SpecError(f"{len(start)} values are given", where, expected)
         for part in start if isinstance(start, tuple) else (start,):
