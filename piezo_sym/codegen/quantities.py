@@ -15,7 +15,7 @@ import sympy as sp
 
 from piezo_sym.algebra.coefficients import coefficient
 from piezo_sym.algebra.lanes import LaneMatrix, Slot
-from piezo_sym.codegen.excess import with_excess
+from piezo_sym.codegen.expm1_difference import with_excess
 from piezo_sym.codegen.program import Quantity
 from piezo_sym.expressions.calculus import add, div, is_affine, mul, neg
 from piezo_sym.expressions.tree import (

@@ -14,7 +14,7 @@ from typing import TypeVar
 
 from piezo_sym.errors import SpecError, nearest, quote
 from piezo_sym.expressions.functions import FUNCTIONS
-from piezo_sym.expressions.lexis import (
+from piezo_sym.expressions.lexer import (
     LANGUAGE,
     MAX_DEPTH,
     MAX_MAGNITUDE,

@@ -20,7 +20,7 @@ from piezo_sym.proofs import balances, bodies, laws
 from piezo_sym.proofs.continuity import continuous
 from piezo_sym.proofs.divisors import divisors
 from piezo_sym.proofs.domain import defined, not_shown
-from piezo_sym.proofs.ground import Ground, Law, ground_of, on_warm_bodies
+from piezo_sym.proofs.assumptions import Ground, Law, ground_of, on_warm_bodies
 from piezo_sym.proofs.obligations import Obligation
 from piezo_sym.proofs.prove import prove
 from piezo_sym.proofs.published import published

@@ -30,7 +30,7 @@ from piezo_sym.expressions.tree import (
     names,
 )
 from piezo_sym.proofs.branches import TooManyBranchesError
-from piezo_sym.proofs.exactly import holds
+from piezo_sym.proofs.exact_eval import holds
 from piezo_sym.proofs.obligations import Question
 from piezo_sym.proofs.query import connected
 from piezo_sym.proofs.solvers import Answer, Asks

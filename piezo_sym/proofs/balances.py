@@ -17,7 +17,7 @@ from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ZERO, Cmp, Sym
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.branches import TooManyBranchesError
-from piezo_sym.proofs.ground import Ground
+from piezo_sym.proofs.assumptions import Ground
 from piezo_sym.proofs.laws import valued
 from piezo_sym.proofs.obligations import Obligation, Question, Residual
 from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, Resistor, Source, Storage

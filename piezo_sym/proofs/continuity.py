@@ -25,7 +25,7 @@ from piezo_sym.proofs.branches import (
     settled,
     with_choices,
 )
-from piezo_sym.proofs.ground import Ground, Law
+from piezo_sym.proofs.assumptions import Ground, Law
 from piezo_sym.proofs.laws import ask, too_many, valued
 from piezo_sym.proofs.obligations import Meeting, Obligation, Question
 

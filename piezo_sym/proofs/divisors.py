@@ -17,7 +17,7 @@ from piezo_sym.expressions.tree import replace as put
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import heated
 from piezo_sym.proofs.branches import TooManyBranchesError
-from piezo_sym.proofs.ground import Ground
+from piezo_sym.proofs.assumptions import Ground
 from piezo_sym.proofs.laws import on_branches, valued
 from piezo_sym.proofs.obligations import Obligation, Question
 from piezo_sym.spec.elements.ports import Conductor, Coupling, Resistor

@@ -13,8 +13,8 @@ from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import ONE, ZERO, Cmp, names, rename
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.branches import TooManyBranchesError
-from piezo_sym.proofs.exactly import Value, holds, value_of
-from piezo_sym.proofs.ground import Ground
+from piezo_sym.proofs.exact_eval import Value, holds, value_of
+from piezo_sym.proofs.assumptions import Ground
 from piezo_sym.proofs.laws import valued
 from piezo_sym.proofs.obligations import Obligation, Question
 from piezo_sym.proofs.solvers import Asks

@@ -12,7 +12,7 @@ from itertools import combinations, pairwise, product
 
 from piezo_sym.expressions.tree import Cmp, Expr, names
 from piezo_sym.proofs.branches import Branch
-from piezo_sym.proofs.exactly import TooCloseError, Value, holds, minus, sign_of, value_of
+from piezo_sym.proofs.exact_eval import TooCloseError, Value, holds, minus, sign_of, value_of
 from piezo_sym.proofs.obligations import Meeting
 
 #: How far from the point a branch is looked for.

@@ -23,7 +23,7 @@ from piezo_sym.expressions.tree import (
 from piezo_sym.expressions.tree import replace as substituted
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.branches import MOST, TooManyBranchesError, branches, partial
-from piezo_sym.proofs.ground import Ground, Law
+from piezo_sym.proofs.assumptions import Ground, Law
 from piezo_sym.proofs.obligations import Obligation, Question, SignOf
 from piezo_sym.proofs.reflection import reflected
 from piezo_sym.proofs.ties import ties

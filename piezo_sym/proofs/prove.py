@@ -17,15 +17,15 @@ from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import Cmp, Expr
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.asked import Asked, tried
-from piezo_sym.proofs.exactly import TooCloseError, holds, value_of
+from piezo_sym.proofs.exact_eval import TooCloseError, holds, value_of
 from piezo_sym.proofs.jumps import jumps
 from piezo_sym.proofs.meetings import needed
 from piezo_sym.proofs.obligations import Obligation, Question, Residual, SignOf
 from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.proofs.signs import Case
 from piezo_sym.proofs.solvers import Answer, Asks, opinions
-from piezo_sym.proofs.total import negative_total
-from piezo_sym.proofs.whole import whole_sign
+from piezo_sym.proofs.sigma_counterexample import negative_total
+from piezo_sym.proofs.sign_analysis import whole_sign
 from piezo_sym.spec.tables import condition_text
 
 #: Lanes a refutation is written out for; one lane hides what couples two.

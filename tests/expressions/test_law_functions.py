@@ -37,7 +37,7 @@ from piezo_sym.expressions.tree import (
     evaluate,
 )
 from piezo_sym.proofs.balls import smooth
-from piezo_sym.proofs.exactly import OUTCOMES, value_of
+from piezo_sym.proofs.exact_eval import OUTCOMES, value_of
 from piezo_sym.proofs.reflection import reflected
 from piezo_sym.proofs.signs import intervals, jets
 from tests.codegen.c_compilers import COMPILERS

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import Cmp
-from piezo_sym.proofs.exactly import TooCloseError, holds, sign_of, value_of
+from piezo_sym.proofs.exact_eval import TooCloseError, holds, sign_of, value_of
 from tests.proofs import law_oracle as oracle
 from tests.spec.spec_laws import laws, precise, steady
 

@@ -23,7 +23,7 @@ from piezo_sym.codegen.c.lines import (
 from piezo_sym.codegen.c.names import added, c_names
 from piezo_sym.codegen.c.order import Write, lane_quantities, stages
 from piezo_sym.codegen.c.style import helpers
-from piezo_sym.codegen.places import Places, places
+from piezo_sym.codegen.layout import Places, places
 from piezo_sym.codegen.program import (
     Entry,
     Function,

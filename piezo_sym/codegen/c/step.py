@@ -21,7 +21,7 @@ from piezo_sym.codegen.c.real import REAL, powers_of
 from piezo_sym.codegen.c.record import comment, give_text, place_text, record_text
 from piezo_sym.codegen.collocation import Collocation
 from piezo_sym.codegen.coupling import coupling_of, table
-from piezo_sym.codegen.places import Places, places
+from piezo_sym.codegen.layout import Places, places
 from piezo_sym.codegen.program import Field, Program, Quantity, Row, bank_of, needed
 from piezo_sym.expressions.tree import names
 

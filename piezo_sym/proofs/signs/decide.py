@@ -21,7 +21,7 @@ from piezo_sym.proofs.report import Verdict
 from piezo_sym.proofs.signs.certificate import Windows
 from piezo_sym.proofs.signs.enclosures import Window, enclose, value
 from piezo_sym.proofs.signs.intervals import INF
-from piezo_sym.proofs.signs.recentre import recentred
+from piezo_sym.proofs.signs.shift import recentred
 
 #: Derivatives on windows that are looked at before a decision is left open.
 BUDGET = 1000

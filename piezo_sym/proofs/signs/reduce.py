@@ -35,7 +35,7 @@ from piezo_sym.expressions.tree import (
     rebuild,
     walk,
 )
-from piezo_sym.proofs.exactly import value_of
+from piezo_sym.proofs.exact_eval import value_of
 from piezo_sym.proofs.signs.cases import Positive
 
 #: A product of powers: base -> exponent, none of them zero.

@@ -14,7 +14,7 @@ from typing import TypeAlias
 
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.tree import ONE, Add, Call, Div, Expr, Mul, Neg, Num, Pow, Sym
-from piezo_sym.proofs.exactly import value_of
+from piezo_sym.proofs.exact_eval import value_of
 
 #: part -> how often; the rational part stands at ONE, and no number of times is zero.
 Sum: TypeAlias = Mapping[Expr, Fraction]

@@ -16,8 +16,8 @@ from piezo_sym.algebra.sums import LaneSymbol
 from piezo_sym.errors import PiezoError
 from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Num, Sym
 from piezo_sym.iphs import IPHS
-from piezo_sym.proofs.exactly import holds
-from piezo_sym.proofs.ground import ground_of
+from piezo_sym.proofs.exact_eval import holds
+from piezo_sym.proofs.assumptions import ground_of
 from piezo_sym.proofs.obligations import Question
 from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.proofs.solvers import Asks
