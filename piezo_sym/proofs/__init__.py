@@ -17,10 +17,10 @@ from itertools import groupby
 
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs import balances, bodies, laws
+from piezo_sym.proofs.assumptions import Assumptions, Law, assumptions_of, on_warm_bodies
 from piezo_sym.proofs.continuity import continuous
 from piezo_sym.proofs.divisors import divisors
 from piezo_sym.proofs.domain import defined, not_shown
-from piezo_sym.proofs.assumptions import Ground, Law, ground_of, on_warm_bodies
 from piezo_sym.proofs.obligations import Obligation
 from piezo_sym.proofs.prove import prove
 from piezo_sym.proofs.published import published
@@ -49,7 +49,7 @@ def decide(iphs: IPHS) -> Report:
     """
     rows: list[Row] = []
     found, asked = obligations(iphs), opinions()
-    empty = not_shown(iphs, ground_of(iphs), asked) if found else ""
+    empty = not_shown(iphs, assumptions_of(iphs), asked) if found else ""
     for obligation in found:
         left = replace(obligation, open_because=empty) if empty else obligation
         rows.append(prove(left, iphs, rows, asked))
@@ -58,40 +58,42 @@ def decide(iphs: IPHS) -> Report:
 
 def obligations(iphs: IPHS) -> tuple[Obligation, ...]:
     """Return what has to be shown of a system, in an order in which each rests on earlier ones."""
-    ground = ground_of(iphs)
-    return tuple(on_warm_bodies(made.smooth(), ground) for made in _obligations(iphs, ground))
+    assumptions = assumptions_of(iphs)
+    return tuple(
+        on_warm_bodies(made.smooth(), assumptions) for made in _obligations(iphs, assumptions)
+    )
 
 
-def _obligations(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
+def _obligations(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
     yield from (balances.skew(iphs), balances.casimir(iphs))
-    yield from defined(iphs, ground)
-    yield from bodies.temperature(iphs, ground)
-    yield from divisors(iphs, ground)
+    yield from defined(iphs, assumptions)
+    yield from bodies.temperature(iphs, assumptions)
+    yield from divisors(iphs, assumptions)
     yield from (balances.energy(iphs), balances.entropy(iphs))
     for element, own in groupby(laws.laws_of(iphs), key=lambda law: law.element):
-        yield from _of_element(iphs, element, tuple(own), ground)
+        yield from _of_element(iphs, element, tuple(own), assumptions)
     yield balances.sigma(iphs)
-    yield from balances.exergy(iphs, ground)
-    yield from balances.environment(iphs, ground)
-    yield from bodies.invariant(iphs, ground)
+    yield from balances.exergy(iphs, assumptions)
+    yield from balances.environment(iphs, assumptions)
+    yield from bodies.invariant(iphs, assumptions)
 
 
 def _of_element(
-    iphs: IPHS, element: str, own: tuple[Law, ...], ground: Ground
+    iphs: IPHS, element: str, own: tuple[Law, ...], assumptions: Assumptions
 ) -> Iterator[Obligation]:
     """Yield what has to be shown of the laws of one element."""
     loose = next((law.letter for law in own if None in law.ties), "")
-    for made in _of_laws(iphs, element, own, ground):
+    for made in _of_laws(iphs, element, own, assumptions):
         yield replace(made, loose=loose)
 
 
 def _of_laws(
-    iphs: IPHS, element: str, own: tuple[Law, ...], ground: Ground
+    iphs: IPHS, element: str, own: tuple[Law, ...], assumptions: Assumptions
 ) -> Iterator[Obligation]:
-    yield from filter(None, [laws.welldef(own, ground)])
+    yield from filter(None, [laws.welldef(own, assumptions)])
     for law in own:
-        yield from filter(None, [continuous(law, ground)])
+        yield from filter(None, [continuous(law, assumptions)])
         if law.letter:
-            yield from (laws.passive(law, ground), laws.odd(law, ground))
+            yield from (laws.passive(law, assumptions), laws.odd(law, assumptions))
         elif iphs.model.elements[element].kind == "conduction":
-            yield laws.conducts(law, ground)
+            yield laws.conducts(law, assumptions)

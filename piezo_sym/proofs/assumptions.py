@@ -1,6 +1,6 @@
 """What may be assumed of a model: its domain, that temperatures are positive, what ties names.
 
-Input: an `IPHS`.  Output: a `Ground`; and the `Law` records that questions are about.
+Input: an `IPHS`.  Output: a `Assumptions`; and the `Law` records that questions are about.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class Law:
 
 @final
 @dataclass(frozen=True)
-class Ground:
+class Assumptions:
     """What questions about a model may assume, and the order of names in a witness.
 
     Attributes
@@ -61,14 +61,14 @@ class Ground:
     warm: tuple[tuple[str, tuple[str, str]], ...] = ()
     fixed: frozenset[str] = frozenset()
 
-    def about(self, *laws: Law) -> Ground:
-        """Return the ground for questions about laws, whose letters are names too."""
+    def about(self, *laws: Law) -> Assumptions:
+        """Return the assumptions for questions about laws, whose letters are names too."""
         letters = dict.fromkeys(law.letter for law in laws if law.letter)
         ties = [tie for law in laws for tie in law.ties if tie]
         return replace(self, order=(*self.order, *letters), where=(*self.where, *ties))
 
 
-def ground_of(iphs: IPHS) -> Ground:
+def assumptions_of(iphs: IPHS) -> Assumptions:
     """Return the domain of a model, and that temperatures are positive (row ``temperature``)."""
     trees = tuple(condition.tree for condition in conditions(iphs.model))
     placed = tuple(iphs.circuit.of(Body))
@@ -84,7 +84,7 @@ def ground_of(iphs: IPHS) -> Ground:
         if port.state in used or not _is_exponential(port.law)
     )
     texts, fixed = tuple(map(condition_text, trees)), frozenset(iphs.model.parameters)
-    return Ground((*trees, *warm, *ties), order, texts, rows, fixed)
+    return Assumptions((*trees, *warm, *ties), order, texts, rows, fixed)
 
 
 def _is_exponential(law: Expr) -> bool:
@@ -95,10 +95,10 @@ def _is_exponential(law: Expr) -> bool:
     return False
 
 
-def on_warm_bodies(obligation: Obligation, ground: Ground) -> Obligation:
+def on_warm_bodies(obligation: Obligation, assumptions: Assumptions) -> Obligation:
     """Return an obligation that rests on the temperatures its questions speak of."""
     if obligation.id == "temperature":
         return obligation
     used = {name for question in obligation.questions for name in question.words}
-    rows = tuple(row for word, row in ground.warm if word in used)
+    rows = tuple(row for word, row in assumptions.warm if word in used)
     return replace(obligation, rests_on=(*obligation.rests_on, *rows))

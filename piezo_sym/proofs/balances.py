@@ -16,8 +16,8 @@ from piezo_sym.algebra.lanes import LaneMatrix
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ZERO, Cmp, Sym
 from piezo_sym.iphs import IPHS
+from piezo_sym.proofs.assumptions import Assumptions
 from piezo_sym.proofs.branches import TooManyBranchesError
-from piezo_sym.proofs.assumptions import Ground
 from piezo_sym.proofs.laws import valued
 from piezo_sym.proofs.obligations import Obligation, Question, Residual
 from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, Resistor, Source, Storage
@@ -81,7 +81,7 @@ def premises(iphs: IPHS) -> tuple[tuple[str, str], ...]:
     return (*bodies, *laws)
 
 
-def exergy(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
+def exergy(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
     """Yield the balance of U - T_e S, if there is an environment, at one constant T_e."""
     exchanges = tuple(iphs.circuit.of(Exchange))
     if not exchanges:
@@ -97,14 +97,14 @@ def exergy(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
         "",
         "d(U - T_e S)/dt <= 0 where other inputs are 0, T_e constant",
         r"\frac{d}{dt}(U - T_e S) = -T_e\,\sigma - \lambda (T - T_e)^2/T \le 0",
-        ground.texts,
+        assumptions.texts,
         residuals=(Residual("d(U - T_e S)/dt + T_e sigma + lam (T - T_e)^2/T", residual),),
         rests_on=(("sigma", ""),),
     )
-    yield _with_cooling(made, iphs, ground)
+    yield _with_cooling(made, iphs, assumptions)
 
 
-def environment(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
+def environment(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
     """Yield the production of the system and its environment together, if there is one."""
     if not any(True for _ in iphs.circuit.of(Exchange)):
         return
@@ -118,11 +118,11 @@ def environment(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
         "",
         "sigma + lam (T_e - T)^2/(T T_e) >= 0, environment counted",
         r"\sigma + \lambda (T_e - T)^2/(T\,T_e) \ge 0",
-        ground.texts,
+        assumptions.texts,
         residuals=(residual,),
         rests_on=(("sigma", ""),),
     )
-    yield _with_cooling(made, iphs, ground)
+    yield _with_cooling(made, iphs, assumptions)
 
 
 def _exchanges(iphs: IPHS) -> Iterator[tuple[sp.Expr, sp.Symbol, sp.Symbol]]:
@@ -133,22 +133,22 @@ def _exchanges(iphs: IPHS) -> Iterator[tuple[sp.Expr, sp.Symbol, sp.Symbol]]:
         yield conductance, iphs.symbols[temperature], iphs.symbols[port.input]
 
 
-def _with_cooling(made: Obligation, iphs: IPHS, ground: Ground) -> Obligation:
+def _with_cooling(made: Obligation, iphs: IPHS, assumptions: Assumptions) -> Obligation:
     try:
-        return replace(made, questions=tuple(_cooling(iphs, ground)))
+        return replace(made, questions=tuple(_cooling(iphs, assumptions)))
     except TooManyBranchesError:
         reason = "a conductance has too many branches; use fewer kinks"
         return replace(made, open_because=reason)
 
 
-def _cooling(iphs: IPHS, ground: Ground) -> Iterator[Question]:
+def _cooling(iphs: IPHS, assumptions: Assumptions) -> Iterator[Question]:
     """Yield what heat exchange needs: a conductance that is not negative, a T_e above zero."""
     for placed, port in iphs.circuit.of(Exchange):
         warm, conducts = Cmp(">", Sym(port.input), ZERO), Cmp(">=", port.conductance, ZERO)
-        yield from valued(port.conductance, ground)
+        yield from valued(port.conductance, assumptions)
         label = f"{spell(port.conductance)} >= 0 ({placed.element})"
-        yield Question(label, ground.order, ground.where, conducts, conducts)
-        yield Question(f"{port.input} > 0", ground.order, ground.where, warm, warm)
+        yield Question(label, assumptions.order, assumptions.where, conducts, conducts)
+        yield Question(f"{port.input} > 0", assumptions.order, assumptions.where, warm, warm)
 
 
 def _gradient(iphs: IPHS) -> Iterator[Residual]:

@@ -12,8 +12,8 @@ from piezo_sym.expressions.calculus import add, derivative, div, mul, neg
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Expr, Sym, names, rename
 from piezo_sym.iphs import IPHS
+from piezo_sym.proofs.assumptions import Assumptions
 from piezo_sym.proofs.branches import TooManyBranchesError
-from piezo_sym.proofs.assumptions import Ground
 from piezo_sym.proofs.laws import on_branches, valued
 from piezo_sym.proofs.obligations import Obligation, Question
 from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, Resistor
@@ -21,16 +21,16 @@ from piezo_sym.spec.names import fresh
 from piezo_sym.spec.tables import conditions, greater
 
 
-def temperature(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
+def temperature(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
     """Yield for each body that its temperature is positive and rises with its entropy."""
     domain = tuple(condition.tree for condition in conditions(iphs.model))
     for placed, port in iphs.circuit.of(Body):
         law = rename(port.law, {port.letter: port.state})
         here = Cmp("=", Sym(port.temperature), law)
         where = (*domain, here) if port.temperature in _names(domain) else domain
-        within = replace(ground, where=where)
+        within = replace(assumptions, where=where)
         statement, latex = "T > 0 and dT/dS > 0", r"T > 0,\quad \partial T/\partial S > 0"
-        made = Obligation("temperature", placed.element, statement, latex, ground.texts)
+        made = Obligation("temperature", placed.element, statement, latex, assumptions.texts)
         slope = derivative(law, port.state)
         try:
             questions = (
@@ -50,12 +50,12 @@ def _names(trees: tuple[Cmp, ...]) -> set[str]:
     return {name for tree in trees for name in names(tree)}
 
 
-def _positive(label: str, law: Expr, ground: Ground) -> tuple[Question, ...]:
+def _positive(label: str, law: Expr, assumptions: Assumptions) -> tuple[Question, ...]:
     claim = Cmp(">", law, ZERO)
-    return on_branches(law, Question(label, ground.order, ground.where, claim, claim))
+    return on_branches(law, Question(label, assumptions.order, assumptions.where, claim, claim))
 
 
-def invariant(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
+def invariant(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
     """Yield that a body's temperature stays above its floor, if it has one and an environment.
 
     The coldest body only gains from processes and conduction; where T <= m < T_e, heat exchange
@@ -77,8 +77,8 @@ def invariant(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
             placed.element,
             f"{spell(floor)} < T <= m < T_e{others}: dS/dt >= lam*(T_e/m - 1) >= 0",
             r"T_0 < T \le m < T_e \Rightarrow \dot S \ge \lambda (T_e/m - 1) \ge 0",
-            ground.texts,
-            questions=tuple(_gains(port, exchanges, contacts, ground)),
+            assumptions.texts,
+            questions=tuple(_gains(port, exchanges, contacts, assumptions)),
             rests_on=(*warm, *laws),
             required=False,
         )
@@ -96,21 +96,21 @@ def _gains(
     port: Body,
     exchanges: list[Exchange],
     contacts: tuple[tuple[Expr, Sym], ...],
-    ground: Ground,
+    assumptions: Assumptions,
 ) -> Iterator[Question]:
     """Yield that warmer neighbours bring entropy, and heat exchange at least as much as at m."""
-    T, m = Sym(port.temperature), Sym(fresh("m", ground.order))
+    T, m = Sym(port.temperature), Sym(fresh("m", assumptions.order))
     for conductance, other in contacts:
         claim = Cmp(">=", mul(conductance, add(div(other, T), neg(ONE))), ZERO)
         colder = Cmp("<=", T, other)
         label = f"conduction from {other.name} brings entropy"
-        yield Question(label, ground.order, (*ground.where, colder), claim, claim)
+        yield Question(label, assumptions.order, (*assumptions.where, colder), claim, claim)
     for exchange in exchanges:
         hot, lam = Sym(exchange.input), exchange.conductance
         between = (Cmp("<=", T, m), Cmp("<", m, hot))
-        order = (*ground.order, m.name)
+        order = (*assumptions.order, m.name)
         brought = [mul(lam, add(div(hot, at), neg(ONE))) for at in (T, m)]
         least = Cmp(">=", brought[0], brought[1])
         gain = Cmp(">=", brought[1], ZERO)
         for label, claim in (("at T at least as at m", least), ("at m not negative", gain)):
-            yield Question(label, order, (*ground.where, *between), claim, claim)
+            yield Question(label, order, (*assumptions.where, *between), claim, claim)

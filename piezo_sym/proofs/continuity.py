@@ -15,6 +15,7 @@ from itertools import combinations
 from piezo_sym.expressions.calculus import add, neg
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import Call, Cmp, Expr, If, knots, names, walk
+from piezo_sym.proofs.assumptions import Assumptions, Law
 from piezo_sym.proofs.branches import (
     KINKED,
     Branch,
@@ -25,7 +26,6 @@ from piezo_sym.proofs.branches import (
     settled,
     with_choices,
 )
-from piezo_sym.proofs.assumptions import Ground, Law
 from piezo_sym.proofs.laws import ask, too_many, valued
 from piezo_sym.proofs.obligations import Meeting, Obligation, Question
 
@@ -34,7 +34,7 @@ MOST = 60
 RELAXED = {"<": "<=", ">": ">="}
 
 
-def continuous(law: Law, ground: Ground) -> Obligation | None:
+def continuous(law: Law, assumptions: Assumptions) -> Obligation | None:
     """State that a law has no jump; None if it has no edge to jump at, or jumps on purpose.
 
     An edge is where states, inputs or temperatures choose another branch: a branch chosen by
@@ -42,30 +42,34 @@ def continuous(law: Law, ground: Ground) -> Obligation | None:
     """
     statement = f"{law.name} has no jump where its branches meet"
     latex = r"W_k(z^-) = W_k(z^+)"
-    made = Obligation("continuous", law.element, statement, latex, ground.texts)
-    ground = ground.about(law)
-    edges = [c for c in choices(with_choices(law.tree)) if not {*names(c)} <= ground.fixed]
+    made = Obligation("continuous", law.element, statement, latex, assumptions.texts)
+    assumptions = assumptions.about(law)
+    edges = [c for c in choices(with_choices(law.tree)) if not {*names(c)} <= assumptions.fixed]
     if law.jumps or not edges:
         return None
     try:
         if not _chooses(law.tree):
-            asked = law.letter or valued(law.tree, ground)  # else knots are numbers that increase
+            asked = law.letter or valued(
+                law.tree, assumptions
+            )  # else knots are numbers that increase
             return replace(made, rests_on=(("welldef", law.element),) if asked else ())
-        found = branches(law.tree, ground.where)
+        found = branches(law.tree, assumptions.where)
     except TooManyBranchesError:
         return replace(made, open_because=too_many(law))
     if len(found) > MOST:
         reason = f"the law of {law.element} has {len(found)} branches, too many to compare in pairs"
         return replace(made, open_because=f"{reason}; use fewer kinks")
-    tree = settled(law.tree, ground.where)
+    tree = settled(law.tree, assumptions.where)
     questions = [
         question
         for one, other in combinations(found, 2)
-        if one.value != other.value and not _apart(one, other, ground)
-        for question in _meeting(Meeting(tree, (one, other), ground.where, ground.fixed), ground)
+        if one.value != other.value and not _apart(one, other, assumptions)
+        for question in _meeting(
+            Meeting(tree, (one, other), assumptions.where, assumptions.fixed), assumptions
+        )
     ]
     whole = Cmp("=", law.tree, law.tree)
-    covered = Question(statement, ground.order, ground.where, whole, whole).covered(found)
+    covered = Question(statement, assumptions.order, assumptions.where, whole, whole).covered(found)
     return replace(made, questions=(*dict.fromkeys(questions), *([covered] * (len(found) > 1))))
 
 
@@ -78,27 +82,27 @@ def _chooses(law: Expr) -> bool:
     return any(isinstance(n, If) or n.function in KINKED for n in kinks)
 
 
-def _apart(one: Branch, other: Branch, ground: Ground) -> bool:
+def _apart(one: Branch, other: Branch, assumptions: Assumptions) -> bool:
     """Return whether two branches are chosen by parameters alone, so that they never meet."""
     return any(
-        opposite(condition) in other.conditions and {*names(condition)} <= ground.fixed
+        opposite(condition) in other.conditions and {*names(condition)} <= assumptions.fixed
         for condition in one.conditions
     )
 
 
-def _meeting(meeting: Meeting, ground: Ground) -> Iterator[Question]:
+def _meeting(meeting: Meeting, assumptions: Assumptions) -> Iterator[Question]:
     """Yield the questions whether two branches have values, and the same, where they meet."""
     one, other = meeting.sides
     found: list[Question] = []
-    where, border = ground.where, tuple(_border(one, other, ground.fixed))
+    where, border = assumptions.where, tuple(_border(one, other, assumptions.fixed))
     for condition in border:
-        where = (*ask(found, condition, where, ground), condition)
-    where = ask(found, add(one.value, neg(other.value)), where, ground)
+        where = (*ask(found, condition, where, assumptions), condition)
+    where = ask(found, add(one.value, neg(other.value)), where, assumptions)
     claim = Cmp("=", one.value, other.value)
     edge = next(c for c in border if c.op == "=")
     at = f"{spell(edge.left)} = {spell(edge.right)}"
     label = f"{spell(one.value)} = {spell(other.value)} at {at}"
-    found.append(Question(label, ground.order, where, claim, claim))
+    found.append(Question(label, assumptions.order, where, claim, claim))
     for question in found:
         yield replace(question, branch=border, meeting=meeting)
 

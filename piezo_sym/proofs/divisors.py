@@ -16,8 +16,8 @@ from piezo_sym.expressions.tree import ZERO, Cmp, Expr, Neg, rename
 from piezo_sym.expressions.tree import replace as put
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import heated
+from piezo_sym.proofs.assumptions import Assumptions
 from piezo_sym.proofs.branches import TooManyBranchesError
-from piezo_sym.proofs.assumptions import Ground
 from piezo_sym.proofs.laws import on_branches, valued
 from piezo_sym.proofs.obligations import Obligation, Question
 from piezo_sym.spec.elements.ports import Conductor, Coupling, Resistor
@@ -25,26 +25,28 @@ from piezo_sym.spec.elements.ports import Conductor, Coupling, Resistor
 MOST_TEXT = 60
 
 
-def divisors(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
+def divisors(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
     """Yield for each expression that the junction laws divide by that it is not zero."""
     words = dict(_words(iphs))
     for divisor in iphs.junction.divisors:
-        yield _obligation(divisor, words, ground)
+        yield _obligation(divisor, words, assumptions)
 
 
-def _obligation(divisor: sp.Expr, words: Mapping[str, Expr], ground: Ground) -> Obligation:
+def _obligation(
+    divisor: sp.Expr, words: Mapping[str, Expr], assumptions: Assumptions
+) -> Obligation:
     form = coefficient(divisor)
     form = form.arg if isinstance(form, Neg) else form
     text = spell(form)
     short = text if len(text) <= MOST_TEXT else f"{text[: MOST_TEXT - 3]}..."
     statement = f"{short} != 0: the junction laws divide by it"
     latex = r"\det \ne 0"
-    made = Obligation("welldef", "", statement, latex, ground.texts)
+    made = Obligation("welldef", "", statement, latex, assumptions.texts)
     law = put(form, words)
     claim = Cmp("!=", law, ZERO)
-    question = Question(f"{short} != 0", ground.order, ground.where, claim, claim)
+    question = Question(f"{short} != 0", assumptions.order, assumptions.where, claim, claim)
     try:
-        found = (*valued(law, ground), *on_branches(law, question))
+        found = (*valued(law, assumptions), *on_branches(law, question))
     except TooManyBranchesError:
         return replace(made, open_because=f"{short} has too many branches; use fewer kinks")
     return replace(made, questions=tuple(dict.fromkeys(found)))

@@ -12,9 +12,9 @@ from fractions import Fraction
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import ONE, ZERO, Cmp, names, rename
 from piezo_sym.iphs import IPHS
+from piezo_sym.proofs.assumptions import Assumptions
 from piezo_sym.proofs.branches import TooManyBranchesError
 from piezo_sym.proofs.exact_eval import Value, holds, value_of
-from piezo_sym.proofs.assumptions import Ground
 from piezo_sym.proofs.laws import valued
 from piezo_sym.proofs.obligations import Obligation, Question
 from piezo_sym.proofs.solvers import Asks
@@ -22,21 +22,21 @@ from piezo_sym.spec.elements.ports import Body
 from piezo_sym.spec.tables import conditions, states
 
 
-def defined(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
+def defined(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
     """Yield that each condition of the domain has a value where those before it hold.
 
     Conditions that always have a value come first: all of them have to hold, in whatever order.
     """
     trees = [condition.tree for condition in conditions(iphs.model)]
-    ties = tuple(c for c in ground.where if c.op == "=")
+    ties = tuple(c for c in assumptions.where if c.op == "=")
     statement, latex = "the domain: each condition has a value", r"\mathcal{D}"
-    made = Obligation("welldef", "", statement, latex, ground.texts)
+    made = Obligation("welldef", "", statement, latex, assumptions.texts)
     try:
-        partial = [tree for tree in trees if valued(tree, replace(ground, where=ties))]
+        partial = [tree for tree in trees if valued(tree, replace(assumptions, where=ties))]
         known = [tree for tree in trees if tree not in partial]
         found: list[Question] = []
         for tree in partial:
-            found += valued(tree, replace(ground, where=(*known, *ties)))
+            found += valued(tree, replace(assumptions, where=(*known, *ties)))
             known.append(tree)
     except TooManyBranchesError:
         yield replace(made, open_because="the domain has too many branches; use fewer kinks")
@@ -45,32 +45,34 @@ def defined(iphs: IPHS, ground: Ground) -> Iterator[Obligation]:
         yield replace(made, questions=tuple(dict.fromkeys(found)))
 
 
-def not_shown(iphs: IPHS, ground: Ground, solver: Asks) -> str:
+def not_shown(iphs: IPHS, assumptions: Assumptions, solver: Asks) -> str:
     """Return what to say of a domain that no point is known to be in; else nothing.
 
     The spec's own values are a point of it; where that is too close to tell, the solver looks for
     another.  Both are evaluated exactly.
     """
-    if _inside(ground, _own_values(iphs)):
+    if _inside(assumptions, _own_values(iphs)):
         return ""
     never = Cmp("<", ONE, ZERO)
-    question = Question("the domain is empty", ground.order, ground.where, never, never, whole=True)
+    question = Question(
+        "the domain is empty", assumptions.order, assumptions.where, never, never, whole=True
+    )
     answer = solver.ask(question.query())
-    if answer.result == "sat" and _inside(ground, (answer.model,)):
+    if answer.result == "sat" and _inside(assumptions, (answer.model,)):
         return ""
-    given = ", ".join(ground.texts)
+    given = ", ".join(assumptions.texts)
     if answer.result == "unsat":
         return f"no point is in the domain, where all is true: {given}"
     return f"no point is known to be in the domain: {given}"
 
 
-def _inside(ground: Ground, points: tuple[Mapping[str, Value], ...]) -> bool:
+def _inside(assumptions: Assumptions, points: tuple[Mapping[str, Value], ...]) -> bool:
     """Return whether every point is certainly in the domain."""
     try:
         return bool(points) and all(
             holds(condition, point)
             for point in points
-            for condition in ground.where
+            for condition in assumptions.where
             if condition.op != "="  # what ties a temperature to its entropy holds by its value
         )
     except (ArithmeticError, ValueError, KeyError):

@@ -22,8 +22,8 @@ from piezo_sym.expressions.tree import (
 )
 from piezo_sym.expressions.tree import replace as substituted
 from piezo_sym.iphs import IPHS
+from piezo_sym.proofs.assumptions import Assumptions, Law
 from piezo_sym.proofs.branches import MOST, TooManyBranchesError, branches, partial
-from piezo_sym.proofs.assumptions import Ground, Law
 from piezo_sym.proofs.obligations import Obligation, Question, SignOf
 from piezo_sym.proofs.reflection import reflected
 from piezo_sym.proofs.ties import ties
@@ -73,25 +73,25 @@ def _law(iphs: IPHS, placed: Placed, heat: dict[str, str]) -> Law | None:
             return None
 
 
-def welldef(laws: tuple[Law, ...], ground: Ground) -> Obligation | None:
+def welldef(laws: tuple[Law, ...], assumptions: Assumptions) -> Obligation | None:
     """State that the laws of one element have values everywhere; None if they cannot lack one."""
     named = " and ".join(dict.fromkeys(law.name for law in laws))
     statement = f"{named}: a real value everywhere"
     element, latex = laws[0].element, r"W_k \in \mathbb{R}"
-    made = Obligation("welldef", element, statement, latex, ground.texts)
-    ground = ground.about(*laws)
+    made = Obligation("welldef", element, statement, latex, assumptions.texts)
+    assumptions = assumptions.about(*laws)
     try:
-        found = [question for law in laws for question in valued(law.tree, ground)]
+        found = [question for law in laws for question in valued(law.tree, assumptions)]
         for written in (law.written for law in laws if law.written):
-            order = dict.fromkeys((*ground.order, *names(written)))
-            found += valued(written, replace(ground, order=tuple(order)))
+            order = dict.fromkeys((*assumptions.order, *names(written)))
+            found += valued(written, replace(assumptions, order=tuple(order)))
     except TooManyBranchesError:
         return replace(made, open_because=too_many(laws[0]))
     needed = found or any(law.letter for law in laws)
     return replace(made, questions=tuple(dict.fromkeys(found))) if needed else None
 
 
-def valued(law: Expr | Cmp, ground: Ground) -> tuple[Question, ...]:
+def valued(law: Expr | Cmp, assumptions: Assumptions) -> tuple[Question, ...]:
     """Return the questions whether a law, or both sides of a comparison, have a value everywhere.
 
     Each part is asked about where it is evaluated: under the conditions around it alone; of a table
@@ -103,19 +103,19 @@ def valued(law: Expr | Cmp, ground: Ground) -> tuple[Question, ...]:
         If the law has too many branches.
     """
     tree = Call("together", (law.left, law.right)) if isinstance(law, Cmp) else law
-    pieces = branches(tree, ground.where)
+    pieces = branches(tree, assumptions.where)
     found: list[Question] = []
     for order in increasing(law):
-        found += valued(order, ground)
+        found += valued(order, assumptions)
         label = f"{condition_text(order)} in a table"
-        found.append(Question(label, ground.order, ground.where, order, order))
+        found.append(Question(label, assumptions.order, assumptions.where, order, order))
     for branch in pieces:
-        where = ground.where
+        where = assumptions.where
         for part in (*branch.conditions, branch.value):
-            where = ask(found, part, where, ground, law)
+            where = ask(found, part, where, assumptions, law)
             where = (*where, part) if isinstance(part, Cmp) else where
     if found and len(pieces) > 1:
-        found.append(replace(found[0], where=ground.where, branch=()).covered(pieces))
+        found.append(replace(found[0], where=assumptions.where, branch=()).covered(pieces))
     return tuple(dict.fromkeys(found))
 
 
@@ -123,33 +123,33 @@ def ask(
     found: list[Question],
     node: Node,
     where: tuple[Cmp, ...],
-    ground: Ground,
+    assumptions: Assumptions,
     law: Expr | Cmp | None = None,
 ) -> tuple[Cmp, ...]:
     """Add the questions whether `node` has a value; return what is then known."""
     for claim in partial(node):
         label = f"{spell(claim.left)} {claim.op} 0"
-        branch = where[len(ground.where) :]
-        found.append(Question(label, ground.order, where, claim, claim, branch, law=law))
+        branch = where[len(assumptions.where) :]
+        found.append(Question(label, assumptions.order, where, claim, claim, branch, law=law))
         where = (*where, claim)
     return where
 
 
-def passive(law: Law, ground: Ground) -> Obligation:
+def passive(law: Law, assumptions: Assumptions) -> Obligation:
     """State that a dissipative law takes power in: its output times its letter is not negative."""
     power = f"{law.name}*{law.letter}"
-    ground = ground.about(law)
+    assumptions = assumptions.about(law)
     made = Obligation(
         "passive",
         law.element,
         f"{power} >= 0",
         r"W_k z_k \ge 0",
-        ground.texts,
+        assumptions.texts,
         rests_on=(("welldef", law.element),),
-        sign=SignOf(law.tree, law.letter, ground.where),
+        sign=SignOf(law.tree, law.letter, assumptions.where),
     )
     claim = Cmp(">=", mul(law.tree, Sym(law.letter)), ZERO)
-    question = Question(f"{power} >= 0", ground.order, ground.where, claim, claim)
+    question = Question(f"{power} >= 0", assumptions.order, assumptions.where, claim, claim)
     return replace(made, questions=on_branches(law.tree, question, law.letter))
 
 
@@ -182,28 +182,30 @@ def on_branches(law: Expr, question: Question, letter: str = "") -> tuple[Questi
     return (*found, question.covered(pieces)) if len(pieces) > 1 else tuple(found)
 
 
-def conducts(law: Law, ground: Ground) -> Obligation:
+def conducts(law: Law, assumptions: Assumptions) -> Obligation:
     """State that heat flows from the warmer body to the colder one."""
     claim = Cmp(">=", law.tree, ZERO)
-    question = Question(f"{spell(law.tree)} >= 0", ground.order, ground.where, claim, claim)
+    question = Question(
+        f"{spell(law.tree)} >= 0", assumptions.order, assumptions.where, claim, claim
+    )
     statement = f"{spell(law.tree)} >= 0: heat flows from warm to cold"
-    made = Obligation("passive", law.element, statement, r"\lambda \ge 0", ground.texts)
+    made = Obligation("passive", law.element, statement, r"\lambda \ge 0", assumptions.texts)
     try:
-        found = valued(law.tree, ground)
+        found = valued(law.tree, assumptions)
     except TooManyBranchesError:
         return replace(made, open_because=too_many(law))
     return replace(made, questions=(*found, *on_branches(law.tree, question)))
 
 
-def odd(law: Law, ground: Ground) -> Obligation:
+def odd(law: Law, assumptions: Assumptions) -> Obligation:
     """State that a law is odd, which allows the mean law of the discrete gradient."""
-    ground = ground.about(law)
+    assumptions = assumptions.about(law)
     made = Obligation(
         "odd",
         law.element,
         f"{law.name}(-{law.letter}) = -{law.name}({law.letter})",
         "W_k(-z_k) = -W_k(z_k)",
-        ground.texts,
+        assumptions.texts,
         rests_on=(("welldef", law.element),),
         letter=law.letter,
         required=False,
@@ -216,11 +218,11 @@ def odd(law: Law, ground: Ground) -> Obligation:
         return replace(made, open_because=f"the law of {law.element} divides by zero")
     claim = Cmp("=", total, ZERO)
     original = Cmp("=", law.tree, neg(turned))
-    question = Question(made.statement, ground.order, ground.where, claim, original)
+    question = Question(made.statement, assumptions.order, assumptions.where, claim, original)
     mirror = substituted(law.tree, {law.letter: neg(Sym(law.letter))})
     try:  # the mirrored law has values, too: `welldef` is about those that the letter takes
-        found = valued(mirror, ground) if law.ties else ()
-        branches(total, ground.where)  # or there are too many
+        found = valued(mirror, assumptions) if law.ties else ()
+        branches(total, assumptions.where)  # or there are too many
     except TooManyBranchesError:
         return replace(made, open_because=too_many(law))
     mirrored = on_branches(total, question) if total != ZERO else ()

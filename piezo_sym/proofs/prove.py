@@ -22,10 +22,10 @@ from piezo_sym.proofs.jumps import jumps
 from piezo_sym.proofs.meetings import needed
 from piezo_sym.proofs.obligations import Obligation, Question, Residual, SignOf
 from piezo_sym.proofs.report import Row, Verdict
-from piezo_sym.proofs.signs import Case
-from piezo_sym.proofs.solvers import Answer, Asks, opinions
 from piezo_sym.proofs.sigma_counterexample import negative_total
 from piezo_sym.proofs.sign_analysis import whole_sign
+from piezo_sym.proofs.signs import Case
+from piezo_sym.proofs.solvers import Answer, Asks, opinions
 from piezo_sym.spec.tables import condition_text
 
 #: Lanes a refutation is written out for; one lane hides what couples two.

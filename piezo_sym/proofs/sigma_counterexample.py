@@ -16,8 +16,8 @@ from piezo_sym.algebra.sums import LaneSymbol
 from piezo_sym.errors import PiezoError
 from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Num, Sym
 from piezo_sym.iphs import IPHS
+from piezo_sym.proofs.assumptions import assumptions_of
 from piezo_sym.proofs.exact_eval import holds
-from piezo_sym.proofs.assumptions import ground_of
 from piezo_sym.proofs.obligations import Question
 from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.proofs.solvers import Asks
@@ -89,16 +89,16 @@ def _named(iphs: IPHS, expr: sp.Expr) -> sp.Expr:
 
 def _point(iphs: IPHS, port: Resistor | Conductor, given: Values, solver: Asks) -> Values | None:
     """Return simple numbers of the domain, with those given, for parameters and temperatures."""
-    ground, letter = ground_of(iphs), getattr(port, "letter", "")
-    where = [*ground.where]
+    assumptions, letter = assumptions_of(iphs), getattr(port, "letter", "")
+    where = [*assumptions.where]
     where += [Cmp("=", Sym(n), Num(v)) for n, v in given.items() if n != letter]
     if isinstance(port, Conductor):
         hot, cold = (iphs.circuit.body(b).temperature for b in (port.first, port.second))
         where.append(Cmp(">", Sym(hot), Sym(cold)))
-    wanted = tuple(n for n in ground.order if n not in states(iphs.model))
+    wanted = tuple(n for n in assumptions.order if n not in states(iphs.model))
     about = tuple(Cmp("=", Sym(n), Sym(n)) for n in wanted)
     claim = Cmp("<", ONE, ZERO)
-    made = Question("", ground.order, tuple(where), claim, claim, about, witness=True)
+    made = Question("", assumptions.order, tuple(where), claim, claim, about, witness=True)
     answer = solver.ask(made.query())
     return {n: answer.model[n] for n in wanted} if answer.result == "sat" else None
 
@@ -129,7 +129,7 @@ def _allowed(iphs: IPHS, sigma: sp.Expr, values: Mapping[sp.Symbol, sp.Expr]) ->
     """Return whether numbers lie in the domain, and every co-state in sigma can have its value."""
     exact = {s.name: Fraction(int(v.p), int(v.q)) for s, v in values.items()}
     try:
-        inside = all(holds(condition, exact) for condition in ground_of(iphs).where)
+        inside = all(holds(condition, exact) for condition in assumptions_of(iphs).where)
     except (ArithmeticError, ValueError, KeyError):
         return False
     return inside and all(

@@ -12,7 +12,7 @@ whether the domain has values is not asked
   = d*v | d > 0; sqrt(a/d) >= 0 | a=1.0
 ## proofs/continuity
 branches never meet
-  - opposite(condition) in other.conditions and {*names(condition)} <= ground.fixed
+  - opposite(condition) in other.conditions and {*names(condition)} <= assumptions.fixed
   + opposite(condition) in other.conditions
   = d*v if v < v_1 else 2*d*v | d > 0; v_1 > 0
 each branch agrees with itself
@@ -32,8 +32,8 @@ branches meet where a side is zero
   + yield Cmp("=", condition.left, add(condition.left, neg(condition.left)))
   = d*v if v < v_1 else 2*d*v | d > 0; v_1 > 0
 edges of parameters are all
-  - if not {*names(c)} <= ground.fixed]
-  + if {*names(c)} <= ground.fixed]
+  - if not {*names(c)} <= assumptions.fixed]
+  + if {*names(c)} <= assumptions.fixed]
   = d*v if v < v_1 else 2*d*v | d > 0; v_1 > 0
 ## proofs/meetings
 no branch is ever taken
@@ -70,8 +70,8 @@ conditions have values everywhere
   + for part in (branch.value,):
   = d*v if a_1/a > 1 else 2*d*v | d > 0; a_1 > 0
 what is asked is assumed
-  - Question(label, ground.order, where, claim, claim, branch, law=law)
-  + Question(label, ground.order, (*where, claim), claim, claim, branch, law=law)
+  - Question(label, assumptions.order, where, claim, claim, branch, law=law)
+  + Question(label, assumptions.order, (*where, claim), claim, claim, branch, law=law)
   = d*v*a_1**2/a**2 | d > 0; a_1 > 0
 every law is odd
   - total = ZERO if twice == neg(turned) else add(twice, turned)
@@ -113,8 +113,8 @@ the second law rests on no law
   + return (*bodies,)
   = d*v if b > a_1 else a*v | d > 0; a_1 > 0
 heat exchange has nothing to show
-  - yield Question(label, ground.order, ground.where, conducts, conducts)
-  + yield Question(label, ground.order, ground.where, warm, warm)
+  - yield Question(label, assumptions.order, assumptions.where, conducts, conducts)
+  + yield Question(label, assumptions.order, assumptions.where, warm, warm)
   = cold
 ## proofs/prove
 questions left open are forgotten
@@ -201,7 +201,7 @@ what is known of one case is known of all
   = a > 0 else
   = F_1*(v*(a + 1000*a_1)/F_1*(exp(v*(a + 1000*a_1)/F_1) - 7.38*(v*(a + 1000*a_1)/F_1 - 1)))/2 |
   = F_1 > 0; a_1 > 0 | a=-2000.0
-## proofs/whole
+## proofs/sign_analysis
 a term that is not shown to be passive is left out
   - if part is None:
   -             return None

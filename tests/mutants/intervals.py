@@ -126,7 +126,7 @@ one side of a point where a law touches zero
   - return both if len(both) == len(shown) else None
   + return both
   = F_1*(v/v_1)*(exp((v/v_1)**2/2) - 2.71828182846*(v/v_1)**2/2) | F_1 > 0; v_1 > 0
-## proofs/signs/recentre
+## proofs/signs/shift
 both sides of a point are the right one
   - return _written((centre, Fraction(side)))
   + return _written((centre, Fraction(1)))

@@ -4,8 +4,8 @@ from fractions import Fraction
 
 from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.proofs.obligations import SignOf
-from piezo_sym.proofs.solvers import solver
 from piezo_sym.proofs.sign_analysis import whole_sign
+from piezo_sym.proofs.solvers import solver
 
 
 def split(text):

@@ -11,9 +11,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
+from piezo_sym.codegen.layout import Places, places, size_in_words
 from piezo_sym.codegen.numpy.head import RATES, head
 from piezo_sym.codegen.numpy.style import NUMPY, numpy_text
-from piezo_sym.codegen.layout import Places, places, size_in_words
 from piezo_sym.codegen.program import (
     Entry,
     Function,
