@@ -42,7 +42,7 @@ class Pair:
 
 @final
 @dataclass(frozen=True)
-class Row:
+class Comparison:
     """One benchmark: this package against something else that does the same.
 
     Attributes
@@ -77,7 +77,9 @@ class Row:
         )
 
 
-def compared(group: str, pairs: Sequence[Pair], rounds: int, measure: str = "") -> tuple[Row, ...]:
+def compared(
+    group: str, pairs: Sequence[Pair], rounds: int, measure: str = ""
+) -> tuple[Comparison, ...]:
     """Return a row for each pair, every contestant timed in every round."""
     everyone = dict.fromkeys(c for pair in pairs for c in (pair.other, pair.ours) if c)
     found = zip(everyone, interleaved([c.call for c in everyone], rounds), strict=True)
@@ -85,10 +87,10 @@ def compared(group: str, pairs: Sequence[Pair], rounds: int, measure: str = "") 
     return tuple(_row(group, pair, times, measure) for pair in pairs)
 
 
-def _row(group: str, pair: Pair, times: dict[Contestant, Times], measure: str) -> Row:
+def _row(group: str, pair: Pair, times: dict[Contestant, Times], measure: str) -> Comparison:
     other, ours = pair.other, pair.ours
     sides = (("its", other), ("our", ours))
-    return Row(
+    return Comparison(
         group=group,
         other=other.name if other else "",
         ours=ours.name,

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, final
 import numpy as np
 import sympy as sp
 
-from piezo_sym.bench.contest import Contestant, Pair, Row, compared
+from piezo_sym.bench.contest import Comparison, Contestant, Pair, compared
 from piezo_sym.bench.lambdified import batch, field, solver
 from piezo_sym.bench.problem import INSTANT, Problem, problem_of
 from piezo_sym.errors import EngineError, PiezoError, RunError, UsageError, nearest, quote
@@ -46,7 +46,7 @@ class Report:
     """Rows, and what was left out, each with its reason."""
 
     model: str
-    rows: tuple[Row, ...] = ()
+    rows: tuple[Comparison, ...] = ()
     left_out: tuple[str, ...] = ()
 
     @property
@@ -87,7 +87,7 @@ def bench(
         if name not in GROUPS:
             raise UsageError(f"no group {quote(name)}", "--only", remedy=nearest(name, GROUPS))
     problem = problem_of(model, inputs or {}, duration)
-    rows: list[Row] = []
+    rows: list[Comparison] = []
     left_out: list[str] = []
     for name in names:
         say(name)
@@ -98,7 +98,7 @@ def bench(
     return Report(model.name, tuple(rows), tuple(left_out))
 
 
-def _rhs(problem: Problem, rounds: int, left_out: list[str]) -> tuple[Row, ...]:
+def _rhs(problem: Problem, rounds: int, left_out: list[str]) -> tuple[Comparison, ...]:
     x = _path(problem, ("LSODA", 1e-5), 201)[:, 100]
     usual = {
         "lambdified SymPy (numpy)": partial(field(problem), INSTANT),
@@ -107,7 +107,7 @@ def _rhs(problem: Problem, rounds: int, left_out: list[str]) -> tuple[Row, ...]:
     return _rates("rhs", problem, x, usual, rounds, left_out)
 
 
-def _batch(problem: Problem, rounds: int, left_out: list[str]) -> tuple[Row, ...]:
+def _batch(problem: Problem, rounds: int, left_out: list[str]) -> tuple[Comparison, ...]:
     path = _path(problem, ("LSODA", 1e-5), 201)
     x = path[:, np.random.default_rng(0).integers(path.shape[1], size=MANY)]
     usual = {"lambdified SymPy (numpy)": batch(problem)}
@@ -121,7 +121,7 @@ def _rates(
     usual: Mapping[str, Callable[[FloatArray], object]],
     rounds: int,
     left_out: list[str],
-) -> tuple[Row, ...]:
+) -> tuple[Comparison, ...]:
     """Return the rows of rates of x (n,) or (n, columns): ours against the usual ones."""
     u = np.array([float(signal(INSTANT)) for signal in problem.system.inputs.signals])
     ours: dict[str, Any] = {"generated NumPy": problem.module.rhs}
@@ -152,7 +152,7 @@ def _precise(problem: Problem, x: FloatArray) -> list[float]:
     return [float(rate.xreplace(known).evalf(DIGITS)) for rate in problem.at_instant]
 
 
-def _run(problem: Problem, rounds: int, left_out: list[str]) -> tuple[Row, ...]:
+def _run(problem: Problem, rounds: int, left_out: list[str]) -> tuple[Comparison, ...]:
     """Return the rows of whole runs, each at the loosest tolerance that reaches `TARGET`."""
     problem, exact, measure = reference_of(problem)
     usual = (("LSODA", "numpy", False), ("RK45", "numpy", False), ("LSODA", "math", True))
@@ -224,7 +224,7 @@ def _path(problem: Problem, how: tuple[str, float], times: Any) -> FloatArray:
     return np.concatenate([np.atleast_2d(found[name].values.T) for name in names])
 
 
-GROUPS: Mapping[str, Callable[[Problem, int, list[str]], Sequence[Row]]] = {
+GROUPS: Mapping[str, Callable[[Problem, int, list[str]], Sequence[Comparison]]] = {
     "rhs": _rhs,
     "batch": _batch,
     "run": _run,

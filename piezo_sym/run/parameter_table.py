@@ -1,6 +1,6 @@
 """The parameters of many runs, as columns.
 
-Input: the parameters of one run, and what of them differs in others.  Output: `Table`.
+Input: the parameters of one run, and what of them differs in others.  Output: `ParameterTable`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Column: TypeAlias = Sequence[Any] | NDArray[Any]
 
 @final
 @dataclass(frozen=True, eq=False)  # a key by identity: what C has of it is kept as long as it
-class Table(Sequence[Any]):
+class ParameterTable(Sequence[Any]):
     """The parameters of many runs, of equal sizes.
 
     Attributes
@@ -40,14 +40,14 @@ class Table(Sequence[Any]):
                 raise ValueError(msg)
 
     @staticmethod
-    def of(parameters: Sequence[Any]) -> Table:
+    def of(parameters: Sequence[Any]) -> ParameterTable:
         """Return the parameters of some runs as a table."""
-        if isinstance(parameters, Table):
+        if isinstance(parameters, ParameterTable):
             return parameters
         base = parameters[0]
         names = vars(base) if len(parameters) > 1 else ()
         columns = {name: list(map(attrgetter(name), parameters)) for name in names}
-        return Table(base, len(parameters), columns)
+        return ParameterTable(base, len(parameters), columns)
 
     def __len__(self) -> int:
         """Return the number of runs."""
@@ -56,7 +56,7 @@ class Table(Sequence[Any]):
     @overload
     def __getitem__(self, k: int) -> Any: ...
     @overload
-    def __getitem__(self, k: slice) -> Table: ...
+    def __getitem__(self, k: slice) -> ParameterTable: ...
     def __getitem__(self, k: int | slice) -> Any:
         """Return the parameters of one run, or of some."""
         if isinstance(k, slice):
@@ -65,13 +65,13 @@ class Table(Sequence[Any]):
         change = {name: _item(column, run) for name, column in self.columns.items()}
         return _changed(self.base, change) if change else self.base
 
-    def some(self, runs: Sequence[int]) -> Table:
+    def some(self, runs: Sequence[int]) -> ParameterTable:
         """Return the parameters of some of the runs; the table itself for all in their order."""
         runs = list(runs)
         if runs == list(range(self.size)):
             return self
         columns = {name: _part(column, runs) for name, column in self.columns.items()}
-        return Table(self.base, len(runs), columns)
+        return ParameterTable(self.base, len(runs), columns)
 
 
 def _item(column: Column, run: int) -> Any:

@@ -158,11 +158,14 @@ def read_times(given: object, duration: float) -> FloatArray:
         return np.linspace(0.0, duration, SAMPLES)
     if is_number(given) or isinstance(given, bool):
         return np.linspace(0.0, duration, whole(given, where, 2))
-    times = increasing(vector(given, where), where)
-    if not times.size or times[0] < 0 or times[-1] > duration * (1 + CLOSE):
+    times = vector(given, where)
+    times = increasing(
+        np.where(times <= duration * (1 + CLOSE), np.minimum(times, duration), times), where
+    )
+    if not times.size or times[0] < 0 or times[-1] > duration:
         span = f"times span {times[0]:g} s to {times[-1]:g} s" if times.size else "no times"
         raise UsageError(span, where, f"times within 0 s to {duration:g} s")
-    return np.minimum(times, duration)
+    return times
 
 
 def read_every(every: object, times: object, step: float | None, duration: float) -> FloatArray:

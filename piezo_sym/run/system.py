@@ -14,7 +14,7 @@ import numpy as np
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.inputs import Inputs, Segment
 from piezo_sym.run.module import GeneratedModule, Record, exchanges, rows
-from piezo_sym.run.parameter_table import Table
+from piezo_sym.run.parameter_table import ParameterTable
 
 
 @final
@@ -82,7 +82,7 @@ class Systems(Sequence[System]):
     """
 
     module: GeneratedModule
-    parameters: Table
+    parameters: ParameterTable
     inputs: Inputs
 
     @staticmethod
@@ -91,7 +91,9 @@ class Systems(Sequence[System]):
         if isinstance(systems, Systems):
             return systems
         first = systems[0]
-        return Systems(first.module, Table.of([one.parameters for one in systems]), first.inputs)
+        return Systems(
+            first.module, ParameterTable.of([one.parameters for one in systems]), first.inputs
+        )
 
     def __len__(self) -> int:
         """Return the number of systems."""

@@ -15,7 +15,7 @@ from piezo_sym.run.dataset import coordinates, described, model_attrs
 from piezo_sym.run.parameters import read_parameters
 from piezo_sym.run.system import System
 from piezo_sym.sweeps.group import inputs_at_point
-from piezo_sym.sweeps.quantities import Quantity, layout
+from piezo_sym.sweeps.quantities import RunQuantity, layout
 from piezo_sym.sweeps.reduce import weights
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ class Frame:
     names: tuple[str, ...]
     attrs: dict[str, Any]
 
-    def dataset(self, data: dict[str, Variable], own: dict[str, Quantity]) -> xarray.Dataset:
+    def dataset(self, data: dict[str, Variable], own: dict[str, RunQuantity]) -> xarray.Dataset:
         """Return a Dataset of results and inputs; `own`: coordinates that a function made."""
         import pandas
         import xarray

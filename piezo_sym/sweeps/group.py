@@ -17,7 +17,7 @@ from piezo_sym.run.engine.members import Members
 from piezo_sym.run.guard import check_start
 from piezo_sym.run.inputs import Inputs
 from piezo_sym.run.module import GeneratedModule, rows
-from piezo_sym.run.parameter_table import Column, Table
+from piezo_sym.run.parameter_table import Column, ParameterTable
 from piezo_sym.run.parameters import own_initial, read_parameters
 from piezo_sym.run.signals import Constant, Signal
 from piezo_sym.run.system import Systems
@@ -53,7 +53,7 @@ def group_at(
         for n, target in plan.swept()
         if target.kind == "parameters" and not target.is_size
     }
-    systems = Systems(module, Table(base, len(points), columns), inputs)
+    systems = Systems(module, ParameterTable(base, len(points), columns), inputs)
     start, errors = starts(plan, systems, points)
     check_starts(systems, engine, start, errors)
     return Group(systems, start, errors)

@@ -1,7 +1,7 @@
 """All quantities of many runs, as arrays: computed for a whole group at once.
 
 Input: a `Group` and the trajectories that it left in C, or one `Trajectory` after another.  Output:
-by name a `Quantity` (runs, time, [lanes]), with names, order and units of a single run's Dataset.
+by name a `RunQuantity` (runs, time, [lanes]); names, order and units are those of a run's Dataset.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -23,7 +23,7 @@ from piezo_sym.run.system import System
 
 @final
 @dataclass(frozen=True)
-class Quantity:
+class RunQuantity:
     """One quantity of many runs.
 
     Attributes
@@ -38,7 +38,7 @@ class Quantity:
     attrs: Mapping[str, Any]
 
 
-Quantities: TypeAlias = dict[str, Quantity]
+Quantities: TypeAlias = dict[str, RunQuantity]
 
 
 def layout(system: System) -> dict[str, tuple[tuple[str, ...], dict[str, Any]]]:
@@ -107,7 +107,7 @@ def spread(
         yield f"{prefix}{record.name}", values[..., part if record.bank else part.start]
 
 
-def widened(quantity: Quantity, lanes: Mapping[str, int]) -> Quantity:
+def widened(quantity: RunQuantity, lanes: Mapping[str, int]) -> RunQuantity:
     """Return a quantity whose banks have the number of lanes given, the new ones nan."""
     shape = quantity.values.shape[1:]
     more = [

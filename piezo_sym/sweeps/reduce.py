@@ -13,7 +13,7 @@ import numpy as np
 
 from piezo_sym.errors import UsageError, listing, quote
 from piezo_sym.run.checks import FloatArray, is_number
-from piezo_sym.sweeps.quantities import Quantities, Quantity
+from piezo_sym.sweeps.quantities import Quantities, RunQuantity
 
 if TYPE_CHECKING:
     import xarray
@@ -36,7 +36,7 @@ def weights(samples: FloatArray) -> FloatArray:
 def over_time(found: Quantities, weight: FloatArray) -> Quantities:
     """Return quantities (runs, time, ...) summed over time with weights (nt,)."""
     return {
-        name: Quantity(one.dims[1:], np.einsum("kt...,t->k...", one.values, weight), one.attrs)
+        name: RunQuantity(one.dims[1:], np.einsum("kt...,t->k...", one.values, weight), one.attrs)
         for name, one in found.items()
     }
 
@@ -134,15 +134,15 @@ def refuse_names(names: Iterable[str], taken: Iterable[str]) -> None:
         raise UsageError(what, WHERE, "a name of its own")
 
 
-def as_quantities(made: xarray.Dataset) -> tuple[Quantities, dict[str, Quantity]]:
+def as_quantities(made: xarray.Dataset) -> tuple[Quantities, dict[str, RunQuantity]]:
     """Return a function's results, and the coordinates of their own dimensions."""
     found = {}
     for name, variable in made.data_vars.items():
         dims = tuple(str(dim) for dim in variable.dims if dim != MEMBER)
         values = variable.transpose(MEMBER, *dims).values.astype(float)
-        found[str(name)] = Quantity(dims, values, dict(variable.attrs))
+        found[str(name)] = RunQuantity(dims, values, dict(variable.attrs))
     coords = {
-        str(name): Quantity((str(name),), one.values, dict(one.attrs))
+        str(name): RunQuantity((str(name),), one.values, dict(one.attrs))
         for name, one in made.coords.items()
         if name != MEMBER
     }

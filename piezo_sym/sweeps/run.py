@@ -25,7 +25,7 @@ from piezo_sym.run.simulate import by_scipy
 from piezo_sym.sweeps.group import Group, group_at
 from piezo_sym.sweeps.quantities import (
     Quantities,
-    Quantity,
+    RunQuantity,
     layout,
     of_runs,
     of_trajectory,
@@ -69,7 +69,7 @@ class Result:
     box: Box
     errors: tuple[str, ...]
     quantities: Quantities
-    coords: dict[str, Quantity]
+    coords: dict[str, RunQuantity]
 
 
 def run_box(plan: Plan, module: GeneratedModule, box: Box, watch: Watch) -> Result:
@@ -87,7 +87,7 @@ def run_box(plan: Plan, module: GeneratedModule, box: Box, watch: Watch) -> Resu
     engine = engine_for(plan, module)
     points = plan.points(box)
     parts: list[Quantities] = []
-    coords: dict[str, Quantity] = {}
+    coords: dict[str, RunQuantity] = {}
     errors: list[str] = []
     for some in together(plan, points):
         group = group_at(plan, module, engine, points[some])
@@ -133,7 +133,7 @@ def joined(parts: list[Quantities], points: NDArray[np.intp], plan: Plan) -> Qua
 
 def group_result(
     plan: Plan, group: Group, engine: Engine | None, points: NDArray[np.intp], watch: Watch
-) -> tuple[Quantities, dict[str, Quantity]]:
+) -> tuple[Quantities, dict[str, RunQuantity]]:
     """Return what is kept of a group, its errors filled in, and a function's coordinates."""
     kept = slice(-1, None) if plan.reduce == "last" else slice(None)
     system = group.systems[0]
@@ -142,7 +142,7 @@ def group_result(
     if not engine:
         arrays = {name: values[:, kept] for name, values in arrays.items()}
     known = layout(system)
-    found = {n: Quantity(d, arrays[n], a) for n, (d, a) in known.items() if n in arrays}
+    found = {n: RunQuantity(d, arrays[n], a) for n, (d, a) in known.items() if n in arrays}
     if plan.reduce is None:
         return found, {}
     if plan.reduce == "last":
@@ -151,7 +151,7 @@ def group_result(
         return over_time(found, weights(plan.samples)), {}
     names = [record.name for record in system.module.INPUTS]
     size = (len(group.errors), plan.samples.size)
-    waves = {n: Quantity(*of) for n, of in inputs(known, names, u, size)}
+    waves = {n: RunQuantity(*of) for n, of in inputs(known, names, u, size)}
     runs = dataset(plan, group, {**found, **waves}, points)
     made = (run_by_run if plan.each else all_at_once)(plan.reduce, runs, group.errors)
     if made is None:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from piezo_sym.sweeps.frame import Frame, Variable
     from piezo_sym.sweeps.plan import Box, Plan
-    from piezo_sym.sweeps.quantities import Quantity
+    from piezo_sym.sweeps.quantities import RunQuantity
     from piezo_sym.sweeps.run import Result
 
 
@@ -42,7 +42,7 @@ class Sink(ABC):
         """Return all results."""
 
 
-def refuse_other_sizes(name: str, known: tuple[int, ...], one: Quantity) -> None:
+def refuse_other_sizes(name: str, known: tuple[int, ...], one: RunQuantity) -> None:
     """Raise `UsageError` if a function gives a quantity another shape than for runs before."""
     if one.values.shape[1:] != known:
         what = f"the function gives '{name}' other sizes for one run than for another"
@@ -57,8 +57,8 @@ class Memory(Sink):
         self._plan, self._frame = plan, frame
         self._errors: NDArray[Any] = np.full(plan.shape, "", dtype=object)
         self._arrays: dict[str, NDArray[Any]] = {}
-        self._about: dict[str, Quantity] = {}
-        self._own: dict[str, Quantity] = {}
+        self._about: dict[str, RunQuantity] = {}
+        self._own: dict[str, RunQuantity] = {}
 
     def missing(self) -> Iterator[Box]:
         """Return all boxes."""

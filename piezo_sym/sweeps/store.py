@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from piezo_sym.sweeps.frame import Frame
     from piezo_sym.sweeps.plan import Box, Plan
-    from piezo_sym.sweeps.quantities import Quantity
+    from piezo_sym.sweeps.quantities import RunQuantity
     from piezo_sym.sweeps.run import Result
 
 MARK, BOX, RESULTS = "sweep_fingerprint", "sweep_box", "sweep_results"
@@ -172,7 +172,7 @@ class Store(Sink):
             what = f"cannot be written: {cause.strerror}"
             raise FileError(what, path_text(self._path)) from cause
 
-    def _add(self, name: str, one: Quantity, *, own: bool) -> None:
+    def _add(self, name: str, one: RunQuantity, *, own: bool) -> None:
         """Add an array for a quantity, or with its numbers a coordinate that a function made."""
         shape, dims = one.values.shape, one.dims
         chunks = shape

@@ -9,7 +9,7 @@ import pytest
 
 from piezo_sym import load
 from piezo_sym.bench import GROUPS, bench
-from piezo_sym.bench.contest import COLUMNS, Row
+from piezo_sym.bench.contest import COLUMNS, Comparison
 from piezo_sym.bench.measure import LADDER, TARGET, reference_of, tuned
 from piezo_sym.bench.problem import problem_of
 from piezo_sym.bench.timing import Spread
@@ -17,7 +17,7 @@ from piezo_sym.cli import run
 from piezo_sym.errors import EngineError
 
 OSCILLATOR = Path(__file__).parents[1] / "networks" / "specs" / "a2_oscillator.toml"
-ROW = Row(
+ROW = Comparison(
     group="run",
     other="LSODA",
     ours="simulate()",
@@ -34,7 +34,7 @@ def test_cells():
         *("run", "LSODA", "282 ms", "1e-05", "simulate()", "1.2 ms", "2e-07"),
         *("235", "230 - 250"),
     )
-    alone = Row("making", "", "derivation", None, Spread(1e-8, 1e-8, 1e-8), None)
+    alone = Comparison("making", "", "derivation", None, Spread(1e-8, 1e-8, 1e-8), None)
     assert alone.cells == ("making", "-", "-", "-", "derivation", "10 ns", "-", "-", "-")
     assert len(COLUMNS) == len(alone.cells)
 

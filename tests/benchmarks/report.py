@@ -1,6 +1,6 @@
 """What the groups of benchmarks give: rows, and what was left out; and the report of them all.
 
-Input: `Row`s.  Output: `Part`, and the `Report` that holds rows and their machine.
+Input: `Comparison`s.  Output: `Part`, and the `Report` that holds rows and their machine.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, final
 
 if TYPE_CHECKING:
-    from piezo_sym.bench.contest import Row
+    from piezo_sym.bench.contest import Comparison
     from tests.benchmarks.machine import Machine
 
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 class Part:
     """What a group of benchmarks gives: rows, and what was left out, each with its reason."""
 
-    rows: tuple[Row, ...] = ()
+    rows: tuple[Comparison, ...] = ()
     left_out: tuple[str, ...] = ()
 
 
@@ -29,5 +29,5 @@ class Report:
 
     model: str
     machine: Machine
-    rows: tuple[Row, ...]
+    rows: tuple[Comparison, ...]
     left_out: tuple[str, ...]

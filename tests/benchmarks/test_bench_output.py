@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from piezo_sym import load
-from piezo_sym.bench.contest import COLUMNS, Row
+from piezo_sym.bench.contest import COLUMNS, Comparison
 from piezo_sym.bench.problem import problem_of
 from piezo_sym.bench.timing import Spread
 from tests.benchmarks.__main__ import main
@@ -20,7 +20,7 @@ from tests.benchmarks.report import Report
 from tests.benchmarks.settings import QUICK
 
 OSCILLATOR = Path(__file__).parents[1] / "networks" / "specs" / "a2_oscillator.toml"
-ROW = Row(
+ROW = Comparison(
     group="run",
     other="LSODA",
     ours="discrete gradient in C",
@@ -32,7 +32,7 @@ ROW = Row(
     measure="at the end",
     note="rtol 1e-06",
 )
-ALONE = Row("making", "", "derivation", None, Spread(1e-8, 1e-8, 1e-8), None)
+ALONE = Comparison("making", "", "derivation", None, Spread(1e-8, 1e-8, 1e-8), None)
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from piezo_sym.expressions.tree import Add, LaneSum, Mul, Num
 from piezo_sym.proofs import Verdict
-from piezo_sym.proofs.signs.decide import Domain, decide_sign
+from piezo_sym.proofs.signs.decide import Span, decide_sign
 from tests.proofs.sign_laws import X, law, laws, precise, steady
 
 #: W with W(x)*x >= 0 for every x.
@@ -111,27 +111,27 @@ def test_verdicts_on_sums_that_vanish_at_zero_are_true(terms):
         assert all(v is None or v >= -1e-40 * (1 + abs(v)) for v in values)
 
 
-ABOVE = Domain(Fraction(300), None, lo_included=False)
+ABOVE = Span(Fraction(300), None, lo_included=False)
 CASES = [
     ("1/(x - 300)", ABOVE, Verdict.PROVED),
     ("log(x/300)", ABOVE, Verdict.PROVED),
     ("exp(300/x) - 1", ABOVE, Verdict.PROVED),
     ("sqrt(x - 300)/log(x/300)", ABOVE, Verdict.PROVED),
-    ("x - 300", Domain(Fraction(300)), Verdict.PROVED),
-    ("1/(x - 300)", Domain(Fraction(300)), Verdict.OPEN),
+    ("x - 300", Span(Fraction(300)), Verdict.PROVED),
+    ("1/(x - 300)", Span(Fraction(300)), Verdict.OPEN),
     ("1 - exp(x - 301)", ABOVE, Verdict.REFUTED),
-    ("sin(x)", Domain(Fraction(0), Fraction(3)), Verdict.PROVED),
-    ("sin(x)", Domain(Fraction(0), Fraction(314159, 100000)), Verdict.PROVED),
-    ("sin(x)", Domain(Fraction(0), Fraction(22, 7)), Verdict.REFUTED),
-    ("-x", Domain(None, Fraction(0)), Verdict.PROVED),
-    ("-x", Domain(None, Fraction(1, 10**9)), Verdict.REFUTED),
-    ("-x", Domain(None, Fraction(1), hi_included=False), Verdict.REFUTED),
-    ("x*log(x) - x + 1", Domain(Fraction(1, 100)), Verdict.PROVED),
-    ("(x - 1/3)*tanh(x - 1/3)", Domain(), Verdict.PROVED),
-    ("exp(x) - 1 - x", Domain(), Verdict.PROVED),
-    ("sqrt(x)", Domain(), Verdict.OPEN),
-    ("-1/x", Domain(None, Fraction(0), hi_included=False), Verdict.PROVED),
-    ("sign(x)", Domain(Fraction(0), Fraction(0)), Verdict.PROVED),
+    ("sin(x)", Span(Fraction(0), Fraction(3)), Verdict.PROVED),
+    ("sin(x)", Span(Fraction(0), Fraction(314159, 100000)), Verdict.PROVED),
+    ("sin(x)", Span(Fraction(0), Fraction(22, 7)), Verdict.REFUTED),
+    ("-x", Span(None, Fraction(0)), Verdict.PROVED),
+    ("-x", Span(None, Fraction(1, 10**9)), Verdict.REFUTED),
+    ("-x", Span(None, Fraction(1), hi_included=False), Verdict.REFUTED),
+    ("x*log(x) - x + 1", Span(Fraction(1, 100)), Verdict.PROVED),
+    ("(x - 1/3)*tanh(x - 1/3)", Span(), Verdict.PROVED),
+    ("exp(x) - 1 - x", Span(), Verdict.PROVED),
+    ("sqrt(x)", Span(), Verdict.OPEN),
+    ("-1/x", Span(None, Fraction(0), hi_included=False), Verdict.PROVED),
+    ("sign(x)", Span(Fraction(0), Fraction(0)), Verdict.PROVED),
 ]
 
 
@@ -175,7 +175,7 @@ def test_far_out_is_looked_at_on_both_sides(text):
 @pytest.mark.parametrize("at", ["0.7", "9.3"])
 def test_both_halves_of_a_finite_domain_are_looked_at(at):
     dip = law(f"abs(x - {at}) - 0.01")
-    assert decide_sign(dip, "x", Domain(Fraction(0), Fraction(10))).verdict is Verdict.REFUTED
+    assert decide_sign(dip, "x", Span(Fraction(0), Fraction(10))).verdict is Verdict.REFUTED
 
 
 def test_other_names_and_sums_over_lanes_are_open():
@@ -191,4 +191,4 @@ def test_the_budget_ends_the_search():
 
 def test_an_empty_domain_is_refused():
     with pytest.raises(ValueError, match="no number lies from 2 to 1"):
-        Domain(Fraction(2), Fraction(1))
+        Span(Fraction(2), Fraction(1))

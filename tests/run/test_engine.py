@@ -22,7 +22,7 @@ from piezo_sym.run.engine.compiler import compilers
 from piezo_sym.run.engine.members import Members
 from piezo_sym.run.engine.processor import processor
 from piezo_sym.run.engine.structure import Layout
-from piezo_sym.run.parameter_table import Table
+from piezo_sym.run.parameter_table import ParameterTable
 
 ROOT = Path(__file__).parents[2]
 FILES = ROOT / "generated" / "piezo_stack"
@@ -110,7 +110,7 @@ def test_runs_have_the_parameters_that_they_are_given(module):
     """What C has of a table is kept as long as it: another table of as many runs is another."""
     engine, state = compiled(module), STATE[None, None]
     tables = [
-        Table(module.Parameters(), 2, {"M": np.array(masses)})
+        ParameterTable(module.Parameters(), 2, {"M": np.array(masses)})
         for masses in ([3.5e-3, 7e-3], [1e-3, 2e-3], [1e-3, 4e-3])
     ]
     for table in tables * 2:
@@ -121,7 +121,7 @@ def test_runs_have_the_parameters_that_they_are_given(module):
 
 def test_what_c_has_of_a_table_goes_with_it(module):
     layout = Layout(module)
-    table = Table(module.Parameters(), 2, {"M": np.array([1e-3, 2e-3])})
+    table = ParameterTable(module.Parameters(), 2, {"M": np.array([1e-3, 2e-3])})
     kept = weakref.ref(layout.many(table))
     assert layout.many(table) is kept()
     del table

@@ -11,7 +11,7 @@ from piezo_sym.modules import module_of
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.module import lanes
-from piezo_sym.run.parameter_table import Table
+from piezo_sym.run.parameter_table import ParameterTable
 from piezo_sym.run.system import Systems
 from piezo_sym.spec.load import load
 
@@ -37,14 +37,14 @@ def table_of(module, drawn):
     same = {"d": 300.0, "hysteron_count": count}
     masses, inductances = zip(*values, strict=True)
     columns = {"M": np.array(masses), "L": list(inductances)}
-    table = Table(module.Parameters(**same), len(values), columns)
+    table = ParameterTable(module.Parameters(**same), len(values), columns)
     return table, [module.Parameters(M=mass, L=lane, **same) for mass, lane in values]
 
 
 @given(runs(), st.data())
 def test_a_table_gives_each_run_its_parameters(module, drawn, data):
     table, wanted = table_of(module, drawn)
-    assert list(table) == wanted == list(Table.of(wanted))
+    assert list(table) == wanted == list(ParameterTable.of(wanted))
     assert all(type(one.M) is float for one in table)
     some = data.draw(st.lists(st.integers(0, len(wanted) - 1), min_size=1, max_size=4))
     assert list(table.some(some)) == [wanted[k] for k in some]
@@ -60,7 +60,7 @@ def test_as_many_runs_need_not_be_all_of_them(module):
 
 def test_columns_are_as_long_as_there_are_runs(module):
     with pytest.raises(ValueError, match="column M has 1 values for 3 runs"):
-        Table(module.Parameters(), 3, {"M": np.array([1.0])})
+        ParameterTable(module.Parameters(), 3, {"M": np.array([1.0])})
 
 
 @given(runs(), st.data())
@@ -87,7 +87,7 @@ def values(module, structure, p):
 
 def test_systems_are_those_of_their_parameters(module):
     inputs = read_inputs(module, {"V_in": 50.0}, 0.1)
-    table = Table(module.Parameters(), 3, {"M": np.array([1.0, 2.0, 3.0])})
+    table = ParameterTable(module.Parameters(), 3, {"M": np.array([1.0, 2.0, 3.0])})
     systems = Systems(module, table, inputs)
     assert [system.parameters.M for system in systems] == [1.0, 2.0, 3.0]
     assert all(system.inputs is inputs and system.module is module for system in systems)

@@ -90,6 +90,21 @@ def test_production_never_falls_between_close_samples(rtol, times):
         assert np.array_equal(every[-1], few[name].values[-1])  # runs do not go by samples
 
 
+@pytest.mark.parametrize(
+    ("spec", "rtol", "duration"), [("dry_friction", 0.1, 1.0), ("tables", 1e-6, 0.01)]
+)
+def test_the_run_is_the_same_beside_samples_whose_steps_find_no_rates(spec, rtol, duration):
+    """Some lie in that part of a step that is beyond a switch, where no stage of the step is."""
+    few, many = (
+        simulate(load(SPECS / f"{spec}.toml"), duration=duration, rtol=rtol, times=times)
+        for times in (2, 20_001)
+    )
+    assert few.attrs["accepted_steps"] == many.attrs["accepted_steps"]
+    assert few.attrs["halvings"] == many.attrs["halvings"]
+    for name in (n for n in many if n.startswith(("heat_", "produced_"))):
+        assert np.all(np.diff(many[name].values, axis=0) >= 0)
+
+
 def test_scipys_entropy_balance_closes_to_its_error():
     inputs = {"V_in": sine(100, 100)}
     loose, tight = (

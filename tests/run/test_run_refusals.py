@@ -81,6 +81,7 @@ REFUSED = [
     ({"times": [0, 0.2]}, "simulate.times: times span 0 s to 0.2 s; expected times within"),
     ({"times": [-0.1, 0.1]}, "simulate.times: times span -0.1 s to 0.1 s"),
     ({"times": [0, 0.05, 0.05]}, "simulate.times: time 0.05 at entry 2 follows 0.05"),
+    ({"times": [0, 0.1, 0.1 * (1 + 5e-13)]}, "simulate.times: time 0.1 at entry 2 follows 0.1"),
     ({"times": np.array([0, nan])}, "simulate.times: entry 1 is nan"),
     ({"times": "all"}, "simulate.times: 'all' is not a list of numbers"),
 ]

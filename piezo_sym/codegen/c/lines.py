@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import final
 
 from piezo_sym.codegen.branches import with_branches
-from piezo_sym.codegen.c.order import Loop, Stage, Write
+from piezo_sym.codegen.c.order import LaneLoop, Stage, Write
 from piezo_sym.codegen.c.style import c_piece, c_style, is_constant, real_style, widened
 from piezo_sym.codegen.program import Quantity
 from piezo_sym.expressions.functions import RECORDS
@@ -114,7 +114,7 @@ def stage_lines(stage: Stage, words: Words) -> Iterator[str]:
         yield from loop_lines(loop, words)
 
 
-def loop_lines(loop: Loop, words: Words) -> Iterator[str]:
+def loop_lines(loop: LaneLoop, words: Words) -> Iterator[str]:
     """Yield a loop over the lanes of a bank, and what it starts from."""
     sums = [words.names[quantity.name] for quantity in loop.sums]
     parts = [*(["sums over lanes"] if loop.sums else []), *(["rows"] if loop.writes else [])]
@@ -149,7 +149,7 @@ def _directive(sums: Sequence[str], writes: Sequence[Write]) -> Iterator[str]:
     yield f"{line}{joint}{sums[-1]})"
 
 
-def _body(loop: Loop, words: Words) -> Iterator[str]:
+def _body(loop: LaneLoop, words: Words) -> Iterator[str]:
     for quantity in loop.lanes:
         yield from define(quantity, words)
     for quantity in loop.sums:

@@ -32,7 +32,7 @@ class Write:
 
 @final
 @dataclass(frozen=True)
-class Loop:
+class LaneLoop:
     """A loop over the lanes of a bank: quantities of a lane, sums over lanes, rows of a lane."""
 
     bank: str
@@ -47,7 +47,7 @@ class Stage:
     """Values that all lanes share, then the loops that need no later ones."""
 
     shared: tuple[Quantity, ...]
-    loops: tuple[Loop, ...]
+    loops: tuple[LaneLoop, ...]
 
 
 def stages(
@@ -101,10 +101,10 @@ def _loops(
     sums: Sequence[Quantity],
     rows: Sequence[Write],
     banks: tuple[str, ...],
-) -> Iterator[Loop]:
+) -> Iterator[LaneLoop]:
     for bank in banks:
         own = tuple(q for q in sums if isinstance(q.value, LaneSum) and q.value.bank == bank)
         written = tuple(row for row in rows if row.bank == bank)
         if own or written:
             roots = [*(q.value for q in own), *(row.value for row in written)]
-            yield Loop(bank, lane_quantities(quantities, bank, roots), own, written)
+            yield LaneLoop(bank, lane_quantities(quantities, bank, roots), own, written)

@@ -11,16 +11,16 @@ certificate what was shown, as data               for a checker
 
 from piezo_sym.proofs.signs.cases import Positive, cases, opposite
 from piezo_sym.proofs.signs.certificate import Case, Term
-from piezo_sym.proofs.signs.decide import Decision, Domain, decide_sign
+from piezo_sym.proofs.signs.decide import Decision, Span, decide_sign
 from piezo_sym.proofs.signs.reduce import Reduction, reductions
 from piezo_sym.proofs.signs.sums import balanced, choice_outside, grouped, summands
 
 __all__ = [
     "Case",
     "Decision",
-    "Domain",
     "Positive",
     "Reduction",
+    "Span",
     "Term",
     "balanced",
     "cases",

@@ -52,7 +52,7 @@ class Decision:
 
 @final
 @dataclass(frozen=True, slots=True)
-class Domain:
+class Span:
     """The reals between two ends; None is an end at infinity."""
 
     lo: Fraction | None = None
@@ -72,7 +72,7 @@ class Domain:
         return above and below
 
 
-REALS = Domain()
+REALS = Span()
 
 
 @final
@@ -90,7 +90,7 @@ class Ray:
         return self.centre + self.side * t
 
 
-def decide_sign(f: Expr, name: str, domain: Domain = REALS, budget: int = BUDGET) -> Decision:
+def decide_sign(f: Expr, name: str, domain: Span = REALS, budget: int = BUDGET) -> Decision:
     """Return whether f is defined and f >= 0 for every value of `name` in the domain.
 
     Parameters
@@ -113,7 +113,7 @@ def decide_sign(f: Expr, name: str, domain: Domain = REALS, budget: int = BUDGET
         return Decision(Verdict.OPEN, reason=f"has no bounds: {error}")
 
 
-def _at_points(f: Expr, domain: Domain) -> Decision | None:
+def _at_points(f: Expr, domain: Span) -> Decision | None:
     """Return a refutation by a simple number, or that f may have no value at one of them."""
     gaps = []
     for x in (x for x in _simple_numbers(domain) if x in domain):
@@ -127,7 +127,7 @@ def _at_points(f: Expr, domain: Domain) -> Decision | None:
     return None
 
 
-def _simple_numbers(domain: Domain) -> Iterator[Fraction]:
+def _simple_numbers(domain: Span) -> Iterator[Fraction]:
     """Yield numbers of few digits, most of them near zero or near an end of the domain."""
     steps = [Fraction(n, 2) for n in range(2, 21)]
     steps += [Fraction(10) ** n for n in range(2, 7)]
@@ -137,7 +137,7 @@ def _simple_numbers(domain: Domain) -> Iterator[Fraction]:
             yield from (start, *(start + side * step for step in steps for side in (1, -1)))
 
 
-def _on_rays(f: Expr, name: str, domain: Domain, budget: int) -> Decision:
+def _on_rays(f: Expr, name: str, domain: Span, budget: int) -> Decision:
     """Cut the domain into rays and prove f >= 0 on each, and at the points where they start."""
     reasons: list[str] = []
     shown: list[Windows] = []
@@ -157,13 +157,13 @@ def _on_rays(f: Expr, name: str, domain: Domain, budget: int) -> Decision:
     return Decision(Verdict.PROVED, rays=tuple(shown))
 
 
-def _starts(domain: Domain) -> list[Fraction]:
+def _starts(domain: Span) -> list[Fraction]:
     """Return the points where rays start: the finite ends, and zero if it is inside."""
     points = {end for end in (domain.lo, domain.hi) if end is not None}
     return sorted(points | ({Fraction(0)} if Fraction(0) in domain else set()))
 
 
-def _rays(f: Expr, domain: Domain) -> Iterator[Ray]:
+def _rays(f: Expr, domain: Span) -> Iterator[Ray]:
     """Yield rays that cover the domain, its starting points aside."""
     points = _starts(domain)
     if domain.lo is None:

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.engine.collocation import collocation_library
 from piezo_sym.run.engine.records import LONG, POINTER, at
-from piezo_sym.run.engine.replay import Solved, Step, Taped
+from piezo_sym.run.engine.replay import Solved, Taped, TapedStep
 
 #: A slope is an imaginary part of so much: a power of two, whose square is nothing beside 1.
 TINY = 2.0**-400
@@ -59,7 +59,7 @@ class Derivatives:
     where inputs change with time, a longer step has later inputs, ``u = h*places*du/dt``.
     """
 
-    def __init__(self, run: Taped, step: Step, solved: Solved) -> None:
+    def __init__(self, run: Taped, step: TapedStep, solved: Solved) -> None:
         self._run, self._step, self._solved = run, step, solved
         engine = run.engine
         library = collocation_library(engine, run.stages, "slopes")

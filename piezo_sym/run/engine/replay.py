@@ -1,7 +1,7 @@
 """Runs whose steps can be taken again, to the bit, and looked at: for derivatives along them.
 
-Input: one run of a module.  Output: `Taped`, whose steps are `Step` records: what each begins with
-is all that it depends on, beside the run's parameters, inputs and scales of states.
+Input: one run of a module.  Output: `Taped`, whose steps are `TapedStep` records: what each begins
+with is all that it depends on, beside the run's parameters, inputs and scales of states.
 """
 
 import ctypes
@@ -31,7 +31,7 @@ class Record(ctypes.Structure):
 
 @final
 @dataclass(frozen=True)
-class Step:
+class TapedStep:
     """What a step begins with: its time and length [s], the state (n,), branches (stages, ...)."""
 
     t: float
@@ -92,15 +92,15 @@ class Taped:
         self._record = Record(self._batch.segments, *(a.ctypes.data for a in arrays), 0)
         self._call("keep", ctypes.byref(self._record))
 
-    def run(self) -> tuple[Step, ...]:
+    def run(self) -> tuple[TapedStep, ...]:
         """Take the run as far as it goes; return its steps."""
-        steps: list[Step] = []
+        steps: list[TapedStep] = []
         more = True
         while more:
             more = self._batch.go(ROOM)
             arrays = zip(self._t, self._h, self._x, self._branches, strict=True)
             for _, (t, h, x, b) in zip(range(self._record.count), arrays, strict=False):
-                steps.append(Step(float(t), float(h), x.copy(), b.copy()))
+                steps.append(TapedStep(float(t), float(h), x.copy(), b.copy()))
             self._record.count = 0
         return tuple(steps)
 
@@ -110,7 +110,7 @@ class Taped:
         x: FloatArray = self._batch.x[0]
         return x
 
-    def replay(self, step: Step) -> Solved:
+    def replay(self, step: TapedStep) -> Solved:
         """Take a step again; the same to the bit.
 
         Raises

@@ -81,6 +81,37 @@ static void MODEL(keep_sample)(MODEL(batch) *b, int lane, const real *sums, cons
     }
 }
 
+/* Whether the run can do without the step of a lane for a sample: that was written, or there is none. */
+static int MODEL(sample_stands)(const MODEL(batch) *b, int lane)
+{
+    const MODEL(lane) *l = b->lane + lane;
+    return l->phase == RESUME && (l->written || !MODEL(samples_left)(b, l));
+}
+
+/*
+ * A step for a sample has no rates, or leaves the domain: stages may lie beyond a switch.  It is taken
+ * again, with branches that stages choose, from the last sample or from where the run is.  Returns
+ * whether there is that way.
+ */
+static int MODEL(retake_sample)(MODEL(batch) *b, int lane)
+{
+    MODEL(lane) *l = b->lane + lane;
+    if (l->phase == RESUME)
+        return 0;
+    l->phase = RESUME;
+    l->written = 0;
+    if (l->kept >= l->t)
+        return 1;
+    l->kept = l->t;
+    for (long k = 0; k < b->m.n; ++k)
+        LANE(b->kept, k, lane) = LANE(b->m.x, k, lane);
+    for (long k = 0; k < b->m.booked; ++k) {
+        LANE(b->kept_sums, k, lane) = LANE(b->sums, k, lane);
+        LANE(b->kept_lost, k, lane) = LANE(b->lost, k, lane);
+    }
+    return 1;
+}
+
 /*
  * A step for a sample is solved (`good`: as it has to be, which it may not be if it begins at the last
  * one): write the sample.  Returns whether it stays so, or is to be taken again.
@@ -91,6 +122,7 @@ static int MODEL(take_sample)(MODEL(batch) *b, int lane, int good)
     const int within = MODEL(samples_left)(b, l);
     const double t = MODEL(target)(b, l);
     if (l->phase == SAMPLE) {
+        l->written = 1;
         MODEL(write_sample)(b, lane, b->m.reached, b->sums, b->lost, b->some_rows);
         if (MODEL(falls)(b, lane, b->some_rows)) {
             l->phase = RESUME;

@@ -1,8 +1,8 @@
 """The parameters of a module as the C structure of its header.
 
-Input: a module's `Parameters`, or a `Table` of many.  Output: a `Structure`, or `Structures` one
-after another: numbers, then a pointer for each parameter of a bank to one number per lane, in the
-order of the spec, then the sizes of banks.
+Input: a module's `Parameters`, or a `ParameterTable` of many.  Output: a `Structure`, or
+`Structures` one after another: numbers, then a pointer for each parameter of a bank to one number
+per lane, in the order of the spec, then the sizes of banks.
 """
 
 import ctypes
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.module import GeneratedModule, lanes
-from piezo_sym.run.parameter_table import Column, Table
+from piezo_sym.run.parameter_table import Column, ParameterTable
 
 #: Structures kept: of the runs that go through C alone, which are asked for again and again.
 REMEMBERED = 256
@@ -56,7 +56,7 @@ class Layout:
         self._kind = type("Parameters", (ctypes.Structure,), {"_fields_": fields or none})
         self._record = record_of(self._kind)
         self._remembered = lru_cache(maxsize=REMEMBERED)(self._made)
-        self._tables: WeakKeyDictionary[Table, Structures] = WeakKeyDictionary()
+        self._tables: WeakKeyDictionary[ParameterTable, Structures] = WeakKeyDictionary()
 
     def __call__(self, p: Any) -> Structure:
         """Return the structure of one run."""
@@ -81,18 +81,18 @@ class Layout:
     def many(self, parameters: Sequence[Any]) -> Structures:
         """Return the structures of runs whose banks have equal sizes.
 
-        Those of a `Table` are made once, and go with it.
+        Those of a `ParameterTable` are made once, and go with it.
         """
         if len(parameters) == 1:
             one = self(parameters[0])
             return Structures(np.array([ctypes.addressof(one.value)], dtype=np.uintp), (one,))
-        table = Table.of(parameters)
+        table = ParameterTable.of(parameters)
         found = self._tables.get(table)
         if found is None:
             found = self._tables[table] = self._together(table)
         return found
 
-    def _together(self, table: Table) -> Structures:
+    def _together(self, table: ParameterTable) -> Structures:
         base = self(table.base)
         records = np.full(len(table), np.frombuffer(memoryview(base.value), self._record))
         kept: list[object] = [base, records]

@@ -64,9 +64,10 @@ static void MODEL(sampled)(MODEL(batch) *b, MODEL(tick) *t)
         if (!IN(t->sampling, lane))
             continue;
         const int good = IN(t->good, lane) != 0;
-        if (!good && b->lane[lane].phase == SAMPLE)
-            MODEL(refuse)(b, lane, 0.25 * b->lane[lane].step);
-        else if (MODEL(take_sample)(b, lane, good))
+        if (!good && !MODEL(sample_stands)(b, lane)) {
+            if (!MODEL(retake_sample)(b, lane))
+                MODEL(refuse)(b, lane, 0.25 * b->lane[lane].step);
+        } else if (MODEL(take_sample)(b, lane, good))
             SET(t->booked, lane, MODEL(all_sampled)(b, lane));
     }
 }

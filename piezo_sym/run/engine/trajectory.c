@@ -53,6 +53,7 @@ typedef struct {
     double length, whole, step, part; /* at hand, before cuts, accepted; part of it for a cut */
     double known, longer, after_switch;
     double kept;   /* when the last sample was, or -HUGE_VAL */
+    int written;   /* whether the sample at hand is, though its step is taken again */
     double steady; /* the step that the errors of the step before ask for */
     int phase, behind, predicted, fresh, last, cuts, refused, halved;
     int settled; /* whether there is no switch in the step after all, so that it is solved to its end */
