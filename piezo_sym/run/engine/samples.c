@@ -7,9 +7,10 @@
  * Two such steps have errors of their own: if little is produced between two samples, the later one
  * might show less heat or entropy than the one before.  Then its step is taken again, from the sample
  * before; and so are those that follow, from one to the next and to the ends of the run's steps, until
- * the run has produced as much.
+ * the run has produced as much.  A sample whose step finds no rates is taken in the same way.
  */
 
+/* Exchange where runs are for where their last samples are. */
 static void MODEL(swap_begins)(MODEL(batch) *b, mask where)
 {
     for (long k = 0; k < b->m.n; ++k) {

@@ -3,8 +3,8 @@
  *
  * A step keeps the branches that hold where it begins; if a switching function changes its sign on
  * the way, the step is taken again to end there, and the next begins on the other branch.  The first
- * time it is not solved further than finding the place takes.  Lanes of
- * many switches may step over them instead: then each stage chooses its branches.
+ * time it is solved no further than it takes to find the place.  Lanes of many switches may step over
+ * them instead: then each stage chooses its branches.
  *
  * In a tick each lane takes one step: what it is for differs from lane to lane, how it is solved
  * does not.
