@@ -17,20 +17,17 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import final
 
-from piezo_sym.algebra.lanes import Slot
 from piezo_sym.codegen.differences import sharp_quantity
-from piezo_sym.codegen.functions import exchanges_of, limits_of, ports_of, rates_of
+from piezo_sym.codegen.functions import exchanges_of, heats_of, productions_of, rates_of, supply_of
 from piezo_sym.codegen.jacobian import jacobian_of
 from piezo_sym.codegen.paths import Path
-from piezo_sym.codegen.program import Entry, Field, Limit, Quantity, Row, needed
-from piezo_sym.codegen.quantities import Quantities
-from piezo_sym.codegen.switches import Switch, Switches, compared, lanes_of
-from piezo_sym.expressions.calculus import div, is_affine, mul
-from piezo_sym.expressions.tree import names, rename
+from piezo_sym.codegen.program import Entry, Limit, Names, Quantity, Row, needed
+from piezo_sym.codegen.quantities import COSTATES, Quantities, quantities_of
+from piezo_sym.codegen.switches import Switch, compared, switched
+from piezo_sym.expressions.calculus import is_affine
+from piezo_sym.expressions.tree import names
 from piezo_sym.iphs import IPHS
-from piezo_sym.iphs.definitions import costate_name
 from piezo_sym.spec.elements.ports import Body, Storage
-from piezo_sym.spec.tables import lane_parameters
 
 
 @final
@@ -94,71 +91,56 @@ class Collocation:
 
 def collocation_of(iphs: IPHS) -> Collocation:
     """Return the collocation step of a system."""
-    q = Quantities(iphs, given=True)
-    stage = _stage(iphs, q)  # its conditions may be what asks for a difference of temperatures
-    means = tuple(replace(mean, value=compared(mean.value)) for mean in q.means)
-    sharp = tuple(map(sharp_quantity, means))
-    jumps = any(
-        getattr(element, "discontinuous", False) for element in iphs.model.elements.values()
+    q = quantities_of(iphs)
+    states = {state.name for state in q.states}
+    means = tuple(
+        item for item in q.defined if item.note == COSTATES and not is_affine(item.value, states)
     )
-    return Collocation(sharp, stage, _slopes(iphs), _heated(iphs), jumps)
+    elements = iphs.model.elements.values()
+    return Collocation(
+        means=tuple(sharp_quantity(replace(m, value=compared(m.value))) for m in means),
+        stage=_stage(q, means),
+        slopes=_slopes(q, means),
+        heated=_heated(q),
+        jumps=any(getattr(element, "discontinuous", False) for element in elements),
+    )
 
 
-def _heated(iphs: IPHS) -> int:
-    ports = [port for _, port in iphs.circuit.of(Storage, Body)]
+def _heated(q: Quantities) -> int:
+    ports = [port for _, port in q.stores]
     lossy = any(isinstance(port, Storage) for port in ports)
     bodies = (n for n, port in enumerate(ports) if isinstance(port, Body))
     return next(bodies, -1) if lossy else -1
 
 
-def _stage(iphs: IPHS, q: Quantities) -> Stage:
-    rates, slots = rates_of(iphs, q), iphs.system.processes
-    heats = tuple(Row(slot, heat) for slot, heat in zip(slots, q.heats, strict=True))
-    produced = zip(slots, q.outputs, q.forces, iphs.system.heats, strict=True)
-    productions = tuple(
-        Row(slot, div(mul(output, force), q.costate(row))) for slot, output, force, row in produced
+def _stage(q: Quantities, means: tuple[Quantity, ...]) -> Stage:
+    rates, new = rates_of(q), Names(q.taken)
+    booked = (*supply_of(q), *heats_of(q), *productions_of(q), *exchanges_of(q))
+    defined = tuple(item for item in q.defined if item not in means)
+    found = switched(defined, (*rates, *booked), q.lanes, new, means=means)
+    limits = (limit for limit in q.limits if _moves(q, limit))
+    return Stage(
+        quantities=tuple(map(sharp_quantity, found.quantities)),
+        rates=found.rows[: len(rates)],
+        booked=found.rows[len(rates) :],
+        switches=found.switches,
+        limits=tuple(replace(limit, margin=compared(limit.margin)) for limit in limits),
+        taken=frozenset(new.taken),
+        bends=found.bends,
     )
-    supplies = next(f for f in ports_of(q) if f.name == "supply").rows
-    entropies = tuple(Row(Slot(body), rate) for body, rate in exchanges_of(q))
-    moving = (limit for limit in limits_of(iphs.model, q) if _moves(iphs, q, limit))
-    limits = tuple(replace(limit, margin=compared(limit.margin)) for limit in moving)
-    switches = _switches(iphs, q)
-    quantities = [*switches.quantities(q.defined)]
-    rows = switches.rows(rates)
-    booked = switches.rows((*supplies, *heats, *productions, *entropies))
-    bends = switches.bends(q.means)
-    quantities += switches.new()
-    found = tuple(switches.found.values())
-    sharp = tuple(map(sharp_quantity, quantities))
-    return Stage(sharp, rows, booked, found, limits, frozenset(q.taken), bends)
 
 
-def _moves(iphs: IPHS, q: Quantities, limit: Limit) -> bool:
+def _moves(q: Quantities, limit: Limit) -> bool:
     """Return whether a condition depends on the state: the others hold for a whole run."""
-    fixed = {*iphs.model.parameters, *iphs.model.inputs}
-    _, used = needed(q.defined, [limit.margin])
-    own = {*(mean.name for mean in q.means), *(port.state for _, port in q.stores)}
-    return not own.isdisjoint({*used, *names(limit.margin)} - fixed)
+    used = {*needed(q.defined, [limit.margin])[1], *names(limit.margin)}
+    return not used.isdisjoint(state.name for state in q.states)
 
 
-def _slopes(iphs: IPHS) -> Slopes:
-    q = Quantities(iphs)
-    rates = rates_of(iphs, q)
-    switches = _switches(iphs, q)
-    laws = {costate_name(p): rename(p.law, {p.letter: p.state}) for _, p in q.stores}
-    states = {costate_name(port): port.state for _, port in q.stores}
-    means = {name for name, law in laws.items() if not is_affine(law, {states[name]})}
-    q.defined[:] = switches.quantities(q.defined, means)  # a stage is given these
-    rows = switches.rows(rates)
-    q.defined += switches.new()
-    fields = tuple(Field(port.state, "", "", placed.bank) for placed, port in q.stores)
-    entries = jacobian_of(rows, fields, switches.lanes, q).entries
-    quantities = tuple(map(sharp_quantity, q.defined))
-    return Slopes(quantities, entries, tuple(switches.found.values()), frozenset(q.taken))
-
-
-def _switches(iphs: IPHS, q: Quantities) -> Switches:
-    known = {**lane_parameters(iphs.model)}
-    known |= {port.state: placed.bank for placed, port in q.stores if placed.bank}
-    known |= {mean.name: mean.bank for mean in q.means if mean.bank}
-    return Switches(lanes_of(known, q.defined), q.name)
+def _slopes(q: Quantities, means: tuple[Quantity, ...]) -> Slopes:
+    new, given = Names(q.taken), {mean.name for mean in means}
+    found = switched(q.defined, rates_of(q), q.lanes, new, compared_names=given)
+    entries, derivatives = jacobian_of(
+        *(found.rows, q.states, found.quantities, found.lanes, new, q.temperatures)
+    )
+    quantities = tuple(map(sharp_quantity, (*found.quantities, *derivatives)))
+    return Slopes(quantities, entries, found.switches, frozenset(new.taken))

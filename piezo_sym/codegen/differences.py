@@ -1,18 +1,39 @@
-"""Exponentials less one without cancellation: ``I*(exp(z) - 1)`` as ``I*expm1(z)``.
+"""Differences written with ``expm1(z) = exp(z) - 1``, so that no digits cancel near z = 0.
 
-Input: an expression.  Output: the same one, in which a sum that has a term with a factor exp(z),
-and minus that term without it, has the term with expm1(z) = exp(z) - 1 in place of the two.  Near
-z = 0 the plain difference would lose as many digits as exp(z) and 1 share.
+Two of them lose digits otherwise: T - T_0 where T = T_0*exp(S/c_0) (`with_excess`), and sums that
+hold ``I*exp(z)`` and ``-I``, as a diode's law does (`sharp`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from piezo_sym.codegen.program import Entry, Outer, Program, Quantity, Row
-from piezo_sym.expressions.calculus import choices, div, mul, neg
-from piezo_sym.expressions.tree import ONE, Add, Call, Div, Expr, Mul, Neg, knots, rebuild
+from piezo_sym.expressions.calculus import add, choices, div, mul, neg
+from piezo_sym.expressions.tree import ONE, Add, Call, Div, Expr, Mul, Neg, Sym, knots, rebuild
+
+
+def with_excess(law: Expr, excesses: Mapping[tuple[Sym, Sym], Quantity]) -> Expr:
+    """Return a law with each difference ``T - T_0`` replaced by the name that it has.
+
+    Parameters
+    ----------
+    law : any expression.
+    excesses : for a temperature and a constant, the quantity that is their difference.
+    """
+    inner = rebuild(law, lambda part: with_excess(part, excesses))
+    if not isinstance(inner, Add):
+        return inner
+    for (hot, cold), quantity in excesses.items():
+        excess = Sym(quantity.name)
+        for first, second, value in ((hot, neg(cold), excess), (neg(hot), cold, neg(excess))):
+            if first in inner.terms and second in inner.terms:
+                rest = list(inner.terms)
+                rest.remove(first)
+                rest.remove(second)
+                return add(value, *rest)
+    return inner
 
 
 def sharp_program(program: Program) -> Program:
@@ -21,7 +42,7 @@ def sharp_program(program: Program) -> Program:
         program,
         quantities=tuple(map(sharp_quantity, program.quantities)),
         functions=tuple(replace(f, rows=tuple(map(_row, f.rows))) for f in program.functions),
-        jacobian=replace(program.jacobian, entries=tuple(map(_entry, program.jacobian.entries))),
+        jacobian=tuple(map(_entry, program.jacobian)),
         limits=tuple(replace(limit, margin=sharp(limit.margin)) for limit in program.limits),
     )
 
@@ -45,12 +66,12 @@ def sharp(node: Expr) -> Expr:
     inner = rebuild(choices(node) if knots(node) else node, sharp)
     if not isinstance(inner, Add):
         return inner
-    kept = dict(enumerate(map(_plain, inner.terms)))
+    kept = dict(enumerate(map(_normal, inner.terms)))
     shown = dict(enumerate(inner.terms))
     for n, term in enumerate(inner.terms):
-        for rest, instead in _exponentials(term) if n in kept else ():
-            less = neg(_plain(rest))
-            lost = next((m for m, other in kept.items() if m != n and other == less), None)
+        for factor, instead in _exponentials(term) if n in kept else ():
+            opposite = neg(_normal(factor))
+            lost = next((m for m, other in kept.items() if m != n and other == opposite), None)
             if lost is not None:
                 kept[n] = shown[n] = instead
                 del kept[lost], shown[lost]
@@ -72,13 +93,13 @@ def _exponentials(term: Expr) -> Iterator[tuple[Expr, Expr]]:
             yield from ((div(rest, bottom), Div(new, bottom)) for rest, new in _exponentials(top))
 
 
-def _plain(term: Expr) -> Expr:
-    """Return a term as `calculus` builds it."""
+def _normal(term: Expr) -> Expr:
+    """Return a term as `calculus` builds it, so that equal terms are equal trees."""
     match term:
         case Neg(arg):
-            return neg(_plain(arg))
+            return neg(_normal(arg))
         case Mul(left, right):
-            return mul(_plain(left), _plain(right))
+            return mul(_normal(left), _normal(right))
         case Div(top, bottom):
-            return div(_plain(top), _plain(bottom))
+            return div(_normal(top), _normal(bottom))
     return term

@@ -1,8 +1,7 @@
 """The Jacobian of the rates, by the chain rule through the named quantities.
 
-Input: the rows of `rhs` and the quantities they use.  Output: a `Jacobian`, and the derivatives
-that deserve a name (``dT_dS``) as further quantities.  Its structure is found here, once: an entry
-that is not listed is zero for every state and every r.
+Input: the rows of `rhs` and the quantities they use.  Output: the entries that are not zero for
+every state and every size of banks, and the derivatives that deserve a name (``dT_dS``).
 
 The derivative of one value by one state is a `_Slope`: `value`, in the lane that either of them has
 (in equal lanes, if both have one), plus products over all pairs of lanes where a sum over lanes
@@ -13,12 +12,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import final
 
-from piezo_sym.codegen.program import Entry, Field, Jacobian, Outer, Quantity, Row, bank_of, needed
-from piezo_sym.codegen.quantities import Quantities
+from piezo_sym.codegen.program import Entry, Field, Names, Outer, Quantity, Row, bank_of, needed
 from piezo_sym.expressions.calculus import add, derivative, mul
-from piezo_sym.expressions.tree import ZERO, Expr, LaneSum, Num, Sym, names
+from piezo_sym.expressions.tree import ONE, ZERO, Expr, LaneSum, Sym, names, rebuild
 
 
 @final
@@ -43,64 +42,98 @@ class Given:
 def jacobian_of(
     rates: tuple[Row, ...],
     states: tuple[Field, ...],
+    quantities: tuple[Quantity, ...],
     lanes: Mapping[str, str],
-    q: Quantities,
+    new: Names,
+    known: Mapping[Expr, Sym],
     given: Iterable[Given] = (),
-) -> Jacobian:
-    """Return the derivative of `rates` by `states`; adds the named derivatives to `q`.
+) -> tuple[tuple[Entry, ...], tuple[Quantity, ...]]:
+    """Return the derivative of rates by states, and the named derivatives in it.
 
     Parameters
     ----------
     rates : rows of the right-hand side, one per state.
-    states : the states, in the same order.
-    lanes : the bank of every parameter and state that has a value per lane.
-    q : the quantities; grows by the derivatives that get a name.
+    states : in the same order.
+    quantities : what rates are made of, in order.
+    lanes : the bank of every name that has a value per lane.
+    new : gives names to derivatives.
+    known : expressions that have a name, and are written by it.
     given : names that are no quantities, and depend on a state all the same.
     """
-    before, _ = needed(q.defined, (rate.value for rate in rates))
-    known = {**lanes, **{item.name: item.bank for item in before if item.bank}}
-    words = [(quantity, names(quantity.value)) for quantity in before]
-    rows = [(row, rate, names(rate.value)) for row, rate in enumerate(rates)]
-    found: list[Entry] = []
+    before, _ = needed(quantities, (rate.value for rate in rates))
+    used = [(quantity, names(quantity.value)) for quantity in before]
+    rows = [(n, rate, names(rate.value)) for n, rate in enumerate(rates)]
+    sums: dict[Expr, Sym] = {
+        item.value: Sym(item.name) for item in quantities if isinstance(item.value, LaneSum)
+    }
+    made, entries = _Named(dict(lanes), sums, known, new, []), list[Entry]()
     for col, state in enumerate(states):
-        chain = _Chain(state, dict(known), q)
+        chain = _Chain(state, made)
         chain.slopes |= {g.name: _Slope(g.slope) for g in given if g.state == state.name}
-        for quantity, used in words:
-            if not chain.slopes.keys().isdisjoint(used):
+        for quantity, words in used:
+            if not chain.slopes.keys().isdisjoint(words):
                 chain.differentiate(quantity)
-        for row, rate, used in rows:
-            if not chain.slopes.keys().isdisjoint(used):
+        for n, rate, words in rows:
+            if not chain.slopes.keys().isdisjoint(words):
                 slope = chain.of(rate.value, rate.slot.bank)
-                found += [Entry(row, col, slope.value, slope.outer)] if slope != _Slope() else []
-    return Jacobian(
-        "Derivative of rhs by the state", tuple(sorted(found, key=lambda e: (e.row, e.col)))
-    )
+                entries += [Entry(n, col, slope.value, slope.outer)] if slope != _Slope() else []
+    return tuple(sorted(entries, key=attrgetter("row", "col"))), tuple(made.defined)
+
+
+@final
+@dataclass(frozen=True)
+class _Named:
+    """What has a name, and the derivatives that get one."""
+
+    lanes: dict[str, str]
+    sums: dict[Expr, Sym]
+    known: Mapping[Expr, Sym]
+    new: Names
+    defined: list[Quantity]
+
+    def define(self, word: str, value: Expr, bank: str | None, note: str) -> Sym:
+        """Name a derivative."""
+        name = self.new(word)
+        self.defined.append(Quantity(name, value, bank, note))
+        self.lanes.update({name: bank} if bank else {})
+        return Sym(name)
+
+    def total(self, term: Expr, bank: str, word: str) -> Expr:
+        """Return a term summed over the lanes of a bank."""
+        if bank_of(term, self.lanes) is None:
+            return mul(Sym(f"{bank}_count"), term)
+        key = LaneSum(term, bank)
+        if key not in self.sums:
+            self.sums[key] = self.define(word, key, None, "sums over lanes")
+        return self.sums[key]
+
+    def spelled(self, value: Expr) -> Expr:
+        """Return an expression in which all that has a name is written by it."""
+        return self.known.get(value) or rebuild(value, self.spelled)
 
 
 @final
 class _Chain:
     """The chain rule for one state, quantity after quantity."""
 
-    def __init__(self, state: Field, lanes: dict[str, str], q: Quantities) -> None:
-        self.state, self.lanes, self.q = state, lanes, q
+    def __init__(self, state: Field, made: _Named) -> None:
+        self.state, self.made = state, made
         self.named: dict[Expr, Sym] = {}
-        self.label = ""  # what a sum over lanes met on the way is called by
-        self.slopes: dict[str, _Slope] = {state.name: _Slope(Num(ZERO.value + 1))}
+        self.word = ""  # what a sum over lanes in a derivative is called by
+        self.slopes: dict[str, _Slope] = {state.name: _Slope(ONE)}
 
     def differentiate(self, quantity: Quantity) -> None:
         """Find the derivative of a quantity by the state; name it if it is more than a factor."""
-        self.label = f"d{quantity.name}_d{self.state.name}"
+        self.word = f"d{quantity.name}_d{self.state.name}"
         slope = self.of(quantity.value, quantity.bank)
         if slope == _Slope():
             return
-        value = self.q.known(slope.value)
-        if not _simple(value):
+        value = self.made.spelled(slope.value)
+        if len(names(value)) > 1:
             bank = quantity.bank or self.state.bank
-            named = self.named.get(value) or self.q.define(self.label, value, bank, "derivatives")
-            self.named[value] = named
-            if bank:
-                self.lanes[named.name] = bank
-            slope = _Slope(named, slope.outer)
+            if value not in self.named:
+                self.named[value] = self.made.define(self.word, value, bank, "derivatives")
+            slope = _Slope(self.named[value], slope.outer)
         self.slopes[quantity.name] = slope
 
     def of(self, value: Expr, bank: str | None) -> _Slope:
@@ -114,7 +147,7 @@ class _Chain:
             if slope is None:
                 continue
             factor = derivative(value, name)
-            if bank and self.state.bank and not self.lanes.get(name):
+            if bank and self.state.bank and not self.made.lanes.get(name):
                 outer.append(Outer(factor, slope.value))
             else:
                 own.append(mul(factor, slope.value))
@@ -129,13 +162,4 @@ class _Chain:
         return _Slope(add(slope.value, *across))
 
     def _total(self, term: Expr, bank: str) -> Expr:
-        if term == ZERO:
-            return ZERO
-        if bank_of(term, self.lanes) is None:
-            return mul(Sym(f"{bank}_count"), term)
-        return self.q.total(term, bank, self.label)
-
-
-def _simple(value: Expr) -> bool:
-    """Return whether a derivative is short enough to stand where it is used."""
-    return len(names(value)) <= 1
+        return ZERO if term == ZERO else self.made.total(term, bank, self.word)

@@ -14,6 +14,21 @@ from typing import final
 
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.expressions.tree import Expr, LaneSum, Node, names
+from piezo_sym.spec.names import fresh
+
+
+@final
+class Names:
+    """The names in use; called with a word, it takes a name that begins with it and is new."""
+
+    def __init__(self, taken: Iterable[str]) -> None:
+        self.taken = set(taken)
+
+    def __call__(self, word: str) -> str:
+        """Return a new name."""
+        name = fresh(word, self.taken)
+        self.taken.add(name)
+        return name
 
 
 @final
@@ -96,15 +111,6 @@ class Function:
 
 @final
 @dataclass(frozen=True)
-class Jacobian:
-    """The derivative of `rhs` by the state: entries that are not zero everywhere."""
-
-    doc: str
-    entries: tuple[Entry, ...]
-
-
-@final
-@dataclass(frozen=True)
 class Limit:
     """A condition of the domain: its text and its margin, positive (or zero) inside."""
 
@@ -125,7 +131,8 @@ class Program:
     defaults : values of parameters (a tuple: one per lane), inputs and bank sizes.
     banks : names, in order.
     quantities : in an order in which they can be computed.
-    functions, jacobian, limits : what the module offers.
+    functions, limits : what the module offers.
+    jacobian : the derivative of `rhs` by the state; an entry that is not listed is zero.
     taken : every name in use, so that printers can add their own.
     """
 
@@ -144,7 +151,7 @@ class Program:
     counts: Mapping[str, int]
     quantities: tuple[Quantity, ...]
     functions: tuple[Function, ...]
-    jacobian: Jacobian
+    jacobian: tuple[Entry, ...]
     limits: tuple[Limit, ...]
     taken: frozenset[str]
 
@@ -176,10 +183,9 @@ def bank_of(node: Node, lanes: Mapping[str, str]) -> str | None:
     return next((lanes[name] for name in names(node) if name in lanes), None)
 
 
-def jacobian_roots(jacobian: Jacobian) -> Iterator[Expr]:
-    """Yield every expression of a Jacobian."""
-    for entry in jacobian.entries:
+def jacobian_roots(entries: Iterable[Entry]) -> Iterator[Expr]:
+    """Yield every expression in the entries of a Jacobian."""
+    for entry in entries:
         yield entry.value
         for outer in entry.outer:
-            yield outer.left
-            yield outer.right
+            yield from (outer.left, outer.right)

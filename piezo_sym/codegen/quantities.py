@@ -1,220 +1,272 @@
-"""The named quantities of a program: co-states, ratios, driving forces, laws, heats, sums.
+"""The named quantities of a system: co-states, ratios, driving forces, laws, heats, sums.
 
-Input: an `IPHS`.  Output: `Quantities`, the definitions in an order in which each can be computed,
-and the terms of Definition 1's products as expressions in them.
+Input: an `IPHS`.  Output: `Quantities`, in an order in which each can be computed from earlier
+ones, and the products of Definition 1 as expressions in them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace as replace_fields
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import final
 
-import sympy as sp
-
 from piezo_sym.algebra.coefficients import coefficient
-from piezo_sym.algebra.lanes import LaneMatrix, Slot
-from piezo_sym.codegen.expm1_difference import with_excess
-from piezo_sym.codegen.program import Quantity
-from piezo_sym.expressions.calculus import add, div, is_affine, mul, neg
-from piezo_sym.expressions.tree import (
-    Expr,
-    LaneSum,
-    Sym,
-    rebuild,
-    rename,
-    replace,
-)
+from piezo_sym.algebra.lanes import LaneMatrix
+from piezo_sym.codegen.differences import with_excess
+from piezo_sym.codegen.program import Field, Limit, Names, Quantity
+from piezo_sym.expressions.calculus import add, div, mul, neg
+from piezo_sym.expressions.tree import Call, Expr, LaneSum, Mul, Sym, names, rename, replace
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name, heated
 from piezo_sym.network import port_order
-from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, Resistor, Source, Storage
-from piezo_sym.spec.names import fresh
+from piezo_sym.spec.circuit import Placed
+from piezo_sym.spec.elements.ports import (
+    Body,
+    Conductor,
+    Coupling,
+    Exchange,
+    Resistor,
+    Source,
+    Storage,
+)
+from piezo_sym.spec.tables import condition_text, conditions, lane_parameters
+
+COSTATES, SUMS = "co-states dU/dx", "sums over lanes"
+#: Of a temperature and a constant: the quantity that is their difference.
+Excesses = Mapping[tuple[Sym, Sym], Quantity]
 
 
 @final
+@dataclass(frozen=True)
 class Quantities:
-    """A growing list of definitions; every name is new, every value refers to earlier names.
+    """The quantities of a system.
 
     Attributes
     ----------
-    defined : the definitions, in order.
-    forces, outputs, heats : driving force, output W and heat of each process.
-    means : at a stage of a step, the co-states that are given to it.
-
-    Parameters
-    ----------
-    iphs : the system.
-    given : for a stage of a step: co-states that are not affine in the state are `means`.
+    defined : in an order in which they can be computed.
+    costates : of each state; a body's is its temperature.
+    inputs : of each port.
+    forces, outputs, heats : driving force z, output W and heat of each process.
+    limits : the conditions of the domain.
+    taken : every name in use.
     """
 
-    def __init__(self, iphs: IPHS, *, given: bool = False) -> None:
-        self.system = iphs.system
-        self.circuit = iphs.circuit
-        self.stores = tuple(self.circuit.of(Storage, Body))
-        self.ports = port_order(self.circuit)
-        self.bodies: Mapping[str, Body] = {p.element: port for p, port in self.circuit.of(Body)}
-        self.taken = set(self.circuit.names)
-        self.taken |= {str(symbol.name) for symbol, _ in (*iphs.slopes, *iphs.shares)}
-        self.defined: list[Quantity] = []
-        self.given = given
-        self.means: list[Quantity] = []
-        self._sums: dict[LaneSum, Sym] = {}
-        self._costates()
-        self._ratios()
-        self._loops(iphs)
-        self.forces, self.outputs, self.heats = self._processes()
-
-    def name(self, base: str) -> str:
-        """Return a fresh name, and take it."""
-        name = fresh(base, self.taken)
-        self.taken.add(name)
-        return name
-
-    def define(self, base: str, value: Expr, bank: str | None, note: str) -> Sym:
-        """Add a definition under a fresh name, and return the name."""
-        return self.defined_as(self.name(base), value, bank, note)
-
-    def defined_as(self, name: str, value: Expr, bank: str | None, note: str) -> Sym:
-        """Add a definition under a name that is taken for it, and return the name."""
-        self.defined.append(Quantity(name, value, bank, note))
-        return Sym(name)
-
-    def total(self, arg: Expr, bank: str, base: str) -> Sym:
-        """Return the quantity that is the sum of `arg` over the lanes of `bank`."""
-        key = LaneSum(arg, bank)
-        if key not in self._sums:
-            self._sums[key] = self.define(base, key, None, "sums over lanes")
-        return self._sums[key]
-
-    def costate(self, n: int) -> Sym:
-        """Return the co-state of state n."""
-        return Sym(costate_name(self.stores[n][1]))
-
-    def input(self, n: int) -> Expr:
-        """Return the input of port n that junction laws know: a source's."""
-        port = self.ports[n].port
-        if not isinstance(port, Source):
-            msg = f"port {n} is no source"
-            raise TypeError(msg)
-        return Sym(port.input)
-
-    def sharp(self, law: Expr) -> Expr:
-        """Return a law with differences to a temperature written so that they do not cancel."""
-        return with_excess(law, self._temperature_laws, self._excess)
+    iphs: IPHS
+    defined: tuple[Quantity, ...]
+    costates: tuple[Sym, ...]
+    inputs: tuple[Sym, ...]
+    forces: tuple[Expr, ...]
+    outputs: tuple[Sym, ...]
+    heats: tuple[Expr, ...]
+    limits: tuple[Limit, ...]
+    taken: frozenset[str]
 
     @cached_property
-    def _temperature_laws(self) -> dict[str, Expr]:
-        return {
-            port.temperature: rename(port.law, {port.letter: port.state})
-            for port in self.bodies.values()
-        }
+    def stores(self) -> tuple[tuple[Placed, Storage | Body], ...]:
+        """The ports that store energy, one per state."""
+        return tuple(self.iphs.circuit.of(Storage, Body))
 
-    def _excess(self, hot: str, cold: Sym, value: Expr) -> Sym:
-        """Return ``hot - cold`` as a quantity, and from now on hot as cold plus this quantity."""
-        base = f"{hot}_minus_{cold.name}"
-        if self.given:
-            return self._given_excess(hot, cold, value, base)
-        known = next((q for q in self.defined if q.value == value), None)
-        if known:
-            return Sym(known.name)
-        excess = self.define(base, value, None, "co-states dU/dx")
-        place = next(n for n, quantity in enumerate(self.defined) if quantity.name == hot)
-        self.defined.insert(place, self.defined.pop())
-        self.defined[place + 1] = replace_fields(self.defined[place + 1], value=add(cold, excess))
-        return excess
+    @property
+    def states(self) -> tuple[Field, ...]:
+        """The states, as generated modules describe them."""
+        return tuple(
+            Field(port.state, "J/K" if isinstance(port, Body) else port.units[0], port.doc, p.bank)
+            for p, port in self.stores
+        )
 
-    def _given_excess(self, hot: str, cold: Sym, value: Expr, base: str) -> Sym:
-        """Return ``hot - cold`` as what is given, and from now on hot as cold plus this."""
-        known = next((mean for mean in self.means if mean.value == value), None)
-        if known:
-            return Sym(known.name)
-        place = next((n for n, mean in enumerate(self.means) if mean.name == hot), -1)
-        if place < 0:  # given as a difference to another constant already
-            return self.define(base, add(Sym(hot), neg(cold)), None, "co-states dU/dx")
-        self.means[place] = Quantity(self.name(base), value, None, self.means[place].note)
-        excess = Sym(self.means[place].name)
-        self.defined.insert(0, Quantity(hot, add(cold, excess), None, "co-states dU/dx"))
-        return excess
-
-    def known(self, expr: Expr) -> Expr:
-        """Return an expression with each part that is a temperature written by its name."""
-        found = self._temperatures.get(expr)
-        return found if found else rebuild(expr, self.known)
+    @property
+    def temperatures(self) -> dict[Expr, Sym]:
+        """The name of each temperature by its law."""
+        bodies = self.bodies.values()
+        return {rename(b.law, {b.letter: b.state}): Sym(b.temperature) for b in bodies}
 
     @cached_property
-    def _temperatures(self) -> dict[Expr, Sym]:
-        return {law: Sym(name) for name, law in self._temperature_laws.items()}
+    def ports(self) -> tuple[Placed, ...]:
+        """The ports of inputs, in the order of the outputs."""
+        return port_order(self.iphs.circuit)
 
-    def row(self, block: LaneMatrix, row: int, given: Callable[[int], Expr]) -> Iterator[Expr]:
-        """Yield the terms of ``(block @ given)[row]``, column by column."""
-        for c, full, own in block.by_row.get(row, ()):
-            yield from self._term(full, own, block.cols[c], given(c))
+    @cached_property
+    def bodies(self) -> Mapping[str, Body]:
+        """The bodies by element."""
+        return {placed.element: port for placed, port in self.iphs.circuit.of(Body)}
 
-    def _term(self, full: sp.Expr, own: sp.Expr, col: Slot, value: Expr) -> Iterator[Expr]:
-        if full != 0 and col.bank:
-            name = value.name if isinstance(value, Sym) else col.label
-            yield mul(coefficient(full), self.total(value, col.bank, f"sum_{name}"))
-        elif full != 0:
-            yield mul(coefficient(full), value)
+    @cached_property
+    def lanes(self) -> dict[str, str]:
+        """The bank of every name that has a value per lane."""
+        found = {port.state: placed.bank for placed, port in self.stores if placed.bank}
+        found |= {item.name: item.bank for item in self.defined if item.bank}
+        return {**lane_parameters(self.iphs.model), **found}
+
+    @cached_property
+    def _names(self) -> Mapping[Expr, Sym]:
+        return _by_value(self.defined)
+
+    def total(self, term: Expr, bank: str | None) -> Sym:
+        """Return the name of a term, summed over the lanes of its bank if it has one."""
+        return self._names[LaneSum(term, bank) if bank else term]
+
+    def product(self, block: LaneMatrix, row: int, factors: Sequence[Expr]) -> Iterator[Expr]:
+        """Yield the terms of ``(block @ factors)[row]``, column by column."""
+        return _product(block, row, factors, self._names)
+
+
+def quantities_of(iphs: IPHS) -> Quantities:
+    """Return the quantities of a system."""
+    circuit, system = iphs.circuit, iphs.system
+    new = Names({*circuit.names, *(str(s.name) for s, _ in (*iphs.slopes, *iphs.shares))})
+    costates = tuple(Sym(costate_name(port)) for _, port in circuit.of(Storage, Body))
+    outputs = tuple(Sym(port.output) for _, port in circuit.of(Resistor, Conductor))
+    inputs = tuple(Sym(_input(placed)) for placed in port_order(circuit))
+    excesses = _excesses(iphs, new)
+    laws = _laws(iphs, excesses)
+    limits = tuple(_limits(iphs, excesses))
+    used = {name for law in (*laws.values(), *(m.margin for m in limits)) for name in names(law)}
+    excesses = {key: excess for key, excess in excesses.items() if excess.name in used}
+    defined = [*_costates(iphs, excesses)]
+    defined += _sums((system.J0, system.B.T, system.G.T), costates, new)
+    defined += _junction(iphs, laws)
+    found = [*_processes(iphs, laws, costates, inputs, _by_value(defined))]
+    forces, heats = tuple(force for _, force, _ in found), tuple(heat for *_, heat in found)
+    defined += [item for own, *_ in found for item in own]
+    defined += _sums((system.B, system.D), outputs, new)
+    defined += _totals(iphs, heats, _by_value(defined), new)
+    return Quantities(
+        *(iphs, tuple(defined), costates, inputs, forces, outputs, heats, limits),
+        frozenset(new.taken),
+    )
+
+
+def _by_value(defined: Sequence[Quantity]) -> dict[Expr, Sym]:
+    return {item.value: Sym(item.name) for item in reversed(defined)}
+
+
+def _input(placed: Placed) -> str:
+    if isinstance(placed.port, Source | Exchange):
+        return placed.port.input
+    msg = f"{placed.element} is no port of an input"
+    raise TypeError(msg)
+
+
+def _product(
+    block: LaneMatrix, row: int, factors: Sequence[Expr], sums: Mapping[Expr, Sym]
+) -> Iterator[Expr]:
+    for c, full, own in block.by_row.get(row, ()):
+        bank, factor = block.cols[c].bank, factors[c]
+        if full != 0:
+            yield mul(coefficient(full), sums[LaneSum(factor, bank)] if bank else factor)
         if own != 0:
-            yield mul(coefficient(own), value)
+            yield mul(coefficient(own), factor)
 
-    def _costates(self) -> None:
-        note = "co-states dU/dx"
-        for placed, port in self.stores:
-            law = rename(port.law, {port.letter: port.state})
-            if self.given and not is_affine(law, {port.state}):
-                self.means.append(Quantity(costate_name(port), law, placed.bank, note))
-                continue
-            self.defined_as(costate_name(port), law, placed.bank, note)
 
-    def _ratios(self) -> None:
-        for _, port in self.circuit.of(Coupling):
-            law = self._at(port.ratio, port.body)
-            self.defined_as(port.name, law, None, "transducer ratios")
+def _sums(blocks: Sequence[LaneMatrix], factors: Sequence[Sym], new: Names) -> Iterator[Quantity]:
+    """Yield the sums over lanes in products of blocks and some factors."""
+    entries = ((b.cols[c], c, full) for b in blocks for (_, c), full, _ in b.entries())
+    columns = {c: slot.bank for slot, c, full in entries if full != 0}
+    for c, bank in sorted(columns.items()):
+        if bank:
+            yield Quantity(new(f"sum_{factors[c].name}"), LaneSum(factors[c], bank), None, SUMS)
 
-    def _loops(self, iphs: IPHS) -> None:
-        """Define how resistors in a loop share what drives them."""
-        processes = tuple(self.circuit.of(Resistor, Conductor))
-        for slope in iphs.junction.slopes:
-            law = self._at(slope.law, heated(processes[slope.process][1]))
-            self.defined_as(str(slope.symbol.name), law, None, "slopes of laws in a loop")
-        for symbol, value in iphs.shares:
-            name = str(symbol.name)
-            self.defined_as(name, coefficient(value), None, "shares of resistors in a loop")
 
-    def _at(self, law: Expr, body: str | None) -> Expr:
-        """Return a law in which ``T`` is the temperature of `body`."""
-        return self.sharp(rename(law, {"T": self.bodies[body].temperature})) if body else law
+# Laws
 
-    def _processes(self) -> tuple[list[Expr], list[Sym], list[Expr]]:
-        forces, outputs, heats = [], [], []
-        states, inputs = self.system.B.T, self.system.D.T
-        for k, (placed, port) in enumerate(self.circuit.of(Resistor, Conductor)):
-            terms = [*self.row(states, k, self.costate)]
-            terms += self.row(inputs, k, self.input)
-            effort = add(*terms)
-            if not isinstance(effort, Sym) and isinstance(port, Resistor):
-                effort = self.defined_as(port.effort, effort, placed.bank, "driving forces")
-            if isinstance(port, Resistor):
-                force: Expr = effort
-                law = replace(self._at(port.law, port.heats), {port.letter: effort})
-            else:
-                force = add(effort, neg(Sym(self.bodies[port.second].temperature)))
-                law = div(mul(port.conductance, force), effort)
-            output = self.defined_as(port.output, law, placed.bank, "dissipative laws")
-            forces.append(force)
-            outputs.append(output)
-            heats.append(mul(output, effort))
-        return forces, outputs, heats
 
-    def heat(self, k: int) -> Sym:
-        """Return the quantity that is the heat of process k, summed over the lanes of a bank."""
-        slot = self.system.processes[k]
-        base = f"heat_{slot.label}"
+def _excesses(iphs: IPHS, new: Names) -> dict[tuple[Sym, Sym], Quantity]:
+    """Return the difference of each temperature to a constant of which it is an exponential."""
+    found = {}
+    for _, body in iphs.circuit.of(Body):
+        match rename(body.law, {body.letter: body.state}):
+            case Mul(Sym() as cold, Call("exp", args)):
+                name, value = f"{body.temperature}_minus_{cold.name}", Call("expm1", args)
+                excess = Quantity(new(name), mul(cold, value), None, COSTATES)
+                found[Sym(body.temperature), cold] = excess
+    return found
+
+
+def _laws(iphs: IPHS, excesses: Excesses) -> dict[str, Expr]:
+    """Return ratios, slopes of laws in a loop, and laws of processes by their names."""
+    circuit = iphs.circuit
+    processes = tuple(circuit.of(Resistor, Conductor))
+    found = [(port.name, port.ratio, port.body) for _, port in circuit.of(Coupling)]
+    for slope in iphs.junction.slopes:
+        found.append((str(slope.symbol.name), slope.law, heated(processes[slope.process][1])))
+    found += [(port.output, port.law, port.heats) for _, port in circuit.of(Resistor)]
+    T = {placed.element: body.temperature for placed, body in circuit.of(Body)}
+    return {
+        name: with_excess(rename(law, {"T": T[body]}), excesses) if body else law
+        for name, law, body in found
+    }
+
+
+def _limits(iphs: IPHS, excesses: Excesses) -> Iterator[Limit]:
+    """Yield the conditions of the domain: left minus right side, or the reverse."""
+    for condition in conditions(iphs.model):
+        test = condition.tree
+        ends = (test.left, test.right) if test.op.startswith(">") else (test.right, test.left)
+        margin = with_excess(add(ends[0], neg(ends[1])), excesses)
+        yield Limit(condition_text(test), "=" not in test.op, margin)
+
+
+# Definitions
+
+
+def _costates(iphs: IPHS, excesses: Excesses) -> Iterator[Quantity]:
+    known = {hot.name: (cold, excess) for (hot, cold), excess in excesses.items()}
+    for placed, port in iphs.circuit.of(Storage, Body):
+        name, law = costate_name(port), rename(port.law, {port.letter: port.state})
+        if name in known:
+            cold, excess = known[name]
+            yield excess
+            law = add(cold, Sym(excess.name))
+        yield Quantity(name, law, placed.bank, COSTATES)
+
+
+def _junction(iphs: IPHS, laws: Mapping[str, Expr]) -> Iterator[Quantity]:
+    """Yield ratios, and how resistors in a loop share what drives them."""
+    for _, port in iphs.circuit.of(Coupling):
+        yield Quantity(port.name, laws[port.name], None, "transducer ratios")
+    for slope in iphs.junction.slopes:
+        name = str(slope.symbol.name)
+        yield Quantity(name, laws[name], None, "slopes of laws in a loop")
+    for symbol, value in iphs.shares:
+        note = "shares of resistors in a loop"
+        yield Quantity(str(symbol.name), coefficient(value), None, note)
+
+
+def _processes(
+    iphs: IPHS,
+    laws: Mapping[str, Expr],
+    costates: Sequence[Sym],
+    inputs: Sequence[Sym],
+    sums: Mapping[Expr, Sym],
+) -> Iterator[tuple[tuple[Quantity, ...], Expr, Expr]]:
+    """Yield what each process defines, its driving force and its heat."""
+    states, driven = iphs.system.B.T, iphs.system.D.T
+    T = {placed.element: Sym(body.temperature) for placed, body in iphs.circuit.of(Body)}
+    for k, (placed, port) in enumerate(iphs.circuit.of(Resistor, Conductor)):
+        terms = [*_product(states, k, costates, sums), *_product(driven, k, inputs, sums)]
+        z, defined = add(*terms), list[Quantity]()
+        if isinstance(port, Conductor):
+            force: Expr = add(z, neg(T[port.second]))
+            law = div(mul(port.conductance, force), z)
+        else:
+            if not isinstance(z, Sym):
+                defined.append(Quantity(port.effort, z, placed.bank, "driving forces"))
+                z = Sym(port.effort)
+            force, law = z, replace(laws[port.output], {port.letter: z})
+        defined.append(Quantity(port.output, law, placed.bank, "dissipative laws"))
+        yield tuple(defined), force, mul(Sym(port.output), z)
+
+
+def _totals(
+    iphs: IPHS, heats: Sequence[Expr], known: Mapping[Expr, Sym], new: Names
+) -> Iterator[Quantity]:
+    """Yield heats, and the energies of banks, summed over lanes."""
+    for slot, heat in zip(iphs.system.processes, heats, strict=True):
         if slot.bank:
-            return self.total(self.heats[k], slot.bank, base)
-        known = next((q for q in self.defined if q.value == self.heats[k]), None)
-        return Sym(known.name) if known else self.define(base, self.heats[k], None, "heats")
+            yield Quantity(new(f"heat_{slot.label}"), LaneSum(heat, slot.bank), None, SUMS)
+        elif heat not in known:
+            yield Quantity(new(f"heat_{slot.label}"), heat, None, "heats")
+    for slot, energy in zip(iphs.system.states, iphs.energies, strict=True):
+        if slot.bank:
+            yield Quantity(new(f"energy_{slot.label}"), LaneSum(energy, slot.bank), None, SUMS)

@@ -8,14 +8,14 @@ dead zone ``z - w if z > w else (z + w if z < -w else 0)``.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
-from piezo_sym.codegen.program import Quantity, Row, bank_of
+from piezo_sym.codegen.program import Names, Quantity, Row, bank_of
 from piezo_sym.expressions.calculus import add, choices, kinks, neg
-from piezo_sym.expressions.tree import ZERO, Cmp, Expr, If, Sym, names, rebuild
+from piezo_sym.expressions.tree import ZERO, Cmp, Expr, If, Sym, rebuild
 
 NOTE = "switching functions"
 
@@ -38,45 +38,78 @@ class Switch:
 
 
 @final
-class Switches:
-    """The switches of some values, in the order in which they are met.
+@dataclass(frozen=True)
+class Switched:
+    """Values that choose by branches.
+
+    Attributes
+    ----------
+    quantities : each after the switching functions that it needs.
+    rows : in the order given.
+    switches : in the order in which they are met.
+    bends : what changes its sign where a mean has a kink.
+    lanes : the bank of every name that has a value per lane.
+    """
+
+    quantities: tuple[Quantity, ...]
+    rows: tuple[Row, ...]
+    switches: tuple[Switch, ...]
+    bends: tuple[Row, ...]
+    lanes: Mapping[str, str]
+
+
+def switched(
+    quantities: Iterable[Quantity],
+    rows: Iterable[Row],
+    lanes: Mapping[str, str],
+    new: Names,
+    *,
+    means: Sequence[Quantity] = (),
+    compared_names: Collection[str] = (),
+) -> Switched:
+    """Return quantities and rows that choose by branches.
 
     Parameters
     ----------
-    lanes : the bank of each name that has a value per lane; grows by the switching functions.
-    name : returns a fresh name, and takes it.
+    lanes : the bank of every name that has a value per lane.
+    new : gives names to branches and switching functions.
+    means : functions of the state at whose kinks a step ends, too: nobody takes their branches.
+    compared_names : quantities that choose by comparisons all the same.
     """
+    made = _Switches(dict(lanes), new)
+    found = list[Quantity]()
+    for quantity in quantities:
+        found += made.quantity(quantity, by_branch=quantity.name not in compared_names)
+    chosen = tuple(replace(r, value=made.chosen(r.value, r.slot.bank)) for r in rows)
+    bends = tuple(made.bends(means))
+    found += made.taken()
+    return Switched(tuple(found), chosen, tuple(made.found.values()), bends, made.lanes)
 
-    def __init__(self, lanes: dict[str, str], name: Callable[[str], str]) -> None:
-        self.lanes, self.name = lanes, name
+
+@final
+class _Switches:
+    """The switches met so far."""
+
+    def __init__(self, lanes: dict[str, str], new: Names) -> None:
+        self.lanes, self.new = lanes, new
         self.found: dict[Cmp, Switch] = {}
-        self._new: list[Quantity] = []
+        self.defined: list[Quantity] = []
 
-    def quantities(
-        self, given: Iterable[Quantity], free: Collection[str] = ()
-    ) -> Iterator[Quantity]:
-        """Yield quantities that choose by branches, each after the switching functions it needs.
+    def quantity(self, quantity: Quantity, *, by_branch: bool) -> Iterator[Quantity]:
+        """Yield a quantity that chooses by branches, after the switching functions it needs."""
+        if not by_branch:
+            yield replace(quantity, value=compared(quantity.value))
+            return
+        value = self.chosen(quantity.value, quantity.bank)
+        if not isinstance(value, If):
+            value = self._named(value, quantity)
+        yield from self.taken()
+        yield replace(quantity, value=value)
 
-        Those named in `free` choose by comparisons.
-        """
-        for quantity in given:
-            if quantity.name in free:
-                yield replace(quantity, value=compared(quantity.value))
-                continue
-            value = self.chosen(quantity.value, quantity.bank)
-            if not isinstance(value, If):
-                value = self._named(value, quantity)
-            yield from self.new()
-            yield replace(quantity, value=value)
-
-    def rows(self, given: Iterable[Row]) -> tuple[Row, ...]:
-        """Return rows that choose by branches; `new` has what they need."""
-        return tuple(replace(r, value=self.chosen(r.value, r.slot.bank)) for r in given)
-
-    def new(self) -> tuple[Quantity, ...]:
-        """Return the switching functions met since this was asked last."""
-        new, self._new = tuple(self._new), []
-        return new
+    def taken(self) -> list[Quantity]:
+        """Return the quantities defined since this was asked last."""
+        found, self.defined = self.defined, []
+        return found
 
     def chosen(self, value: Expr, bank: str | None) -> Expr:
         """Return a value that chooses by branches, itself one per lane of `bank` or shared."""
@@ -86,49 +119,43 @@ class Switches:
                 return If(then, self._branch(condition), other)
         return inner
 
-    def bends(self, means: Iterable[Quantity]) -> tuple[Row, ...]:
-        """Return what changes its sign where `means` have kinks; each is a switching function, too.
-
-        Nobody takes its branch: a step ends there, as at a kink of a law.
-        """
-        found = list[Row]()
+    def bends(self, means: Iterable[Quantity]) -> Iterator[Row]:
+        """Yield what changes its sign where means have kinks, once each."""
+        met = set[Expr]()
         for condition in (kink for mean in means for kink in kinks(compared(mean.value))):
             value = add(condition.left, neg(condition.right))
-            if any(row.value in (value, neg(value)) for row in found):
+            if not met.isdisjoint({value, neg(value)}):
                 continue
+            met.add(value)
             bank = bank_of(value, self.lanes)
             self._branch(Cmp(">", self.chosen(value, bank), ZERO))
-            found.append(Row(Slot(f"bend_{len(found) + 1}", bank), value))
-        return tuple(found)
+            yield Row(Slot(f"bend_{len(met)}", bank), value)
 
     def _named(self, value: Expr, quantity: Quantity) -> Expr:
         """Return a value whose choices are quantities of their own."""
         if not isinstance(value, If):
             return rebuild(value, lambda part: self._named(part, quantity))
-        name, bank = self.name(f"chosen_{quantity.name}"), bank_of(value, self.lanes)
-        self._new.append(Quantity(name, value, bank, quantity.note))
-        if bank:
-            self.lanes[name] = bank
+        name, bank = self.new(f"chosen_{quantity.name}"), bank_of(value, self.lanes)
+        self._define(Quantity(name, value, bank, quantity.note))
         return Sym(name)
+
+    def _define(self, quantity: Quantity) -> None:
+        self.defined.append(quantity)
+        if quantity.bank:
+            self.lanes[quantity.name] = quantity.bank
 
     def _branch(self, condition: Cmp) -> Cmp:
         if condition not in self.found:
             left, right = condition.left, condition.right
             sides = (right, left) if condition.op.startswith("<") else (left, right)
             bank, n = bank_of(condition, self.lanes), len(self.found) + 1
-            branch, place = self.name(f"branch_{n}"), self.name(f"switch_{n}")
-            self._new.append(Quantity(place, add(sides[0], neg(sides[1])), bank, NOTE))
-            if bank:
-                self.lanes |= {branch: bank, place: bank}
-            self.found[condition] = Switch(branch, Sym(place), bank, "=" not in condition.op)
+            branch, name = self.new(f"branch_{n}"), self.new(f"switch_{n}")
+            self._define(Quantity(name, add(sides[0], neg(sides[1])), bank, NOTE))
+            self.lanes |= {branch: bank} if bank else {}
+            self.found[condition] = Switch(branch, Sym(name), bank, "=" not in condition.op)
         return Cmp(">", Sym(self.found[condition].branch), ZERO)
 
 
 def compared(node: Expr) -> Expr:
     """Return an expression whose kinks are choices by comparisons, as no step keeps them."""
     return choices(rebuild(node, compared))
-
-
-def lanes_of(known: Mapping[str, str], quantities: Iterable[Quantity]) -> dict[str, str]:
-    """Return the bank of each name that has a value per lane, quantities among them."""
-    return {**known, **{q.name: q.bank for q in quantities if q.bank and names(q.value)}}

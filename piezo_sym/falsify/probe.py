@@ -18,10 +18,9 @@ from typing import final
 
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.codegen import numpy_module
-from piezo_sym.codegen.functions import limits_of
 from piezo_sym.codegen.lower import program_of
 from piezo_sym.codegen.program import Function, Row, bank_of
-from piezo_sym.codegen.quantities import Quantities
+from piezo_sym.codegen.quantities import Quantities, quantities_of
 from piezo_sym.expressions.calculus import add, choices, derivative, increasing, kinks, mul, neg
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.tree import (
@@ -57,7 +56,6 @@ from piezo_sym.spec.elements.ports import (
     Storage,
     Variable,
 )
-from piezo_sym.spec.tables import lane_parameters
 from piezo_sym.spec.units import parse_unit
 
 UNITS = {
@@ -125,19 +123,16 @@ def module_from(text: str, name: str = "attacked") -> ModuleType:
 
 def probe_of(iphs: IPHS) -> Probe:
     """Return the probe of a system."""
-    q = Quantities(iphs)
-    limits = limits_of(iphs.model, q)
+    q = quantities_of(iphs)
     known = {quantity.name: quantity.value for quantity in q.defined}
     laws = (*_laws(q), *_holes(iphs, q, known))
-    banks = {quantity.name: quantity.bank for quantity in q.defined}
-    banks |= {port.state: placed.bank for placed, port in q.stores}
-    lanes = lane_parameters(iphs.model) | {name: bank for name, bank in banks.items() if bank}
-    trees = [quantity.value for quantity in q.defined] + [limit.margin for limit in limits]
+    named = [item.value for item in q.defined if not isinstance(item.value, LaneSum)]
+    trees = named + [limit.margin for limit in q.limits]
     trees += [tree for _, what, tree in laws if what != "hole"]
     found = [edge for tree in trees for edge in _edges(tree)]
-    found += [Edge(limit.margin) for limit in limits] + [Edge(tree) for tree in _equal(iphs, q)]
+    found += [Edge(limit.margin) for limit in q.limits] + [Edge(tree) for tree in _equal(iphs, q)]
     edges = tuple(dict.fromkeys(e for e in found if not isinstance(e.tree, Num)))[:MOST_EDGES]
-    values = [(tree, bank_of(tree, lanes)) for _, _, tree in laws]
+    values = [(tree, bank_of(tree, q.lanes)) for _, _, tree in laws]
     sizes = [
         (ONE if what in {"effort", "hole"} else _size(_own(tree, known)), bank)
         for (_, what, _), (tree, bank) in zip(laws, values, strict=True)
@@ -145,13 +140,13 @@ def probe_of(iphs: IPHS) -> Probe:
     functions = (
         _function("laws", values),
         _function("sizes", sizes),
-        _function("edges", [(edge.tree, bank_of(edge.tree, lanes)) for edge in edges]),
+        _function("edges", [(edge.tree, bank_of(edge.tree, q.lanes)) for edge in edges]),
     )
-    program = program_of(iphs, q, functions)
+    program = program_of(q, functions)
     states = {name: port.state for name, port in q.bodies.items()}
     slots = tuple(tuple(row.slot for row in function.rows) for function in functions)
-    named = tuple((element, what) for element, what, _ in laws)
-    return Probe(module_from(numpy_module(program)), named, edges, (slots[0], slots[2]), states)
+    keys = tuple((element, what) for element, what, _ in laws)
+    return Probe(module_from(numpy_module(program)), keys, edges, (slots[0], slots[2]), states)
 
 
 def _function(name: str, rows: list[tuple[Expr, str | None]]) -> Function:
@@ -167,7 +162,7 @@ def _own(tree: Expr, known: dict[str, Expr]) -> Expr:
 def _laws(q: Quantities) -> Iterator[tuple[str, str, Expr]]:
     """Yield every law by its name, with the effort of dissipative ones, and slopes of bodies."""
     forces = iter(zip(q.forces, q.outputs, strict=True))
-    for placed in q.circuit.ports:
+    for placed in q.iphs.circuit.ports:
         element, port = placed.element, placed.port
         match port:
             case Storage() | Body():

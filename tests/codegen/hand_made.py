@@ -16,15 +16,14 @@ from piezo_sym.codegen.differences import sharp_program, sharp_quantity
 from piezo_sym.codegen.jacobian import jacobian_of
 from piezo_sym.codegen.paths import Path as Stop
 from piezo_sym.codegen.paths import in_motion, slopes_of
-from piezo_sym.codegen.program import Field, Function, Limit, Program, Quantity, Row
-from piezo_sym.codegen.switches import Switches, compared, lanes_of
+from piezo_sym.codegen.program import Field, Function, Limit, Names, Program, Quantity, Row
+from piezo_sym.codegen.switches import compared, switched
 from piezo_sym.expressions.calculus import add, derivative, div, is_affine, mul, neg
 from piezo_sym.expressions.parse import parse_rule
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, If, LaneSum, Num, Sym, rebuild
 from piezo_sym.expressions.tree import replace as put
 from piezo_sym.modules import load_module
 from piezo_sym.run.engine.alone import step_alone
-from piezo_sym.spec.names import fresh
 
 DRIVEN, STATE = ("x", "u", "p"), ("x", "p")
 
@@ -74,12 +73,13 @@ class HandMade:
         """Return what the module computes."""
         q = _Quantities(self, [*self.costates(), *self._standing()])
         rates = self._rows(self.rates, q)
-        jacobian = jacobian_of(rates, self.fields(), self.lanes(), q)
+        heated = self._heated(q)
         total = [
             q.total(e, bank, f"energy_{n}") if bank else e for n, (e, bank) in self._energies()
         ]
+        entries, derivatives = self._jacobian(rates, q.defined, q.lanes(), q.new)
         entropies = dict.fromkeys(body for _, body in self.heats.values())
-        produced = [Row(r.slot, div(r.value, Sym(f"E_{s}"))) for r, s in self._heated(q)]
+        produced = [Row(r.slot, div(r.value, Sym(f"E_{s}"))) for r, s in heated]
         ports = tuple(Row(Slot(name), read(text)) for name, text in self.supply.items())
         starts = tuple(Row(Slot(s, b), _number(v)) for s, (v, b) in self.states.items())
         temperatures = tuple(Row(Slot(s), Sym(f"E_{s}")) for s in entropies)
@@ -91,7 +91,7 @@ class HandMade:
             Function("energy", "Hamiltonian U [J]", STATE, (Row(Slot("U"), add(*total)),), True),
             Function("entropy", "Entropy", STATE, (_sum("S", entropies),), True),
             Function("temperatures", "Temperatures [K]", STATE, temperatures),
-            Function("heat", "Heat [W]", DRIVEN, tuple(row for row, _ in self._heated(q))),
+            Function("heat", "Heat [W]", DRIVEN, tuple(row for row, _ in heated)),
             Function("entropy_production", "Production [W/K]", DRIVEN, tuple(produced)),
         )
         counts = {f"{name}_count": count for name, count in self.counts.items()}
@@ -105,43 +105,36 @@ class HandMade:
             inputs=tuple(Field(name, "1", "") for name in self.inputs),
             states=self.fields(),
             outputs=tuple(Field(name, "W", "") for name in self.supply),
-            processes=tuple(
-                Field(r.slot.label, "W/K", "", r.slot.bank) for r, _ in self._heated(q)
-            ),
+            processes=tuple(Field(r.slot.label, "W/K", "", r.slot.bank) for r, _ in heated),
             bodies=tuple(Field(name, "K", "") for name in entropies),
             defaults={**{n: v for n, (v, _) in self._parameters()}, **self.inputs, **counts},
             counts=self.counts,
-            quantities=tuple(q.defined),
+            quantities=(*q.defined, *derivatives),
             functions=functions,
-            jacobian=jacobian,
+            jacobian=entries,
             limits=self._limits(),
-            taken=frozenset(q.taken),
+            taken=frozenset(q.new.taken),
         )
 
     def collocation(self):
         """Return the model's step."""
         means = tuple(c for c in self.costates() if not self._affine(c))
         q = _Quantities(self, [c for c in self.costates() if self._affine(c)])
-        q.taken |= {mean.name for mean in means}
-        lanes = {**self.lanes(), **{mean.name: mean.bank for mean in means if mean.bank}}
-        rates, heats = self._rows(self.rates, q), self._heated(q)  # whose sums are quantities, too
-        switches = Switches(lanes_of(lanes, q.defined), q.name)
+        q.new.taken |= {mean.name for mean in means}
         rates, heats = self._rows(self.rates, q), self._heated(q)
-        quantities = [*switches.quantities(q.defined)]
-        rates = switches.rows(rates)
-        produced = tuple(Row(row.slot, div(row.value, Sym(f"E_{s}"))) for row, s in heats)
-        ports = tuple(Row(Slot(name), read(text)) for name, text in self.supply.items())
-        booked = switches.rows((*ports, *(row for row, _ in heats), *produced))
-        bends = switches.bends(means)
-        quantities += switches.new()
+        produced = (Row(row.slot, div(row.value, Sym(f"E_{s}"))) for row, s in heats)
+        ports = (Row(Slot(name), read(text)) for name, text in self.supply.items())
+        rows = (*rates, *ports, *(row for row, _ in heats), *produced)
+        lanes = q.lanes() | {mean.name: mean.bank for mean in means if mean.bank}
+        found = switched(q.defined, rows, lanes, q.new, means=means)
         stage = Stage(
-            tuple(map(sharp_quantity, quantities)),
-            rates,
-            booked,
-            tuple(switches.found.values()),
+            tuple(map(sharp_quantity, found.quantities)),
+            found.rows[: len(rates)],
+            found.rows[len(rates) :],
+            found.switches,
             self._limits(),
-            frozenset(q.taken),
-            bends,
+            frozenset(q.new.taken),
+            found.bends,
         )
         means = tuple(sharp_quantity(replace(m, value=compared(m.value))) for m in means)
         first = next((body for _, body in self.heats.values()), None)
@@ -152,17 +145,17 @@ class HandMade:
         q = _Quantities(self, self.costates())
         free = {c.name for c in self.costates() if not self._affine(c)}
         rates = self._rows(self.rates, q)
-        switches = Switches(lanes_of(self.lanes(), q.defined), q.name)
-        q.defined[:] = switches.quantities(q.defined, free)
-        rates = switches.rows(rates)
-        mean = in_motion(self._paths(), {row.slot.label: row.value for row in rates})
-        rates = tuple(replace(row, value=put(row.value, mean)) for row in rates)
-        q.defined[:] = [replace(d, value=put(d.value, mean)) for d in q.defined]
-        q.defined += switches.new()
+        found = switched(q.defined, rates, q.lanes(), q.new, compared_names=free)
+        mean = in_motion(self._paths(), {row.slot.label: row.value for row in found.rows})
+        rates = tuple(replace(row, value=put(row.value, mean)) for row in found.rows)
+        defined = tuple(replace(d, value=put(d.value, mean)) for d in found.quantities)
         given = [*slopes_of(self._paths())]
-        entries = jacobian_of(rates, self.fields(), switches.lanes, q, given).entries
-        found = tuple(switches.found.values())
-        return Slopes(tuple(map(sharp_quantity, q.defined)), entries, found, frozenset(q.taken))
+        entries, derivatives = self._jacobian(rates, defined, found.lanes, q.new, given)
+        quantities = tuple(map(sharp_quantity, (*defined, *derivatives)))
+        return Slopes(quantities, entries, found.switches, frozenset(q.new.taken))
+
+    def _jacobian(self, rates, quantities, lanes, new, given=()):
+        return jacobian_of(rates, self.fields(), tuple(quantities), lanes, new, {}, given)
 
     def costates(self):
         """Return the energy's derivatives, each one per lane if its state is."""
@@ -229,33 +222,29 @@ class HandMade:
 
 
 class _Quantities:
-    """Definitions in order, as `jacobian_of` lets them grow."""
+    """Definitions in order; a sum over lanes that occurs in a row becomes one, once."""
 
     def __init__(self, model, costates):
-        self.defined = []
-        self.taken = {*model.parameters, *model.states, *model.inputs, *model.laws, *model.counts}
-        self.taken |= {f"E_{state}" for state in model.states}
-        self.taken |= {field.name for path in model._paths() for field in path.given()}
+        self.model, self.defined, self.sums = model, [], {}
+        self.new = Names([*model.parameters, *model.states, *model.inputs, *model.laws])
+        self.new.taken |= {*model.counts, *(f"E_{state}" for state in model.states)}
+        self.new.taken |= {field.name for path in model._paths() for field in path.given()}
         for costate in costates:
             self.defined.append(replace(costate, value=self.settled(costate.value)))
         for name, given in model.laws.items():
             text, bank = _with_bank(given)
             self.defined.append(Quantity(name, self.settled(read(text)), bank, "laws"))
 
-    def name(self, base):
-        found = fresh(base, self.taken)
-        self.taken.add(found)
-        return found
-
-    def define(self, base, value, bank, note):
-        self.defined.append(Quantity(self.name(base), value, bank, note))
-        return Sym(self.defined[-1].name)
+    def lanes(self):
+        """Return the bank of each name that has a value per lane."""
+        return self.model.lanes() | {item.name: item.bank for item in self.defined if item.bank}
 
     def total(self, arg, bank, base):
-        return self.define(base, LaneSum(arg, bank), None, "sums over lanes")
-
-    def known(self, expr):
-        return expr
+        key = LaneSum(arg, bank)
+        if key not in self.sums:
+            self.sums[key] = Sym(self.new(base))
+            self.defined.append(Quantity(self.sums[key].name, key, None, "sums over lanes"))
+        return self.sums[key]
 
     def settled(self, expr):
         """Return an expression in which each sum over lanes is a name."""

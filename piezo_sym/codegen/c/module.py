@@ -97,7 +97,7 @@ class _Printer:
 
     def jacobian(self) -> str:
         """Return the function that fills the Jacobian, row after row."""
-        entries, n, j = self.program.jacobian.entries, self.n, self.j
+        entries, n, j = self.program.jacobian, self.n, self.j
         writes = [self._entry(entry) for entry in entries if entry.value != ZERO]
         roots = list(jacobian_roots(self.program.jacobian))
         body = [f"for (long {j} = 0; {j} < {n}*{n}; ++{j}) {{"]

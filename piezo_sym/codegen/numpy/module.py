@@ -88,12 +88,11 @@ class _Printer:
 
     def jacobian(self) -> str:
         """Return the function that fills the Jacobian."""
-        jacobian = self.program.jacobian
-        doc = f"{jacobian.doc}; shape (n, n, *batch)"
-        roots = tuple(jacobian_roots(jacobian))
+        doc = "Derivative of rhs by the state; shape (n, n, *batch)"
+        roots = tuple(jacobian_roots(self.program.jacobian))
         lines = self._opening("jacobian", ("x", "u", "p"), doc, None, roots)
         lines.append(f"{self.out} = np.zeros(({self.x}.shape[0], *{self.x}.shape))")
-        for entry in jacobian.entries:
+        for entry in self.program.jacobian:
             lines += self._entry(entry)
         return _body([*lines, f"return {self.out}"])
 
