@@ -10,7 +10,7 @@
  *
  * x = (q, p, Q_C, phi_1 ... phi_hysteron_count, S)
  * u = (F_ext, V_in, T_e)
- * hysteron: lanes j = 1 ... hysteron_count
+ * bank hysteron: lanes j = 1 ... hysteron_count
  */
 #include "piezo_stack.h"
 
@@ -38,7 +38,7 @@ long piezo_stack_states(const piezo_stack_parameters *restrict p_)
     return 4 + hysteron_count;
 }
 
-/* Number of rows of processes; of a bank, one per lane. */
+/* Number of processes; of a bank, one per lane. */
 long piezo_stack_processes(const piezo_stack_parameters *restrict p_)
 {
     const long hysteron_count = p_->hysteron_count;
@@ -54,12 +54,12 @@ void piezo_stack_initial_state(const double *restrict u,
     const double T_0 = p_->T_0;
     const double c_0 = p_->c_0;
     const double T_e = u[2];
-    /* hysteron: rows */
+    /* each lane of hysteron: result */
 #pragma omp simd
     for (long j = 0; j < hysteron_count; ++j) {
         out[3 + j] = 0.0;
     }
-    /* rows */
+    /* result */
     out[0] = 0.0;
     out[1] = 0.0;
     out[2] = 0.0;
@@ -105,7 +105,7 @@ void piezo_stack_rhs(const double *restrict x,
     const double F_damper = d*v_mass;
     /* heats */
     const double heat_damper = F_damper*v_mass;
-    /* hysteron: sums over lanes and rows */
+    /* each lane of hysteron: sums over lanes and result */
     double sum_i_hysteron = 0.0;
     double heat_hysteron = 0.0;
 #pragma omp simd reduction(+:sum_i_hysteron, heat_hysteron)
@@ -119,7 +119,7 @@ void piezo_stack_rhs(const double *restrict x,
         heat_hysteron += V_hysteron*i_hysteron;
         out[3 + j] = V_in - V_capacitor - V_hysteron;
     }
-    /* rows */
+    /* result */
     out[0] = v_mass;
     out[1] = alpha_transducer*V_capacitor - F_spring - F_damper + F_ext;
     out[2] = sum_i_hysteron - alpha_transducer*v_mass;
@@ -145,20 +145,20 @@ void piezo_stack_outputs(const double *restrict x,
     const double v_mass = p/M;
     const double T_minus_T_0 = T_0*expm1(S/c_0);
     const double T = T_0 + T_minus_T_0;
-    /* hysteron: sums over lanes */
+    /* each lane of hysteron: sums over lanes */
     double sum_i_hysteron = 0.0;
 #pragma omp simd reduction(+:sum_i_hysteron)
     for (long j = 0; j < hysteron_count; ++j) {
         const double i_hysteron = phi[j]/L[j];
         sum_i_hysteron += i_hysteron;
     }
-    /* rows */
+    /* result */
     out[0] = v_mass;
     out[1] = sum_i_hysteron;
     out[2] = T;
 }
 
-/* Power put in [W], one per port; the sum is dU/dt. */
+/* Power supplied through each port [W]; the sum is dU/dt. */
 void piezo_stack_supply(const double *restrict x,
                         const double *restrict u,
                         const piezo_stack_parameters *restrict p_,
@@ -180,14 +180,14 @@ void piezo_stack_supply(const double *restrict x,
     const double v_mass = p/M;
     const double T_minus_T_0 = T_0*expm1(S/c_0);
     const double T = T_0 + T_minus_T_0;
-    /* hysteron: sums over lanes */
+    /* each lane of hysteron: sums over lanes */
     double sum_i_hysteron = 0.0;
 #pragma omp simd reduction(+:sum_i_hysteron)
     for (long j = 0; j < hysteron_count; ++j) {
         const double i_hysteron = phi[j]/L[j];
         sum_i_hysteron += i_hysteron;
     }
-    /* rows */
+    /* result */
     out[0] = v_mass*F_ext;
     out[1] = sum_i_hysteron*V_in;
     out[2] = lam*(T_e - T);
@@ -209,7 +209,7 @@ double piezo_stack_energy(const double *restrict x, const piezo_stack_parameters
     const double Q_C = x[2];
     const double *phi = x + 3;
     const double S = x[3 + hysteron_count];
-    /* hysteron: sums over lanes */
+    /* each lane of hysteron: sums over lanes */
     double energy_phi = 0.0;
 #pragma omp simd reduction(+:energy_phi)
     for (long j = 0; j < hysteron_count; ++j) {
@@ -242,7 +242,7 @@ void piezo_stack_temperatures(const double *restrict x,
     /* co-states dU/dx */
     const double T_minus_T_0 = T_0*expm1(S/c_0);
     const double T = T_0 + T_minus_T_0;
-    /* rows */
+    /* result */
     out[0] = T;
 }
 
@@ -269,7 +269,7 @@ void piezo_stack_heat(const double *restrict x,
     const double T_minus_T_0 = T_0*expm1(S/c_0);
     /* dissipative laws */
     const double F_damper = d*v_mass;
-    /* hysteron: rows */
+    /* each lane of hysteron: result */
 #pragma omp simd
     for (long j = 0; j < hysteron_count; ++j) {
         const double i_hysteron = phi[j]/L[j];
@@ -279,7 +279,7 @@ void piezo_stack_heat(const double *restrict x,
             rho[j]/T_minus_T_0*(i_hysteron - copysign(i_0[j], i_hysteron)));
         out[j] = V_hysteron*i_hysteron;
     }
-    /* rows */
+    /* result */
     out[hysteron_count] = F_damper*v_mass;
 }
 
@@ -307,7 +307,7 @@ void piezo_stack_entropy_production(const double *restrict x,
     const double T = T_0 + T_minus_T_0;
     /* dissipative laws */
     const double F_damper = d*v_mass;
-    /* hysteron: rows */
+    /* each lane of hysteron: result */
 #pragma omp simd
     for (long j = 0; j < hysteron_count; ++j) {
         const double i_hysteron = phi[j]/L[j];
@@ -317,7 +317,7 @@ void piezo_stack_entropy_production(const double *restrict x,
             rho[j]/T_minus_T_0*(i_hysteron - copysign(i_0[j], i_hysteron)));
         out[j] = V_hysteron*i_hysteron/T;
     }
-    /* rows */
+    /* result */
     out[hysteron_count] = F_damper*v_mass/T;
 }
 
@@ -364,7 +364,7 @@ void piezo_stack_jacobian(const double *restrict x,
     const double dheat_damper_dp = v_mass*dF_damper_dp + F_damper/M;
     const double dT_minus_T_0_dS = T/c_0;
     const double dalpha_transducer_dS = a/T_0*dT_minus_T_0_dS;
-    /* hysteron: sums over lanes and rows */
+    /* each lane of hysteron: sums over lanes and result */
     double heat_hysteron = 0.0;
     double dheat_hysteron_dS = 0.0;
 #pragma omp simd reduction(+:heat_hysteron, dheat_hysteron_dS)
@@ -388,7 +388,7 @@ void piezo_stack_jacobian(const double *restrict x,
         out[(3 + j)*n + 3 + hysteron_count] = -dV_hysteron_dS;
         out[(3 + hysteron_count)*n + 3 + j] = dheat_hysteron_dphi/T;
     }
-    /* rows */
+    /* result */
     out[1] = 1.0/M;
     out[n + 0] = -k;
     out[n + 1] = -dF_damper_dp;
@@ -401,7 +401,7 @@ void piezo_stack_jacobian(const double *restrict x,
         + (-(heat_hysteron + heat_damper)/power_2(T) - lam*T_e/power_2(T))*dT_minus_T_0_dS;
 }
 
-/* Margin of each condition of the domain, least over lanes. */
+/* Margin of each condition of the domain; of a bank, the least over its lanes. */
 void piezo_stack_margins(const double *restrict x,
                          const double *restrict u,
                          const piezo_stack_parameters *restrict p_,
@@ -422,7 +422,7 @@ void piezo_stack_margins(const double *restrict x,
     const double T_e = u[2];
     /* co-states dU/dx */
     const double T_minus_T_0 = T_0*expm1(S/c_0);
-    /* hysteron: rows */
+    /* each lane of hysteron: result */
     out[3] = HUGE_VAL;
     out[4] = HUGE_VAL;
     out[9] = HUGE_VAL;
@@ -431,7 +431,7 @@ void piezo_stack_margins(const double *restrict x,
         out[4] = min(out[4], i_0[j]);
         out[9] = min(out[9], L[j]);
     }
-    /* rows */
+    /* result */
     out[0] = T_minus_T_0;
     out[1] = T_e - T_0;
     out[2] = d;

@@ -10,7 +10,7 @@
  *
  * x = (q, p, Q_C, phi_1 ... phi_hysteron_count, S)
  * u = (F_ext, V_in, T_e)
- * hysteron: lanes j = 1 ... hysteron_count
+ * bank hysteron: lanes j = 1 ... hysteron_count
  */
 #ifndef PIEZO_SYM_piezo_stack_H
 #define PIEZO_SYM_piezo_stack_H
@@ -19,23 +19,24 @@
 extern "C" {
 #endif
 
-/* Parameters in SI units, with the values of the spec. */
+/* Parameters in SI units. The caller sets all; comments show the values of the spec. */
 typedef struct {
-    double M; /* moving mass [kg]; 0.0035 */
-    double k; /* stiffness [N/m]; 500000.0 */
-    double q_l; /* rest position of the spring [m]; 0.0 */
-    double d; /* damping [N*s/m]; 400.0 */
-    double C; /* capacitance [F]; 5e-06 */
-    const double *L; /* inductance of one hysteron [H], one per lane of hysteron; 0.001 */
-    const double *rho; /* resistance law: slope rho/(T - T_0) [ohm*K], one per lane of hysteron; 10.0 */
-    const double *i_0; /* half width of the dead zone [A], one per lane of hysteron; 0.5 */
-    double a; /* transducer ratio at T_0 [C/m]; 10.0 */
-    double T_0; /* reference temperature [K]; 296.15 */
-    double c_0; /* heat capacity [J/K]; 5.0 */
-    double lam; /* heat conductance to the environment [W/K]; 2.0 */
-    long hysteron_count; /* lanes of hysteron, at least 1; 2 */
+    double M; /* moving mass [kg]; spec: 0.0035 */
+    double k; /* stiffness [N/m]; spec: 500000.0 */
+    double q_l; /* rest position of the spring [m]; spec: 0.0 */
+    double d; /* damping [N*s/m]; spec: 400.0 */
+    double C; /* capacitance [F]; spec: 5e-06 */
+    const double *L; /* inductance of one hysteron [H], one per lane of hysteron; spec: 0.001 */
+    const double *rho; /* resistance law: slope rho/(T - T_0) [ohm*K], one per lane of hysteron; spec: 10.0 */
+    const double *i_0; /* half width of the dead zone [A], one per lane of hysteron; spec: 0.5 */
+    double a; /* transducer ratio at T_0 [C/m]; spec: 10.0 */
+    double T_0; /* reference temperature [K]; spec: 296.15 */
+    double c_0; /* heat capacity [J/K]; spec: 5.0 */
+    double lam; /* heat conductance to the environment [W/K]; spec: 2.0 */
+    long hysteron_count; /* lanes of hysteron, at least 1; spec: 2 */
 } piezo_stack_parameters;
 
+/* Sizes that no bank changes: of inputs, outputs, bodies, conditions of the domain. */
 enum {
     piezo_stack_input_count = 3,
     piezo_stack_output_count = 3,
@@ -49,14 +50,14 @@ enum {
 long piezo_stack_states(const piezo_stack_parameters *p_);
 
 /*
- * Number of rows of processes; of a bank, one per lane.
+ * Number of processes; of a bank, one per lane.
  */
 long piezo_stack_processes(const piezo_stack_parameters *p_);
 
 /*
  * State at t = 0 [SI], for the inputs u at t = 0.
  * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
- * out[n], written, overlaps nothing else: q [m], p [kg*m/s], Q_C [C], phi_1 ...
+ * out[n], written; must not overlap another argument: q [m], p [kg*m/s], Q_C [C], phi_1 ...
  *     phi_hysteron_count [Wb], S [J/K]
  */
 void piezo_stack_initial_state(const double *u, const piezo_stack_parameters *p_, double *out);
@@ -65,7 +66,7 @@ void piezo_stack_initial_state(const double *u, const piezo_stack_parameters *p_
  * Rates dx/dt = J_ir dU/dx + g u.
  * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
  * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
- * out[n], written, overlaps nothing else
+ * out[n], written; must not overlap another argument
  */
 void piezo_stack_rhs(const double *x,
                      const double *u,
@@ -76,7 +77,7 @@ void piezo_stack_rhs(const double *x,
  * Derivative of rhs by the state, n x n, row after row.
  * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
  * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
- * out[n*n], written, overlaps nothing else
+ * out[n*n], written; must not overlap another argument
  */
 void piezo_stack_jacobian(const double *x,
                           const double *u,
@@ -87,8 +88,8 @@ void piezo_stack_jacobian(const double *x,
  * Outputs y, one per port, conjugate to its input.
  * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
  * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
- * out[piezo_stack_output_count], written, overlaps nothing else: load [m/s], supply [A],
- *     ambient [K]
+ * out[piezo_stack_output_count], written; must not overlap another argument: load [m/s],
+ *     supply [A], ambient [K]
  */
 void piezo_stack_outputs(const double *x,
                          const double *u,
@@ -96,10 +97,10 @@ void piezo_stack_outputs(const double *x,
                          double *out);
 
 /*
- * Power put in [W], one per port; the sum is dU/dt.
+ * Power supplied through each port [W]; the sum is dU/dt.
  * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
  * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
- * out[piezo_stack_output_count], written, overlaps nothing else
+ * out[piezo_stack_output_count], written; must not overlap another argument
  */
 void piezo_stack_supply(const double *x,
                         const double *u,
@@ -121,7 +122,7 @@ double piezo_stack_entropy(const double *x, const piezo_stack_parameters *p_);
 /*
  * Temperature of each body [K].
  * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
- * out[piezo_stack_body_count], written, overlaps nothing else: body [K]
+ * out[piezo_stack_body_count], written; must not overlap another argument: body [K]
  */
 void piezo_stack_temperatures(const double *x, const piezo_stack_parameters *p_, double *out);
 
@@ -129,7 +130,7 @@ void piezo_stack_temperatures(const double *x, const piezo_stack_parameters *p_,
  * Power that each process turns into heat [W]; of a bank, one row per lane.
  * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
  * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
- * out[piezo_stack_processes(p)], written, overlaps nothing else
+ * out[piezo_stack_processes(p_)], written; must not overlap another argument
  */
 void piezo_stack_heat(const double *x,
                       const double *u,
@@ -140,7 +141,7 @@ void piezo_stack_heat(const double *x,
  * Entropy that each process produces [W/K]; of a bank, one row per lane.
  * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
  * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
- * out[piezo_stack_processes(p)], written, overlaps nothing else
+ * out[piezo_stack_processes(p_)], written; must not overlap another argument
  */
 void piezo_stack_entropy_production(const double *x,
                                     const double *u,
@@ -148,10 +149,10 @@ void piezo_stack_entropy_production(const double *x,
                                     double *out);
 
 /*
- * Margin of each condition of the domain, least over lanes.
+ * Margin of each condition of the domain; of a bank, the least over its lanes.
  * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
  * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
- * out[piezo_stack_limit_count], written, overlaps nothing else
+ * out[piezo_stack_limit_count], written; must not overlap another argument
  * out[0]: T > T_0; inside, > 0
  * out[1]: T_e > T_0; inside, > 0
  * out[2]: d >= 0; inside, >= 0

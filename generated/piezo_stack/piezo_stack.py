@@ -9,7 +9,7 @@ Arrays have shape (n, *batch); values are in SI units.
 
 x = (q, p, Q_C, phi_1 ... phi_hysteron_count, S)
 u = (F_ext, V_in, T_e)
-hysteron: lanes j = 1 ... Parameters.hysteron_count
+bank hysteron: lanes j = 1 ... Parameters.hysteron_count
 """
 
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ SPEC_SHA256 = "9c0235a60e02072bc451611ffa723f273272c8e4536a3089081866f47c89389c"
 
 
 class Record(NamedTuple):
-    """A row of an array: name, SI unit, a line on it, its bank if it stands for one per lane."""
+    """One row of an array, or of a bank one row per lane: its name, SI unit and meaning."""
 
     name: str
     unit: str
@@ -31,7 +31,7 @@ class Record(NamedTuple):
 
 
 class Condition(NamedTuple):
-    """A condition of the domain; its margin is > 0 inside if it is strict, else >= 0."""
+    """A condition of the domain: its margin is > 0 inside, or >= 0 if it is not strict."""
 
     text: str
     strict: bool
@@ -98,7 +98,7 @@ _Lanes = float | tuple[float, ...]  # a bank's parameter: one value, or one per 
 
 @dataclass(frozen=True)
 class Parameters:
-    """Parameters of piezo_stack in SI units; the values are the spec's."""
+    """Parameters of piezo_stack in SI units; defaults are the values of the spec."""
 
     M: float = 0.0035
     k: float = 500000.0
@@ -154,7 +154,7 @@ def initial_state(u, p_, /):
     return out
 
 
-_BLOCK = 150_000  # numbers of a batch worked on together: they stay in the cache
+_BLOCK = 150_000  # numbers of one part of a large batch, which fits in the cache
 
 
 def rhs(x, u, p, /):
@@ -172,7 +172,7 @@ def rhs(x, u, p, /):
 
 
 def _rates(x, u, p_, out, /):
-    """Write the rates of the states x into `out`."""
+    """Write the rates dx/dt into `out`."""
     hysteron_count = p_.hysteron_count
     M = p_.M
     k = p_.k
@@ -201,17 +201,18 @@ def _rates(x, u, p_, out, /):
     i_hysteron = phi/L
     T_minus_T_0 = T_0*np.expm1(S/c_0)
     T = T_0 + T_minus_T_0
+    # sums over lanes
+    sum_i_hysteron = np.sum(i_hysteron, axis=0)
     # transducer ratios
     alpha_transducer = a*T/T_0
     # dissipative laws
     V_hysteron = rho/T_minus_T_0*(i_hysteron - np.clip(i_hysteron, -i_0, i_0))
     F_damper = d*v_mass
     # sums over lanes
-    sum_i_hysteron = np.sum(i_hysteron, axis=0)
     heat_hysteron = np.sum(V_hysteron*i_hysteron, axis=0)
     # heats
     heat_damper = F_damper*v_mass
-    # rows
+    # result
     out[0] = v_mass
     out[1] = alpha_transducer*V_capacitor - F_spring - F_damper + F_ext
     out[2] = sum_i_hysteron - alpha_transducer*v_mass
@@ -237,7 +238,7 @@ def outputs(x, u, p_, /):
     T = T_0 + T_minus_T_0
     # sums over lanes
     sum_i_hysteron = np.sum(i_hysteron, axis=0)
-    # rows
+    # result
     out = np.empty((3, *x.shape[1:]))
     out[0] = v_mass
     out[1] = sum_i_hysteron
@@ -246,7 +247,7 @@ def outputs(x, u, p_, /):
 
 
 def supply(x, u, p_, /):
-    """Power put in [W], one per port; the sum is dU/dt; shape (3, *batch)."""
+    """Power supplied through each port [W]; the sum is dU/dt; shape (3, *batch)."""
     x = _states(x, p_)
     u = _inputs(u)
     hysteron_count = p_.hysteron_count
@@ -268,7 +269,7 @@ def supply(x, u, p_, /):
     T = T_0 + T_minus_T_0
     # sums over lanes
     sum_i_hysteron = np.sum(i_hysteron, axis=0)
-    # rows
+    # result
     out = np.empty((3, *x.shape[1:]))
     out[0] = v_mass*F_ext
     out[1] = sum_i_hysteron*V_in
@@ -315,7 +316,7 @@ def temperatures(x, p_, /):
     # co-states dU/dx
     T_minus_T_0 = T_0*np.expm1(S/c_0)
     T = T_0 + T_minus_T_0
-    # rows
+    # result
     out = np.empty((1, *x.shape[1:]))
     out[0] = T
     return out
@@ -342,7 +343,7 @@ def heat(x, u, p_, /):
     # dissipative laws
     V_hysteron = rho/T_minus_T_0*(i_hysteron - np.clip(i_hysteron, -i_0, i_0))
     F_damper = d*v_mass
-    # rows
+    # result
     out = np.empty((1 + hysteron_count, *x.shape[1:]))
     out[0 : hysteron_count] = V_hysteron*i_hysteron
     out[hysteron_count] = F_damper*v_mass
@@ -371,7 +372,7 @@ def entropy_production(x, u, p_, /):
     # dissipative laws
     V_hysteron = rho/T_minus_T_0*(i_hysteron - np.clip(i_hysteron, -i_0, i_0))
     F_damper = d*v_mass
-    # rows
+    # result
     out = np.empty((1 + hysteron_count, *x.shape[1:]))
     out[0 : hysteron_count] = V_hysteron*i_hysteron/T
     out[hysteron_count] = F_damper*v_mass/T
@@ -424,7 +425,7 @@ def jacobian(x, u, p_, /):
     dV_hysteron_dS = -rho/T_minus_T_0**2*(i_hysteron - np.clip(i_hysteron, -i_0, i_0))*dT_minus_T_0_dS
     # sums over lanes
     dheat_hysteron_dS = np.sum(i_hysteron*dV_hysteron_dS, axis=0)
-    # rows
+    # result
     out = np.zeros((x.shape[0], *x.shape))
     out[0, 1] = 1/M
     out[1, 0] = -k
@@ -448,7 +449,7 @@ def jacobian(x, u, p_, /):
 
 
 def margins(x, u, p_, /):
-    """Margin of each condition of DOMAIN, least over lanes; shape (len(DOMAIN), *batch)."""
+    """Margin of each condition of DOMAIN; of a bank, the least over its lanes; shape (len(DOMAIN), *batch)."""
     x = _states(x, p_)
     u = _inputs(u)
     hysteron_count = p_.hysteron_count
@@ -466,7 +467,7 @@ def margins(x, u, p_, /):
     T_e = u[2]
     # co-states dU/dx
     T_minus_T_0 = T_0*np.expm1(S/c_0)
-    # rows
+    # result
     out = np.empty((12, *x.shape[1:]))
     out[0] = T_minus_T_0
     out[1] = T_e - T_0

@@ -10,9 +10,12 @@
  *
  * x = (q, p, Q_C, phi_1 ... phi_hysteron_count, S)
  * u = (F_ext, V_in, T_e)
- * hysteron: lanes j = 1 ... hysteron_count
+ * bank hysteron: lanes j = 1 ... hysteron_count
  */
-/* A step of Gauss collocation; row program of the proofs covers integrands and stage. */
+/*
+ * One step of energy-preserving Gauss collocation. The row `program` of the proofs covers the
+ * functions `integrands` and `stage`; the others and the tables serve Newton's method.
+ */
 #include "piezo_stack.h"
 
 #include <math.h>
@@ -45,7 +48,7 @@ typedef REAL real;
 #define OF(value, lane) (value)
 #endif
 
-/* The parameters of piezo_stack_parameters, of as many runs as real holds. */
+/* The parameters as `real`: of one run, or in vectors of one run per lane. */
 typedef struct {
     real M;
     real k;
@@ -67,7 +70,7 @@ static inline real power_2_of(real z)
     return z*z;
 }
 
-/* Functions of the state whose weighted means over a step its stages are given. */
+/* Functions of the state whose weighted means over a step are the means g of its stages. */
 static void piezo_stack_integrands(const real *restrict x,
                                    const piezo_stack_reals *restrict p_,
                                    real *restrict out)
@@ -80,9 +83,11 @@ static void piezo_stack_integrands(const real *restrict x,
 }
 
 /*
- * Rates of the state at a stage, for means g and branches b; rows for the ledger: power of
- * ports, heat and entropy production of processes, entropy rate of exchanges; switching
- * functions s; margins m of what a state can leave.
+ * A stage, for the state x, means g, branches b of laws, and inputs u. Writes the rates of the
+ * state to out; to rows, for the ledger, the power of ports, heat and entropy production of
+ * processes, and entropy rate of heat exchanges; to s the switching functions, whose signs
+ * decide the branches; to m the margins of those conditions of the domain that depend on the
+ * state.
  */
 static void piezo_stack_stage(const real *restrict x,
                               const real *restrict g,
@@ -117,17 +122,17 @@ static void piezo_stack_stage(const real *restrict x,
     const real V_in = u[1];
     const real T_e = u[2];
     /* co-states dU/dx */
-    const real T = T_0 + T_minus_T_0;
     const real F_spring = k*(q - q_l);
     const real v_mass = p/M;
     const real V_capacitor = Q_C/C;
+    const real T = T_0 + T_minus_T_0;
     /* transducer ratios */
     const real alpha_transducer = a*T/T_0;
     /* dissipative laws */
     const real F_damper = d*v_mass;
     /* heats */
     const real heat_damper = F_damper*v_mass;
-    /* hysteron: sums over lanes and rows */
+    /* each lane of hysteron: sums over lanes and result */
     real sum_i_hysteron = zero;
     real heat_hysteron = zero;
 #pragma omp simd reduction(+:sum_i_hysteron, heat_hysteron)
@@ -161,7 +166,7 @@ static void piezo_stack_stage(const real *restrict x,
     m[0] = T_minus_T_0;
 }
 
-/* Derivative of the rates by the state, on branches b; entries as the tables say. */
+/* Derivative of the rates by the state, on branches b; the tables tell its entries. */
 static void piezo_stack_slopes(const real *restrict x,
                                const real *restrict g,
                                const real *restrict b,
@@ -205,7 +210,7 @@ static void piezo_stack_slopes(const real *restrict x,
     const real dheat_damper_dp = v_mass*dF_damper_dp + F_damper/M;
     const real dT_minus_T_0_dS = T/c_0;
     const real dalpha_transducer_dS = a/T_0*dT_minus_T_0_dS;
-    /* hysteron: sums over lanes and rows */
+    /* each lane of hysteron: sums over lanes and result */
     real heat_hysteron = zero;
     real dheat_hysteron_dS = zero;
 #pragma omp simd reduction(+:heat_hysteron, dheat_hysteron_dS)
@@ -243,10 +248,7 @@ static void piezo_stack_slopes(const real *restrict x,
         + (-(heat_hysteron + heat_damper)/power_2_of(T) - lam*T_e/power_2_of(T))*dT_minus_T_0_dS;
 }
 
-/*
- * Sizes of states, means, branches, rows for the ledger, processes and slopes; lanes of each
- * bank; first row of each state.
- */
+/* How many numbers there are of each kind; lanes of each bank; first row of each state. */
 static void piezo_stack_sizes(const piezo_stack_reals *p_, long *out)
 {
     const long hysteron_count = p_->hysteron_count;
@@ -264,7 +266,7 @@ static void piezo_stack_sizes(const piezo_stack_reals *p_, long *out)
     out[11] = 3 + hysteron_count; /* first row */
 }
 
-/* Sizes of banks, and room from `at` on for their parameters; how much that takes. */
+/* Copy the sizes of banks; place arrays for their parameters from `at` on, return their size. */
 static long piezo_stack_place_reals(piezo_stack_reals *to, const piezo_stack_parameters *from, real *at)
 {
     real *const begin = at;
@@ -278,7 +280,7 @@ static long piezo_stack_place_reals(piezo_stack_reals *to, const piezo_stack_par
     return at - begin;
 }
 
-/* Give a lane the parameters of a run. */
+/* Copy the parameters of a run into one lane of the vectors. */
 static void piezo_stack_give(piezo_stack_reals *to, const piezo_stack_parameters *from, int lane)
 {
     (void)lane;

@@ -10,7 +10,7 @@
  *
  * x = (q, p, Q_C, phi_1 ... phi_hysteron_count, S)
  * u = (F_ext, V_in, T_e)
- * hysteron: lanes j = 1 ... hysteron_count
+ * bank hysteron: lanes j = 1 ... hysteron_count
  */
 #ifndef PIEZO_SYM_piezo_stack_STEP_H
 #define PIEZO_SYM_piezo_stack_STEP_H
@@ -22,24 +22,26 @@ extern "C" {
 #endif
 
 /*
- * Numbers that a step needs to work with.
+ * Size of `space`, the working memory of a step, in numbers.
  */
 long piezo_stack_step_size(const piezo_stack_parameters *p_);
 
 /*
  * Takes a step of order two: energy-preserving Gauss collocation of one stage, by Newton's
- *     method. What is booked closes both balances to round-off. Returns 1; or 0 where no such
- *     step lies in the domain, with x as it is: try a shorter one. It takes two or three
- *     iterations as a rule, and some thousand at most.
+ *     method. The booked energies and entropies close both balances to round-off. Returns 1 if
+ *     the step was taken. Returns 0, with x unchanged, if no such step in the domain was
+ *     found: a shorter one may exist. Most steps take two or three iterations, the hardest
+ *     some thousand.
  * x[n], read and written: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S
  *     [J/K]
- * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]; held in the step
- * h, read: its length [s]
- * booked, written: energy put in [J] by load, supply, ambient; then heat [J], and then entropy
- *     produced [J/K], by hysteron_1 ... hysteron_hysteron_count, damper; then the entropy
- *     [J/K] that each heat exchange brings
- * space[piezo_stack_step_size(p_)], read and written: zero before the first step, then left
- *     alone; it keeps how large states became, for what rounding leaves is a part of that
+ * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]; constant during the step
+ * h, read: the length of the step [s]
+ * booked, written: energy supplied [J] by load, supply, ambient; then heat [J], and then
+ *     entropy produced [J/K], by hysteron_1 ... hysteron_hysteron_count, damper; then the
+ *     entropy [J/K] that each heat exchange brings
+ * space[piezo_stack_step_size(p_)], read and written: set it to zero before the first step,
+ *     then leave it as it is; it keeps the largest magnitude of each state, with which
+ *     rounding errors are compared
  */
 int piezo_stack_step(double *x,
                      const double *u,

@@ -25,7 +25,7 @@ FUNCTIONS = {
     "initial_state": ("State at t = 0 [SI], for the inputs u at t = 0", ("u", "p")),
     "rhs": ("Rates dx/dt = J_ir dU/dx + g u", STATE_INPUT),
     "outputs": ("Outputs y, one per port, conjugate to its input", STATE_INPUT),
-    "supply": ("Power put in [W], one per port; the sum is dU/dt", STATE_INPUT),
+    "supply": ("Power supplied through each port [W]; the sum is dU/dt", STATE_INPUT),
     "energy": ("Hamiltonian U [J]", STATE),
     "entropy": ("Total entropy S [J/K]", STATE),
     "temperatures": ("Temperature of each body [K]", STATE),

@@ -19,9 +19,9 @@ WIDTH = 96
 #: What functions do that the program does not describe.
 FUNCTIONS = {
     "states": "Number of states n",
-    "processes": "Number of rows of processes; of a bank, one per lane",
+    "processes": "Number of processes; of a bank, one per lane",
     "jacobian": "Derivative of rhs by the state, n x n, row after row",
-    "margins": "Margin of each condition of the domain, least over lanes",
+    "margins": "Margin of each condition of the domain; of a bank, the least over its lanes",
 }
 _ORDER = (
     "states processes initial_state rhs jacobian outputs supply energy entropy temperatures heat "
@@ -77,7 +77,7 @@ def opening(program: Program) -> str:
         "",
         f"x = ({', '.join(spread(field) for field in program.states)})",
         f"u = ({u})",
-        *(f"{bank}: lanes j = 1 ... {bank}_count" for bank in program.counts),
+        *(f"bank {bank}: lanes j = 1 ... {bank}_count" for bank in program.counts),
     ]
     return "\n".join(["/*", *(f" * {line}".rstrip() for line in lines), " */"])
 
@@ -89,19 +89,19 @@ def spread(field: Field) -> str:
 
 def _parameters(program: Program) -> Iterator[str]:
     names = c_names(program)
-    yield "/* Parameters in SI units, with the values of the spec. */"
+    yield "/* Parameters in SI units. The caller sets all; comments show the values of the spec. */"
     yield "typedef struct {"
     for field in program.parameters:
         value = program.defaults[field.name]
-        spec = "one per lane" if isinstance(value, tuple) else repr(value)
+        spec = "a list" if isinstance(value, tuple) else repr(value)
         name = f"*{names[field.name]}" if field.bank else names[field.name]
         lane = f", one per lane of {field.bank}" if field.bank else ""
         renamed = f"{field.name}: " if names[field.name] != field.name else ""
         doc = f"{field.doc} " if field.doc else ""
-        note = text_of(f"{renamed}{doc}[{field.unit}]{lane}; {spec}")
+        note = text_of(f"{renamed}{doc}[{field.unit}]{lane}; spec: {spec}")
         yield f"    {'const ' if field.bank else ''}double {name}; /* {note} */"
     for bank, count in program.counts.items():
-        yield f"    long {bank}_count; /* lanes of {bank}, at least 1; {count} */"
+        yield f"    long {bank}_count; /* lanes of {bank}, at least 1; spec: {count} */"
     if not program.parameters and not program.counts:
         yield "    char none; /* a model without parameters: C99 has no empty struct */"
     yield f"}} {program.name}_parameters;"
@@ -115,6 +115,7 @@ def _numbers(program: Program) -> Iterator[str]:
         "body": program.bodies,
         "limit": program.limits,
     }
+    yield "/* Sizes that no bank changes: of inputs, outputs, bodies, conditions of the domain. */"
     yield "enum {"
     for word, fields in sizes.items():
         yield f"    {program.name}_{word}_count = {len(fields)},"
@@ -162,12 +163,13 @@ def _given(
     program: Program, name: str, arguments: Sequence[str], words: Mapping[str, str]
 ) -> Iterator[str]:
     """Yield a line on each argument, with units."""
+    processes = f"{program.name}_processes({words['p']})"
     results = {
         "initial_state": ("n", program.states),
         "temperatures": (f"{program.name}_body_count", program.bodies),
         "outputs": (f"{program.name}_output_count", program.outputs),
-        "heat": (f"{program.name}_processes(p)", ()),
-        "entropy_production": (f"{program.name}_processes(p)", ()),
+        "heat": (processes, ()),
+        "entropy_production": (processes, ()),
         "supply": (f"{program.name}_output_count", ()),
         "rhs": ("n", ()),
         "jacobian": ("n*n", ()),
@@ -183,7 +185,7 @@ def _given(
             continue
         size, fields = layouts[argument]
         listed = ", ".join(f"{spread(field)} [{field.unit}]" for field in fields)
-        role = "written, overlaps nothing else" if argument == "out" else "read"
+        role = "written; must not overlap another argument" if argument == "out" else "read"
         units = f": {listed}" if listed else ""
         yield from wrapped(f"{words[argument]}[{size}], {role}{units}")
     if name == "margins":

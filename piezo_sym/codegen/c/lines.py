@@ -117,8 +117,8 @@ def stage_lines(stage: Stage, words: Words) -> Iterator[str]:
 def loop_lines(loop: LaneLoop, words: Words) -> Iterator[str]:
     """Yield a loop over the lanes of a bank, and what it starts from."""
     sums = [words.names[quantity.name] for quantity in loop.sums]
-    parts = [*(["sums over lanes"] if loop.sums else []), *(["rows"] if loop.writes else [])]
-    yield f"/* {loop.bank}: {' and '.join(parts)} */"
+    parts = [*(["sums over lanes"] if loop.sums else []), *(["result"] if loop.writes else [])]
+    yield f"/* each lane of {loop.bank}: {' and '.join(parts)} */"
     zero = "0.0" if words.number == "double" else "zero"
     yield from (f"{words.number} {name} = {zero};" for name in sums)
     most = "HUGE_VAL" if words.number == "double" else "wide(HUGE_VAL)"

@@ -147,7 +147,7 @@ class _Printer:
         found = stages(quantities, writes, self.program.counts)
         lines = [line for stage in found for line in stage_lines(stage, self.lines)]
         last = [line for w in writes if not w.bank for line in write_lines(w, self.lines)]
-        return [*lines, *(["/* rows */"] if last and lines else []), *last]
+        return [*lines, *(["/* result */"] if last and lines else []), *last]
 
     def _sizes(self) -> Iterator[tuple[str, str]]:
         """Yield the sizes of banks, and where the states of many banks end."""

@@ -15,7 +15,7 @@ from piezo_sym.codegen.program import Program
 
 def record_text(program: Program, names: Mapping[str, str]) -> str:
     """Return the record of parameters, as the functions of a step take them."""
-    lines = [f"/* The parameters of {program.name}_parameters, of as many runs as real holds. */"]
+    lines = ["/* The parameters as `real`: of one run, or in vectors of one run per lane. */"]
     lines += ["typedef struct {"]
     for field in program.parameters:
         lines.append(f"    {'real *' if field.bank else 'real '}{names[field.name]};")
@@ -34,7 +34,9 @@ def place_text(program: Program, names: Mapping[str, str]) -> str:
         if field.bank:
             body.append(f"to->{names[field.name]} = at;")
             body.append(f"at += from->{field.bank}_count;")
-    doc = "Sizes of banks, and room from `at` on for their parameters; how much that takes"
+    doc = (
+        "Copy the sizes of banks; place arrays for their parameters from `at` on, return their size"
+    )
     head = f"static long {program.name}_place_reals({program.name}_reals *to, "
     head += f"const {program.name}_parameters *from, real *at)"
     return "\n".join([*comment(doc), head, "{", *indented([*body, "return at - begin;"]), "}"])
@@ -53,7 +55,7 @@ def give_text(program: Program, names: Mapping[str, str]) -> str:
     body += [] if program.parameters else ["(void)to;", "(void)from;"]
     head = f"static void {program.name}_give({program.name}_reals *to, "
     head += f"const {program.name}_parameters *from, int lane)"
-    doc = "Give a lane the parameters of a run"
+    doc = "Copy the parameters of a run into one lane of the vectors"
     return "\n".join([*comment(doc), head, "{", *indented(body), "}"])
 
 

@@ -25,7 +25,11 @@ from piezo_sym.codegen.layout import Places, places
 from piezo_sym.codegen.program import Field, Program, Quantity, Row, bank_of, needed
 from piezo_sym.expressions.tree import names
 
-NOTE = "/* A step of Gauss collocation; row program of the proofs covers integrands and stage. */"
+NOTE = """\
+/*
+ * One step of energy-preserving Gauss collocation. The row `program` of the proofs covers the
+ * functions `integrands` and `stage`; the others and the tables serve Newton's method.
+ */"""
 
 
 def c_step(program: Program, made: Collocation) -> str:
@@ -81,7 +85,9 @@ class _Printer:
     def integrands(self) -> str:
         """Return what co-states that are given to a stage are means of."""
         rows = [Row(Slot(mean.name, mean.bank), mean.value) for mean in self.made.means]
-        doc = "Functions of the state whose weighted means over a step its stages are given"
+        doc = (
+            "Functions of the state whose weighted means over a step are the means g of its stages"
+        )
         body = self._computed((), self._writes(rows, "out"), self.lines)
         return self._function("integrands", doc, "x p out", body, [*self._ends(rows)])
 
@@ -101,9 +107,11 @@ class _Printer:
         switches = [Row(Slot(s.branch, s.bank), s.value) for s in stage.switches]
         writes = [*self._writes(switches, "s"), *rates, *booked, *self._margins()]
         doc = (
-            "Rates of the state at a stage, for means g and branches b; rows for the ledger: power "
-            "of ports, heat and entropy production of processes, entropy rate of exchanges; "
-            "switching functions s; margins m of what a state can leave"
+            "A stage, for the state x, means g, branches b of laws, and inputs u. Writes the rates "
+            "of the state to out; to rows, for the ledger, the power of ports, heat and entropy "
+            "production of processes, and entropy rate of heat exchanges; to s the switching "
+            "functions, whose signs decide the branches; to m the margins of those conditions of "
+            "the domain that depend on the state"
         )
         body = self._computed(stage.quantities, writes, self.lines)
         ends = [*self._ends(stage.rates), *self._ends(stage.booked), *self._ends(switches)]
@@ -124,7 +132,7 @@ class _Printer:
             target = self._at(place.shared, place.lanes, place.bank)
             writes.append(Write(f"{self.words['out']}[{target}]", place.value, place.bank))
         body = self._computed(self.made.slopes.quantities, writes, self.slope_lines)
-        doc = "Derivative of the rates by the state, on branches b; entries as the tables say"
+        doc = "Derivative of the rates by the state, on branches b; the tables tell its entries"
         return self._function("slopes", doc, "x g b u p out", body)
 
     def paths(self) -> Iterator[str]:
@@ -163,10 +171,7 @@ class _Printer:
             at = places([row.slot for row in self.made.stage.bends], "end_bends", stage.taken)
             ends += ((line.split()[0], f"const long {line};") for line in at.definitions())
             body.append(f"{out}[{first + len(states)}] = {at.size}; /* bends */")
-        doc = (
-            "Sizes of states, means, branches, rows for the ledger, processes and slopes; lanes of "
-            "each bank; first row of each state"
-        )
+        doc = "How many numbers there are of each kind; lanes of each bank; first row of each state"
         kept = used_only(body, [*self._counts(), *ends], [self.words["p"]])
         head = f"static void {self.name}_sizes(const {self.name}_reals *p, long *{out})"
         head = head.replace(" *p,", f" *{self.words['p']},")

@@ -22,7 +22,7 @@ extern "C" {{
 #endif
 
 /*
- * Numbers that a step needs to work with.
+ * Size of `space`, the working memory of a step, in numbers.
  */
 long {model}_step_size(const {model}_parameters *p_);
 
@@ -55,25 +55,29 @@ def _doc(program: Program, made: Collocation) -> Iterator[str]:
     """Yield the lines of what a step does, with the unit of each argument."""
     yield from wrapped(
         "Takes a step of order two: energy-preserving Gauss collocation of one stage, by Newton's "
-        "method. What is booked closes both balances to round-off. Returns 1; or 0 where no such "
-        "step lies in the domain, with x as it is: try a shorter one. It takes two or three "
-        "iterations as a rule, and some thousand at most."
+        "method. The booked energies and entropies close both balances to round-off. Returns 1 if "
+        "the step was taken. Returns 0, with x unchanged, if no such step in the domain was "
+        "found: a shorter one may exist. Most steps take two or three iterations, the hardest some "
+        "thousand."
     )
     states = ", ".join(f"{spread(field)} [{field.unit}]" for field in program.states)
     inputs = ", ".join(f"{field.name} [{field.unit}]" for field in program.inputs)
     yield from wrapped(f"x[n], read and written: {states}")
-    yield from wrapped(f"u[{program.name}_input_count], read: {inputs or 'none'}; held in the step")
-    yield from wrapped("h, read: its length [s]")
+    yield from wrapped(
+        f"u[{program.name}_input_count], read: {inputs or 'none'}; constant during the step"
+    )
+    yield from wrapped("h, read: the length of the step [s]")
     ports = ", ".join(field.name for field in program.outputs)
     processes = ", ".join(spread(field) for field in program.processes)
     known = len(program.outputs) + 2 * len(program.processes)
     exchanges = len(made.stage.booked) - known
     yield from wrapped(
-        f"booked, written: energy put in [J] by {ports or 'no port'}; then heat [J], and then "
+        f"booked, written: energy supplied [J] by {ports or 'no port'}; then heat [J], and then "
         f"entropy produced [J/K], by {processes or 'no process'}"
         + ("; then the entropy [J/K] that each heat exchange brings" if exchanges else "")
     )
     yield from wrapped(
-        f"space[{program.name}_step_size(p_)], read and written: zero before the first step, then "
-        "left alone; it keeps how large states became, for what rounding leaves is a part of that"
+        f"space[{program.name}_step_size(p_)], read and written: set it to zero before the "
+        "first step, then leave it as it is; it keeps the largest magnitude of each state, with "
+        "which rounding errors are compared"
     )

@@ -18,7 +18,7 @@ STANDARD = ("from dataclasses import dataclass", "from typing import NamedTuple"
 MARK = "Made by piezo_sym"
 
 RECORDS = '''class Record(NamedTuple):
-    """A row of an array: name, SI unit, a line on it, its bank if it stands for one per lane."""
+    """One row of an array, or of a bank one row per lane: its name, SI unit and meaning."""
 
     name: str
     unit: str
@@ -27,7 +27,7 @@ RECORDS = '''class Record(NamedTuple):
 
 
 class Condition(NamedTuple):
-    """A condition of the domain; its margin is > 0 inside if it is strict, else >= 0."""
+    """A condition of the domain: its margin is > 0 inside, or >= 0 if it is not strict."""
 
     text: str
     strict: bool'''
@@ -61,7 +61,7 @@ LANES = '''def _lanes(value, count, ndim):
 
 
 #: The public right-hand side: allocates, and goes through a large batch part by part.
-RATES = '''_BLOCK = 150_000  # numbers of a batch worked on together: they stay in the cache
+RATES = '''_BLOCK = 150_000  # numbers of one part of a large batch, which fits in the cache
 
 
 def rhs(x, u, p, /):
@@ -130,7 +130,7 @@ def _docstring(program: Program) -> str:
         "",
         f"x = ({x})",
         f"u = ({u})",
-        *(f"{bank}: lanes j = 1 ... Parameters.{bank}_count" for bank in program.counts),
+        *(f"bank {bank}: lanes j = 1 ... Parameters.{bank}_count" for bank in program.counts),
         '"""',
     ]
     return "\n".join(lines)
@@ -187,7 +187,7 @@ def _parameters(program: Program) -> str:
     lines = [LANES_TYPE, "", ""] if program.counts else []
     lines += ["@dataclass(frozen=True)", "class Parameters:"]
     lines += [
-        f'    """Parameters of {program.name} in SI units; the values are the spec\'s."""',
+        f'    """Parameters of {program.name} in SI units; defaults are the values of the spec."""',
         "",
     ]
     for field in program.parameters:

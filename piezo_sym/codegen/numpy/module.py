@@ -78,7 +78,7 @@ class _Printer:
 
     def _rates(self, function: Function) -> str:
         """Return the function that writes the rates of a state, or of a part of a batch."""
-        doc = "Write the rates of the states x into `out`"
+        doc = "Write the rates dx/dt into `out`"
         roots = [row.value for row in function.rows]
         lines = self._opening("_rates", ("x", "u", "p", "out"), doc, None, roots)
         for n, row in enumerate(function.rows):
@@ -99,7 +99,8 @@ class _Printer:
     def margins(self) -> str:
         """Return the function that tells how far inside its domain a state is."""
         limits = self.program.limits
-        doc = "Margin of each condition of DOMAIN, least over lanes; shape (len(DOMAIN), *batch)"
+        doc = "Margin of each condition of DOMAIN; of a bank, the least over its lanes"
+        doc += "; shape (len(DOMAIN), *batch)"
         roots = [limit.margin for limit in limits]
         lines = self._opening("margins", ("x", "u", "p"), doc, None, roots)
         lines.append(f"{self.out} = np.empty(({len(limits)}, *{self.x}.shape[1:]))")
@@ -143,7 +144,7 @@ class _Printer:
                 note = quantity.note
                 lines.append(f"# {note}")
             lines += self._define(quantity)
-        return [*lines, "# rows"] if quantities and not (function and function.scalar) else lines
+        return [*lines, "# result"] if quantities and not (function and function.scalar) else lines
 
     def _unpacked(self, used: frozenset[str], dimensions: str) -> Iterator[str]:
         program = self.program
