@@ -88,7 +88,7 @@ void piezo_stack_rhs(const double *restrict x,
     const double q = x[0];
     const double p = x[1];
     const double Q_C = x[2];
-    const double *phi = x + 3;
+    const double *restrict phi = x + 3;
     const double S = x[3 + hysteron_count];
     const double F_ext = u[0];
     const double V_in = u[1];
@@ -139,7 +139,7 @@ void piezo_stack_outputs(const double *restrict x,
     const double T_0 = p_->T_0;
     const double c_0 = p_->c_0;
     const double p = x[1];
-    const double *phi = x + 3;
+    const double *restrict phi = x + 3;
     const double S = x[3 + hysteron_count];
     /* co-states dU/dx */
     const double v_mass = p/M;
@@ -171,7 +171,7 @@ void piezo_stack_supply(const double *restrict x,
     const double c_0 = p_->c_0;
     const double lam = p_->lam;
     const double p = x[1];
-    const double *phi = x + 3;
+    const double *restrict phi = x + 3;
     const double S = x[3 + hysteron_count];
     const double F_ext = u[0];
     const double V_in = u[1];
@@ -207,7 +207,7 @@ double piezo_stack_energy(const double *restrict x, const piezo_stack_parameters
     const double q = x[0];
     const double p = x[1];
     const double Q_C = x[2];
-    const double *phi = x + 3;
+    const double *restrict phi = x + 3;
     const double S = x[3 + hysteron_count];
     /* each lane of hysteron: sums over lanes */
     double energy_phi = 0.0;
@@ -262,7 +262,7 @@ void piezo_stack_heat(const double *restrict x,
     const double T_0 = p_->T_0;
     const double c_0 = p_->c_0;
     const double p = x[1];
-    const double *phi = x + 3;
+    const double *restrict phi = x + 3;
     const double S = x[3 + hysteron_count];
     /* co-states dU/dx */
     const double v_mass = p/M;
@@ -299,7 +299,7 @@ void piezo_stack_entropy_production(const double *restrict x,
     const double T_0 = p_->T_0;
     const double c_0 = p_->c_0;
     const double p = x[1];
-    const double *phi = x + 3;
+    const double *restrict phi = x + 3;
     const double S = x[3 + hysteron_count];
     /* co-states dU/dx */
     const double v_mass = p/M;
@@ -342,7 +342,7 @@ void piezo_stack_jacobian(const double *restrict x,
     const double lam = p_->lam;
     const double p = x[1];
     const double Q_C = x[2];
-    const double *phi = x + 3;
+    const double *restrict phi = x + 3;
     const double S = x[3 + hysteron_count];
     const double T_e = u[2];
     for (long j = 0; j < n*n; ++j) {

@@ -154,7 +154,7 @@ def initial_state(u, p_, /):
     return out
 
 
-_BLOCK = 150_000  # numbers of one part of a large batch, which fits in the cache
+_BLOCK = 150_000  # numbers in one part of a large batch: they fit in the cache
 
 
 def rhs(x, u, p, /):

@@ -70,7 +70,7 @@ static inline real power_2_of(real z)
     return z*z;
 }
 
-/* Functions of the state whose weighted means over a step are the means g of its stages. */
+/* Functions of the state whose weighted means over a step are the means g of a stage. */
 static void piezo_stack_integrands(const real *restrict x,
                                    const piezo_stack_reals *restrict p_,
                                    real *restrict out)
@@ -153,6 +153,7 @@ static void piezo_stack_stage(const real *restrict x,
         rows[3 + j] = V_hysteron*i_hysteron;
         rows[4 + hysteron_count + j] = V_hysteron*i_hysteron/T;
     }
+    /* result */
     out[0] = v_mass;
     out[1] = alpha_transducer*V_capacitor - F_spring - F_damper + F_ext;
     out[2] = sum_i_hysteron - alpha_transducer*v_mass;
@@ -236,6 +237,7 @@ static void piezo_stack_slopes(const real *restrict x,
         out[9 + 3*hysteron_count + j] = 1.0/L[j];
         out[9 + 4*hysteron_count + j] = dheat_hysteron_dphi/T;
     }
+    /* result */
     out[0] = 1.0/M;
     out[1] = -k;
     out[2] = -dF_damper_dp;

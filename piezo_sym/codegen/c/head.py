@@ -127,16 +127,19 @@ def declaration(
     name: str,
     arguments: Sequence[str],
     words: Mapping[str, str],
-    restrict: str = "",
+    number: str = "",
 ) -> str:
-    """Return the first lines of a function, without body and semicolon."""
-    types = {
-        "x": f"const double *{restrict}",
-        "u": f"const double *{restrict}",
-        "p": f"const {program.name}_parameters *{restrict}",
-        "out": f"double *{restrict}",
-    }
-    start = f"{SCALARS.get(name, 'void')} {program.name}_{name}("
+    """Return the first lines of a function, without body and semicolon.
+
+    `number` is what it computes with in its definition; a declaration for callers has none.
+    """
+    restrict = "restrict " if number else ""
+    record = "reals" if number == "real" else "parameters"
+    types = dict.fromkeys("xgbu", f"const {number or 'double'} *{restrict}")
+    types |= dict.fromkeys(("out", "rows", "s", "m"), f"{number or 'double'} *{restrict}")
+    types["p"] = f"const {program.name}_{record} *{restrict}"
+    static = "static " if number == "real" else ""
+    start = f"{static}{SCALARS.get(name, 'void')} {program.name}_{name}("
     texts = [f"{types[argument]}{words[argument]}" for argument in arguments]
     line = f"{start}{', '.join(texts)})"
     if len(line) <= WIDTH:
@@ -192,3 +195,11 @@ def _given(
         for n, limit in enumerate(program.limits):
             inside = "> 0" if limit.strict else ">= 0"
             yield from wrapped(f"{words['out']}[{n}]: {limit.text}; inside, {inside}")
+
+
+def comment(doc: str) -> list[str]:
+    """Return a comment of one line, or of several."""
+    lines = wrap(text_of(f"{doc}."), WIDTH - 4)
+    if len(lines) == 1:
+        return [f"/* {lines[0]} */"]
+    return ["/*", *(f" * {line}" for line in lines), " */"]

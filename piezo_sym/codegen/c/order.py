@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import final
 
-from piezo_sym.codegen.program import Quantity, needed
+from piezo_sym.codegen.program import Limit, Quantity, bank_of, needed
 from piezo_sym.expressions.tree import Expr, LaneSum, names
 
 
@@ -28,6 +28,15 @@ class Write:
     value: Expr
     bank: str | None = None
     how: str = "="
+
+
+def least_over_lanes(
+    array: str, limits: Iterable[Limit], lanes: Mapping[str, str]
+) -> Iterator[Write]:
+    """Yield what writes the margins of some conditions."""
+    for n, limit in enumerate(limits):
+        bank = bank_of(limit.margin, lanes)
+        yield Write(f"{array}[{n}]", limit.margin, bank, "min" if bank else "=")
 
 
 @final

@@ -7,9 +7,9 @@ parameters of their runs.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from textwrap import wrap
 
-from piezo_sym.codegen.c.lines import WIDTH, indented
+from piezo_sym.codegen.c.head import comment
+from piezo_sym.codegen.c.lines import indented
 from piezo_sym.codegen.program import Program
 
 
@@ -57,11 +57,3 @@ def give_text(program: Program, names: Mapping[str, str]) -> str:
     head += f"const {program.name}_parameters *from, int lane)"
     doc = "Copy the parameters of a run into one lane of the vectors"
     return "\n".join([*comment(doc), head, "{", *indented(body), "}"])
-
-
-def comment(doc: str) -> list[str]:
-    """Return a comment of one line, or of several."""
-    lines = wrap(f"{doc}.", WIDTH - 4)
-    if len(lines) == 1:
-        return [f"/* {lines[0]} */"]
-    return ["/*", *(f" * {line}" for line in lines), " */"]

@@ -61,7 +61,7 @@ LANES = '''def _lanes(value, count, ndim):
 
 
 #: The public right-hand side: allocates, and goes through a large batch part by part.
-RATES = '''_BLOCK = 150_000  # numbers of one part of a large batch, which fits in the cache
+RATES = '''_BLOCK = 150_000  # numbers in one part of a large batch: they fit in the cache
 
 
 def rhs(x, u, p, /):
