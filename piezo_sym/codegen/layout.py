@@ -7,12 +7,14 @@ then grows with the number of banks, not with its square.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
-from piezo_sym.spec.names import fresh
+from piezo_sym.codegen.program import Names
+from piezo_sym.expressions.text import PRODUCT, SUM, Piece, enclose, signed
+from piezo_sym.expressions.tree import Add, Expr
 
 #: Sizes of so many banks are spelled out where they are used.
 SPELLED = 2
@@ -67,11 +69,8 @@ def places(slots: Sequence[Slot], word: str, taken: Collection[str]) -> Places:
     banks = {n: slot for n, slot in enumerate(slots) if slot.bank}
     if len(banks) <= SPELLED:
         return Places(slots)
-    used, ends = set(taken), {}
-    for n, slot in banks.items():
-        ends[n] = fresh(f"{word}_{slot.label}", used)
-        used.add(ends[n])
-    return Places(slots, ends)
+    new = Names(taken)
+    return Places(slots, {n: new(f"{word}_{slot.label}") for n, slot in banks.items()})
 
 
 def size_in_words(slots: Sequence[Slot]) -> str:
@@ -79,6 +78,15 @@ def size_in_words(slots: Sequence[Slot]) -> str:
     banks = sum(slot.bank is not None for slot in slots)
     text = f"{len(slots) - banks} + the sizes of {banks} banks"
     return _spelled(slots) if banks <= SPELLED else text
+
+
+def terms(value: Add, write: Callable[[Expr], Piece]) -> Iterator[str]:
+    """Yield a long sum term by term, a line each, with its sign."""
+    first, *rest = value.terms
+    yield enclose(write(first), SUM)
+    for term in rest:
+        sign, size = signed(term)
+        yield f"{sign} {enclose(write(size), PRODUCT)}"
 
 
 def _spelled(slots: Sequence[Slot]) -> str:

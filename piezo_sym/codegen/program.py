@@ -52,6 +52,11 @@ class Field:
     doc: str
     bank: str | None = None
 
+    @property
+    def spread(self) -> str:
+        """The rows that it stands for: those of a bank from its first lane to its last."""
+        return f"{self.name}_1 ... {self.name}_{self.bank}_count" if self.bank else self.name
+
 
 @final
 @dataclass(frozen=True)

@@ -75,16 +75,11 @@ def opening(program: Program) -> str:
         f"{MARK} {VERSION}; do not edit: change the spec, then run `piezo-sym generate`.",
         "C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.",
         "",
-        f"x = ({', '.join(spread(field) for field in program.states)})",
+        f"x = ({', '.join(field.spread for field in program.states)})",
         f"u = ({u})",
         *(f"bank {bank}: lanes j = 1 ... {bank}_count" for bank in program.counts),
     ]
     return "\n".join(["/*", *(f" * {line}".rstrip() for line in lines), " */"])
-
-
-def spread(field: Field) -> str:
-    """Return the rows of a field: those of a bank from its first lane to its last."""
-    return f"{field.name}_1 ... {field.name}_{field.bank}_count" if field.bank else field.name
 
 
 def _parameters(program: Program) -> Iterator[str]:
@@ -187,7 +182,7 @@ def _given(
         if argument == "p":
             continue
         size, fields = layouts[argument]
-        listed = ", ".join(f"{spread(field)} [{field.unit}]" for field in fields)
+        listed = ", ".join(f"{field.spread} [{field.unit}]" for field in fields)
         role = "written; must not overlap another argument" if argument == "out" else "read"
         units = f": {listed}" if listed else ""
         yield from wrapped(f"{words[argument]}[{size}], {role}{units}")

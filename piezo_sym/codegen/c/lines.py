@@ -13,9 +13,10 @@ from typing import final
 from piezo_sym.codegen.branches import with_branches
 from piezo_sym.codegen.c.order import LaneLoop, Stage, Write
 from piezo_sym.codegen.c.style import c_piece, c_style, is_constant, real_style, widened
+from piezo_sym.codegen.layout import terms
 from piezo_sym.codegen.program import Quantity
 from piezo_sym.expressions.functions import RECORDS
-from piezo_sym.expressions.text import PRODUCT, SUM, Style, enclose, signed, write_comparison
+from piezo_sym.expressions.text import Style, write_comparison
 from piezo_sym.expressions.tree import Add, Expr, If, LaneSum
 
 WIDTH = 96
@@ -69,16 +70,8 @@ def statement(target: str, value: Expr, words: Words, lane: str | None = None) -
     style = words.style(lane)
     if isinstance(parts, If):
         return _pick(target, parts, style, wide=words.number != "double")
-    lines = list(_terms(parts, style))
+    lines = list(terms(parts, lambda part: c_piece(part, style)))
     return [f"{target} {lines[0]}", *(f"    {line}" for line in lines[1:-1]), f"    {lines[-1]};"]
-
-
-def _terms(value: Add, style: Style) -> Iterator[str]:
-    first, *rest = value.terms
-    yield enclose(c_piece(first, style), SUM)
-    for term in rest:
-        sign, size = signed(term)
-        yield f"{sign} {enclose(c_piece(size, style), PRODUCT)}"
 
 
 def _pick(target: str, value: If, style: Style, *, wide: bool) -> list[str]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from piezo_sym.codegen.program import Program
+from piezo_sym.codegen.program import Names, Program
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.spec.names import fresh
 
@@ -77,9 +77,5 @@ def _all(program: Program) -> Iterable[str]:
 
 def added(words: Iterable[str], program: Program, names: Mapping[str, str]) -> dict[str, str]:
     """Return names for what the printer adds, none of them in use."""
-    taken = {*program.taken, *names.values(), *KEPT}
-    found: dict[str, str] = {}
-    for word in words:
-        found[word] = fresh(word, taken)
-        taken.add(found[word])
-    return found
+    new = Names((*program.taken, *names.values(), *KEPT))
+    return {word: new(word) for word in words}

@@ -18,12 +18,13 @@ from piezo_sym.codegen.c.lines import Words, indented, used_only
 from piezo_sym.codegen.c.names import added, c_names
 from piezo_sym.codegen.c.order import Write, least_over_lanes
 from piezo_sym.codegen.c.paths import path_rows, path_table
-from piezo_sym.codegen.c.real import REAL, powers_of
 from piezo_sym.codegen.c.record import give_text, place_text, record_text
+from piezo_sym.codegen.c.style import powers
 from piezo_sym.codegen.collocation import Collocation
 from piezo_sym.codegen.coupling import coupling_of, table
 from piezo_sym.codegen.layout import places
 from piezo_sym.codegen.program import Field, Program, Row
+from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.tree import names
 
 NOTE = """\
@@ -31,6 +32,29 @@ NOTE = """\
  * One step of energy-preserving Gauss collocation. The row `program` of the proofs covers the
  * functions `integrands` and `stage`; the others and the tables serve Newton's method.
  */"""
+
+#: What the text says of `real` where nobody has defined it: it is one number.
+_REAL = """\
+#if !defined(REAL_WIDTH) /* numbers of one run; run/engine has vectors of many */
+#define REAL_WIDTH 1
+#define ALONE
+#if !defined(REAL)
+#define REAL double /* or float */
+#endif
+typedef REAL real;
+#define zero 0.0
+#define wide(value) (value)
+#define chosen(condition, then, other) ((condition) ? (then) : (other))
+{functions}
+#define pow_of pow
+#define is_above(a, b) ((a) > (b))
+#define is_at_least(a, b) ((a) >= (b))
+#define least(a, b) ((a) < (b) || (a) != (a) ? (a) : (b))
+#define OF(value, lane) (value)
+#endif"""
+REAL = _REAL.replace(
+    "{functions}", "\n".join(f"#define {r.in_c}_of {r.in_c}" for r in RECORDS.values() if r.smooth)
+)
 
 
 def c_step(program: Program, made: Collocation) -> str:
@@ -49,7 +73,7 @@ def c_step(program: Program, made: Collocation) -> str:
     text = "\n\n".join(functions)
     head = f'{opening(program)}\n{NOTE}\n#include "{program.name}.h"\n\n#include <math.h>'
     record = record_text(program, printer.names)
-    return "\n\n".join([head, REAL, record, *powers_of(text), text, printer.tables()]) + "\n"
+    return "\n\n".join([head, REAL, record, *powers(text, "real"), text, printer.tables()]) + "\n"
 
 
 @final

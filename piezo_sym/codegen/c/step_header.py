@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from piezo_sym.codegen.c.head import opening, spread, wrapped
+from piezo_sym.codegen.c.head import opening, wrapped
 from piezo_sym.codegen.collocation import Collocation
 from piezo_sym.codegen.program import Program
 
@@ -60,7 +60,7 @@ def _doc(program: Program, made: Collocation) -> Iterator[str]:
         "found: a shorter one may exist. Most steps take two or three iterations, the hardest some "
         "thousand."
     )
-    states = ", ".join(f"{spread(field)} [{field.unit}]" for field in program.states)
+    states = ", ".join(f"{field.spread} [{field.unit}]" for field in program.states)
     inputs = ", ".join(f"{field.name} [{field.unit}]" for field in program.inputs)
     yield from wrapped(f"x[n], read and written: {states}")
     yield from wrapped(
@@ -68,7 +68,7 @@ def _doc(program: Program, made: Collocation) -> Iterator[str]:
     )
     yield from wrapped("h, read: the length of the step [s]")
     ports = ", ".join(field.name for field in program.outputs)
-    processes = ", ".join(spread(field) for field in program.processes)
+    processes = ", ".join(field.spread for field in program.processes)
     known = len(program.outputs) + 2 * len(program.processes)
     exchanges = len(made.stage.booked) - known
     yield from wrapped(

@@ -134,7 +134,13 @@ def helpers(text: str) -> Iterator[str]:
         if re.search(rf"\b{name}\(", text):
             ending = "" if value.endswith("*/") else ";"
             yield f"static double {name}({arguments})\n{{\n    return {value}{ending}\n}}"
+    yield from powers(text, "double")
+
+
+def powers(text: str, number: str) -> Iterator[str]:
+    """Yield the definition of each whole power that `text` calls."""
+    kind, end = ("inline real", "_of") if number == "real" else ("double", "")
     for n in range(2, MOST_FACTORS + 1):
-        if re.search(rf"\bpower_{n}\(", text):
-            product = "*".join(["z"] * n)
-            yield f"static double power_{n}(double z)\n{{\n    return {product};\n}}"
+        if re.search(rf"\bpower_{n}{end}\(", text):
+            product = "*".join("z" * n)
+            yield f"static {kind} power_{n}{end}({number} z)\n{{\n    return {product};\n}}"

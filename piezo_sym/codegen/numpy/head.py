@@ -93,15 +93,12 @@ def head(program: Program, text: str = "") -> str:
         _parameters(program),
     ]
     fixed = sum(field.bank is None for field in program.states)
-    size = " + ".join([str(fixed), *(f"p.{bank}_count" for bank in _lanes_of(program))])
+    banks = (f"p.{field.bank}_count" for field in program.states if field.bank)
+    size = " + ".join([str(fixed), *banks])
     parts.append(SHAPES.format(size=size, inputs=len(program.inputs)))
     if program.counts:
         parts.append(LANES)
     return _joined(parts)
-
-
-def _lanes_of(program: Program) -> list[str]:
-    return [field.bank for field in program.states if field.bank]
 
 
 def _joined(parts: Iterable[str]) -> str:
@@ -116,7 +113,7 @@ def _joined(parts: Iterable[str]) -> str:
 
 
 def _docstring(program: Program) -> str:
-    x = ", ".join(_spread(field) for field in program.states)
+    x = ", ".join(field.spread for field in program.states)
     u = ", ".join(field.name for field in program.inputs)
     lines = [
         f'"""{_plain(program.title or program.name)}: irreversible port-Hamiltonian system.',
@@ -134,10 +131,6 @@ def _docstring(program: Program) -> str:
         '"""',
     ]
     return "\n".join(lines)
-
-
-def _spread(field: Field) -> str:
-    return f"{field.name}_1 ... {field.name}_{field.bank}_count" if field.bank else field.name
 
 
 def _plain(text: str) -> str:

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
-from piezo_sym.codegen.layout import Places, places, size_in_words
+from piezo_sym.codegen.layout import Places, places, size_in_words, terms
 from piezo_sym.codegen.numpy.head import RATES, head
 from piezo_sym.codegen.numpy.style import NUMPY, numpy_text
 from piezo_sym.codegen.program import (
@@ -24,7 +24,7 @@ from piezo_sym.codegen.program import (
     jacobian_roots,
     needed,
 )
-from piezo_sym.expressions.text import PRODUCT, SUM, UNARY, enclose, piece, signed
+from piezo_sym.expressions.text import PRODUCT, UNARY, enclose, piece
 from piezo_sym.expressions.tree import ZERO, Add, Expr, LaneSum, Node, Sym, names
 from piezo_sym.spec.names import fresh
 
@@ -180,7 +180,11 @@ class _Printer:
         """Return an assignment; a sum too long for a line gets a line a term."""
         if len(target) + len(text) + 7 <= WIDTH or not isinstance(value, Add):
             return [f"{target} = {text}"]
-        return [f"{target} = (", *(f"    {term}" for term in _terms(value)), ")"]
+        return [
+            f"{target} = (",
+            *(f"    {term}" for term in terms(value, lambda part: piece(part, NUMPY))),
+            ")",
+        ]
 
     def _rows(self, function: Function) -> Places:
         """Return the places of a function's rows."""
@@ -235,14 +239,6 @@ def _row_text(row: Row) -> str:
     if row.listed:
         return f"({', '.join(numpy_text(value) for value in row.listed)})"
     return numpy_text(row.value)
-
-
-def _terms(value: Add) -> Iterator[str]:
-    first, *rest = value.terms
-    yield enclose(piece(first, NUMPY), SUM)
-    for term in rest:
-        sign, size = signed(term)
-        yield f"{sign} {enclose(piece(size, NUMPY), PRODUCT)}"
 
 
 def _body(lines: list[str]) -> str:
