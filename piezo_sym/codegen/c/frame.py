@@ -59,8 +59,14 @@ class FunctionFrame:
         definitions = [*self.sizes(), *local, *self._parameters()]
         for word in arguments:
             definitions += self._elements(word) if word in self.arrays else []
-        definitions = [item for item in definitions if item[0] not in known]
-        kept = used_only(body, definitions, [self.words[word] for word in arguments])
+        once: dict[str, str] = {}
+        for defined, line in definitions:
+            once.setdefault(defined, line)
+        kept = used_only(
+            body,
+            [item for item in once.items() if item[0] not in known],
+            [self.words[word] for word in arguments],
+        )
         head = declaration(self.program, name, arguments, self.words, self.lines.number)
         return "\n".join([*comment(doc), head, "{", *indented([*kept, *body]), "}"])
 
