@@ -2,97 +2,113 @@
 
 Input: the tokens of a file, at a function.  Output: values by row.  The grammar:
 
-    statement   [const] double or long NAME = expression;   NAME += expression;
+    statement   const double or long NAME = expression;     double NAME [= expression];
+                const double *[restrict] NAME = pointer;    NAME = or += expression;
                 [static] const double NAME[n] = { ... };    OUT[place] = or += expression;
                 for (long j = 0; j < size; ++j) { ... }     { ... }     return expression;
     expression  ? :  ||  comparisons  + - * /  calls, names, numbers, NAME[place], P->NAME
 
 A loop stands for every lane of a bank: what it adds up is a sum over lanes, what it writes is a row
-of that lane.  A function can be read in part: only some results, and the names that these need.
+of that lane.
 """
 
 import ast
-from collections.abc import Collection, Mapping
+from collections import ChainMap
+from collections.abc import Collection
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
-from piezo_sym.translation.c_form import Form
-from piezo_sym.translation.c_scope import Branch, Helper, Listed, Scope, UnreadError, Variable
+from piezo_sym.translation.c_file import File
+from piezo_sym.translation.c_scope import Branch, Deferred, Scope, Variable, helper_is
 from piezo_sym.translation.c_text import Tokens
-from piezo_sym.translation.expressions import PLAIN, WHOLE, refused
+from piezo_sym.translation.expressions import WHOLE, refused
 from piezo_sym.translation.field import NotShownError, Value
-from piezo_sym.translation.known import LEAST, Key, Proved
+from piezo_sym.translation.known import LEAST, Key
 from piezo_sym.translation.rows import Rows
 
-#: Functions in which ``j < n ? listed[j] : (double)NAN`` is a number for each lane.
-_LISTED = ("initial_state",)
+#: What may be written to: results, ledger rows, switching functions, margins.
+WRITTEN = ("out", "rows", "s", "m")
+#: What stands in `File.results` for rows that are not compared.
+NOT_COMPARED = ""
 
 
 @final
 class Function:
-    """Reads one function, statement by statement.
+    """A function, read statement by statement; its values are read where `rows` asks for them.
 
     Parameters
     ----------
-    only : the results to read, such as ``out[]``, and the names that these need; all if None.
-    without : a result that is not read.
-    branches : what branches are known to be; if None, choices are by comparisons.
+    by_branches : whether choices are by branches alone; else they are by comparisons.
 
     Attributes
     ----------
-    uses : the names in what each name, or result, is made of.
     switches : what is written of switching functions, by the branch that each decides.
-    places : what is written and not read, by its place and bank.
+    places : what is written and not compared, by its place and bank.
     """
 
-    def __init__(
-        self,
-        tokens: Tokens,
-        model: str,
-        known: Proved,
-        helpers: Mapping[str, Helper],
-        form: Form,
-        *,
-        only: Collection[str] | None = None,
-        without: str = "",
-        branches: Mapping[Branch, Value] | None = None,
-    ) -> None:
-        self.tokens, self.known, self.field = tokens, known, known.field
-        self.name, roles = form.head(tokens, model)
-        self.scope = Scope(known, helpers, roles, form.calls, branches)
-        self.read, self.only, self.without = self.scope.read, only, without
-        results = form.results(self.name, roles)
-        self.written = {role: Rows(known, name) for role, name in results.items()}
-        self.returned = "out" in roles.values()
-        self.switches: dict[Branch, Value | None] = {}
-        self.loops, self.summed, self.least = 0, set[str](), set[int]()
-        self.uses: dict[str, set[str]] = {}
+    def __init__(self, tokens: Tokens, file: File, *, by_branches: bool = False) -> None:
+        self.tokens, self.file, self.known = tokens, file, file.known
+        self.name, roles = self._head()
+        self.switches: dict[Branch, Deferred | Value] = {}
         self.places: list[Branch] = []
-        self.field.derived = self.name == "jacobian"
-
-    def rows(self) -> dict[Key, Value]:
-        """Return the rows that the function writes."""
-        self._block()
-        found = {key: value for rows in self.written.values() for key, value in rows.found.items()}
-        least = {("margins", n, LEAST) for n in self.least}
-        if not self.returned or (self._is_read("m[]") and least - {*found}):
+        switches = self.switches if by_branches else None
+        self.scope = Scope(file, roles, ChainMap(), switches=switches)
+        given = {"out", *roles.values()} & {*WRITTEN} - {"s"}
+        named = {role: file.results.get(f"{self.name} {role}", self.name) for role in given}
+        self.rows_of = {role: Rows(self.known, name) for role, name in named.items()}
+        self.constants = list[Deferred]()
+        self.written = list[tuple[str, Key, Deferred, bool]]()
+        self.loops, self.summed, self.least = 0, dict[str, Variable | None](), set[Key]()
+        self.returned = "out" in roles.values()
+        self._block(self.scope)
+        if not self.returned or self.least - {key for _, key, _, _ in self.written}:
             raise NotShownError(f"{self.name} leaves numbers that were never written")
+
+    def rows(self, roles: Collection[str] = WRITTEN) -> dict[Key, Value]:
+        """Return the rows that are written to some arguments."""
+        self.known.field.derived = self.name == "jacobian"
+        for part in self.constants if "out" in roles else ():
+            part.read()
+        found: dict[Key, Value] = {}
+        for role, key, part, added in self.written:
+            if role in roles:
+                self.rows_of[role].keep(key, part.value, added=added)
+                found[key] = self.rows_of[role].found[key]
         return found
 
-    def _is_read(self, name: str) -> bool:
-        return name != self.without if self.only is None else name in self.only
+    def _head(self) -> tuple[str, dict[str, str]]:
+        """Take the head: the function's name, and what its arguments are by name."""
+        tokens, prefix = self.tokens, f"{self.file.model}_"
+        kind, word = tokens.one_of("void", "double", "long"), tokens.word()
+        name = word[len(prefix) :] if word.startswith(prefix) else ""
+        words = self.file.signatures.get(name, "").split()
+        roles = {self._argument(word, n): word for n, word in enumerate(words)}
+        tokens.take(")")
+        wanted = "void" if "out" in words else "long" if words == ["p"] else "double"
+        if kind != wanted or len(roles) != len(words) or not words:
+            raise NotShownError(f"a function {word} of such types")
+        return name, roles
 
-    def _block(self) -> None:
-        before = dict(self.scope.names)
+    def _argument(self, role: str, n: int) -> str:
+        self.tokens.take("," if n else "(")
+        types = dict.fromkeys(WRITTEN, "double * restrict")
+        types["p"] = f"const {self.file.model}_{self.file.record} * restrict"
+        self.tokens.take(*types.get(role, "const double * restrict").split())
+        return self.tokens.word()
+
+    # Statements
+
+    def _block(self, inner: Scope) -> None:
+        outside, self.scope = self.scope, inner
         self.tokens.take("{")
         while not self.tokens.taken("}"):
             self._statement()
-        self.scope.names = before
+        self.scope = outside
 
     def _statement(self) -> None:
         tokens = self.tokens
         if tokens.peek() == "{":
-            self._block()
+            self._block(self.scope.block())
         elif tokens.taken("#pragma"):
             self._loop(tokens.sums[tokens.at - 1])
         elif tokens.peek() == "for":
@@ -112,81 +128,61 @@ class Function:
         self.tokens.take(";")
         if self.tokens.peek() != "}" or self.returned or self.scope.lanes:
             raise refused(node, "a return")
-        self.returned, rows = True, self.written["out"]
-        if rows.slots == (Slot(""),):
-            rows.keep((self.name, 0), self.read.numeric(node)[0])
+        self.returned = True
+        if self.rows_of["out"].slots == (Slot(""),):
+            self.written.append(("out", (self.name, 0), self.scope.defer(node), False))
             return
         counted = self.known.layouts[{"states": "rhs", "processes": "heat"}[self.name]]
-        if self.read.whole(node) != counted.places[-1]:
+        if self.scope.read.whole(node) != counted.places[-1]:
             raise refused(node, "another number of rows")
 
-    def _value(self, name: str, node: ast.expr) -> Value | None:
-        """Return what a name is set to, or adds, if it is to be read and can be."""
-        parts = [*ast.walk(node)]
-        words = {part.id for part in parts if isinstance(part, ast.Name)}
-        called = {ast.unparse(part.func) for part in parts if isinstance(part, ast.Call)}
-        if not called <= self.scope.callable:
-            raise refused(node, "a call")
-        self.uses.setdefault(name, set()).update(words)
-        if self._is_read(name):
-            try:
-                return self.read.numeric(node)[0]
-            except UnreadError:
-                if self.only is None:
-                    raise
-        return None
-
-    # Declarations
-
     def _declaration(self) -> None:
-        tokens, declare = self.tokens, self.scope.declare
+        tokens, scope = self.tokens, self.scope
         fixed, constant = tokens.taken("static"), tokens.taken("const")
         kind, pointer = tokens.one_of("double", "long"), tokens.taken("*")
         _ = pointer and tokens.taken("restrict")
-        name, loop = tokens.word(), self.scope.open[-1]
+        name = tokens.word()
         if constant and not pointer and tokens.taken("["):
-            declare(name, self._list())
-        elif fixed or (kind == "long" and (pointer or not constant)) or pointer > constant:
+            scope.declare(name, self._list())
+        elif fixed or (not constant and (kind == "long" or pointer)):
             raise NotShownError(f"the declaration of {name}")
-        elif not constant and not pointer and tokens.peek() == ";":
-            declare(name, Variable(None, loop))
+        elif not constant and tokens.peek() == ";":
+            scope.declare(name, Variable(None, scope.lanes))
         else:
             tokens.take("=")
             node = tokens.expression()
-            if pointer:
-                declare(name, self.scope.pointer(node))
-            elif constant and (branch := self.scope.given(node)):
-                declare(name, branch)
-            elif kind == "long":
-                declare(name, (self.read.whole(node), WHOLE))
-            elif (value := self._value(name, node)) is None or not constant:
-                declare(name, Variable(value, loop))
+            if pointer and kind == "double":
+                scope.declare(name, scope.pointer(node))
+            elif kind == "long" and not pointer:
+                scope.declare(name, (scope.read.whole(node), WHOLE))
+            elif constant and (branch := scope.shared_branch(node)):
+                scope.declare(name, branch)
             else:
-                declare(name, (self.field.letter(value), PLAIN))
+                part = self._kept(node)
+                scope.declare(name, part if constant else Variable(part, scope.lanes))
         tokens.take(";")
 
-    def _list(self) -> Listed:
-        tokens, values = self.tokens, list[Value]()
+    def _list(self) -> list[Deferred]:
+        tokens, values = self.tokens, list[Deferred]()
         size = tokens.next()
         tokens.take("]", "=", "{")
         while not tokens.taken("}"):
-            values.append(self.read.numeric(tokens.expression())[0])
+            values.append(self._kept(tokens.expression()))
             tokens.take(",")
         if size != str(len(values)):
             raise NotShownError("a list of another length")
-        return Listed(tuple(values))
-
-    # Loops
+        return values
 
     def _loop(self, pragma: frozenset[str] | None) -> None:
-        tokens, rows = self.tokens, self.written["out"]
+        tokens, rows = self.tokens, self.rows_of["out"]
         tokens.take("for", "(", "long")
         name = tokens.word()
         tokens.take("=", "0", ";", name, "<")
         node = tokens.expression()
         tokens.take(";", "++", name, ")")
-        size, square = self.read.whole(node), rows.size * rows.size
-        if self.name == "jacobian" and size == square and not rows.found and not self.scope.lanes:
+        size, square = self.scope.read.whole(node), rows.size * rows.size
+        first = not self.written and not self.scope.lanes
+        if self.name == "jacobian" and size == square and first:
             out = next(name for name, role in self.scope.roles.items() if role == "out")
             tokens.take("{", out, "[", name, "]", "=", "0.0", ";", "}")
             rows.zeros = True
@@ -198,18 +194,14 @@ class Function:
 
     def _lanes(self, name: str, bank: str, pragma: frozenset[str] | None) -> None:
         """Read a loop over the lanes of a bank."""
-        scope, before, self.loops = self.scope, dict(self.scope.names), self.loops + 1
-        number, outer, self.summed = self.loops, self.summed, set()
-        scope.declare(name, (self.field.name("index", bank, len(scope.lanes)), WHOLE))
-        scope.lanes.append((name, bank))
-        scope.open.append(number)
-        self._block()
-        wrong = pragma is not None and (pragma != self.summed or self.loops != number)
-        if wrong and self.only is None:
+        outside, self.loops = self.summed, self.loops + 1
+        number, self.summed = self.loops, {}
+        self._block(self.scope.of_lanes(name, bank))
+        if pragma is not None and (pragma != self.summed.keys() or self.loops != number):
             raise NotShownError("a directive that names other sums than its loop has")
-        scope.lanes.pop()
-        scope.open.pop()
-        scope.names, self.summed = before, outer
+        for added in filter(None, self.summed.values()):
+            added.is_open = False
+        self.summed = outside
 
     # Changes
 
@@ -224,75 +216,84 @@ class Function:
         tokens.take(";")
         found, role = self.scope.names.get(name), self.scope.roles.get(name, "")
         if place is not None and role == "s" and not added:
-            self._switch(self.read.whole(place), node)
-        elif place is not None and role in self.written:
+            self._switch(self.scope.read.whole(place), node)
+        elif place is not None and role in self.rows_of:
             self._write(role, place, node, added=added)
         elif place is not None or not isinstance(found, Variable):
             raise NotShownError(f"{name} is changed")
         elif added:
             self._add(name, found, node)
-        elif found.value is None and found.loop == self.scope.open[-1]:
-            found.value = self._value(name, node)
+        elif found.start is None and found.lanes == self.scope.lanes:
+            found.start = self._kept(node)
         else:
             raise NotShownError(f"{name} is changed where it should not be")
 
+    def _kept(self, node: ast.expr) -> Deferred:
+        """Return what a variable or constant is set to; it is read even if nothing needs it."""
+        self.constants.append(self.scope.defer(node))
+        return self.constants[-1]
+
     def _add(self, name: str, found: Variable, node: ast.expr) -> None:
         """Read what a loop adds to a sum over lanes."""
-        value, loop = self._value(name, node), self.scope.open[-1]
-        self.summed.add(name)
-        if len(self.scope.lanes) != 1 or found.loop or loop in found.read:
+        part, banks = self._kept(node), self.scope.banks
+        if len(banks) != 1 or found.lanes or found.is_read or found.start is None:
             raise refused(node, "a sum that is changed where it should not be, or read in its loop")
-        if value is None or found.value is None:
-            if self.only is None:
-                raise refused(node, "a sum without its first value")
-            found.value = None
-            return
-        found.value = found.value + self.field.lane_sum(value, self.scope.lanes[0][1])
-        found.added.add(loop)
+        found.is_open, self.summed[name] = True, found
+        found.parts.append((part, banks[0]))
 
     def _switch(self, place: Value, node: ast.expr) -> None:
         """Read a switching function, of each lane in a loop."""
-        banks = [bank for _, bank in self.scope.lanes]
-        branch = self.scope.branch(place, banks)
-        value = self._value("s[]", node)
-        if branch in self.switches or len(banks) > 1:
+        branch = self.scope.branch(place)
+        if branch in self.switches or len(self.scope.lanes) > 1:
             raise refused(node, "a switching function that is not written once")
-        self.switches[branch] = value
+        self.switches[branch] = self._kept(node)
 
     def _write(self, role: str, place: ast.expr, node: ast.expr, *, added: bool) -> None:
-        rows, at = self.written[role], self.read.whole(place)
-        banks = tuple(bank for _, bank in self.scope.lanes)
-        if not self._is_read(f"{role}[]"):
-            self._value(f"{role}[]", node)
-            self.summed |= {"the least"} if role == "m" and banks else set()
-            self.places.append(self.scope.branch(at, banks))
+        rows, at = self.rows_of[role], self.scope.read.whole(place)
+        if rows.name == NOT_COMPARED:
+            self.places.append(self.scope.branch(at))
+            self.scope.defer(node)
             return
         if rows.name == "margins" and self._is_least(role, place, at, node):
             return
-        key = rows.key_at(at, banks)
-        listed = self.scope.listed(node) if self.name in _LISTED else ()
+        key = rows.key_at(at, self.scope.banks)
+        listed = self._listed(node)
         if key is None or (listed and added):
             raise refused(place, "a place of another row")
         for lane, part in enumerate(listed):
-            rows.keep((*key, lane), part)
-        if not listed and (value := self._value(f"{role}[]", node)) is not None:
-            rows.keep(key, value, added=added)
+            self.written.append((role, (*key, lane), part, False))
+        if not listed:
+            self.written.append((role, key, self.scope.defer(node), added))
+
+    def _listed(self, node: ast.expr) -> list[Deferred]:
+        """Return what ``j < n ? listed[j] : (double)NAN`` lists, n the list's length."""
+        match node:
+            case ast.IfExp(
+                ast.Compare(ast.Name(j), [ast.Lt()], [ast.Constant(n)]),
+                ast.Subscript(ast.Name(name), ast.Name(k)),
+                ast.Name("NAN"),
+            ) if self.scope.lanes and j == k == self.scope.lanes[-1][0]:
+                found = self.scope.names.get(name)
+                if isinstance(found, list) and n == len(found) > 1 and self.name == "initial_state":
+                    return found
+        return []
 
     def _is_least(self, role: str, place: ast.expr, at: Value, node: ast.expr) -> bool:
         """Read the least value over the lanes: ``out[n] = HUGE_VAL``, then ``min(out[n], ...)``."""
         n = int(at.constant) if at.constant is not None else -1
+        key, scope = ("margins", n, LEAST), self.scope
         match node:
-            case ast.Name("HUGE_VAL") if not self.scope.lanes and n not in self.least:
-                self.least.add(n)
+            case ast.Name("HUGE_VAL") if not scope.lanes and key not in self.least:
+                self.least.add(key)
                 return True
             case ast.Call(ast.Name("min"), [ast.Subscript(ast.Name(name)) as first, value]):
-                own = self.scope.roles.get(name) == role and n in self.least
+                own = scope.roles.get(name) == role and key in self.least
                 own = own and ast.unparse(first) == f"{name}[{ast.unparse(place)}]"
-                if own and self.scope.lanes and self.scope.lesser():
-                    self.summed.add("the least")
-                    if (found := self._value(f"{role}[]", value)) is not None:
-                        self.written[role].keep(("margins", n, LEAST), found)
+                lesser = lambda a, b: scope.read.apply("minimum", [a, b])  # noqa: E731
+                if own and scope.lanes and helper_is(self.file, "min", lesser, 2):
+                    self.summed["the least"] = None
+                    self.written.append((role, key, scope.defer(value), False))
                     return True
-        if self.scope.lanes or n in self.least:
+        if scope.lanes or key in self.least:
             raise refused(node, "a margin")
         return False

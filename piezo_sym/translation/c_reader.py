@@ -10,12 +10,13 @@ and for the rest see `c_function`.  Helpers mean what their text says.  Nothing 
 """
 
 import re
-from collections.abc import Mapping
+from collections import ChainMap
 
-from piezo_sym.translation.c_form import Form
+from piezo_sym.translation.c_file import CALLS, File, Helper
 from piezo_sym.translation.c_function import Function
-from piezo_sym.translation.c_scope import CALLS, Helper
+from piezo_sym.translation.c_scope import Meaning, Scope
 from piezo_sym.translation.c_text import Tokens
+from piezo_sym.translation.expressions import PLAIN
 from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import Key, Proved
 from piezo_sym.translation.signs import reading
@@ -24,7 +25,6 @@ _STATE = ["rhs", "jacobian", "margins", "outputs", "supply", "heat", "entropy_pr
 SIGNATURES = dict.fromkeys(_STATE, "x u p out")
 SIGNATURES |= {"initial_state": "u p out", "temperatures": "x p out"}
 SIGNATURES |= {"energy": "x p", "entropy": "x p", "states": "p", "processes": "p"}
-FORM = Form(SIGNATURES, "parameters", CALLS)
 _HELPERS = r"pick|sign|min|max|saturate|deadzone|power_[2-8]"
 
 
@@ -36,14 +36,13 @@ def read_c(text: str, name: str, known: Proved) -> dict[Key, Value]:
     NotShownError
         If something is outside the grammar; it says what.
     """
-    tokens = Tokens(text, name)
-    helpers: dict[str, Helper] = {}
+    tokens, file = Tokens(text, name), File(known, name, SIGNATURES, "parameters", CALLS)
     rows, seen = dict[Key, Value](), set[str]()
     while tokens.peek():
         if tokens.taken("static"):
-            add_helper(tokens, helpers, _HELPERS)
+            add_helper(tokens, file, _HELPERS)
             continue
-        function = Function(tokens, name, known, helpers, FORM)
+        function = Function(tokens, file)
         if function.name in seen:
             raise NotShownError(f"{function.name} is defined twice")
         seen.add(function.name)
@@ -54,23 +53,20 @@ def read_c(text: str, name: str, known: Proved) -> dict[Key, Value]:
     return rows
 
 
-def add_helper(tokens: Tokens, helpers: dict[str, Helper], allowed: str) -> str:
+def add_helper(tokens: Tokens, file: File, allowed: str) -> str:
     """Take a function of the file's own, one of those allowed; return its name."""
-    name, made = _helper(tokens, helpers)
-    if name in helpers or name in CALLS or not re.fullmatch(allowed, name):
-        raise NotShownError(f"a function {name} of the C file's own")
-    helpers[name] = made
-    return name
-
-
-def _helper(tokens: Tokens, helpers: Mapping[str, Helper]) -> tuple[str, Helper]:
     tokens.take("double")
-    name, names = tokens.word(), list[tuple[str, str]]()
+    name, parameters = tokens.word(), dict[str, str]()
     tokens.take("(")
-    while not names or tokens.taken(","):
+    while not parameters or tokens.taken(","):
         kind = tokens.one_of("double", "int")
-        names.append((tokens.word(), kind))
+        parameters[tokens.word()] = kind
     tokens.take(")", "{", "return")
-    value = tokens.expression()
+    names: ChainMap[str, Meaning] = ChainMap({})
+    names |= dict.fromkeys(parameters, (file.known.field.zero, PLAIN))
+    value = Scope(file, {}, names).defer(tokens.expression()).node
     tokens.take(";", "}")
-    return name, Helper(tuple(names), value, dict(helpers))
+    if name in file.helpers or name in CALLS or not re.fullmatch(allowed, name):
+        raise NotShownError(f"a function {name} of the C file's own")
+    file.helpers[name] = Helper(tuple(parameters.items()), value)
+    return name

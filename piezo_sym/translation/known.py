@@ -128,7 +128,7 @@ class Proved:
             raise NotShownError(f"{name} is no parameter that lanes share")
         return self.names[name], False
 
-    def part(self, role: str, place: Value) -> Value:
-        """Return the part of x or u at a place, one that lanes share."""
+    def part(self, role: str, place: Value, *, bank: bool) -> Value:
+        """Return the part of x, u or g at a place: of a bank's lane 0, or one that lanes share."""
         layout = self.layouts[role]
-        return self.names[layout.slots[layout.at(place, bank=False)].label]
+        return self.names[layout.slots[layout.at(place, bank=bank)].label]
