@@ -5,15 +5,18 @@ two parts: `derivative` in the lane itself, and `across`, by way of sums over la
 Signs have the derivative 0: what is said of derivatives holds inside the branches of a law.
 """
 
+import ast
 from collections.abc import Callable, Mapping
 from fractions import Fraction
 
 from piezo_sym.expressions.functions import RECORDS
-from piezo_sym.expressions.parse import parse_rule
-from piezo_sym.expressions.tree import Add, Call, Div, Mul, Neg, Node, Num, Pow, Sym, children
+from piezo_sym.translation.expressions import PLAIN, Expressions, Read
 from piezo_sym.translation.field import Field, Generator, NotShownError, Value
 from piezo_sym.translation.functions import call, power
 from piezo_sym.translation.signs import compare, sign_of
+
+#: What the rules of records call.
+_CALLS = {name: name for name, record in RECORDS.items() if record.smooth}
 
 
 def put(value: Value, new: Mapping[int, Value]) -> Value:
@@ -128,29 +131,14 @@ def _slope(field: Field, g: int, state: int, own: Value, of_sum: Inner) -> Value
     inner = _chain(gen.arg, state, own, of_sum)
     if gen.kind in {"power", "letter"} or not inner.terms:
         return inner
-    return _of_rule(parse_rule(RECORDS[gen.kind].slopes[0]), {"x": gen.arg, "y": same}) * inner
+    return _of_rule(RECORDS[gen.kind].slopes[0], {"x": gen.arg, "y": same}) * inner
 
 
-def _of_rule(node: Node, words: Mapping[str, Value]) -> Value:
+def _of_rule(rule: str, words: Mapping[str, Value]) -> Value:
     """Return the value of a derivative as a record states it."""
-    parts = [_of_rule(part, words) for part in children(node)]
-    field = words["x"].field
-    match node:
-        case Num(value):
-            return field.number(value)
-        case Sym(name):
-            return words[name]
-        case Neg():
-            return -parts[0]
-        case Add():
-            return field.total(parts)
-        case Mul():
-            return parts[0] * parts[1]
-        case Div():
-            return parts[0] * power(parts[1], Fraction(-1))
-        case Pow(_, exponent):
-            return power(parts[0], exponent)
-        case Call(function):
-            root = RECORDS[function].power
-            return call(function, parts[0]) if root is None else power(parts[0], root)
-    raise NotShownError("a derivative that chooses")
+
+    def leaf(node: ast.expr) -> Read:
+        return words[ast.unparse(node)], PLAIN
+
+    read = Expressions(words["x"].field, {}, lambda value: value, leaf, _CALLS, False)
+    return read.numeric(ast.parse(rule, mode="eval").body)[0]

@@ -94,6 +94,11 @@ def _counts(gen: Generator) -> bool:
     return isinstance(gen.mark, tuple) and gen.mark[2] == -1
 
 
+def sides_of(d: Value) -> set[int]:
+    """Return the signs that the domain leaves to a difference."""
+    return _POSSIBLE[sign(d)] & {-side for side in _POSSIBLE[sign(-d)]}
+
+
 def has_sign(value: Value) -> bool:
     """Return whether a value is known to be positive, or negative, all over the domain."""
     return max(sign(value), sign(-value)) == 2
@@ -175,7 +180,7 @@ def _compared(sides: tuple[int, ...], d: Value) -> Value:
         number = Fraction(0)
     if number is not None:
         return field.number(int((number > 0) - (number < 0) in sides))
-    possible = _POSSIBLE[sign(d)] & {-side for side in _POSSIBLE[sign(-d)]}
+    possible = sides_of(d)
     if possible <= {*sides}:
         return field.one
     forms, turn = _forms(d)

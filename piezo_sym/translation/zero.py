@@ -15,7 +15,7 @@ from piezo_sym.translation.change import put
 from piezo_sym.translation.field import Field, NotShownError, Value
 from piezo_sym.translation.functions import power
 from piezo_sym.translation.possible import impossible
-from piezo_sym.translation.signs import has_sign, sign, sign_of
+from piezo_sym.translation.signs import has_sign, sides_of, sign, sign_of
 
 MOST_CASES = 500
 MOST_STEPS = 12
@@ -176,7 +176,7 @@ def _cases(
     d = max(found, key=lambda d: found[d])
     assert d is not None
     for side in (1, -1) if d in edges else (1, -1, 0):
-        if _possible(d, side) and not any(_never(d, side, e, s) for e, s in sides.items()):
+        if side in sides_of(d) and not any(_never(d, side, e, s) for e, s in sides.items()):
             here = {**sides, d: side}
             yield from _cases(field.at(value, {d: side}), here, left, edges=edges)
 
@@ -198,14 +198,6 @@ def _chosen_by(value: Value, group: Sequence[Value]) -> Value:
         if any(gens[g].kind == "sign" and gens[g].arg in group for g, _ in mono)
     }
     return Value(value.field, terms)
-
-
-def _possible(d: Value, side: int) -> bool:
-    """Return whether the domain leaves a sign to a difference."""
-    above, below = sign(d), sign(-d)
-    return above <= (2 if side > 0 else 1 if side == 0 else 0) and below <= (
-        2 if side < 0 else 1 if side == 0 else 0
-    )
 
 
 def _contradict(first: Value, s: int, second: Value, t: int) -> bool:
@@ -241,7 +233,7 @@ def _differs(base: Value, case: Case) -> bool:
         value = put(value, new) if new else _remainder(value, d)
         edges = {put(other, new): 0 for other in edges}
         others = {put(other, new): side for other, side in others.items()}
-        if not all(_possible(other, side) for other, side in (*edges.items(), *others.items())):
+        if any(side not in sides_of(other) for other, side in (*edges.items(), *others.items())):
             return False
     return not is_zero(value)
 

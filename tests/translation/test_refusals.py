@@ -95,6 +95,23 @@ C = {
     ),
     "a header in a comment": ("#include <math.h>\n", "/* *#include <math.h>\n/ */\n"),
     "a decrement": ("T_0*c_0*exp(S/c_0)", "T_0*c_0*exp(--S/c_0)"),
+    "a name before its declaration": (
+        "out[0] = v_mass;", "const double w = late; const double late = v_mass; out[0] = w;"
+    ),
+    "a variable without a value": ("out[0] = v_mass;", "double w; out[0] = w; w = v_mass;"),
+    "a variable that is set twice": (
+        "out[0] = v_mass;", "double w; w = q; w = v_mass; out[0] = w;"
+    ),
+    "a name of a block behind it": (
+        "out[0] = v_mass;", "{ const double w = v_mass; } out[0] = w;"
+    ),
+    "a name of a loop behind it": ("out[0] = v_mass;", "out[0] = v_mass + 0.0*i_hysteron;"),
+    "a sum that is changed behind what reads it": (
+        "out[2] = sum_i_hysteron",
+        "const double w = sum_i_hysteron;\n"
+        "for (long j = 0; j < hysteron_count; ++j) { sum_i_hysteron += phi[j]; }\n"
+        "out[2] = w",
+    ),
     "an increment": ("out[0] = v_mass;", "out[0] = ++v_mass;"),
     "no text": ("", None),
 }  # fmt: skip

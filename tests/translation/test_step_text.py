@@ -113,6 +113,9 @@ NOT_READ = {
         "out[0] = 1.0/M;",
         "out[0] = piezo_stack_stage(x, x, b, u, p_, out, out, out, out);",
     ),
+    "a name in slopes that nothing declares": ("out[0] = 1.0/M;", "out[0] = 1.0/other;"),
+    "a table that is not static": ("static const int piezo_stack_read[]", "const int more[]"),
+    "a table twice": ("int piezo_stack_state[]", "int piezo_stack_place[]"),
     "what slopes write": ("out[0] = 1.0/M;", "out[0] = 1.0/M;\n    x[0] = zero;"),
     "one more function": (
         "enum {\n    piezo_stack_limits",
