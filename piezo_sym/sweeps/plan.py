@@ -1,8 +1,8 @@
 """A sweep as one frozen value: what runs, at which points, and how the grid is cut into boxes.
 
-Input: what a user asked for, checked.  Output: `Plan` and its `Box` records.  A box is a part of
-the grid that one task runs; axes that runs in one call of C cannot differ along come first, so that
-a box holds as many equal ones as it can.
+Input: what a user asked for, checked.  Output: `Plan`.  A box is a region of the grid that one task
+runs, as a `Plan` of its own.  Within a box, runs with equal inputs and bank sizes form a group,
+which goes through C in one call; boxes are therefore cut across the axes of inputs and sizes first.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import product
 from math import prod
 from typing import Any, Literal, TypeAlias, final
 
@@ -24,34 +25,16 @@ from piezo_sym.sweeps.axes import Axis
 from piezo_sym.sweeps.targets import Target
 
 Reduction: TypeAlias = Literal["last", "mean"] | Callable[[Any], object]
+#: Where a box is in the grid: a slice for each axis.
+Region: TypeAlias = tuple[slice, ...]
 
-#: Runs that go through C in one call, at most, or one by one through SciPy before they are kept;
-#: numbers that they leave there.
+#: At most so many runs go through C in one call, or through SciPy before they are kept; and at most
+#: so many numbers may come out of one call.
 MOST_TOGETHER, MOST_BY_SCIPY = 512, 32
 MOST_NUMBERS = 8_000_000
-#: Boxes hold up to so many runs where only reductions are kept, if so many boxes remain.
+#: Where only reductions are kept, a box has up to so many runs if so many boxes remain.
 MOST_REDUCED = 512
 ENOUGH_BOXES = 256
-
-
-@final
-@dataclass(frozen=True)
-class Box:
-    """A part of the grid.
-
-    Attributes
-    ----------
-    number : its place in the order of boxes.
-    start, shape : along each axis of `Plan.order`.
-    """
-
-    number: int
-    start: tuple[int, ...]
-    shape: tuple[int, ...]
-
-    def __len__(self) -> int:
-        """Return the number of runs."""
-        return prod(self.shape)
 
 
 @final
@@ -72,7 +55,7 @@ class Plan:
     together : runs in one call of C, at most.
     most : runs in a box, at most.
     engine : what runs them, in words, as an attribute of `simulate` says.
-    side_by_side : whether runs in one call of C go in the lanes of vectors, or one by one.
+    side_by_side : whether runs in one call of C share vectors, or go one by one.
     """
 
     axes: tuple[Axis, ...]
@@ -92,9 +75,10 @@ class Plan:
     engine: str = ""
     side_by_side: bool = True
 
-    def with_most(self, most: int) -> Plan:
-        """Return the same sweep in boxes of other sizes."""
-        return replace(self, most=most)
+    @property
+    def dims(self) -> tuple[str, ...]:
+        """The name of each axis."""
+        return tuple(axis.dim for axis in self.axes)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -106,62 +90,49 @@ class Plan:
         """The number of runs."""
         return prod(self.shape)
 
-    @cached_property
-    def order(self) -> tuple[int, ...]:
-        """The axes from the slowest to the fastest."""
-        return tuple(sorted(range(len(self.axes)), key=lambda n: not self.axes[n].divides))
-
     @property
-    def dividing(self) -> int:
-        """How many of the first axes in `order` divide runs."""
-        return sum(axis.divides for axis in self.axes)
+    def kept(self) -> slice:
+        """The samples that count: all, or the last."""
+        return slice(-1, None) if self.reduce == "last" else slice(None)
 
     @cached_property
     def box_shape(self) -> tuple[int, ...]:
-        """The shape of a box along the axes in `order`; those at the edges may be smaller."""
-        room, shape = self.most, []
-        for n in reversed(self.order):
-            size = self.axes[n].size
-            parts = -(-size // max(1, min(size, room)))
-            shape.append(-(-size // parts))  # boxes as equal as can be
-            room = room // size if parts == 1 else 1
-        return tuple(reversed(shape))
+        """The shape of a box; those at the edges of the grid may be smaller."""
+        room, shape = self.most, list(self.shape)
+        for n in reversed(sorted(range(len(shape)), key=lambda n: not self.axes[n].divides)):
+            parts = -(-shape[n] // max(1, min(shape[n], room)))
+            room = room // shape[n] if parts == 1 else 1
+            shape[n] = -(-shape[n] // parts)  # boxes as equal as can be
+        return tuple(shape)
 
-    @property
-    def boxes_along(self) -> tuple[int, ...]:
-        """The number of boxes along each axis in `order`."""
-        sizes = (self.axes[n].size for n in self.order)
-        return tuple(-(-size // part) for size, part in zip(sizes, self.box_shape, strict=True))
+    def regions(self) -> Iterator[Region]:
+        """Yield where each box is."""
+        along = zip(self.shape, self.box_shape, strict=True)
+        yield from product(
+            *(
+                [slice(first, min(first + part, size)) for first in range(0, size, part)]
+                for size, part in along
+            )
+        )
 
-    def boxes(self) -> Iterator[Box]:
-        """Yield all boxes."""
-        for number, place in enumerate(np.ndindex(*self.boxes_along)):
-            start = tuple(k * part for k, part in zip(place, self.box_shape, strict=True))
-            sizes = (self.axes[n].size for n in self.order)
-            ends = zip(sizes, start, self.box_shape, strict=True)
-            shape = tuple(min(size - first, part) for size, first, part in ends)
-            yield Box(number, start, shape)
+    def part(self, region: Region) -> Plan:
+        """Return the plan of one box: all that its task has to know."""
+        cut = zip(self.axes, region, strict=True)
+        return replace(self, axes=tuple(axis.part(points) for axis, points in cut))
 
-    def points(self, box: Box) -> NDArray[np.intp]:
-        """Return the points of a box's runs, a row each, a column an axis in the user's order."""
-        grid = np.indices(box.shape).reshape(len(box.shape), -1) + np.array(box.start)[:, None]
-        found: NDArray[np.intp] = np.empty_like(grid.T)
-        found[:, list(self.order)] = grid.T
-        return found
+    @cached_property
+    def points(self) -> NDArray[np.intp]:
+        """The points of the grid (runs, axes), the last axis fastest."""
+        return np.indices(self.shape).reshape(len(self.shape), -1).T
 
-    def region(self, box: Box) -> tuple[slice, ...]:
-        """Return where a box is in an array over the axes in the user's order."""
-        spans = zip(self.order, box.start, box.shape, strict=True)
-        where = {n: slice(first, first + size) for n, first, size in spans}
-        return tuple(where[n] for n in range(len(self.axes)))
-
-    def arranged(self, box: Box, values: NDArray[Any]) -> NDArray[Any]:
-        """Return values (runs, ...) of a box as an array over the axes in the user's order."""
-        grid = values.reshape(*box.shape, *values.shape[1:])
-        count = len(box.shape)
-        order = [self.order.index(n) for n in range(count)]
-        found: NDArray[Any] = grid.transpose(*order, *range(count, grid.ndim))
-        return found
+    def groups(self) -> Iterator[NDArray[np.intp]]:
+        """Yield the numbers of the runs in each group."""
+        divides = np.array([axis.divides for axis in self.axes])
+        key = np.ravel_multi_index(tuple((self.points * divides).T), self.shape)
+        for value in np.unique(key):
+            runs = np.flatnonzero(key == value)
+            for first in range(0, runs.size, self.together):
+                yield runs[first : first + self.together]
 
     def swept(self) -> Iterator[tuple[int, Target]]:
         """Yield each quantity swept, after the number of its axis."""
@@ -174,13 +145,6 @@ class Plan:
         for axis in self.axes:
             yield axis.dim
             yield from (name for name, _ in axis.coordinates())
-
-    def part(self, box: Box) -> tuple[Plan, Box]:
-        """Return the plan of a box alone, and that box in it: all that its task has to know."""
-        cut = zip(self.axes, self.region(box), strict=True)
-        axes = tuple(axis.part(points) for axis, points in cut)
-        alone = replace(self, axes=axes, most=len(box))
-        return alone, Box(box.number, (0,) * len(box.shape), box.shape)
 
 
 def largest_banks(axes: Iterable[Axis]) -> dict[str, int]:

@@ -12,14 +12,12 @@ import pickle
 from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING, TypeAlias
 
 from piezo_sym.errors import RunError, UsageError, one_line
 from piezo_sym.modules import module_of
-from piezo_sym.sweeps.plan import Box
 from piezo_sym.sweeps.run import Result, run_box
 
 if TYPE_CHECKING:
@@ -27,9 +25,9 @@ if TYPE_CHECKING:
 
     from piezo_sym.run.module import GeneratedModule
     from piezo_sym.spec.model import Model
-    from piezo_sym.sweeps.plan import Plan
+    from piezo_sym.sweeps.plan import Plan, Region
 
-Submit: TypeAlias = Callable[[Box], "Future[Result]"]
+Submit: TypeAlias = "Callable[[Region], Future[Result]]"
 
 #: Tasks given to somebody else's executor at once: it may have many workers.
 SENT_AT_ONCE = 256
@@ -46,7 +44,7 @@ def threads_for(plan: Plan, module: GeneratedModule, count: int) -> Iterator[tup
     One thread is the caller's: a debugger stops in a function of the user's there.
     """
     if count == 1:
-        yield lambda box: at_hand(run_box(plan, module, box, ignore)), 1
+        yield lambda region: at_hand(run_box(plan.part(region), module, ignore)), 1
         return
     stop = Event()
 
@@ -56,7 +54,7 @@ def threads_for(plan: Plan, module: GeneratedModule, count: int) -> Iterator[tup
 
     pool = ThreadPoolExecutor(count, "sweep")
     try:
-        yield lambda box: pool.submit(run_box, plan, module, box, watch), 2 * count
+        yield lambda region: pool.submit(run_box, plan.part(region), module, watch), 2 * count
     finally:
         stop.set()
         pool.shutdown(wait=True, cancel_futures=True)
@@ -79,48 +77,50 @@ def sender(
     UsageError : what a task needs cannot be sent to another process.
     """
     if isinstance(executor, ThreadPoolExecutor):
-        return lambda box: executor.submit(run_box, plan, module, box, ignore)
+        return lambda region: executor.submit(run_box, plan.part(region), module, ignore)
     from piezo_sym.spec.load import load
 
     ready = load(model) if isinstance(model, str | Path) else model
-    return lambda box: executor.submit(run_sent, packed(plan, ready, box), box)
+    return lambda region: executor.submit(run_sent, packed(plan.part(region), ready))
 
 
-def packed(plan: Plan, model: Model, box: Box) -> bytes:
+def packed(plan: Plan, model: Model) -> bytes:
     """Return what a box needs as bytes for another process; functions by value if possible."""
     try:
         import cloudpickle as way
     except ImportError:
         way = pickle
     try:
-        return bytes(way.dumps((*plan.part(box), model)))
+        return bytes(way.dumps((plan, model)))
     except Exception as cause:  # pickling runs the code of a user's objects
         what = f"a function or value cannot be sent to another process: {one_line(str(cause))}"
         remedy = "define functions in a module of their own, or `pip install cloudpickle`"
         raise UsageError(what, "sweep.executor", remedy=remedy) from cause
 
 
-def run_sent(sent: bytes, box: Box) -> Result:
+def run_sent(sent: bytes) -> Result:
     """Run a box in another process, with the module loaded or generated there."""
-    plan, alone, model = pickle.loads(sent)
-    return replace(run_box(plan, module_of(model), alone, ignore), box=box)
+    plan, model = pickle.loads(sent)
+    return run_box(plan, module_of(model), ignore)
 
 
 def ignore(_: float) -> None:
     """Let a run go on."""
 
 
-def results(submit: Submit, boxes: Iterable[Box], at_once: int) -> Generator[Result, None, None]:
-    """Yield results as they come; what is not begun when the caller stops is cancelled.
+def results(
+    submit: Submit, boxes: Iterable[Region], at_once: int
+) -> Generator[tuple[Region, Result], None, None]:
+    """Yield boxes and results as they come; what is not begun when the caller stops is cancelled.
 
     Raises
     ------
     RunError : a process of the executor died.
     """
-    pending: list[Future[Result]] = []
+    pending: dict[Future[Result], Region] = {}
     try:
         for box in boxes:
-            pending.append(submit(box))
+            pending[submit(box)] = box
             if len(pending) >= at_once:
                 yield from arrivals(pending)
         while pending:
@@ -134,13 +134,15 @@ def results(submit: Submit, boxes: Iterable[Box], at_once: int) -> Generator[Res
             future.cancel()
 
 
-def arrivals(pending: list[Future[Result]]) -> Generator[Result, None, None]:
-    """Wait, and take from the list what came: those that came together in the order sent."""
+def arrivals(
+    pending: dict[Future[Result], Region],
+) -> Generator[tuple[Region, Result], None, None]:
+    """Wait, and take what came: those that came together in the order sent."""
     still = wait(pending, return_when=FIRST_COMPLETED).not_done
-    ready = [one for one in reversed(pending) if one not in still]
-    pending[:] = [one for one in pending if one in still]
+    ready = [(f, pending.pop(f)) for f in reversed(list(pending)) if f not in still]
     while ready:  # none is held while the next is waited for
-        yield ready.pop().result()
+        future, box = ready.pop()
+        yield box, future.result()
 
 
 def processors() -> int:

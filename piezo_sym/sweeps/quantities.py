@@ -1,14 +1,14 @@
 """All quantities of many runs, as arrays: computed for a whole group at once.
 
-Input: a `Group` and the trajectories that it left in C, or one `Trajectory` after another.  Output:
-by name a `RunQuantity` (runs, time, [lanes]); names, order and units are those of a run's Dataset.
+Input: runs in C, or the `Trajectory` of one run.  Output: arrays (runs, time, [lanes]) by name, as
+`simulate` names them; `layout` gives their dimensions, order and units.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any, TypeAlias, final
+from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
+import xarray
 from numpy.typing import NDArray
 
 from piezo_sym.run.checks import FloatArray
@@ -21,40 +21,21 @@ from piezo_sym.run.runs import Runs
 from piezo_sym.run.system import System
 
 
-@final
-@dataclass(frozen=True)
-class RunQuantity:
-    """One quantity of many runs.
-
-    Attributes
-    ----------
-    dims : after that of the runs.
-    values : (runs, *dims).
-    attrs : units and text.
-    """
-
-    dims: tuple[str, ...]
-    values: NDArray[Any]
-    attrs: Mapping[str, Any]
-
-
-Quantities: TypeAlias = dict[str, RunQuantity]
-
-
-def layout(system: System) -> dict[str, tuple[tuple[str, ...], dict[str, Any]]]:
-    """Return dimensions and attributes of every quantity of a run, inputs among them, in order."""
+def layout(system: System) -> dict[str, xarray.Variable]:
+    """Return every quantity of a run but its inputs, in order, at one sample and without values."""
     n, m, k = row_counts(system)
     states, inputs, integrals = (np.full((size, 1), np.nan) for size in (n, m, k))
-    nothing = Trajectory(np.full(n, np.nan), states, inputs, integrals, 0, 0)
     with np.errstate(all="ignore"):
-        return {name: (dims, attrs) for name, (dims, _, attrs) in variables(system, nothing)}
+        return of_trajectory(
+            system, Trajectory(np.full(n, np.nan), states, inputs, integrals, 0, 0)
+        )
 
 
-def of_trajectory(system: System, trajectory: Trajectory) -> dict[str, NDArray[Any]]:
-    """Return every quantity of one run (1, time, [lanes]), inputs left out."""
+def of_trajectory(system: System, trajectory: Trajectory) -> dict[str, xarray.Variable]:
+    """Return every quantity of one run (time, [lanes]), inputs left out."""
     inputs = {record.name for record in system.module.INPUTS}
     found = variables(system, trajectory)
-    return {name: np.asarray(values)[None] for name, (_, values, _) in found if name not in inputs}
+    return {name: xarray.Variable(*parts) for name, parts in found if name not in inputs}
 
 
 def of_runs(runs: Runs, engine: Engine, u: FloatArray, kept: slice) -> dict[str, NDArray[Any]]:
@@ -105,16 +86,3 @@ def spread(
     """Yield the columns of values (runs, time, rows) by record."""
     for record, part in zip(records, system.rows(records), strict=True):
         yield f"{prefix}{record.name}", values[..., part if record.bank else part.start]
-
-
-def widened(quantity: RunQuantity, lanes: Mapping[str, int]) -> RunQuantity:
-    """Return a quantity whose banks have the number of lanes given, the new ones nan."""
-    shape = quantity.values.shape[1:]
-    more = [
-        (0, lanes[dim] - size if dim in lanes else 0)
-        for dim, size in zip(quantity.dims, shape, strict=True)
-    ]
-    if not any(after for _, after in more):
-        return quantity
-    values = np.pad(quantity.values.astype(float), [(0, 0), *more], constant_values=np.nan)
-    return replace(quantity, values=values)

@@ -5,9 +5,8 @@ Input: the arguments of `sweep`.  Output: a `Plan`, or an error of one line.
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
 from math import prod
-from typing import Any, final
+from typing import Any
 
 from numpy.typing import ArrayLike
 
@@ -40,27 +39,22 @@ WAYS = ("run", "chunk")
 REDUCTIONS = ("last", "mean")
 
 
-@final
-@dataclass(frozen=True)
-class Asked:
-    """The arguments of `sweep` that say what runs."""
-
-    over: object
-    inputs: Mapping[str, Any] | None
-    duration: float
-    rtol: float | None
-    step: float | None
-    order: int | None
-    parameters: Mapping[str, Any] | None
-    initial: Mapping[str, Any] | None
-    method: str | None
-    times: int | ArrayLike | None
-    reduce: object
-    reduce_by: object
-    every: int | None = None
-
-
-def read_plan(module: GeneratedModule, asked: Asked) -> Plan:
+def read_plan(
+    module: GeneratedModule,
+    over: object,
+    inputs: Mapping[str, Any] | None,
+    duration: float,
+    rtol: float | None,
+    step: float | None,
+    order: int | None,
+    parameters: Mapping[str, Any] | None,
+    initial: Mapping[str, Any] | None,
+    method: str | None,
+    times: int | ArrayLike | None,
+    every: int | None,
+    reduce: object,
+    reduce_by: object,
+) -> Plan:
     """Return what a sweep runs; without a compiler, its method is LSODA.
 
     Raises
@@ -68,34 +62,40 @@ def read_plan(module: GeneratedModule, asked: Asked) -> Plan:
     UsageError : an argument is unknown, of the wrong kind, or not finite.
     """
     with named_sweep():
-        named, rtol = checked_method(asked.method), read_rtol(asked.rtol)
-        step = read_step(asked.step, asked.order, named, asked.rtol)
-        end = positive(asked.duration, "sweep.duration")
-        samples = sample_times(times_of(asked), asked.every, asked.step, end)
-        inputs = read_inputs(module, asked.inputs, end)
-        axes = read_axes(module, asked.over, end, read_sizes(module, asked.parameters))
-        refuse_twice(axes, asked)
-        given = ({**(asked.parameters or {}), **single_numbers(axes)}, dict(asked.initial or {}))
+        named, bound = checked_method(method), read_rtol(rtol)
+        fixed = read_step(step, order, named, rtol)
+        end = positive(duration, "sweep.duration")
+        if reduce == "last" and times is every is step is None:
+            times = 2  # the end alone: each sample in between would cost a step of its own
+        samples = sample_times(times, every, step, end)
+        signals = read_inputs(module, inputs, end)
+        axes = read_axes(module, over, end, read_sizes(module, parameters))
+        refuse_twice(axes, {"parameters": parameters, "initial": initial, "inputs": inputs})
+        given = ({**(parameters or {}), **single_numbers(axes)}, dict(initial or {}))
         base = read_parameters(module, given[0])
-        refuse_sizes(module, axes, *given, inputs.segments[0].at(0.0))
-        refuse_reduction(asked)
-        way = way_of(module, named, asked.step)
-        numbers = samples.size * row_numbers(module, base, axes)
-        many = MOST_TOGETHER if way.method == METHOD else MOST_BY_SCIPY
-        together = max(1, min(many, MOST_NUMBERS // numbers))
-        most = together if asked.reduce is None else box_of_reduced(axes, together)
-        how = (way.method, rtol, step, asked.reduce, asked.reduce_by == "run", largest_banks(axes))
-        sizes = (together, most, way.note)
-        return Plan(axes, inputs.signals, end, *given, samples, *how, *sizes)  # type: ignore[arg-type]
-
-
-def times_of(asked: Asked) -> int | ArrayLike | None:
-    """Return the samples asked for; where only the last is kept, the end alone.
-
-    Each sample in between would cost an interval of its own.
-    """
-    free = asked.times is None and asked.every is None and asked.step is None
-    return 2 if free and asked.reduce == "last" else asked.times
+        refuse_sizes(module, axes, *given, signals.segments[0].at(0.0))
+        refuse_reduction(reduce, reduce_by)
+        way = way_of(module, named, step)
+        most = MOST_TOGETHER if way.method == METHOD else MOST_BY_SCIPY
+        together = max(
+            1, min(most, MOST_NUMBERS // (samples.size * row_numbers(module, base, axes)))
+        )
+        return Plan(
+            axes,
+            signals.signals,
+            end,
+            *given,
+            samples,
+            way.method,
+            bound,
+            fixed,
+            reduce,  # type: ignore[arg-type]  # checked above
+            reduce_by == "run",
+            largest_banks(axes),
+            together,
+            together if reduce is None else box_of_reduced(axes, together),
+            way.note,
+        )
 
 
 @contextmanager
@@ -108,11 +108,11 @@ def named_sweep() -> Iterator[None]:
         raise
 
 
-def refuse_twice(axes: tuple[Axis, ...], asked: Asked) -> None:
+def refuse_twice(axes: tuple[Axis, ...], given: Mapping[str, Mapping[str, Any] | None]) -> None:
     """Raise `UsageError` where a quantity is swept and also given one value."""
     for axis in axes:
         for target in axis.targets:
-            if target.name in (getattr(asked, target.kind) or {}):
+            if target.name in (given[target.kind] or {}):
                 what = f"'{target.name}' is swept and also given in '{target.kind}'"
                 raise UsageError(what, "sweep.over", remedy="give it once")
 
@@ -136,14 +136,13 @@ def refuse_sizes(
         read_initial(module, found, u, initial)
 
 
-def refuse_reduction(asked: Asked) -> None:
+def refuse_reduction(reduce: object, reduce_by: object) -> None:
     """Raise `UsageError` if nothing can be reduced that way."""
-    reduce = asked.reduce
     if not (reduce is None or reduce in REDUCTIONS or callable(reduce)):
         expected = f"{listing(map(repr, REDUCTIONS))}, or a function of a Dataset"
         raise UsageError(f"{quote(reduce)} is no reduction", "sweep.reduce", expected)
-    if asked.reduce_by not in WAYS:
-        what = f"{quote(asked.reduce_by)} is not known"
+    if reduce_by not in WAYS:
+        what = f"{quote(reduce_by)} is not known"
         raise UsageError(what, "sweep.reduce_by", listing(map(repr, WAYS)))
 
 

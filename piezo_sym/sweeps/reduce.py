@@ -7,16 +7,16 @@ makes of the Dataset of one run, or of many runs over the dimension `member`.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any, TypeAlias
 
 import numpy as np
+import xarray
 
 from piezo_sym.errors import UsageError, listing, quote
 from piezo_sym.run.checks import FloatArray, is_number
-from piezo_sym.sweeps.quantities import Quantities, RunQuantity
 
-if TYPE_CHECKING:
-    import xarray
+#: Quantities of many runs by name, over `MEMBER` first.
+Quantities: TypeAlias = dict[str, xarray.Variable]
 
 MEMBER = "member"
 WHERE = "sweep.reduce"
@@ -35,9 +35,9 @@ def weights(samples: FloatArray) -> FloatArray:
 
 def over_time(found: Quantities, weight: FloatArray) -> Quantities:
     """Return quantities (runs, time, ...) summed over time with weights (nt,)."""
+    sums = {n: np.einsum("kt...,t->k...", one.values, weight) for n, one in found.items()}
     return {
-        name: RunQuantity(one.dims[1:], np.einsum("kt...,t->k...", one.values, weight), one.attrs)
-        for name, one in found.items()
+        n: xarray.Variable((MEMBER, *one.dims[2:]), sums[n], one.attrs) for n, one in found.items()
     }
 
 
@@ -48,8 +48,6 @@ def run_by_run(
 
     A run on which the function fails gets that as its error.
     """
-    import xarray
-
     made: dict[int, xarray.Dataset] = {}
     for k in (k for k, error in enumerate(errors) if not error):
         try:
@@ -81,6 +79,13 @@ def refuse_other_names(first: Iterable[Any], *others: Iterable[Any]) -> None:
             raise UsageError(f"the function gives {given}", WHERE, "the same for every run")
 
 
+def refuse_other_sizes(name: str, known: tuple[int, ...], given: tuple[int, ...]) -> None:
+    """Raise `UsageError` if a function gives a quantity another shape than for runs before."""
+    if given != known:
+        what = f"the function gives '{name}' other sizes for one run than for another"
+        raise UsageError(what, WHERE, "the same for every run")
+
+
 def all_at_once(
     function: Callable[[Any], object], runs: xarray.Dataset, errors: list[str]
 ) -> xarray.Dataset:
@@ -96,8 +101,6 @@ def all_at_once(
 
 def named(value: object) -> xarray.Dataset:
     """Return a function's result as a Dataset; raise `UsageError` if it is of no use."""
-    import xarray
-
     if isinstance(value, xarray.Dataset):
         for name, variable in value.data_vars.items():
             if variable.dtype.kind not in "fiub":
@@ -107,7 +110,7 @@ def named(value: object) -> xarray.Dataset:
     if isinstance(value, xarray.DataArray):
         return named(value.to_dataset(name=value.name or "reduced"))
     if is_number(value):
-        return xarray.Dataset({"reduced": number_of(value)})
+        return xarray.Dataset({"reduced": float(value)})  # type: ignore[arg-type]  # a number
     usable = isinstance(value, Mapping) and all(
         isinstance(name, str) and (isinstance(one, xarray.DataArray) or is_number(one))
         for name, one in value.items()
@@ -115,15 +118,10 @@ def named(value: object) -> xarray.Dataset:
     if not usable:
         raise UsageError(f"the function gives {quote(value)}", WHERE, KINDS)
     parts = {
-        name: one.reset_coords(drop=True) if isinstance(one, xarray.DataArray) else number_of(one)
+        name: one.reset_coords(drop=True) if isinstance(one, xarray.DataArray) else float(one)
         for name, one in value.items()  # type: ignore[attr-defined]  # a mapping, see above
     }
     return named(xarray.Dataset(parts))
-
-
-def number_of(value: Any) -> float:
-    """Return a number, which need not be finite."""
-    return float(value)
 
 
 def refuse_names(names: Iterable[str], taken: Iterable[str]) -> None:
@@ -134,16 +132,11 @@ def refuse_names(names: Iterable[str], taken: Iterable[str]) -> None:
         raise UsageError(what, WHERE, "a name of its own")
 
 
-def as_quantities(made: xarray.Dataset) -> tuple[Quantities, dict[str, RunQuantity]]:
+def as_quantities(made: xarray.Dataset) -> tuple[Quantities, Quantities]:
     """Return a function's results, and the coordinates of their own dimensions."""
-    found = {}
-    for name, variable in made.data_vars.items():
-        dims = tuple(str(dim) for dim in variable.dims if dim != MEMBER)
-        values = variable.transpose(MEMBER, *dims).values.astype(float)
-        found[str(name)] = RunQuantity(dims, values, dict(variable.attrs))
-    coords = {
-        str(name): RunQuantity((str(name),), one.values, dict(one.attrs))
-        for name, one in made.coords.items()
-        if name != MEMBER
+    found = {
+        str(name): one.variable.transpose(MEMBER, ...).astype(float)
+        for name, one in made.data_vars.items()
     }
+    coords = {str(name): one.variable for name, one in made.coords.items() if name != MEMBER}
     return found, coords

@@ -1,6 +1,6 @@
-"""Where results go: into memory, box by box.
+"""Where results go: into memory, or by `store` onto the disk, box by box.
 
-Input: a `Frame`, a `Plan`, `Result` records.  Output: a Dataset over the swept dimensions.
+Input: a `Plan`, its frame, `Result` records.  Output: a Dataset over the swept dimensions.
 """
 
 from __future__ import annotations
@@ -9,86 +9,70 @@ from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
+import xarray
 
-from piezo_sym.errors import UsageError
 from piezo_sym.sweeps.frame import ERROR_ATTRS
-from piezo_sym.sweeps.reduce import refuse_other_names
+from piezo_sym.sweeps.reduce import refuse_other_names, refuse_other_sizes
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable
 
-    import xarray
-    from numpy.typing import NDArray
-
-    from piezo_sym.sweeps.frame import Frame, Variable
-    from piezo_sym.sweeps.plan import Box, Plan
-    from piezo_sym.sweeps.quantities import RunQuantity
+    from piezo_sym.sweeps.plan import Plan, Region
     from piezo_sym.sweeps.run import Result
 
 
 class Sink(ABC):
-    """Takes results in any order."""
+    """Takes the results of boxes, in any order."""
 
     @abstractmethod
-    def missing(self) -> Iterable[Box]:
+    def missing(self) -> Iterable[Region]:
         """Return the boxes still to be run."""
 
     @abstractmethod
-    def take(self, result: Result) -> None:
-        """Keep a result."""
+    def take(self, region: Region, result: Result) -> None:
+        """Keep the result of a box."""
 
     @abstractmethod
     def dataset(self) -> xarray.Dataset:
         """Return all results."""
 
 
-def refuse_other_sizes(name: str, known: tuple[int, ...], one: RunQuantity) -> None:
-    """Raise `UsageError` if a function gives a quantity another shape than for runs before."""
-    if one.values.shape[1:] != known:
-        what = f"the function gives '{name}' other sizes for one run than for another"
-        raise UsageError(what, "sweep.reduce", "the same for every run")
+def write(array: Any, region: Region, name: str, one: xarray.Variable) -> None:
+    """Write a quantity of a box into an array over the grid."""
+    refuse_other_sizes(name, array.shape[len(region) :], one.shape[len(region) :])
+    array[region] = one.values
 
 
 @final
 class Memory(Sink):
     """Keeps results in arrays over the grid."""
 
-    def __init__(self, plan: Plan, frame: Frame) -> None:
+    def __init__(self, plan: Plan, frame: xarray.Dataset) -> None:
         self._plan, self._frame = plan, frame
-        self._errors: NDArray[Any] = np.full(plan.shape, "", dtype=object)
-        self._arrays: dict[str, NDArray[Any]] = {}
-        self._about: dict[str, RunQuantity] = {}
-        self._own: dict[str, RunQuantity] = {}
+        self._errors = np.full(plan.shape, "", dtype=object)
+        self._found: dict[str, xarray.Variable] = {}
+        self._coords: dict[str, xarray.Variable] = {}
 
-    def missing(self) -> Iterator[Box]:
+    def missing(self) -> Iterable[Region]:
         """Return all boxes."""
-        return self._plan.boxes()
+        return self._plan.regions()
 
-    def take(self, result: Result) -> None:
-        """Keep a result."""
-        region = self._plan.region(result.box)
-        errors = np.array(result.errors, dtype=object)
-        self._errors[region] = self._plan.arranged(result.box, errors)
-        self._own = result.coords or self._own
-        if self._arrays and result.quantities:
-            refuse_other_names(self._arrays, result.quantities)
+    def take(self, region: Region, result: Result) -> None:
+        """Keep the result of a box."""
+        self._errors[region] = result.errors
+        self._coords = result.coords or self._coords
+        if self._found and result.quantities:
+            refuse_other_names(self._found, result.quantities)
         for name, one in result.quantities.items():
-            if name not in self._arrays:
-                self._about[name] = one
-                self._arrays[name] = self._room((*self._plan.shape, *one.values.shape[1:]))
-            refuse_other_sizes(name, self._about[name].values.shape[1:], one)
-            self._arrays[name][region] = self._plan.arranged(result.box, one.values)
-
-    def _room(self, shape: tuple[int, ...]) -> NDArray[Any]:
-        """Return an array to fill; nan where a function may leave gaps."""
-        return np.full(shape, np.nan) if callable(self._plan.reduce) else np.empty(shape)
+            if name not in self._found:
+                shape = (*self._plan.shape, *one.shape[len(region) :])
+                # nan where a function may leave gaps
+                room = np.full(shape, np.nan) if callable(self._plan.reduce) else np.empty(shape)
+                self._found[name] = xarray.Variable(one.dims, room, one.attrs)
+            write(self._found[name].values, region, name, one)
 
     def dataset(self) -> xarray.Dataset:
         """Return all results; those of a function that never ran have no names."""
-        dims = self._frame.dims
-        data: dict[str, Variable] = {
-            name: ((*dims, *self._about[name].dims), array, dict(self._about[name].attrs))
-            for name, array in self._arrays.items()
-        }
-        data = {**data, **self._frame.inputs, "error": (dims, self._errors, ERROR_ATTRS)}
-        return self._frame.dataset(data, self._own)
+        errors = xarray.Variable(self._plan.dims, self._errors, ERROR_ATTRS)
+        found = self._frame.assign_coords(self._coords).assign({**self._found, "error": errors})
+        return found[[*self._found, *self._frame.data_vars, "error"]]

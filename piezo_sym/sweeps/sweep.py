@@ -3,13 +3,15 @@
 Input: a model, the quantities to sweep and their values, and what a single run takes.  Output: one
 `xarray.Dataset` over the swept dimensions.
 
-    read_plan -> Plan -> boxes -> run_box, side by side -> Sink -> Dataset
+    read_plan -> Plan -> boxes, each a Plan -> run_box, side by side -> Sink -> Dataset
 """
 
 from __future__ import annotations
 
 import warnings
 from contextlib import ExitStack, closing
+from dataclasses import replace
+from math import prod
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -21,7 +23,7 @@ from piezo_sym.run.checks import whole
 from piezo_sym.sweeps.frame import frame_of
 from piezo_sym.sweeps.pool import SENT_AT_ONCE, Submit, processors, results, sender, threads_for
 from piezo_sym.sweeps.progress import progress_of
-from piezo_sym.sweeps.read import Asked, read_plan
+from piezo_sym.sweeps.read import read_plan
 from piezo_sym.sweeps.sinks import Memory
 
 if TYPE_CHECKING:
@@ -125,9 +127,8 @@ def sweep(
     count = processors() if threads is None else whole(threads, "sweep.threads", 1)
     refuse_executor(executor, threads)
     module: Any = module_of(model)
-    runs = (inputs, duration, rtol, step, order, parameters, initial, method, times)
-    asked = Asked(over, *runs, reduce, reduce_by, every)
-    plan = read_plan(module, asked)
+    runs = (inputs, duration, rtol, step, order, parameters, initial, method, times, every)
+    plan = read_plan(module, over, *runs, reduce, reduce_by)
     plan, sink = sink_of(plan, module, store, count)
     with ExitStack() as stack:
         if executor is None:
@@ -143,11 +144,11 @@ def sweep(
 def run_missing(sink: Sink, submit: Submit, at_once: int, progress: object, total: int) -> None:
     """Run what a sink misses, and hand it the results as they come."""
     boxes = list(sink.missing())
-    done = total - sum(map(len, boxes))
+    done = total - sum(prod(part.stop - part.start for part in box) for box in boxes)
     with progress_of(progress, total) as told, closing(results(submit, boxes, at_once)) as found:
-        for result in found:
-            sink.take(result)
-            done += len(result.box)
+        for region, result in found:
+            sink.take(region, result)
+            done += result.errors.size
             told(done)
 
 
@@ -167,7 +168,7 @@ def sink_of(
 ) -> tuple[Plan, Sink]:
     """Return where results go, and the plan with the boxes that it keeps."""
     frame = frame_of(plan, module)
-    plan = plan.with_most(max(1, min(plan.most, -(-plan.size // (2 * threads)))))
+    plan = replace(plan, most=max(1, min(plan.most, -(-plan.size // (2 * threads)))))
     if store is None:
         return plan, Memory(plan, frame)
     from piezo_sym.sweeps.store import store_at

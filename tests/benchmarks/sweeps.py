@@ -19,7 +19,7 @@ from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.runs import METHOD
 from piezo_sym.sweeps.plan import Plan
 from piezo_sym.sweeps.pool import threads_for
-from piezo_sym.sweeps.read import Asked, read_plan
+from piezo_sym.sweeps.read import read_plan
 from piezo_sym.sweeps.sweep import run_missing, sink_of
 from tests.benchmarks.family import family_of
 from tests.benchmarks.peers import PEERS
@@ -96,20 +96,19 @@ def _plan(family: Family, rtol: float) -> Plan:
     problem = family.problem
     return read_plan(
         problem.module,
-        Asked(
-            over={family.name: family.values},
-            inputs=problem.inputs,
-            duration=problem.duration,
-            rtol=rtol,
-            step=None,
-            order=None,
-            parameters=problem.counts,
-            initial=None,
-            method=METHOD,
-            times=[problem.duration],
-            reduce="last",
-            reduce_by="run",
-        ),
+        over={family.name: family.values},
+        inputs=problem.inputs,
+        duration=problem.duration,
+        rtol=rtol,
+        step=None,
+        order=None,
+        parameters=problem.counts,
+        initial=None,
+        method=METHOD,
+        times=[problem.duration],
+        every=None,
+        reduce="last",
+        reduce_by="run",
     )
 
 

@@ -63,7 +63,7 @@ def test_one_thread_is_the_caller_s():
 
 @pytest.mark.parametrize("at_once", [1, 2, 7, 100])
 def test_what_comes_together_is_taken_in_the_order_sent(at_once):
-    assert list(results(at_hand, range(50), at_once)) == list(range(50))
+    assert list(results(at_hand, range(50), at_once)) == [(n, n) for n in range(50)]
 
 
 def test_a_thread_pool_of_ones_own(alone):

@@ -79,15 +79,15 @@ def test_a_sweep_goes_on_where_it_was_stopped(tmp_path, reduce, monkeypatch):
 
 
 def count_boxes(monkeypatch):
-    from piezo_sym.sweeps.pool import run_box
+    from piezo_sym.sweeps.plan import Plan
 
-    ran = []
+    ran, part = [], Plan.part
 
-    def counted(plan, module, box, watch):
-        ran.append(box.number)
-        return run_box(plan, module, box, watch)
+    def counted(plan, region):
+        ran.append(list(plan.regions()).index(region))
+        return part(plan, region)
 
-    monkeypatch.setattr("piezo_sym.sweeps.pool.run_box", counted)
+    monkeypatch.setattr(Plan, "part", counted)
     return ran
 
 
