@@ -19,23 +19,27 @@ from typing import TYPE_CHECKING, Any
 
 from piezo_sym.version import VERSION as __version__
 
-if TYPE_CHECKING:
-    from piezo_sym.analysis.dashboard import plot
-    from piezo_sym.api import (
-        Stepper,
-        periodic_steady_state,
-        periodic_steady_states,
-        simulate,
-        steady_branches,
-    )
-    from piezo_sym.build import generate
-    from piezo_sym.derivation import derive
-    from piezo_sym.errors import PiezoError
-    from piezo_sym.run import chirp, ramp, samples, samples_from_csv, sine, step, triangle
-    from piezo_sym.spec.load import load
-    from piezo_sym.spec.model import Model
-    from piezo_sym.sweeps import sweep
-    from piezo_sym.verification import verify
+if TYPE_CHECKING:  # "as" makes them public for type checkers
+    from piezo_sym.analysis.dashboard import plot as plot
+    from piezo_sym.api import Stepper as Stepper
+    from piezo_sym.api import periodic_steady_state as periodic_steady_state
+    from piezo_sym.api import periodic_steady_states as periodic_steady_states
+    from piezo_sym.api import simulate as simulate
+    from piezo_sym.api import steady_branches as steady_branches
+    from piezo_sym.build import generate as generate
+    from piezo_sym.derivation import derive as derive
+    from piezo_sym.errors import PiezoError as PiezoError
+    from piezo_sym.run import chirp as chirp
+    from piezo_sym.run import ramp as ramp
+    from piezo_sym.run import samples as samples
+    from piezo_sym.run import samples_from_csv as samples_from_csv
+    from piezo_sym.run import sine as sine
+    from piezo_sym.run import step as step
+    from piezo_sym.run import triangle as triangle
+    from piezo_sym.spec.load import load as load
+    from piezo_sym.spec.model import Model as Model
+    from piezo_sym.sweeps import sweep as sweep
+    from piezo_sym.verification import verify as verify
 
 _HOME = {
     "Model": "spec.model",
@@ -60,29 +64,7 @@ _HOME = {
     "verify": "verification",
 }
 
-__all__ = [
-    "Model",
-    "PiezoError",
-    "Stepper",
-    "__version__",
-    "chirp",
-    "derive",
-    "generate",
-    "load",
-    "periodic_steady_state",
-    "periodic_steady_states",
-    "plot",
-    "ramp",
-    "samples",
-    "samples_from_csv",
-    "simulate",
-    "sine",
-    "steady_branches",
-    "step",
-    "sweep",
-    "triangle",
-    "verify",
-]
+__all__ = ["__version__", *_HOME]
 
 
 def __getattr__(name: str) -> Any:

@@ -16,11 +16,11 @@ from numpy.typing import ArrayLike
 
 from piezo_sym.analysis import branches, steady
 from piezo_sym.modules import module_of
+from piezo_sym.progress import watch_of
 from piezo_sym.run import simulate as run
 from piezo_sym.run.inputs import InputValue
 from piezo_sym.run.parameters import LaneValue
 from piezo_sym.run.stepper import Stepper as Steps
-from piezo_sym.sweeps.progress import watch_of
 
 if TYPE_CHECKING:
     import xarray

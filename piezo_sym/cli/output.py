@@ -1,22 +1,19 @@
 """How commands print: one console, plain tables that also read well in a log."""
 
-import sys
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import typer
 from rich import box
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 from rich.table import Table
 from rich.text import Text
 
 from piezo_sym.errors import PiezoError, one_line
 
-ItemT = TypeVar("ItemT")
 STYLES = {"PROVED": "green", "REFUTED": "bold red", "OPEN": "yellow"}
 
 
@@ -59,20 +56,6 @@ def console() -> Console:
     """Return the console for results; wide enough in a log that no row is cut."""
     found = Console()
     return found if found.is_terminal else Console(width=120)
-
-
-def progress(items: Sequence[ItemT], what: str) -> Iterator[ItemT]:
-    """Yield items, with a bar on stderr if that is a terminal; `what` they are, in the plural."""
-    bar = Progress(
-        TextColumn(what),
-        BarColumn(),
-        MofNCompleteColumn(),
-        console=Console(stderr=True),
-        transient=True,
-        disable=not sys.stderr.isatty(),
-    )
-    with bar:
-        yield from bar.track(items)
 
 
 def row(table: Table, *cells: str | Text) -> None:

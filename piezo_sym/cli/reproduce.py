@@ -7,7 +7,8 @@ from typing import Annotated, Any
 import typer
 
 from piezo_sym.analysis.figures import PaperFigure
-from piezo_sym.cli.output import progress, warnings_as_lines
+from piezo_sym.cli.output import warnings_as_lines
+from piezo_sym.progress import tracked
 
 
 def reproduce(
@@ -38,7 +39,7 @@ def _write(module: ModuleType, out: Path) -> None:
 
     jobs = [(figure, value) for figure in FIGURES for value in figure.values]
     done: dict[PaperFigure, list[Any]] = {figure: [] for figure in FIGURES}
-    for figure, value in progress(jobs, "curves"):
+    for figure, value in tracked(jobs, "curves"):
         done[figure].append(figure.curve(module, value))
         if len(done[figure]) < len(figure.values):
             continue

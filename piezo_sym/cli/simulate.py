@@ -81,7 +81,7 @@ def simulate(
     columns the one named like the input counts.
     """
     from piezo_sym.api import simulate as run
-    from piezo_sym.sweeps.progress import time_bar
+    from piezo_sym.progress import time_bar
 
     if out is not None and out.suffix not in ENDINGS:
         raise UsageError(f"{path_text(out)} has no known ending", "--out", listing(ENDINGS))

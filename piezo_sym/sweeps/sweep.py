@@ -19,10 +19,10 @@ import numpy as np
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.files import path_of
 from piezo_sym.modules import module_of
+from piezo_sym.progress import progress_of
 from piezo_sym.run.checks import whole
 from piezo_sym.sweeps.frame import frame_of
 from piezo_sym.sweeps.pool import SENT_AT_ONCE, Submit, processors, results, sender, threads_for
-from piezo_sym.sweeps.progress import progress_of
 from piezo_sym.sweeps.read import read_plan
 from piezo_sym.sweeps.sinks import Memory
 
@@ -145,11 +145,11 @@ def run_missing(sink: Sink, submit: Submit, at_once: int, progress: object, tota
     """Run what a sink misses, and hand it the results as they come."""
     boxes = list(sink.missing())
     done = total - sum(prod(part.stop - part.start for part in box) for box in boxes)
-    with progress_of(progress, total) as told, closing(results(submit, boxes, at_once)) as found:
+    with progress_of(progress, total) as tell, closing(results(submit, boxes, at_once)) as found:
         for region, result in found:
             sink.take(region, result)
             done += result.errors.size
-            told(done)
+            tell(done)
 
 
 def refuse_executor(executor: object, threads: object) -> None:

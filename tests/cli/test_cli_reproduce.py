@@ -145,7 +145,7 @@ def test_a_folder_that_cannot_be_written_is_one_line(refused, tmp_path):
 
 
 def test_progress_goes_to_a_terminal_alone(capsys):
-    from piezo_sym.cli.output import progress
+    from piezo_sym.progress import tracked
 
-    assert list(progress([1, 2, 3], "curves")) == [1, 2, 3]
+    assert list(tracked([1, 2, 3], "curves")) == [1, 2, 3]
     assert capsys.readouterr() == ("", "")

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 import xarray
 
+from piezo_sym import progress
 from piezo_sym import simulate as simulate_shipped
 from piezo_sym.errors import UsageError
 from piezo_sym.run import simulate, sine
 from piezo_sym.run import step as signal
-from piezo_sym.sweeps import progress
 
 NAMES = {
     **dict.fromkeys(["q"], "m"),

@@ -186,7 +186,7 @@ def test_progress_is_told():
 
 
 def test_a_bar_is_shown_where_it_is_wanted(capsys, monkeypatch):
-    monkeypatch.setattr("piezo_sym.sweeps.progress.SECOND", 0.0)
+    monkeypatch.setattr("piezo_sym.progress.SECOND", 0.0)
     sweep("piezo_stack", **BASE, progress=True)
     shown = capsys.readouterr()
     assert "sweep" in shown.err

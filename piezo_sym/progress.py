@@ -1,0 +1,131 @@
+"""How far work is: a bar on a terminal, or a user's function.
+
+Input: what a user said of `progress`.  Output: a function told how many runs of a sweep are done,
+or what time a run has reached; or the items of a list, one by one.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, TypeAlias, TypeVar
+
+from piezo_sym.errors import UsageError, quote
+
+if TYPE_CHECKING:
+    from rich.progress import ProgressColumn
+
+Tell: TypeAlias = Callable[[float], object]
+ItemT = TypeVar("ItemT")
+#: A bar appears after so long [s].
+SECOND = 1.0
+
+
+@contextmanager
+def progress_of(wanted: object, total: int) -> Iterator[Tell]:
+    """Give a function to be told how many runs are done.
+
+    Parameters
+    ----------
+    wanted : True or False; None for a bar on a terminal; or a function of (done, total).
+    total : the number of runs.
+
+    Raises
+    ------
+    UsageError : `wanted` is nothing of these.
+    """
+    if callable(wanted):
+        call: Callable[[float, int], object] = wanted
+        yield lambda done: call(done, total)
+        return
+    if wanted is not None and not isinstance(wanted, bool):
+        expected = "True, False, None or a function of (done, total)"
+        raise UsageError(f"{quote(wanted)} shows no progress", "sweep.progress", expected)
+    with bar(total, "sweep", shown=wanted) as tell:
+        yield tell
+
+
+@contextmanager
+def watch_of(wanted: object, duration: float) -> Iterator[Tell | None]:
+    """Give what a run is to tell the time that it has reached [s], or None.
+
+    Parameters
+    ----------
+    wanted : True for a bar; False or None for nothing; or a function of the time.
+    duration : the length of the run [s].
+
+    Raises
+    ------
+    UsageError : `wanted` is nothing of these.
+    """
+    if callable(wanted):
+        yield wanted
+    elif wanted is None or wanted is False:
+        yield None
+    elif wanted is True:
+        with time_bar(duration, shown=True) as tell:
+            yield tell
+    else:
+        expected = "True, False, None or a function of the time in s"
+        raise UsageError(f"{quote(wanted)} shows no progress", "simulate.progress", expected)
+
+
+@contextmanager
+def time_bar(duration: float, *, shown: bool | None = None) -> Iterator[Tell]:
+    """Give a function to be told the time that a run has reached [s]."""
+    from rich.progress import TextColumn
+
+    reached = TextColumn("{task.completed:.4g} s of {task.total:.4g} s")
+    with bar(duration, "simulated", reached, shown=shown) as tell:
+        yield tell
+
+
+def tracked(items: Sequence[ItemT], what: str) -> Iterator[ItemT]:
+    """Yield items, with a bar on a terminal; `what` they are, in the plural."""
+    with bar(len(items), what) as tell:
+        for done, item in enumerate(items):
+            tell(done)
+            yield item
+        tell(len(items))
+
+
+@contextmanager
+def bar(
+    total: float, what: str, amount: ProgressColumn | None = None, *, shown: bool | None = None
+) -> Iterator[Tell]:
+    """Give a function to be told how much is done, for a bar on stderr, after a second.
+
+    Parameters
+    ----------
+    amount : how the bar writes what is done; a number of the total when left out.
+    shown : whether there is a bar; when left out, on a terminal.
+    """
+    if not (sys.stderr.isatty() if shown is None else shown):
+        yield lambda done: None  # noqa: ARG005
+        return
+    from rich.console import Console
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeRemainingColumn,
+    )
+
+    columns = (TextColumn(what), BarColumn(), amount or MofNCompleteColumn(), TimeRemainingColumn())
+    console = Console(stderr=True)
+    drawn = Progress(*columns, console=console, transient=console.is_terminal)
+    task, begun = drawn.add_task(what, total=total), time.monotonic()
+
+    def tell(done: float) -> None:
+        if time.monotonic() - begun > SECOND:
+            drawn.start()  # once: later calls change nothing
+        drawn.update(task, completed=done)
+
+    try:
+        yield tell
+    finally:
+        if drawn.live.is_started:
+            drawn.stop()
