@@ -1,6 +1,8 @@
 """Property tests draw the same examples in every run; all workers share one cache of their own."""
 
 import os
+import shutil
+import sys
 
 import pytest
 from hypothesis import settings
@@ -9,11 +11,87 @@ settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.load_profile("repeatable")
 
 
-@pytest.fixture(scope="session", autouse=True)
-def _shared_cache(tmp_path_factory):
-    """Modules and libraries are made once for all workers; nothing is a user's, or left there."""
+@pytest.fixture(scope="session")
+def shared_folder(tmp_path_factory):
+    """A folder of all workers of this run."""
     base = tmp_path_factory.getbasetemp()
-    folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "cache"
+    return base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _shared_cache(shared_folder):
+    """Modules and libraries are made once for all workers; nothing is a user's, or left there."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("XDG_CACHE_HOME", str(folder))
+        patch.setenv("XDG_CACHE_HOME", str(shared_folder / "cache"))
         yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _quick_compiler(request, shared_folder):
+    """Compile the runs of all but the shipped model without optimization, in a fifth of the time.
+
+    Networks as for a user: `test_run_compilers.py`, and all tests with ``-m "long or not long"``.
+    """
+    real = shutil.which("cc")
+    if not real or request.config.option.markexpr != "not long":
+        yield
+        return
+    folder = shared_folder / "quick"
+    folder.mkdir(exist_ok=True)
+    shipped, built = "*/.build-*/piezo_stack.*", "*/.build-*"  # what the engine builds
+    script = f'case "$*" in {shipped});; {built}) set -- "$@" -O0;; esac\nexec {real} "$@"'
+    write_script(folder / f"cc-{os.getpid()}", script).replace(folder / "cc")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PATH", f"{folder}{os.pathsep}{os.environ['PATH']}")
+        yield
+
+
+def forget():
+    """Forget all libraries that this process has loaded, and every warning given once."""
+    from piezo_sym.run import method
+    from piezo_sym.run.engine import collocation, engine, library
+
+    for function in (
+        method._tried,
+        method._warn,
+        library._warn,
+        engine._engine,
+        collocation.collocation_library,
+    ):
+        function.cache_clear()
+
+
+@pytest.fixture
+def cache(tmp_path, monkeypatch):
+    """The package's folder in a cache that is empty, for a process that has compiled nothing."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    forget()
+    yield tmp_path / "cache" / "piezo_sym"
+    forget()
+
+
+@pytest.fixture
+def no_compiler(cache, tmp_path, monkeypatch):  # noqa: ARG001  # what was compiled is not found
+    """A machine without a compiler; the only folder in which commands are found, for others."""
+    (tmp_path / "bin").mkdir()
+    monkeypatch.setenv("PATH", str(tmp_path / "bin"))
+    monkeypatch.delenv("CC", raising=False)
+    monkeypatch.setitem(sys.modules, "ziglang", None)
+    return tmp_path / "bin"
+
+
+def write_script(path, text):
+    """Write a command for the shell."""
+    path.write_text(f"#!/bin/sh\n{text}\n")
+    path.chmod(0o755)
+    return path
+
+
+@pytest.fixture
+def quick_compiler(tmp_path, monkeypatch):
+    """A compiler that never optimizes: who compiles, where to and how often is the same."""
+    if real := shutil.which("cc"):
+        (tmp_path / "quick").mkdir()
+        write_script(tmp_path / "quick" / "cc", f'exec {real} "$@" -O0')
+        monkeypatch.setenv("PATH", f"{tmp_path / 'quick'}{os.pathsep}{os.environ['PATH']}")
+        monkeypatch.delenv("CC", raising=False)

@@ -4,7 +4,6 @@ import ctypes
 import gc
 import os
 import shutil
-import stat
 import subprocess
 import sys
 import threading
@@ -12,7 +11,6 @@ import weakref
 from pathlib import Path
 
 import numpy as np
-import platformdirs
 import pytest
 
 from piezo_sym.modules import load_module
@@ -23,44 +21,19 @@ from piezo_sym.run.engine.members import Members
 from piezo_sym.run.engine.processor import processor
 from piezo_sym.run.engine.structure import Layout
 from piezo_sym.run.parameter_table import ParameterTable
+from tests.conftest import write_script
 
 ROOT = Path(__file__).parents[2]
 FILES = ROOT / "generated" / "piezo_stack"
-#: Who compiles, where to and how often does not depend on how well: this is five times as fast.
-QUICK = tuple(("-O0", *flags[1:]) for flags in compiler.FLAGS)
 STATE, INPUTS = np.array([0.0, 1e-3, 1e-5, 1e-3, -2e-3, 0.05]), np.array([1.0, 50.0, 300.0])
 
 
-@pytest.fixture(autouse=True)
-def cache(tmp_path, monkeypatch):
-    """A cache of our own, and nothing said yet."""
-    monkeypatch.setattr(platformdirs, "user_cache_dir", lambda name: str(tmp_path / "cache" / name))
-    libraries._warn.cache_clear()
-    monkeypatch.setattr(libraries, "FLAGS", QUICK)
-    return tmp_path / "cache" / "piezo_sym" / "compiled"
+pytestmark = pytest.mark.usefixtures("cache")
 
 
 @pytest.fixture
-def module(tmp_path):
-    """A module of our own, with its sources."""
-    shutil.copytree(FILES, tmp_path / "piezo_stack")
-    return load_module(tmp_path / "piezo_stack" / "piezo_stack.py")
-
-
-@pytest.fixture
-def alone(tmp_path, monkeypatch):
-    """A folder that is the only one in which commands are found."""
-    (tmp_path / "bin").mkdir()
-    monkeypatch.setenv("PATH", str(tmp_path / "bin"))
-    monkeypatch.delenv("CC", raising=False)
-    monkeypatch.setattr(compiler, "find_spec", lambda _: None)
-    return tmp_path / "bin"
-
-
-def script(path, text):
-    path.write_text(f"#!/bin/sh\n{text}\n")
-    path.chmod(path.stat().st_mode | stat.S_IXUSR)
-    return path
+def module(own_stack):
+    return own_stack
 
 
 def rates(engine, module):
@@ -89,11 +62,10 @@ def test_a_module_is_compiled_and_computes_what_it_does(module, cache):
     assert [path.stem for path in found(cache)] == ["piezo_stack"]
 
 
-def test_what_is_compiled_is_used_again(module, tmp_path, cache, monkeypatch):
+def test_what_is_compiled_is_used_again(module, tmp_path, cache):
     compiled(module)
     (first,) = found(cache)
     before = first.stat().st_mtime_ns
-    monkeypatch.setattr(libraries, "build", None)
     shutil.copytree(FILES, tmp_path / "other")
     assert compiled(load_module(tmp_path / "other" / "piezo_stack.py")) is not None
     assert [path.stat().st_mtime_ns for path in found(cache)] == [before]
@@ -151,7 +123,7 @@ def test_the_processor_is_known_by_its_instructions():
     assert len(processor().splitlines()) >= 3
 
 
-@pytest.mark.usefixtures("alone")
+@pytest.mark.usefixtures("no_compiler")
 def test_no_compiler_is_one_line(module):
     message = refused(module)
     assert message == (
@@ -160,20 +132,20 @@ def test_no_compiler_is_one_line(module):
     )
 
 
-def test_a_compiler_that_fails_is_one_line(module, alone):
+def test_a_compiler_that_fails_is_one_line(module, no_compiler):
     says = 'test "$1" = --version && echo cc 1 && exit 0; echo "x.c:1: error: no\nmore" >&2; exit 1'
-    path = script(alone / "cc", says)
+    path = write_script(no_compiler / "cc", says)
     assert refused(module) == (f"{path}: the compiler failed: x.c:1: error: no; running in NumPy")
 
 
-def test_a_compiler_that_writes_nothing_is_one_line(module, alone):
-    script(alone / "cc", "echo cc 1")
+def test_a_compiler_that_writes_nothing_is_one_line(module, no_compiler):
+    write_script(no_compiler / "cc", "echo cc 1")
     assert "the compiler failed: exit status 0" in refused(module)
 
 
-def test_a_compiler_that_writes_no_library_is_one_line(module, alone):
+def test_a_compiler_that_writes_no_library_is_one_line(module, no_compiler):
     says = 'for word; do test "$before" = -o && echo text > "$word"; before="$word"; done; echo cc'
-    script(alone / "cc", says)
+    write_script(no_compiler / "cc", says)
     assert "the compiled module cannot be loaded" in refused(module)
 
 
@@ -185,7 +157,7 @@ def test_a_compiler_that_is_not_there_is_passed_by(module, monkeypatch, chosen):
 
 
 def test_a_compiler_that_fails_is_passed_by(module, tmp_path, monkeypatch):
-    monkeypatch.setenv("CC", str(script(tmp_path / "bad", "echo bad; test $1 = --version")))
+    monkeypatch.setenv("CC", str(write_script(tmp_path / "bad", "echo bad; test $1 = --version")))
     assert next(compilers()).version == "bad\n"
     with pytest.warns(EngineWarning, match="bad', but the compiler failed: exit status 1; .* is"):
         assert compiled(module) is not None
@@ -193,15 +165,15 @@ def test_a_compiler_that_fails_is_passed_by(module, tmp_path, monkeypatch):
 
 def test_the_chosen_compiler_is_asked_first(tmp_path, monkeypatch):
     real = shutil.which("cc")
-    path = script(tmp_path / "mine", f'exec {real} "$@"')
+    path = write_script(tmp_path / "mine", f'exec {real} "$@"')
     monkeypatch.setenv("CC", f"{path} -pipe")
     assert next(compilers()).command == (str(path), "-pipe")
 
 
-def test_flags_that_a_compiler_refuses_are_left_out(module, alone, cache):
+def test_flags_that_a_compiler_refuses_are_left_out(module, no_compiler, cache):
     real = shutil.which("cc", path=os.defpath)
     says = f'case "$*" in *native*|*fopenmp*) echo error >&2; exit 1;; esac; exec {real} "$@"'
-    script(alone / "cc", f"PATH={os.defpath}; export PATH; {says}")
+    write_script(no_compiler / "cc", f"PATH={os.defpath}; export PATH; {says}")
     assert rates(compiled(module), module).shape == STATE.shape
     assert len(found(cache)) == 1
 
@@ -212,7 +184,6 @@ def test_a_cache_that_cannot_be_written_is_one_line(module, tmp_path):
         assert rates(compiled(module), module).shape == STATE.shape
 
 
-@pytest.mark.usefixtures("cache")
 def test_no_folder_at_all_is_one_line(module, tmp_path, monkeypatch):
     (tmp_path / "cache").write_text("a file where the folder should be")
     monkeypatch.setattr(libraries, "temporary_folder", lambda: tmp_path / "cache")
@@ -249,11 +220,8 @@ def test_a_source_of_another_spec_is_not_compiled(module, ending, cache):
 
 ASK = """
 import sys
-import platformdirs
-platformdirs.user_cache_dir = lambda name: sys.argv[2]
 from piezo_sym.modules import load_module
-from piezo_sym.run.engine import compiled, library
-library.FLAGS = [["-O0", *flags[1:]] for flags in library.FLAGS]
+from piezo_sym.run.engine import compiled
 module = load_module(__import__("pathlib").Path(sys.argv[1]))
 engine = compiled(module)
 print(engine.rhs([0, 1e-3, 1e-5, 1e-3, -2e-3, 0.05], [1, 50, 300], module.Parameters()).tolist())
@@ -261,8 +229,8 @@ print(engine.rhs([0, 1e-3, 1e-5, 1e-3, -2e-3, 0.05], [1, 50, 300], module.Parame
 
 
 def test_ten_processes_at_once_get_one_library(module, tmp_path):
-    words = [sys.executable, "-W", "error", "-c", ASK, module.__file__, str(tmp_path / "many")]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    words = [sys.executable, "-W", "error", "-c", ASK, module.__file__]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(tmp_path / "many")}
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     running = [subprocess.Popen(words, env=environment, **pipes) for _ in range(10)]
     answers = [process.communicate() for process in running]
@@ -292,9 +260,9 @@ def test_threads_share_an_engine(module):
     assert wrong == []
 
 
-def test_an_engine_loads_nothing_of_the_derivation(tmp_path):
+def test_an_engine_loads_nothing_of_the_derivation():
     code = ASK + "print(sorted({'sympy', 'pydantic', 'pint', 'z3'} & {*sys.modules}))"
-    words = [sys.executable, "-c", code, str(FILES / "piezo_stack.py"), str(tmp_path)]
+    words = [sys.executable, "-c", code, str(FILES / "piezo_stack.py")]
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONDONTWRITEBYTECODE": "1"}
     done = subprocess.run(words, env=environment, capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "[]"

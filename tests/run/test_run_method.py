@@ -2,7 +2,6 @@
 
 import os
 import shutil
-import stat
 import subprocess
 import sys
 import warnings
@@ -10,56 +9,22 @@ from pathlib import Path
 from types import ModuleType
 
 import numpy as np
-import platformdirs
 import pytest
 
 import piezo_sym
 from piezo_sym.errors import EngineError
-from piezo_sym.modules import load_module
-from piezo_sym.run import method as methods
 from piezo_sym.run import simulate, sine
 from piezo_sym.run.engine import EngineWarning, compiler
-from piezo_sym.run.engine import library as libraries
+from piezo_sym.run.engine.library import CACHE
+from tests.conftest import write_script
 
 ROOT = Path(__file__).parents[2]
-FILES = ROOT / "generated" / "piezo_stack"
-#: Which method runs, and what is said, does not depend on how well C is compiled.
-QUICK = tuple(("-O0", *flags[1:]) for flags in compiler.FLAGS)
 SHORT = {"inputs": {"V_in": sine(100, 100)}, "duration": 1e-3, "times": 11}
 
 
 @pytest.fixture
-def cache(tmp_path, monkeypatch):
-    """A cache of our own, and no memory of what was said before."""
-    monkeypatch.setattr(platformdirs, "user_cache_dir", lambda name: str(tmp_path / "cache" / name))
-    methods._warn.cache_clear()
-    libraries._warn.cache_clear()
-    monkeypatch.setattr(libraries, "FLAGS", QUICK)
-    return tmp_path / "cache" / "piezo_sym" / "compiled"
-
-
-@pytest.fixture
-def module(tmp_path, cache):
-    """A module of our own, with its sources."""
-    assert not cache.exists()
-    shutil.copytree(FILES, tmp_path / "piezo_stack")
-    return load_module(tmp_path / "piezo_stack" / "piezo_stack.py")
-
-
-@pytest.fixture
-def alone(tmp_path, monkeypatch):
-    """A folder that is the only one in which commands are found."""
-    (tmp_path / "bin").mkdir()
-    monkeypatch.setenv("PATH", str(tmp_path / "bin"))
-    monkeypatch.delenv("CC", raising=False)
-    monkeypatch.setattr(compiler, "find_spec", lambda _: None)
-    return tmp_path / "bin"
-
-
-def script(path, text):
-    path.write_text(f"#!/bin/sh\n{text}\n")
-    path.chmod(path.stat().st_mode | stat.S_IXUSR)
-    return path
+def module(own_stack):
+    return own_stack
 
 
 def warned(module):
@@ -137,7 +102,7 @@ def test_functions_changed_in_python_are_those_that_run(module, variant):
 
 
 @pytest.mark.parametrize("more", [{"method": "discrete_gradient"}, {"step": 1e-5}])
-def test_what_was_asked_for_is_not_replaced(piezo, module, alone, more):
+def test_what_was_asked_for_is_not_replaced(piezo, module, no_compiler, more):
     with pytest.raises(EngineError) as error:
         simulate(module, **SHORT, **more)
     assert str(error.value) == (
@@ -146,10 +111,10 @@ def test_what_was_asked_for_is_not_replaced(piezo, module, alone, more):
     )
     with pytest.raises(EngineError, match="is missing; run `piezo-sym generate`"):
         simulate(piezo, **SHORT, **more)
-    assert list(alone.iterdir()) == []
+    assert list(no_compiler.iterdir()) == []
 
 
-@pytest.mark.usefixtures("alone")
+@pytest.mark.usefixtures("no_compiler")
 def test_no_compiler_is_one_line(module):
     assert warned(module) == (
         "engine: no C compiler is found; install gcc or clang, set CC, or "
@@ -168,37 +133,37 @@ BROKEN = [
 
 
 @pytest.mark.parametrize(("text", "words"), BROKEN)
-def test_a_broken_compiler_is_one_line(module, alone, monkeypatch, text, words):
-    monkeypatch.setenv("CC", str(script(alone / "mine", text)))
+def test_a_broken_compiler_is_one_line(module, no_compiler, monkeypatch, text, words):
+    monkeypatch.setenv("CC", str(write_script(no_compiler / "mine", text)))
     assert words in warned(module)
 
 
 @pytest.mark.parametrize("chosen", ["/bin/false", "no-such-compiler", "'", "/"])
-@pytest.mark.usefixtures("alone")
+@pytest.mark.usefixtures("no_compiler")
 def test_a_choice_that_is_no_compiler_is_one_line(module, monkeypatch, chosen):
     monkeypatch.setenv("CC", chosen)
     assert "no C compiler is found" in warned(module)
 
 
-def test_a_compiler_that_hangs_is_waited_for_once(module, alone, monkeypatch):
+def test_a_compiler_that_hangs_is_waited_for_once(module, no_compiler, monkeypatch):
     monkeypatch.setattr(compiler, "MOST_SECONDS", 0.5)
-    sleep, log = shutil.which("sleep", path=os.defpath), alone / "log"
+    sleep, log = shutil.which("sleep", path=os.defpath), no_compiler / "log"
     says = f'test "$1" = --version && echo 1 && exit; echo >> {log}; exec {sleep} 60'
-    script(alone / "cc", says)
+    write_script(no_compiler / "cc", says)
     assert "the compiler takes more than 0.5 s" in warned(module)
     assert log.read_text() == "\n"  # not with other flags, nor for every run
 
 
-def test_a_compiler_that_does_not_say_what_it_is_is_passed_by(module, alone, monkeypatch):
+def test_a_compiler_that_does_not_say_what_it_is_is_passed_by(module, no_compiler, monkeypatch):
     monkeypatch.setattr(compiler, "VERSION_SECONDS", 0.5)
     sleep = shutil.which("sleep", path=os.defpath)
-    script(alone / "cc", f"exec {sleep} 60")
+    write_script(no_compiler / "cc", f"exec {sleep} 60")
     assert "no C compiler is found" in warned(module)
 
 
 UNWRITTEN = (
     "the cache cannot be written (Not a directory); what is compiled is kept for this process "
-    f"alone; set {libraries.CACHE} to a folder that can be written"
+    f"alone; set {CACHE} to a folder that can be written"
 )
 
 
@@ -206,17 +171,16 @@ def test_a_cache_that_cannot_be_written_is_one_line(module, tmp_path, cache):
     (tmp_path / "cache").write_text("a file where the folder should be")
     with pytest.warns(EngineWarning) as caught:
         runs = [simulate(module, **SHORT) for _ in range(3)]
-    assert [str(warning.message) for warning in caught] == [f"'{cache}': {UNWRITTEN}"]
+    assert [str(warning.message) for warning in caught] == [f"'{cache / 'compiled'}': {UNWRITTEN}"]
     assert {run.attrs["method"] for run in runs} == {"discrete_gradient"}
 
 
 @pytest.mark.parametrize("error", [OSError(28, "No space left on device"), OSError("strange")])
-def test_a_full_disk_is_one_line(module, tmp_path, monkeypatch, error):
+def test_a_full_disk_is_one_line(module, monkeypatch, error):
     def full(*_, **__):
         raise error
 
     monkeypatch.setattr(Path, "write_text", full)
-    monkeypatch.setattr(libraries, "temporary_folder", lambda: tmp_path / "temporary")
     assert f"the cache cannot be written ({error.strerror or 'OSError'})" in warned(module)
 
 
@@ -227,7 +191,7 @@ def test_a_model_of_a_cache_that_cannot_be_written_runs(tmp_path, cache):
         runs = [piezo_sym.simulate(model, duration=1.0, times=2) for _ in range(2)]
     assert len(said) == 1
     assert {run.attrs["method"] for run in runs} == {"discrete_gradient"}
-    assert cache.parent.parent.is_file()
+    assert cache.parent.is_file()
 
 
 FAILS = 'test "$1" = --version && echo 1 && exit; echo "error: no\tgood" >&2; exit 1'
@@ -238,7 +202,7 @@ FAILS = 'test "$1" = --version && echo 1 && exit; echo "error: no\tgood" >&2; ex
 )
 def test_a_choice_that_is_passed_by_is_one_line(module, tmp_path, monkeypatch, name, why):
     """It is not there, or it fails: another compiler is taken, and named."""
-    script(tmp_path / "bad", FAILS)
+    write_script(tmp_path / "bad", FAILS)
     monkeypatch.setenv("CC", str(tmp_path / name))
     with pytest.warns(EngineWarning) as caught:
         runs = [simulate(module, **SHORT) for _ in range(2)]
@@ -255,18 +219,18 @@ def test_a_choice_that_is_taken_says_nothing(module, monkeypatch, chosen):
     assert simulate(module, **SHORT).attrs["method"] == "discrete_gradient"
 
 
-def test_what_was_mended_is_tried_again(module, alone, monkeypatch):
+def test_what_was_mended_is_tried_again(module, no_compiler, monkeypatch):
     warned(module)
     monkeypatch.setenv("PATH", os.defpath)
     assert simulate(module, **SHORT).attrs["method"] == "discrete_gradient"
-    assert list(alone.iterdir()) == []
+    assert list(no_compiler.iterdir()) == []
 
 
-def test_nothing_is_compiled_twice_for_one_process(module, monkeypatch, cache):
+def test_nothing_is_compiled_twice_for_one_process(module, cache):
     simulate(module, **SHORT)
     shutil.rmtree(cache)
-    monkeypatch.setattr(libraries, "build", None)
     assert simulate(module, **SHORT).attrs["method"] == "discrete_gradient"
+    assert not cache.exists()
 
 
 SCRIPT = """
