@@ -19,6 +19,7 @@ from piezo_sym.analysis import loops, steady
 from piezo_sym.analysis.balance import SteadyWarning, settled
 from piezo_sym.analysis.stroboscope import stroboscope
 from piezo_sym.errors import RunError, UsageError
+from piezo_sym.run.engine import EngineWarning
 
 HEATER = """
 [model]
@@ -379,11 +380,12 @@ def test_a_start_outside_the_domain_says_so():
         periodic_steady_state("piezo_stack", **STACK, parameters={"L": -1.0})
 
 
-def test_without_a_compiler_another_solver_finds_the_same(heater, monkeypatch):
+def test_without_a_compiler_another_solver_finds_the_same(heater, request):
     drive = {"inputs": {"V": sine(V, F)}, "frequency": F, "temperatures": (340.0, 350.0)}
     expected = steady.periodic_steady_state(heater, **drive).temperature
-    monkeypatch.setattr("piezo_sym.analysis.stroboscope.compiled", lambda _: None)
-    found = steady.periodic_steady_state(heater, **drive)
+    request.getfixturevalue("no_compiler")
+    with pytest.warns(EngineWarning, match="no C compiler is found"):
+        found = steady.periodic_steady_state(heater, **drive)
     assert found.orbit.attrs["method"] == "LSODA"
     assert found.temperature == pytest.approx(expected, rel=1e-6)
 

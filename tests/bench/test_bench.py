@@ -14,7 +14,6 @@ from piezo_sym.bench.measure import LADDER, TARGET, reference_of, tuned
 from piezo_sym.bench.problem import problem_of
 from piezo_sym.bench.timing import Spread
 from piezo_sym.cli import run
-from piezo_sym.errors import EngineError
 
 OSCILLATOR = Path(__file__).parents[1] / "networks" / "specs" / "a2_oscillator.toml"
 ROW = Comparison(
@@ -118,14 +117,12 @@ def test_a_solver_that_fails_is_off(fault):
     assert "does not reach" in tuned("it", lambda _: np.inf, float)
 
 
-def test_without_a_compiler_numpy_remains(monkeypatch):
-    def refuse(_):
-        raise EngineError("there is no compiler")
-
-    monkeypatch.setattr("piezo_sym.bench.measure.engine_of", refuse)
+@pytest.mark.usefixtures("no_compiler")
+def test_without_a_compiler_numpy_remains():
     found = bench(load(OSCILLATOR), only=["rhs"], rounds=1)
     assert {row.ours for row in found.rows} == {"generated NumPy"}
-    assert found.left_out == ("rhs, generated C: there is no compiler",)
+    (said,) = found.left_out
+    assert said.startswith("rhs, generated C: engine: no C compiler is found")
 
 
 def test_the_command(tmp_path, capsys):

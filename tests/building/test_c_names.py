@@ -1,7 +1,6 @@
 """Names of a spec that C or its printer uses itself: compiled, the numbers are NumPy's."""
 
 import numpy as np
-import platformdirs
 import pytest
 from test_letters import ONE, THREE, TWO, other_names, states_and_inputs, values
 
@@ -30,12 +29,6 @@ WORDS = {
     },
 }
 SETS = {"one": ONE, "two": TWO, "three": THREE, "words of C": WORDS}
-
-
-@pytest.fixture(autouse=True)
-def cache(tmp_path, monkeypatch):
-    """A cache of our own."""
-    monkeypatch.setattr(platformdirs, "user_cache_dir", lambda name: str(tmp_path / "cache" / name))
 
 
 class Compiled:

@@ -1,9 +1,9 @@
 """From a spec to its module: the checkout's, the working folder's, or the user's cache."""
 
+import tempfile
 from pathlib import Path
 
 import numpy as np
-import platformdirs
 import pytest
 
 from piezo_sym import (
@@ -12,7 +12,6 @@ from piezo_sym import (
     derive,
     generate,
     load,
-    modules,
     periodic_steady_state,
     simulate,
     steady_branches,
@@ -27,13 +26,14 @@ ROOT = Path(__file__).parents[2]
 COMMITTED = ROOT / "generated" / "piezo_stack" / "piezo_stack.py"
 
 
+pytestmark = pytest.mark.usefixtures("cache")
+
+
 @pytest.fixture(autouse=True)
-def cache(tmp_path, monkeypatch):
-    """A cache of our own, and a working folder without modules."""
+def _work(tmp_path, monkeypatch):
+    """A working folder without modules."""
     (tmp_path / "work").mkdir()
     monkeypatch.chdir(tmp_path / "work")
-    monkeypatch.setattr(platformdirs, "user_cache_dir", lambda name: str(tmp_path / "cache" / name))
-    return tmp_path / "cache"
 
 
 @pytest.fixture
@@ -125,10 +125,11 @@ def test_what_is_generated_into_the_cache_can_be_compiled(mine):
     assert np.array_equal(engine_of(module).rhs(x, u, module.Parameters()), wanted)
 
 
-def test_the_cache_is_used_again(mine, monkeypatch):
+def test_the_cache_is_used_again(mine, cache):
     first = module_of(mine)
-    monkeypatch.setattr("piezo_sym.build.render", None)
+    written = {path: path.stat().st_mtime_ns for path in files(cache)}
     assert module_of(mine).SPEC_SHA256 == first.SPEC_SHA256
+    assert {path: path.stat().st_mtime_ns for path in files(cache)} == written
 
 
 def test_a_changed_spec_is_not_answered_from_the_cache(mine):
@@ -144,13 +145,13 @@ def test_a_damaged_file_in_the_cache_is_made_again(mine, cache):
     assert module_of(mine).Parameters().M == 4e-3
 
 
-def test_a_cache_that_cannot_be_written_does_not_matter(mine, tmp_path, monkeypatch):
+def test_a_cache_that_cannot_be_written_does_not_matter(mine, tmp_path):
     (tmp_path / "cache").write_text("a file where the folder should be")
-    monkeypatch.setattr(modules, "temporary_folder", lambda: tmp_path / "temporary")
     module = module_of(mine)
     assert module.Parameters().M == 4e-3
-    assert {".py", ".h", ".c"} <= {path.suffix for path in files(tmp_path / "temporary")}
-    assert Path(module.__file__).is_relative_to(tmp_path / "temporary")
+    folder = Path(module.__file__).parent
+    assert {".py", ".h", ".c"} <= {path.suffix for path in files(folder)}
+    assert folder.is_relative_to(tempfile.gettempdir())
 
 
 def test_a_model_edited_in_python_runs_as_edited(spec, cache):

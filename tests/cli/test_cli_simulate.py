@@ -8,14 +8,11 @@ import sys
 import time
 from pathlib import Path
 
-import platformdirs
 import pytest
 import xarray
 
 import piezo_sym
 from piezo_sym import sine
-from piezo_sym.run import method
-from piezo_sym.run.engine import compiler, engine
 
 ROOT = Path(__file__).parents[2]
 
@@ -236,18 +233,6 @@ def test_help_names_methods_tolerance_and_step(call):
     said = " ".join(call("simulate", "--help").out.split())
     for words in ("discrete_gradient (compiled)", "LSODA", "--rtol", "--step", "1e-5 if left out"):
         assert words in said
-
-
-@pytest.fixture
-def no_compiler(monkeypatch, tmp_path):
-    """A machine without a compiler; nobody has been told."""
-    (tmp_path / "bin").mkdir()
-    monkeypatch.setenv("PATH", str(tmp_path / "bin"))
-    monkeypatch.delenv("CC", raising=False)
-    monkeypatch.setattr(compiler, "find_spec", lambda _: None)
-    monkeypatch.setattr(platformdirs, "user_cache_dir", lambda _: str(tmp_path / "cache"))
-    for remembered in (method._warn, engine._engine):
-        remembered.cache_clear()
 
 
 @pytest.mark.usefixtures("no_compiler")

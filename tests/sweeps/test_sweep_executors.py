@@ -15,8 +15,7 @@ import pytest
 import xarray
 
 from piezo_sym import load, simulate, sine, sweep
-from piezo_sym.errors import EngineError, RunError, UsageError
-from piezo_sym.run import method as methods
+from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.engine import EngineWarning
 from piezo_sym.sweeps import SweepWarning
 from piezo_sym.sweeps.pool import at_hand, results
@@ -161,20 +160,14 @@ def test_methods_of_scipy_run_one_by_one(method):
     np.testing.assert_array_equal(last.phi[0], run.phi[-1])
 
 
-def test_without_a_compiler_runs_go_on_in_numpy(monkeypatch):
-    def none(_):
-        raise EngineError("no C compiler is found")
-
-    methods._tried.cache_clear()
-    methods._warn.cache_clear()
-    monkeypatch.setattr("piezo_sym.run.method.engine_of", none)
+@pytest.mark.usefixtures("no_compiler")
+def test_without_a_compiler_runs_go_on_in_numpy():
     over = {"L": [1e-3, 2e-3]}
     with pytest.warns(EngineWarning, match="by LSODA in NumPy") as warned:
         found = sweep("piezo_stack", over=over, duration=1e-3, times=3)
     assert len(warned) == 1
     assert found.attrs["method"] == "LSODA"
     assert np.isfinite(found.q).all()
-    methods._tried.cache_clear()
 
 
 def test_progress_is_told():
