@@ -22,6 +22,7 @@ from piezo_sym.version import VERSION as __version__
 if TYPE_CHECKING:  # "as" makes them public for type checkers
     from piezo_sym.analysis.dashboard import plot as plot
     from piezo_sym.api import Stepper as Stepper
+    from piezo_sym.api import operating_point as operating_point
     from piezo_sym.api import periodic_steady_state as periodic_steady_state
     from piezo_sym.api import periodic_steady_states as periodic_steady_states
     from piezo_sym.api import simulate as simulate
@@ -49,6 +50,7 @@ _HOME = {
     "derive": "derivation",
     "generate": "build",
     "load": "spec.load",
+    "operating_point": "api",
     "periodic_steady_state": "api",
     "periodic_steady_states": "api",
     "plot": "analysis.dashboard",

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeAlias, TypeVa
 
 from numpy.typing import ArrayLike
 
-from piezo_sym.analysis import branches, steady
+from piezo_sym.analysis import branches, operating_point as rest, steady
 from piezo_sym.modules import module_of
 from piezo_sym.progress import watch_of
 from piezo_sym.run import simulate as run
@@ -45,6 +45,7 @@ def of_spec(run: Callable[Concatenate[Any, P], R]) -> Callable[Concatenate[Spec,
     return call  # type: ignore[return-value]  # the model may be given by name, too
 
 
+operating_point = of_spec(rest.operating_point)
 periodic_steady_state = of_spec(steady.periodic_steady_state)
 periodic_steady_states = of_spec(steady.periodic_steady_states)
 steady_branches = of_spec(branches.steady_branches)

@@ -1,0 +1,352 @@
+"""Operating points: states of rest under constant inputs, with bodies free or held.
+
+Input: a generated module, constant inputs, the temperatures of the bodies that are held.  Output:
+an `OperatingPoint`, or a `RunError` that says why there is none.
+
+    rhs(x, u) = 0       in all rows but the entropies of held bodies
+
+Steps of the implicit Euler method, each longer than the last, follow the motion from the initial
+state to rest; Newton's method ends it. Directions in which the rates do not change (a current that
+circulates within dead zones) stay where they were.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, final
+
+import numpy as np
+from scipy.optimize import brentq
+
+from piezo_sym.errors import RunError, UsageError
+from piezo_sym.run.checks import known_keys, number, positive
+from piezo_sym.run.module import checked, row_name, rows
+from piezo_sym.run.parameters import read_initial, read_parameters
+
+if TYPE_CHECKING:
+    from piezo_sym.run.checks import FloatArray
+    from piezo_sym.run.module import GeneratedModule, Record
+    from piezo_sym.run.parameters import LaneValue
+
+MOST_STEPS, MOST_MOVES = 400, 40
+LONGEST = 1e15  # of the first Euler step
+GROWTH = 4.0  # of the Euler step
+CONTRACTION = 0.25  # a second Newton move larger than this part of the first: the step is too long
+AT_REST = 1e-9  # a move of this part of the states' sizes
+ROUND_OFF = 1e-13
+UNDETERMINED = 1e-6  # of a direction of unit length: less is round-off
+SINGULAR = 1e-10  # of the greatest singular value, after rows and columns are made equal in size
+WHERE = "operating_point"
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class OperatingPoint:
+    """A state of rest; SI units.
+
+    Attributes
+    ----------
+    inputs : name -> value.
+    initial : the state by name, a bank's as one value per lane: `simulate(initial=...)` takes it.
+    x, u : the same as arrays (n,), banks spread, and (m,).
+    parameters : those that were given, as `simulate` takes them.
+    outputs : port -> y.
+    temperatures : body -> temperature [K].
+    holding : held body -> heat [W] that has to be put in so that its temperature stays.
+    eigenvalues : of the Jacobian of all states that are not held [1/s].
+    stable : whether none of them has a positive real part, beyond round-off.
+    undetermined : rows of x along which other states are at rest, too; they are as near to the
+        initial state as any.
+    """
+
+    inputs: Mapping[str, float]
+    initial: Mapping[str, LaneValue]
+    x: FloatArray
+    u: FloatArray
+    parameters: Mapping[str, LaneValue]
+    outputs: Mapping[str, float]
+    temperatures: Mapping[str, float]
+    holding: Mapping[str, float]
+    eigenvalues: FloatArray
+    stable: bool
+    undetermined: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        """Return outputs, temperatures, and whether it is stable."""
+        shown = {**self.outputs, **{f"T_{body}": T for body, T in self.temperatures.items()}}
+        values = ", ".join(f"{name} = {value:.6g}" for name, value in shown.items())
+        return f"OperatingPoint({values}, {'stable' if self.stable else 'unstable'})"
+
+
+def operating_point(
+    module: GeneratedModule,
+    *,
+    inputs: Mapping[str, float] | None = None,
+    temperatures: Mapping[str, float] | None = None,
+    parameters: Mapping[str, LaneValue] | None = None,
+    initial: Mapping[str, LaneValue] | None = None,
+) -> OperatingPoint:
+    """Return the state of rest under constant inputs, near the one a run from the start goes to.
+
+    >>> from piezo_sym import operating_point
+    >>> operating_point("piezo_stack", inputs={"V_in": 100.0}).initial["q"]
+    0.002013509...
+
+    Parameters
+    ----------
+    module : a generated module; `piezo_sym.operating_point` also takes a model, name, path.
+    inputs : name -> number, SI units; the others have their defaults.
+    temperatures : body -> temperature [K] at which it is held; the other bodies are free.
+    parameters, initial : as for `simulate`; `initial` is where the search begins.
+
+    Raises
+    ------
+    UsageError : a name is unknown, or a value is no number.
+    RunError : there is no state of rest (a rate that nothing stops is named), none is found in the
+        domain, or the temperature of a free body is left open because nothing exchanges heat with
+        the surroundings.
+    """
+    p = read_parameters(checked(module), parameters)
+    u = read_constants(module, inputs)
+    start = read_initial(module, p, u, initial)
+    held = _held(module, p, start, temperatures)
+    free = np.setdiff1d(np.arange(start.size), list(held.values()))
+    search = _Search(module, p, u, free)
+    x, size = search.settled(start)
+    x = search.at_rest(x, size)
+    undetermined = search.undetermined(x, size)
+    _refuse_open_bodies(module, p, x, undetermined)
+    return _described(search, x, parameters or {}, list(held), undetermined)
+
+
+def read_constants(module: GeneratedModule, given: Mapping[str, float] | None) -> FloatArray:
+    """Return constant inputs u (m,): those given, and defaults.
+
+    Raises
+    ------
+    UsageError : a name is unknown, or a value is no number.
+    """
+    names = [record.name for record in module.INPUTS]
+    values = known_keys(given, names, f"{WHERE}.inputs")
+    default = dict(zip(names, module.INPUT_DEFAULTS, strict=True))
+    return np.array(
+        [number(values.get(name, default[name]), f"{WHERE}.inputs.{name}") for name in names]
+    )
+
+
+def _held(
+    module: GeneratedModule, p: Any, x: FloatArray, given: Mapping[str, float] | None
+) -> dict[str, int]:
+    """Return the entropy's row of each held body, and put its value into x (n,)."""
+    bodies = [record.name for record in module.BODIES]
+    held = {}
+    for name, value in known_keys(given, bodies, f"{WHERE}.temperatures").items():
+        T = positive(value, f"{WHERE}.temperatures.{name}")
+        held[name] = _entropy_row(module, p, x, bodies.index(name))
+        x[held[name]] = _entropy_at(module, p, x, bodies.index(name), held[name], T)
+    return held
+
+
+def _entropy_row(module: GeneratedModule, p: Any, x: FloatArray, body: int) -> int:
+    """Return the row that moves a body's temperature most, for equal relative moves."""
+    step = 1e-6 * np.maximum(np.abs(x), 1.0)
+    moved = module.temperatures(x[:, None] + np.diag(step), p)[body]
+    return int(np.argmax(np.abs(moved - module.temperatures(x, p)[body])))
+
+
+def _entropy_at(
+    module: GeneratedModule, p: Any, x: FloatArray, body: int, row: int, T: float
+) -> float:
+    """Return the entropy [J/K] at which a body has the temperature T; it rises with the entropy."""
+
+    def excess(entropy: float) -> float:
+        y = x.copy()
+        y[row] = entropy
+        with np.errstate(over="ignore"):
+            return float(np.log(module.temperatures(y, p)[body] / T))
+
+    middle, reach = float(x[row]), 1e-3 * max(1.0, abs(float(x[row])))
+    while excess(middle - reach) > 0 or excess(middle + reach) < 0:
+        reach *= 2
+        if not np.isfinite(reach):
+            where = f"{WHERE}.temperatures.{module.BODIES[body].name}"
+            raise UsageError(f"{T:g} K is out of the body's reach", where)
+    return float(brentq(excess, middle - reach, middle + reach, xtol=1e-300, rtol=1e-15))
+
+
+@final
+@dataclass(frozen=True)
+class _Search:
+    """A module at constant inputs, whose states in the rows `free` are to come to rest."""
+
+    module: GeneratedModule
+    parameters: Any
+    u: FloatArray
+    free: np.ndarray[Any, np.dtype[np.intp]]
+
+    def rates(self, x: FloatArray) -> FloatArray:
+        """Return dx/dt of the free rows."""
+        with np.errstate(all="ignore"):
+            return self.module.rhs(x, self.u, self.parameters)[self.free]
+
+    def slope(self, x: FloatArray) -> FloatArray:
+        """Return the Jacobian of the free rows by the free states."""
+        with np.errstate(all="ignore"):
+            full = self.module.jacobian(x, self.u, self.parameters)
+        return full[np.ix_(self.free, self.free)]
+
+    def inside(self, x: FloatArray) -> bool:
+        """Return whether x is in the domain and has rates."""
+        with np.errstate(all="ignore"):
+            margins = self.module.margins(x, self.u, self.parameters)
+        strict = np.array([condition.strict for condition in self.module.DOMAIN], dtype=bool)
+        return bool(
+            np.all(np.where(strict, margins > 0, margins >= 0)) and np.isfinite(self.rates(x)).all()
+        )
+
+    def moved(self, x: FloatArray, move: FloatArray) -> FloatArray:
+        """Return x with its free rows moved."""
+        y = x.copy()
+        y[self.free] += move
+        return y
+
+    def settled(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return a state almost at rest, and the sizes of the free states on the way to it."""
+        if not self.inside(x):
+            what = "the initial state is outside the domain, or has no rates"
+            raise RunError(what, self._model, remedy="give another as 'initial', or other inputs")
+        eye = np.eye(self.free.size)
+        size = np.abs(x[self.free])
+        if not np.any(self.rates(x)):
+            return x, size
+        first = step = 1e-3 / (float(np.linalg.norm(self.slope(x), 2)) or 1.0)
+        move = np.zeros(self.free.size)
+        for _ in range(MOST_STEPS):
+            if step > LONGEST * first:
+                break
+            matrix = eye - step * self.slope(x)
+            move = np.linalg.solve(matrix, step * self.rates(x))
+            ahead = self.moved(x, move)
+            reached = np.maximum(size, np.maximum(np.abs(ahead[self.free]), np.abs(move)))
+            if not self.inside(ahead) or not self._contracts(matrix, step, move, ahead, reached):
+                step /= GROWTH
+                continue
+            x, size = ahead, reached
+            if _part(move, size) <= AT_REST and step * np.linalg.norm(self.slope(x), 2) > 1:
+                return x, size
+            step *= GROWTH
+        raise self._none(move / step, size)
+
+    def _contracts(
+        self, matrix: FloatArray, step: float, move: FloatArray, ahead: FloatArray, size: FloatArray
+    ) -> bool:
+        """Return whether a second move of Newton's method is much smaller than the first."""
+        again = np.linalg.solve(matrix, step * self.rates(ahead) - move)
+        return _part(again, size) <= CONTRACTION * _part(move, size) + ROUND_OFF
+
+    def at_rest(self, x: FloatArray, size: FloatArray) -> FloatArray:
+        """Return the state of rest near x, by Newton's method, moved no more than it must be."""
+        for _ in range(MOST_MOVES):
+            left, values, right, row_size = self._factors(x, size)
+            kept = values > SINGULAR * values[0] if values.size else values > 0
+            parts = left.T[kept] @ (self.rates(x) / row_size) / values[kept]
+            move = -size * (right[kept].T @ parts)
+            if not self.inside(self.moved(x, move)):
+                break
+            x = self.moved(x, move)
+            if _part(move, size) <= ROUND_OFF:
+                break
+        left, values, right, row_size = self._factors(x, size)
+        if np.max(np.abs(self.rates(x) / row_size), initial=0.0) > AT_REST:
+            raise self._none(self.rates(x), size)
+        return x
+
+    def _factors(
+        self, x: FloatArray, size: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Return the singular value decomposition of the Jacobian over the rows' sizes (n,)."""
+        slope = self.slope(x) * size
+        row_size = np.max(np.abs(slope), axis=1, initial=0.0)
+        row_size[row_size == 0] = 1.0
+        left, values, right = np.linalg.svd(slope / row_size[:, None])
+        return left, values, right, row_size
+
+    def undetermined(self, x: FloatArray, size: FloatArray) -> list[int]:
+        """Return the rows along which other states are at rest, too."""
+        _, values, right, _ = self._factors(x, size)
+        open_ = right[values <= SINGULAR * values[0]] if values.size else right
+        return [int(row) for row in self.free[np.any(np.abs(open_) > UNDETERMINED, axis=0)]]
+
+    def _none(self, rates: FloatArray, size: FloatArray) -> RunError:
+        """Return the error that nothing comes to rest, with the state that moves most."""
+        row = int(self.free[int(np.argmax(np.abs(rates) / np.where(size > 0, size, np.inf)))])
+        name = row_name(self.module.STATES, self.parameters, row)
+        what = f"no state of rest is found: '{name}' goes on and on"
+        remedy = "give other inputs"
+        if self.module.BODIES:
+            body = self.module.BODIES[0].name
+            remedy += f", or hold a body that heats: temperatures={{'{body}': ...}}"
+        return RunError(what, self._model, remedy=remedy)
+
+    @property
+    def _model(self) -> str:
+        return f"model '{self.module.NAME}'"
+
+
+def _part(move: FloatArray, size: FloatArray) -> float:
+    """Return the largest of the moves, as a part of the states' sizes."""
+    return float(np.max(np.abs(move) / np.where(size > 0, size, 1.0), initial=0.0))
+
+
+def _refuse_open_bodies(
+    module: GeneratedModule, p: Any, x: FloatArray, undetermined: list[int]
+) -> None:
+    """Raise `RunError` if rest leaves the temperature of a free body open."""
+    if not undetermined:
+        return
+    step = np.zeros((x.size, len(undetermined)))
+    step[undetermined, range(len(undetermined))] = 1e-6 * np.maximum(1.0, np.abs(x[undetermined]))
+    moved = np.asarray(module.temperatures(x[:, None] + step, p))
+    still = np.asarray(module.temperatures(x, p))[:, None]
+    for body, moves in zip(module.BODIES, moved != still, strict=True):
+        if np.any(moves):
+            what = f"rest leaves the temperature of '{body.name}' open: it depends on the way there"
+            remedy = f"hold it: temperatures={{'{body.name}': ...}}, or simulate() until it rests"
+            raise RunError(what, f"model '{module.NAME}'", remedy=remedy)
+
+
+def _described(
+    search: _Search,
+    x: FloatArray,
+    parameters: Mapping[str, LaneValue],
+    held: list[str],
+    undetermined: list[int],
+) -> OperatingPoint:
+    module, p, u = search.module, search.parameters, search.u
+    parts = zip(module.STATES, rows(module.STATES, p), strict=True)
+    temperatures = _named(module.BODIES, module.temperatures(x, p))
+    rates = module.rhs(x, u, p)
+    holding = {}
+    for name in held:
+        body = [record.name for record in module.BODIES].index(name)
+        holding[name] = -temperatures[name] * float(rates[_entropy_row(module, p, x, body)])
+    eigenvalues = np.linalg.eigvals(search.slope(x))
+    margin = ROUND_OFF * float(np.max(np.abs(eigenvalues), initial=0.0))
+    return OperatingPoint(
+        inputs=_named(module.INPUTS, u),
+        initial={r.name: x[part] if r.bank else float(x[part.start]) for r, part in parts},
+        x=x,
+        u=u,
+        parameters=parameters,
+        outputs=_named(module.OUTPUTS, module.outputs(x, u, p)),
+        temperatures=temperatures,
+        holding=holding,
+        eigenvalues=eigenvalues,
+        stable=bool(np.max(eigenvalues.real, initial=0.0) <= margin),
+        undetermined=tuple(row_name(module.STATES, p, row) for row in undetermined),
+    )
+
+
+def _named(records: Sequence[Record], values: FloatArray) -> dict[str, float]:
+    return {record.name: float(value) for record, value in zip(records, values, strict=True)}

@@ -1,0 +1,97 @@
+"""Operating points against closed forms, and what is said where there is none."""
+
+import numpy as np
+import pytest
+
+from piezo_sym import load, operating_point, simulate
+from piezo_sym.errors import RunError, UsageError
+from tests.networks.test_acceptance import SPECS
+
+pytestmark = pytest.mark.filterwarnings("error")
+
+
+def test_the_actuator_rests_where_its_forces_balance() -> None:
+    """At rest k (q - q_l) = alpha V_C + F, alpha = a T / T_0 (eq. 9), T = T_e and no current."""
+    found = operating_point("piezo_stack", inputs={"V_in": 100.0, "F_ext": 3.0})
+    T = 298.15
+    q = (10.0 * T / 296.15 * 100.0 + 3.0) / 5e5
+    assert found.initial["q"] == pytest.approx(q, rel=1e-13)
+    assert found.initial["Q_C"] == pytest.approx(5e-6 * 100.0, rel=1e-13)
+    assert found.temperatures == {"body": pytest.approx(T, rel=1e-13)}
+    assert found.stable
+    assert found.undetermined == ("phi[1]", "phi[2]")  # they circulate within the dead zones
+    assert np.abs(found.initial["phi"]).max() < 1e-15
+
+
+def test_a_held_body_says_what_heat_holds_it() -> None:
+    found = operating_point("piezo_stack", inputs={"V_in": 100.0}, temperatures={"body": 400.0})
+    assert found.temperatures["body"] == pytest.approx(400.0, rel=1e-14)
+    assert found.initial["q"] == pytest.approx(10.0 * 400.0 / 296.15 * 100.0 / 5e5, rel=1e-13)
+    assert found.holding == {"body": pytest.approx(2.0 * (400.0 - 298.15), rel=1e-12)}
+
+
+def test_a_run_from_an_operating_point_stays_there() -> None:
+    spec = SPECS / "two_sources_on_one_input.toml"
+    found = operating_point(spec)
+    run = simulate(spec, duration=10.0, initial=found.initial, times=11)
+    for name, value in found.initial.items():
+        assert np.abs(run[name].values - value).max() <= 1e-12 * max(1.0, abs(value))
+
+
+def test_a_run_goes_to_the_operating_point() -> None:
+    spec = SPECS / "two_sources_on_one_input.toml"
+    found = operating_point(spec)
+    run = simulate(spec, duration=3e4, times=2, rtol=1e-9)
+    for name, value in found.initial.items():
+        assert float(run[name][-1]) == pytest.approx(value, rel=1e-6, abs=1e-9)
+
+
+@pytest.mark.parametrize("lanes", [1, 16])
+def test_a_bank_has_a_value_per_lane(lanes: int) -> None:
+    found = operating_point("piezo_stack", parameters={"hysteron_count": lanes})
+    assert np.shape(found.initial["phi"]) == (lanes,)
+    assert found.x.shape == (4 + lanes,)
+
+
+@pytest.mark.parametrize(
+    ("spec", "inputs", "said"),
+    [
+        ("a2_oscillator", {}, "rest leaves the temperature of 'body' open"),
+        ("a1_two_bodies", {}, "rest leaves the temperature of 'hot' open"),
+        ("series_across_a_capacitor", {}, "'Q_store' goes on and on"),
+        ("resistor_across_a_source", {}, "'S' goes on and on"),
+    ],
+)
+def test_where_there_is_none_the_reason_is_said(
+    spec: str, inputs: dict[str, float], said: str
+) -> None:
+    with pytest.raises(RunError, match=said) as error:
+        operating_point(SPECS / f"{spec}.toml", inputs=inputs)
+    assert "temperatures={" in str(error.value)
+
+
+def test_following_the_remedy_leads_to_a_point() -> None:
+    """A2 ends at 301 K; held there it rests without any heat."""
+    found = operating_point(SPECS / "a2_oscillator.toml", temperatures={"body": 301.0})
+    assert found.holding["body"] == pytest.approx(0.0, abs=1e-12)
+    assert found.initial["q"] == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"inputs": {"V": 1.0}}, "operating_point.inputs: unknown name 'V'"),
+        ({"inputs": {"V_in": "1"}}, "operating_point.inputs.V_in: ''1'' is not a finite number"),
+        ({"temperatures": {"T": 300.0}}, "operating_point.temperatures: unknown name 'T'"),
+        ({"temperatures": {"body": -1.0}}, "operating_point.temperatures.body: '-1.0' is not pos"),
+    ],
+)
+def test_wrong_arguments_are_named(given: dict[str, object], said: str) -> None:
+    with pytest.raises(UsageError) as error:
+        operating_point(load("piezo_stack"), **given)
+    assert str(error.value).startswith(said.replace("''", "'"))
+
+
+def test_inputs_outside_the_domain_are_refused() -> None:
+    with pytest.raises(RunError, match="outside the domain"):
+        operating_point("piezo_stack", inputs={"T_e": 290.0})
