@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeAlias, TypeVa
 
 from numpy.typing import ArrayLike
 
-from piezo_sym.analysis import branches, operating_point as rest, steady
+from piezo_sym.analysis import branches, steady
+from piezo_sym.analysis import operating_point as rest
 from piezo_sym.modules import module_of
 from piezo_sym.progress import watch_of
 from piezo_sym.run import simulate as run

@@ -1,8 +1,8 @@
-"""Spec to a loaded module: from ``generated/``, from the installed package, or from the cache.
+"""Spec to a loaded module: the package's own, or one generated into the user's cache.
 
-Input: a shipped name, a path, or a `Model`.  Output: its generated module, loaded.  A module found
-for a name or path must be of that very spec; if not, the command that regenerates it is named.
-What is not found is generated into the user's cache, keyed by spec and generator.
+Input: a shipped name, a path, or a `Model`.  Output: its generated module, loaded.  What lies in
+``generated/`` of the working folder is compared with it and never executed; where it differs, a
+`ModuleWarning` says so.
 """
 
 from __future__ import annotations
@@ -10,15 +10,17 @@ from __future__ import annotations
 import hashlib
 import importlib.util
 import sys
-from collections.abc import Iterator
+import warnings
+from collections.abc import Mapping
 from contextlib import suppress
 from functools import cache, lru_cache
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
 
-from piezo_sym.errors import DriftError, FileError, UsageError, quote
+from piezo_sym.errors import FileError, ProofError, UsageError, quote
 from piezo_sym.files import path_text, read_text, temporary_folder, write_together
+from piezo_sym.run.module import UNPROVED, verdict_of
 from piezo_sym.spec.source import data, find, read, shipped
 from piezo_sym.spec.write import spec_hash
 from piezo_sym.version import VERSION
@@ -27,10 +29,16 @@ if TYPE_CHECKING:
     from piezo_sym.spec.model import Model
 
 PACKAGE = Path(__file__).parent
+GENERATED = Path("generated")  # of the working folder
+ALL_THE_SAME = "-unproved"  # of a module that was generated without being proved
+
+
+class ModuleWarning(UserWarning):
+    """A generated module in the working folder that is not used, or one that is not proved."""
 
 
 def module_of(spec: str | Path | Model) -> ModuleType:
-    """Return the generated module of a spec.
+    """Return the generated module of a spec, derived and proved if it is not known yet.
 
     Parameters
     ----------
@@ -38,34 +46,47 @@ def module_of(spec: str | Path | Model) -> ModuleType:
 
     Raises
     ------
-    DriftError
-        If ``generated/`` holds a module of another version of a named spec.
     FileError, SpecError, NetworkError, ProofError
-        If the spec cannot be read, derived or proved.
+        If the spec cannot be read, derived or proved; one that is not proved runs if it was
+        generated all the same, by `generate --allow-unproved`, in the working folder.
     UsageError
         If `spec` is none of these.
     """
+    name, sha256, model = _identified(spec)
+    module = _known(name, sha256)
+    if module is None:
+        from piezo_sym.spec.load import load
+
+        model = model or load(spec)  # type: ignore[arg-type]  # a Model is known already
+        module = _known(model.name, model.sha256) or _generated(model)
+    verdict = verdict_of(module)
+    if verdict.startswith(UNPROVED):
+        text = f"model '{module.NAME}' is {verdict}: its runs may break a law of thermodynamics"
+        warnings.warn(text, ModuleWarning, stacklevel=3)
+    elif not _is_current(module):
+        path, again = path_text(GENERATED / module.NAME), _command(spec)
+        text = f"{path} is not what the spec generates and is not used; run `{again}`"
+        warnings.warn(text, ModuleWarning, stacklevel=3)
+    return module
+
+
+def _identified(spec: str | Path | Model) -> tuple[str, str, Model | None]:
+    """Return the name and the hash of a spec; the spec's types are loaded only in doubt."""
     if not isinstance(spec, str | Path):
         refuse_no_model(spec)
-        ready = _ready(spec.name, spec.sha256)
-        return ready if ready else _cached(spec)
-    path = find(spec)
-    content = data(read(path))
+        return spec.name, spec.sha256, spec
+    content = data(read(find(spec)))
     header = content.get("model")
     name = header.get("name") if isinstance(header, dict) else None
-    if isinstance(name, str) and name.isidentifier():
-        present = tuple(_present(name))
-        for module in present:
-            if _is_of(module, path, content):
-                return module
-        if present:
-            again = str(spec) if str(spec) in shipped() else str(path)
-            what = "was generated from another version of its spec"
-            remedy = f"run `piezo-sym generate {again}`, or give the model another name"
-            raise DriftError(what, path_text(str(present[0].__file__)), remedy=remedy)
-    from piezo_sym.spec.load import load
+    known = isinstance(name, str) and name.isidentifier()
+    return (str(name) if known else ""), spec_hash_of(content), None
 
-    return _cached(load(spec))
+
+def _command(spec: str | Path | Model) -> str:
+    """Return what generates a spec's module in the working folder."""
+    if not isinstance(spec, str | Path):
+        return f"piezo_sym.generate(model) for '{spec.name}'"
+    return f"piezo-sym generate {spec if str(spec) in shipped() else find(spec)}"
 
 
 def refuse_no_model(spec: object) -> None:
@@ -77,50 +98,71 @@ def refuse_no_model(spec: object) -> None:
         raise UsageError(f"{quote(spec)} is no model", "model", expected)
 
 
-def _is_of(module: ModuleType, path: Path, content: dict[str, object]) -> bool:
-    """Return whether a module is of a spec; the spec's types are loaded only in doubt."""
-    if spec_hash_of(content) == module.SPEC_SHA256:
-        return True
-    from piezo_sym.spec.load import load
-
-    return bool(load(path).sha256 == module.SPEC_SHA256)
-
-
 def spec_hash_of(content: dict[str, object]) -> str:
     """Return the hash of plain spec data, or nothing if it is not even of a spec's shape."""
     tables = all(isinstance(table, dict) for table in content.values())
     return spec_hash(content) if tables else ""
 
 
-def _places(name: str) -> Iterator[Path]:
-    """Yield where a generated module may be: the working folder, a checkout, the package."""
-    for folder in (Path("generated"), PACKAGE.parent / "generated", PACKAGE / "generated"):
-        yield folder / name / f"{name}.py"
+def _own(name: str, sha256: str) -> ModuleType | None:
+    """Return the module of exactly this spec that came with the package, or with its checkout."""
+    checkout = PACKAGE.parent / GENERATED
+    for folder in (PACKAGE / GENERATED, checkout):
+        path = folder / name / f"{name}.py"
+        if path.is_file() and (folder != checkout or (PACKAGE.parent / "pyproject.toml").is_file()):
+            module = load_module(path)
+            if sha256 == module.SPEC_SHA256:
+                return module
+    return None
 
 
-def _present(name: str) -> Iterator[ModuleType]:
-    for path in _places(name):
-        if path.is_file():
-            yield load_module(path)
-
-
-def _ready(name: str, sha256: str) -> ModuleType | None:
-    """Return a present module of exactly this spec."""
-    return next((m for m in _present(name) if sha256 == m.SPEC_SHA256), None)
-
-
-def _cached(model: Model) -> ModuleType:
-    """Return the module from the user's cache, generating it if it is not there."""
+def _cache_path(name: str, sha256: str, kind: str = "") -> Path:
     import platformdirs
 
     folder = Path(platformdirs.user_cache_dir("piezo_sym")) / "modules"
-    path = folder / f"{model.sha256}-{_generator()}" / f"{model.name}.py"
+    return folder / f"{sha256}-{_generator()}{kind}" / f"{name}.py"
+
+
+def _known(name: str, sha256: str) -> ModuleType | None:
+    """Return the module of exactly this spec: the package's own, or from the user's cache.
+
+    One that is not proved only if the working folder has the same.
+    """
+    if not name:
+        return None
+    own = _own(name, sha256)
+    return own or _cached(name, sha256) or _cached(name, sha256, ALL_THE_SAME)
+
+
+def _cached(name: str, sha256: str, kind: str = "") -> ModuleType | None:
+    path = _cache_path(name, sha256, kind)
     with suppress(FileError):  # what cannot be read or loaded is made again
         if read_text(path) is not None:
-            return load_module(path)
+            module = load_module(path)
+            if not kind or ((GENERATED / name).is_dir() and _is_current(module)):
+                return module
+    return None
+
+
+def _generated(model: Model) -> ModuleType:
+    """Return the module of a model, generated into the user's cache."""
     from piezo_sym.build import render
 
-    files = {Path(name).name: text.encode() for name, text in render(model).items()}
+    try:
+        return _kept(model, render(model))
+    except ProofError:
+        if not (GENERATED / model.name).is_dir():
+            raise
+        module = _kept(model, render(model, allow_unproved=True), ALL_THE_SAME)
+        if not _is_current(module):
+            raise
+        return module
+
+
+def _kept(model: Model, texts: Mapping[str, str], kind: str = "") -> ModuleType:
+    """Return a module from its texts, which go to the cache."""
+    path = _cache_path(model.name, model.sha256, kind)
+    files = {Path(name).name: text.encode() for name, text in texts.items()}
     try:
         write_together({path.parent / name: text for name, text in files.items()})
         return load_module(path)
@@ -128,6 +170,28 @@ def _cached(model: Model) -> ModuleType:
         other = temporary_folder() / path.parent.name
         write_together({other / name: text for name, text in files.items()})
         return load_module(other / path.name)
+
+
+def _is_current(module: ModuleType) -> bool:
+    """Return whether ``generated/`` of the working folder has this very module, or none."""
+    folder, own = GENERATED / module.NAME, Path(str(module.__file__)).parent
+    names = [f"{module.NAME}{ending}" for ending in (".py", ".h", ".c", "_step.h", "_step.c")]
+    return not folder.is_dir() or all(_digest(folder / n) == _digest(own / n) for n in names)
+
+
+def _digest(path: Path) -> bytes:
+    """Return the digest of a file, taken again when the file has changed."""
+    try:
+        status = path.stat()
+        return _digest_of(path.resolve(), status.st_mtime_ns, status.st_size)
+    except OSError:
+        return b""
+
+
+@lru_cache(maxsize=256)
+def _digest_of(path: Path, changed: int, size: int) -> bytes:
+    del changed, size  # they tell one content of the file from another
+    return hashlib.sha256(path.read_bytes()).digest()
 
 
 @cache

@@ -25,6 +25,8 @@ from piezo_sym.run.module import checked, row_name, rows
 from piezo_sym.run.parameters import read_initial, read_parameters
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from piezo_sym.run.checks import FloatArray
     from piezo_sym.run.module import GeneratedModule, Record
     from piezo_sym.run.parameters import LaneValue
@@ -68,7 +70,7 @@ class OperatingPoint:
     outputs: Mapping[str, float]
     temperatures: Mapping[str, float]
     holding: Mapping[str, float]
-    eigenvalues: FloatArray
+    eigenvalues: NDArray[np.complex128]
     stable: bool
     undetermined: tuple[str, ...]
 
@@ -188,13 +190,15 @@ class _Search:
     def rates(self, x: FloatArray) -> FloatArray:
         """Return dx/dt of the free rows."""
         with np.errstate(all="ignore"):
-            return self.module.rhs(x, self.u, self.parameters)[self.free]
+            found: FloatArray = self.module.rhs(x, self.u, self.parameters)[self.free]
+        return found
 
     def slope(self, x: FloatArray) -> FloatArray:
         """Return the Jacobian of the free rows by the free states."""
         with np.errstate(all="ignore"):
             full = self.module.jacobian(x, self.u, self.parameters)
-        return full[np.ix_(self.free, self.free)]
+        part: FloatArray = full[np.ix_(self.free, self.free)]
+        return part
 
     def inside(self, x: FloatArray) -> bool:
         """Return whether x is in the domain and has rates."""
@@ -217,16 +221,16 @@ class _Search:
             what = "the initial state is outside the domain, or has no rates"
             raise RunError(what, self._model, remedy="give another as 'initial', or other inputs")
         eye = np.eye(self.free.size)
-        size = np.abs(x[self.free])
+        size: FloatArray = np.abs(x[self.free])
         if not np.any(self.rates(x)):
             return x, size
         first = step = 1e-3 / (float(np.linalg.norm(self.slope(x), 2)) or 1.0)
-        move = np.zeros(self.free.size)
+        move: FloatArray = np.zeros(self.free.size)
         for _ in range(MOST_STEPS):
             if step > LONGEST * first:
                 break
             matrix = eye - step * self.slope(x)
-            move = np.linalg.solve(matrix, step * self.rates(x))
+            move = np.asarray(np.linalg.solve(matrix, step * self.rates(x)), dtype=float)
             ahead = self.moved(x, move)
             reached = np.maximum(size, np.maximum(np.abs(ahead[self.free]), np.abs(move)))
             if not self.inside(ahead) or not self._contracts(matrix, step, move, ahead, reached):
@@ -242,7 +246,7 @@ class _Search:
         self, matrix: FloatArray, step: float, move: FloatArray, ahead: FloatArray, size: FloatArray
     ) -> bool:
         """Return whether a second move of Newton's method is much smaller than the first."""
-        again = np.linalg.solve(matrix, step * self.rates(ahead) - move)
+        again = np.asarray(np.linalg.solve(matrix, step * self.rates(ahead) - move), dtype=float)
         return _part(again, size) <= CONTRACTION * _part(move, size) + ROUND_OFF
 
     def at_rest(self, x: FloatArray, size: FloatArray) -> FloatArray:
@@ -342,7 +346,7 @@ def _described(
         outputs=_named(module.OUTPUTS, module.outputs(x, u, p)),
         temperatures=temperatures,
         holding=holding,
-        eigenvalues=eigenvalues,
+        eigenvalues=eigenvalues.astype(complex),
         stable=bool(np.max(eigenvalues.real, initial=0.0) <= margin),
         undetermined=tuple(row_name(module.STATES, p, row) for row in undetermined),
     )

@@ -37,10 +37,13 @@ def about(spec: str, *kinds: type[PiezoError]) -> Iterator[None]:
 @contextmanager
 def warnings_as_lines() -> Iterator[None]:
     """Print what runs from within warn of as one line on stderr."""
+    from piezo_sym.modules import ModuleWarning
     from piezo_sym.run.engine import EngineWarning
 
+    kinds = EngineWarning, ModuleWarning
+
     def shown(message: Warning | str, *others: Any, **named: Any) -> None:
-        if isinstance(message, EngineWarning):
+        if isinstance(message, kinds):
             typer.echo(f"piezo-sym: {one_line(str(message))}", err=True)
         else:
             before(message, *others, **named)
@@ -48,7 +51,8 @@ def warnings_as_lines() -> Iterator[None]:
     with warnings.catch_warnings():
         before = warnings.showwarning
         warnings.showwarning = shown
-        warnings.simplefilter("always", EngineWarning)
+        for kind in kinds:
+            warnings.simplefilter("always", kind)
         yield
 
 

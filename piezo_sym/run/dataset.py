@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from piezo_sym.errors import UsageError, quote
-from piezo_sym.run.module import exchanges, lanes
+from piezo_sym.run.module import exchanges, lanes, verdict_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -58,7 +58,8 @@ def model_attrs(system: System) -> dict[str, Any]:
     used = vars(system.parameters).items()
     parameters = {f"parameter_{name}": np.asarray(value)[()] for name, value in used}
     module = system.module
-    return {"model": module.NAME, "spec_sha256": module.SPEC_SHA256, **parameters}
+    told = {"model": module.NAME, "spec_sha256": module.SPEC_SHA256, "proofs": verdict_of(module)}
+    return {**told, **parameters}
 
 
 def coordinates(system: System, times: FloatArray) -> Iterator[Named]:

@@ -4,6 +4,7 @@ Input: a module object from generated/<model>/<model>.py.  Output: the same obje
 every name of the interface, and the rows that each of its records takes in an array.
 """
 
+import re
 from collections.abc import Callable, Sequence
 from typing import Any, Protocol, TypeVar
 
@@ -64,6 +65,7 @@ class GeneratedModule(Protocol):
 
 
 ModuleT = TypeVar("ModuleT")
+UNPROVED = "NOT PROVED"  # what the verdict of a module begins with that is not proved
 
 
 def checked(module: ModuleT) -> ModuleT:
@@ -74,6 +76,12 @@ def checked(module: ModuleT) -> ModuleT:
         remedy = "load a file that 'piezo-sym generate' wrote, or generate it again"
         raise UsageError(what, "simulate.module", "a generated module", remedy)
     return module
+
+
+def verdict_of(module: GeneratedModule) -> str:
+    """Return what a module's head says of its proofs: "skew, ... PROVED", or "NOT PROVED (...)"."""
+    found = re.search(r"^Proofs: +(.+)$", module.__doc__ or "", re.MULTILINE)
+    return found[1] if found else f"{UNPROVED} (its head says nothing of proofs)"
 
 
 def lanes(parameters: Any, bank: str) -> int:
