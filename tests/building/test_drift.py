@@ -68,7 +68,7 @@ def test_a_changed_spec_is_found(spec, out):
     found = drift([Model(**spec)], out)  # the queries hold for any
     module, header, source, step_header, step, proofs = found
     assert "+    M: float = 0.004" in module.diff
-    assert "+    double M; /* moving mass [kg]; 0.004 */" in header.diff
+    assert "+    double M; /* moving mass [kg]; spec: 0.004 */" in header.diff
     assert "sha256" in source.diff
     assert "sha256" in step_header.diff
     assert "sha256" in step.diff
