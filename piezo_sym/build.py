@@ -22,7 +22,7 @@ from piezo_sym.derivation import derive
 from piezo_sym.errors import DriftError
 from piezo_sym.files import folder_entries, path_of, path_text, read_bytes, write_together
 from piezo_sym.proofs import Report, Verdict, proofs_json, smt2
-from piezo_sym.run.engine.alone import step_alone
+from piezo_sym.run.engine.c_sources import standalone_step
 from piezo_sym.spec.load import load
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.source import shipped
@@ -78,7 +78,7 @@ def render(
     if not allow_unproved:
         report.raise_if_not_proved()
     texts = printed(lower(iphs, verdict_line(report)), collocation_of(iphs))
-    texts["_step.c"] += step_alone(model.name, texts["_step.c"])
+    texts["_step.c"] += standalone_step(model.name, texts["_step.c"])
     made = f"{MARK} {VERSION}; do not edit: change the spec, then run `piezo-sym generate`."
     return {
         **{f"{model.name}/{model.name}{ending}": text for ending, text in texts.items()},

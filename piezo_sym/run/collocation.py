@@ -13,7 +13,7 @@ import numpy as np
 from piezo_sym.errors import RunError
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.engine import Engine
-from piezo_sym.run.engine.collocation import Batch, Stepping
+from piezo_sym.run.engine.batch import Batch, Stepping
 from piezo_sym.run.engine.library import Layout
 from piezo_sym.run.runs import Runs, Watch, stuck
 from piezo_sym.run.scales import shared
@@ -94,7 +94,7 @@ def results(batch: Batch, systems: Systems, x: FloatArray, times: FloatArray) ->
     for k in np.flatnonzero(records["failed"]).tolist():
         errors[k] = stuck(systems[k], float(records["t"][k]), batch.x[k])
     arrays = batch.states, batch.sums, work
-    return Runs(systems, x, times, *arrays, tuple(errors), numerical=batch.more > 0)
+    return Runs(systems, x, times, *arrays, tuple(errors), numerical=batch.extra > 0)
 
 
 def stepping(system: System, rtol: float, stages: int | None) -> Stepping:

@@ -14,7 +14,7 @@ from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.collocation import choice, with_tolerance
 from piezo_sym.run.discrete import FixedStep, fixed
 from piezo_sym.run.engine import Engine
-from piezo_sym.run.engine.collocation import is_lossy
+from piezo_sym.run.engine.batch import is_lossy
 from piezo_sym.run.guard import NAME, crossing, depth, domain_error
 from piezo_sym.run.inputs import Segment
 from piezo_sym.run.integrate import Batch, Tolerance, batches

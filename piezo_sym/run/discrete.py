@@ -16,7 +16,7 @@ from piezo_sym.errors import UsageError, listing, quote
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.collocation import layout_of, results, through
 from piezo_sym.run.engine import Engine
-from piezo_sym.run.engine.collocation import Batch, Stepping
+from piezo_sym.run.engine.batch import Batch, Stepping
 from piezo_sym.run.inputs import Segment
 from piezo_sym.run.runs import Runs, Watch
 from piezo_sym.run.system import System, Systems
@@ -63,7 +63,7 @@ def fixed(
     plain = Stepping(step.order // 2, 0.0, length, length, fixed=length)
     layout = layout_of(x, side_by_side=side_by_side)
     given = engine, known.parameters, x, inputs, times, plain, layout
-    batch = Batch(*given, more=2 if starts else 0)
+    batch = Batch(*given, extra=2 if starts else 0)
     for segment in inputs.segments if starts else ():
         if segment.start in inputs.jumps:
             batch.go_on(plain, segment.start)

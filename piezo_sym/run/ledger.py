@@ -20,7 +20,7 @@ from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.guard import crossing, domain_error, rate_error
 from piezo_sym.run.inputs import Segment
 from piezo_sym.run.integrate import Batch, Stretch
-from piezo_sym.run.module import exchanges
+from piezo_sym.run.module import exchanges, row_count
 from piezo_sym.run.system import System
 
 NODES = 4  # exact to degree 7: above every interpolant's own order
@@ -69,11 +69,9 @@ def record(
 
 def row_counts(system: System) -> tuple[int, int, int]:
     """Return the numbers of states, inputs and integrals."""
-    module = system.module
-    states = system.rows(module.STATES)[-1].stop
-    processes = sum(part.stop - part.start for part in system.rows(module.PROCESSES))
-    ports, exchanging = len(module.OUTPUTS), len(exchanges(module))
-    return states, len(module.INPUTS), ports + 2 * processes + exchanging
+    module, p = system.module, system.parameters
+    integrals = len(module.OUTPUTS) + 2 * row_count(module.PROCESSES, p) + len(exchanges(module))
+    return row_count(module.STATES, p), len(module.INPUTS), integrals
 
 
 def looked_at(system: System, batch: Batch) -> tuple[FloatArray, FloatArray]:

@@ -20,8 +20,8 @@ from typing import final
 from piezo_sym.errors import EngineError, UsageError, listing, one_line, quote
 from piezo_sym.files import path_text
 from piezo_sym.run.engine import Engine, EngineWarning
-from piezo_sym.run.engine.engine import engine_of, read_source
-from piezo_sym.run.engine.library import CACHE, cache_folder
+from piezo_sym.run.engine.engine import engine_of
+from piezo_sym.run.engine.library import CACHE, cache_folder, read_source
 from piezo_sym.run.integrate import METHODS
 from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.runs import METHOD

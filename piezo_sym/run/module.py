@@ -100,6 +100,11 @@ def rows(records: Sequence[Record], parameters: Any) -> tuple[slice, ...]:
     return tuple(found)
 
 
+def row_count(records: Sequence[Record], parameters: Any) -> int:
+    """Return the number of rows of an array that spreads banks."""
+    return sum(lanes(parameters, record.bank) if record.bank else 1 for record in records)
+
+
 def exchanges(module: GeneratedModule) -> list[int]:
     """Return which outputs belong to heat exchanges with the surroundings, such as ambients.
 

@@ -20,9 +20,9 @@ from piezo_sym.run.collocation import layout_of
 from piezo_sym.run.compiled import input_conditions
 from piezo_sym.run.dataset import ledger
 from piezo_sym.run.discrete import read_order
-from piezo_sym.run.engine.collocation import Batch, Stepping
+from piezo_sym.run.engine.batch import Batch, Stepping
 from piezo_sym.run.engine.engine import engine_of
-from piezo_sym.run.engine.records import LONG, POINTER, at
+from piezo_sym.run.engine.records import POINTER, at, c_record
 from piezo_sym.run.guard import check_start, domain_error
 from piezo_sym.run.inputs import Inputs, read_inputs
 from piezo_sym.run.ledger import Trajectory
@@ -30,19 +30,6 @@ from piezo_sym.run.module import GeneratedModule, checked, row_names
 from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
 from piezo_sym.run.signals import Constant
 from piezo_sym.run.system import System
-
-
-class Call(ctypes.Structure):
-    """MODEL(stepper) of tick.c."""
-
-    _fields_ = [
-        *((name, POINTER) for name in ("batch", "run", "signals", "u", "y")),
-        *(
-            (name, POINTER)
-            for name in ("outputs", "margins", "kept", "margin", "conditions", "strict")
-        ),
-        ("limits", LONG),
-    ]
 
 
 @final
@@ -146,11 +133,12 @@ class Stepper:
         self._forget: Any = self._batch.function("forget")
         self._forget(self._at)
 
-    def _made(self, outputs: Any, margins: Any) -> Call:
+    def _made(self, outputs: Any, margins: Any) -> Any:
         """Return what a call needs, all in one place; functions are those of ``<model>.c``."""
-        limits = self._limits
-        return Call(
-            *(*self._batch.one(), at(self._u), at(self._y), outputs, margins),
+        batch, limits = self._batch, self._limits
+        return c_record("stepper")(
+            *(batch.address, batch.run, batch.inputs.segments[0].signals),
+            *(at(self._u), at(self._y), outputs, margins),
             *(at(self._kept), at(limits.margins), at(limits.conditions), at(limits.strict)),
             limits.conditions.size,
         )

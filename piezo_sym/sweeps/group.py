@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from piezo_sym.errors import PiezoError, RunError
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.engine import Engine
-from piezo_sym.run.engine.members import Members
+from piezo_sym.run.engine.engine import Members
 from piezo_sym.run.guard import check_start
 from piezo_sym.run.inputs import Inputs
 from piezo_sym.run.module import GeneratedModule, rows

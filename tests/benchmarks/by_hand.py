@@ -21,7 +21,7 @@ from piezo_sym.bench.contest import Contestant
 from piezo_sym.bench.problem import SHIPPED
 from piezo_sym.errors import EngineError
 from piezo_sym.run.engine.compiler import FLAGS, build, compilers
-from piezo_sym.run.engine.structure import Layout
+from piezo_sym.run.engine.records import ParameterRecords
 from piezo_sym.spec.load import load
 from tests.benchmarks import hand_written
 from tests.benchmarks.ours import inputs_at_instant
@@ -86,7 +86,7 @@ class Hand:
     ) -> tuple[Callable[[Any], object], FloatArray]:
         """Return a call of a C function with a last argument, and where its rates go."""
         generated: Any = self.problem.module
-        structure = Layout(generated)(generated.Parameters(hysteron_count=lanes))
+        structure = ParameterRecords(generated)(generated.Parameters(hysteron_count=lanes))
         u, out = inputs_at_instant(self.problem), np.empty_like(x)
 
         def call(last: Any) -> object:

@@ -12,7 +12,7 @@ import pytest
 from piezo_sym.modules import load_module
 from piezo_sym.run.engine.compiler import FLAGS, build, compilers
 from piezo_sym.run.engine.engine import engine_of
-from piezo_sym.run.engine.structure import Layout
+from piezo_sym.run.engine.records import ParameterRecords
 from tests.benchmarks.test_rhs import best_times, states_and_inputs
 
 HERE = Path(__file__).parent
@@ -30,7 +30,7 @@ def by_hand(tmp_path_factory):
     library = ctypes.CDLL(str(path))
 
     def call(x, u, p, out):
-        structure = Layout(MODULE)(p)
+        structure = ParameterRecords(MODULE)(p)
         at = [ctypes.c_void_p(array.ctypes.data) for array in (x, u, out)]
         count = ctypes.c_long(x.shape[1])
         library.batch_by_hand(at[0], at[1], ctypes.byref(structure.value), at[2], count)

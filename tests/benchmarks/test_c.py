@@ -12,7 +12,7 @@ import pytest
 
 from piezo_sym.modules import load_module
 from piezo_sym.run.engine.compiler import FLAGS, build, compilers
-from piezo_sym.run.engine.structure import Layout
+from piezo_sym.run.engine.records import ParameterRecords
 
 HERE = Path(__file__).parent
 FOLDER = HERE.parents[1] / "generated" / "piezo_stack"
@@ -42,7 +42,7 @@ def caller(library, name, lanes, calls):
     """Return a call that computes the rates of one state many times, and where they go."""
     x, u = state(lanes)
     out = np.empty_like(x)
-    structure = Layout(MODULE)(MODULE.Parameters(hysteron_count=lanes))
+    structure = ParameterRecords(MODULE)(MODULE.Parameters(hysteron_count=lanes))
     function = getattr(library, f"loop_{name}")
 
     def call():

@@ -23,7 +23,7 @@ from piezo_sym.expressions.parse import parse_rule
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, If, LaneSum, Num, Sym, rebuild
 from piezo_sym.expressions.tree import replace as put
 from piezo_sym.modules import load_module
-from piezo_sym.run.engine.alone import step_alone
+from piezo_sym.run.engine.c_sources import standalone_step
 
 DRIVEN, STATE = ("x", "u", "p"), ("x", "p")
 
@@ -64,7 +64,7 @@ class HandMade:
     def module(self, folder):
         """Write the module's files into a folder; return the module."""
         texts = printed(sharp_program(self.program()), self.collocation())
-        texts["_step.c"] += step_alone(self.name, texts["_step.c"])
+        texts["_step.c"] += standalone_step(self.name, texts["_step.c"])
         for ending, text in texts.items():
             (Path(folder) / f"{self.name}{ending}").write_text(text, encoding="utf-8")
         return load_module(Path(folder) / f"{self.name}.py")

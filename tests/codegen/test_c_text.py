@@ -11,7 +11,7 @@ from piezo_sym import Model, derive, load
 from piezo_sym.codegen import collocation_of, lower, printed
 from piezo_sym.codegen.c.names import KEPT
 from piezo_sym.errors import SpecError
-from piezo_sym.run.engine.alone import step_alone
+from piezo_sym.run.engine.c_sources import standalone_step
 from piezo_sym.spec.names import check_symbol
 from tests.codegen.c_compilers import COMPILERS, SANITIZING
 
@@ -48,7 +48,7 @@ def written(model, folder):
     """Write a model's C files, and return their common name."""
     iphs = derive(model)
     texts = printed(lower(iphs, "verdict"), collocation_of(iphs))
-    texts["_step.c"] += step_alone(model.name, texts["_step.c"])
+    texts["_step.c"] += standalone_step(model.name, texts["_step.c"])
     for ending, text in texts.items():
         (folder / f"{model.name}{ending}").write_text(text, encoding="utf-8")
     return model.name

@@ -9,8 +9,7 @@ import pytest
 from piezo_sym import Stepper, load
 from piezo_sym.modules import module_of
 from piezo_sym.run.engine.compiler import build, compilers
-from piezo_sym.run.engine.records import at
-from piezo_sym.run.engine.structure import Layout
+from piezo_sym.run.engine.records import ParameterRecords, at
 
 SPECS = sorted((Path(__file__).parents[1] / "networks" / "specs").glob("*.toml"))
 
@@ -27,7 +26,7 @@ class Alone:
             folder / "step.so",
         )
         library = ctypes.CDLL(str(folder / "step.so"))
-        self.structure = Layout(module)(module.Parameters())
+        self.structure = ParameterRecords(module)(module.Parameters())
         self.function = getattr(library, f"{module.NAME}_step")
         size = getattr(library, f"{module.NAME}_step_size")
         size.restype = ctypes.c_long

@@ -10,7 +10,7 @@ import numpy as np
 from piezo_sym import load
 from piezo_sym.modules import module_of
 from piezo_sym.run.collocation import with_tolerance
-from piezo_sym.run.engine.collocation import Batch, Stepping
+from piezo_sym.run.engine.batch import Batch, Stepping
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.parameters import read_initial, read_parameters

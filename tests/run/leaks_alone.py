@@ -16,7 +16,7 @@ import pytest
 
 from piezo_sym import simulate, sine
 from piezo_sym.modules import module_of
-from piezo_sym.run.engine.collocation import Batch, Stepping
+from piezo_sym.run.engine.batch import Batch, Stepping
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.stepper import Stepper

@@ -8,7 +8,7 @@ from collocations import prepared
 
 from piezo_sym import sine
 from piezo_sym.run.collocation import stepping
-from piezo_sym.run.engine.collocation import Stepping
+from piezo_sym.run.engine.batch import Stepping
 from piezo_sym.run.engine.derivatives import Derivatives
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.engine.replay import Taped

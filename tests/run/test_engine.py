@@ -16,10 +16,9 @@ import pytest
 from piezo_sym.modules import load_module
 from piezo_sym.run.engine import Engine, EngineWarning, compiled, compiler
 from piezo_sym.run.engine import library as libraries
-from piezo_sym.run.engine.compiler import compilers
-from piezo_sym.run.engine.members import Members
-from piezo_sym.run.engine.processor import processor
-from piezo_sym.run.engine.structure import Layout
+from piezo_sym.run.engine.compiler import compilers, processor
+from piezo_sym.run.engine.engine import Members
+from piezo_sym.run.engine.records import ParameterRecords
 from piezo_sym.run.parameter_table import ParameterTable
 from tests.conftest import write_script
 
@@ -92,7 +91,7 @@ def test_runs_have_the_parameters_that_they_are_given(module):
 
 
 def test_what_c_has_of_a_table_goes_with_it(module):
-    layout = Layout(module)
+    layout = ParameterRecords(module)
     table = ParameterTable(module.Parameters(), 2, {"M": np.array([1e-3, 2e-3])})
     kept = weakref.ref(layout.many(table))
     assert layout.many(table) is kept()

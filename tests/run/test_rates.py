@@ -12,11 +12,9 @@ import pytest
 from piezo_sym import load
 from piezo_sym.codegen.c.names import KEPT
 from piezo_sym.modules import module_of
-from piezo_sym.run.engine import engine as engines
+from piezo_sym.run.engine.c_sources import c_source
 from piezo_sym.run.engine.compiler import FLAGS, build, compilers
-from piezo_sym.run.engine.driver import DRIVEN, PLAIN, SCALARS
-from piezo_sym.run.engine.engine import engine_of
-from piezo_sym.run.engine.texts import texts
+from piezo_sym.run.engine.engine import OFFERED, engine_of
 from piezo_sym.run.parameters import read_parameters
 from piezo_sym.spec.model import Model
 
@@ -24,7 +22,7 @@ SPECS = sorted((Path(__file__).parents[1] / "networks" / "specs").glob("*.toml")
 BATCHES = [(), (1,), (7,), (16,), (17,), (1000,), (0,), (3, 11), (1, 5, 50)]
 MOST_ULPS = 2
 #: Functions of many states that give rows.
-FUNCTIONS = [name for name in (*DRIVEN, *PLAIN, *SCALARS) if name not in ("jacobian", "margins")]
+FUNCTIONS = [n for n in OFFERED if n not in ("initial_state", "jacobian", "margins")]
 
 
 def states(module, batch, seed=0):
@@ -48,7 +46,7 @@ def state_sizes(module, p):
 
 
 def arguments(name, x, u, p):
-    return (x, p) if name in (*PLAIN, *SCALARS) else (x, u, p)
+    return (x, p) if name in ("temperatures", "energy", "entropy") else (x, u, p)
 
 
 def same(found, wanted):
@@ -117,7 +115,8 @@ def test_what_is_no_number_stays_in_its_state():
 
 
 def test_functions_are_those_of_the_engine():
-    assert {*DRIVEN, *PLAIN, *SCALARS} == {*engines.OFFERED} - {"initial_state"}
+    loops = r"^(?:OF_INPUTS|OF_STATES|SCALAR)\((\w+)\)"
+    assert {*re.findall(loops, c_source("columns.c"), re.M)} == {*OFFERED} - {"initial_state"}
 
 
 EXACT = """
@@ -140,7 +139,7 @@ void each(const double *x, double *e, double *m, long count)
 def exponentials(tmp_path_factory):
     """Return a function that gives exp(x) and exp(x) - 1 as vectors compute them."""
     folder = tmp_path_factory.mktemp("built")
-    (folder / "real.h").write_text(texts("real.h"))
+    (folder / "real.h").write_text(c_source("real.h"))
     (folder / "each.c").write_text(EXACT)
     build(next(compilers()), FLAGS[0], [folder / "each.c"], folder / "each.so")
     library = ctypes.CDLL(str(folder / "each.so"))
@@ -192,7 +191,7 @@ def test_exponentials_of_vectors_end_as_those_of_numbers_do(exponentials):
 
 def test_no_name_of_a_spec_is_one_of_the_vectors():
     """A parameter called `zero` is another name in C, so that it hides nothing."""
-    text = re.sub(r"/\*.*?\*/", "", texts("real.h"), flags=re.DOTALL)
+    text = re.sub(r"/\*.*?\*/", "", c_source("real.h"), flags=re.DOTALL)
     defined = re.findall(r"static (?:inline|const) \w+ (\w+)", text)
     defined += re.findall(
         r"#define (\w+)|(?:LANE_BY_LANE\(|enum \{ )(\w+)|\b(\w+) __attribute__", text

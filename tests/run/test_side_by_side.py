@@ -11,9 +11,10 @@ from piezo_sym.modules import module_of
 from piezo_sym.run.collocation import with_tolerance
 from piezo_sym.run.discrete import FixedStep, fixed
 from piezo_sym.run.engine import library as libraries
-from piezo_sym.run.engine.collocation import collocation_library
+from piezo_sym.run.engine.batch import collocation_library
 from piezo_sym.run.engine.compiler import FLAGS
-from piezo_sym.run.engine.engine import engine_of, read_source
+from piezo_sym.run.engine.engine import engine_of
+from piezo_sym.run.engine.library import read_source
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.parameters import read_initial, read_parameters
 from piezo_sym.run.system import System

@@ -9,8 +9,8 @@
 typedef struct {
     MODEL(run) *runs;
     const double *times;
-    long count, samples, over, ways;
-    long more; /* rows of ledgers behind the model's own: a dissipative step books two */
+    long count, samples, over_kinks, either;
+    long extra; /* rows of ledgers behind the model's own: a dissipative step books two */
     double stop, tolerance, first, longest, fixed;
 } MODEL(task);
 
@@ -39,7 +39,7 @@ static size_t MODEL(places)(MODEL(batch) *b, const MODEL(task) *task, real *memo
 {
     MODEL(block) *m = &b->m;
     real *at = memory;
-    at += MODEL(make)(m, task->runs->p, task->more, b->sizes, at);
+    at += MODEL(make)(m, task->runs->p, task->extra, b->sizes, at);
 #define PLACE(array, size) (b->array = at, at += (size))
     PLACE(rate, m->n);
     PLACE(side, m->branches);
@@ -92,13 +92,13 @@ void MODEL(open)(MODEL(batch) *b, const MODEL(task) *task)
     const double beyond = BEYOND * task->tolerance;
     b->beyond = fmax(AT_END, MODEL(jumps) ? beyond : fmin(sqrt(beyond), BEYOND));
     b->first = task->first, b->longest = task->longest, b->fixed = task->fixed;
-    b->ways = task->ways && b->m.branches >= MANY;
+    b->either = task->either && b->m.branches >= MANY;
     b->m.most = task->fixed > 0.0 ? MOST_OF_FIXED : MOST_ITERATIONS;
     b->m.late = task->fixed > 0.0 ? LATE : SOON;
     b->m.stays = task->fixed > 0.0 ? 0.7 : 0.3;
     b->m.sketch = b->m.sketched = nowhere;
     b->m.enough = SKETCH * task->tolerance / NOISE;
-    b->m.over = task->over ? none_of(nowhere) : nowhere;
+    b->m.over = task->over_kinks ? none_of(nowhere) : nowhere;
 }
 
 /* Let a lane take a run: its parameters, its state, and its ledger. */
@@ -127,7 +127,7 @@ static void MODEL(load)(MODEL(batch) *b, int lane, MODEL(run) *run)
     b->lane[lane].kept = -HUGE_VAL;
     b->lane[lane].which = -1;
     b->lane[lane].since = run->t;
-    if (b->ways)
+    if (b->either)
         SET(b->m.over, lane, 0);
     MODEL(sample_here)(b, lane);
 }

@@ -1,17 +1,18 @@
-"""A C compiler of this machine, and one call of it.
+"""The C compilers of this machine, one call of them, and the processor that they compile for.
 
 Input: the environment.  Output: `Compiler` records in the order in which they are tried: ``$CC``,
-cc, gcc, clang, then the one of the `zig` extra; and libraries, built from one source file.
+cc, gcc, clang, then the one of the `zig` extra; and shared libraries.
 """
 
 import os
+import platform
 import shlex
 import shutil
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache, lru_cache
 from importlib.util import find_spec
 from pathlib import Path
 from typing import final
@@ -40,6 +41,8 @@ FLAGS: tuple[tuple[str, ...], ...] = (
 )
 #: Bounds on a compiler that hangs: asked for its version, and at work.
 VERSION_SECONDS, MOST_SECONDS = 10.0, 120.0
+#: Lines of /proc/cpuinfo that name instructions, on x86, ARM, RISC-V and POWER.
+_INSTRUCTIONS = ("flags", "features", "isa", "cpu", "cpu part", "model name")
 
 
 @final
@@ -133,3 +136,36 @@ def _call(words: Sequence[str], seconds: float) -> subprocess.CompletedProcess[s
     except (OSError, subprocess.SubprocessError) as error:
         why = getattr(error, "strerror", None) or type(error).__name__
         raise EngineError(f"the compiler does not run ({why})", words[0]) from error
+
+
+@cache
+def processor() -> str:
+    """Return the kind and instructions of the processor, which compiled code depends on."""
+    found = [sys.platform, platform.machine(), platform.processor()]
+    try:
+        found += _cpu_lines(Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace"))
+    except OSError:
+        found += _cpu_of_macos()
+    return "\n".join(found)
+
+
+def _cpu_lines(cpuinfo: str) -> list[str]:
+    """Return what the first processor listed says of its instructions."""
+    known: dict[str, str] = {}
+    for line in cpuinfo.splitlines():
+        key, _, value = line.partition(":")
+        if key.strip().lower() in _INSTRUCTIONS:
+            known.setdefault(key.strip().lower(), value.strip())
+    return [f"{key}: {value}" for key, value in sorted(known.items())]
+
+
+def _cpu_of_macos() -> list[str]:
+    """Return what macOS says of its processor; nothing elsewhere."""
+    if sys.platform != "darwin":
+        return []
+    try:
+        words = ["/usr/sbin/sysctl", "machdep.cpu", "hw.optional"]
+        done = subprocess.run(words, capture_output=True, text=True, timeout=10, check=False)
+    except (OSError, subprocess.SubprocessError):
+        return []
+    return done.stdout.splitlines()

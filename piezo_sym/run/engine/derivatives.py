@@ -16,21 +16,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.engine.collocation import collocation_library
-from piezo_sym.run.engine.records import LONG, POINTER, at
+from piezo_sym.run.engine.batch import collocation_library
+from piezo_sym.run.engine.records import LONG, at, c_record
 from piezo_sym.run.engine.replay import Solved, Taped, TapedStep
 
 #: A slope is an imaginary part of so much: a power of two, whose square is nothing beside 1.
 TINY = 2.0**-400
-
-
-class Direction(ctypes.Structure):
-    """MODEL(direction) of derivatives.c."""
-
-    _fields_ = [
-        (n, POINTER)
-        for n in ("p", "slopes", "h", "x", "rates", "u", "branch", "gap", "end", "side", "space")
-    ]
 
 
 @final
@@ -92,7 +83,7 @@ class Derivatives:
         out = tuple(np.empty(s, complex) for s in (solved.rates.shape, step.x.shape, self._sides))
         arrays = (at(array) for array in (*given, *out, self._space))
         both = (ctypes.addressof(p.value) for p in (self._p, moved))
-        self._along(ctypes.byref(Direction(*both, *arrays)))
+        self._along(ctypes.byref(c_record("direction")(*both, *arrays)))
         return Slopes(*(array.imag / TINY for array in out))
 
     @cached_property

@@ -1,7 +1,7 @@
-"""A compiled module: the functions of its NumPy twin, computed in C.
+"""A compiled module: the functions of its NumPy module, computed in C.
 
-Input: a generated module.  Output: an `Engine`.  Arrays have the module's shapes; a call releases
-the interpreter's lock.
+Input: a generated module.  Output: an `Engine`, and `Members` for many runs, each with parameters
+of its own.  A call releases the interpreter's lock.
 """
 
 from __future__ import annotations
@@ -11,21 +11,22 @@ import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from pathlib import Path
 from typing import Any, final
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from piezo_sym.errors import EngineError, FileError
-from piezo_sym.files import path_text, read_text
+from piezo_sym.errors import EngineError
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.engine.columns import of_columns
-from piezo_sym.run.engine.driver import DRIVEN, PLAIN, SCALARS
-from piezo_sym.run.engine.library import EngineWarning, Sources, library
-from piezo_sym.run.engine.records import at
-from piezo_sym.run.engine.structure import Layout
-from piezo_sym.run.module import GeneratedModule, Record, lanes
+from piezo_sym.run.engine.library import EngineWarning, Sources, read_source, shared_library
+from piezo_sym.run.engine.records import INT, LONG, POINTER, ParameterRecords, at
+from piezo_sym.run.module import GeneratedModule, row_count
+
+#: The functions of a module that a library computes.
+OFFERED = (
+    *("initial_state", "rhs", "jacobian", "outputs", "supply", "heat", "entropy_production"),
+    *("margins", "temperatures", "energy", "entropy"),
+)
 
 
 def compiled(module: GeneratedModule) -> Engine | None:
@@ -51,66 +52,13 @@ def engine_of(module: GeneratedModule) -> Engine:
         If the sources are missing or of another spec, nothing can compile them, or the cache
         cannot be written.
     """
-    return _engine(module, _sources(module))  # type: ignore[arg-type]  # a module can be a key
+    sources = Sources(module.NAME, read_source(module, ".h"), read_source(module, ".c"))
+    return _engine(module, sources)  # type: ignore[arg-type]  # a module can be a key
 
 
 @lru_cache(maxsize=64)
 def _engine(module: GeneratedModule, sources: Sources) -> Engine:
-    return Engine(module, shared_library(sources), Layout(module), sources)
-
-
-def shared_library(sources: Sources) -> ctypes.CDLL:
-    """Return the library of some texts, compiled if need be, loaded."""
-    try:
-        return ctypes.CDLL(str(library(sources)))
-    except OSError:  # a damaged file in the cache
-        path = library(sources, again=True)
-    try:
-        return ctypes.CDLL(str(path))
-    except OSError as error:
-        what = "the compiled module cannot be loaded"
-        raise EngineError(what, path_text(path), remedy="delete it") from error
-
-
-def _sources(module: GeneratedModule) -> Sources:
-    """Return the texts beside a module, checked to be of its spec."""
-    header, source = (read_source(module, ending) for ending in (".h", ".c"))
-    return Sources(module.NAME, header, source)
-
-
-def read_source(module: GeneratedModule, ending: str) -> str:
-    """Return the text beside a module, ``<model>.c`` for ".c", checked to be of its spec.
-
-    Raises
-    ------
-    EngineError
-        If it is missing, or of another spec.
-    """
-    path = Path(getattr(module, "__file__", None) or f"{module.NAME}.py")
-    file = path.with_name(f"{module.NAME}{ending}")
-    text = _text(file)
-    if text is None or f"spec sha256 {module.SPEC_SHA256}" not in text:
-        what = "is missing" if text is None else "is of another spec than the module"
-        raise EngineError(what, path_text(file), remedy="run `piezo-sym generate`")
-    return text
-
-
-def _text(file: Path) -> str | None:
-    """Return a file's text, or None without one; it is read again when it changes."""
-    try:
-        status = file.stat()
-    except OSError:
-        return None
-    return _read(file, status.st_mtime_ns, status.st_size)
-
-
-@lru_cache(maxsize=64)
-def _read(file: Path, changed: int, size: int) -> str | None:
-    del changed, size  # they tell one text from another
-    try:
-        return read_text(file)
-    except FileError as error:
-        raise EngineError(error.what, error.where, remedy=error.remedy) from error
+    return Engine(module, shared_library(sources), ParameterRecords(module), sources)
 
 
 @final
@@ -123,16 +71,15 @@ class Engine:
 
     module: GeneratedModule
     library: ctypes.CDLL
-    structure: Layout
+    structure: ParameterRecords
     sources: Sources
 
     def initial_state(self, u: ArrayLike, p: Any, /) -> FloatArray:
         """Return the state at t = 0, shape (n,), for the inputs u (inputs,) at t = 0."""
         u = self._array(u, len(self.module.INPUTS), "inputs").ravel()
-        out = np.empty(self.rows(self.module.STATES, p))
-        function = getattr(self.library, f"{self.module.NAME}_initial_state")
+        out = np.empty(row_count(self.module.STATES, p))
         structure = self.structure(p)  # a name of its own keeps the arrays of its lanes alive
-        function(at(u), ctypes.byref(structure.value), at(out))
+        self.function("initial_state")(at(u), ctypes.byref(structure.value), at(out))
         return out
 
     def rhs(
@@ -145,11 +92,11 @@ class Engine:
         out : a C-contiguous array of that shape to put it in, apart from x and u: new memory for
             many states costs as much as their rates.
         """
-        return self._called("rhs", x, u, p, self.rows(self.module.STATES, p), out)
+        return self._called("rhs", x, u, p, row_count(self.module.STATES, p), out)
 
     def jacobian(self, x: ArrayLike, u: ArrayLike, p: Any, /) -> FloatArray:
         """Return the derivative of `rhs` by the state, shape (n, n, *batch)."""
-        n = self.rows(self.module.STATES, p)
+        n = row_count(self.module.STATES, p)
         found = self._called("jacobian", x, u, p, n * n)
         return found.reshape(n, n, *found.shape[1:])
 
@@ -163,11 +110,11 @@ class Engine:
 
     def heat(self, x: ArrayLike, u: ArrayLike, p: Any, /) -> FloatArray:
         """Return the heat of each process [W], shape (processes, *batch), banks spread."""
-        return self._called("heat", x, u, p, self.rows(self.module.PROCESSES, p))
+        return self._called("heat", x, u, p, row_count(self.module.PROCESSES, p))
 
     def entropy_production(self, x: ArrayLike, u: ArrayLike, p: Any, /) -> FloatArray:
         """Return the entropy produced [W/K], shape (processes, *batch), banks spread."""
-        return self._called("entropy_production", x, u, p, self.rows(self.module.PROCESSES, p))
+        return self._called("entropy_production", x, u, p, row_count(self.module.PROCESSES, p))
 
     def margins(self, x: ArrayLike, u: ArrayLike, p: Any, /) -> FloatArray:
         """Return the margin of each condition of the domain, shape (conditions, *batch)."""
@@ -187,10 +134,6 @@ class Engine:
         rows = self._called("entropy", x, None, p, 1)
         return rows.reshape(rows.shape[1:])
 
-    def rows(self, records: Sequence[Record], p: Any) -> int:
-        """Return the number of rows that records take, banks spread."""
-        return sum(lanes(p, record.bank) if record.bank else 1 for record in records)
-
     def _array(self, value: ArrayLike, rows: int, what: str) -> FloatArray:
         array = np.asarray(value, dtype=float)
         if array.shape[:1] != (rows,):
@@ -208,14 +151,29 @@ class Engine:
         out: FloatArray | None = None,
     ) -> FloatArray:
         """Return a function's rows for every column of a batch, shape (rows, *batch)."""
-        states = self._array(x, self.rows(self.module.STATES, p), "states")
+        states = self._array(x, row_count(self.module.STATES, p), "states")
         batch, structure = states.shape[1:], self.structure(p)  # it keeps its lanes' arrays alive
         width = int(np.prod(batch, dtype=int))
-        columns = states.reshape(states.shape[0], width)
+        columns = np.ascontiguousarray(states.reshape(states.shape[0], width))
+        inputs = np.ascontiguousarray(self._inputs(u, batch))
         found = _place(out, (rows, *batch))
-        given = columns, self._inputs(u, batch), structure.value, found.reshape(rows, width)
-        of_columns(self.library, self.module.NAME, name, *given)
+        sizes = columns.shape[0], inputs.shape[0], rows
+        space = np.empty(
+            LONG.in_dll(self.library, f"{self.module.NAME}_tile").value * (sum(sizes) + 1)
+        )
+        self.function("of_columns")(
+            *(self.loop(name), at(columns), at(inputs), ctypes.byref(structure.value), at(found)),
+            *(*map(LONG, (width, *sizes)), INT(inputs.ndim == 2), at(space)),
+        )
         return found
+
+    def function(self, word: str) -> Any:
+        """Return a function of the library by its own name."""
+        return getattr(self.library, f"{self.module.NAME}_{word}")
+
+    def loop(self, name: str) -> ctypes.c_void_p:
+        """Return the loop of a function over columns, for `of_columns` and `of_runs`."""
+        return ctypes.cast(self.function(f"{name}_columns"), POINTER)
 
     def _inputs(self, u: ArrayLike | None, batch: tuple[int, ...]) -> FloatArray:
         """Return inputs (inputs, columns), or (inputs,) for all columns."""
@@ -238,5 +196,41 @@ def _place(out: FloatArray | None, shape: tuple[int, ...]) -> FloatArray:
     return out
 
 
-#: The functions of a module that a library computes.
-OFFERED = ("initial_state", *DRIVEN, *PLAIN, *SCALARS)
+@final
+class Members:
+    """The functions of a module for some runs of equal sizes, each with parameters of its own."""
+
+    def __init__(self, engine: Engine, parameters: Sequence[Any]) -> None:
+        self._engine = engine
+        self._kept = engine.structure.many(parameters)
+
+    def inside(self, x: FloatArray, u: FloatArray) -> NDArray[np.bool_]:
+        """Return which states (runs, k, n) lie in the domain, and have a finite rate, (runs, k)."""
+        domain = self._engine.module.DOMAIN
+        margins = self("margins", x, len(domain), u)
+        strict = np.array([condition.strict for condition in domain], dtype=bool)
+        held = np.where(strict, margins > 0, margins >= 0)
+        finite = np.isfinite(self("rhs", x, x.shape[2], u))
+        good: NDArray[np.bool_] = np.all(held, axis=2) & np.all(finite, axis=2)
+        return good
+
+    def __call__(
+        self, name: str, x: FloatArray, rows: int, u: FloatArray | None = None
+    ) -> FloatArray:
+        """Return a function's rows (runs, k, rows).
+
+        Parameters
+        ----------
+        name : of the function, such as "outputs".
+        x : states (runs, k, n), C-contiguous.
+        rows : that it gives.
+        u : inputs (k, inputs) for all runs, C-contiguous; None for a function without.
+        """
+        out = np.empty((*x.shape[:2], rows))
+        inputs = np.empty((1, 0)) if u is None else u
+        places = self._kept.addresses
+        sizes = map(LONG, (x.shape[1], x.shape[2], inputs.shape[1], rows))
+        arrays = at(x), at(inputs), at(out)
+        runs = at(places), LONG(len(places))
+        self._engine.function("of_runs")(self._engine.loop(name), *runs, *arrays, *sizes)
+        return out

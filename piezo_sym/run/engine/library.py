@@ -1,28 +1,33 @@
-"""Source to a shared library in the user's cache.
+"""The C beside a module, compiled into a shared library in the user's cache, and loaded.
 
-Input: the texts of a module's .c and .h.  Output: the path of its library.  A library is named by
-all that it depends on (texts, flags, compiler, processor), is built aside and moved into place in
-one step: any number of processes may ask at once, and none ever sees half a file.
+Input: a module, or the texts of its .c and .h.  Output: its library.  A library is named by all
+that it depends on (texts, flags, compiler, processor), is built aside and moved into place in one
+step: any number of processes may ask at once, and none ever sees half a file.
 """
 
+import ctypes
 import hashlib
 import os
 import sys
 import tempfile
 import warnings
-from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from subprocess import TimeoutExpired
 from typing import Literal, final
 
 from piezo_sym.errors import EngineError, FileError, one_line
-from piezo_sym.files import path_text, temporary_folder
-from piezo_sym.run.engine.compiler import FLAGS, Compiler, build, compilers, passed_by
-from piezo_sym.run.engine.driver import at_once, collocation, driver, lanes_of
-from piezo_sym.run.engine.processor import processor
-from piezo_sym.run.engine.texts import texts as texts_of
+from piezo_sym.files import path_text, read_text, temporary_folder
+from piezo_sym.run.engine.c_sources import (
+    c_source,
+    functions_source,
+    stage_lanes,
+    stages_source,
+    steps_source,
+)
+from piezo_sym.run.engine.compiler import FLAGS, Compiler, build, compilers, passed_by, processor
+from piezo_sym.run.module import GeneratedModule
 
 Layout = Literal["one", "many", "lanes", "slopes"]
 #: What is compiled; the other files are included there.
@@ -62,15 +67,62 @@ class Sources:
         texts = {f"{self.name}.h": self.header, f"{self.name}.c": self.source}
         if self.stages:
             texts[f"{self.name}_step.c"] = self.step
-            texts["elimination.c"] = texts_of("elimination.c")
-        if lanes := lanes_of(self.stages, self.layout, lossy=self.lossy):
-            texts["stages.c"] = at_once(self.name, lanes)
-        return {**texts, "driver.c": self._driver()}
+            texts["elimination.c"] = c_source("elimination.c")
+            lossy = self.lossy
+            texts["driver.c"] = steps_source(self.name, self.stages, self.layout, lossy=lossy)
+            if lanes := stage_lanes(self.stages, self.layout, lossy=lossy):
+                texts["stages.c"] = stages_source(self.name, lanes)
+        else:
+            texts["driver.c"] = functions_source(self.name)
+        return texts
 
-    def _driver(self) -> str:
-        if not self.stages:
-            return driver(self.name)
-        return collocation(self.name, self.stages, self.layout, lossy=self.lossy)
+
+def read_source(module: GeneratedModule, ending: str) -> str:
+    """Return the text beside a module, ``<model>.c`` for ".c", checked to be of its spec.
+
+    Raises
+    ------
+    EngineError
+        If it is missing, or of another spec.
+    """
+    path = Path(getattr(module, "__file__", None) or f"{module.NAME}.py")
+    file = path.with_name(f"{module.NAME}{ending}")
+    text = _text(file)
+    if text is None or f"spec sha256 {module.SPEC_SHA256}" not in text:
+        what = "is missing" if text is None else "is of another spec than the module"
+        raise EngineError(what, path_text(file), remedy="run `piezo-sym generate`")
+    return text
+
+
+def _text(file: Path) -> str | None:
+    """Return a file's text, or None without one; it is read again when it changes."""
+    try:
+        status = file.stat()
+    except OSError:
+        return None
+    return _read(file, status.st_mtime_ns, status.st_size)
+
+
+@lru_cache(maxsize=64)
+def _read(file: Path, changed: int, size: int) -> str | None:
+    del changed, size  # they tell one text from another
+    try:
+        return read_text(file)
+    except FileError as error:
+        raise EngineError(error.what, error.where, remedy=error.remedy) from error
+
+
+def shared_library(sources: Sources) -> ctypes.CDLL:
+    """Return the library of some texts, compiled if need be, loaded."""
+    try:
+        return ctypes.CDLL(str(library(sources)))
+    except OSError:  # a damaged file in the cache
+        path = library(sources, again=True)
+    try:
+        return ctypes.CDLL(str(path))
+    except OSError as error:
+        what = "the compiled module cannot be loaded"
+        raise EngineError(what, path_text(path), remedy="delete it") from error
 
 
 def library(sources: Sources, *, again: bool = False) -> Path:
@@ -88,9 +140,10 @@ def library(sources: Sources, *, again: bool = False) -> Path:
     """
     first: EngineError | None = None
     hung: set[Compiler] = set()
-    for compiler, flags in _ways(sources):
+    for compiler, options in ((one, some) for one in compilers() for some in FLAGS):
         if compiler in hung:
             continue
+        flags = _flags(sources, options)
         try:
             path = _kept(sources, compiler, flags, again=again)
         except EngineError as error:
@@ -107,12 +160,6 @@ def library(sources: Sources, *, again: bool = False) -> Path:
         raise first
     remedy = "install gcc or clang, set CC, or `pip install piezo_sym[zig]`"
     raise EngineError("no C compiler is found", "engine", remedy=remedy)
-
-
-def _ways(sources: Sources) -> Iterator[tuple[Compiler, tuple[str, ...]]]:
-    for compiler in compilers():
-        for flags in FLAGS:
-            yield compiler, _flags(sources, flags)
 
 
 def cache_folder() -> Path:

@@ -61,7 +61,7 @@ static int MODEL(choose_way)(MODEL(batch) *b, int lane)
 {
     MODEL(lane) *l = b->lane + lane;
     const int over = IN(b->m.over, lane) != 0;
-    if (!b->ways || l->ticks < TRIED)
+    if (!b->either || l->ticks < TRIED)
         return 0;
     l->pace[over] = (l->t - l->since) / l->ticks;
     l->since = l->t;

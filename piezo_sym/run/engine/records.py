@@ -1,13 +1,176 @@
-"""Types and addresses of C, for what Python hands to a library."""
+"""Records of C for Python: those that the files of this folder declare, and a model's parameters.
+
+Input: the declarations, and a module's `Parameters` or a `ParameterTable` of many.  Output: ctypes
+structures, their addresses, and what their pointers point into.
+"""
 
 import ctypes
-from typing import Any
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from typing import Any, final
+from weakref import WeakKeyDictionary
 
+import numpy as np
 from numpy.typing import NDArray
 
+from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.engine.c_sources import c_source
+from piezo_sym.run.module import GeneratedModule, lanes
+from piezo_sym.run.parameter_table import Column, ParameterTable
+
 POINTER, LONG, INT, DOUBLE = ctypes.c_void_p, ctypes.c_long, ctypes.c_int, ctypes.c_double
+_DECLARED = ("trajectory.c", "batch.c", "step_once.c", "derivatives.c")
+_NUMBERS = {"double": DOUBLE, "long": LONG}
+
+#: Parameters whose structures are kept: single runs ask for the same ones again and again.
+REMEMBERED = 256
+
+
+@cache
+def c_record(name: str) -> Any:
+    """Return MODEL(name) as a ctypes structure; its one declaration is that in C.
+
+    Fields are numbers, `double` or `long`, and pointers.
+    """
+    text = re.sub(r"/\*.*?\*/", "", c_source(*_DECLARED), flags=re.DOTALL)
+    found = re.search(rf"typedef struct {{([^{{}}]*)}} MODEL\({name}\);", text)
+    if not found:
+        msg = f"no file declares a record {name}"
+        raise LookupError(msg)
+    return type(name, (ctypes.Structure,), {"_fields_": list(_fields(found[1]))})
+
+
+def _fields(declarations: str) -> Iterator[tuple[str, Any]]:
+    for declaration in declarations.split(";")[:-1]:
+        if function := re.search(r"\(\*(\w+)\)", declaration):
+            yield function[1], POINTER
+            continue
+        kind, names = declaration.replace("const ", "").split(maxsplit=1)
+        for name in (one.strip() for one in names.split(",")):
+            yield name.lstrip("*"), POINTER if name.startswith("*") else _NUMBERS[kind]
+
+
+@cache
+def record_dtype(name: str) -> np.dtype[Any]:
+    """Return MODEL(name) for NumPy: an array of records has one for each field."""
+    found: np.dtype[Any] = np.dtype(c_record(name))
+    return found
 
 
 def at(array: NDArray[Any]) -> ctypes.c_void_p:
     """Return the address of an array's numbers."""
     return ctypes.c_void_p(array.ctypes.data)
+
+
+def addresses(array: NDArray[Any]) -> NDArray[np.uintp]:
+    """Return the address of each part of an array along its first axis."""
+    first, apart = array.ctypes.data, array.strides[0]
+    return (first + apart * np.arange(len(array))).astype(np.uintp)
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Structure:
+    """A C structure and the arrays that its pointers point into."""
+
+    value: ctypes.Structure
+    arrays: tuple[FloatArray, ...]
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Structures:
+    """C structures of many runs, their addresses, and what their pointers point into."""
+
+    addresses: NDArray[np.uintp]
+    kept: tuple[object, ...]
+
+
+@final
+class ParameterRecords:
+    """A module's `Parameters` as the structure of its header; called, it gives that of one run.
+
+    Fields are in the order of the spec, a number each, or a pointer to one number per lane; then
+    the sizes of banks.
+    """
+
+    def __init__(self, module: GeneratedModule) -> None:
+        self._module = module
+        fields: list[tuple[str, Any]] = [
+            (f"field_{n}", POINTER if record.bank else DOUBLE)
+            for n, record in enumerate(module.PARAMETERS)
+        ]
+        fields += [(f"count_{n}", LONG) for n, _ in enumerate(module.BANKS)]
+        none = [("none", ctypes.c_char)]
+        self._kind = type("Parameters", (ctypes.Structure,), {"_fields_": fields or none})
+        self._remembered = lru_cache(maxsize=REMEMBERED)(self._made)
+        self._tables: WeakKeyDictionary[ParameterTable, Structures] = WeakKeyDictionary()
+
+    def __call__(self, p: Any) -> Structure:
+        """Return the structure of one run."""
+        try:
+            return self._remembered(p)
+        except TypeError:  # a list among the values cannot be a key
+            return self._made(p)
+
+    def _made(self, p: Any) -> Structure:
+        values: list[float | int] = []
+        arrays: list[FloatArray] = []
+        for record in self._module.PARAMETERS:
+            value = getattr(p, record.name)
+            if record.bank:
+                arrays.append(_spread(value, lanes(p, record.bank)))
+                values.append(arrays[-1].ctypes.data)
+            else:
+                values.append(float(value))
+        values += [lanes(p, bank) for bank in self._module.BANKS]
+        return Structure(self._kind(*values), tuple(arrays))
+
+    def many(self, parameters: Sequence[Any]) -> Structures:
+        """Return the structures of runs whose banks have equal sizes.
+
+        Those of a `ParameterTable` are made once, and go with it.
+        """
+        if len(parameters) == 1:
+            one = self(parameters[0])
+            return Structures(np.array([ctypes.addressof(one.value)], dtype=np.uintp), (one,))
+        table = ParameterTable.of(parameters)
+        found = self._tables.get(table)
+        if found is None:
+            found = self._tables[table] = self._together(table)
+        return found
+
+    def _together(self, table: ParameterTable) -> Structures:
+        base = self(table.base)
+        records = np.full(len(table), np.frombuffer(memoryview(base.value), np.dtype(self._kind)))
+        kept: list[object] = [base, records]
+        for n, record in enumerate(self._module.PARAMETERS):
+            column = table.columns.get(record.name)
+            if column is not None and record.bank:
+                kept.append(rows := _rows(column, lanes(table.base, record.bank)))
+                records[f"field_{n}"] = addresses(rows)
+            elif column is not None:
+                records[f"field_{n}"] = column
+        return Structures(addresses(records), tuple(kept))
+
+
+def _rows(values: Column, count: int) -> FloatArray:
+    """Return one number per lane, a row each; a value is a number or one per lane."""
+    try:
+        array = np.array(values, dtype=float)  # all of them numbers, or all one per lane
+    except ValueError:
+        return np.array([_spread(value, count) for value in values])
+    if array.ndim == 1:
+        array = array[:, None]
+    return np.ascontiguousarray(np.broadcast_to(array, (len(values), count)))
+
+
+def _spread(value: Any, count: int) -> FloatArray:
+    """Return one number per lane."""
+    array = np.array(value, dtype=float)
+    if array.ndim and array.shape != (count,):
+        msg = f"a parameter of a bank of {count} lanes has {array.size} values"
+        raise ValueError(msg)
+    return np.ascontiguousarray(np.broadcast_to(array, (count,)))

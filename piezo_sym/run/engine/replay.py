@@ -11,22 +11,13 @@ from typing import Any, final
 import numpy as np
 
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.engine.collocation import Batch, Stepping
+from piezo_sym.run.engine.batch import Batch, Stepping
 from piezo_sym.run.engine.engine import Engine
-from piezo_sym.run.engine.records import DOUBLE, LONG, POINTER, at
+from piezo_sym.run.engine.records import DOUBLE, at, c_record
 from piezo_sym.run.inputs import Inputs
 
 #: Steps that are taken before the tape is read.
 ROOM = 256
-
-
-class Record(ctypes.Structure):
-    """MODEL(tape) of trajectory.c."""
-
-    _fields_ = [
-        *((n, POINTER) for n in ("segments", "scale", "t", "h", "x", "branch")),
-        ("count", LONG),
-    ]
 
 
 @final
@@ -89,8 +80,9 @@ class Taped:
         self._x = np.empty((ROOM, x.size))
         self._branches = np.empty((ROOM, stepping.stages, branches))
         arrays = (self.scale, self._t, self._h, self._x, self._branches)
-        self._record = Record(self._batch.segments, *(a.ctypes.data for a in arrays), 0)
-        self._call("keep", ctypes.byref(self._record))
+        segments = self._batch.inputs.address(0.0)
+        self._record = c_record("tape")(segments, *map(at, arrays))
+        self._batch.call("keep", ctypes.byref(self._record))
 
     def run(self) -> tuple[TapedStep, ...]:
         """Take the run as far as it goes; return its steps."""
@@ -124,9 +116,7 @@ class Taped:
         own = (np.ascontiguousarray(a, dtype=float) for a in (step.x, step.branches))
         arrays = (*own, rates, u, end)
         inside = 0 <= step.t < self._duration
-        if not inside or not self._call("replay", DOUBLE(step.t), DOUBLE(step.h), *map(at, arrays)):
+        given = "replay", DOUBLE(step.t), DOUBLE(step.h)
+        if not inside or not self._batch.call(*given, *map(at, arrays)):
             raise ValueError("the step has no rates")
         return Solved(rates, u, end)
-
-    def _call(self, word: str, *given: Any) -> Any:
-        return self._batch.call(word, *given)

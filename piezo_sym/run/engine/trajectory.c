@@ -12,13 +12,13 @@
 
 /*
  * An input between its breaks: a wave whose frequency may move; polynomials of Chebyshev, so many
- * terms each, between edges; or a function that is asked.
+ * terms each, between edges; or a function to call.
  */
 typedef struct {
     double amplitude, frequency, rate, phase, offset;
     const double *edges, *coefficients;
     long pieces, terms;
-    double (*asked)(double);
+    double (*called)(double);
 } MODEL(signal);
 
 /* Inputs until a time. */
@@ -77,7 +77,7 @@ typedef struct {
     MODEL(lane) lane[REAL_WIDTH];
     MODEL(run) *runs;
     const double *times; /* of samples */
-    long count, next, samples, ways;
+    long count, next, samples, either; /* `either`: steps end at kinks, or go over them */
     double stop, tolerance, first, longest, fixed;
     double beyond; /* so much of a step may lie beyond the switch at its end: no stage does */
     real *rate, *side, *sums, *lost, *known;       /* at the begin of a step; of the step before */
@@ -143,8 +143,8 @@ static void MODEL(inputs_at)(const MODEL(segment) *segment, long inputs, double 
         const MODEL(signal) *s = segment->signals + k;
         const double turns = (s->frequency + 0.5 * s->rate * t) * t;
         double value = s->offset;
-        if (s->asked)
-            value = s->asked(t);
+        if (s->called)
+            value = s->called(t);
         else if (s->pieces)
             value = MODEL(piece_at)(s, t);
         else if (s->amplitude != 0.0)

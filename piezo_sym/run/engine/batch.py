@@ -1,0 +1,201 @@
+"""Collocation steps of runs in C: the library of a number of stages, and batches of runs.
+
+Input: a module's engine, parameters, inputs and states of some runs.  Output: `Batch`, which steps
+them and owns the arrays that C works on.
+"""
+
+import ctypes
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Any, Literal, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.engine.engine import Engine
+from piezo_sym.run.engine.library import Layout, read_source, shared_library
+from piezo_sym.run.engine.records import DOUBLE, LONG, addresses, at, c_record, record_dtype
+from piezo_sym.run.engine.signals import InputRecords
+from piezo_sym.run.inputs import Inputs
+
+#: Vectors lie at multiples of so many bytes.
+ALIGNED = 64
+
+
+@final
+@dataclass(frozen=True)
+class Stepping:
+    """How runs step.
+
+    Attributes
+    ----------
+    stages : of a step, 1 to 5; its order is twice that.
+    tolerance : of the estimate of a step's error, in scales of the states; not used with `fixed`.
+    fixed : the longest step [s], where steps divide what lies between samples and breaks evenly,
+        and go over kinks; 0 if errors decide.
+    first, longest : the length of the first step, and of the longest [s].
+    kinks : whether steps end there, or go over them; or what gets further, where switches are many.
+    lossy : whether steps are dissipative, of one stage; one that does not succeed is not halved.
+    """
+
+    stages: int
+    tolerance: float
+    first: float
+    longest: float
+    fixed: float = 0.0
+    kinks: Literal["end", "over", "either"] = "either"
+    lossy: bool = False
+
+
+@lru_cache(maxsize=64)
+def collocation_library(
+    engine: Engine, stages: int, layout: Layout, *, lossy: bool = False
+) -> ctypes.CDLL:
+    """Return the library of a module's collocation steps of so many stages.
+
+    Raises
+    ------
+    EngineError
+        If ``<model>_step.c`` is missing or of another spec, or cannot be compiled.
+    """
+    step = read_source(engine.module, "_step.c")
+    made = replace(engine.sources, step=step, stages=stages, layout=layout, lossy=lossy)
+    return shared_library(made)
+
+
+def is_lossy(engine: Engine) -> bool:
+    """Return whether a module has dissipative steps: stores, and a body to take their loss."""
+    library = collocation_library(engine, 1, "one")
+    return bool(LONG.in_dll(library, f"{engine.module.NAME}_lossy").value)
+
+
+@final
+class Batch:
+    """Runs of equal sizes, stepped together.
+
+    Attributes
+    ----------
+    x : the states (runs, n): at t = 0, and then where runs are.
+    largest : the largest magnitude of each state (runs, n).
+    ledgers : what is booked so far, and what rounding lost of it (runs, 2, rows).
+    states, sums : at samples, (runs, samples, n) and (runs, samples, rows), rows in the order of
+        `System.rates`, then `extra`; nan where a run did not get.
+    records : what else C tells of each run, by the names of MODEL(run).
+    inputs : those of all runs, in C.
+    address : of MODEL(batch).
+
+    Parameters
+    ----------
+    engine : of the module.
+    parameters : of each run.
+    x : their states (runs, n) at t = 0.
+    inputs : of all.
+    times : of samples (samples,).
+    layout : "one" run after another, "many" side by side in vectors, or "lanes" of one run's banks.
+    extra : rows of ledgers behind the model's own: 2 for heat and entropy of dissipative steps.
+    """
+
+    def __init__(
+        self,
+        engine: Engine,
+        parameters: Sequence[Any],
+        x: FloatArray,
+        inputs: Inputs,
+        times: FloatArray,
+        stepping: Stepping,
+        layout: Layout,
+        *,
+        extra: int = 0,
+    ) -> None:
+        self._engine, self._layout, self.extra = engine, layout, extra
+        self._structures = engine.structure.many(parameters)
+        self.x, self.largest = np.array(x, dtype=float), np.abs(x)
+        self.inputs = InputRecords(inputs)
+        self._times = np.ascontiguousarray(times, dtype=float)
+        count, n = self.x.shape
+        self._runs = (c_record("run") * count)()
+        self.records: Any = np.frombuffer(memoryview(self._runs), record_dtype("run"))
+        self.records["p"] = self._structures.addresses
+        self._load(stepping)
+        rows = self.sizes()[3] + extra
+        self.states = np.full((count, times.size, n), np.nan)
+        self.sums = np.full((count, times.size, rows), np.nan)
+        self.ledgers = np.zeros((count, 2, rows))
+        for name in ("x", "largest", "states", "sums"):
+            self.records[name] = addresses(getattr(self, name))
+        self.records["ledger"] = addresses(self.ledgers)
+        self.go_on(stepping, inputs.duration)
+
+    def go_on(self, stepping: Stepping, stop: float) -> None:
+        """Prepare runs to go on from where they are until `stop` [s]; those that failed stay.
+
+        The others are in one segment of the inputs, or beyond `stop`.
+        """
+        self._load(stepping)
+        t = self.records["t"].min(where=self.records["failed"] == 0, initial=stop)
+        self.records["segments"] = self.inputs.address(t)
+        over = stepping.kinks == "over" or stepping.fixed > 0
+        task = c_record("task")(
+            runs=ctypes.addressof(self._runs),
+            times=at(self._times),
+            count=len(self._runs),
+            samples=self._times.size,
+            over_kinks=over,
+            either=stepping.kinks == "either" and not over,
+            extra=self.extra,
+            stop=stop,
+            tolerance=stepping.tolerance,
+            first=stepping.first,
+            longest=stepping.longest,
+            fixed=stepping.fixed,
+        )
+        size = self.function("batch_size")
+        size.restype = LONG
+        self._space = np.zeros(int(size(ctypes.byref(task))) + ALIGNED, dtype=np.uint8)
+        place = self._space.ctypes.data
+        self.address = ctypes.c_void_p(place + -place % ALIGNED)
+        self.call("open", ctypes.byref(task))
+
+    def _load(self, stepping: Stepping) -> None:
+        given = self._engine, stepping.stages, "one" if stepping.lossy else self._layout
+        self._library = collocation_library(*given, lossy=stepping.lossy)
+
+    def sizes(self) -> NDArray[Any]:
+        """Return what the model's own function says of its arrays' sizes."""
+        module = self._engine.module
+        found = np.zeros(7 + len(module.BANKS) + len(module.STATES), dtype=np.dtype("l"))
+        first = ctypes.c_void_p(int(self._structures.addresses[0]))
+        self.function("sizes_of")(first, at(found))
+        return found
+
+    @property
+    def run(self) -> int:
+        """The address of the first run."""
+        return ctypes.addressof(self._runs)
+
+    def function(self, word: str) -> Any:
+        """Return one of the functions of C by its own name."""
+        return getattr(self._library, f"{self._engine.module.NAME}_{word}")
+
+    def survey(self, longest: float) -> None:
+        """Find by rough steps, none longer than that [s], how large states become: `largest`."""
+        self.call("survey", DOUBLE(longest))
+
+    def go(self, steps: int) -> bool:
+        """Take at most so many steps in each lane; return whether there is more to do."""
+        return bool(self.call("go", LONG(steps)))
+
+    def here(self) -> FloatArray:
+        """Return where runs stand that are on their way, (lanes, n)."""
+        found = np.empty((1, self.x.shape[1]))
+        self.call("here", at(found))
+        return found
+
+    def call(self, word: str, *more: Any) -> Any:
+        """Call one of the functions of C on the batch; raise what an input has raised."""
+        found = self.function(word)(self.address, *more)
+        if self.inputs.raised:
+            raise self.inputs.raised[0]
+        return found

@@ -1,0 +1,145 @@
+"""The C that is compiled: a module's functions over many states, a module's steps, a step alone.
+
+Input: a model's name, and for a step alone the text of ``<model>_step.c``.  Output: text, made of
+the generated text and the files of this folder, which are the same for every model.
+"""
+
+import re
+from functools import cache
+from pathlib import Path
+
+#: Collocation steps of runs in lanes, behind a model's own text and the tables of their stages.
+_COLLOCATION = (
+    *("newton.c", "nodes.c", "trajectory.c", "error.c", "crossings.c", "replay.c"),
+    *("samples.c", "outcome.c", "dispatch.c", "batch.c", "step_once.c"),
+)
+#: Nodes for means over a step, beyond its stages.
+_MORE_NODES = 2
+
+#: What a standalone step replaces of real.h.
+_STANDALONE_HEAD = """
+#if defined(ALONE) /* the engine has a step of its own, of any order and for vectors */
+#include "{model}_step.h"
+
+#include <string.h>
+
+#define MODEL(name) {model}_##name
+#define LANE(array, k, lane) ((array)[(k) + (lane)])
+#define any(where) (where)
+#define none_of(where) (!(where))
+#define size_of fabs
+#define nowhere 0
+typedef int mask; /* 0 or 1 */
+
+static inline real largest_of(real a, real b)
+{{
+    return a > b || a != a ? a : b;
+}}
+"""
+#: What is for more stages, for stages in vectors, and for dissipative steps.
+_LEFT_OUT = (
+    r"#if PAIRS\n.*?#endif /\* PAIRS \*/\n",
+    r"#if defined\(LANES\).*?#endif /\* LANES \*/\n",
+    r"#if LOSSY.*?#endif\n",
+)
+#: What few models need: kinks in energies, and path functionals; a step says so.
+_PARTS = {"BENDS": "bends.c", "PATHS": "stop.c"}
+_TABLE = re.compile(r"static const double (\w+)\[[^;]*;\n?", re.DOTALL)
+
+
+@cache
+def c_source(*names: str) -> str:
+    """Return files of this folder, one after another."""
+    folder = Path(__file__).parent
+    return "\n".join(folder.joinpath(name).read_text(encoding="utf-8") for name in names)
+
+
+def functions_source(model: str) -> str:
+    """Return the file to compile for the functions of a module."""
+    return "\n".join([f'#include "{model}.c"', _prefix(model), c_source("columns.c")])
+
+
+def stage_lanes(stages: int, layout: str, *, lossy: bool) -> int:
+    """Return the number of lanes of vectors that hold the stages of a step; 0 if none do."""
+    several = layout == "one" and stages > 1 and not lossy
+    return 1 << (stages - 1).bit_length() if several else 0
+
+
+def steps_source(model: str, stages: int, layout: str, *, lossy: bool = False) -> str:
+    """Return the file to compile for collocation steps of so many stages.
+
+    Parameters
+    ----------
+    layout, lossy : of `Sources`.
+    """
+    from piezo_sym.run.engine.tableau import tableau  # loads mpmath, once a compilation
+
+    step = [f'#include "{model}_step.c"', _prefix(model)]
+    if layout == "slopes":
+        tables = tableau(stages, stages)
+        return "\n".join([c_source("dual.h"), *step, tables, c_source("derivatives.c")])
+    lanes = stage_lanes(stages, layout, lossy=lossy)
+    vectors = ["#if !defined(PLAIN)", f"#define LANES {lanes}", c_source("at_once.h"), "#endif"]
+    head = [
+        "#if defined(PLAIN)" if layout == "many" else "#if 1",
+        "#define REAL_WIDTH 1",
+        "#endif",
+        c_source("real.h"),
+        *([f'#include "{model}.c"'] if lossy else []),
+        *step,
+        "extern const long MODEL(width);",
+        "const long MODEL(width) = REAL_WIDTH;",
+        *(vectors * bool(lanes)),
+    ]
+    tables = tableau(stages, 1 if lossy else stages + _MORE_NODES, lossy=lossy, lanes=lanes)
+    gaps = c_source("gaps.c")
+    if lanes:
+        gaps = f"#if defined(LANES)\n{c_source('gaps_at_once.c')}\n#else\n{gaps}\n#endif"
+    paths = ["#if defined(PATHS)", c_source("stop.c"), "#endif"]
+    rest = c_source(*_COLLOCATION, *(["loss.c"] * lossy))
+    return "\n".join([*head, tables, c_source("gauss.c", "bends.c"), *paths, gaps, rest])
+
+
+def stages_source(model: str, lanes: int) -> str:
+    """Return the file to compile beside that of steps: all stages at once, in so many lanes."""
+    unused = ("function", "variable", "const-variable")
+    head = [
+        "#if !defined(PLAIN)",
+        f"#define REAL_WIDTH {lanes}",
+        "#if defined(__GNUC__) /* of what is printed, some is for the engine alone */",
+        *(f'#pragma GCC diagnostic ignored "-Wunused-{what}"' for what in unused),
+        "#endif",
+        c_source("real.h"),
+        f'#include "{model}_step.c"',
+        _prefix(model),
+    ]
+    rest = ["#else", f"typedef int {model}_has_no_vectors;", "#endif"]
+    return "\n".join([*head, c_source("at_once.h", "at_once.c"), *rest])
+
+
+def standalone_step(model: str, step: str) -> str:
+    """Return what stands behind a model's own text in ``<model>_step.c``, for programs in C.
+
+    It is the engine's step of order two, for numbers of one run.
+    """
+    from piezo_sym.run.engine.tableau import tableau
+
+    needed = {word: file for word, file in _PARTS.items() if f"#define {word}" in step}
+    solver = c_source("gauss.c", *needed.values(), "gaps.c", "newton.c", "nodes.c")
+    others = (rf"#if defined\({w}\).*?#endif /\* {w} \*/\n" for w in _PARTS if w not in needed)
+    for left_out in (*_LEFT_OUT, *others):
+        solver = re.sub(left_out, "", solver, flags=re.DOTALL)
+    solver = solver.replace('#include "elimination.c"\n', c_source("elimination.c"))
+    text = f"{solver}\n{c_source('standalone.c')}"
+    bare = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
+    tables = tableau(1, 1 + _MORE_NODES)
+    for table in _TABLE.finditer(tables):
+        if not re.search(rf"\b{table[1]}\b", bare):
+            tables = tables.replace(table[0], "")
+    head = _STANDALONE_HEAD.format(model=model)
+    return "\n".join([head, tables, text, "#endif /* ALONE */\n"])
+
+
+def _prefix(model: str) -> str:
+    """Return the macro by which files of this folder name what belongs to a model."""
+    return f"#define MODEL(name) {model}_##name"

@@ -1,0 +1,59 @@
+"""Records of C lie in Python as the compiler lays them out."""
+
+import ctypes
+from pathlib import Path
+
+import pytest
+
+from piezo_sym.modules import module_of
+from piezo_sym.run.engine.c_sources import steps_source
+from piezo_sym.run.engine.compiler import FLAGS, build, compilers
+from piezo_sym.run.engine.library import Sources
+from piezo_sym.run.engine.records import LONG, ParameterRecords, c_record
+
+STEPS = ("signal", "segment", "run", "tape", "task", "stepper")
+
+
+def layout_in_c(kind: str, fields: list[str]) -> str:
+    """Return C that says where fields lie, and how long the record is."""
+    places = ", ".join(f"(long)offsetof({kind}, {name})" for name in fields)
+    return f"\n#include <stddef.h>\nconst long layout[] = {{{places}, (long)sizeof({kind})}};\n"
+
+
+def layout_in_python(structure) -> list[int]:
+    places = [getattr(structure, name).offset for name, *_ in structure._fields_]
+    return [*places, ctypes.sizeof(structure)]
+
+
+def compiled_layout(folder: Path, sources: Sources, driver: str, count: int) -> list[int]:
+    for name, text in {**sources.files(), "driver.c": driver}.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    file = folder / "layout.so"
+    flags = [flag for flag in FLAGS[-1] if flag != "-O2"]
+    build(next(compilers()), flags, [folder / "driver.c"], file)
+    return list((LONG * count).in_dll(ctypes.CDLL(str(file)), "layout"))
+
+
+def sources_of(module) -> Sources:
+    paths = [Path(module.__file__).with_name(f"{module.NAME}{e}") for e in (".h", ".c", "_step.c")]
+    header, source, step = (path.read_text(encoding="utf-8") for path in paths)
+    return Sources(module.NAME, header, source, step, stages=1)
+
+
+@pytest.mark.parametrize("name", [*STEPS, "direction"])
+def test_a_record_has_the_layout_of_c(name, tmp_path):
+    module, structure = module_of("piezo_stack"), c_record(name)
+    fields = [field for field, _ in structure._fields_]
+    steps = steps_source(module.NAME, 1, "one" if name in STEPS else "slopes")
+    driver = steps + layout_in_c(f"MODEL({name})", fields)
+    found = compiled_layout(tmp_path, sources_of(module), driver, len(fields) + 1)
+    assert found == layout_in_python(structure)
+
+
+def test_parameters_have_the_layout_of_the_header(tmp_path):
+    module = module_of("piezo_stack")
+    structure = type(ParameterRecords(module)(module.Parameters()).value)
+    fields = [r.name for r in module.PARAMETERS] + [f"{bank}_count" for bank in module.BANKS]
+    text = f'#include "{module.NAME}.h"' + layout_in_c(f"{module.NAME}_parameters", fields)
+    found = compiled_layout(tmp_path, sources_of(module), text, len(fields) + 1)
+    assert found == layout_in_python(structure)
