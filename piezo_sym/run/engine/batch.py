@@ -136,7 +136,7 @@ class Batch:
         self._load(stepping)
         t = self.records["t"].min(where=self.records["failed"] == 0, initial=stop)
         self.records["segments"] = self.inputs.address(t)
-        over = stepping.kinks == "over" or stepping.fixed > 0
+        over = stepping.kinks == "over" or bool(stepping.fixed > 0)
         task = c_record("task")(
             runs=ctypes.addressof(self._runs),
             times=at(self._times),
