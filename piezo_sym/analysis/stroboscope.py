@@ -22,10 +22,9 @@ from piezo_sym.analysis.repeating import Driven, refuse_unperiodic, steps_needed
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run import simulate
 from piezo_sym.run.checks import known_keys
-from piezo_sym.run.compiled import check_inputs
-from piezo_sym.run.discrete import FixedStep, fixed
+from piezo_sym.run.collocation import FixedStep, fixed
 from piezo_sym.run.engine import compiled
-from piezo_sym.run.guard import check_start
+from piezo_sym.run.guard import check_inputs, check_start
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.module import checked, rows
 from piezo_sym.run.parameters import read_initial, read_parameters

@@ -11,12 +11,10 @@ import numpy as np
 
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.collocation import choice, with_tolerance
-from piezo_sym.run.discrete import FixedStep, fixed
+from piezo_sym.run.collocation import FixedStep, choice, fixed, with_tolerance
 from piezo_sym.run.engine import Engine
 from piezo_sym.run.engine.batch import is_lossy
-from piezo_sym.run.guard import NAME, crossing, depth, domain_error
-from piezo_sym.run.inputs import Segment
+from piezo_sym.run.guard import check_inputs
 from piezo_sym.run.integrate import Batch, Tolerance, batches
 from piezo_sym.run.ledger import Trajectory, record
 from piezo_sym.run.runs import METHOD, Watch
@@ -30,8 +28,6 @@ MOST_STEPS = 20_000
 SAME = 1e-6
 #: No better accuracy is asked for: round-off is all that would be left.
 LEAST_RTOL = 1e-12
-#: Inputs are looked at so often in each of the longest steps they allow, with so many numbers.
-LOOKS, MOST_NUMBERS = 4, 5_000_000
 
 
 def compiled_run(
@@ -98,55 +94,6 @@ def shortest_step(system: System, samples: FloatArray, step: float) -> float:
     rounding = 4 * np.finfo(float).eps * edges[-1] / step
     taken = float(np.min(widths / np.maximum(1, np.ceil(widths / step - rounding))))
     return step if taken > step * (1 - SAME) else taken
-
-
-def check_inputs(system: System, x: FloatArray, samples: FloatArray) -> None:
-    """Raise `RunError` if inputs leave the domain; steps look at conditions on the state alone.
-
-    Conditions on inputs do not depend on the state: that at t = 0, x (n,), stands for all.
-    """
-    limits, rows = input_conditions(system)
-    for segment in system.inputs.segments if rows else ():
-        times = np.array([segment.start])
-        if rows & {row for row, _ in segment.varying}:
-            times = looks(system, segment, samples, MOST_NUMBERS / x.size)
-        states = np.tile(x[:, None], times.size)
-        failed = np.any(system.violated(states, segment.over(times))[limits], axis=0)
-        if np.any(failed):
-            raise left(system, segment, x, times[: np.argmax(failed) + 1])
-
-
-def input_conditions(system: System) -> tuple[list[int], set[int]]:
-    """Return which conditions are on inputs, and the rows of the inputs that they name."""
-    known = {record.name for record in system.module.INPUTS}
-    conditions = enumerate(condition.text for condition in system.module.DOMAIN)
-    limits = [n for n, text in conditions if depth(system, text) == 1]
-    said = {name for n in limits for name in NAME.findall(system.module.DOMAIN[n].text)} & known
-    return limits, {n for n, record in enumerate(system.module.INPUTS) if record.name in said}
-
-
-def inputs_move(system: System) -> bool:
-    """Return whether inputs that conditions name may change: if not, t = 0 tells all of them."""
-    _, rows = input_conditions(system)
-    first, *others = system.inputs.segments
-    return bool(rows) and bool(others or rows & {row for row, _ in first.varying})
-
-
-def left(system: System, segment: Segment, x: FloatArray, times: FloatArray) -> RunError:
-    """Return the error of inputs that leave the domain at the last of `times`, or just before."""
-    t = float(times[-1])
-    if times.size > 1:
-        t = crossing(system, float(times[-2]), t, lambda time: (x, segment.at(time)))
-    return domain_error(system, t, x, segment.at(t))
-
-
-def looks(system: System, segment: Segment, samples: FloatArray, most: float) -> FloatArray:
-    """Return the times of a segment at which its inputs are looked at, samples among them."""
-    part = (segment.stop - segment.start) / system.inputs.duration
-    number = LOOKS * part * system.inputs.duration / system.inputs.max_step
-    even = np.linspace(segment.start, segment.stop, 2 + int(min(number, most * part)))
-    inner = samples[(samples > segment.start) & (samples < segment.stop)]
-    return np.union1d(even, inner)
 
 
 def cause(system: System, x: FloatArray, samples: FloatArray, stopped: RunError) -> RunError:

@@ -12,11 +12,14 @@ import numpy as np
 
 from piezo_sym.errors import RunError, listing
 from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.inputs import Segment
 from piezo_sym.run.module import row_name
 from piezo_sym.run.system import System
 
 NAME = re.compile(r"[A-Za-z_]\w*")
 MOST_VALUES = 4
+#: Inputs are checked so often in each of the longest steps that they allow; numbers in all.
+CHECKS, MOST_NUMBERS = 4, 5_000_000
 
 Value = tuple[str, str, "float | FloatArray"]  # label, unit, value
 
@@ -56,6 +59,57 @@ def crossing(
         else:
             left = middle
     return right
+
+
+def check_inputs(system: System, x: FloatArray, samples: FloatArray) -> None:
+    """Raise `RunError` if inputs leave the domain; steps look at conditions on the state alone.
+
+    Conditions on inputs do not depend on the state: that at t = 0, x (n,), stands for all.
+    """
+    limits, rows = input_conditions(system)
+    for segment in system.inputs.segments if rows else ():
+        times = np.array([segment.start])
+        if rows & {row for row, _ in segment.varying}:
+            times = _checked_times(system, segment, samples, MOST_NUMBERS / x.size)
+        states = np.tile(x[:, None], times.size)
+        failed = np.any(system.violated(states, segment.over(times))[limits], axis=0)
+        if np.any(failed):
+            raise _left(system, segment, x, times[: np.argmax(failed) + 1])
+
+
+def input_conditions(system: System) -> tuple[list[int], set[int]]:
+    """Return which conditions are on inputs, and the rows of the inputs that they name."""
+    known = {record.name for record in system.module.INPUTS}
+    conditions = enumerate(condition.text for condition in system.module.DOMAIN)
+    limits = [n for n, text in conditions if depth(system, text) == 1]
+    said = {name for n in limits for name in NAME.findall(system.module.DOMAIN[n].text)} & known
+    return limits, {n for n, record in enumerate(system.module.INPUTS) if record.name in said}
+
+
+def inputs_move(system: System) -> bool:
+    """Return whether inputs that conditions name may change: if not, t = 0 tells all of them."""
+    _, rows = input_conditions(system)
+    first, *others = system.inputs.segments
+    return bool(rows) and bool(others or rows & {row for row, _ in first.varying})
+
+
+def _left(system: System, segment: Segment, x: FloatArray, times: FloatArray) -> RunError:
+    """Return the error of inputs that leave the domain at the last of `times`, or just before."""
+    t = float(times[-1])
+    if times.size > 1:
+        t = crossing(system, float(times[-2]), t, lambda time: (x, segment.at(time)))
+    return domain_error(system, t, x, segment.at(t))
+
+
+def _checked_times(
+    system: System, segment: Segment, samples: FloatArray, most: float
+) -> FloatArray:
+    """Return the times of a segment at which its inputs are checked, samples among them."""
+    part = (segment.stop - segment.start) / system.inputs.duration
+    number = CHECKS * part * system.inputs.duration / system.inputs.max_step
+    even = np.linspace(segment.start, segment.stop, 2 + int(min(number, most * part)))
+    inner = samples[(samples > segment.start) & (samples < segment.stop)]
+    return np.union1d(even, inner)
 
 
 def domain_error(system: System, t: float, x: FloatArray, u: FloatArray) -> RunError:

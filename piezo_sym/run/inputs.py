@@ -10,94 +10,22 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from math import inf, nextafter
-from typing import Any, TypeAlias, final
+from typing import TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.run.checks import FloatArray, is_number, known_keys, number
-from piezo_sym.run.jumps import jumps
+from piezo_sym.run.functions import Function
 from piezo_sym.run.module import GeneratedModule, others
 from piezo_sym.run.samples import Samples, read_samples
 from piezo_sym.run.signals import Constant, Signal, inside
 
 InputValue: TypeAlias = float | Signal | tuple[ArrayLike, ArrayLike] | Callable[[float], float]
 
-FUNCTION_STEPS = 500  # a function of t says nothing about itself: so many steps at least
 CLOSE = 1e-12  # of the duration: breaks nearer than this are one
-MANY, LOOKED_AT, ROUNDING = 16, 40, 1e-12  # arrays of so many; where, how well they are checked
 LEAST_JUMP = 1e-6  # of an input's size nearby: a smaller difference is a corner's round-off
-
-
-@final
-@dataclass(frozen=True)
-class Function(Signal):
-    """A user's function of one time; where it takes an array of many, it is given these."""
-
-    function: Callable[[float], object]
-    where: str
-
-    def __call__(self, t: FloatArray | float) -> FloatArray:
-        """Return the values at the times t; shape of t."""
-        times = np.asarray(t, dtype=float)
-        values = self._at_once(times) if times.size > MANY else None
-        if values is None:
-            values = self._one_by_one(times.ravel().tolist())
-        return values.reshape(times.shape)[()]
-
-    def _one_by_one(self, times: list[float]) -> FloatArray:
-        """Return the values; whatever is odd about one is told by `value`."""
-        try:
-            found = [self.function(time) for time in times]
-            plain = {type(value) for value in found} <= {float, int, np.float64}
-            values: FloatArray = np.array(found if plain else [], dtype=float)
-        except Exception:  # the user's own code: it may raise anything
-            plain = False
-        if plain and np.all(np.isfinite(values)):
-            return values
-        return np.array([self.value(time) for time in times])
-
-    def _at_once(self, times: FloatArray) -> FloatArray | None:
-        """Return the values of a function that takes arrays; None of one that does not."""
-        flat = times.ravel()
-        try:
-            with np.errstate(all="ignore"):
-                given: Any = self.function
-                found: FloatArray = np.array(given(flat.copy()), dtype=float)  # it may write there
-        except Exception:  # the user's own code: it may raise anything
-            return None
-        if found.shape != flat.shape or not np.all(np.isfinite(found)):
-            return None
-        size = np.abs(found).max()
-        steepest = int(np.argmax(np.abs(np.diff(found))))
-        some = {*np.linspace(0, flat.size - 1, LOOKED_AT).astype(int).tolist()}
-        some |= {steepest, steepest + 1, int(np.argmax(found)), int(np.argmin(found))}
-        same = (abs(self.value(float(flat[n])) - found[n]) <= ROUNDING * size for n in some)
-        return found if all(same) else None
-
-    def value(self, time: float) -> float:
-        """Return the value at one time; raise `UsageError` if it is no finite number."""
-        try:
-            value = self.function(time)
-        except Exception as cause:  # the user's own code: it may raise anything
-            what = f"the function fails at t = {time:.6g} s: {type(cause).__name__}: {cause}"
-            raise UsageError(what, self.where, "a function of the time in s") from cause
-        return number(value, f"{self.where}({time:.6g})")
-
-    @cached_property
-    def _known(self) -> dict[float, tuple[float, ...]]:
-        return {}
-
-    def breaks(self, duration: float) -> tuple[float, ...]:
-        """Return the times of the jumps that are found by asking."""
-        if duration not in self._known:
-            self._known[duration] = jumps(self, duration)
-        return self._known[duration]
-
-    def max_step(self, duration: float) -> float:
-        """Return a small part of the run."""
-        return duration / FUNCTION_STEPS
 
 
 @final

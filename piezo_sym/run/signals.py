@@ -22,7 +22,7 @@ class Signal(ABC):
     """An input as a function of time, continuous from the right.
 
     A solver restarts at `breaks`, where the signal or its slope jumps, and takes no step longer
-    than `max_step`, so that no period and no pulse is jumped over.
+    than `max_step`, so that it misses no period and no pulse.
     """
 
     @abstractmethod
@@ -37,12 +37,17 @@ class Signal(ABC):
         """
         return ()
 
-    def max_step(self, duration: float) -> float:  # noqa: ARG002
-        """Return the longest step [s] that resolves the signal between its breaks: here any."""
+    @property
+    def period(self) -> float:
+        """The shortest period [s]; infinity for what is not periodic."""
         return inf
 
+    def max_step(self, duration: float) -> float:  # noqa: ARG002
+        """Return the longest step [s] that resolves the signal between its breaks."""
+        return self.period / STEPS_PER_PERIOD
+
     def longest_step(self, duration: float) -> float:
-        """Return the same for steps that look at the signal in several places each."""
+        """Return the same for steps that evaluate the signal at several stages each."""
         return self.max_step(duration)
 
 
@@ -73,13 +78,14 @@ class Sine(Signal):
         angle = 2 * pi * self.frequency * t + self.phase
         return np.asarray(self.amplitude * np.sin(angle) + self.offset)[()]
 
-    def max_step(self, duration: float) -> float:  # noqa: ARG002
-        """Return an eighth of a period."""
-        return 1 / (STEPS_PER_PERIOD * self.frequency)
+    @property
+    def period(self) -> float:
+        """The shortest period [s]."""
+        return 1 / self.frequency
 
     def longest_step(self, duration: float) -> float:  # noqa: ARG002
-        """Return half a period."""
-        return 0.5 / self.frequency
+        """Return half of the shortest period."""
+        return 0.5 * self.period
 
 
 @final
@@ -142,9 +148,10 @@ class Triangle(Signal):
         count = int(2 * self.frequency * duration) + 1
         return inside((np.arange(count) + 0.5) / (2 * self.frequency), duration)
 
-    def max_step(self, duration: float) -> float:  # noqa: ARG002
-        """Return an eighth of a period."""
-        return 1 / (STEPS_PER_PERIOD * self.frequency)
+    @property
+    def period(self) -> float:
+        """The period [s]."""
+        return 1 / self.frequency
 
 
 @final
@@ -169,13 +176,14 @@ class Chirp(Signal):
         """Return the time at which the frequency stops moving."""
         return inside((self.duration,), duration)
 
-    def max_step(self, duration: float) -> float:  # noqa: ARG002
-        """Return an eighth of the shortest period."""
-        return 1 / (STEPS_PER_PERIOD * max(self.f_start, self.f_stop))
+    @property
+    def period(self) -> float:
+        """The shortest period [s]."""
+        return 1 / max(self.f_start, self.f_stop)
 
     def longest_step(self, duration: float) -> float:  # noqa: ARG002
         """Return half of the shortest period."""
-        return 0.5 / max(self.f_start, self.f_stop)
+        return 0.5 * self.period
 
 
 def inside(times: Iterable[float], duration: float) -> tuple[float, ...]:
@@ -196,12 +204,8 @@ def sine(amplitude: float, frequency: float, offset: float = 0.0, phase: float =
     ------
     UsageError : a number is not finite, or the frequency not positive.
     """
-    return Sine(
-        number(amplitude, "sine.amplitude"),
-        positive(frequency, "sine.frequency"),
-        number(offset, "sine.offset"),
-        number(phase, "sine.phase"),
-    )
+    given = {"amplitude": amplitude, "frequency": frequency, "offset": offset, "phase": phase}
+    return Sine(**_checked("sine", given, "frequency"))
 
 
 def step(time: float, before: float, after: float) -> Step:
@@ -211,9 +215,7 @@ def step(time: float, before: float, after: float) -> Step:
     ------
     UsageError : a number is not finite.
     """
-    return Step(
-        number(time, "step.time"), number(before, "step.before"), number(after, "step.after")
-    )
+    return Step(**_checked("step", {"time": time, "before": before, "after": after}))
 
 
 def ramp(start: float, stop: float, before: float, after: float) -> Ramp:
@@ -223,12 +225,13 @@ def ramp(start: float, stop: float, before: float, after: float) -> Ramp:
     ------
     UsageError : a number is not finite, or `stop` is not after `start`.
     """
-    begin, end = number(start, "ramp.start"), number(stop, "ramp.stop")
-    if end <= begin:
+    given = {"start": start, "stop": stop, "before": before, "after": after}
+    found = Ramp(**_checked("ramp", given))
+    if found.stop <= found.start:
         remedy = "use step() for a jump"
-        what = f"the ramp stops at {end:g}"
-        raise UsageError(what, "ramp.stop", f"over {begin:g}", remedy)
-    return Ramp(begin, end, number(before, "ramp.before"), number(after, "ramp.after"))
+        what = f"the ramp stops at {found.stop:g}"
+        raise UsageError(what, "ramp.stop", f"over {found.start:g}", remedy)
+    return found
 
 
 def triangle(amplitude: float, frequency: float, offset: float = 0.0) -> Triangle:
@@ -243,11 +246,8 @@ def triangle(amplitude: float, frequency: float, offset: float = 0.0) -> Triangl
     ------
     UsageError : a number is not finite, or the frequency not positive.
     """
-    return Triangle(
-        number(amplitude, "triangle.amplitude"),
-        positive(frequency, "triangle.frequency"),
-        number(offset, "triangle.offset"),
-    )
+    given = {"amplitude": amplitude, "frequency": frequency, "offset": offset}
+    return Triangle(**_checked("triangle", given, "frequency"))
 
 
 def chirp(
@@ -265,10 +265,14 @@ def chirp(
     ------
     UsageError : a number is not finite, or a frequency or the duration not positive.
     """
-    return Chirp(
-        number(amplitude, "chirp.amplitude"),
-        positive(f_start, "chirp.f_start"),
-        positive(f_stop, "chirp.f_stop"),
-        positive(duration, "chirp.duration"),
-        number(offset, "chirp.offset"),
-    )
+    moved = {"f_start": f_start, "f_stop": f_stop, "duration": duration}
+    given = {"amplitude": amplitude, **moved, "offset": offset}
+    return Chirp(**_checked("chirp", given, *moved))
+
+
+def _checked(signal: str, given: dict[str, float], *above_zero: str) -> dict[str, float]:
+    """Return a signal's numbers as finite floats, some of them above 0."""
+    return {
+        name: (positive if name in above_zero else number)(value, f"{signal}.{name}")
+        for name, value in given.items()
+    }

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.run.checks import number, positive
+from piezo_sym.run.collocation import FixedStep, read_order
 from piezo_sym.run.compiled import compiled_run
 from piezo_sym.run.dataset import to_dataset
-from piezo_sym.run.discrete import FixedStep, read_order
 from piezo_sym.run.guard import check_start
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.integrate import Tolerance, batches

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.discrete import FixedStep
+from piezo_sym.run.collocation import FixedStep
 from piezo_sym.run.parameters import LaneValue
 from piezo_sym.run.signals import Signal
 from piezo_sym.sweeps.axes import Axis

@@ -14,11 +14,11 @@ import numpy as np
 import xarray
 
 from piezo_sym.errors import PiezoError, RunError
-from piezo_sym.run.collocation import with_tolerance
-from piezo_sym.run.compiled import cause, check_inputs, inputs_move
+from piezo_sym.run.collocation import fixed, with_tolerance
+from piezo_sym.run.compiled import cause
 from piezo_sym.run.dataset import coordinates, spread
-from piezo_sym.run.discrete import fixed
 from piezo_sym.run.engine.engine import engine_of
+from piezo_sym.run.guard import check_inputs, inputs_move
 from piezo_sym.run.runs import METHOD, Runs
 from piezo_sym.run.simulate import by_scipy
 from piezo_sym.sweeps.group import Group, group_at

@@ -16,7 +16,8 @@ import numpy as np
 
 from piezo_sym.errors import UsageError, nearest, quote
 from piezo_sym.run.checks import FloatArray, is_number, number, whole
-from piezo_sym.run.inputs import Function, read_signal
+from piezo_sym.run.functions import Function
+from piezo_sym.run.inputs import read_signal
 from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.parameters import lane_value
 from piezo_sym.run.samples import Samples

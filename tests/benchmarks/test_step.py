@@ -7,7 +7,7 @@ import pytest
 
 from piezo_sym import Stepper, simulate, sine
 from piezo_sym.modules import module_of
-from piezo_sym.run.discrete import FixedStep, fixed
+from piezo_sym.run.collocation import FixedStep, fixed
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.parameters import read_initial, read_parameters

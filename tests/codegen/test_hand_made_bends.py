@@ -9,8 +9,7 @@ from scipy.integrate import solve_ivp
 
 from piezo_sym.expressions.calculus import div
 from piezo_sym.expressions.tree import LaneSum, Sym
-from piezo_sym.run.collocation import with_tolerance
-from piezo_sym.run.discrete import FixedStep, fixed
+from piezo_sym.run.collocation import FixedStep, fixed, with_tolerance
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.parameters import read_initial, read_parameters

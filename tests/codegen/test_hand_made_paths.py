@@ -5,8 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from piezo_sym import sine
-from piezo_sym.run.collocation import with_tolerance
-from piezo_sym.run.discrete import FixedStep, fixed
+from piezo_sym.run.collocation import FixedStep, fixed, with_tolerance
 from piezo_sym.run.engine.batch import Batch, Stepping
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.inputs import read_inputs

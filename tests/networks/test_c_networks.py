@@ -22,7 +22,7 @@ from piezo_sym import derive, load
 from piezo_sym.codegen import collocation_of, lower, printed
 from piezo_sym.errors import PiezoError
 from piezo_sym.modules import load_module, module_of
-from piezo_sym.run.discrete import FixedStep, fixed
+from piezo_sym.run.collocation import FixedStep, fixed
 from piezo_sym.run.engine.batch import is_lossy
 from piezo_sym.run.engine.engine import OFFERED, engine_of
 from piezo_sym.run.inputs import read_inputs

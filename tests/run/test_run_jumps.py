@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from piezo_sym import simulate, sine, step, sweep
 from piezo_sym.modules import module_of
-from piezo_sym.run.jumps import QUESTIONS, jumps
+from piezo_sym.run.functions import INTERVALS, jumps
 from piezo_sym.spec.load import parse
 
 SPECS = Path(__file__).parents[1] / "networks" / "specs"
@@ -172,7 +172,7 @@ def test_a_functions_own_jumps_are_as_good_as_known_ones(share):
         size = float(np.abs(wanted[name]).max())
         assert float(np.abs(found[name] - wanted[name]).max()) <= 5e-6 * size
     solves = found.attrs["accepted_steps"] + found.sizes["time"]
-    assert len(asked) <= QUESTIONS + 20 * solves  # at stages, ends and where a kink is looked for
+    assert len(asked) <= INTERVALS + 20 * solves  # at stages, ends and where a kink is looked for
 
 
 @given(st.floats(1e-3, 1.0, exclude_max=True), st.floats(-3, 3))

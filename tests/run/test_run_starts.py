@@ -8,7 +8,7 @@ import pytest
 from piezo_sym import load, simulate, sine, step, sweep
 from piezo_sym.errors import UsageError
 from piezo_sym.modules import module_of
-from piezo_sym.run.discrete import FixedStep, fixed
+from piezo_sym.run.collocation import FixedStep, fixed
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.system import System

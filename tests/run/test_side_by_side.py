@@ -8,8 +8,7 @@ import pytest
 
 from piezo_sym import load, sine, sweep
 from piezo_sym.modules import module_of
-from piezo_sym.run.collocation import with_tolerance
-from piezo_sym.run.discrete import FixedStep, fixed
+from piezo_sym.run.collocation import FixedStep, fixed, with_tolerance
 from piezo_sym.run.engine import library as libraries
 from piezo_sym.run.engine.batch import collocation_library
 from piezo_sym.run.engine.compiler import FLAGS
