@@ -1,11 +1,11 @@
 /*
- * Batches of runs: lanes take runs one after another.  Behind ticks.c.
+ * Batches of runs: a lane that has finished one run takes the next.  Behind dispatch.c.
  *
- * A survey by rough midpoint steps tells first how large each state of a run becomes: by this its
- * errors are measured.
+ * A survey by rough midpoint steps first finds the largest magnitude of each state, by which errors
+ * are measured.
  */
 
-/* What a batch shall do, as Python gives it; see MODEL(batch). */
+/* What Python asks of a batch; fields as in MODEL(batch). */
 typedef struct {
     MODEL(run) *runs;
     const double *times;
@@ -15,14 +15,14 @@ typedef struct {
 } MODEL(task);
 
 enum { ROUGH_ITERATIONS = 8 };
-/* How well rates are solved for that only show where a switch is, in parts of the tolerance. */
+/* Accuracy of rates that only serve to locate a switch, as a part of the tolerance. */
 #define SKETCH 0.01
-/* With so many switches it may be better to step over kinks. */
+/* With at least so many switches it may be better to step over kinks. */
 enum { MANY = 8 };
-/* How far Newton's method goes in a survey, and how short its steps may be, in parts of the longest. */
+/* Accuracy of a survey's steps, and the shortest of them, as a part of the longest. */
 #define ROUGH 1e-3
 #define SHORTEST 1e-6
-/* Steps of a survey: what comes later in a long run counts from when it comes. */
+/* Steps of a survey at most; later magnitudes count when the run itself reaches them. */
 enum { MOST_SURVEYED = 10000 };
 
 /* Sizes and places of a model's arrays, see the model's own function. */
@@ -132,7 +132,7 @@ static void MODEL(load)(MODEL(batch) *b, int lane, MODEL(run) *run)
     MODEL(sample_here)(b, lane);
 }
 
-/* Middles of steps over h at which f points to their ends, by Newton's method; returns who has one. */
+/* Midpoint steps of length h by Newton's method, their middles in m->reached; returns who succeeds. */
 static mask MODEL(midpoint)(MODEL(batch) *b, real h, mask where)
 {
     MODEL(block) *m = &b->m;
@@ -221,10 +221,10 @@ void MODEL(survey)(MODEL(batch) *b, double longest)
 }
 
 /* Take at most so many steps in each lane; returns whether there is more to do. */
-int MODEL(go)(MODEL(batch) *b, long ticks);
-int MODEL(go)(MODEL(batch) *b, long ticks)
+int MODEL(go)(MODEL(batch) *b, long steps);
+int MODEL(go)(MODEL(batch) *b, long steps)
 {
-    for (; ticks > 0; --ticks) {
+    for (; steps > 0; --steps) {
         mask begins = nowhere;
         int busy = 0;
         for (int lane = 0; lane < REAL_WIDTH; ++lane) {
@@ -239,19 +239,19 @@ int MODEL(go)(MODEL(batch) *b, long ticks)
         if (!busy)
             return 0;
         if (any(begins)) {
-            MODEL(stand)(b, begins, begins);
+            MODEL(rates_here)(b, begins, begins);
             for (int lane = 0; lane < REAL_WIDTH; ++lane)
                 if (IN(begins, lane)) {
                     b->lane[lane].phase = STEP;
                     b->lane[lane].known = 0.0;
                 }
         }
-        MODEL(tick_once)(b);
+        MODEL(step_lanes)(b);
     }
     return 1;
 }
 
-/* Where the runs stand that lanes have, (lanes, n). */
+/* The current states of lanes, (lanes, n). */
 void MODEL(here)(const MODEL(batch) *b, double *out);
 void MODEL(here)(const MODEL(batch) *b, double *out)
 {

@@ -1,8 +1,8 @@
 /*
- * Switches that change on the way of a step: whether, which one first, and where.  Behind trajectory.c.
+ * Switches within a step: whether there are any, which is first, and where.  Behind trajectory.c.
  */
 
-/* A switch that changes: which one, between which parts of the step, and how far it is there. */
+/* A switching function that changes its sign: between which parts of the step, and its values there. */
 typedef struct {
     long which;
     double low, high, at_low, at_high;
@@ -12,7 +12,7 @@ typedef struct {
 /* A switching function where a step looks for changes: at its begin, stages and end, and between. */
 enum { LOOKS = 1 + PARTS * (STAGES + 1) };
 
-/* Its values there, as positive as its branch is; returns the lanes where it may have changed. */
+/* Its values there, positive while its branch holds; returns the lanes where the sign may change. */
 static mask MODEL(looks)(const MODEL(batch) *b, long k, real *value)
 {
     real low = wide(HUGE_VAL), high = wide(-HUGE_VAL);
@@ -137,7 +137,7 @@ static void MODEL(locate)(MODEL(batch) *b, mask where, real h, MODEL(crossing) *
                 SET(where, lane, 0);
                 continue;
             }
-            if (value > 0.0) { /* Illinois: who stays twice counts half */
+            if (value > 0.0) { /* Illinois method: the value at an end that stays twice is halved */
                 c->low = part[lane], c->at_low = value;
                 c->at_high *= before[lane] < 0 ? 0.5 : 1.0;
                 before[lane] = -1;

@@ -1,8 +1,9 @@
 /*
- * Ticks: one step in every lane that has a run, judged and booked.  Behind outcome.c.
+ * One step in every lane that has a run: planned, solved, judged by its error and its switches, and
+ * booked.  Behind outcome.c.
  */
 
-/* What a tick is about: the steps of lanes, which lanes they are, and how they came out. */
+/* The current step of all lanes: lengths, which lanes they concern, and their outcomes. */
 typedef struct {
     real h, behind, slope;
     mask busy, sampling, steps, known; /* lanes with a step; for samples; others; with a prediction */
@@ -12,11 +13,11 @@ typedef struct {
     mask booked, turns, ends;          /* whose step counts; whose branches turn; who steps to kinks */
     MODEL(crossing) crossing[REAL_WIDTH];
     double part[REAL_WIDTH];
-} MODEL(tick);
+} MODEL(dispatch);
 
-static MODEL(tick) MODEL(planned)(MODEL(batch) *b)
+static MODEL(dispatch) MODEL(planned)(MODEL(batch) *b)
 {
-    MODEL(tick) t = {.h = zero, .behind = zero, .slope = zero};
+    MODEL(dispatch) t = {.h = zero, .behind = zero, .slope = zero};
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {
         MODEL(lane) *l = b->lane + lane;
         t.crossing[lane].which = -1;
@@ -29,7 +30,7 @@ static MODEL(tick) MODEL(planned)(MODEL(batch) *b)
         SET(t.resumed, lane, l->phase == RESUME);
         SET(b->m.sketch, lane, l->phase == STEP && b->fixed == 0.0 && !l->settled);
         SET(t.known, lane, l->known > 0.0);
-        l->ticks += !IN(t.sampling, lane);
+        l->solves += !IN(t.sampling, lane);
         LANE(&t.h, 0, lane) = l->length;
         const double ahead = MODEL(begin)(l) - l->t; /* of the run */
         LANE(&t.behind, 0, lane) = l->behind + (l->known > 0.0 ? ahead / l->known : 0.0);
@@ -42,7 +43,7 @@ static MODEL(tick) MODEL(planned)(MODEL(batch) *b)
 }
 
 /* Solve the steps; where they end is in m.reached, and what they add to sums in some_rows. */
-static void MODEL(solved)(MODEL(batch) *b, MODEL(tick) *t)
+static void MODEL(solved)(MODEL(batch) *b, MODEL(dispatch) *t)
 {
     MODEL(block) *m = &b->m;
     const mask over = m->over;
@@ -52,13 +53,13 @@ static void MODEL(solved)(MODEL(batch) *b, MODEL(tick) *t)
     t->found = MODEL(solve)(m, t->h, t->busy);
     t->good = t->found & MODEL(accepted)(m);
     MODEL(reach)(m, t->h, stage_weight, m->reached);
-    MODEL(adds)(b, t->h, b->some_rows);
+    MODEL(increments)(b, t->h, b->some_rows);
     if (any(t->resumed))
         MODEL(begin_at_runs)(b, t->resumed, over);
 }
 
-/* Write samples; a run whose step has no more of them books it. */
-static void MODEL(sampled)(MODEL(batch) *b, MODEL(tick) *t)
+/* Write samples; a step without further samples is booked. */
+static void MODEL(sampled)(MODEL(batch) *b, MODEL(dispatch) *t)
 {
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {
         if (!IN(t->sampling, lane))
@@ -73,7 +74,7 @@ static void MODEL(sampled)(MODEL(batch) *b, MODEL(tick) *t)
 }
 
 /* Rates and switching functions where steps end, and the rates of steps that were found. */
-static void MODEL(at_ends)(MODEL(batch) *b, MODEL(tick) *t)
+static void MODEL(at_ends)(MODEL(batch) *b, MODEL(dispatch) *t)
 {
     MODEL(block) *m = &b->m;
     MODEL(copy)(t->steps, m->reached, m->end, m->n);
@@ -97,7 +98,7 @@ static void MODEL(at_ends)(MODEL(batch) *b, MODEL(tick) *t)
         if (!any(MODEL(choose)(m->branches, b->some_side, b->end_branch, m->over)))
             break;
     }
-    mask ends_well = MODEL(within)(b->some_margin); /* and has rates there to go on with */
+    mask ends_well = MODEL(within)(b->some_margin); /* and rates there are finite */
     for (long k = 0; k < m->n; ++k)
         ends_well &= size_of(b->some_rate[k]) < 1e300;
     t->good &= none_of(t->steps) | ends_well;
@@ -106,7 +107,7 @@ static void MODEL(at_ends)(MODEL(batch) *b, MODEL(tick) *t)
 }
 
 /* Refuse steps without rates, or with large errors; of the others tell where switches have changed. */
-static void MODEL(judged)(MODEL(batch) *b, MODEL(tick) *t)
+static void MODEL(judged)(MODEL(batch) *b, MODEL(dispatch) *t)
 {
     const real worst = b->fixed == 0.0 ? MODEL(error)(b, t->h) : (real)zero;
     const mask across = MODEL(crossed)(b, t->steps & t->found & none_of(b->m.over));
@@ -154,14 +155,14 @@ static void MODEL(judged)(MODEL(batch) *b, MODEL(tick) *t)
 }
 
 /* Cut steps at switches, refuse those that leave the domain, and wait for samples. */
-static void MODEL(cut_and_accepted)(MODEL(batch) *b, MODEL(tick) *t)
+static void MODEL(cut_and_accepted)(MODEL(batch) *b, MODEL(dispatch) *t)
 {
     if (any(t->search))
         MODEL(locate)(b, t->search, t->h, t->crossing, t->part);
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {
         if (IN(t->switched, lane))
             SET(t->booked, lane, MODEL(cut)(b, lane, t->crossing + lane, t->part[lane], &t->turns));
-        if (IN(t->booked, lane) && IN(b->m.sketched, lane)) { /* it had no switch, or none to cut at */
+        if (IN(t->booked, lane) && IN(b->m.sketched, lane)) { /* no switch after all: solve it fully */
             b->lane[lane].settled = 1;
             b->lane[lane].phase = STEP;
             SET(t->booked, lane, 0);
@@ -179,12 +180,12 @@ static void MODEL(cut_and_accepted)(MODEL(batch) *b, MODEL(tick) *t)
     }
 }
 
-/* Book steps, and go to their ends. */
-static void MODEL(book)(MODEL(batch) *b, MODEL(tick) *t)
+/* Book steps, and move lanes to their ends. */
+static void MODEL(book)(MODEL(batch) *b, MODEL(dispatch) *t)
 {
     MODEL(block) *m = &b->m;
 #if REAL_WIDTH == 1
-    if (b->tape && !MODEL(taped)(b)) {
+    if (b->tape && !MODEL(keep_on_tape)(b)) {
         b->lane->known = 0.0;
         b->lane->predicted = 0;
         if (b->fixed > 0.0)
@@ -208,20 +209,20 @@ static void MODEL(book)(MODEL(batch) *b, MODEL(tick) *t)
         MODEL(lane) *l = b->lane + lane;
         if (!IN(t->booked, lane))
             continue;
-        if (MODEL(on)(b, lane)) {
+        if (MODEL(go_on)(b, lane)) {
             MODEL(turn)(b, lane, l->which, 1);
             SET(t->turns, lane, 1);
         }
-        if (l->phase == STEP && MODEL(choose_way)(b, lane))
+        if (l->phase == STEP && MODEL(choose_kinks)(b, lane))
             SET(t->ends, lane, 1);
     }
     MODEL(copy)(t->booked, b->end_side, b->side, m->branches);
 }
 
 /* One step in every lane that has a run. */
-static void MODEL(tick_once)(MODEL(batch) *b)
+static void MODEL(step_lanes)(MODEL(batch) *b)
 {
-    MODEL(tick) t = MODEL(planned)(b);
+    MODEL(dispatch) t = MODEL(planned)(b);
     MODEL(solved)(b, &t);
     if (any(t.sampling))
         MODEL(sampled)(b, &t);
@@ -233,5 +234,5 @@ static void MODEL(tick_once)(MODEL(batch) *b)
     if (any(t.booked))
         MODEL(book)(b, &t);
     if (any(t.turns | t.ends))
-        MODEL(stand)(b, t.turns | t.ends, t.ends);
+        MODEL(rates_here)(b, t.turns | t.ends, t.ends);
 }

@@ -34,9 +34,9 @@
 #define SMOOTH(part) (part)
 #define PULL(z) (1e-2 * (z) * (z))
 #endif
-/* The equations reduce an error, and what they leave of it, by more than this: the state is fast. */
+/* A state is fast if the equations reduce its misfit by more than this factor, twice. */
 #define REDUCED 2.5
-/* Errors of kinks add up: as many steps as there are kinks share in what a run may have. */
+/* Factor on errors of steps that contain kinks, whose errors add up over a run. */
 #define KINKS_WITHIN (STAGES > 4 ? 1.3 : 1.8)
 
 /* The one that is further from zero. */

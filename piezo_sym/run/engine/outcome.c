@@ -1,10 +1,10 @@
 /*
- * What becomes of the step of a lane: it is refused, accepted, sampled, cut at a switch, or booked, and
- * the lane goes on.  Behind samples.c.
+ * The outcome of a lane's step: it is refused, accepted, cut at a switch, or booked; and the lane's next
+ * step.  Behind samples.c.
  */
 
-/* A run's end: it came through, or no step stays. */
-static void MODEL(leave)(MODEL(batch) *b, int lane, int failed)
+/* End a run, `failed` if no step succeeds. */
+static void MODEL(end_run)(MODEL(batch) *b, int lane, int failed)
 {
     MODEL(lane) *l = b->lane + lane;
     for (long k = 0; k < b->m.n; ++k) {
@@ -19,7 +19,7 @@ static void MODEL(leave)(MODEL(batch) *b, int lane, int failed)
     l->phase = IDLE;
 }
 
-/* A step is refused: a shorter one is tried. */
+/* Refuse a step: a shorter one is tried. */
 static void MODEL(refuse)(MODEL(batch) *b, int lane, double h)
 {
     MODEL(lane) *l = b->lane + lane;
@@ -28,10 +28,10 @@ static void MODEL(refuse)(MODEL(batch) *b, int lane, double h)
     l->settled = 0;
     l->phase = STEP;
     if (LOSSY || ++l->refused > MOST_REFUSED || l->t + h <= l->t || h < SHORTEST_PART * b->fixed)
-        MODEL(leave)(b, lane, 1);
+        MODEL(end_run)(b, lane, 1);
 }
 
-/* A fixed step is refused: it is tried again from no prediction, and then half of it. */
+/* Refuse a fixed step: it is repeated without a prediction, and then halved. */
 static void MODEL(refuse_fixed)(MODEL(batch) *b, int lane)
 {
     MODEL(lane) *l = b->lane + lane;
@@ -40,12 +40,12 @@ static void MODEL(refuse_fixed)(MODEL(batch) *b, int lane)
     if (predicted)
         l->phase = STEP;
     else if (++l->halved > MOST_HALVED)
-        MODEL(leave)(b, lane, 1);
+        MODEL(end_run)(b, lane, 1);
     else
         MODEL(refuse)(b, lane, 0.5 * l->whole);
 }
 
-/* A step is accepted: samples within it come first.  Returns whether it is to be booked. */
+/* Accept a step; samples within it come first.  Returns whether to book it now. */
 static int MODEL(accept)(MODEL(batch) *b, int lane)
 {
     b->lane[lane].step = b->lane[lane].length;
@@ -53,31 +53,30 @@ static int MODEL(accept)(MODEL(batch) *b, int lane)
 }
 
 /*
- * Choose between steps that end at kinks and steps over them: each way is tried for a while, and the
- * one that gets further with as many solves is taken.  Returns whether a lane is to end at kinks now,
- * and did not before.
+ * Choose between steps that end at kinks and steps over them: each is tried for some solves, and the one
+ * that covers more time with as many solves is kept.  Returns whether a lane changes to ending at kinks.
  */
-static int MODEL(choose_way)(MODEL(batch) *b, int lane)
+static int MODEL(choose_kinks)(MODEL(batch) *b, int lane)
 {
     MODEL(lane) *l = b->lane + lane;
     const int over = IN(b->m.over, lane) != 0;
-    if (!b->either || l->ticks < TRIED)
+    if (!b->either || l->solves < TRIED)
         return 0;
-    l->pace[over] = (l->t - l->since) / l->ticks;
+    l->pace[over] = (l->t - l->since) / l->solves;
     l->since = l->t;
-    l->ticks = 0;
-    ++l->looks;
-    const int other = l->pace[!over] == 0.0 || l->looks >= AGAIN || l->pace[!over] > l->pace[over];
+    l->solves = 0;
+    ++l->comparisons;
+    const int other = l->pace[!over] == 0.0 || l->comparisons >= AGAIN || l->pace[!over] > l->pace[over];
     if (!other)
         return 0;
-    l->looks = 0;
+    l->comparisons = 0;
     SET(b->m.over, lane, !over);
     l->known = 0.0;
     return over;
 }
 
-/* How a lane goes on after a step that was booked; returns whether its branches turn. */
-static int MODEL(on)(MODEL(batch) *b, int lane)
+/* Prepare a lane for the step after one that was booked; returns whether a branch changes. */
+static int MODEL(go_on)(MODEL(batch) *b, int lane)
 {
     MODEL(lane) *l = b->lane + lane;
     MODEL(run) *run = l->run;
@@ -87,14 +86,14 @@ static int MODEL(on)(MODEL(batch) *b, int lane)
     run->t = l->t;
     ++run->steps;
     run->iterations = (long)LANE(&b->m.iterations, 0, lane);
-    const double most = l->refused ? 1.0 : 4.0; /* what was refused just now is not tried again */
-    l->refused = l->t > before ? 0 : l->refused + 1; /* between switches that lead back to each other */
+    const double most = l->refused ? 1.0 : 4.0; /* a length that was just refused is not tried again */
+    l->refused = l->t > before ? 0 : l->refused + 1; /* switches may lead back to each other at one time */
     l->phase = STEP;
     if (b->fixed > 0.0) {
         l->halved = l->h < b->fixed ? l->halved : 0;
         l->h = fmin(b->fixed, 2.0 * l->h);
     } else {
-        if (l->fresh) /* what its error allowed; switches differ: the shorter steps count */
+        if (l->fresh) /* the length its error allows after a switch, the shortest of recent ones */
             l->after_switch = fmin(l->whole * fmin(l->longer, most),
                                    l->after_switch > 0.0 ? 1.5 * l->after_switch : HUGE_VAL);
         l->fresh = l->which >= 0;
@@ -112,9 +111,9 @@ static int MODEL(on)(MODEL(batch) *b, int lane)
         l->known = 0.0, l->steady = HUGE_VAL;
     MODEL(sample_here)(b, lane);
     if (l->t >= b->stop)
-        MODEL(leave)(b, lane, 0);
+        MODEL(end_run)(b, lane, 0);
     else if (l->refused > MOST_REFUSED)
-        MODEL(leave)(b, lane, 1);
+        MODEL(end_run)(b, lane, 1);
     else if (l->t >= l->segment->stop) {
         ++l->segment;
         l->phase = BEGIN;
@@ -122,7 +121,7 @@ static int MODEL(on)(MODEL(batch) *b, int lane)
     return l->which >= 0 && l->phase == STEP;
 }
 
-/* Where a step may have to be cut: accept it, or take it again. */
+/* Whether a step that may have to be cut at a switch is accepted; else it is repeated. */
 static int MODEL(cut)(MODEL(batch) *b, int lane, const MODEL(crossing) *c, double part, mask *turns)
 {
     MODEL(lane) *l = b->lane + lane;
@@ -134,7 +133,7 @@ static int MODEL(cut)(MODEL(batch) *b, int lane, const MODEL(crossing) *c, doubl
             l->known = 0.0;
             l->phase = STEP;
             if (++l->refused > MOST_REFUSED)
-                MODEL(leave)(b, lane, 1);
+                MODEL(end_run)(b, lane, 1);
             return 0;
         }
         if (1.0 - part < b->beyond)

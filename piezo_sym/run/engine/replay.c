@@ -6,7 +6,7 @@
 #if REAL_WIDTH == 1
 
 /* Solve for the step that begins at m.x, on the branches of the block; whether it has rates. */
-static int MODEL(again)(MODEL(batch) *b, const MODEL(segment) *segment, double t, double h)
+static int MODEL(solve_again)(MODEL(batch) *b, const MODEL(segment) *segment, double t, double h)
 {
     MODEL(block) *m = &b->m;
     const MODEL(block) before = *m;
@@ -26,20 +26,20 @@ static int MODEL(again)(MODEL(batch) *b, const MODEL(segment) *segment, double t
 }
 
 /* Take the step that a lane is to book as it will be taken again, and keep it; 0 if it has no rates. */
-static int MODEL(taped)(MODEL(batch) *b)
+static int MODEL(keep_on_tape)(MODEL(batch) *b)
 {
     MODEL(block) *m = &b->m;
     const MODEL(lane) *l = b->lane;
     MODEL(tape) *to = b->tape;
     const size_t n = (size_t)m->n, branches = STAGES * (size_t)m->branches;
-    if (!MODEL(again)(b, l->segment, l->t, l->step))
+    if (!MODEL(solve_again)(b, l->segment, l->t, l->step))
         return 0;
     memcpy(to->x + to->count * m->n, m->x, n * sizeof(real));
     memcpy(to->branch + to->count * STAGES * m->branches, m->branch, branches * sizeof(real));
     to->t[to->count] = l->t, to->h[to->count] = l->step;
     ++to->count;
     memcpy(b->known, m->rates, STAGES * n * sizeof(real));
-    MODEL(adds)(b, l->step, b->part);
+    MODEL(increments)(b, l->step, b->part);
     return 1;
 }
 
@@ -63,7 +63,7 @@ int MODEL(replay)(MODEL(batch) *b, double t, double h, const double *x, const do
         ++segment;
     memcpy(m->x, x, n * sizeof(real));
     memcpy(m->branch, branch, STAGES * (size_t)m->branches * sizeof(real));
-    const int found = MODEL(again)(b, segment, t, h);
+    const int found = MODEL(solve_again)(b, segment, t, h);
     memcpy(rates, m->rates, STAGES * n * sizeof(real));
     memcpy(u, m->u, STAGES * inputs * sizeof(real));
     MODEL(inputs_at)(segment, m->inputs, t + h, u + STAGES * inputs, 0);

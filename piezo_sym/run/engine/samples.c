@@ -1,16 +1,16 @@
 /*
  * Samples of runs.  Behind replay.c.
  *
- * A sample within a step is the end of a step of its own, from where the run's step begins, so that its
- * balances close, too.  The run itself never goes by samples.
+ * A sample within a step is the end of a step of its own, which begins where the run's step begins, so
+ * that its balances close, too.  The run itself does not depend on samples.
  *
- * Two such steps have errors of their own: if little is produced between two samples, the later one
- * might show less heat or entropy than the one before.  Then its step is taken again, from the sample
- * before; and so are those that follow, from one to the next and to the ends of the run's steps, until
- * the run has produced as much.  A sample whose step finds no rates is taken in the same way.
+ * Each of these steps has an error of its own: where little is produced between two samples, the later
+ * one might show less heat or entropy than the one before.  Then its step is repeated from the sample
+ * before (RESUME); and so are the following ones, from sample to sample, until the run itself has
+ * produced as much.  A sample whose step finds no rates is repeated in the same way.
  */
 
-/* Exchange where runs are for where their last samples are. */
+/* Exchange the states of runs and of their last samples. */
 static void MODEL(swap_begins)(MODEL(batch) *b, mask where)
 {
     for (long k = 0; k < b->m.n; ++k) {
@@ -31,7 +31,7 @@ static void MODEL(begin_at_samples)(MODEL(batch) *b, mask where)
     b->m.over |= where;
 }
 
-/* Let them begin where their runs are again; `over` is which lanes choose branches then. */
+/* Undo begin_at_samples; `over`: the lanes that step over kinks. */
 static void MODEL(begin_at_runs)(MODEL(batch) *b, mask where, mask over)
 {
     MODEL(swap_begins)(b, where);
@@ -39,14 +39,14 @@ static void MODEL(begin_at_runs)(MODEL(batch) *b, mask where, mask over)
     b->m.over = over;
 }
 
-/* A sum of a lane: with what a step adds to it, if there is one. */
+/* An entry of a lane's ledger, after a step if `more` is given. */
 static double MODEL(total)(const real *sums, const real *lost, const real *more, long k, int lane)
 {
     return LANE(sums, k, lane) + (more ? LANE(more, k, lane) - LANE(lost, k, lane) : 0.0);
 }
 
 /* Whether a lane's sums, with what a step adds, have less heat or entropy produced than its last sample. */
-static int MODEL(falls)(const MODEL(batch) *b, int lane, const real *more)
+static int MODEL(production_falls)(const MODEL(batch) *b, int lane, const real *more)
 {
     const long first = MODEL(output_count), last = first + 2 * b->m.processes;
     if (b->lane[lane].kept < b->lane[lane].t)
@@ -69,7 +69,7 @@ static void MODEL(write_sample)(const MODEL(batch) *b, int lane, const real *x, 
         run->sums[run->sample * booked + k] = MODEL(total)(sums, lost, more, k, lane);
 }
 
-/* Keep what a step for a sample has reached, for those that may begin there. */
+/* Keep the state and ledger of a sample, where the next sample's step may begin. */
 static void MODEL(keep_sample)(MODEL(batch) *b, int lane, const real *sums, const real *lost)
 {
     for (long k = 0; k < b->m.n; ++k)
@@ -82,7 +82,7 @@ static void MODEL(keep_sample)(MODEL(batch) *b, int lane, const real *sums, cons
     }
 }
 
-/* Whether the run can do without the step of a lane for a sample: that was written, or there is none. */
+/* Whether a failed step for a sample can be left out: the sample is written, or there is none. */
 static int MODEL(sample_stands)(const MODEL(batch) *b, int lane)
 {
     const MODEL(lane) *l = b->lane + lane;
@@ -125,7 +125,7 @@ static int MODEL(take_sample)(MODEL(batch) *b, int lane, int good)
     if (l->phase == SAMPLE) {
         l->written = 1;
         MODEL(write_sample)(b, lane, b->m.reached, b->sums, b->lost, b->some_rows);
-        if (MODEL(falls)(b, lane, b->some_rows)) {
+        if (MODEL(production_falls)(b, lane, b->some_rows)) {
             l->phase = RESUME;
             return 0;
         }
@@ -149,7 +149,7 @@ static int MODEL(all_sampled)(MODEL(batch) *b, int lane)
     MODEL(lane) *l = b->lane + lane;
     if (MODEL(samples_left)(b, l))
         l->phase = SAMPLE;
-    else if (MODEL(falls)(b, lane, b->part) && MODEL(step_end)(b, l) > l->kept)
+    else if (MODEL(production_falls)(b, lane, b->part) && MODEL(step_end)(b, l) > l->kept)
         l->phase = RESUME;
     else
         return 1;
@@ -161,7 +161,7 @@ static void MODEL(sample_here)(MODEL(batch) *b, int lane)
 {
     MODEL(lane) *l = b->lane + lane;
     for (; l->run->sample < b->samples && b->times[l->run->sample] <= l->t; ++l->run->sample)
-        if (MODEL(falls)(b, lane, NULL))
+        if (MODEL(production_falls)(b, lane, NULL))
             MODEL(write_sample)(b, lane, b->kept, b->kept_sums, b->kept_lost, NULL);
         else
             MODEL(write_sample)(b, lane, b->m.x, b->sums, b->lost, NULL);

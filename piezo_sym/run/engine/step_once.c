@@ -1,4 +1,4 @@
-/* A step at a time, for closed loops.  Behind batch.c, whose batch of one run takes it. */
+/* One step at a time, for closed loops: a batch of one run.  Behind batch.c. */
 
 /* All that a call needs, in one place; the caller decides the inputs. */
 typedef struct {
@@ -29,7 +29,7 @@ static int MODEL(inputs_inside)(const MODEL(stepper) *t)
     return 1;
 }
 
-/* Forget where the last step has led: the next one begins at the run's own state. */
+/* Reload the run, so that the next step begins at the state that Python has set. */
 void MODEL(forget)(MODEL(stepper) *t);
 void MODEL(forget)(MODEL(stepper) *t)
 {
@@ -38,7 +38,7 @@ void MODEL(forget)(MODEL(stepper) *t)
     MODEL(load)(t->batch, 0, t->run);
 }
 
-/* Takes a step with the inputs u, and writes the outputs after it; 0, and all as before, if none. */
+/* Take a step with the inputs u and write the outputs; returns 0, and restores all, if there is none. */
 int MODEL(step_once)(MODEL(stepper) *t);
 int MODEL(step_once)(MODEL(stepper) *t)
 {
@@ -48,7 +48,7 @@ int MODEL(step_once)(MODEL(stepper) *t)
     const size_t n = (size_t)b->m.n, booked = 2 * (size_t)b->m.booked;
     if (!MODEL(inputs_inside)(t))
         return 0;
-    if (l->phase == IDLE) { /* it came through: on from there, and what it knows of its rates holds */
+    if (l->phase == IDLE) { /* the last step succeeded: its rates predict this one */
         l->phase = STEP;
         l->t = run->t = 0.0;
     }

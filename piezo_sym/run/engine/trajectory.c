@@ -1,18 +1,18 @@
 /*
- * Runs of collocation steps, one in each lane.  Behind gauss.c; batch.c says which runs there are.
+ * Runs of collocation steps, one run in each lane of a vector.  Behind gauss.c; batch.c assigns runs
+ * to lanes.
  *
- * A step keeps the branches that hold where it begins; if a switching function changes its sign on
- * the way, the step is taken again to end there, and the next begins on the other branch.  The first
- * time it is solved no further than it takes to find the place.  Lanes of many switches may step over
- * them instead: then each stage chooses its branches.
+ * A step keeps the branches that hold at its beginning.  If a switching function changes its sign
+ * within the step, the step is repeated so that it ends there, and the next one begins on the other
+ * branch.  The first solution is only as accurate as it takes to locate the switch.  Runs with many
+ * switches may step over them instead: then each stage chooses its branches.
  *
- * In a tick each lane takes one step: what it is for differs from lane to lane, how it is solved
- * does not.
+ * All lanes solve one step at a time together (dispatch.c), each for a purpose of its own.
  */
 
 /*
- * An input between its breaks: a wave whose frequency may move; polynomials of Chebyshev, so many
- * terms each, between edges; or a function to call.
+ * An input between its breaks: a sine whose frequency may change linearly; Chebyshev series of `terms`
+ * terms on the pieces between `edges`; or a function to call.
  */
 typedef struct {
     double amplitude, frequency, rate, phase, offset;
@@ -21,13 +21,13 @@ typedef struct {
     double (*called)(double);
 } MODEL(signal);
 
-/* Inputs until a time. */
+/* The inputs of a run until the time `stop`. */
 typedef struct {
     double stop;
     const MODEL(signal) *signals;
 } MODEL(segment);
 
-/* A run: what it is given, where it stands, and what it leaves at samples. */
+/* A run: what it is given, its current state, and its results at samples. */
 typedef struct {
     const MODEL(parameters) *p;
     const MODEL(segment) *segments;  /* from the one that t lies in */
@@ -39,38 +39,41 @@ typedef struct {
     long sample, steps, rejected, switched, iterations, failed;
 } MODEL(run);
 
-/* What a lane's step is for: the run's next, the same up to a switch, or a sample; see samples.c. */
+/*
+ * The purpose of a lane's step: the run's next one (STEP), the same up to a switch (CUT), or a sample
+ * (SAMPLE, RESUME; see samples.c).  BEGIN: rates at the current state are not known yet.
+ */
 enum { IDLE, BEGIN, STEP, CUT, SAMPLE, RESUME };
 
 /*
- * Where a lane is.  `known` is the length of the step whose rates are known: it begins at t, or lies
- * behind t and ends there; 0 if there is none.
+ * The state of a lane.  `known` is the length of the last step whose stage rates are known, from which
+ * rates are predicted: it begins at t, or ends there if `behind` is 1; 0 if there is none.
  */
 typedef struct {
     MODEL(run) *run;
     const MODEL(segment) *segment;
     double t, h;
-    double length, whole, step, part; /* at hand, before cuts, accepted; part of it for a cut */
+    double length, whole, step, part; /* of this step; before cuts; accepted; the part to cut at */
     double known, longer, after_switch;
-    double kept;   /* when the last sample was, or -HUGE_VAL */
-    int written;   /* whether the sample at hand is, though its step is taken again */
-    double steady; /* the step that the errors of the step before ask for */
+    double kept;   /* time of the last sample, or -HUGE_VAL */
+    int written;   /* whether the current sample is written, though its step is repeated */
+    double steady; /* the length that the error of the step before allows */
     int phase, behind, predicted, fresh, last, cuts, refused, halved;
-    int settled; /* whether there is no switch in the step after all, so that it is solved to its end */
+    int settled; /* whether no switch was located after all: the step is solved to full accuracy */
     long which; /* the switch at the end of the step; -1 if none */
-    double since, pace[2]; /* when the way over kinks was chosen; how fast each way was */
-    long ticks, looks;     /* steps solved since then; how often the ways were compared */
+    double since, pace[2]; /* when the mode at kinks was chosen; time covered per solve in each mode */
+    long solves, comparisons;     /* steps solved since then; how often modes were compared */
 } MODEL(lane);
 
-/* What the steps of a run begin with, from the first on; see replay.c. */
+/* What each step of a run begins with; see replay.c. */
 typedef struct {
     const MODEL(segment) *segments; /* of the run, from its begin */
-    real *scale;                    /* n: by which changes of states count as noise */
+    real *scale;                    /* n: magnitudes of states, by which changes count as round-off */
     double *t, *h, *x, *branch;     /* steps; (steps, n); (steps, STAGES, branches) */
     long count;
 } MODEL(tape);
 
-/* Runs on their way. */
+/* Runs, and the arrays in which lanes step them. */
 typedef struct {
     MODEL(block) m;
     MODEL(tape) *tape; /* of one run, or NULL */
@@ -79,7 +82,7 @@ typedef struct {
     const double *times; /* of samples */
     long count, next, samples, either; /* `either`: steps end at kinks, or go over them */
     double stop, tolerance, first, longest, fixed;
-    double beyond; /* so much of a step may lie beyond the switch at its end: no stage does */
+    double beyond; /* part of a step that may lie beyond the switch at its end, where no stage lies */
     real *rate, *side, *sums, *lost, *known;       /* at the begin of a step; of the step before */
     real *kept, *kept_sums, *kept_lost; /* at the last sample */
     real *kept_branch;                  /* of the run, while a step begins there */
@@ -89,24 +92,23 @@ typedef struct {
 } MODEL(batch);
 
 enum { MOST_REFUSED = 200, MOST_CUTS = 4 };
-/* So often a fixed step may be halved in all before one of full length succeeds: else a run creeps. */
+/* Halvings of a fixed step in all, until one of full length succeeds: a run with more fails. */
 enum { MOST_HALVED = 1000 };
-/* No part of a fixed step is shorter. */
+/* The shortest part of a fixed step. */
 #define SHORTEST_PART 1e-15
-/* A way is tried for so many solves; the slower one again after so many trials of the faster. */
+/* A mode at kinks is kept for TRIED solves; the slower one is tried anew after AGAIN comparisons. */
 enum { TRIED = 32, AGAIN = 12 };
-/* With kinks within, the error of a step falls about as this power tells. */
+/* The step length goes with the error to about this power where steps contain kinks. */
 #define OVER_KINKS (-1.0 / 3.0)
 /*
- * The next step is this part of the one whose estimated error would be just what it may be: estimates
- * of smooth steps are of high powers of their lengths, and a step may find what the last did not.
+ * Safety factor: the next step is this part of the one whose estimated error would equal the tolerance.
  */
 #define PART_OF(over) ((over) ? 0.9 : 0.82)
-/* An error may be small by chance: steps grow to no more than this, in what the one before asks for. */
+/* An error may be small by chance: a step is at most this much longer than the last one allowed. */
 #define SUDDEN 1.5
-/* A refused step is tried again up to where a path bends, if that is before this part of it. */
+/* A refused step is repeated up to where a path functional begins to yield, if before this part. */
 #define YIELDS 0.999
-/* Parts of a step: so near to its end a switch is at its end; so near to its begin, at its begin. */
+/* Parts of a step: a switch this near to its end, or to its beginning, counts as there. */
 #define AT_END 1e-9
 #define AT_ONCE 1e-12
 /*
@@ -115,7 +117,7 @@ enum { TRIED = 32, AGAIN = 12 };
  */
 #define BEYOND 0.01
 
-/* The value of a signal in pieces. */
+/* The value of a signal given by Chebyshev series, by Clenshaw's recurrence. */
 static double MODEL(piece_at)(const MODEL(signal) *s, double t)
 {
     long low = 0, high = s->pieces;
@@ -167,8 +169,8 @@ static void MODEL(copy)(mask where, const real *from, real *to, long size)
         to[k] = chosen(where, from[k], to[k]);
 }
 
-/* Rates and switching functions where lanes stand; those of `choosing` take the branches that hold. */
-static void MODEL(stand)(MODEL(batch) *b, mask where, mask choosing)
+/* Rates and switching functions at the current states; lanes in `choosing` choose branches, too. */
+static void MODEL(rates_here)(MODEL(batch) *b, mask where, mask choosing)
 {
     MODEL(block) *m = &b->m;
     for (int lane = 0; lane < REAL_WIDTH; ++lane)
@@ -185,7 +187,7 @@ static void MODEL(stand)(MODEL(batch) *b, mask where, mask choosing)
     MODEL(copy)(where, b->some_side, b->side, m->branches);
 }
 
-/* Until when inputs have no break, and the run goes on. */
+/* The next break of the inputs, or the end of the run. */
 static double MODEL(until)(const MODEL(batch) *b, const MODEL(lane) *l)
 {
     return fmin(l->segment->stop, b->stop);
@@ -223,7 +225,7 @@ static double MODEL(target)(const MODEL(batch) *b, const MODEL(lane) *l)
     return MODEL(samples_left)(b, l) ? b->times[l->run->sample] : MODEL(step_end)(b, l);
 }
 
-/* What a lane's next step is: its length, and the inputs at its stages. */
+/* Plan a lane's next step: its length, and the inputs at its stages. */
 static void MODEL(plan)(const MODEL(batch) *b, MODEL(lane) *l, int lane)
 {
     double until = MODEL(until)(b, l), longest = fmin(l->h, b->longest);
@@ -251,8 +253,8 @@ static void MODEL(plan)(const MODEL(batch) *b, MODEL(lane) *l, int lane)
                          b->m.u + i * b->m.inputs, lane);
 }
 
-/* What a step adds to the sums of a ledger. */
-static void MODEL(adds)(const MODEL(batch) *b, real h, real *out)
+/* What a step adds to the ledger. */
+static void MODEL(increments)(const MODEL(batch) *b, real h, real *out)
 {
     const MODEL(block) *m = &b->m;
     for (long k = 0; k < m->booked; ++k) {
@@ -263,8 +265,8 @@ static void MODEL(adds)(const MODEL(batch) *b, real h, real *out)
     }
 }
 
-/* Rates on the polynomial through those of a step, at a part of the step. */
-static void MODEL(carry)(const MODEL(block) *m, const real *rates, real at, real *out)
+/* The polynomial through a step's stage rates, at a part of the step. */
+static void MODEL(rates_at)(const MODEL(block) *m, const real *rates, real at, real *out)
 {
     real weight[STAGES];
     MODEL(rate_weights)(at, weight);
@@ -276,14 +278,14 @@ static void MODEL(carry)(const MODEL(block) *m, const real *rates, real at, real
     }
 }
 
-/* Rates to begin Newton's method with: along the known step, or as they are at the begin. */
+/* The predictor of Newton's method: the known step's polynomial, or the rates at the beginning. */
 static void MODEL(predict)(MODEL(batch) *b, real behind, real slope, mask known)
 {
     const MODEL(block) *m = &b->m;
     for (long i = 0; i < STAGES; ++i) {
         real *const rates = m->rates + i * m->n;
-        MODEL(carry)(m, b->known, behind + slope * stage_at[i], rates);
-        for (long k = 0; k < m->n; ++k) /* a fixed step may be much longer than what is fast */
+        MODEL(rates_at)(m, b->known, behind + slope * stage_at[i], rates);
+        for (long k = 0; k < m->n; ++k) /* zero for a fixed step, which may be much longer than the fastest time constant */
             rates[k] = chosen(known, rates[k], b->fixed > 0.0 ? zero : b->rate[k]);
     }
 }
