@@ -25,12 +25,12 @@ from piezo_sym.run.system import System, Systems
 
 #: The first step, the longest, and the longest of the survey of scales, in parts of the run.
 FIRST, LONGEST, SURVEYED = 1e-5, 0.25, 1 / 64
-#: Numbers of state that are stepped between two looks at what the user wants: some milliseconds.
+#: Numbers of state that are stepped between two calls of `watch`: some milliseconds.
 CHUNK = 50_000
 #: Runs of more states have vectors for the lanes of their banks.
 MOST_STATES = 32
-#: For tolerances from here on, how many stages are cheapest, and what a step's estimated error may
-#: then be, in rtol: so that the largest error of a run is about rtol.
+#: From this rtol on: the cheapest number of stages, and the estimated error allowed in a step, as a
+#: part of rtol, with which the largest error of a run is about rtol.
 CHOICE = ((1e-5, 4, 0.3), (0.0, 5, 0.75))
 #: Below this tolerance steps end at kinks, however many there are.
 LEAST_OVER = 1e-6
@@ -142,7 +142,7 @@ def through(batch: Batch, watch: Watch | None = None) -> None:
 
 
 def results(batch: Batch, systems: Systems, x: FloatArray, times: FloatArray) -> Runs:
-    """Return what runs have become that began at x (runs, n)."""
+    """Return the results of runs that began at x (runs, n)."""
     records = batch.records
     work = np.stack([records[n] for n in ("steps", "iterations", "rejected")], axis=1)
     errors: list[RunError | None] = [None] * len(x)

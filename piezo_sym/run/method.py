@@ -1,7 +1,7 @@
 """Which method runs a module, and its engine: the discrete gradient in C wherever there is one.
 
-Input: a generated module, the method and the step that a user named, or none.  Output: a `Way`:
-the method, its engine, and a note that says why it is that one.
+Input: a generated module, the method and the step that a user named, or none.  Output: a
+`ChosenMethod`: its name, its engine, and a note that says why it was chosen.
 
 A user who names no method gets the discrete gradient.  A module without C beside it, written by
 hand or changed in Python, is run by LSODA; so is one whose C cannot be compiled here, with one
@@ -32,8 +32,8 @@ FALLBACK = "LSODA"
 
 @final
 @dataclass(frozen=True)
-class Way:
-    """How a module is run: `engine` is there for the discrete gradient, and for it alone."""
+class ChosenMethod:
+    """The method of a run; only the discrete gradient has an `engine`."""
 
     method: str
     engine: Engine | None
@@ -48,8 +48,8 @@ def checked_method(method: object) -> str | None:
     return method
 
 
-def way_of(module: GeneratedModule, method: str | None, step: object) -> Way:
-    """Return how to run a module.
+def choose_method(module: GeneratedModule, method: str | None, step: object) -> ChosenMethod:
+    """Return the method that runs a module.
 
     Parameters
     ----------
@@ -61,16 +61,16 @@ def way_of(module: GeneratedModule, method: str | None, step: object) -> Way:
     EngineError : the discrete gradient or a step was asked for, and there is no engine.
     """
     if method not in (None, METHOD):
-        return Way(method, None, f"none: method {method} was asked for")
+        return ChosenMethod(method, None, f"none: method {method} was asked for")
     free = method is None and step is None
     if free and not _has_source(module):
-        return Way(FALLBACK, None, "none: the module has no C source beside it")
+        return ChosenMethod(FALLBACK, None, "none: the module has no C source beside it")
     found = _found(module)
     if isinstance(found, Engine):
-        return Way(METHOD, found, f"compiled by {_compiler(found)}")
+        return ChosenMethod(METHOD, found, f"compiled by {_compiler(found)}")
     if free:
         _warn(module.NAME, str(found))
-        return Way(FALLBACK, None, f"none: {found}")
+        return ChosenMethod(FALLBACK, None, f"none: {found}")
     instead = f"leave out step, and take method='{FALLBACK}' for a run in NumPy"
     remedy = f"{found.remedy}; or {instead}" if found.remedy else instead
     raise EngineError(found.what, found.where, remedy=remedy)
@@ -81,7 +81,7 @@ def _found(module: GeneratedModule) -> Engine | EngineError:
     if not _loaded(module):
         what = "is no module loaded from a file, so no C source is its own"
         return EngineError(what, f"model '{module.NAME}'")
-    return _tried(module, _surroundings(module))  # type: ignore[arg-type]  # a module can be a key
+    return _tried(module, _inputs_of_compilation(module))  # type: ignore[arg-type]  # a module can be a key
 
 
 def _compiler(engine: Engine) -> str:
@@ -108,7 +108,7 @@ def _has_source(module: GeneratedModule) -> bool:
     return not os.path.isfile(own) or any(os.path.isfile(path) for path in beside)
 
 
-def _surroundings(module: GeneratedModule) -> tuple[object, ...]:
+def _inputs_of_compilation(module: GeneratedModule) -> tuple[object, ...]:
     """Return what an attempt to compile depends on: it is not made twice for the same."""
     stamps: list[int] = []
     for ending in (".h", ".c", "_step.c"):

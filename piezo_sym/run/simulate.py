@@ -20,7 +20,7 @@ from piezo_sym.run.guard import check_start
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.integrate import Tolerance, batches
 from piezo_sym.run.ledger import record
-from piezo_sym.run.method import checked_method, way_of
+from piezo_sym.run.method import checked_method, choose_method
 from piezo_sym.run.module import checked
 from piezo_sym.run.parameters import read_initial, read_parameters, sample_times
 from piezo_sym.run.runs import METHOD
@@ -148,7 +148,7 @@ def simulate(
         cannot go on. The message says when, and with which values.
     """
     checked(module)
-    named, bound = checked_method(method), read_rtol(rtol)
+    named, tolerance = checked_method(method), read_rtol(rtol)
     fixed = read_step(step, order, named, rtol)
     named = start_method(dissipative_start, named)
     end = positive(duration, "simulate.duration")
@@ -158,14 +158,14 @@ def simulate(
     system = System(module, values, read_inputs(module, inputs, end))
     x = read_initial(module, values, system.inputs.segments[0].at(0.0), initial)
     check_start(system, x)
-    way = way_of(module, named, step)
-    if way.engine:
+    chosen = choose_method(module, named, step)
+    if chosen.engine:
         trajectory, work = compiled_run(
-            system, way.engine, x, samples, bound, fixed, progress, starts=dissipative_start
+            system, chosen.engine, x, samples, tolerance, fixed, progress, starts=dissipative_start
         )
     else:
-        trajectory, work = by_scipy(system, x, samples, way.method, bound, progress)
-    return to_dataset(system, samples, trajectory, {**work, "engine": way.note})
+        trajectory, work = by_scipy(system, x, samples, chosen.method, tolerance, progress)
+    return to_dataset(system, samples, trajectory, {**work, "engine": chosen.note})
 
 
 def by_scipy(

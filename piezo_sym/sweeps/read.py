@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from piezo_sym.errors import PiezoError, UsageError, listing, quote
 from piezo_sym.run.checks import FloatArray, positive
 from piezo_sym.run.inputs import read_inputs
-from piezo_sym.run.method import checked_method, way_of
+from piezo_sym.run.method import checked_method, choose_method
 from piezo_sym.run.module import GeneratedModule, lanes
 from piezo_sym.run.parameters import (
     own_initial,
@@ -75,8 +75,8 @@ def read_plan(
         base = read_parameters(module, given[0])
         refuse_sizes(module, axes, *given, signals.segments[0].at(0.0))
         refuse_reduction(reduce, reduce_by)
-        way = way_of(module, named, step)
-        most = MOST_TOGETHER if way.method == METHOD else MOST_BY_SCIPY
+        chosen = choose_method(module, named, step)
+        most = MOST_TOGETHER if chosen.method == METHOD else MOST_BY_SCIPY
         together = max(
             1, min(most, MOST_NUMBERS // (samples.size * row_numbers(module, base, axes)))
         )
@@ -86,7 +86,7 @@ def read_plan(
             end,
             *given,
             samples,
-            way.method,
+            chosen.method,
             bound,
             fixed,
             reduce,  # type: ignore[arg-type]  # checked above
@@ -94,7 +94,7 @@ def read_plan(
             largest_banks(axes),
             together,
             together if reduce is None else box_of_reduced(axes, together),
-            way.note,
+            chosen.note,
         )
 
 
@@ -137,7 +137,7 @@ def refuse_sizes(
 
 
 def refuse_reduction(reduce: object, reduce_by: object) -> None:
-    """Raise `UsageError` if nothing can be reduced that way."""
+    """Raise `UsageError` if nothing can be reduced that chosen."""
     if not (reduce is None or reduce in REDUCTIONS or callable(reduce)):
         expected = f"{listing(map(repr, REDUCTIONS))}, or a function of a Dataset"
         raise UsageError(f"{quote(reduce)} is no reduction", "sweep.reduce", expected)

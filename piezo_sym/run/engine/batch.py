@@ -36,7 +36,7 @@ class Stepping:
     fixed : the longest step [s], where steps divide what lies between samples and breaks evenly,
         and go over kinks; 0 if errors decide.
     first, longest : the length of the first step, and of the longest [s].
-    kinks : whether steps end there, or go over them; or what gets further, where switches are many.
+    kinks : whether steps end there, or go over them; or, with many switches, what is faster.
     lossy : whether steps are dissipative, of one stage; one that does not succeed is not halved.
     """
 
@@ -81,7 +81,7 @@ class Batch:
     largest : the largest magnitude of each state (runs, n).
     ledgers : what is booked so far, and what rounding lost of it (runs, 2, rows).
     states, sums : at samples, (runs, samples, n) and (runs, samples, rows), rows in the order of
-        `System.rates`, then `extra`; nan where a run did not get.
+        `System.rates`, then `extra`; nan beyond the time a run reached.
     records : what else C tells of each run, by the names of MODEL(run).
     inputs : those of all runs, in C.
     address : of MODEL(batch).
@@ -188,7 +188,7 @@ class Batch:
         return bool(self.call("go", LONG(steps)))
 
     def here(self) -> FloatArray:
-        """Return where runs stand that are on their way, (lanes, n)."""
+        """Return the current state of the run in each lane, (lanes, n)."""
         found = np.empty((1, self.x.shape[1]))
         self.call("here", at(found))
         return found
