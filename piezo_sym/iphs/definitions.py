@@ -18,7 +18,7 @@ from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import Expr, rename
 from piezo_sym.iphs.system import System
 from piezo_sym.network import Junction, Slope, port_order
-from piezo_sym.spec.circuit import Circuit, Placed
+from piezo_sym.spec.circuit import Circuit
 from piezo_sym.spec.elements.ports import (
     Body,
     Conductor,
@@ -38,6 +38,34 @@ def costate_name(port: Storage | Body) -> str:
 def heated(port: Resistor | Conductor) -> str:
     """Return the element of the body that a process heats; for conduction, the second."""
     return port.heats if isinstance(port, Resistor) else port.second
+
+
+def law_of(
+    circuit: Circuit, port: Storage | Body | Resistor | Coupling | Exchange | Conductor
+) -> Expr:
+    """Return the law of a port in the words of the domain: states and temperatures by name.
+
+    The letter of a dissipative law stays as it is.
+    """
+    match port:
+        case Storage() | Body():
+            return rename(port.law, {port.letter: port.state})
+        case Resistor():
+            return rename(port.law, {"T": circuit.body(port.heats).temperature})
+        case Coupling():
+            return (
+                rename(port.ratio, {"T": circuit.body(port.body).temperature})
+                if port.body
+                else port.ratio
+            )
+        case Exchange() | Conductor():
+            return port.conductance
+
+
+def slope_law(circuit: Circuit, slope: Slope) -> Expr:
+    """Return the slope of a law in a resistive loop, a function of its body's temperature."""
+    _, port = tuple(circuit.of(Resistor, Conductor))[slope.process]
+    return rename(slope.law, {"T": circuit.body(heated(port)).temperature})
 
 
 def system_of(circuit: Circuit, symbols: SymbolTable, junction: Junction) -> System:
@@ -114,22 +142,16 @@ def laws_of(circuit: Circuit, symbols: SymbolTable, system: System) -> Definitio
 def ratios_of(circuit: Circuit, symbols: SymbolTable) -> Definitions:
     """Yield each transducer ratio and its law in T."""
     for _, port in circuit.of(Coupling):
-        letters = {"T": symbols[circuit.body(port.body).temperature]} if port.body else {}
-        yield symbols[port.name], symbols.law(port.ratio, letters)
+        yield symbols[port.name], symbols.law(law_of(circuit, port), {})
 
 
 def slopes_of(circuit: Circuit, symbols: SymbolTable, slopes: tuple[Slope, ...]) -> Definitions:
     """Yield the slope of each law in a resistive loop, a function of T."""
-    processes = tuple(circuit.of(Resistor, Conductor))
     for slope in slopes:
-        heat = symbols[circuit.body(heated(processes[slope.process][1])).temperature]
-        yield slope.symbol, symbols.law(slope.law, {"T": heat})
+        yield slope.symbol, symbols.law(slope_law(circuit, slope), {})
 
 
-def costates_of(
-    stores: tuple[tuple[Placed, Storage | Body], ...], symbols: SymbolTable
-) -> Definitions:
+def costates_of(circuit: Circuit, symbols: SymbolTable) -> Definitions:
     """Yield each co-state and its law in the state."""
-    for _, port in stores:
-        law = symbols.law(port.law, {port.letter: symbols[port.state]})
-        yield symbols[costate_name(port)], law
+    for _, port in circuit.of(Storage, Body):
+        yield symbols[costate_name(port)], symbols.law(law_of(circuit, port), {})

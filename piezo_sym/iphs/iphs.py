@@ -255,17 +255,16 @@ def iphs_of(symbols: SymbolTable, junction: Junction) -> IPHS:
     """
     circuit = junction.circuit
     system = system_of(circuit, symbols, junction)
-    stores = tuple(circuit.of(Storage, Body))
     return IPHS(
         model=circuit.model,
         circuit=circuit,
         symbols=symbols,
         junction=junction,
         system=system,
-        energies=tuple(energy_of(placed.element, port) for placed, port in stores),
+        energies=tuple(energy_of(placed.element, p) for placed, p in circuit.of(Storage, Body)),
         laws=tuple(laws_of(circuit, symbols, system)),
         shares=junction.shares,
         slopes=tuple(slopes_of(circuit, symbols, junction.slopes)),
         ratios=tuple(ratios_of(circuit, symbols)),
-        costates=tuple(costates_of(stores, symbols)),
+        costates=tuple(costates_of(circuit, symbols)),
     )

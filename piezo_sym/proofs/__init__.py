@@ -1,12 +1,11 @@
 """Proofs: obligations on an `IPHS`, and verdicts on them.
 
-stage          from -> to                      in
-obligations    IPHS -> Obligation              balances, laws, ties, continuity, bodies, divisors,
-                                               domain
-queries        Question -> Query               obligations, branches, rational, facts, query
-answers        Query -> Answer                 solvers, in processes of their own (worker)
-verdicts       Obligation -> Row               prove, meetings, exactly (witnesses), units
-report         rows -> Report                  report
+stage          from -> to                in
+obligations    IPHS -> Obligation        domain, bodies, balances, laws, ties, continuity
+queries        Question -> Query         obligations, branches, rational, query
+answers        Query -> Answer           solvers, in processes of their own (worker)
+verdicts       Obligation -> Row         prove; sign_analysis and signs; witnesses by exact_eval
+report         rows -> Report            report, record, published
 """
 
 from __future__ import annotations
@@ -19,8 +18,7 @@ from piezo_sym.iphs import IPHS
 from piezo_sym.proofs import balances, bodies, laws
 from piezo_sym.proofs.assumptions import Assumptions, Law, assumptions_of, on_warm_bodies
 from piezo_sym.proofs.continuity import continuous
-from piezo_sym.proofs.divisors import divisors
-from piezo_sym.proofs.domain import defined, not_shown
+from piezo_sym.proofs.domain import defined, divisors, not_shown
 from piezo_sym.proofs.obligations import Obligation
 from piezo_sym.proofs.prove import prove
 from piezo_sym.proofs.published import published
@@ -90,9 +88,9 @@ def _of_element(
 def _of_laws(
     iphs: IPHS, element: str, own: tuple[Law, ...], assumptions: Assumptions
 ) -> Iterator[Obligation]:
-    yield from filter(None, [laws.welldef(own, assumptions)])
+    yield from filter(None, (laws.welldef(own, assumptions),))
     for law in own:
-        yield from filter(None, [continuous(law, assumptions)])
+        yield from filter(None, (continuous(law, assumptions),))
         if law.letter:
             yield from (laws.passive(law, assumptions), laws.odd(law, assumptions))
         elif iphs.model.elements[element].kind == "conduction":

@@ -15,7 +15,6 @@ from typing import final
 
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.tree import (
-    ONE,
     ZERO,
     Add,
     Call,
@@ -30,8 +29,8 @@ from piezo_sym.expressions.tree import (
     names,
 )
 from piezo_sym.proofs.branches import TooManyBranchesError
-from piezo_sym.proofs.exact_eval import holds
-from piezo_sym.proofs.obligations import Question
+from piezo_sym.proofs.exact_eval import all_hold
+from piezo_sym.proofs.obligations import NEVER, Question
 from piezo_sym.proofs.query import connected
 from piezo_sym.proofs.solvers import Answer, Asks
 from piezo_sym.spec.tables import greater
@@ -49,7 +48,6 @@ MOVES += ((Fraction(1, 10), Fraction(0)),)
 
 #: Questions on one law before no more are asked, and how many of them may have no answer.
 MOST_ASKED, MOST_UNKNOWN = 60, 4
-NEVER = Cmp("<", ONE, ZERO)
 
 Numbers = Mapping[str, Fraction]
 
@@ -121,7 +119,7 @@ class Asked:
 
     def follows(self, claim: Cmp) -> bool:
         """Return whether a claim holds in all of the domain."""
-        if any(_broken((claim,), sample) for sample in self.samples):
+        if any(all_hold((claim,), sample) is False for sample in self.samples):
             return False
         return all(answer.result == "unsat" for answer in self._answers(claim, claim))
 
@@ -135,7 +133,7 @@ class Asked:
             {**first, name: first[name] * factor + step}
             for name, (factor, step) in product(first, MOVES)
         )
-        return (first, *(point for point in others if _broken(self.where, point) is False))
+        return (first, *(point for point in others if all_hold(self.where, point)))
 
     def empty(self) -> bool:
         """Return whether no point is in the domain."""
@@ -170,7 +168,7 @@ class Asked:
         if len(results) >= MOST_ASKED or results.count("unknown") >= MOST_UNKNOWN:
             return Answer("unknown")
         try:
-            answer = self.solver.ask(question.query())
+            answer = self.solver.ask(question.query)
         except TooManyBranchesError:
             answer = Answer("unknown")
         results.append(answer.result)
@@ -182,15 +180,7 @@ class Asked:
         Conditions on other names have nothing to do with it.
         """
         near = connected(self.where, names(claim))
-        return _broken(near, numbers) is False and _broken((claim,), numbers) is True
-
-
-def _broken(conditions: Iterable[Cmp], numbers: Numbers) -> bool | None:
-    """Return whether a comparison is false at exact numbers; None if that cannot be told."""
-    try:
-        return not all(holds(condition, numbers) for condition in conditions)
-    except (ArithmeticError, ValueError, KeyError):
-        return None
+        return bool(all_hold(near, numbers)) and all_hold((claim,), numbers) is False
 
 
 def tried(claim: Cmp, letter: str, asked: Asked) -> Numbers | None:

@@ -1,6 +1,6 @@
 """What may be assumed of a model: its domain, that temperatures are positive, what ties names.
 
-Input: an `IPHS`.  Output: a `Assumptions`; and the `Law` records that questions are about.
+Input: an `IPHS`.  Output: `Assumptions`, and the type `Law` of what questions are about.
 """
 
 from __future__ import annotations
@@ -8,9 +8,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import final
 
-from piezo_sym.expressions.tree import ZERO, Call, Cmp, Div, Expr, Mul, Sym, names, rename
+from piezo_sym.expressions.tree import ZERO, Call, Cmp, Div, Expr, Mul, Sym, names
 from piezo_sym.iphs import IPHS
-from piezo_sym.proofs.obligations import Obligation
+from piezo_sym.iphs.definitions import law_of
+from piezo_sym.proofs.obligations import Obligation, Question
 from piezo_sym.spec.elements.ports import Body, Storage
 from piezo_sym.spec.tables import condition_text, conditions
 
@@ -40,6 +41,11 @@ class Law:
     ties: tuple[Cmp | None, ...] = ()
     written: Expr | None = None
 
+    @property
+    def of_element(self) -> str:
+        """The law in words, such as ``the law of damper``."""
+        return f"the law of {self.element}"
+
 
 @final
 @dataclass(frozen=True)
@@ -67,6 +73,14 @@ class Assumptions:
         ties = [tie for law in laws for tie in law.ties if tie]
         return replace(self, order=(*self.order, *letters), where=(*self.where, *ties))
 
+    def given(self, *conditions: Cmp) -> Assumptions:
+        """Return the assumptions with some conditions more."""
+        return replace(self, where=(*self.where, *conditions))
+
+    def question(self, label: str, claim: Cmp, original: Cmp | None = None) -> Question:
+        """Return the question whether a claim follows; see `Question` for `original`."""
+        return Question(label, self.order, self.where, claim, original or claim)
+
 
 def assumptions_of(iphs: IPHS) -> Assumptions:
     """Return the domain of a model, and that temperatures are positive (row ``temperature``)."""
@@ -79,7 +93,7 @@ def assumptions_of(iphs: IPHS) -> Assumptions:
     rows = tuple((port.temperature, ("temperature", body.element)) for body, port in placed)
     used = {name for tree in trees for name in names(tree)}
     ties = tuple(
-        Cmp("=", Sym(port.temperature), rename(port.law, {port.letter: port.state}))
+        Cmp("=", Sym(port.temperature), law_of(iphs.circuit, port))
         for _, port in placed
         if port.state in used or not _is_exponential(port.law)
     )

@@ -8,7 +8,6 @@ sums over lanes: zero proves it for every state, input, parameter and every r.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 import sympy as sp
 
@@ -17,7 +16,6 @@ from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ZERO, Cmp, Sym
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.assumptions import Assumptions
-from piezo_sym.proofs.branches import TooManyBranchesError
 from piezo_sym.proofs.laws import valued
 from piezo_sym.proofs.obligations import Obligation, Question, Residual
 from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, Resistor, Source, Storage
@@ -101,7 +99,7 @@ def exergy(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
         residuals=(Residual("d(U - T_e S)/dt + T_e sigma + lam (T - T_e)^2/T", residual),),
         rests_on=(("sigma", ""),),
     )
-    yield _with_cooling(made, iphs, assumptions)
+    yield made.asking(lambda: _cooling(iphs, assumptions), "a conductance")
 
 
 def environment(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
@@ -122,7 +120,7 @@ def environment(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
         residuals=(residual,),
         rests_on=(("sigma", ""),),
     )
-    yield _with_cooling(made, iphs, assumptions)
+    yield made.asking(lambda: _cooling(iphs, assumptions), "a conductance")
 
 
 def _exchanges(iphs: IPHS) -> Iterator[tuple[sp.Expr, sp.Symbol, sp.Symbol]]:
@@ -133,22 +131,14 @@ def _exchanges(iphs: IPHS) -> Iterator[tuple[sp.Expr, sp.Symbol, sp.Symbol]]:
         yield conductance, iphs.symbols[temperature], iphs.symbols[port.input]
 
 
-def _with_cooling(made: Obligation, iphs: IPHS, assumptions: Assumptions) -> Obligation:
-    try:
-        return replace(made, questions=tuple(_cooling(iphs, assumptions)))
-    except TooManyBranchesError:
-        reason = "a conductance has too many branches; use fewer kinks"
-        return replace(made, open_because=reason)
-
-
 def _cooling(iphs: IPHS, assumptions: Assumptions) -> Iterator[Question]:
     """Yield what heat exchange needs: a conductance that is not negative, a T_e above zero."""
     for placed, port in iphs.circuit.of(Exchange):
         warm, conducts = Cmp(">", Sym(port.input), ZERO), Cmp(">=", port.conductance, ZERO)
         yield from valued(port.conductance, assumptions)
         label = f"{spell(port.conductance)} >= 0 ({placed.element})"
-        yield Question(label, assumptions.order, assumptions.where, conducts, conducts)
-        yield Question(f"{port.input} > 0", assumptions.order, assumptions.where, warm, warm)
+        yield assumptions.question(label, conducts)
+        yield assumptions.question(f"{port.input} > 0", warm)
 
 
 def _gradient(iphs: IPHS) -> Iterator[Residual]:

@@ -7,13 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 from piezo_sym.expressions.calculus import add, derivative, div, mul, neg
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Expr, Sym, names, rename
+from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Expr, Sym, names
 from piezo_sym.iphs import IPHS
+from piezo_sym.iphs.definitions import law_of
 from piezo_sym.proofs.assumptions import Assumptions
-from piezo_sym.proofs.branches import TooManyBranchesError
 from piezo_sym.proofs.laws import on_branches, valued
 from piezo_sym.proofs.obligations import Obligation, Question
 from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, Resistor
@@ -24,35 +25,27 @@ from piezo_sym.spec.tables import conditions, greater
 def temperature(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
     """Yield for each body that its temperature is positive and rises with its entropy."""
     domain = tuple(condition.tree for condition in conditions(iphs.model))
+    spoken_of = {name for tree in domain for name in names(tree)}
     for placed, port in iphs.circuit.of(Body):
-        law = rename(port.law, {port.letter: port.state})
-        here = Cmp("=", Sym(port.temperature), law)
-        where = (*domain, here) if port.temperature in _names(domain) else domain
-        within = replace(assumptions, where=where)
+        law = law_of(iphs.circuit, port)
+        here = (Cmp("=", Sym(port.temperature), law),) if port.temperature in spoken_of else ()
+        within = replace(assumptions, where=(*domain, *here))
         statement, latex = "T > 0 and dT/dS > 0", r"T > 0,\quad \partial T/\partial S > 0"
         made = Obligation("temperature", placed.element, statement, latex, assumptions.texts)
-        slope = derivative(law, port.state)
-        try:
-            questions = (
-                *valued(law, within),
-                *valued(slope, within),
-                *_positive("T > 0", law, within),
-                *_positive("dT/dS > 0", slope, within),
-            )
-        except TooManyBranchesError:
-            yield replace(made, open_because="the law has too many branches; use fewer kinks")
-            continue
-        asked = {(question.where, question.claim): question for question in reversed(questions)}
-        yield replace(made, questions=tuple(reversed(asked.values())))
+        yield made.asking(partial(_warm, law, port.state, within), "the law")
 
 
-def _names(trees: tuple[Cmp, ...]) -> set[str]:
-    return {name for tree in trees for name in names(tree)}
-
-
-def _positive(label: str, law: Expr, assumptions: Assumptions) -> tuple[Question, ...]:
-    claim = Cmp(">", law, ZERO)
-    return on_branches(law, Question(label, assumptions.order, assumptions.where, claim, claim))
+def _warm(law: Expr, state: str, assumptions: Assumptions) -> Iterator[Question]:
+    """Yield the questions whether a temperature and its slope have values, and are positive."""
+    slope = derivative(law, state)
+    found = [
+        *valued(law, assumptions),
+        *valued(slope, assumptions),
+        *on_branches(law, assumptions.question("T > 0", Cmp(">", law, ZERO))),
+        *on_branches(slope, assumptions.question("dT/dS > 0", Cmp(">", slope, ZERO))),
+    ]
+    asked = {(question.where, question.claim): question for question in reversed(found)}
+    yield from reversed(asked.values())
 
 
 def invariant(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
@@ -104,13 +97,11 @@ def _gains(
         claim = Cmp(">=", mul(conductance, add(div(other, T), neg(ONE))), ZERO)
         colder = Cmp("<=", T, other)
         label = f"conduction from {other.name} brings entropy"
-        yield Question(label, assumptions.order, (*assumptions.where, colder), claim, claim)
+        yield assumptions.given(colder).question(label, claim)
     for exchange in exchanges:
         hot, lam = Sym(exchange.input), exchange.conductance
-        between = (Cmp("<=", T, m), Cmp("<", m, hot))
         order = (*assumptions.order, m.name)
+        between = replace(assumptions, order=order).given(Cmp("<=", T, m), Cmp("<", m, hot))
         brought = [mul(lam, add(div(hot, at), neg(ONE))) for at in (T, m)]
-        least = Cmp(">=", brought[0], brought[1])
-        gain = Cmp(">=", brought[1], ZERO)
-        for label, claim in (("at T at least as at m", least), ("at m not negative", gain)):
-            yield Question(label, order, (*assumptions.where, *between), claim, claim)
+        yield between.question("at T at least as at m", Cmp(">=", brought[0], brought[1]))
+        yield between.question("at m not negative", Cmp(">=", brought[1], ZERO))

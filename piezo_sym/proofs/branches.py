@@ -55,7 +55,9 @@ class Branch:
 @final
 @dataclass(eq=False)
 class TooManyBranchesError(Exception):
-    """A law has more branches than anybody wants to wait for."""
+    """A law has more than `most` branches."""
+
+    most: int
 
 
 def branches(law: Expr, known: Iterable[Cmp] = ()) -> tuple[Branch, ...]:
@@ -74,7 +76,7 @@ def branches(law: Expr, known: Iterable[Cmp] = ()) -> tuple[Branch, ...]:
     for branch in _pieces(settled(law, known), ()):
         found.append(branch)
         if len(found) > MOST:
-            raise TooManyBranchesError
+            raise TooManyBranchesError(MOST)
     return tuple(found)
 
 

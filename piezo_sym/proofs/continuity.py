@@ -1,16 +1,18 @@
-"""What has to be shown of a law with branches: that it does not jump where two of them meet.
+"""Continuity: a law with branches does not jump where two of them meet.
 
-Input: a law.  Output: an obligation, its questions asked of each pair of branches.  With each <
-read as <=, the conditions of a branch describe a closed part of the domain; the parts cover it.  A
-law that is continuous on each of finitely many closed parts, and agrees with itself where they
-meet, is continuous: the pasting lemma.
+Input: a law.  Output: an obligation with a question on each pair of branches (`continuous`); of
+these the ones that have to be asked (`needed`); whether a law jumps at a point (`jumps`).  With
+each < read as <=, the conditions of a branch describe a closed part of the domain; the parts cover
+it.  A law that is continuous on each of finitely many closed parts, and agrees with itself where
+they meet, is continuous: the pasting lemma.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from itertools import combinations
+from fractions import Fraction
+from itertools import combinations, pairwise, product
 
 from piezo_sym.expressions.calculus import add, neg
 from piezo_sym.expressions.text import spell
@@ -23,15 +25,24 @@ from piezo_sym.proofs.branches import (
     branches,
     choices,
     opposite,
+    partial,
     settled,
     with_choices,
 )
-from piezo_sym.proofs.laws import ask, too_many, valued
-from piezo_sym.proofs.obligations import Meeting, Obligation, Question
+from piezo_sym.proofs.exact_eval import TooCloseError, Value, all_hold, differ, value_of
+from piezo_sym.proofs.laws import parts_valued, valued
+from piezo_sym.proofs.obligations import NEVER, Meeting, Obligation, Question
+from piezo_sym.proofs.solvers import Asks
 
 #: More branches than these are not compared, each with each.
 MOST = 60
 RELAXED = {"<": "<=", ">": ">="}
+#: How far from the point a branch is looked for.
+STEPS = tuple(Fraction(1, 10**n) for n in (6, 12, 18))
+#: By how much a value must grow from one step to the next to be called a pole.
+GROWTH = 10
+
+Numbers = Mapping[str, Fraction]
 
 
 def continuous(law: Law, assumptions: Assumptions) -> Obligation | None:
@@ -43,34 +54,31 @@ def continuous(law: Law, assumptions: Assumptions) -> Obligation | None:
     statement = f"{law.name} has no jump where its branches meet"
     latex = r"W_k(z^-) = W_k(z^+)"
     made = Obligation("continuous", law.element, statement, latex, assumptions.texts)
-    assumptions = assumptions.about(law)
+    about = assumptions.about(law)
     edges = [c for c in choices(with_choices(law.tree)) if not {*names(c)} <= assumptions.fixed]
     if law.jumps or not edges:
         return None
-    try:
-        if not _chooses(law.tree):
-            asked = law.letter or valued(
-                law.tree, assumptions
-            )  # else knots are numbers that increase
-            return replace(made, rests_on=(("welldef", law.element),) if asked else ())
-        found = branches(law.tree, assumptions.where)
-    except TooManyBranchesError:
-        return replace(made, open_because=too_many(law))
+    if not _chooses(law.tree):
+        rests = (("welldef", law.element),)
+        if law.letter:
+            return replace(made, rests_on=rests)
+        asked = made.asking(lambda: valued(law.tree, about), law.of_element)
+        return replace(asked, questions=(), rests_on=rests if asked.questions else ())
+    return made.asking(lambda: _on_pairs(law, about, statement), law.of_element)
+
+
+def _on_pairs(law: Law, assumptions: Assumptions, statement: str) -> Iterator[Question]:
+    """Yield the questions on each pair of branches that may meet, and whether they cover all."""
+    found = branches(law.tree, assumptions.where)
     if len(found) > MOST:
-        reason = f"the law of {law.element} has {len(found)} branches, too many to compare in pairs"
-        return replace(made, open_because=f"{reason}; use fewer kinks")
+        raise TooManyBranchesError(MOST)
     tree = settled(law.tree, assumptions.where)
-    questions = [
-        question
-        for one, other in combinations(found, 2)
-        if one.value != other.value and not _apart(one, other, assumptions)
-        for question in _meeting(
-            Meeting(tree, (one, other), assumptions.where, assumptions.fixed), assumptions
-        )
-    ]
-    whole = Cmp("=", law.tree, law.tree)
-    covered = Question(statement, assumptions.order, assumptions.where, whole, whole).covered(found)
-    return replace(made, questions=(*dict.fromkeys(questions), *([covered] * (len(found) > 1))))
+    for one, other in combinations(found, 2):
+        if one.value != other.value and not _apart(one, other, assumptions):
+            meeting = Meeting(tree, (one, other), assumptions.where, assumptions.fixed)
+            yield from _meeting(meeting, assumptions)
+    if len(found) > 1:
+        yield assumptions.question(statement, Cmp("=", law.tree, law.tree)).covered(found)
 
 
 def _chooses(law: Expr) -> bool:
@@ -93,16 +101,16 @@ def _apart(one: Branch, other: Branch, assumptions: Assumptions) -> bool:
 def _meeting(meeting: Meeting, assumptions: Assumptions) -> Iterator[Question]:
     """Yield the questions whether two branches have values, and the same, where they meet."""
     one, other = meeting.sides
-    found: list[Question] = []
     where, border = assumptions.where, tuple(_border(one, other, assumptions.fixed))
-    for condition in border:
-        where = (*ask(found, condition, where, assumptions), condition)
-    where = ask(found, add(one.value, neg(other.value)), where, assumptions)
-    claim = Cmp("=", one.value, other.value)
+    found: list[Question] = []
+    for part in (*border, add(one.value, neg(other.value))):
+        found += parts_valued(part, where, assumptions)
+        where = (*where, *partial(part), *((part,) if isinstance(part, Cmp) else ()))
     edge = next(c for c in border if c.op == "=")
     at = f"{spell(edge.left)} = {spell(edge.right)}"
     label = f"{spell(one.value)} = {spell(other.value)} at {at}"
-    found.append(Question(label, assumptions.order, where, claim, claim))
+    claim = Cmp("=", one.value, other.value)
+    found.append(replace(assumptions, where=where).question(label, claim))
     for question in found:
         yield replace(question, branch=border, meeting=meeting)
 
@@ -120,3 +128,91 @@ def _border(one: Branch, other: Branch, fixed: frozenset[str]) -> Iterator[Cmp]:
             same = {*names(condition)} <= fixed
             op = condition.op if same else RELAXED.get(condition.op, condition.op)
             yield Cmp(op, condition.left, condition.right)
+
+
+def needed(questions: tuple[Question, ...], solver: Asks) -> Iterator[Question]:
+    """Yield the questions that are left: of those on two branches, the ones on neighbours.
+
+    Two branches are neighbours if there is no third whose conditions are all among theirs.  Where
+    two others meet, such a third meets both; that each of them agrees with it is asked, or follows
+    in the same way: the third contradicts each of them in fewer conditions than they do each other.
+    """
+    about = {side: q for q in questions if q.meeting for side in q.meeting.sides}
+    taken = tuple(side for side, question in about.items() if not _empty(side, question, solver))
+    near = frozenset(_neighbours(taken))
+    yield from (q for q in questions if q.meeting is None or q.meeting.sides in near)
+
+
+def _neighbours(taken: tuple[Branch, ...]) -> Iterator[tuple[Branch, Branch]]:
+    paths = {branch: frozenset(branch.conditions) for branch in taken}
+    for one, other in combinations(taken, 2):
+        both = paths[one] | paths[other]
+        if not any(paths[third] <= both for third in taken if third not in (one, other)):
+            yield from ((one, other), (other, one))
+
+
+def _empty(branch: Branch, question: Question, solver: Asks) -> bool:
+    """Return whether a branch is shown to be taken nowhere in the domain."""
+    assert question.meeting is not None
+    if any(opposite(condition) in branch.conditions for condition in branch.conditions):
+        return True
+    where = (*question.meeting.domain, *branch.conditions)
+    asked = replace(question, where=where, claim=NEVER, branch=branch.conditions)
+    return solver.ask(asked.query).result == "unsat"
+
+
+def jumps(meeting: Meeting, values: Numbers) -> bool:
+    """Return whether the law of two branches certainly jumps at a point, or has no value there."""
+    try:
+        at = value_of(meeting.law, values)
+    except TooCloseError:
+        return False
+    except (ArithmeticError, ValueError):
+        return True
+    return any(_other(side, meeting, at, values) for side in meeting.sides)
+
+
+def _other(side: Branch, meeting: Meeting, at: Value, values: Numbers) -> bool:
+    """Return whether a branch comes near a point with another value than the law has there."""
+    try:
+        apart = differ(value_of(side.value, values), at)
+    except TooCloseError:
+        return False
+    except (ArithmeticError, ValueError):
+        ways = _ways(side, meeting, values)
+        return any(_grows([_size(meeting.law, point) for point in way]) for way in ways)
+    return apart and any(True for _ in _ways(side, meeting, values))
+
+
+def _size(law: Expr, values: Numbers) -> float:
+    try:
+        return abs(float(value_of(law, values)))
+    except (ArithmeticError, ValueError):
+        return 0.0
+
+
+def _grows(sizes: list[float]) -> bool:
+    return sizes[0] > 0 and all(later > GROWTH * before for before, later in pairwise(sizes))
+
+
+def _ways(side: Branch, meeting: Meeting, values: Numbers) -> Iterator[list[Numbers]]:
+    """Yield points of a branch nearer and nearer to a point, one direction after the other.
+
+    Parameters stay where they are: a jump along them is none that a run could see.
+    """
+    for way in _directions(tuple(name for name in values if name not in meeting.fixed)):
+        points: list[Numbers] = [
+            {n: v + step * way.get(n, 0) for n, v in values.items()} for step in STEPS
+        ]
+        conditions = [
+            c for c in (*meeting.domain, *side.conditions) if values.keys() >= {*names(c)}
+        ]
+        if all(all_hold(conditions, point) for point in points):
+            yield points
+
+
+def _directions(order: tuple[str, ...]) -> Iterator[Mapping[str, int]]:
+    for name, sign in product(order, (1, -1)):
+        yield {name: sign}
+    for (one, other), sign, factor in product(combinations(order, 2), (1, -1), (1, -1, 2, -2)):
+        yield {one: sign, other: factor}

@@ -1,6 +1,7 @@
-"""What has to be shown of a domain: its conditions have values, and a point is known to be in it.
+"""What has to be shown of a model as a whole: its domain has points, nothing divides by zero.
 
-Input: an `IPHS`.  Output: an obligation, and the reason why nothing can be said of an empty domain.
+Input: an `IPHS`.  Output: obligations that conditions of the domain have values and that what the
+junction laws divide by is not zero, and the reason why nothing can be said of an empty domain.
 """
 
 from __future__ import annotations
@@ -9,17 +10,25 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
 
+import sympy as sp
+
+from piezo_sym.algebra.coefficients import coefficient
 from piezo_sym.expressions.parse import parse_law
-from piezo_sym.expressions.tree import ONE, ZERO, Cmp, names, rename
+from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tree import ZERO, Cmp, Expr, Neg, names
+from piezo_sym.expressions.tree import replace as put
 from piezo_sym.iphs import IPHS
+from piezo_sym.iphs.definitions import law_of, slope_law
 from piezo_sym.proofs.assumptions import Assumptions
-from piezo_sym.proofs.branches import TooManyBranchesError
-from piezo_sym.proofs.exact_eval import Value, holds, value_of
-from piezo_sym.proofs.laws import valued
-from piezo_sym.proofs.obligations import Obligation, Question
+from piezo_sym.proofs.exact_eval import Value, all_hold, value_of
+from piezo_sym.proofs.laws import on_branches, valued
+from piezo_sym.proofs.obligations import NEVER, Obligation, Question
 from piezo_sym.proofs.solvers import Asks
-from piezo_sym.spec.elements.ports import Body
+from piezo_sym.spec.elements.ports import Body, Coupling
 from piezo_sym.spec.tables import conditions, states
+
+#: Of a longer divisor only the beginning is shown.
+MOST_TEXT = 60
 
 
 def defined(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
@@ -28,21 +37,44 @@ def defined(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
     Conditions that always have a value come first: all of them have to hold, in whatever order.
     """
     trees = [condition.tree for condition in conditions(iphs.model)]
-    ties = tuple(c for c in assumptions.where if c.op == "=")
+    ties = replace(assumptions, where=tuple(c for c in assumptions.where if c.op == "="))
+
+    def questions() -> Iterator[Question]:
+        partial = [tree for tree in trees if valued(tree, ties)]
+        known = [tree for tree in trees if tree not in partial]
+        for tree in partial:
+            yield from valued(tree, replace(ties, where=(*known, *ties.where)))
+            known.append(tree)
+
     statement, latex = "the domain: each condition has a value", r"\mathcal{D}"
     made = Obligation("welldef", "", statement, latex, assumptions.texts)
-    try:
-        partial = [tree for tree in trees if valued(tree, replace(assumptions, where=ties))]
-        known = [tree for tree in trees if tree not in partial]
-        found: list[Question] = []
-        for tree in partial:
-            found += valued(tree, replace(assumptions, where=(*known, *ties)))
-            known.append(tree)
-    except TooManyBranchesError:
-        yield replace(made, open_because="the domain has too many branches; use fewer kinks")
-        return
-    if found:
-        yield replace(made, questions=tuple(dict.fromkeys(found)))
+    made = made.asking(questions, "a condition of the domain")
+    if made.questions or made.open_because:
+        yield made
+
+
+def divisors(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
+    """Yield for each expression that the junction laws divide by that it is not zero.
+
+    These are ratios of levers, and what resistive loops bring.
+    """
+    words = {port.name: law_of(iphs.circuit, port) for _, port in iphs.circuit.of(Coupling)}
+    slopes = iphs.junction.slopes
+    words |= {str(slope.symbol.name): slope_law(iphs.circuit, slope) for slope in slopes}
+    for divisor in iphs.junction.divisors:
+        yield _divisor(divisor, words, assumptions)
+
+
+def _divisor(divisor: sp.Expr, words: Mapping[str, Expr], assumptions: Assumptions) -> Obligation:
+    form = coefficient(divisor)
+    form = form.arg if isinstance(form, Neg) else form
+    text = spell(form)
+    short = text if len(text) <= MOST_TEXT else f"{text[: MOST_TEXT - 3]}..."
+    statement = f"{short} != 0: the junction laws divide by it"
+    made = Obligation("welldef", "", statement, r"\det \ne 0", assumptions.texts)
+    law = put(form, words)
+    question = assumptions.question(f"{short} != 0", Cmp("!=", law, ZERO))
+    return made.asking(lambda: (*valued(law, assumptions), *on_branches(law, question)), short)
 
 
 def not_shown(iphs: IPHS, assumptions: Assumptions, solver: Asks) -> str:
@@ -53,11 +85,8 @@ def not_shown(iphs: IPHS, assumptions: Assumptions, solver: Asks) -> str:
     """
     if _inside(assumptions, _own_values(iphs)):
         return ""
-    never = Cmp("<", ONE, ZERO)
-    question = Question(
-        "the domain is empty", assumptions.order, assumptions.where, never, never, whole=True
-    )
-    answer = solver.ask(question.query())
+    question = assumptions.question("the domain is empty", NEVER)
+    answer = solver.ask(replace(question, whole=True).query)
     if answer.result == "sat" and _inside(assumptions, (answer.model,)):
         return ""
     given = ", ".join(assumptions.texts)
@@ -68,15 +97,9 @@ def not_shown(iphs: IPHS, assumptions: Assumptions, solver: Asks) -> str:
 
 def _inside(assumptions: Assumptions, points: tuple[Mapping[str, Value], ...]) -> bool:
     """Return whether every point is certainly in the domain."""
-    try:
-        return bool(points) and all(
-            holds(condition, point)
-            for point in points
-            for condition in assumptions.where
-            if condition.op != "="  # what ties a temperature to its entropy holds by its value
-        )
-    except (ArithmeticError, ValueError, KeyError):
-        return False
+    # what ties a temperature to its entropy holds by its value
+    conditions = [condition for condition in assumptions.where if condition.op != "="]
+    return bool(points) and all(all_hold(conditions, point) for point in points)
 
 
 def _own_values(iphs: IPHS) -> tuple[dict[str, Value], ...]:
@@ -109,6 +132,6 @@ def _start(iphs: IPHS, state: str, lane: int, values: Mapping[str, Value]) -> Va
 
 def _temperatures(iphs: IPHS, values: Mapping[str, Value]) -> Iterator[tuple[str, Value]]:
     for _, port in iphs.circuit.of(Body):
-        law = rename(port.law, {port.letter: port.state})
-        if {*names(law)} <= values.keys():
+        law = law_of(iphs.circuit, port)
+        if values.keys() >= {*names(law)}:
             yield port.temperature, value_of(law, values)

@@ -1,17 +1,17 @@
-"""Exact values of laws: rationals where all is rational, else intervals that hold the value.
+"""Exact values of laws: rationals where all is rational, else balls that contain the value.
 
-Input: a tree and exact numbers.  Output: a `Fraction`, or an interval of mpmath's whose ends are
-rounded outward.  A witness is shown only after its law has been evaluated here.
+Input: a tree and exact numbers.  Output: a `Fraction`, or a ball of FLINT's (``arb``), whose
+arithmetic is rigorous.  A witness is shown only after its law has been evaluated here.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, final
 
-from mpmath import iv
+from flint import arb, ctx, fmpq
 
 from piezo_sym.expressions.calculus import choices, increasing
 from piezo_sym.expressions.functions import RECORDS, Function
@@ -31,10 +31,10 @@ from piezo_sym.expressions.tree import (
     Sym,
     knots,
 )
-from piezo_sym.proofs.balls import smooth
 
-DIGITS = 40
-#: Beyond this the argument of a function is not looked at, nor a rational power of more bits.
+#: Precision of balls.
+BITS = 160
+#: Functions are not evaluated at larger arguments; rational powers of more bits become balls.
 LARGEST_ARGUMENT, MOST_BITS = 10**6, 10**5
 
 #: Whether a comparison holds, by the sign of left - right; proofs also use = and !=.
@@ -51,13 +51,13 @@ OUTCOMES: Mapping[str, Callable[[int], bool]] = {
 @final
 @dataclass(eq=False)
 class TooCloseError(ArithmeticError):
-    """A sign that 40 digits do not tell, or a number too large to be looked at."""
+    """A sign that the precision does not decide, or a number too large to evaluate."""
 
 
-Value = Any  # Fraction, or an interval of mpmath
+Value = Any  # what a law's value is: a Fraction, or an arb; in here fmpq takes the Fraction's place
 
 
-def value_of(node: Expr, values: Mapping[str, Fraction]) -> Value:
+def value_of(node: Expr, values: Mapping[str, Value]) -> Value:
     """Return the value of a law.
 
     Raises
@@ -67,22 +67,16 @@ def value_of(node: Expr, values: Mapping[str, Fraction]) -> Value:
     TooCloseError
         Where that, or a comparison, cannot be decided.
     """
-    before = iv.dps
-    iv.dps = DIGITS
-    try:
-        return _value(node, values)
-    finally:
-        iv.dps = before
+    with ctx.workprec(BITS):
+        found = _value(node, values)
+    if isinstance(found, fmpq):
+        return Fraction(int(found.p), int(found.q))
+    if not found.is_finite():
+        raise TooCloseError
+    return found
 
 
-def sign_of(value: Value) -> int | None:
-    """Return -1, 0 or 1, or None for an interval around zero."""
-    if isinstance(value, Fraction):
-        return (value > 0) - (value < 0)
-    return -1 if value.b < 0 else 1 if value.a > 0 else None
-
-
-def holds(condition: Cmp, values: Mapping[str, Fraction]) -> bool:
+def holds(condition: Cmp, values: Mapping[str, Value]) -> bool:
     """Return whether a comparison holds.
 
     Raises
@@ -92,64 +86,67 @@ def holds(condition: Cmp, values: Mapping[str, Fraction]) -> bool:
     ArithmeticError, ValueError
         If a side has no value.
     """
-    difference = minus(value_of(condition.left, values), value_of(condition.right, values))
-    return OUTCOMES[condition.op](_certain(difference))
+    with ctx.workprec(BITS):
+        return _holds(condition, values)
 
 
-def minus(left: Value, right: Value) -> Value:
-    """Return the difference of two values."""
-    a, b = _alike([left, right])
-    return a - b
+def all_hold(conditions: Iterable[Cmp], values: Mapping[str, Value]) -> bool | None:
+    """Return whether all of some comparisons hold; None if that cannot be decided."""
+    try:
+        return all(holds(condition, values) for condition in conditions)
+    except (ArithmeticError, ValueError, KeyError):
+        return None
 
 
-def _interval(value: Value) -> Value:
+def differ(left: Value, right: Value) -> bool:
+    """Return whether two values are different for certain."""
+    with ctx.workprec(BITS):
+        return bool(_number(left) != _number(right))
+
+
+def _number(value: Value) -> Value:
     if not isinstance(value, Fraction):
         return value
-    return iv.mpf(value.numerator) / iv.mpf(value.denominator)
+    return fmpq(value.numerator, value.denominator)
+
+
+def _holds(condition: Cmp, values: Mapping[str, Value]) -> bool:
+    difference = _value(condition.left, values) - _value(condition.right, values)
+    return OUTCOMES[condition.op](_sign(difference))
 
 
 def _value(node: Expr, values: Mapping[str, Value]) -> Value:
     match node:
         case Num(value):
-            return value
+            return _number(value)
         case Sym(name):
-            return values[name]
+            return _number(values[name])
         case Neg(arg):
             return -_value(arg, values)
         case Add(terms):
-            first, *rest = _alike([_value(term, values) for term in terms])
-            return sum(rest, start=first)
+            return sum((_value(term, values) for term in terms), start=fmpq(0))
         case Mul(left, right):
-            a, b = _alike([_value(left, values), _value(right, values)])
-            return a * b
+            return _value(left, values) * _value(right, values)
         case Div(left, right):
-            a, b = _alike([_value(left, values), _value(right, values)])
-            return _quotient(a, b)
+            return _quotient(_value(left, values), _value(right, values))
         case Pow(base, exponent):
             return _power(_value(base, values), exponent)
         case Call() if knots(node):
-            if not all(holds(order, values) for order in increasing(node)):
+            if not all(_holds(order, values) for order in increasing(node)):
                 msg = "the knots of a table do not increase"
                 raise ValueError(msg)
             return _value(choices(node), values)
         case Call(function, args):
             return _call(function, [_value(arg, values) for arg in args])
         case If(then, condition, other):
-            return _value(then if holds(condition, values) else other, values)
+            return _value(then if _holds(condition, values) else other, values)
         case LaneSum():
             msg = "a sum over lanes has no value outside a program"
             raise TypeError(msg)
 
 
-def _alike(parts: list[Value]) -> list[Value]:
-    """Return values of one type: rationals if all are."""
-    if all(isinstance(part, Fraction) for part in parts):
-        return parts
-    return [_interval(part) for part in parts]
-
-
 def _quotient(a: Value, b: Value) -> Value:
-    if _certain(b) == 0:
+    if _sign(b) == 0:
         msg = "division by zero"
         raise ZeroDivisionError(msg)
     return a / b
@@ -158,29 +155,15 @@ def _quotient(a: Value, b: Value) -> Value:
 def _power(base: Value, exponent: Fraction) -> Value:
     if exponent.denominator == 1:
         size = abs(exponent.numerator)
-        if isinstance(base, Fraction) and size * _bits(base) > MOST_BITS:
-            base = _interval(base)
+        if isinstance(base, fmpq) and size * base.height_bits() > MOST_BITS:
+            base = arb(base)
         whole = base**size
-        one = Fraction(1) if isinstance(base, Fraction) else iv.mpf(1)
-        return whole if exponent > 0 else _quotient(one, whole)
-    sign = _certain(base)
+        return whole if exponent > 0 else _quotient(fmpq(1), whole)
+    sign = _sign(base)
     if sign < 0 or (sign == 0 and exponent < 0):
         msg = "root of a negative number"
         raise ValueError(msg)
-    if sign == 0:
-        return Fraction(0)
-    return iv.exp(iv.log(_interval(base)) * _interval(exponent))
-
-
-def _bits(value: Fraction) -> int:
-    return max(value.numerator.bit_length(), value.denominator.bit_length())
-
-
-def _large(z: Value) -> bool:
-    """Return whether a number is, or may be, too large for a function."""
-    if isinstance(z, Fraction):
-        return abs(z) > LARGEST_ARGUMENT
-    return not (z.a >= -LARGEST_ARGUMENT and z.b <= LARGEST_ARGUMENT)
+    return arb(base) ** arb(_number(exponent)) if sign else fmpq(0)
 
 
 def _call(function: str, args: list[Value]) -> Value:
@@ -189,30 +172,27 @@ def _call(function: str, args: list[Value]) -> Value:
         return _value(parse_rule(record.formula or record.choices), {"x": z, "w": args[-1]})
     if record.power is not None:
         return _power(z, record.power)
-    if record.domain and _certain(z) != 1:
+    if record.domain and _sign(z) != 1:
         raise ValueError(f"{function} of a number that is not positive")
-    if not record.domain and _large(z):
-        return _far(record, _interval(z))
-    if record.known and isinstance(z, Fraction) and z == record.known[0]:
-        return Fraction(record.known[1])
-    return smooth(function, _interval(z), iv)
-
-
-def _far(record: Function, z: Value) -> Value:
-    """Return bounds on a function of a large number; some have none."""
-    low, high = (_interval(b) if isinstance(b, Fraction) else None for b in record.bounds)
-    edge = iv.mpf(LARGEST_ARGUMENT)
-    if record.monotone and z.a > LARGEST_ARGUMENT:
-        low = smooth(record.name, edge, iv)
-    elif record.monotone and z.b < -LARGEST_ARGUMENT:
-        high = smooth(record.name, -edge, iv)
-    if low is None or high is None:
+    if not (record.domain or abs(z) <= LARGEST_ARGUMENT or _bounded_far_out(record, z)):
         raise TooCloseError
-    return iv.mpf([low.a, high.b])
+    if record.known and isinstance(z, fmpq) and z == record.known[0]:
+        return fmpq(record.known[1])
+    return getattr(arb(z), function)()
 
 
-def _certain(value: Value) -> int:
-    sign = sign_of(value)
-    if sign is None:
-        raise TooCloseError
-    return sign
+def _bounded_far_out(record: Function, z: Value) -> bool:
+    """Return whether a function's values at large arguments of the sign of z are bounded."""
+    low, high = (isinstance(bound, Fraction) for bound in record.bounds)
+    return (low or (record.monotone and z > 0)) and (high or (record.monotone and z < 0))
+
+
+def _sign(value: Value) -> int:
+    """Return the sign of a number; comparisons of balls are True only if they are certain."""
+    if value == 0:
+        return 0
+    if value > 0:
+        return 1
+    if value < 0:
+        return -1
+    raise TooCloseError

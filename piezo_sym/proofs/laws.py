@@ -1,29 +1,22 @@
 """What has to be shown of each law: welldef, passive, odd (and continuous, in `continuity`).
 
 Input: an `IPHS`.  Output: obligations, their questions asked branch by branch.  Laws stand in the
-words of the domain: a state by its symbol, the temperature of the body that is heated by its own.
+words of the domain: states and temperatures by their names (`law_of`).
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 from piezo_sym.expressions.calculus import add, increasing, mul, neg
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import (
-    ZERO,
-    Call,
-    Cmp,
-    Expr,
-    Node,
-    Sym,
-    names,
-    rename,
-)
+from piezo_sym.expressions.tree import ZERO, Call, Cmp, Expr, Node, Sym, names, rename
 from piezo_sym.expressions.tree import replace as substituted
 from piezo_sym.iphs import IPHS
+from piezo_sym.iphs.definitions import costate_name, law_of
 from piezo_sym.proofs.assumptions import Assumptions, Law
-from piezo_sym.proofs.branches import MOST, TooManyBranchesError, branches, partial
+from piezo_sym.proofs.branches import TooManyBranchesError, branches, partial
 from piezo_sym.proofs.obligations import Obligation, Question, SignOf
 from piezo_sym.proofs.reflection import reflected
 from piezo_sym.proofs.ties import ties
@@ -42,33 +35,29 @@ from piezo_sym.spec.tables import condition_text
 
 def laws_of(iphs: IPHS) -> tuple[Law, ...]:
     """Return every law of a model, in declaration order."""
-    heat = {placed.element: port.temperature for placed, port in iphs.circuit.of(Body)}
     tied = ties(iphs)
-    found = [law for placed in iphs.circuit.ports if (law := _law(iphs, placed, heat))]
+    found = [law for placed in iphs.circuit.ports if (law := _law(iphs, placed))]
     return tuple(
         replace(law, ties=(tied[law.element],)) if law.letter and law.element in tied else law
         for law in found
     )
 
 
-def _law(iphs: IPHS, placed: Placed, heat: dict[str, str]) -> Law | None:
-    element, port = placed.element, placed.port
-    jumps = bool(getattr(iphs.model.elements[element], "discontinuous", False))
+def _law(iphs: IPHS, placed: Placed) -> Law | None:
+    element, port, circuit = placed.element, placed.port, iphs.circuit
     match port:
-        case Storage():
-            return Law(element, port.costate, rename(port.law, {port.letter: port.state}))
-        case Body():
-            return Law(element, port.temperature, rename(port.law, {port.letter: port.state}))
+        case Storage() | Body():
+            return Law(element, costate_name(port), law_of(circuit, port))
         case Resistor():
-            words = {"T": heat[port.heats]}
-            written = rename(port.written, words) if port.written else None
-            law = rename(port.law, words)
+            jumps = bool(getattr(iphs.model.elements[element], "discontinuous", False))
+            heat = {"T": circuit.body(port.heats).temperature}
+            written = rename(port.written, heat) if port.written else None
+            law = law_of(circuit, port)
             return Law(element, port.output, law, port.letter, jumps, written=written)
         case Coupling():
-            words = {"T": heat[port.body]} if port.body else {}
-            return Law(element, port.name, rename(port.ratio, words))
+            return Law(element, port.name, law_of(circuit, port))
         case Exchange() | Conductor():
-            return Law(element, "conductance", port.conductance)
+            return Law(element, "conductance", law_of(circuit, port))
         case Source():
             return None
 
@@ -78,17 +67,19 @@ def welldef(laws: tuple[Law, ...], assumptions: Assumptions) -> Obligation | Non
     named = " and ".join(dict.fromkeys(law.name for law in laws))
     statement = f"{named}: a real value everywhere"
     element, latex = laws[0].element, r"W_k \in \mathbb{R}"
-    made = Obligation("welldef", element, statement, latex, assumptions.texts)
-    assumptions = assumptions.about(*laws)
-    try:
-        found = [question for law in laws for question in valued(law.tree, assumptions)]
+    about = assumptions.about(*laws)
+
+    def questions() -> Iterator[Question]:
+        for law in laws:
+            yield from valued(law.tree, about)
         for written in (law.written for law in laws if law.written):
-            order = dict.fromkeys((*assumptions.order, *names(written)))
-            found += valued(written, replace(assumptions, order=tuple(order)))
-    except TooManyBranchesError:
-        return replace(made, open_because=too_many(laws[0]))
-    needed = found or any(law.letter for law in laws)
-    return replace(made, questions=tuple(dict.fromkeys(found))) if needed else None
+            order = dict.fromkeys((*about.order, *names(written)))
+            yield from valued(written, replace(about, order=tuple(order)))
+
+    made = Obligation("welldef", element, statement, latex, assumptions.texts)
+    made = made.asking(questions, laws[0].of_element)
+    needed = made.questions or made.open_because or any(law.letter for law in laws)
+    return made if needed else None
 
 
 def valued(law: Expr | Cmp, assumptions: Assumptions) -> tuple[Question, ...]:
@@ -107,32 +98,26 @@ def valued(law: Expr | Cmp, assumptions: Assumptions) -> tuple[Question, ...]:
     found: list[Question] = []
     for order in increasing(law):
         found += valued(order, assumptions)
-        label = f"{condition_text(order)} in a table"
-        found.append(Question(label, assumptions.order, assumptions.where, order, order))
+        found.append(assumptions.question(f"{condition_text(order)} in a table", order))
     for branch in pieces:
         where = assumptions.where
         for part in (*branch.conditions, branch.value):
-            where = ask(found, part, where, assumptions, law)
-            where = (*where, part) if isinstance(part, Cmp) else where
+            found += parts_valued(part, where, assumptions, law)
+            where = (*where, *partial(part), *((part,) if isinstance(part, Cmp) else ()))
     if found and len(pieces) > 1:
         found.append(replace(found[0], where=assumptions.where, branch=()).covered(pieces))
     return tuple(dict.fromkeys(found))
 
 
-def ask(
-    found: list[Question],
-    node: Node,
-    where: tuple[Cmp, ...],
-    assumptions: Assumptions,
-    law: Expr | Cmp | None = None,
-) -> tuple[Cmp, ...]:
-    """Add the questions whether `node` has a value; return what is then known."""
+def parts_valued(
+    node: Node, where: tuple[Cmp, ...], assumptions: Assumptions, law: Expr | Cmp | None = None
+) -> Iterator[Question]:
+    """Yield the questions whether the parts of a smooth tree have values, inner parts first."""
     for claim in partial(node):
         label = f"{spell(claim.left)} {claim.op} 0"
         branch = where[len(assumptions.where) :]
-        found.append(Question(label, assumptions.order, where, claim, claim, branch, law=law))
+        yield Question(label, assumptions.order, where, claim, claim, branch, law=law)
         where = (*where, claim)
-    return where
 
 
 def passive(law: Law, assumptions: Assumptions) -> Obligation:
@@ -149,7 +134,7 @@ def passive(law: Law, assumptions: Assumptions) -> Obligation:
         sign=SignOf(law.tree, law.letter, assumptions.where),
     )
     claim = Cmp(">=", mul(law.tree, Sym(law.letter)), ZERO)
-    question = Question(f"{power} >= 0", assumptions.order, assumptions.where, claim, claim)
+    question = assumptions.question(f"{power} >= 0", claim)
     return replace(made, questions=on_branches(law.tree, question, law.letter))
 
 
@@ -184,17 +169,13 @@ def on_branches(law: Expr, question: Question, letter: str = "") -> tuple[Questi
 
 def conducts(law: Law, assumptions: Assumptions) -> Obligation:
     """State that heat flows from the warmer body to the colder one."""
-    claim = Cmp(">=", law.tree, ZERO)
-    question = Question(
-        f"{spell(law.tree)} >= 0", assumptions.order, assumptions.where, claim, claim
-    )
-    statement = f"{spell(law.tree)} >= 0: heat flows from warm to cold"
+    claim = f"{spell(law.tree)} >= 0"
+    question = assumptions.question(claim, Cmp(">=", law.tree, ZERO))
+    statement = f"{claim}: heat flows from warm to cold"
     made = Obligation("passive", law.element, statement, r"\lambda \ge 0", assumptions.texts)
-    try:
-        found = valued(law.tree, assumptions)
-    except TooManyBranchesError:
-        return replace(made, open_because=too_many(law))
-    return replace(made, questions=(*found, *on_branches(law.tree, question)))
+    return made.asking(
+        lambda: (*valued(law.tree, assumptions), *on_branches(law.tree, question)), law.of_element
+    )
 
 
 def odd(law: Law, assumptions: Assumptions) -> Obligation:
@@ -215,24 +196,19 @@ def odd(law: Law, assumptions: Assumptions) -> Obligation:
         twice = reflected(turned, law.letter)  # signs then stand alike in both
         total = ZERO if twice == neg(turned) else add(twice, turned)
     except ZeroDivisionError:
-        return replace(made, open_because=f"the law of {law.element} divides by zero")
-    claim = Cmp("=", total, ZERO)
+        return replace(made, open_because=f"{law.of_element} divides by zero")
     original = Cmp("=", law.tree, neg(turned))
-    question = Question(made.statement, assumptions.order, assumptions.where, claim, original)
+    question = assumptions.question(made.statement, Cmp("=", total, ZERO), original)
     mirror = substituted(law.tree, {law.letter: neg(Sym(law.letter))})
-    try:  # the mirrored law has values, too: `welldef` is about those that the letter takes
-        found = valued(mirror, assumptions) if law.ties else ()
+
+    def questions() -> Iterator[Question]:
+        if law.ties:  # the mirrored law has values, too: `welldef` is about those of the letter
+            yield from valued(mirror, assumptions)
         branches(total, assumptions.where)  # or there are too many
-    except TooManyBranchesError:
-        return replace(made, open_because=too_many(law))
-    mirrored = on_branches(total, question) if total != ZERO else ()
-    return replace(made, questions=(*found, *mirrored))
+        yield from on_branches(total, question) if total != ZERO else ()
+
+    return made.asking(questions, law.of_element)
 
 
 def _under(where: tuple[Cmp, ...]) -> str:
     return f" where {' and '.join(map(condition_text, where))}" if where else ""
-
-
-def too_many(law: Law) -> str:
-    """Return why a law with too many branches is left open."""
-    return f"the law of {law.element} has more than {MOST} branches; use fewer kinks"

@@ -1,20 +1,20 @@
 """What has to be shown of a model, as data.
 
 Input: nothing; these are the types.  Output: `Obligation` records that `balances`, `bodies`,
-`laws`, `continuity`, `divisors` and `domain` state and `prove` decides.  An obligation holds if its
-residuals are zero, its questions are answered, and the obligations it rests on hold.
+`laws`, `continuity` and `domain` state and `prove` decides.  An obligation holds if its residuals
+are zero, its questions are answered with yes, and the obligations it rests on hold.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import final
 
 import sympy as sp
 
-from piezo_sym.expressions.tree import Call, Cmp, Expr, Num, Sym, names
+from piezo_sym.expressions.tree import ONE, ZERO, Call, Cmp, Expr, Num, Sym, names
 from piezo_sym.proofs.branches import (
     Branch,
     TooManyBranchesError,
@@ -26,6 +26,9 @@ from piezo_sym.proofs.branches import (
 )
 from piezo_sym.proofs.query import Query, connected, query
 from piezo_sym.proofs.rational import cleared, implied, parts_of
+
+#: A claim that holds nowhere: it follows only where nothing is.
+NEVER = Cmp("<", ONE, ZERO)
 
 
 @final
@@ -81,10 +84,6 @@ class Question:
     split: bool = True
     witness: bool = False
 
-    def query(self) -> Query:
-        """Return the question in polynomials and choices, for a solver."""
-        return self._query
-
     @cached_property
     def kept(self) -> tuple[Cmp, ...]:
         """What of `where` goes into the query."""
@@ -97,7 +96,8 @@ class Question:
         return frozenset((*self._about(), *found))
 
     @cached_property
-    def _query(self) -> Query:
+    def query(self) -> Query:
+        """The question in polynomials and choices, for a solver."""
         kept = self.kept
         given = tuple(_settled(condition, kept) for condition in kept)
         claim = _settled(self.claim, kept)
@@ -110,13 +110,11 @@ class Question:
 
         signed = frozenset(map(_signed, given))
         clauses = [implied(plain(condition), signed) for condition in given]
-        given_facts = [*clauses, *known.facts(signed)]
-        claim = cleared(plain(claim))
         return query(
             self.label,
             self.order,
-            given_facts,
-            claim,
+            (*clauses, *known.facts(signed)),
+            cleared(plain(claim)),
             about=self.words,
             witness=self.witness or self.whole,
         )
@@ -234,5 +232,18 @@ class Obligation:
 
     def smooth(self) -> Obligation:
         """Return the obligation with its claims split into smooth ones."""
-        questions = dict.fromkeys(part for q in self.questions for part in q.smooth())
-        return replace(self, questions=tuple(questions))
+        return replace(
+            self, questions=_each_once(part for q in self.questions for part in q.smooth())
+        )
+
+    def asking(self, questions: Callable[[], Iterable[Question]], law: str) -> Obligation:
+        """Return the obligation with questions, or left open where `law` has too many branches."""
+        try:
+            return replace(self, questions=_each_once(questions()))
+        except TooManyBranchesError as error:
+            reason = f"{law} has more than {error.most} branches; use fewer kinks"
+            return replace(self, open_because=reason)
+
+
+def _each_once(questions: Iterable[Question]) -> tuple[Question, ...]:
+    return tuple(dict.fromkeys(questions))

@@ -17,9 +17,8 @@ from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import Cmp, Expr
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.asked import Asked, tried
-from piezo_sym.proofs.exact_eval import TooCloseError, holds, value_of
-from piezo_sym.proofs.jumps import jumps
-from piezo_sym.proofs.meetings import needed
+from piezo_sym.proofs.continuity import jumps, needed
+from piezo_sym.proofs.exact_eval import TooCloseError, all_hold, value_of
 from piezo_sym.proofs.obligations import Obligation, Question, Residual, SignOf
 from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.proofs.sigma_counterexample import negative_total
@@ -58,8 +57,9 @@ def prove(
     verdict, witness, reason, method, certificate = decided
     if verdict is Verdict.REFUTED and obligation.loose in (witness or {}):
         verdict, witness, reason = Verdict.OPEN, None, LOOSE
-    if verdict is Verdict.REFUTED and obligation.id == "continuous":
-        verdict, witness, reason = _with_values(obligation, known) or (verdict, witness, reason)
+    if verdict is Verdict.REFUTED and obligation.id == "continuous":  # beside the edge, too
+        values = {(row.id, row.element) for row in known} & {("welldef", obligation.element)}
+        verdict, witness, reason = _not_proved(values, known) or (verdict, witness, reason)
     return Row(
         obligation.id,
         obligation.element,
@@ -89,9 +89,9 @@ def _decide(obligation: Obligation, iphs: IPHS, before: tuple[Row, ...], solver:
     if failed and failed[0] is Verdict.OPEN and obligation.letter:
         failed = _by_numbers(obligation, solver) or failed
     proved: Found = (Verdict.PROVED, None, "")
-    failed = failed or _grounded(obligation, before)
-    if failed and obligation.id == "sigma":
-        failed = _total(iphs, before, solver) or failed
+    failed = failed or _not_proved(obligation.rests_on, before)
+    if failed and obligation.id == "sigma" and (total := negative_total(iphs, before, solver)):
+        failed = Verdict.REFUTED, total[0], f"sigma = {total[1]}"
     return *(failed or proved), method, () if failed else certificate
 
 
@@ -132,9 +132,9 @@ def _by_numbers(obligation: Obligation, solver: Asks) -> Found | None:
     return _broken(question, numbers) if numbers else None
 
 
-def _grounded(obligation: Obligation, before: tuple[Row, ...]) -> Found | None:
-    """Return what an obligation rests on that is not proved."""
-    for premise in obligation.rests_on:
+def _not_proved(premises: Iterable[tuple[str, str]], before: tuple[Row, ...]) -> Found | None:
+    """Return the first of some obligations that is not proved."""
+    for premise in premises:
         name = f"{premise[0]} of {premise[1]}" if premise[1] else premise[0]
         verdicts = [row.verdict for row in before if (row.id, row.element) == premise]
         if not verdicts:
@@ -143,24 +143,6 @@ def _grounded(obligation: Obligation, before: tuple[Row, ...]) -> Found | None:
             if verdict is not Verdict.PROVED:
                 return Verdict.OPEN, None, f"it rests on {name}, which is {verdict.value}"
     return None
-
-
-def _with_values(obligation: Obligation, before: tuple[Row, ...]) -> Found | None:
-    """Return that a jump is none yet, if a branch may have no values beside the edge."""
-    for row in before:
-        welldef = (row.id, row.element) == ("welldef", obligation.element)
-        if welldef and row.verdict is not Verdict.PROVED:
-            name = f"welldef of {row.element}"
-            return Verdict.OPEN, None, f"it rests on {name}, which is {row.verdict.value}"
-    return None
-
-
-def _total(iphs: IPHS, before: tuple[Row, ...], solver: Asks) -> Found | None:
-    """Return the refutation of the second law by one law that is active alone, or None."""
-    found = negative_total(iphs, before, solver)
-    if found is None:
-        return None
-    return Verdict.REFUTED, found[0], f"sigma = {found[1]}"
 
 
 def _vanishes(residual: Residual, iphs: IPHS) -> Found | None:
@@ -196,12 +178,12 @@ def _nonzero(iphs: IPHS, expr: sp.Expr) -> tuple[dict[str, str], sp.Expr] | None
 
 def _answered(question: Question, solver: Asks) -> Found | None:
     """Return None if the claim follows, else how it fails or why it is open."""
-    answer = solver.ask(question.query())
+    answer = solver.ask(question.query)
     if answer.result == "unsat":
         return None
     if answer.result == "sat":
-        shown = question.query().variables
-        answer = solver.ask(replace(question, whole=True).query())
+        shown = question.query.variables
+        answer = solver.ask(replace(question, whole=True).query)
         if answer.result == "unsat":
             return None
         if answer.result == "sat":
@@ -212,20 +194,19 @@ def _answered(question: Question, solver: Asks) -> Found | None:
 def _refuted(question: Question, answer: Answer, shown: tuple[str, ...]) -> Found:
     """Return REFUTED if the model breaks the claim in the law itself, else OPEN."""
     values = {name: value for name, value in answer.model.items() if name in question.order}
-    try:
-        inside = all(holds(condition, values) for condition in question.where)
-        if question.meeting:
-            broken = inside and jumps(question.meeting, values)
-        elif question.law is not None:
-            broken = inside and _has_no_value(question.law, values)
-        else:
-            broken = inside and not holds(question.original, values)
-    except (ArithmeticError, ValueError, KeyError):
-        broken = False
-    if not broken:
+    if not (all_hold(question.where, values) and _is_broken(question, values)):
         reason = f"{question.label}: bounds on the functions in it do not decide it"
         return Verdict.OPEN, None, reason
     return _broken(question, {name: value for name, value in values.items() if name in shown})
+
+
+def _is_broken(question: Question, values: Mapping[str, Fraction]) -> bool:
+    """Return whether a claim on a law certainly fails at a point of the domain."""
+    if question.meeting:
+        return jumps(question.meeting, values)
+    if question.law is not None:
+        return _has_no_value(question.law, values)
+    return all_hold((question.original,), values) is False
 
 
 def _has_no_value(law: Expr | Cmp, values: Mapping[str, Fraction]) -> bool:
@@ -257,4 +238,4 @@ def _value(law: Expr, values: Mapping[str, Fraction]) -> str:
         value = value_of(law, values)
     except (ArithmeticError, ValueError):
         return "no value"
-    return str(value) if isinstance(value, Fraction) else f"{float(value.mid):.6g}"
+    return str(value) if isinstance(value, Fraction) else f"{float(value):.6g}"

@@ -27,11 +27,10 @@ from piezo_sym.expressions.tree import (
     Mul,
     Num,
     Sym,
-    rename,
     replace,
 )
 from piezo_sym.iphs import IPHS
-from piezo_sym.iphs.definitions import costate_name, heated
+from piezo_sym.iphs.definitions import costate_name, law_of, slope_law
 from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, Resistor, Storage
 
 #: The law language, and sums over the lanes of a bank.
@@ -75,27 +74,22 @@ def _names(iphs: IPHS, tree: _Trees) -> Iterator[tuple[str, dict[str, str | None
         bank = iphs.symbols.banks.get(iphs.symbols[name]) if name in iphs.symbols.symbols else None
         return name, {"element": element, "role": role, "bank": bank, "law": write(law, STYLE)}
 
-    for placed, store in iphs.circuit.of(Storage, Body):
+    circuit = iphs.circuit
+    for placed, store in circuit.of(Storage, Body):
         role = "temperature" if isinstance(store, Body) else "costate"
-        law = rename(store.law, {store.letter: store.state})
-        yield entry(costate_name(store), placed.element, role, law)
-    for placed, port in iphs.circuit.of(Coupling):
-        hot = {"T": iphs.circuit.body(port.body).temperature} if port.body else {}
-        yield entry(port.name, placed.element, "ratio", rename(port.ratio, hot))
-    processes = tuple(iphs.circuit.of(Resistor, Conductor))
+        yield entry(costate_name(store), placed.element, role, law_of(circuit, store))
+    for placed, port in circuit.of(Coupling):
+        yield entry(port.name, placed.element, "ratio", law_of(circuit, port))
+    processes = tuple(circuit.of(Resistor, Conductor))
     for slope in iphs.junction.slopes:
-        placed, process = processes[slope.process]
-        hot = {"T": iphs.circuit.body(heated(process)).temperature}
-        yield entry(slope.symbol.name, placed.element, "slope", rename(slope.law, hot))
+        element = processes[slope.process][0].element
+        yield entry(slope.symbol.name, element, "slope", slope_law(circuit, slope))
     for share, value in iphs.junction.shares:
         yield entry(share.name, "", "share", tree(value))
     for (placed, process), z in zip(processes, iphs.system.z, strict=True):
-        heat: dict[str, Expr] = {"T": Sym(iphs.circuit.body(heated(process)).temperature)}
+        law = replace(law_of(circuit, process), {getattr(process, "letter", ""): tree(z)})
         if isinstance(process, Conductor):
-            first = Sym(iphs.circuit.body(process.first).temperature)
-            law = div(mul(process.conductance, tree(z)), first)
-        else:
-            law = replace(process.law, {process.letter: tree(z), **heat})
+            law = div(mul(law, tree(z)), Sym(circuit.body(process.first).temperature))
         yield entry(process.output, placed.element, "output", law)
 
 

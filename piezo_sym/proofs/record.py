@@ -47,7 +47,7 @@ def smt2(report: Report, made: str) -> str:
 def queries(obligation: Obligation) -> Iterator[Query]:
     """Yield the queries of an obligation."""
     for question in obligation.questions:
-        yield question.query()
+        yield question.query
 
 
 def proofs_json(report: Report, model: Model, made: str) -> str:

@@ -6,16 +6,15 @@ it: a refutation then says nothing.
 """
 
 from collections.abc import Iterator, Mapping
-from fractions import Fraction
-from functools import reduce
 
 import sympy as sp
 
-from piezo_sym.expressions.calculus import add, derivative, mul, neg, power
-from piezo_sym.expressions.tree import Cmp, Expr, Num, Sym, names, rename
+from piezo_sym.algebra.coefficients import coefficient
+from piezo_sym.expressions.calculus import derivative
+from piezo_sym.expressions.tree import Cmp, Expr, Sym, names, replace
 from piezo_sym.iphs import IPHS
-from piezo_sym.iphs.definitions import costate_name
-from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, Resistor, Source, Storage
+from piezo_sym.iphs.definitions import law_of
+from piezo_sym.spec.elements.ports import Conductor, Coupling, Resistor, Source, Storage
 from piezo_sym.spec.tables import conditions
 
 
@@ -24,13 +23,13 @@ def ties(iphs: IPHS) -> Mapping[str, Cmp | None]:
     bounded = frozenset(_bounded(iphs))
     if not bounded:
         return {}
-    trees = dict(_trees(iphs))
+    words = dict(_words(iphs))
     processes = iphs.circuit.of(Resistor, Conductor)
     return {
         placed.element: None if tree is None else Cmp("=", Sym(port.letter), tree)
         for (placed, port), drive in zip(processes, iphs.system.drive, strict=True)
         if isinstance(port, Resistor) and not bounded.isdisjoint(_symbols(iphs, drive))
-        for tree in (_tree(drive, trees),)
+        for tree in (_tree(drive, words),)
     }
 
 
@@ -43,7 +42,7 @@ def _bounded(iphs: IPHS) -> Iterator[sp.Symbol]:
     used = {name for c in conditions(iphs.model) for name in names(c.tree)}
     for _, store in iphs.circuit.of(Storage):
         if store.state in used or store.letter in names(derivative(store.law, store.letter)):
-            yield iphs.symbols[costate_name(store)]
+            yield iphs.symbols[store.costate]
     for _, source in iphs.circuit.of(Source):
         if source.input in used:
             yield iphs.symbols[source.input]
@@ -61,33 +60,18 @@ def _symbols(iphs: IPHS, drive: sp.Expr) -> set[sp.Symbol]:
     return found
 
 
-def _trees(iphs: IPHS) -> Iterator[tuple[sp.Symbol, Expr]]:
+def _words(iphs: IPHS) -> Iterator[tuple[sp.Symbol, Expr]]:
     """Yield what co-states, inputs and ratios are in the words of the domain."""
-    heat = {placed.element: port.temperature for placed, port in iphs.circuit.of(Body)}
     for _, store in iphs.circuit.of(Storage):
-        yield iphs.symbols[costate_name(store)], rename(store.law, {store.letter: store.state})
+        yield iphs.symbols[store.costate], law_of(iphs.circuit, store)
     for _, source in iphs.circuit.of(Source):
         yield iphs.symbols[source.input], Sym(source.input)
     for _, coupling in iphs.circuit.of(Coupling):
-        words = {"T": heat[coupling.body]} if coupling.body else {}
-        yield iphs.symbols[coupling.name], rename(coupling.ratio, words)
+        yield iphs.symbols[coupling.name], law_of(iphs.circuit, coupling)
 
 
-def _tree(expr: sp.Expr, trees: Mapping[sp.Symbol, Expr]) -> Expr | None:
-    """Return an expression of sums, products and whole powers as a tree, or None."""
-    if expr in trees:
-        return trees[expr]
-    if expr.is_Rational:
-        return Num(Fraction(int(expr.p), int(expr.q)))
-    parts = [_tree(part, trees) for part in expr.args]
-    known = [part for part in parts if part is not None]
-    if not parts or len(known) != len(parts):
+def _tree(drive: sp.Expr, words: Mapping[sp.Symbol, Expr]) -> Expr | None:
+    """Return a drive in the words of the domain, or None if it depends on anything else."""
+    if not drive.is_rational_function(*words) or not drive.free_symbols <= words.keys():
         return None
-    if expr.is_Add:
-        return add(*known)
-    if expr.is_Mul:
-        product = reduce(mul, known[1:])
-        return neg(product) if expr.args[0] == -1 else mul(known[0], product)
-    if expr.is_Pow and expr.exp.is_Integer:
-        return power(known[0], Fraction(int(expr.exp)))
-    return None
+    return replace(coefficient(drive), {str(s.name): tree for s, tree in words.items()})

@@ -1,7 +1,7 @@
 """Numbers at which a printed row is not the proved one.
 
-Input: the difference of both in normal form.  Output: a point of the domain, with two lanes a bank
-at least, at which interval arithmetic shows that the difference is not zero; or none.
+Input: the difference of both in normal form.  Output: a point of the domain, with at least two
+lanes per bank, at which ball arithmetic shows that the difference is not zero; or none.
 """
 
 from __future__ import annotations
@@ -14,11 +14,10 @@ from itertools import islice
 from math import isfinite
 from typing import Any, final
 
-from mpmath.ctx_iv import MPIntervalContext
+from flint import arb, ctx, fmpq
 
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.iphs import IPHS
-from piezo_sym.proofs.balls import smooth
 from piezo_sym.translation.field import Value
 from piezo_sym.translation.known import Proved
 
@@ -58,15 +57,15 @@ def witness(printed: Value, wanted: Value, known: Proved, iphs: IPHS) -> Witness
             one, other = point.value(printed, {}), point.value(wanted, {})
         except UndecidedError:
             continue
-        if 0 not in found and abs(found).a > LEAST_SHARE * abs(other).b:
-            return Witness(point.texts(), f"{float(one.mid):.9g}", f"{float(other.mid):.9g}")
+        if abs(found) > LEAST_SHARE * abs(other):
+            return Witness(point.texts(), f"{float(one):.9g}", f"{float(other):.9g}")
     return None
 
 
 def _inside(margin: Value, point: Point, strict: bool) -> bool:
     lanes = [{}] if not margin.lanes else [{bank: n} for bank, _ in margin.lanes for n in (0, 1)]
-    least = (point.value(margin, lane).a for lane in lanes)
-    return all(a > 0 if strict else a >= 0 for a in least)
+    found = (point.value(margin, lane) for lane in lanes)
+    return all(value > 0 if strict else value >= 0 for value in found)
 
 
 def _points(known: Proved, iphs: IPHS) -> Iterator[Point]:
@@ -94,7 +93,7 @@ def _means(
     for name, costate in known.means.items():
         bank = known.banks.get(name)
         lanes = [{bank: j} for j in range(len(point.numbers[name]))] if bank else [{}]
-        values = [float(point.value(costate, lane).mid) for lane in lanes]
+        values = [float(point.value(costate, lane)) for lane in lanes]
         if not all(map(isfinite, values)):
             raise UndecidedError
         factors = [chance.choice(FACTORS) if n % 2 else Fraction(1) for _ in lanes]
@@ -112,51 +111,34 @@ def _number(value: float | None, n: int, chance: random.Random) -> Fraction:
 
 @final
 class Point:
-    """Numbers for names, one per lane where they have lanes; values at them, as intervals."""
+    """Numbers for names, one per lane where they have lanes; values at them, as balls."""
 
     def __init__(self, known: Proved, numbers: Mapping[str, Sequence[Fraction]]) -> None:
         self.known, self.numbers, self.gens = known, numbers, known.field.gens
-        self.interval: Any = MPIntervalContext()
-        self.interval.prec = PRECISION
         self.found: dict[tuple[object, ...], Any] = {}
-        self.size = max(map(len, numbers.values()), default=2)
-        self.size = max(self.size, 2)
+        self.size = max(2, *map(len, numbers.values()))
 
     def texts(self) -> dict[str, str]:
         """Return the point as text."""
         return {name: ", ".join(map(str, values)) for name, values in self.numbers.items()}
 
     def value(self, value: Value, lanes: Mapping[str, int]) -> Any:
-        """Return an interval around a value; a row's lane is the first, a column's the second."""
-        total = self.exact(Fraction(0))
+        """Return a ball around a value; a row's lane is the first, a column's the second."""
+        with ctx.workprec(PRECISION):
+            return self._value(value, lanes)
+
+    def _value(self, value: Value, lanes: Mapping[str, int]) -> Any:
+        total = arb(0)
         for mono, c in value.terms.items():
-            term = self.exact(Fraction(c)) if c != 1 else self.interval.one
+            term = _ball(Fraction(c))
             for g, e in mono:
                 own = self._generator(g, lanes)
-                term = term * (own if e == 1 else self._power(own, Fraction(e)))
+                term = term * (own if e == 1 else _power(own, Fraction(e)))
             total = total + term
         return total
 
-    def exact(self, value: Fraction) -> Any:
-        """Return a rational number as an interval."""
-        return self.interval.mpf(value.numerator) / value.denominator
-
-    def _power(self, base: Any, e: Fraction) -> Any:
-        if e < 0 and 0 in base:
-            raise UndecidedError
-        if e.denominator == 1:
-            return base**e.numerator
-        if base.a <= 0:
-            raise UndecidedError
-        return self._exp(self.exact(e) * self.interval.log(base))
-
-    def _exp(self, arg: Any) -> Any:
-        if abs(arg).b > MOST_EXPONENT:
-            raise UndecidedError
-        return self.interval.exp(arg)
-
     def _generator(self, g: int, lanes: Mapping[str, int]) -> Any:
-        """Return an interval around a generator, kept for the lanes on which it depends."""
+        """Return a ball around a generator, kept for the lanes on which it depends."""
         banks = {bank for bank, _ in self.gens[g].lanes}
         key = g, *sorted((bank, n) for bank, n in lanes.items() if bank in banks)
         if key not in self.found:
@@ -169,23 +151,37 @@ class Point:
             assert isinstance(gen.mark, tuple)
             name, bank, lane = gen.mark
             if lane == -1:
-                return self.exact(Fraction(self.size))
+                return arb(self.size)
             if name not in self.numbers:
                 raise UndecidedError
             values = self.numbers[name]
-            return self.exact(values[lanes.get(bank, lane) % len(values) if bank else 0])
+            return _ball(values[lanes.get(bank, lane) % len(values) if bank else 0])
         if gen.kind == "sum":
             bank = str(gen.mark)
-            return sum(self.value(gen.arg, {**lanes, bank: n}) for n in range(self.size))
-        arg = self.value(gen.arg, lanes)
+            return sum(self._value(gen.arg, {**lanes, bank: n}) for n in range(self.size))
+        arg = self._value(gen.arg, lanes)
         if gen.kind == "sign":
-            side = 1 if arg.a > 0 else -1 if arg.b < 0 else 0
-            if not side and arg.a != arg.b:
+            side = 1 if arg > 0 else -1 if arg < 0 else 0
+            if not side and not arg.is_exact():
                 raise UndecidedError
-            return self.exact(Fraction(int(side == gen.mark)))
+            return arb(int(side == gen.mark))
         if gen.kind in {"power", "letter"}:
             return arg
-        outside = RECORDS[gen.kind].domain and arg.a <= 0
-        if outside or abs(arg).b > MOST_EXPONENT:
+        outside = RECORDS[gen.kind].domain and not arg > 0
+        if outside or not abs(arg) <= MOST_EXPONENT:
             raise UndecidedError
-        return smooth(gen.kind, arg, self.interval)
+        return getattr(arg, gen.kind)()
+
+
+def _ball(value: Fraction) -> Any:
+    return arb(fmpq(value.numerator, value.denominator))
+
+
+def _power(base: Any, e: Fraction) -> Any:
+    outside = not base > 0 if e.denominator > 1 else e < 0 and base.contains(0)
+    if outside:
+        raise UndecidedError
+    found = base ** _ball(e)
+    if not found.is_finite():
+        raise UndecidedError
+    return found

@@ -37,8 +37,8 @@ edges of parameters are all
   = d*v if v < v_1 else 2*d*v | d > 0; v_1 > 0
 ## proofs/meetings
 no branch is ever taken
-  - return solver.ask(asked.query()).result == "unsat"
-  + return solver.ask(asked.query()).result != "unsat"
+  - return solver.ask(asked.query).result == "unsat"
+  + return solver.ask(asked.query).result != "unsat"
   = d*v if v < v_1 else 2*d*v | d > 0; v_1 > 0
 any third branch lies in between
   - paths[third] <= both
@@ -149,9 +149,9 @@ a refuted question is left open, and forgotten
   +         left += [found] if found else []
   = a*v
 a model that breaks the claim is a proof
-  - answer = solver.ask(replace(question, whole=True).query())
+  - answer = solver.ask(replace(question, whole=True).query)
   -         if answer.result == "unsat":
-  + answer = solver.ask(replace(question, whole=True).query())
+  + answer = solver.ask(replace(question, whole=True).query)
   +         if answer.result == "sat":
   = a*v
 ## proofs/asked
