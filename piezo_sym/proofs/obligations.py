@@ -230,6 +230,11 @@ class Obligation:
     loose: str = ""
     open_because: str = ""
 
+    @property
+    def queries(self) -> tuple[Query, ...]:
+        """The queries of its questions, for solvers."""
+        return tuple(question.query for question in self.questions)
+
     def smooth(self) -> Obligation:
         """Return the obligation with its claims split into smooth ones."""
         return replace(

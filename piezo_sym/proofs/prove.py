@@ -23,7 +23,7 @@ from piezo_sym.proofs.obligations import Obligation, Question, Residual, SignOf
 from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.proofs.sigma_counterexample import negative_total
 from piezo_sym.proofs.sign_analysis import whole_sign
-from piezo_sym.proofs.signs import Case
+from piezo_sym.proofs.signs.certificate import Case
 from piezo_sym.proofs.solvers import Answer, Asks, opinions
 from piezo_sym.spec.tables import condition_text
 

@@ -7,11 +7,9 @@ Input: a `Report`.  Output: the texts.  A third party runs ``z3 proofs.smt2`` or
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from itertools import zip_longest
 
 from piezo_sym.proofs.obligations import Obligation
-from piezo_sym.proofs.query import Query
 from piezo_sym.proofs.report import Report, Row
 from piezo_sym.spec.model import Model
 
@@ -37,17 +35,11 @@ def smt2(report: Report, made: str) -> str:
     for obligation in report.obligations:
         if (obligation.id, obligation.element) in elsewhere:
             continue
-        for query in queries(obligation):
+        for query in obligation.queries:
             where = f" of {obligation.element}" if obligation.element else ""
             lines += ["", f"; {obligation.id}{where}: {query.label}", "(push 1)", query.text()]
             lines += ["(check-sat)", "(pop 1)"]
     return "\n".join(lines) + "\n"
-
-
-def queries(obligation: Obligation) -> Iterator[Query]:
-    """Yield the queries of an obligation."""
-    for question in obligation.questions:
-        yield question.query
 
 
 def proofs_json(report: Report, model: Model, made: str) -> str:
@@ -80,5 +72,5 @@ def _entry(row: Row, obligation: Obligation | None) -> dict[str, object]:
         entry["latex"] = obligation.latex
         entry["assumptions"] = list(obligation.assumptions)
         entry["rests_on"] = [list(name) for name in obligation.rests_on]
-        entry["queries"] = [query.label for query in queries(obligation)]
+        entry["queries"] = [query.label for query in obligation.queries]
     return entry

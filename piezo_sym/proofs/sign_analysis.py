@@ -32,21 +32,14 @@ from piezo_sym.expressions.tree import (
     names,
 )
 from piezo_sym.proofs.asked import Asked, Numbers, moved, tried
+from piezo_sym.proofs.branches import opposite
 from piezo_sym.proofs.obligations import SignOf
 from piezo_sym.proofs.report import Verdict
-from piezo_sym.proofs.signs import (
-    Case,
-    Reduction,
-    Term,
-    balanced,
-    cases,
-    choice_outside,
-    decide_sign,
-    grouped,
-    opposite,
-    reductions,
-    summands,
-)
+from piezo_sym.proofs.signs.cases import cases
+from piezo_sym.proofs.signs.certificate import Case, Term
+from piezo_sym.proofs.signs.decide import decide_sign
+from piezo_sym.proofs.signs.reduce import Reduction, reductions
+from piezo_sym.proofs.signs.sums import balanced, choice_outside, grouped, summands
 from piezo_sym.proofs.solvers import Asks
 
 #: Functions of one variable that may fail before the search stops.

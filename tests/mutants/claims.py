@@ -7,8 +7,8 @@ MUTANTS = mutants_of(
     r"""
 ## proofs/domain
 whether the domain has values is not asked
-  - if found:
-  + if not found:
+  - made = made.asking(questions, "a condition of the domain")
+  + made = made.asking(tuple, "a condition of the domain")
   = d*v | d > 0; sqrt(a/d) >= 0 | a=1.0
 ## proofs/continuity
 branches never meet
@@ -35,7 +35,6 @@ edges of parameters are all
   - if not {*names(c)} <= assumptions.fixed]
   + if {*names(c)} <= assumptions.fixed]
   = d*v if v < v_1 else 2*d*v | d > 0; v_1 > 0
-## proofs/meetings
 no branch is ever taken
   - return solver.ask(asked.query).result == "unsat"
   + return solver.ask(asked.query).result != "unsat"
@@ -58,11 +57,11 @@ only the first branch is asked about
   + return tuple(found[:1])
   = d*v if b > a_1 else a*v | d > 0; a_1 > 0
 conduction has nothing to show
-  - return replace(made, questions=(*found, *on_branches(law.tree, question)))
-  + return replace(made, questions=found)
+  - (*valued(law.tree, assumptions), *on_branches(law.tree, question))
+  + valued(law.tree, assumptions)
   = conduction
 a law has a value everywhere
-  - return replace(made, questions=tuple(dict.fromkeys(found))) if needed else None
+  - return made if needed else None
   + return replace(made, questions=()) if needed else None
   = d*v*a_1**2/a**2 | d > 0; a_1 > 0
 conditions have values everywhere
@@ -78,13 +77,13 @@ every law is odd
   + total = ZERO
   = d*v + d*v**2/v_1 if v > 0 else d*v | d > 0; v_1 > 0
 every law has the first body's temperature
-  - words = {"T": heat[port.heats]}
-  + words = {"T": next(iter(heat.values()))}
+  - law = law_of(circuit, port)
+  + law = rename(port.law, {"T": next(iter(circuit.of(Body)))[1].temperature})
   = two bodies
 ## proofs/ties
 an element turned round has its state's sign
-  - return neg(product) if expr.args[0] == -1 else mul(known[0], product)
-  + return product if expr.args[0] == -1 else mul(known[0], product)
+  - coefficient(drive)
+  + coefficient(-drive)
   = turned
 letters are tied to each other's states
   - in zip(processes, iphs.system.drive, strict=True)
@@ -113,8 +112,8 @@ the second law rests on no law
   + return (*bodies,)
   = d*v if b > a_1 else a*v | d > 0; a_1 > 0
 heat exchange has nothing to show
-  - yield Question(label, assumptions.order, assumptions.where, conducts, conducts)
-  + yield Question(label, assumptions.order, assumptions.where, warm, warm)
+  - yield assumptions.question(label, conducts)
+  + yield assumptions.question(label, warm)
   = cold
 ## proofs/prove
 questions left open are forgotten

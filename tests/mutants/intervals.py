@@ -190,8 +190,8 @@ a guard holds on both sides
   = (a + 1000*a_1)*v_1*(v/v_1*(exp(v/v_1) - 7.38*(v/v_1 - 1))) | F_1 > 0; v_1 > 0; a_1 > 0 |
   = a=-2000.0
 the sides of a choice are swapped
-  - return _taken(node.then if holds else node.other, choice, holds)
-  + return _taken(node.other if holds else node.then, choice, holds)
+  - decided(law, {choice: holds})
+  + decided(law, {choice: not holds})
   = (1000*a_1 + a)*v_1*(v/v_1*(exp(v/v_1) - 7.38*(v/v_1 - 1))) if a <= 0 else
   = F_1*(v/v_1*(exp(v/v_1) - 7.38*(v/v_1 - 1))) | F_1 > 0; v_1 > 0; a_1 > 0 | a=-2000.0
 """,

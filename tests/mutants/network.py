@@ -160,16 +160,18 @@ conduction is not over the first temperature
   + yield symbols[port.output], symbols.law(port.conductance, {}) * z
   = two airs
 ratios have twice the temperature
-  - letters = {"T": symbols[circuit.body(port.body).temperature]} if port.body else {}
-  + letters = {"T": 2 * symbols[circuit.body(port.body).temperature]} if port.body else {}
+  - yield symbols[port.name], symbols.law(law_of(circuit, port), {})
+  + heat = [p.temperature for _, p in circuit.of(Body)]
+  +         twice = {name: 2 * symbols[name] for name in heat}
+  +         yield symbols[port.name], symbols.law(law_of(circuit, port), twice)
   = transducer_between_moving_nodes
 slopes have another body's temperature
-  - heat = symbols[circuit.body(heated(processes[slope.process][1])).temperature]
-  + heat = symbols[circuit.body(heated(processes[0][1])).temperature]
+  - tuple(circuit.of(Resistor, Conductor))[slope.process]
+  + tuple(circuit.of(Resistor, Conductor))[0]
   = coil loop
 co-states are of minus their state
-  - law = symbols.law(port.law, {port.letter: symbols[port.state]})
-  + law = symbols.law(port.law, {port.letter: -symbols[port.state]})
+  - symbols[costate_name(port)], symbols.law(law_of(circuit, port), {})
+  + symbols[costate_name(port)], symbols.law(port.law, {port.letter: -symbols[port.state]})
   = current
 co-states are merged
   - costates = {n: symbols[costate_name(port)] for n, (_, port) in enumerate(stores)}
@@ -252,8 +254,8 @@ each process heats the next state
   = two_sources_on_one_input
 ## iphs/iphs
 energies are another state's
-  - energies=tuple(energy_of(placed.element, port) for placed, port in stores),
-  + energies=tuple(energy_of(placed.element, port) for placed, port in stores[:1] * len(stores)),
+  - placed, p in circuit.of(Storage, Body)),
+  + placed, p in [*circuit.of(Storage, Body)][:1] * len(system.states)),
   = two_sources_on_one_input
 the last energy is not counted
   - return sp.Add(*self._stored)

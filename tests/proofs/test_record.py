@@ -14,7 +14,6 @@ import z3
 
 from piezo_sym import derive, load
 from piezo_sym.proofs import Verdict, decide, proofs_json, smt2
-from piezo_sym.proofs.record import queries
 from piezo_sym.spec.load import parse
 
 ROOT = Path(__file__).parents[2]
@@ -77,7 +76,7 @@ def test_the_file_has_every_query_of_the_report_in_its_order(spec):
         if row.method != "intervals"
     ]
     assert all((o.id, o.element) == (row.id, row.element) for o, row in by_branches)
-    wanted = [q.label for o, _ in by_branches for q in queries(o)]
+    wanted = [q.label for o, _ in by_branches for q in o.queries]
     written = comments(smt2(report, "x"))
     assert [line.split(": ", 1)[1] for line in written] == wanted
 

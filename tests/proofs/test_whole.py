@@ -12,7 +12,7 @@ from piezo_sym.expressions.tree import Cmp, Sym, names
 from piezo_sym.proofs import Verdict
 from piezo_sym.proofs.obligations import SignOf
 from piezo_sym.proofs.sign_analysis import whole_sign
-from piezo_sym.proofs.signs import cases
+from piezo_sym.proofs.signs.cases import cases
 from piezo_sym.proofs.solvers import solver
 from tests.proofs import law_oracle as oracle
 from tests.proofs.certificates import check, holds, value

@@ -8,26 +8,3 @@ decide      f -> PROVED | REFUTED | OPEN          windows, Taylor series at zero
 enclosures  tree, window -> interval and jet      intervals, jets, recentre, vanish
 certificate what was shown, as data               for a checker
 """
-
-from piezo_sym.proofs.signs.cases import Positive, cases, opposite
-from piezo_sym.proofs.signs.certificate import Case, Term
-from piezo_sym.proofs.signs.decide import Decision, Span, decide_sign
-from piezo_sym.proofs.signs.reduce import Reduction, reductions
-from piezo_sym.proofs.signs.sums import balanced, choice_outside, grouped, summands
-
-__all__ = [
-    "Case",
-    "Decision",
-    "Positive",
-    "Reduction",
-    "Span",
-    "Term",
-    "balanced",
-    "cases",
-    "choice_outside",
-    "decide_sign",
-    "grouped",
-    "opposite",
-    "reductions",
-    "summands",
-]

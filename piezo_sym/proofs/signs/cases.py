@@ -23,13 +23,12 @@ from piezo_sym.expressions.tree import (
     Pow,
     children,
     names,
-    rebuild,
     walk,
 )
+from piezo_sym.proofs.branches import decided, opposite
 
 #: More cases than these are not looked at.
 MOST = 32
-OPPOSITE = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
 
 Guards: TypeAlias = tuple[Cmp, ...]
 Positive: TypeAlias = Callable[[Expr], bool]
@@ -44,11 +43,6 @@ def cases(law: Expr, letter: str, positive: Positive) -> tuple[tuple[Guards, Exp
     return found if len(found) <= MOST else None
 
 
-def opposite(condition: Cmp) -> Cmp:
-    """Return the comparison that holds where one does not."""
-    return Cmp(OPPOSITE[condition.op], condition.left, condition.right)
-
-
 def _split(
     law: Expr, letter: str, positive: Positive, guards: Guards
 ) -> Iterator[tuple[Guards, Expr]]:
@@ -58,7 +52,7 @@ def _split(
         return
     for holds in (True, False):
         guard = choice if holds else opposite(choice)
-        yield from _split(_taken(law, choice, holds), letter, positive, (*guards, guard))
+        yield from _split(decided(law, {choice: holds}), letter, positive, (*guards, guard))
 
 
 def _next(node: Node, letter: str, positive: Positive, *, sure: bool) -> Cmp | None:
@@ -88,10 +82,3 @@ def _total(condition: Cmp, positive: Positive) -> bool:
             case Pow(base, e) if (e < 0 or e.denominator != 1) and not positive(base):
                 return False
     return True
-
-
-def _taken(node: Expr, choice: Cmp, holds: bool) -> Expr:
-    """Return a law with one comparison decided."""
-    if isinstance(node, If) and node.condition == choice:
-        return _taken(node.then if holds else node.other, choice, holds)
-    return rebuild(node, lambda part: _taken(part, choice, holds))

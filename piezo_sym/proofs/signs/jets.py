@@ -76,11 +76,6 @@ def power(a: Jet, exponent: Fraction) -> Jet:
     return composed(_power(a[0], len(a), exponent), a) if a else ()
 
 
-def quotient(a: Jet, b: Jet) -> Jet:
-    """Return the jet of a/b."""
-    return times(a, power(b, Fraction(-1)))
-
-
 def _power(a: Interval, length: int, exponent: Fraction) -> Jet:
     """Return binomial(e, m) a**(e - m), as far as a**(e - m) is defined."""
     found: list[Interval] = []
@@ -124,7 +119,7 @@ def _rule(node: Node, function: str, a: Interval, length: int) -> Jet:
         case Mul():
             return times(*parts)
         case Div():
-            return quotient(*parts)
+            return times(parts[0], power(parts[1], Fraction(-1)))
         case Pow(_, exponent):
             return power(parts[0], exponent)
         case Call(inner):
