@@ -1,7 +1,7 @@
-"""A system as it is read: rows and laws term by term, in LaTeX or plain text.
+"""A system as people read it: rates and laws term by term, in LaTeX or plain text.
 
 Input: a `System`, and which of its names are written out (velocities as p/M) and which are
-explained below the equations (laws, ratios, temperatures).  Output: text, one equation a line.
+explained below the equations (laws, ratios, temperatures).  Output: text, one equation per line.
 """
 
 from __future__ import annotations
@@ -133,7 +133,7 @@ def equations_text(reading: Reading) -> list[tuple[str, str]]:
 
 
 def document(reading: Reading) -> str:
-    """Return LaTeX of everything Definition 1 speaks of, one display a thing."""
+    """Return LaTeX of everything in Definition 1, one displayed formula each."""
     system = reading.system
 
     def vector(matrix: LaneMatrix) -> str:

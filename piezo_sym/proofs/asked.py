@@ -1,7 +1,7 @@
-"""What a solver says of parameters in a domain, and simple numbers tried against a claim.
+"""Claims on the parameters of a domain: whether they follow, and simple numbers that break them.
 
-Input: a domain, the order of names in a witness, and a solver.  Output: whether claims follow, a
-point of the domain, and numbers in the domain that break a claim.
+Input: a domain, the order of names in a witness, and a solver.  Output: whether a claim follows,
+points of the domain, and points at which a claim is false.
 """
 
 from __future__ import annotations
@@ -41,12 +41,12 @@ TRIED = tuple(
     for size in map(Fraction, ("1", "2", "3", "1/2", "5", "4", "10", "1/10", "20", "100"))
     for sign in (1, -1)
 )
-#: Of these, how many are tried where a parameter is moved too; how (factor, summand) it is moved.
+#: How many of these are tried where a parameter is moved too; its moves, as (factor, summand).
 FEW = 8
 MOVES = tuple((Fraction(a), Fraction(b)) for a, b in ((10, 0), (-1, 0), (1, 1), (1, -1)))
 MOVES += ((Fraction(1, 10), Fraction(0)),)
 
-#: Questions on one law before no more are asked, and how many of them may have no answer.
+#: Most questions asked about one law, and how many of them may remain without answer.
 MOST_ASKED, MOST_UNKNOWN = 60, 4
 
 Numbers = Mapping[str, Fraction]
@@ -55,15 +55,15 @@ Numbers = Mapping[str, Fraction]
 @final
 @dataclass(frozen=True)
 class Asked:
-    """What a solver says of parameters in a domain.
+    """A domain, and a solver that answers claims on it.
 
     Attributes
     ----------
     where : the domain.
     order : names, in the order in which a witness should be simple.
     solver : whom to ask.
-    known : answers on what is positive.
-    results : the solver's answers so far, on all cases of one law.
+    known : which trees were shown to be positive, and which were not.
+    results : the solver's answers so far, counted over all cases of one law.
     """
 
     where: tuple[Cmp, ...]
@@ -73,7 +73,7 @@ class Asked:
     results: list[str] = field(default_factory=list)
 
     def within(self, *guards: Cmp) -> Asked:
-        """Return the same in a part of the domain."""
+        """Return the same for the part of the domain where guards hold."""
         return replace(self, where=(*self.where, *guards), known={})
 
     def positive(self, part: Expr) -> bool:
@@ -98,23 +98,25 @@ class Asked:
                 return True
             case Call(function, (base,)) if RECORDS[function].sign and self.positive(base):
                 return True
-            case Add(terms) if all(map(self.plain, terms)) and any(map(self.positive, terms)):
+            case Add(terms) if all(map(self.not_negative, terms)) and any(
+                map(self.positive, terms)
+            ):
                 return True
         return self.follows(Cmp(">", part, ZERO))
 
-    def plain(self, part: Expr) -> bool:
-        """Return whether a tree is seen to be nowhere negative, wherever it has a value."""
+    def not_negative(self, part: Expr) -> bool:
+        """Return whether a tree is by its form nowhere negative, wherever it has a value."""
         match part:
             case Sym() | Num():
                 return self.positive(part)
             case Call(function, _) if RECORDS[function].sign:
                 return True
             case Pow(base, e):
-                return e.denominator != 1 or e % 2 == 0 or self.plain(base)
+                return e.denominator != 1 or e % 2 == 0 or self.not_negative(base)
             case Add(parts):
-                return all(map(self.plain, parts))
+                return all(map(self.not_negative, parts))
             case Mul(left, right) | Div(left, right):
-                return self.plain(left) and self.plain(right)
+                return self.not_negative(left) and self.not_negative(right)
         return False
 
     def follows(self, claim: Cmp) -> bool:
@@ -125,7 +127,7 @@ class Asked:
 
     @cached_property
     def samples(self) -> tuple[Numbers, ...]:
-        """A few points of the domain, at which most claims that do not follow are false."""
+        """A few points of the domain; most claims that do not follow are false at one of them."""
         first = self.point(NEVER, self.order)
         if first is None:
             return ()
@@ -150,7 +152,7 @@ class Asked:
         return None
 
     def near(self, words: Iterable[str]) -> set[str]:
-        """Return some names and those that conditions join to them."""
+        """Return some names and all that conditions connect them with, directly or indirectly."""
         known = {*words}
         return known.union(*(names(condition) for condition in connected(self.where, known)))
 
@@ -163,7 +165,7 @@ class Asked:
         return map(self._answer, parts)
 
     def _answer(self, question: Question) -> Answer:
-        """Return the answer to a question, or none if enough has been asked."""
+        """Return the answer to a question; ``unknown`` if the limits on questions are reached."""
         results = self.results
         if len(results) >= MOST_ASKED or results.count("unknown") >= MOST_UNKNOWN:
             return Answer("unknown")
@@ -177,7 +179,7 @@ class Asked:
     def breaks(self, claim: Cmp, numbers: Numbers) -> bool:
         """Return whether numbers lie in the domain and break a claim, which is evaluated exactly.
 
-        Conditions on other names have nothing to do with it.
+        Conditions on names that the claim is not connected to are not looked at.
         """
         near = connected(self.where, names(claim))
         return bool(all_hold(near, numbers)) and all_hold((claim,), numbers) is False
@@ -190,7 +192,7 @@ def tried(claim: Cmp, letter: str, asked: Asked) -> Numbers | None:
 
 
 def _placed(claim: Cmp, letter: str, asked: Asked, point: Numbers | None) -> Iterator[Numbers]:
-    """Yield a point with values for the letter; where a state gives it, with that state's too."""
+    """Yield points with simple values of the letter; where a state ties it, the solver's."""
     if point is None:
         return
     if not _tied(letter, asked):
@@ -206,7 +208,7 @@ def _tied(letter: str, asked: Asked) -> bool:
 
 
 def moved(claim: Cmp, letter: str, asked: Asked) -> Numbers | None:
-    """Return simple numbers that break a claim, one parameter moved away from the simplest."""
+    """Return numbers that break a claim: the simplest of the domain, one parameter moved."""
     point = asked.point(NEVER, names(claim))
     if point is None or _tied(letter, asked):
         return None

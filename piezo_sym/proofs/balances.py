@@ -1,4 +1,4 @@
-"""What algebra decides of a system: skew, casimir, energy, entropy, exergy, environment.
+"""What algebra decides about a system: skew, casimir, energy, entropy, exergy, environment.
 
 Input: an `IPHS`.  Output: obligations with residuals.  The system stands in named co-states, so
 that each property is the vanishing of a normal form, a polynomial in independent symbols and in

@@ -1,4 +1,4 @@
-"""Laws with kinks as branches without: what solvers are asked about, one smooth piece at a time.
+"""Laws with kinks as smooth branches, which solvers are asked about one at a time.
 
 Input: a law.  Output: its `Branch` records, each a smooth tree and the comparisons under which the
 law is that tree; together they cover every point.
@@ -31,7 +31,7 @@ from piezo_sym.expressions.tree import (
     walk,
 )
 
-#: More branches than these are not looked at: the law is left open.
+#: A law with more branches than these is left open.
 MOST = 400
 OPPOSITE = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
 KINKED = frozenset(name for name, record in RECORDS.items() if not record.smooth)
@@ -47,7 +47,7 @@ class Branch:
 
     @property
     def path(self) -> tuple[Cmp, ...]:
-        """What holds where the branch is taken and has a value, in the order of evaluation."""
+        """Its conditions, each after what must hold for it to have a value; the value's last."""
         steps = ((*partial(part), part) for part in self.conditions)
         return (*(claim for step in steps for claim in step), *partial(self.value))
 
@@ -81,7 +81,7 @@ def branches(law: Expr, known: Iterable[Cmp] = ()) -> tuple[Branch, ...]:
 
 
 def settled(law: Expr, known: Iterable[Cmp]) -> Expr:
-    """Return a law with choices for its kinks, those taken that `known` comparisons decide."""
+    """Return a law with choices for its kinks; `known` comparisons decide theirs."""
     if not bends(law):
         return law
     holding = frozenset(condition for condition in known if condition.op in OPPOSITE)

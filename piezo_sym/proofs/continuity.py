@@ -37,7 +37,7 @@ from piezo_sym.proofs.solvers import Asks
 #: More branches than these are not compared, each with each.
 MOST = 60
 RELAXED = {"<": "<=", ">": ">="}
-#: How far from the point a branch is looked for.
+#: Distances from the point at which a branch is looked for.
 STEPS = tuple(Fraction(1, 10**n) for n in (6, 12, 18))
 #: By how much a value must grow from one step to the next to be called a pole.
 GROWTH = 10
@@ -91,7 +91,7 @@ def _chooses(law: Expr) -> bool:
 
 
 def _apart(one: Branch, other: Branch, assumptions: Assumptions) -> bool:
-    """Return whether two branches are chosen by parameters alone, so that they never meet."""
+    """Return whether parameters alone choose between two branches: then they never meet."""
     return any(
         opposite(condition) in other.conditions and {*names(condition)} <= assumptions.fixed
         for condition in one.conditions
@@ -99,7 +99,7 @@ def _apart(one: Branch, other: Branch, assumptions: Assumptions) -> bool:
 
 
 def _meeting(meeting: Meeting, assumptions: Assumptions) -> Iterator[Question]:
-    """Yield the questions whether two branches have values, and the same, where they meet."""
+    """Yield the questions whether two branches have values where they meet, and equal ones."""
     one, other = meeting.sides
     where, border = assumptions.where, tuple(_border(one, other, assumptions.fixed))
     found: list[Question] = []
@@ -173,7 +173,7 @@ def jumps(meeting: Meeting, values: Numbers) -> bool:
 
 
 def _other(side: Branch, meeting: Meeting, at: Value, values: Numbers) -> bool:
-    """Return whether a branch comes near a point with another value than the law has there."""
+    """Return whether a branch reaches a point with another limit than the law's value there."""
     try:
         apart = differ(value_of(side.value, values), at)
     except TooCloseError:

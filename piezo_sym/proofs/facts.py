@@ -1,7 +1,7 @@
-"""What solvers are told of functions: bounds that are true for all real numbers.
+"""What solvers are told about functions: bounds that are true for all real numbers.
 
-Input: a function, its argument and its value by name.  Output: clauses.  Each says of a root or a
-logarithm nothing where it is not defined.
+Input: a function, and symbols for its argument and its value.  Output: clauses.  Outside the domain
+of a root or a logarithm each clause holds whatever the value's symbol is.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from piezo_sym.expressions.calculus import clause, mul, power
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Expr
 
-#: One of these comparisons holds.
+#: A disjunction: at least one of these comparisons holds.
 Clause = tuple[Cmp, ...]
 
 
@@ -53,7 +53,7 @@ def facts_on_two(
 
 
 def _of_root(exponent: Fraction, x: Expr, y: Expr) -> Iterator[Clause]:
-    """Yield that y >= 0 and y**q = x**p, which is all there is to say of a root."""
+    """Yield that y >= 0 and y**q = x**p, which defines y = x**(p/q)."""
     undefined = Cmp("<" if exponent > 0 else "<=", x, ZERO)
     yield (undefined, Cmp(">=", y, ZERO))
     root = power(y, Fraction(exponent.denominator))

@@ -27,12 +27,12 @@ from piezo_sym.proofs.signs.certificate import Case
 from piezo_sym.proofs.solvers import Answer, Asks, opinions
 from piezo_sym.spec.tables import condition_text
 
-#: Lanes a refutation is written out for; one lane hides what couples two.
+#: Size of banks in a refutation by algebra: with one lane, coupling between lanes would not show.
 LANES = 2
 TRIES = (1, 2, 3)
 
 LOOSE = "the domain may bound what drives the element, in a way that is not looked at"
-#: Questions of one obligation left open before the others are not asked any more.
+#: Once so many questions of an obligation are open, the rest is not asked.
 MOST_OPEN = 4
 
 Found = tuple[Verdict, Mapping[str, str] | None, str]
@@ -74,7 +74,7 @@ def prove(
 
 
 def _decide(obligation: Obligation, iphs: IPHS, before: tuple[Row, ...], solver: Asks) -> Decided:
-    """Return the first thing that fails, or that nothing does, and the method that says so."""
+    """Return the verdict with its witness and reason, the method, and the certificate."""
     if obligation.open_because:
         return Verdict.OPEN, None, obligation.open_because, "branches", ()
     for residual in obligation.residuals:
@@ -111,7 +111,7 @@ def _asked(questions: Iterable[Question], solver: Asks) -> Found | None:
 def _as_a_whole(
     obligation: Obligation, sign: SignOf, still_open: Found, solver: Asks
 ) -> tuple[Found | None, tuple[Case, ...]]:
-    """Return how a law fails to be passive as a whole, or its certificate if it is shown to be."""
+    """Return how a law fails to be passive, or its certificate if `sign_analysis` proves it."""
     question = obligation.questions[0]
     found = whole_sign(sign, question.order, solver)
     if found is None:

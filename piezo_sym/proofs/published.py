@@ -38,7 +38,7 @@ STYLE = changed(SPEC, lane_sum=lambda arg, bank: (f"sum({bank}, {arg[0]})", ATOM
 COMPARISONS = {sp.Lt: "<", sp.Le: "<=", sp.Gt: ">", sp.Ge: ">="}
 FUNCTIONS = tuple(getattr(sp, name) for name, r in WRITTEN.items() if r.transcendental)
 HALF = sp.Rational(1, 2)
-#: SymPy makes it of atan(1).
+#: SymPy turns atan(1) into pi/4; the law language has no pi.
 PI = Mul(Num(Fraction(4)), Call("atan", (ONE,)))
 
 
@@ -94,7 +94,7 @@ def _names(iphs: IPHS, tree: _Trees) -> Iterator[tuple[str, dict[str, str | None
 
 
 class _Trees:
-    """SymPy expressions to trees, in an order of our own: it does not depend on SymPy's."""
+    """SymPy expressions to trees; terms and factors are sorted by their text, not as SymPy does."""
 
     def __init__(self, iphs: IPHS) -> None:
         self.names: Mapping[sp.Symbol, str] = {s: n for n, s in iphs.symbols.symbols.items()}

@@ -41,7 +41,7 @@ from piezo_sym.expressions.tree import (
 from piezo_sym.proofs.facts import Clause, facts_on, facts_on_two
 from piezo_sym.spec.names import fresh
 
-#: Of more functions than these nothing is said in pairs.
+#: If there are more functions than these, pairs of them are not related.
 MOST_ALIKE = 8
 
 
@@ -76,7 +76,7 @@ class Part:
 @final
 @dataclass(frozen=True)
 class Parts:
-    """The functions of some laws, in an order in which each is known when it is needed."""
+    """The functions of some laws, each after those in its argument."""
 
     parts: tuple[Part, ...]
     words: tuple[tuple[Node, Sym], ...]
@@ -206,7 +206,7 @@ def _whole(law: Expr) -> Expr:
 
 
 def _total(parts: list[Ratio]) -> Ratio:
-    """Return a sum; where all have one denominator its length costs no more than its terms."""
+    """Return a sum; with one common denominator its terms are added at once, in linear time."""
     if len({part.bottom for part in parts}) == 1:
         return Ratio(add(*(part.top for part in parts)), parts[0].bottom)
     total = Ratio(ZERO)

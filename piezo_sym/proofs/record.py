@@ -1,4 +1,4 @@
-"""Proofs as files that others can check: ``proofs.json`` to read, ``proofs.smt2`` to run.
+"""Proofs as files that others can check: ``proofs.json`` to read, ``proofs.smt2`` for a solver.
 
 Input: a `Report`.  Output: the texts.  A third party runs ``z3 proofs.smt2`` or ``cvc5
 --incremental proofs.smt2``: each ``unsat`` proves the claim in the comment above it.

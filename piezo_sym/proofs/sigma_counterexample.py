@@ -2,7 +2,7 @@
 
 Input: a system, and the rows so far.  Output: exact numbers at which ``sigma`` is negative, and its
 value, or None.  A law may be active and the total not: another in parallel may outweigh it.  So the
-whole of ``sigma`` is evaluated, with one lane a bank and every co-state zero but one.
+whole of ``sigma`` is evaluated, with one lane per bank and every co-state but one zero.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The sign of a law as a whole, where its branches in polynomials were not enough.
+"""The sign of a law as a whole, where queries on its branches did not decide it.
 
 Input: a `SignOf` with the domain it is stated in, the order of names, and a solver.  Output: an
 `Outcome`: a verdict with its witness or its certificate, or None where the law has too many cases.
@@ -42,14 +42,14 @@ from piezo_sym.proofs.signs.reduce import Reduction, reductions
 from piezo_sym.proofs.signs.sums import balanced, choice_outside, grouped, summands
 from piezo_sym.proofs.solvers import Asks
 
-#: Functions of one variable that may fail before the search stops.
+#: Functions of one variable whose sign was not shown, before the search stops.
 MOST_FAILED = 12
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """A verdict: for REFUTED with the numbers, for OPEN why, for PROVED with its certificate."""
+    """A verdict, with the numbers that refute, the reason why it is open, or the certificate."""
 
     verdict: Verdict
     numbers: Numbers | None = None
@@ -111,7 +111,7 @@ class Search:
     negative: list[tuple[Reduction, int, Fraction]] = field(default_factory=list)
 
     def terms(self, law: Expr) -> tuple[Term, ...] | None:
-        """Return summands that are shown to be passive and make up a law, or None."""
+        """Return terms whose sum is the law, each shown to be passive; None if one is not."""
         if law == ZERO:
             return ()
         law = choice_outside(law)
@@ -139,7 +139,7 @@ class Search:
         return found
 
     def _term(self, law: Expr) -> tuple[Term] | None:
-        """Return a law that comes down to one variable and is shown to be passive, or None."""
+        """Return a law as one term, if it reduces to one variable and is shown to be passive."""
         for reduction in reductions(law, self.letter, self.asked.positive):
             for sign in (1, -1):
                 if len(self.reasons) + len(self.negative) >= MOST_FAILED:
@@ -157,15 +157,15 @@ class Search:
         return None
 
     def _polynomial(self, law: Expr) -> tuple[Term] | None:
-        """Return a part of the law that the solver shows to be passive, or None."""
+        """Return a part of the law as a term, if the solver shows that it is passive."""
         power = mul(law, Sym(self.letter))
         if law == self.law or not self.asked.follows(Cmp(">=", power, ZERO)):
             return None
         return (Term(law, self.letter, power),)
 
     def _keeps(self, factors: Sequence[Expr], sign: int) -> bool:
-        """Return whether a product is shown to keep to one side of zero in the domain."""
-        left = [factor for factor in factors if not self.asked.plain(factor)]
+        """Return whether ``sign*product >= 0`` is shown in the domain."""
+        left = [factor for factor in factors if not self.asked.not_negative(factor)]
         if not left:
             return sign > 0
         start: Expr = Num(Fraction(sign))
@@ -174,7 +174,7 @@ class Search:
         return len(left) > 1 and self._signs(left) == sign
 
     def _signs(self, factors: Sequence[Expr]) -> int:
-        """Return the product of the signs that each of some factors keeps; 0 if one keeps none."""
+        """Return the sign of a product from the signs of its factors; 0 if one is not known."""
         total = 1
         for factor in factors:
             if not self._keeps([factor], 1):

@@ -1,4 +1,4 @@
-"""Solvers behind one small face: a query's text in, an `Answer` out.
+"""One interface to all solvers: a `Query` in, an `Answer` out.
 
 Input: a `Query`.  Output: proved, refuted by a model, or unknown with the reason.  Each solver runs
 in a process of its own (`worker`); one that hangs, crashes or is not installed gives `unknown`.
@@ -24,12 +24,12 @@ from typing import Any, Protocol, final
 
 from piezo_sym.proofs.query import MARK, Query, marked
 
-#: The most seconds to wait for one answer; far above what the solvers' own limits come to.
+#: Seconds to wait for one answer; the solvers' own limits end a query long before.
 PATIENCE = 20.0
-#: The most seconds to wait for a second opinion, which is asked for only where there is no first.
+#: Seconds to wait for the second solver, which is asked only where the first does not know.
 LESS_PATIENCE = 5.0
-#: For the C library of Linux: what one query used is there for the next.  To get it anew from the
-#: system takes longer than most answers.
+#: Makes glibc keep freed memory for the next query: to get it from the system again takes longer
+#: than most answers.
 KEEP_MEMORY = {"MALLOC_TRIM_THRESHOLD_": "256000000", "MALLOC_MMAP_THRESHOLD_": "256000000"}
 RESULTS = frozenset({"unsat", "sat", "unknown"})
 
@@ -45,7 +45,7 @@ class Answer:
 
 
 class Asks(Protocol):
-    """Whatever answers queries."""
+    """What answers queries: a solver, several of them, or a stand-in of a test."""
 
     def ask(self, query: Query) -> Answer:
         """Return the answer to a query; never raises for what a solver does."""
@@ -57,7 +57,7 @@ class Solver:
 
     Parameters
     ----------
-    command : what to start; it answers as `worker` does.
+    command : the process to start; it answers as `worker` does.
     name : for messages.
     patience : seconds to wait for one answer.
     """
@@ -91,7 +91,7 @@ class Solver:
             self._process = None
 
     def _exchange(self, request: str) -> str:
-        """Send one line and read one; what comes is no whole line if the process stops or hangs."""
+        """Send one line and return the answer; it is incomplete if the process stops or hangs."""
         left, read, end = f"{request}\n".encode(), b"", time.monotonic() + self.patience
         try:
             process = self._running()
@@ -109,7 +109,7 @@ class Solver:
                     left = left[os.write(to, left[: select.PIPE_BUF]) :]
                     if not left:
                         ready.unregister(to)
-                else:  # it took too long, or ended
+                else:  # timed out, or the process ended
                     break
         except (OSError, ValueError):  # gone, or closed by another thread
             return ""
@@ -129,7 +129,7 @@ class Solver:
 
 
 def _read(line: str) -> Answer | None:
-    """Return the answer in a line, or None if there is none in it."""
+    """Return the answer that a line holds, or None if the line is no answer."""
     if not line.endswith("\n"):
         return None
     try:

@@ -1,7 +1,7 @@
 """Units: every law, input, condition and initial value of a spec has the unit that its row needs.
 
-Input: an `IPHS`, for its spec.  Output: one row PROVED, or one row REFUTED a fault.  The equations
-join what the ports give by sums of like quantities, so they fit exactly if each law fits its kind.
+Input: an `IPHS`, for its spec.  Output: one row PROVED, or a row REFUTED for each fault.  The
+junction laws add like quantities only, so the equations have the right units if each law has.
 
 A fault is one linear equation between the dimensions of names that does not hold.  Its remedy is
 solved for: a change of the unit of one parameter that mends every fault at once, and else one that
@@ -41,7 +41,7 @@ MOST_CANDIDATES = 3
 @final
 @dataclass(frozen=True)
 class Check:
-    """A rule at its place, and by what its left part would have to be multiplied to keep it."""
+    """A rule on units at its place, and the factor that its left side lacks."""
 
     place: Place
     rule: Match

@@ -1,8 +1,8 @@
-"""A process of its own in which solvers run: ``python -m piezo_sym.proofs.worker z3``.
+"""The process in which a solver runs: ``python -m piezo_sym.proofs.worker z3``.
 
-Input: one request a line on stdin, ``{"text": ..., "order": [...]}``, a query in SMT-LIB.  Output:
-one answer a line on stdout, ``{"result": ..., "model": {...}, "reason": ...}``, the result one of
-``unsat``, ``sat``, ``unknown``.  A solver that hangs or crashes takes this process with it, and
+Input: one request per line on stdin, ``{"text": ..., "order": [...]}``, a query in SMT-LIB.
+Output: one answer per line on stdout, ``{"result": ..., "model": {...}, "reason": ...}``, the
+result one of ``unsat``, ``sat``, ``unknown``.  A solver that hangs or crashes takes this process with it, and
 nothing else.
 """
 
@@ -16,7 +16,8 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any
 
-#: What a query may cost, in the solver's own units: the same query has the same answer anywhere.
+#: Limits on a query, in the solver's own units of work, not in seconds: the same query has the same
+#: answer on every machine.
 Z3_LIMIT = 20_000_000
 SIMPLER_LIMIT = 300_000
 CVC5_LIMIT = 2_000_000
@@ -32,7 +33,7 @@ Answer = dict[str, Any]
 
 
 def start_z3() -> Any:
-    """Return what one query is asked in: nothing that was asked before changes its answer."""
+    """Return a new solver and context: earlier queries cannot change an answer."""
     import z3
 
     return z3.Solver(ctx=z3.Context())
@@ -50,7 +51,10 @@ def ask_z3(solver: Any, text: str, order: Sequence[str]) -> Answer:
         return {"result": result, "reason": f"z3: {solver.reason_unknown()}"}
     if result == "unsat":
         return {"result": result}
-    model, known = solver.model(), [z3.And(*solver.assertions())]  # one is told sooner than many
+    model, known = (
+        solver.model(),
+        [z3.And(*solver.assertions())],
+    )  # one conjunction is solved faster
     for name in order:
         model = _simplify(z3, known, model, z3.Real(name, context))
     values = {name: _exact(z3, model, z3.Real(name, context)) for name in order}
@@ -60,7 +64,7 @@ def ask_z3(solver: Any, text: str, order: Sequence[str]) -> Answer:
 def _simplify(z3: Any, known: list[Any], model: Any, symbol: Any) -> Any:
     """Fix one variable to the first simple value that still gives a model; return that model.
 
-    Each value is a question of its own: with push and pop z3 takes another way, minutes longer.
+    Each value gets a new solver: incremental solving (push and pop) is slower by minutes.
     """
     own = model.evaluate(symbol, model_completion=True)
     for value in SIMPLE:
@@ -85,7 +89,7 @@ def _exact(z3: Any, model: Any, symbol: Any) -> str:
 
 
 def start_cvc5() -> Any:
-    """Return what one query is asked in."""
+    """Return a new solver."""
     import cvc5
 
     return cvc5.Solver(cvc5.TermManager())
@@ -107,7 +111,7 @@ def ask_cvc5(solver: Any, text: str, order: Sequence[str]) -> Answer:
     return {"result": kind, "reason": "" if kind == result else f"cvc5: {result}"}
 
 
-#: How each solver is made ready for one query, and asked it.
+#: How each solver is started, and asked one query.
 SOLVERS: dict[str, tuple[Callable[[], Any], Callable[[Any, str, Sequence[str]], Answer]]] = {
     "z3": (start_z3, ask_z3),
     "cvc5": (start_cvc5, ask_cvc5),
@@ -115,7 +119,7 @@ SOLVERS: dict[str, tuple[Callable[[], Any], Callable[[Any, str, Sequence[str]], 
 
 
 def prepared(name: str) -> Any:
-    """Return a solver ready for one query, or why there is none."""
+    """Return a solver that was started for one query, or the exception that prevented it."""
     try:
         return SOLVERS[name][0]()
     except Exception as error:
@@ -123,7 +127,7 @@ def prepared(name: str) -> Any:
 
 
 def answered(name: str, line: str, solver: Any) -> str:
-    """Return the answer to a request, both a line; whatever a solver does, it is an answer."""
+    """Return the answer to a request, both as a line; an exception is an answer, too."""
     request = json.loads(line)
     try:
         if isinstance(solver, Exception):
@@ -135,16 +139,16 @@ def answered(name: str, line: str, solver: Any) -> str:
 
 
 def main() -> None:
-    """Answer requests until stdin ends; Ctrl-C is for who asks, and ends stdin."""
+    """Answer requests until stdin ends; Ctrl-C is left to the parent process, which ends stdin."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     name = sys.argv[1]
     ready = [prepared(name)]
     for line in sys.stdin:
         try:
             print(answered(name, line, ready.pop()), flush=True)  # noqa: T201 - the answer
-        except BrokenPipeError:  # who asked is gone; leave without a word on that
+        except BrokenPipeError:  # the parent is gone: end without a traceback
             os._exit(0)
-        ready.append(prepared(name))  # ahead: to make one takes longer than most answers
+        ready.append(prepared(name))  # in advance: a start takes longer than most answers
 
 
 if __name__ == "__main__":

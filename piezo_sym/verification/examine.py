@@ -1,4 +1,4 @@
-"""A system examined: proved, its printed modules read back, and attacked by numbers.
+"""Everything that is examined of a system: proofs, printed modules, and attacks by numbers.
 
 Input: an `IPHS`.  Output: reports, each more complete than the one before; the last one is whole.
 A row is PROVED in the last one only if it was proved and no number contradicts it.

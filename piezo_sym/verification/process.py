@@ -1,4 +1,4 @@
-"""A process of its own in which systems are examined: it can be stopped, and its memory is limited.
+"""The process in which systems are examined: it can be stopped, and its memory is limited.
 
 Input: an `IPHS`, or the text of a spec.  Output: a `Report`; what was not decided in time, or with
 the memory there is, is OPEN and says so.
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from piezo_sym.proofs.report import Report
     from piezo_sym.spec.model import Model
 
-#: Seconds for a system of up to ten elements, and for each one more.
+#: Seconds for a system of up to SMALL elements, and for each element more.
 PATIENCE, MORE_PATIENCE, SMALL = 28.0, 1.0, 10
 LENGTH = struct.Struct(">Q")
 

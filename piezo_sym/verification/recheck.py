@@ -24,7 +24,7 @@ NEEDS = ("cvc5", "flint")
 PATIENCE = 600.0
 
 
-#: A line of the checker: its word, the row's id and element, and the reason.
+#: A line of the checker: its verdict, the row's id and element, and the reason.
 LINE = re.compile(r"(confirmed|not confirmed|stated) (\w+)(?: (\w+))?(?:: (.*))?")
 
 

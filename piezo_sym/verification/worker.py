@@ -15,12 +15,12 @@ from itertools import count
 
 from piezo_sym.verification.process import answer, read, write
 
-#: Bytes of address space: far more than any system needs that is decided in time.
+#: Bytes of address space; no system that is decided in time needs as much.
 MEMORY = 8 << 30
 
 
 def main() -> None:
-    """Answer until stdin ends; Ctrl-C is for who asks, and ends stdin."""
+    """Answer until stdin ends; Ctrl-C is left to the parent process, which ends stdin."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     _, most = resource.getrlimit(resource.RLIMIT_AS)
     limit = MEMORY if most == resource.RLIM_INFINITY else min(MEMORY, most)
@@ -34,7 +34,7 @@ def main() -> None:
             return
         for message in answer(subject):
             write(out, pickle.dumps(message))
-        if number == 0:  # all that was imported stays: it need not be searched for garbage again
+        if number == 0:  # imported modules stay: later collections skip them
             del subject, message
             gc.collect()
             gc.freeze()

@@ -54,7 +54,7 @@ a root is at least that of the right end
 ## proofs/signs/jets
 tanh rises everywhere as at zero
   - for m, s in enumerate(slopes, start=1)
-  + for m, s in enumerate((iv.UNIT, *slopes[1:]) if function == "tanh" else slopes, start=1)
+  + for m, s in enumerate((iv.ONE, *slopes[1:]) if function == "tanh" else slopes, start=1)
   = F_1*(tanh(v/v_1) - 0.9*v/v_1) if abs(v) <= 0.625*v_1 else F_1*v/v_1 | F_1 > 0; v_1 > 0
 ## proofs/signs/enclosures
 what rises is above its right end

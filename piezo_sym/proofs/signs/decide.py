@@ -25,18 +25,18 @@ from piezo_sym.proofs.signs.shift import recentred
 
 #: Derivatives on windows that are looked at before a decision is left open.
 BUDGET = 1000
-#: Orders of derivatives tried on each window, and more of them at both ends of a ray.
+#: Orders of derivatives tried on each window, and those tried at both ends of a ray.
 ORDERS, MORE_ORDERS = (0, 2), (0, 2, 8)
-#: What is meant by the ends of a ray, as values of t.
+#: Below the first and beyond the second of these t, more orders are tried.
 NEAR, FAR = 2.0**-4, 8.0
-#: A window narrower than this part of its distance (or of 1) is not cut further.
+#: A window narrower than this times its distance (or 1) is not cut further.
 NARROWEST = 2.0**-16
 #: Windows that could not be decided before the search stops.
 MOST_UNDECIDED = 3
 #: Beyond this no window is cut off from one to infinity.
 FARTHEST = 2.0**20
-#: Halves of the remaining piece of a ray that are tried at a point where f touches zero.
-PINCHES = 12
+#: Windows tried on each side of a point where f touches zero.
+MOST_BESIDE = 12
 
 
 @final
@@ -207,8 +207,8 @@ def _search(f: Expr, name: str, ray: Ray, budget: int) -> tuple[Decision, int]:
         if not _narrow(a, b):
             middle = _middle(a, b)
             pieces += [(middle, b), (a, middle)]
-        elif a > 0 and b < INF and (pinched := _pinched(f, ray, a, b)) is not None:
-            others += pinched
+        elif a > 0 and b < INF and (touching := _touching(f, ray, a, b)) is not None:
+            others += touching
         else:
             undecided.append(f"is not told from zero near {name} = {float(x):.9g}")
     if undecided:
@@ -237,7 +237,7 @@ def _middle(a: float, b: float) -> float:
     return max(1.0, 2 * a) if b == INF else a + (b - a) / 2
 
 
-def _pinched(f: Expr, ray: Ray, a: float, b: float) -> tuple[Windows, ...] | None:
+def _touching(f: Expr, ray: Ray, a: float, b: float) -> tuple[Windows, ...] | None:
     """Return how f >= 0 is shown from the simplest number in a <= t <= b to both sides, or None.
 
     Where f touches zero at that number, the jets there are exact.
@@ -248,7 +248,7 @@ def _pinched(f: Expr, ray: Ray, a: float, b: float) -> tuple[Windows, ...] | Non
         return None
     ends = sorted((ray.point(Fraction(a)), ray.point(Fraction(b))))
     shown = [
-        _germ(f, middle, side, _not_below(abs(end - middle)))
+        _beside(f, middle, side, _not_below(abs(end - middle)))
         for side, end in ((-1, ends[0]), (1, ends[1]))
         if end != middle
     ]
@@ -256,12 +256,12 @@ def _pinched(f: Expr, ray: Ray, a: float, b: float) -> tuple[Windows, ...] | Non
     return both if len(both) == len(shown) else None
 
 
-def _germ(f: Expr, centre: Fraction, side: int, length: float) -> Windows | None:
+def _beside(f: Expr, centre: Fraction, side: int, length: float) -> Windows | None:
     """Return how f >= 0 is shown on 0 < t <= length, after a few cuts at most, or None."""
     tree = recentred(f, centre, side)
     pieces = [(0.0, length)]
     shown: list[tuple[float, float, int]] = []
-    for _ in range(PINCHES):
+    for _ in range(MOST_BESIDE):
         a, b = pieces.pop()
         order, _ = _order(tree, a, b)
         if order is None:

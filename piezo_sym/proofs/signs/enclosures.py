@@ -42,7 +42,8 @@ class Enclosure:
     ----------
     inner : its jet on the window.
     left, right : jets of its one-sided limits at lo and hi; shorter, or empty, if not known.
-    growth : f'/f on the window (almost everywhere, if f is only Lipschitz); None if not known.
+    growth : the logarithmic derivative f'/f on the window (almost everywhere, if f is only
+        Lipschitz); None if not known.
     """
 
     inner: Jet
@@ -69,7 +70,7 @@ def value(tree: Expr, at: Fraction) -> Interval | None:
 
 
 def _variable(at: Interval, order: int) -> Jet:
-    return (at, iv.UNIT, *(iv.NOUGHT for _ in range(order - 1)))[: order + 1]
+    return (at, iv.ONE, *(iv.ZERO for _ in range(order - 1)))[: order + 1]
 
 
 def _enclose(node: Expr, x: Enclosure, order: int) -> Enclosure:
@@ -117,10 +118,10 @@ def _sum(parts: list[Enclosure]) -> Enclosure:
 def _cancelled(total: Enclosure, tree: Expr, x: Enclosure) -> Enclosure:
     """Return a sum as zero at its left end or one point if its terms cancel and none jumps."""
     if x.left and _cancels(total.left, tree, x.left[0]):
-        left = (iv.NOUGHT, *total.left[1:])
+        left = (iv.ZERO, *total.left[1:])
         return Enclosure(_sharpened(total.inner, left, total.right), left, total.right)
     if not x.left and _cancels(total.inner, tree, x.inner[0]):
-        return Enclosure((iv.NOUGHT,))
+        return Enclosure((iv.ZERO,))
     return total
 
 
@@ -260,7 +261,7 @@ def _smaller(a: Enclosure, b: Enclosure) -> Enclosure:
     return _minus(_larger(_minus(a), _minus(b)))
 
 
-#: Those with kinks that others are made of.
+#: Functions with kinks that the formulas of the others are written in.
 KINKED: Mapping[str, Callable[..., Enclosure]] = {
     "abs": _absolute,
     "sign": _sign,

@@ -71,7 +71,7 @@ def _ends(value: Fraction) -> tuple[float, float]:
 
 
 EVERYTHING = Interval(-INF, INF)
-NOUGHT, UNIT = rational(Fraction(0)), rational(Fraction(1))
+ZERO, ONE = rational(Fraction(0)), rational(Fraction(1))
 
 
 def hull(a: Interval, b: Interval) -> Interval:
@@ -113,7 +113,7 @@ def _sum(x: float, y: float, outward: float) -> float:
 def times(a: Interval, b: Interval) -> Interval:
     """Return a*b."""
     if a.lo == a.hi == 0 or b.lo == b.hi == 0:
-        return NOUGHT
+        return ZERO
     if a.exact is not None and b.exact is not None:
         return rational(a.exact * b.exact)
     corners = [(x, y) for x in (a.lo, a.hi) for y in (b.lo, b.hi)]
@@ -161,7 +161,7 @@ def magnitude(a: Interval) -> Interval:
 def power(a: Interval, exponent: Fraction) -> Interval | None:
     """Return a**exponent; a fractional power only of what is not negative."""
     if exponent == 0:
-        return UNIT
+        return ONE
     if exponent < 0:
         below = power(a, -exponent)
         return None if below is None else inverse(below)
@@ -171,7 +171,7 @@ def power(a: Interval, exponent: Fraction) -> Interval | None:
     if not whole and a.lo < 0:
         return None
     if a.exact == 0:
-        return NOUGHT
+        return ZERO
     base = magnitude(a) if whole and exponent.numerator % 2 == 0 else a  # now x**e is increasing
     return _increasing(base, lambda x: x.root(exponent.denominator) ** exponent.numerator)
 

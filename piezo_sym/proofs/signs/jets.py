@@ -23,7 +23,7 @@ Jet: TypeAlias = tuple[Interval, ...]
 
 def constant(value: Fraction, order: int) -> Jet:
     """Return the jet of a constant."""
-    return (iv.rational(value), *(iv.NOUGHT for _ in range(order)))
+    return (iv.rational(value), *(iv.ZERO for _ in range(order)))
 
 
 def minus(a: Jet) -> Jet:
@@ -58,7 +58,7 @@ def composed(outer: Jet, inner: Jet) -> Jet:
     length = min(len(outer), len(inner))
     if length == 0:
         return ()
-    shift = (iv.NOUGHT, *inner[1:length])
+    shift = (iv.ZERO, *inner[1:length])
     result = constant(Fraction(0), length - 1)
     for m in reversed(range(length)):
         moved = times(result, shift)
@@ -81,7 +81,7 @@ def _power(a: Interval, length: int, exponent: Fraction) -> Jet:
     found: list[Interval] = []
     binomial = Fraction(1)
     for m in range(length):
-        part = iv.NOUGHT if binomial == 0 else iv.power(a, exponent - m)
+        part = iv.ZERO if binomial == 0 else iv.power(a, exponent - m)
         if part is None:
             break
         found.append(iv.times(iv.rational(binomial), part))

@@ -99,7 +99,7 @@ class Setting:
 
 
 def reductions(law: Expr, letter: str, positive: Positive) -> list[Reduction]:
-    """Return the ways of a law to a function of its letter alone, least in front first.
+    """Return the reductions of a law to its letter alone, those with fewest factors outside first.
 
     The letter may take every real value; `positive` says if a tree without it is positive.
     """
@@ -110,7 +110,7 @@ def reductions(law: Expr, letter: str, positive: Positive) -> list[Reduction]:
 
 
 def _reduction(law: Expr, setting: Setting) -> tuple[Reduction | None, int]:
-    """Return a law as far as it comes down in one unit, and how many factors do not."""
+    """Return the reduction in one unit of the letter, and how many factors stay outside it."""
     inside = Product(Fraction(1), {})
     front, outside = list[Expr](), list[Expr]()
     for factor in _factors(law):
@@ -150,7 +150,7 @@ def _factors(node: Expr) -> Iterator[Expr]:
 def settings(
     law: Expr, letter: str, positive: Positive
 ) -> tuple[Setting, list[Setting], list[Setting]]:
-    """Return what the letter may be measured in: nothing, what it is divided by, one parameter."""
+    """Return the units to try for the letter: none, what it is divided by, each parameter."""
     plain = Setting(letter, {}, positive)
     divided: list[Powers] = []
     for arg in (arg for node in walk(law) for arg in _arguments(node)):

@@ -1,4 +1,4 @@
-"""A law seen from one of its points, so that zeros and kinks there are seen exactly.
+"""A law as a function of the distance from a point, so that zeros and kinks there are exact.
 
 Input: a tree in one name x, a rational point c, a side.  Output: the tree of t, for x = c + t or
 x = c - t.  Parts that are affine in t with rational coefficients are written as such, so that

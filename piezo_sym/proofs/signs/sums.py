@@ -1,4 +1,4 @@
-"""A sum taken apart so that each part comes down to one variable.
+"""A sum split into groups that each reduce to a function of one variable.
 
 Input: a law, its letter, and what is positive.  Output: its terms, products of sums multiplied out,
 and these in groups: ``F_1*exp(v/v_1) - F_1`` is one group, ``-F_2*exp(-v/v_2) + F_2`` another.
