@@ -98,13 +98,11 @@ class Asked:
                 return True
             case Call(function, (base,)) if RECORDS[function].sign and self.positive(base):
                 return True
-            case Add(terms) if all(map(self.not_negative, terms)) and any(
-                map(self.positive, terms)
-            ):
+            case Add(terms) if all(map(self.nonnegative, terms)) and any(map(self.positive, terms)):
                 return True
         return self.follows(Cmp(">", part, ZERO))
 
-    def not_negative(self, part: Expr) -> bool:
+    def nonnegative(self, part: Expr) -> bool:
         """Return whether a tree is by its form nowhere negative, wherever it has a value."""
         match part:
             case Sym() | Num():
@@ -112,11 +110,11 @@ class Asked:
             case Call(function, _) if RECORDS[function].sign:
                 return True
             case Pow(base, e):
-                return e.denominator != 1 or e % 2 == 0 or self.not_negative(base)
+                return e.denominator != 1 or e % 2 == 0 or self.nonnegative(base)
             case Add(parts):
-                return all(map(self.not_negative, parts))
+                return all(map(self.nonnegative, parts))
             case Mul(left, right) | Div(left, right):
-                return self.not_negative(left) and self.not_negative(right)
+                return self.nonnegative(left) and self.nonnegative(right)
         return False
 
     def follows(self, claim: Cmp) -> bool:

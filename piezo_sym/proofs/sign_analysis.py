@@ -165,7 +165,7 @@ class Search:
 
     def _keeps(self, factors: Sequence[Expr], sign: int) -> bool:
         """Return whether ``sign*product >= 0`` is shown in the domain."""
-        left = [factor for factor in factors if not self.asked.not_negative(factor)]
+        left = [factor for factor in factors if not self.asked.nonnegative(factor)]
         if not left:
             return sign > 0
         start: Expr = Num(Fraction(sign))

@@ -2,8 +2,8 @@
 
 Input: one request per line on stdin, ``{"text": ..., "order": [...]}``, a query in SMT-LIB.
 Output: one answer per line on stdout, ``{"result": ..., "model": {...}, "reason": ...}``, the
-result one of ``unsat``, ``sat``, ``unknown``.  A solver that hangs or crashes takes this process with it, and
-nothing else.
+result one of ``unsat``, ``sat``, ``unknown``.  A solver that hangs or crashes takes this process
+with it, and nothing else.
 """
 
 from __future__ import annotations

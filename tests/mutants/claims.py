@@ -159,7 +159,7 @@ of a claim's parts one is enough
   + return any(answer.result == "unsat" for answer in self._answers(claim, claim))
   = min(a + 5*a_1, d)*v*(exp(v/v_1) - 7.38*(v/v_1 - 1)) | d > 0; a_1 > 0; v_1 > 0 | a=-6.0
 a sum is positive by one term
-  - case Add(terms) if all(map(self.not_negative, terms)) and any(map(self.positive, terms)):
+  - case Add(terms) if all(map(self.nonnegative, terms)) and any(map(self.positive, terms)):
   + case Add(terms) if any(map(self.positive, terms)):
   = F_1*(v/(v_1 - v_2/1000)*(exp(v/(v_1 - v_2/1000)) - 7.38*(v/(v_1 - v_2/1000) - 1))) | F_1 >
   = 0; v_1 > 0; v_2 > 0;
@@ -169,17 +169,17 @@ a name in the domain is positive
   + case Sym() if any(part in (c.left, c.right) for c in self.where):
   = F_1*(v*a/F_1*(exp(v*a/F_1) - 7.38*(v*a/F_1 - 1))) | F_1 > 0; a_1 > 0; a < 3*a_1
 every power keeps its sign
-  - return e.denominator != 1 or e % 2 == 0 or self.not_negative(base)
+  - return e.denominator != 1 or e % 2 == 0 or self.nonnegative(base)
   + return True
   = a**3/a_1**2*v*(exp(v/v_1) - 7.38*(v/v_1 - 1)) | v_1 > 0; a_1 > 0
 a sum keeps its sign by one term
-  - return all(map(self.not_negative, parts))
-  + return any(map(self.not_negative, parts))
+  - return all(map(self.nonnegative, parts))
+  + return any(map(self.nonnegative, parts))
   = (F_1 - F_2/1000)*(v/v_1*(exp(v/v_1) - 7.38*(v/v_1 - 1))) | F_1 > 0; F_2 > 0; v_1 > 0 |
   = F_2=2000.0
 a product keeps its sign by one factor
-  - return self.not_negative(left) and self.not_negative(right)
-  + return self.not_negative(left) or self.not_negative(right)
+  - return self.nonnegative(left) and self.nonnegative(right)
+  + return self.nonnegative(left) or self.nonnegative(right)
   = (a*d + d**2)/d*v*(exp(v/v_1) - 7.38*(v/v_1 - 1)) | d > 0; v_1 > 0 | a=-5.0
 a name keeps its sign
   - return self.positive(part)
