@@ -11,7 +11,7 @@ from __future__ import annotations
 from piezo_sym.algebra.linear import SingularError
 from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import NetworkError
-from piezo_sym.network.inverse import FIELDS, turn
+from piezo_sym.network.inverse import turn
 from piezo_sym.network.kirchhoff import Laws
 from piezo_sym.network.refusals import refusal
 from piezo_sym.spec.circuit import Circuit, Placed
@@ -44,7 +44,7 @@ def causal(circuit: Circuit, symbols: SymbolTable) -> Laws:
         placed, port = found
         turned.add(placed.element)
         if len(turned) * len(laws.edges) > MOST_WORK:
-            field = FIELDS[port.domain, port.letter]
+            field = port.domain.variable(port.imposes).name
             what = f"more than {len(turned) - 1} laws have to be turned round, one after the other"
             remedy = (
                 f"give {field} = '...' of {port.letter} for '{placed.element}' and those like it"

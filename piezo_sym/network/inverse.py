@@ -14,22 +14,7 @@ from piezo_sym.algebra.symbols import to_sympy
 from piezo_sym.expressions.calculus import derivative, div, mul
 from piezo_sym.expressions.tree import ONE, ZERO, Call, Cmp, Div, Expr, Sym, names, walk
 from piezo_sym.expressions.tree import replace as substitute
-from piezo_sym.spec.elements.ports import Domain, Resistor
-
-#: The letter that a law has in the other causality.
-CONJUGATE = {
-    (Domain.ELECTRICAL, "i"): "v",
-    (Domain.ELECTRICAL, "v"): "i",
-    (Domain.MECHANICAL, "v"): "f",
-    (Domain.MECHANICAL, "f"): "v",
-}
-#: The field of the spec in which a law of each letter stands.
-FIELDS = {
-    (Domain.ELECTRICAL, "i"): "voltage",
-    (Domain.ELECTRICAL, "v"): "current",
-    (Domain.MECHANICAL, "v"): "force",
-    (Domain.MECHANICAL, "f"): "velocity",
-}
+from piezo_sym.spec.elements.ports import Resistor
 
 
 def turn(port: Resistor) -> Resistor | None:
@@ -37,7 +22,7 @@ def turn(port: Resistor) -> Resistor | None:
     slope = slope_of(port)
     if slope is None or _vanishes(slope):
         return None
-    letter = CONJUGATE[port.domain, port.letter]
+    letter = port.domain.variable(port.imposes).letter
     return replace(
         port,
         letter=letter,
@@ -60,8 +45,8 @@ def slope_of(port: Resistor) -> Expr | None:
 
 def inverse_field(port: Resistor) -> tuple[str, str]:
     """Return the field and the letter of a resistor's law in its other causality."""
-    letter = CONJUGATE[port.domain, port.letter]
-    return FIELDS[port.domain, letter], letter
+    given, asked = port.domain.variable(port.imposes), port.domain.variable(port.imposes.other)
+    return asked.name, given.letter
 
 
 def _over(top: Expr, slope: Expr) -> Expr:

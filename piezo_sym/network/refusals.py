@@ -13,20 +13,11 @@ from piezo_sym.network.kirchhoff import Edge, Laws
 from piezo_sym.network.nodes import branches, is_inner, is_reference
 from piezo_sym.spec.elements.ports import (
     Coupling,
-    Domain,
     Resistor,
     Source,
     Storage,
-    Variable,
 )
 
-#: What a branch gives, by its domain and the variable it imposes.
-WORDS = {
-    (Domain.ELECTRICAL, Variable.ACROSS): "voltage",
-    (Domain.ELECTRICAL, Variable.THROUGH): "current",
-    (Domain.MECHANICAL, Variable.ACROSS): "velocity",
-    (Domain.MECHANICAL, Variable.THROUGH): "force",
-}
 MIXED = "variables"
 REMEDIES = {
     "voltage": "merge those in parallel into one, or put a resistor in series with one of them",
@@ -80,7 +71,7 @@ def _listed(names: list[str]) -> str:
 def _word(edge: Edge) -> str:
     match edge.placed.port:
         case Storage() | Resistor() | Source() as port:
-            return WORDS[port.domain, port.imposes]
+            return port.domain.variable(port.imposes).name
     return MIXED
 
 

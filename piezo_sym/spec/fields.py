@@ -9,9 +9,7 @@ from typing import Annotated, Any, Union, final
 
 from pydantic import (
     AfterValidator,
-    BaseModel,
     BeforeValidator,
-    ConfigDict,
     Field,
     StrictStr,
     StringConstraints,
@@ -19,6 +17,7 @@ from pydantic import (
 )
 
 from piezo_sym.spec.elements import KINDS
+from piezo_sym.spec.elements.base import Frozen
 from piezo_sym.spec.units import Unit, parse_unit, to_si
 
 MAX_TEXT = 400
@@ -88,12 +87,6 @@ UnitText = Annotated[
     ),
 ]
 Doc = Annotated[Text, Field(description="What it is, on one line.")]
-
-
-class Frozen(BaseModel):
-    """Base of the tables: frozen, and closed to unknown keys."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
 
 @final

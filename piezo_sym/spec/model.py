@@ -11,7 +11,8 @@ from typing import Any, final
 from pydantic import ValidationError, model_validator
 
 from piezo_sym.spec.checks import check
-from piezo_sym.spec.fields import AnyElement, Domain, Frozen, Header, Input, Parameter, Start
+from piezo_sym.spec.elements.base import Frozen
+from piezo_sym.spec.fields import AnyElement, Domain, Header, Input, Parameter, Start
 from piezo_sym.spec.problems import first_problem
 from piezo_sym.spec.table import Table
 from piezo_sym.spec.write import spec_hash, to_toml

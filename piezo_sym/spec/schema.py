@@ -11,7 +11,8 @@ from typing import Any
 
 from pydantic.json_schema import PydanticJsonSchemaWarning
 
-from piezo_sym.spec.elements import KINDS, Element
+from piezo_sym.spec.elements import KINDS
+from piezo_sym.spec.elements.base import Element
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.names import MAX_NAME, NAME
 

@@ -13,8 +13,8 @@ from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.text import SPEC, write_comparison
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, Expr, Node, Num, names, rename, walk
-from piezo_sym.spec.elements import Conduction, Element, ThermalMass
-from piezo_sym.spec.elements.base import Letters, Refers, state_symbol
+from piezo_sym.spec.elements.base import Element, Letters, Refers, state_symbol
+from piezo_sym.spec.elements.thermal import Conduction, ThermalMass
 from piezo_sym.spec.fields import Domain, Header, Input, Parameter
 
 

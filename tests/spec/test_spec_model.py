@@ -8,7 +8,8 @@ from spec_tools import MINIMAL, SHIPPED, edited, refusal, refused_edit
 
 from piezo_sym import Model, load
 from piezo_sym.errors import SpecError
-from piezo_sym.spec.elements import Capacitor, Mass
+from piezo_sym.spec.elements.electrical import Capacitor
+from piezo_sym.spec.elements.mechanical import Mass
 from piezo_sym.spec.fields import Header, Input, Parameter
 from piezo_sym.spec.load import parse
 from piezo_sym.spec.table import Table

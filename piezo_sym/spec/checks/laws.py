@@ -7,7 +7,9 @@ from collections.abc import Collection, Mapping
 from piezo_sym.errors import SpecError, listing, nearest, quote
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import Node, names
-from piezo_sym.spec.elements import KINDS, Conduction, Element
+from piezo_sym.spec.elements import KINDS
+from piezo_sym.spec.elements.base import Element
+from piezo_sym.spec.elements.thermal import Conduction
 from piezo_sym.spec.names import NAME
 from piezo_sym.spec.tables import (
     Condition,

@@ -1,12 +1,13 @@
 """What every kind of element is: a frozen record of spec fields that states its ports.
 
 Input: the fields of one ``[elements.<name>]`` table.  Output: `Port` records.  A kind is a final
-class in a file of its own, with one row in the registry (`elements/__init__.py`).
+class: its fields, and the `Form` of its parts.
 """
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Annotated, Any, ClassVar, Self, final
 
 from pydantic import (
@@ -15,6 +16,7 @@ from pydantic import (
     Field,
     GetJsonSchemaHandler,
     StrictBool,
+    StrictInt,
     StrictStr,
     StringConstraints,
     model_validator,
@@ -23,7 +25,9 @@ from pydantic_core import CoreSchema
 
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import ZERO, Cmp, Expr
-from piezo_sym.spec.elements.ports import Port
+from piezo_sym.spec.elements.ports import Branch, Port
+
+MAX_COUNT = 1_000_000
 
 
 @final
@@ -80,14 +84,37 @@ StateName = Annotated[
     StrictStr | None,
     Field(description="Symbol of the state; if not given, the kind's letter, '_' and the name."),
 ]
+Count = Annotated[
+    StrictInt,
+    Field(ge=1, le=MAX_COUNT, description="Size of the bank; without it there is one hysteron."),
+]
 Jumps = Annotated[StrictBool, Field(description="Whether the law jumps on purpose.")]
 
 
-class Element(BaseModel, ABC):
-    """An element of a network; every kind derives from it directly and is final."""
+class Frozen(BaseModel):
+    """Base of the tables of a spec: frozen, and closed to unknown keys."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
+
+class Form(ABC):
+    """A part of an element: a store, a dissipation, a coupling or a source; see `forms`."""
+
+    @abstractmethod
+    def port(self, element: Any, name: str, branch: Branch) -> Port:
+        """Return the port of an element called `name`; `branch` is where it stands."""
+
+    def requires(self, element: Any) -> tuple[Cmp, ...]:
+        """Return the conditions that this part of an element adds to the domain."""
+        del element
+        return ()
+
+
+class Element(Frozen):
+    """An element of a network; every kind derives from it directly and is final."""
+
+    #: The parts of the kind; two are in series.
+    forms: ClassVar[tuple[Form, ...]] = ()
     #: The letter of the kind's state; empty for kinds without one.
     letter: ClassVar[str] = ""
     #: Fields of which exactly one is to be given: a law and its inverse.
@@ -104,18 +131,23 @@ class Element(BaseModel, ABC):
             raise ValueError(message)
         return self
 
-    @abstractmethod
     def ports(self, name: str) -> tuple[Port, ...]:
         """Return the ports of this element, called `name` in its spec."""
+        first, last = getattr(self, "between", ("", ""))
+        nodes = (first, *(f"{name}:inner" for _ in self.forms[1:]), last)
+        return tuple(
+            form.port(self, name, branch)
+            for form, branch in zip(self.forms, pairwise(nodes), strict=True)
+        )
+
+    def requires(self) -> tuple[Cmp, ...]:
+        """Return the conditions that this element adds to the domain."""
+        return tuple(condition for form in self.forms for condition in form.requires(self))
 
     @property
     def is_bank(self) -> bool:
-        """Whether the element is a bank of parallel lanes."""
-        return False
-
-    def requires(self) -> tuple[Cmp, ...]:
-        """Return the conditions on parameters that this kind adds to the domain."""
-        return ()
+        """Whether the element is a bank of parallel lanes: `count` is given, be it 1."""
+        return getattr(self, "count", None) is not None
 
     def law(self, field: str) -> Expr:
         """Return the tree of a law field."""

@@ -8,6 +8,7 @@ e_b, and its through variable flows from a to b.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 from typing import final
@@ -15,19 +16,6 @@ from typing import final
 from piezo_sym.expressions.tree import Expr
 
 Branch = tuple[str, str]
-
-
-@final
-class Domain(Enum):
-    """A physical domain; its reference node, and the names of its two variables."""
-
-    ELECTRICAL = "electrical"
-    MECHANICAL = "mechanical"
-
-    @property
-    def reference(self) -> str:
-        """The node at which the across variable is zero."""
-        return "gnd" if self is Domain.ELECTRICAL else "wall"
 
 
 @final
@@ -41,6 +29,58 @@ class Variable(Enum):
     def other(self) -> Variable:
         """The conjugate variable."""
         return Variable.THROUGH if self is Variable.ACROSS else Variable.ACROSS
+
+
+@final
+class Domain(Enum):
+    """A physical domain; its two variables stand in `VARIABLES`."""
+
+    ELECTRICAL = "electrical"
+    MECHANICAL = "mechanical"
+
+    @property
+    def reference(self) -> str:
+        """The node at which the across variable is zero."""
+        return "gnd" if self is Domain.ELECTRICAL else "wall"
+
+    def variable(self, which: Variable) -> PhysicalVariable:
+        """Return what the across or through variable is in this domain."""
+        return VARIABLES[self, which]
+
+
+@final
+@dataclass(frozen=True)
+class PhysicalVariable:
+    """The across or through variable of a domain.
+
+    Attributes
+    ----------
+    name : also the field of a dissipative law that gives it.
+    unit, letter : its unit, and its letter in laws.
+    prefix : what names of quantities of this kind begin with, such as ``F`` of ``F_spring``.
+    state, state_unit : the state of a store that imposes it.
+    """
+
+    name: str
+    unit: str
+    letter: str
+    prefix: str
+    state: str
+    state_unit: str
+
+
+VARIABLES: Mapping[tuple[Domain, Variable], PhysicalVariable] = {
+    (Domain.ELECTRICAL, Variable.ACROSS): PhysicalVariable("voltage", "V", "v", "V", "charge", "C"),
+    (Domain.ELECTRICAL, Variable.THROUGH): PhysicalVariable(
+        "current", "A", "i", "i", "flux linkage", "Wb"
+    ),
+    (Domain.MECHANICAL, Variable.ACROSS): PhysicalVariable(
+        "velocity", "m/s", "v", "v", "momentum", "kg*m/s"
+    ),
+    (Domain.MECHANICAL, Variable.THROUGH): PhysicalVariable(
+        "force", "N", "f", "F", "extension", "m"
+    ),
+}
 
 
 @final
@@ -77,11 +117,13 @@ class Resistor:
 
     Attributes
     ----------
-    letter : the letter of the conjugate variable z in `law`; ``T`` is the heated body's
-    temperature. field : the name of the law in the spec, for messages. output : name of W, such as
-    ``V_hysteron``. effort : name of z, where it is not simply a co-state. imposes : which variable
-    W is; z is the other one. heats : the element whose body takes the heat. written : the law as
-    the spec has it, in its own letter, where this is that one turned round.
+    letter : the letter of the conjugate variable z in `law`; T is the heated body's temperature.
+    field : the name of the law in the spec, for messages.
+    output : name of W, such as ``V_hysteron``.
+    effort : name of z, where it is not simply a co-state.
+    imposes : which variable W is; z is the other one.
+    heats : the element whose body takes the heat.
+    written : the law as the spec has it, in its own letter, where `law` is its inverse.
     """
 
     letter: str
