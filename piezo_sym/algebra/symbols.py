@@ -37,7 +37,7 @@ from piezo_sym.expressions.tree import (
     names,
 )
 from piezo_sym.spec.circuit import Circuit
-from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, Resistor, Storage
+from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, Port, Resistor, Storage
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import banks, conditions, greater, lane_parameters, states
 
@@ -92,19 +92,20 @@ def symbol_table(circuit: Circuit) -> SymbolTable:
     owners = lane_parameters(model)
     per_lane |= {n: owners[n] for n, p in model.parameters.items() if isinstance(p.value, tuple)}
     names = [*model.parameters, *model.inputs, *states(model)]
-    for placed, port in circuit.of(Storage, Resistor, Coupling, Body, Conductor):
-        for name in _quantities(port):
+    for placed in circuit.ports:
+        for name in _quantities(placed.port):
             names.append(name)
             if placed.bank:
                 per_lane[name] = placed.bank
-        if isinstance(port, Body):
-            signs[port.temperature] = {"positive": True}
+        if isinstance(placed.port, Body):
+            signs[placed.port.temperature] = {"positive": True}
     table = {name: _symbol(name, per_lane.get(name), signs.get(name)) for name in names}
     counts = {bank: sp.Symbol(f"{bank}_count", integer=True, positive=True) for bank in sizes}
     return SymbolTable(table, {table[name]: bank for name, bank in per_lane.items()}, counts)
 
 
-def _quantities(port: Storage | Resistor | Coupling | Body | Conductor) -> tuple[str, ...]:
+def _quantities(port: Port) -> tuple[str, ...]:
+    """Return the names that a port gives to quantities."""
     match port:
         case Conductor():
             return (port.output,)
@@ -116,6 +117,7 @@ def _quantities(port: Storage | Resistor | Coupling | Body | Conductor) -> tuple
             return (port.name,)
         case Body():
             return (port.temperature,)
+    return ()
 
 
 def _symbol(name: str, bank: str | None, sign: Mapping[str, bool] | None) -> sp.Symbol:

@@ -21,7 +21,7 @@ def new(
     that they heat, and sources; verify, generate and simulate work on it as it stands. A file that
     is there already is kept: exit code 2.
     """
-    from piezo_sym.spec.starter import starter
+    from piezo_sym.spec.load import starter
 
     path = Path(f"{name}.toml")
     text = starter(name, "NAME")

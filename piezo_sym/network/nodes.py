@@ -21,12 +21,13 @@ def is_reference(node: str) -> bool:
 
 def branches(circuit: Circuit) -> Iterator[tuple[str, Branch, Domain]]:
     """Yield (element, branch, domain) of every branch of a circuit."""
-    for placed, port in circuit.of(Storage, Resistor, Source, Coupling):
-        if isinstance(port, Coupling):
-            yield placed.element, port.first, port.first_domain
-            yield placed.element, port.second, port.second_domain
-        else:
-            yield placed.element, port.branch, port.domain
+    for placed in circuit.ports:
+        match placed.port:
+            case Coupling() as port:
+                yield placed.element, port.first, port.first_domain
+                yield placed.element, port.second, port.second_domain
+            case Storage() | Resistor() | Source() as port:
+                yield placed.element, port.branch, port.domain
 
 
 def is_inner(node: str) -> bool:

@@ -27,9 +27,6 @@ from piezo_sym.spec.tables import banks, temperatures
 
 A = TypeVar("A", bound=Port)
 B = TypeVar("B", bound=Port)
-C = TypeVar("C", bound=Port)
-D = TypeVar("D", bound=Port)
-F = TypeVar("F", bound=Port)
 
 
 @final
@@ -63,16 +60,6 @@ class Circuit:
 
     @overload
     def of(self, kind: type[A], other: type[B], /) -> Iterator[tuple[Placed, A | B]]: ...
-
-    @overload
-    def of(
-        self, kind: type[A], other: type[B], third: type[C], fourth: type[D], /
-    ) -> Iterator[tuple[Placed, A | B | C | D]]: ...
-
-    @overload
-    def of(
-        self, kind: type[A], other: type[B], third: type[C], fourth: type[D], fifth: type[F], /
-    ) -> Iterator[tuple[Placed, A | B | C | D | F]]: ...
 
     def of(self, *kinds: Any) -> Iterator[tuple[Placed, Any]]:
         """Yield the ports of some kinds, in declaration order."""

@@ -18,6 +18,7 @@ from pydantic import (
 
 from piezo_sym.spec.elements import KINDS
 from piezo_sym.spec.elements.base import Frozen
+from piezo_sym.spec.table import Table
 from piezo_sym.spec.units import Unit, parse_unit, to_si
 
 MAX_TEXT = 400
@@ -154,3 +155,14 @@ class Domain(Frozen):
 
 #: One of the registered kinds, told apart by `kind`.
 AnyElement: Any = Annotated[Union[tuple(KINDS.values())], Field(discriminator="kind")]  # noqa: UP007
+
+
+class Tables(Frozen):
+    """All tables of a spec, each right in itself."""
+
+    model: Header
+    parameters: Table[Parameter] = Table()
+    inputs: Table[Input] = Table()
+    domain: Domain = Domain()
+    initial: Table[Start] = Table()
+    elements: Table[AnyElement]

@@ -1,14 +1,18 @@
-"""A spec file to a `Model`: the one way in for text from strangers.
+"""A spec file to a `Model`, and the text of a first spec.
 
 Input: a path, the name of a shipped spec, or text.  Output: a `Model`, or one error with the file's
-name.
+name.  All text from users comes in here.
 """
 
 from pathlib import Path
 
-from piezo_sym.errors import PiezoError
+from piezo_sym.errors import PiezoError, SpecError, quote
+from piezo_sym.spec.checks.names import check_model_name
 from piezo_sym.spec.model import Model
-from piezo_sym.spec.source import data, find, read
+from piezo_sym.spec.source import data, find, read, shipped
+
+STARTER = Path(__file__).with_name("starter.toml")
+OWN_NAME = 'name  = "starter"'
 
 
 def load(spec: str | Path) -> Model:
@@ -44,3 +48,19 @@ def parse(text: str, source: str = "spec") -> Model:
     except PiezoError as error:
         error.where = f"{source}: {error.where}" if error.where else source
         raise
+
+
+def starter(name: str, where: str = "name") -> str:
+    """Return the text of a first spec called `name`.
+
+    Raises
+    ------
+    SpecError
+        If `name` cannot name a model, or names a shipped one, whose module it would hide.
+    """
+    check_model_name(name, where)
+    taken = next((known for known in shipped() if known.lower() == name.lower()), None)
+    if taken is not None:
+        remedy = f"call it 'my_{taken}'"
+        raise SpecError(f"{quote(name)} is the name of a shipped spec", where, remedy=remedy)
+    return STARTER.read_text(encoding="utf-8").replace(OWN_NAME, f'name  = "{name}"', 1)

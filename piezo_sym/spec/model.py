@@ -10,16 +10,16 @@ from typing import Any, final
 
 from pydantic import ValidationError, model_validator
 
-from piezo_sym.spec.checks import check
-from piezo_sym.spec.elements.base import Frozen
-from piezo_sym.spec.fields import AnyElement, Domain, Header, Input, Parameter, Start
+from piezo_sym.spec.checks.laws import check_laws, check_references
+from piezo_sym.spec.checks.names import check_names
+from piezo_sym.spec.checks.values import check_values
+from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.problems import first_problem
-from piezo_sym.spec.table import Table
 from piezo_sym.spec.write import spec_hash, to_toml
 
 
 @final
-class Model(Frozen):
+class Model(Tables):
     """A declarative list of physical elements, and the parameters and inputs of their laws.
 
     Attributes
@@ -36,13 +36,6 @@ class Model(Frozen):
         With one line that says what is wrong, where, what was expected, and what to do.
     """
 
-    model: Header
-    parameters: Table[Parameter] = Table()
-    inputs: Table[Input] = Table()
-    domain: Domain = Domain()
-    initial: Table[Start] = Table()
-    elements: Table[AnyElement]
-
     def __init__(self, /, **data: Any) -> None:
         """Check the data; a fault becomes one `SpecError`."""
         try:
@@ -52,7 +45,11 @@ class Model(Frozen):
 
     @model_validator(mode="after")
     def _checked(self) -> Model:
-        check(self)
+        """Check the tables against each other: names first, values last."""
+        check_names(self)
+        check_references(self)
+        check_laws(self)
+        check_values(self)
         return self
 
     @property

@@ -12,7 +12,7 @@ from pydantic_core import ErrorDetails
 
 from piezo_sym.errors import SpecError, listing, nearest, quote
 from piezo_sym.spec.elements import KINDS
-from piezo_sym.spec.fields import Domain, Header, Input, Parameter
+from piezo_sym.spec.fields import Domain, Header, Input, Parameter, Tables
 
 TABLES: Mapping[str, type[BaseModel]] = {
     "model": Header,
@@ -20,7 +20,6 @@ TABLES: Mapping[str, type[BaseModel]] = {
     "inputs": Input,
     "domain": Domain,
 }
-TOP = ("model", "parameters", "inputs", "domain", "initial", "elements")
 
 
 def first_problem(error: ValidationError) -> SpecError:
@@ -77,7 +76,7 @@ def _expected(detail: ErrorDetails) -> str:
 def _known(place: list[str]) -> Iterable[str]:
     """Return the keys that are known where `place` points."""
     if len(place) <= 1:
-        return TOP
+        return tuple(Tables.model_fields)
     if place[0] == "elements" and len(place) > 2:
         return _fields(KINDS.get(place[2]))
     return _fields(TABLES.get(place[0]))

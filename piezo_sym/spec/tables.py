@@ -1,12 +1,12 @@
 """What a spec says about itself: the questions that several stages ask of its tables.
 
-Input: the tables of a spec (`Tables`, which `Model` satisfies).  Output: its states, banks, bodies,
+Input: the tables of a spec.  Output: its states, banks, bodies,
 laws and conditions, in declaration order.
 """
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Protocol, final
+from typing import final
 
 from piezo_sym.expressions.calculus import increasing
 from piezo_sym.expressions.functions import RECORDS
@@ -15,35 +15,7 @@ from piezo_sym.expressions.text import SPEC, write_comparison
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, Expr, Node, Num, names, rename, walk
 from piezo_sym.spec.elements.base import Element, Letters, Refers, state_symbol
 from piezo_sym.spec.elements.thermal import Conduction, ThermalMass
-from piezo_sym.spec.fields import Domain, Header, Input, Parameter
-
-
-class Tables(Protocol):
-    """The tables of a spec, each right in itself."""
-
-    @property
-    def model(self) -> Header:
-        """The [model] table."""
-
-    @property
-    def parameters(self) -> Mapping[str, Parameter]:
-        """The [parameters] table."""
-
-    @property
-    def inputs(self) -> Mapping[str, Input]:
-        """The [inputs] table."""
-
-    @property
-    def domain(self) -> Domain:
-        """The [domain] table."""
-
-    @property
-    def initial(self) -> Mapping[str, str | float | tuple[str | float, ...]]:
-        """The [initial] table."""
-
-    @property
-    def elements(self) -> Mapping[str, Element]:
-        """The [elements.*] tables."""
+from piezo_sym.spec.fields import Tables
 
 
 @final
@@ -147,9 +119,7 @@ def _not_negative(
             for width in _widths(law.tree):
                 tree = _in_domain_words(width, element, name, hot, law.letters)
                 yield Condition(law.where, tree)
-    places: list[tuple[str, Node]] = [(condition.where, condition.tree) for condition in assumed]
-    places += [(f"initial.{s}", tree) for s, start in spec.initial.items() for tree in _laws(start)]
-    for where, node in places:
+    for where, node in [*((c.where, c.tree) for c in assumed), *_starts(spec)]:
         yield from (Condition(where, width) for width in _widths(node))
 
 
@@ -164,11 +134,8 @@ def _widths(law: Node) -> Iterator[Cmp]:
 
 def orders(spec: Tables) -> Iterator[Condition]:
     """Yield that the knots of each table increase, wherever it stands in the spec."""
-    places: list[tuple[str, Node]] = [
-        (law.where, law.tree) for name, e in spec.elements.items() for law in law_fields(name, e)
-    ]
-    places += [(condition.where, condition.tree) for condition in conditions(spec)]
-    places += [(f"initial.{s}", tree) for s, start in spec.initial.items() for tree in _laws(start)]
+    laws = ((law.where, law.tree) for n, e in spec.elements.items() for law in law_fields(n, e))
+    places = [*laws, *((c.where, c.tree) for c in conditions(spec)), *_starts(spec)]
     found = (Condition(where, order) for where, tree in places for order in increasing(tree))
     yield from dict.fromkeys(found)
 
@@ -204,8 +171,9 @@ def lane_parameters(spec: Tables) -> dict[str, str]:
             for word in set(names(law.tree)) - set(law.letters):
                 users.setdefault(word, set()).add(name)
     elements = states(spec)
-    for symbol, start in spec.initial.items():
-        for word in (word for tree in _laws(start) for word in names(tree)):
+    for where, tree in _starts(spec):
+        symbol = where.removeprefix("initial.")
+        for word in names(tree):
             users.setdefault(word, set()).add(elements.get(symbol, symbol))
     single = {
         word: next(iter(found))
@@ -215,21 +183,19 @@ def lane_parameters(spec: Tables) -> dict[str, str]:
     sizes = banks(spec)
     own = {word: single[word] for word in spec.parameters if single.get(word) in sizes}
     lanes = own | {symbol: name for symbol, name in elements.items() if name in sizes}
-    mixed = {word for group in _condition_names(spec) for word in group if _mixes(group, lanes)}
+    groups = [names(condition.tree) for condition in conditions(spec)]
+    mixed = {word for group in groups for word in group if _mixes(group, lanes)}
     return {word: bank for word, bank in own.items() if word not in mixed}
 
 
-def _laws(start: str | float | tuple[str | float, ...]) -> Iterator[Expr]:
-    """Yield the laws in an initial value."""
-    for part in start if isinstance(start, tuple) else (start,):
-        if isinstance(part, str):
-            yield parse_law(part, "initial")
-
-
-def _condition_names(spec: Tables) -> Iterator[tuple[str, ...]]:
-    for condition in conditions(spec):
-        yield names(condition.tree)
+def _starts(spec: Tables) -> Iterator[tuple[str, Expr]]:
+    """Yield the laws in initial values, each with its place."""
+    for symbol, start in spec.initial.items():
+        for part in start if isinstance(start, tuple) else (start,):
+            if isinstance(part, str):
+                yield f"initial.{symbol}", parse_law(part, f"initial.{symbol}")
 
 
 def _mixes(group: tuple[str, ...], own: Mapping[str, str]) -> bool:
+    """Return whether names are of lanes of more than one bank."""
     return len({own[word] for word in group if word in own}) > 1

@@ -46,7 +46,7 @@ def test_every_command_works_in_the_order_given(folder, capsys):
 
 
 def test_the_schema_line_is_that_of_a_new_spec():
-    from piezo_sym.spec.starter import starter
+    from piezo_sym.spec.load import starter
 
     first = starter("actuator").splitlines()[0]
     assert f"`{first}`" in README

@@ -5,8 +5,7 @@ import pytest
 from piezo_sym import derive
 from piezo_sym.errors import SpecError
 from piezo_sym.proofs import Verdict, decide
-from piezo_sym.spec.load import parse
-from piezo_sym.spec.starter import starter
+from piezo_sym.spec.load import parse, starter
 
 PARAMETERS = """
 w = { value = 0.1, unit = "m/s" }

@@ -15,10 +15,9 @@ from piezo_sym.errors import SpecError
 from piezo_sym.spec import model as model_module
 from piezo_sym.spec.elements import KINDS
 from piezo_sym.spec.elements.base import Letters, Refers
-from piezo_sym.spec.load import parse
+from piezo_sym.spec.load import STARTER, parse
 from piezo_sym.spec.schema import schema
 from piezo_sym.spec.source import MODELS, data
-from piezo_sym.spec.starter import STARTER
 
 ROOT = Path(__file__).parents[2]
 SCHEMA = schema()

@@ -10,11 +10,11 @@ from piezo_sym.expressions.tree import Node, names
 from piezo_sym.spec.elements import KINDS
 from piezo_sym.spec.elements.base import Element
 from piezo_sym.spec.elements.thermal import Conduction
+from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.names import NAME
 from piezo_sym.spec.tables import (
     Condition,
     LawField,
-    Tables,
     banks,
     bodies,
     conditions,

@@ -6,8 +6,10 @@ from fractions import Fraction
 from keyword import iskeyword
 
 from piezo_sym.errors import SpecError, quote
+from piezo_sym.spec.elements.base import state_symbol
+from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.names import check_name, check_symbol
-from piezo_sym.spec.tables import Tables, banks, bodies, states
+from piezo_sym.spec.tables import banks, bodies, states
 from piezo_sym.spec.units import parse_unit
 
 #: Variables that every result has; see `run`.
@@ -67,7 +69,7 @@ def _symbols(spec: Tables) -> Iterator[tuple[str, str]]:
     yield from ((name, f"inputs.{name}") for name in spec.inputs)
     for name, element in spec.elements.items():
         if element.letter:
-            yield getattr(element, "state", None) or f"{element.letter}_{name}", f"elements.{name}"
+            yield state_symbol(element, name), f"elements.{name}"
 
 
 def _check_case(elements: Iterable[str]) -> None:

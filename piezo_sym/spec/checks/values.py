@@ -16,9 +16,9 @@ from piezo_sym.expressions.enclosure import Interval, UndecidedError, holds_sure
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import Expr, Num, names
 from piezo_sym.spec.elements.base import state_symbol
+from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.tables import (
     Condition,
-    Tables,
     banks,
     condition_text,
     conditions,
