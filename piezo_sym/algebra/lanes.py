@@ -3,9 +3,9 @@
 Input: entries per pair of slots.  Output: `LaneMatrix` with the products that Definition 1 needs;
 sums over lanes are kept as `LaneSum`.
 
-A slot is one row or column, or, for a bank, one per lane.  The entry of rows (s, j) and (t, k) is
-``full[s, t]``, the same for every pair of lanes, plus ``own[s, t]`` where j = k and s and t are of
-one bank.  An entry may use lane symbols of its own row's or column's lane.
+A slot is one row or column, or, for a bank, one per lane.  The entry in row (s, j) and column
+(t, k) is ``full[s, t]``, the same for every pair of lanes, plus ``own[s, t]`` where j = k and both
+slots are of one bank.  An entry may use lane symbols of its own row's or column's lane.
 """
 
 from __future__ import annotations
@@ -97,14 +97,14 @@ class LaneMatrix:
         return LaneMatrix(self.rows, other.cols, self.lanes, _totals(full), _totals(own))
 
     def _check_lanes(self, entry: sp.Expr, row: str | None, col: str | None) -> None:
-        """Refuse an entry of two lanes of one bank that would depend on which lane is whose."""
+        """Refuse an entry for two lanes of one bank that uses a lane symbol: it means either."""
         if row and row == col and outside_sums(entry) & set(self.lanes.symbols(row)):
             what = f"an entry for two lanes of bank '{row}' depends on both"
             remedy = "write the banks out first: iphs.expand()"
             raise UsageError(what, "matrix product", remedy=remedy)
 
     def __iter__(self) -> Iterator[sp.Expr]:
-        """Iterate over a vector's entries, one a slot."""
+        """Iterate over a vector's entries, one per slot."""
         return (self.full.get((r, 0), sp.S.Zero) for r in range(len(self.rows)))
 
     @property
@@ -188,7 +188,7 @@ class LaneMatrix:
 
 
 def vector(rows: tuple[Slot, ...], lanes: Lanes, entries: Mapping[int, sp.Expr]) -> LaneMatrix:
-    """Return a column vector with one entry a slot; zeros drop out."""
+    """Return a column vector with one entry per slot; zeros drop out."""
     return LaneMatrix(rows, ONE_SLOT, lanes, {(r, 0): e for r, e in entries.items() if e != 0})
 
 

@@ -1,8 +1,8 @@
 """Exact elimination on sparse linear equations whose coefficients are rational in opaque symbols.
 
 Input: equations ``sum c_k unknown_k = sum d_k given_k``.  Output: every unknown as a combination of
-givens, or a `Singular` that carries what the equations say instead, so that the caller can name the
-elements at fault.
+givens, or a `SingularError` with the contradictions, from which the caller names the elements at
+fault.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class SingularError(Exception):
 
 @final
 class LongError(Exception):
-    """Equations that take longer to solve than anybody would wait."""
+    """Equations whose elimination needs more operations than the limit."""
 
 
 def accumulate(form: Form, label: Label, coefficient: Any) -> None:
@@ -66,7 +66,7 @@ def solve(
     """Return each unknown as a combination of givens.
 
     A pivot is a number as long as there is one; a symbol that had to be divided by is added to
-    `divisors`, for somebody has to prove that it is not zero.
+    `divisors`: a proof must show that it is not zero.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def solve(
     relations: list[Form] = []
     while waiting:
         difficulty, n = heappop(queue)
-        if waiting.get(n) != difficulty:  # the row is done, or has changed and stands here anew
+        if waiting.get(n) != difficulty:  # outdated: done, or queued again since
             continue
         del waiting[n]
         row = rows[n]

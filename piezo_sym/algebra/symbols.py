@@ -54,7 +54,7 @@ class SymbolTable:
     symbols : the symbol of every name; that of a bank's quantity is a `LaneSymbol`.
     banks : the bank of each lane symbol.
     counts : the size symbol of each bank.
-    whole : whether tables stay as they are written, to be read.
+    whole : whether a `table` stays one function instead of its pieces, for display.
     """
 
     symbols: Mapping[str, sp.Symbol]
@@ -180,7 +180,7 @@ def _choice(op: str, then: sp.Expr, other: sp.Expr, left: sp.Expr, right: sp.Exp
 def _relation(op: str, left: sp.Expr, right: sp.Expr) -> Any:
     """Return a comparison; one of sums as the sign of their difference.
 
-    SymPy orders the two sides for ever where a sum has terms of the other side.
+    SymPy takes very long to order the sides where both share terms of a sum.
     """
     plain = right.is_number or not (left.is_Add or right.is_Add)
     return RELATIONS[op](left, right) if plain else RELATIONS[op](left - right, 0)
@@ -189,7 +189,7 @@ def _relation(op: str, left: sp.Expr, right: sp.Expr) -> Any:
 def _by_branches(build: Callable[..., sp.Expr], args: tuple[sp.Expr, ...]) -> sp.Expr:
     """Return ``build(*args)``, chosen by the branches of what chooses in `args`.
 
-    A condition is then free of choices; SymPy solves inequalities to get one that is not.
+    Conditions then contain no choices; with one inside, SymPy would try to solve the inequality.
     """
     choice = next((found for arg in args for found in _choices(arg)), None)
     if choice is None:

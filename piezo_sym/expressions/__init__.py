@@ -1,7 +1,7 @@
 """Laws as data: the language, the tree, its calculus and its spelling.
 
     tree         the nodes, and the walks that every stage shares
-    parse        a stranger's text to a tree; `lexis` and `size` refuse what is too much
+    parse        text to a tree; `lexer` and `size` refuse what is too long or too deep
     calculus     sums, products, derivatives; `integrals` their antiderivatives
     dimensions   which parts must have equal units
     enclosure    where a value lies, for certain

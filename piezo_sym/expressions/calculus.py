@@ -1,9 +1,8 @@
-"""Sums, products and derivatives of laws, as trees that stay as short as a person would write.
+"""Sums, products and derivatives of laws, as short trees.
 
-Input: trees, and a name to differentiate by.  Output: a tree.  Used for the generated Jacobians,
-and for what the records of functions say in words.
-Constant factors are folded as exact rationals, so that the text does not depend on the version of
-any algebra system.
+Input: trees, and a name to differentiate by.  Output: a tree.  Used for the generated Jacobians and
+for the rules in the records of functions.  Constants are folded as exact rationals here, so that
+generated text does not depend on the version of SymPy.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -229,13 +228,13 @@ def _pieces(x: Expr, found: tuple[tuple[Expr, Expr], ...]) -> Expr:
         return If(_pieces(x, found[: n + 1]), Cmp("<", x, found[n][0]), _pieces(x, found[n:]))
     (a, y), (b, z) = (tuple(map(_plain, pair)) for pair in found)
     slope = div(add(z, neg(y)), add(b, neg(a)))
-    if (b, z) == (ZERO, ZERO):  # a law through the origin has its sign beside it, rounded too
+    if (b, z) == (ZERO, ZERO):  # exact at the origin: rounding cannot give the wrong sign there
         return mul(slope, x)
     return add(y, mul(slope, add(x, neg(a))))
 
 
 def increasing(node: Node) -> Iterator[Cmp]:
-    """Yield that the knots of each table in a tree increase, but for plain numbers that do."""
+    """Yield the conditions that knots of tables increase, except for numbers that do."""
     for part in walk(node):
         for (a, _), (b, _) in pairwise(knots(part)):
             match _plain(a), _plain(b):

@@ -1,9 +1,10 @@
-"""Where the value of a law lies, for certain: two rationals with the law's exact value between.
+"""Interval arithmetic: two rationals between which the exact value of a law lies.
 
 Input: a law's tree and an interval for each of its names.  Output: an interval that contains every
 value of the law, or, for a comparison, whether it holds: True, False, or None where the intervals
-do not tell.  Rational arithmetic is exact, but for numbers too long to be worth it, which are
-rounded outward to doubles; the C library's functions are taken to err by less than SLACK.
+do not tell.  Rational arithmetic is exact up to LONGEST bits, beyond which bounds are rounded
+outward to doubles; the C library's functions are taken to err by less than SLACK.  arb is not used:
+comparisons of rationals are exact here, and loading a spec does not import python-flint.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ SLACK = Fraction(1, 2**40)
 
 @final
 class UndecidedError(Exception):
-    """An interval in which a law has a value here and none there, or one beyond all doubles."""
+    """A law has values in a part of the interval only, or values beyond all doubles."""
 
 
 def holds_surely(condition: Cmp, values: Mapping[str, Interval]) -> bool | None:

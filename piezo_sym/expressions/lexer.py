@@ -1,6 +1,6 @@
 """The letters and tokens of laws, checked before anything parses them.
 
-Input: a stranger's text.  Output: nothing, or a `RefusedError` that says what is wrong with it.
+Input: text from a user.  Output: nothing, or a `RefusedError` that says what is wrong with it.
 """
 
 import re
@@ -23,7 +23,7 @@ TOKEN = re.compile(
 
 
 class RefusedError(Exception):
-    """Why a text is no law, on its way to where the place in the spec is known."""
+    """Why a text is no law; whoever knows its place in the spec makes a `SpecError` of it."""
 
     def __init__(self, what: str, expected: str = "", remedy: str = "") -> None:
         super().__init__(what)

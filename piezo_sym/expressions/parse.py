@@ -1,9 +1,9 @@
 """Text of a law to a checked tree.
 
-Input: a stranger's text.  Output: a tree of `expressions`, or a `SpecError` that says what, where,
-expected, remedy.  The text is checked for length, characters and nesting before anything parses it;
-then Python's own parser reads it, and only the nodes of the law language pass.  Numbers are taken
-from the source text as exact rationals.  Nothing is ever evaluated by Python.
+Input: text from a user, trusted in nothing.  Output: a tree, or a `SpecError` that says what is
+wrong, where, what is expected and what to do.  Length, characters and nesting are checked first;
+then Python's own parser reads the text, and only the nodes of the law language pass.  Numbers are
+taken from the source text as exact rationals.  Python evaluates none of it.
 """
 
 import ast
@@ -83,13 +83,13 @@ def parse_condition(text: str, where: str) -> Cmp:
 
 @cache
 def parse_rule(text: str) -> Expr:
-    """Return the tree of a record's own text; no stranger's."""
+    """Return the tree of a rule in a function's record, which needs no check of its size."""
     return _expression(_parsed(text), text)
 
 
 @cache
 def parse_clause(text: str) -> tuple[Cmp, ...]:
-    """Return the comparisons of a record's own clause, of which one holds."""
+    """Return the comparisons of a fact in a function's record, of which one holds."""
     parts = (part.strip() for part in text.split("|"))
     return tuple(_condition(part) for part in parts)
 

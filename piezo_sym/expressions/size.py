@@ -1,8 +1,7 @@
-"""How large a law becomes in later stages, known before any of them meets it.
+"""How large a law becomes in later stages, computed before they run.
 
-Input: the tree of a law.  Output: nothing, or a `RefusedError`.  Proofs multiply a law out, and a
-function with kinks is written as its branches: a short text can stand for more than any of them
-ends with.
+Input: the tree of a law.  Output: nothing, or a `RefusedError`.  Proofs multiply laws out and write
+functions with kinks branch by branch, so a short text can need unbounded time and memory there.
 """
 
 import math
@@ -40,7 +39,7 @@ MAX_TERMS = 512
 
 
 def check_size(tree: Expr) -> None:
-    """Refuse a law that would explode in a later stage.
+    """Refuse a law that would become too large in a later stage.
 
     Raises
     ------
@@ -60,7 +59,7 @@ def check_size(tree: Expr) -> None:
 
 
 def _check_nesting(tree: Expr) -> None:
-    """Refuse functions in functions beyond what anybody writes; SymPy takes ever longer."""
+    """Refuse deeply nested functions: SymPy's time grows without bound."""
     if _nested(tree) > MAX_NESTED:
         raise RefusedError("nests functions too deeply", f"at most {MAX_NESTED} in each other")
     constant = (part for part in walk(tree) if not isinstance(part, Cmp) and not names(part))
@@ -70,7 +69,7 @@ def _check_nesting(tree: Expr) -> None:
 
 
 def _check_numbers(tree: Expr) -> None:
-    """Refuse numbers that multiply to what no machine number holds, or to thousands of digits."""
+    """Refuse numbers whose product overflows a double, or has thousands of digits."""
     if _magnitude(tree) > MAX_MAGNITUDE or _digits(tree) > MAX_DIGITS:
         what = "has numbers that multiply to too large or too long ones"
         expected = f"up to 1e+-{MAX_MAGNITUDE} and {MAX_DIGITS} digits in all"

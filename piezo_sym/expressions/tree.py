@@ -20,7 +20,7 @@ Kind = TypeVar("Kind")
 
 
 class _Tree:
-    """What nodes have in common: trees are deep and keys of many tables, so a hash is kept."""
+    """Base of all nodes; it keeps the hash, since deep trees are keys of many dictionaries."""
 
     __slots__ = ("_hash",)
 

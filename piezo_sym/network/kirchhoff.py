@@ -77,7 +77,7 @@ def port_order(circuit: Circuit) -> tuple[Placed, ...]:
 
 @final
 class Laws:
-    """The junction laws of one circuit on their way to a solution."""
+    """The junction laws of one circuit, and their solution."""
 
     def __init__(self, circuit: Circuit, symbols: SymbolTable) -> None:
         self.circuit, self.symbols = circuit, symbols
@@ -249,7 +249,7 @@ class Laws:
 
 @cache
 def _letter(n: int) -> sp.Symbol:
-    """Return the stand-in of ratio n, the same object for ever: fields then compare at once."""
+    """Return the symbol that stands for ratio n; the same object each time compares faster."""
     return sp.Symbol(f"ratio_{n}")
 
 

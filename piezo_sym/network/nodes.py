@@ -1,4 +1,4 @@
-"""Nodes of a network: each in one domain, none left hanging, all tied to their reference.
+"""Checks of nodes: each in one domain, shared by two branches, connected to its reference.
 
 Input: a `Circuit`.  Output: nothing, or one `NetworkError` that names the node and its elements.
 """

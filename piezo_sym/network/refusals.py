@@ -1,4 +1,4 @@
-"""What junction laws without a solution mean, in the words of whoever drew the network.
+"""What junction laws without a solution mean, in the terms of the spec.
 
 Input: the laws, and what elimination found wrong with them.  Output: one `NetworkError` that names
 the elements at fault, where they meet, and what to put there.

@@ -25,7 +25,8 @@ TABLES: Mapping[str, type[BaseModel]] = {
 def first_problem(error: ValidationError) -> SpecError:
     """Return the first of pydantic's findings as a `SpecError`."""
     found = error.errors(include_url=False)
-    found.sort(key=lambda detail: detail["type"] != "extra_forbidden")  # a typo explains a gap
+    # a misspelled key explains a missing one, so it comes first
+    found.sort(key=lambda detail: detail["type"] != "extra_forbidden")
     problem = _problem(found[0])
     if len(found) > 1:
         problem.remedy = "; ".join(filter(None, (problem.remedy, f"{len(found) - 1} more to mend")))

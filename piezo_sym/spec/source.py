@@ -99,7 +99,7 @@ def data(text: str) -> dict[str, Any]:
 
 
 def _check_nesting(text: str) -> None:
-    """Refuse deep nesting before a recursive parser meets it; strings and comments aside."""
+    """Refuse deep nesting, strings and comments aside: the TOML parser is recursive."""
     bare = QUOTED.sub("", text)
     if any(part.count(".") > MAX_DOTS for part in BETWEEN_KEYS.split(bare)):
         raise SpecError("has a key of too many parts", "", f"at most {MAX_DOTS + 1}")

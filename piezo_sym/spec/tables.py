@@ -1,4 +1,4 @@
-"""What a spec says about itself: the questions that several stages ask of its tables.
+"""What several stages read from the tables of a spec.
 
 Input: the tables of a spec.  Output: its states, banks, bodies,
 laws and conditions, in declaration order.
@@ -113,7 +113,7 @@ def _needed(spec: Tables, hot: Mapping[str, str]) -> Iterator[Condition]:
 def _not_negative(
     spec: Tables, hot: Mapping[str, str], assumed: list[Condition]
 ) -> Iterator[Condition]:
-    """Yield that each half width is >= 0: in laws, in what the spec assumes, and in its start."""
+    """Yield that each half width is >= 0, in laws, assumptions and initial values."""
     for name, element in spec.elements.items():
         for law in law_fields(name, element):
             for width in _widths(law.tree):
@@ -124,7 +124,7 @@ def _not_negative(
 
 
 def _widths(law: Node) -> Iterator[Cmp]:
-    """Yield that what stands as a half width is >= 0, but for plain numbers that are."""
+    """Yield that each half width in a law is >= 0, except for numbers that are."""
     for node in walk(law):
         if isinstance(node, Call) and RECORDS[node.function].width:
             width = node.args[1]
@@ -151,7 +151,7 @@ def _in_domain_words(
 
 
 def greater(condition: Cmp) -> Cmp:
-    """Return a comparison with > or >=, turned round if it has < or <=."""
+    """Return a comparison with > or >=; the sides of one with < or <= are swapped."""
     turned = {"<": ">", "<=": ">="}
     if condition.op not in turned:
         return condition
@@ -164,7 +164,7 @@ def condition_text(condition: Cmp) -> str:
 
 
 def lane_parameters(spec: Tables) -> dict[str, str]:
-    """Return the bank of each parameter that may take a value per lane: no other element has it."""
+    """Return the bank of each parameter that only this bank uses: it may have a value per lane."""
     users: dict[str, set[str]] = {}
     for name, element in spec.elements.items():
         for law in law_fields(name, element):

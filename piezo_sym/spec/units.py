@@ -86,7 +86,7 @@ def parse_unit(text: str, where: str = "unit", value: float | None = None) -> Un
     """
     try:
         return _known(text)
-    except SpecError:  # say it again, of the place where it stands
+    except SpecError:  # raised again with the place in the spec
         return _read(text, where, value)
 
 

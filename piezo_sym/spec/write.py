@@ -79,4 +79,4 @@ def _canonical(value: Any) -> Any:
             return _rows(value, ordered=False)
         case list() | tuple():
             return [_canonical(item) for item in value]
-    return str(value)  # nan, a date: no spec has them, and none shall have their hash
+    return str(value)  # nan, a date: no valid spec has them, so their hash must differ from any
