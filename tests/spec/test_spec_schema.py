@@ -7,14 +7,14 @@ from pathlib import Path
 
 import pytest
 from jsonschema import Draft202012Validator
+from pydantic import ValidationError
 from spec_tools import edited_text
 from test_spec_toml import VARIANTS
 
-from piezo_sym import Model
 from piezo_sym.errors import SpecError
-from piezo_sym.spec import model as model_module
 from piezo_sym.spec.elements import KINDS
 from piezo_sym.spec.elements.base import Letters, Refers
+from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.load import STARTER, parse
 from piezo_sym.spec.schema import schema
 from piezo_sym.spec.source import MODELS, data
@@ -171,13 +171,11 @@ PLACES = [(base, path) for base in BASES for path in places(base) if path != ("m
 
 def fields_fit(spec):
     """Return whether each table is right in itself; what holds between tables is left out."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(model_module, "check", lambda _: None)
-        try:
-            Model(**spec)
-        except SpecError:
-            return False
-        return True
+    try:
+        Tables(**spec)
+    except ValidationError:
+        return False
+    return True
 
 
 @pytest.mark.parametrize("kind", KINDS)
