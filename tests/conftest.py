@@ -49,14 +49,14 @@ def _quick_compiler(request, shared_folder):
 def forget():
     """Forget all libraries that this process has loaded, and every warning given once."""
     from piezo_sym.run import method
-    from piezo_sym.run.engine import collocation, engine, library
+    from piezo_sym.run.engine import batch, engine, library
 
     for function in (
         method._tried,
         method._warn,
         library._warn,
         engine._engine,
-        collocation.collocation_library,
+        batch.collocation_library,
     ):
         function.cache_clear()
 

@@ -65,9 +65,8 @@ def read_plan(
         named, bound = checked_method(method), read_rtol(rtol)
         fixed = read_step(step, order, named, rtol)
         end = positive(duration, "sweep.duration")
-        if reduce == "last" and times is every is step is None:
-            times = 2  # the end alone: each sample in between would cost a step of its own
-        samples = sample_times(times, every, step, end)
+        only_end = reduce == "last" and times is every is step is None
+        samples = sample_times(2 if only_end else times, every, step, end)
         signals = read_inputs(module, inputs, end)
         axes = read_axes(module, over, end, read_sizes(module, parameters))
         refuse_twice(axes, {"parameters": parameters, "initial": initial, "inputs": inputs})
@@ -76,10 +75,8 @@ def read_plan(
         refuse_sizes(module, axes, *given, signals.segments[0].at(0.0))
         refuse_reduction(reduce, reduce_by)
         chosen = choose_method(module, named, step)
-        most = MOST_TOGETHER if chosen.method == METHOD else MOST_BY_SCIPY
-        together = max(
-            1, min(most, MOST_NUMBERS // (samples.size * row_numbers(module, base, axes)))
-        )
+        numbers = samples.size * row_numbers(module, base, axes)
+        together = most_together(numbers, chosen.method)
         return Plan(
             axes,
             signals.signals,
@@ -96,6 +93,12 @@ def read_plan(
             together if reduce is None else box_of_reduced(axes, together),
             chosen.note,
         )
+
+
+def most_together(numbers: int, method: str) -> int:
+    """Return how many runs of so many numbers each are held in memory at a time."""
+    most = MOST_TOGETHER if method == METHOD else MOST_BY_SCIPY
+    return max(1, min(most, MOST_NUMBERS // numbers))
 
 
 @contextmanager

@@ -6,7 +6,7 @@ The floors, two towers on one ground:
         < {proofs, codegen} < {translation, falsify} < verification < build < modules
         < {sweeps, api} < bench < cli
     checker < falsify; the checker imports nothing of the package
-    errors < run < {sweeps, analysis, build} < api < bench < cli
+    errors < {run, progress} < {sweeps, analysis, build} < modules < api < bench < cli
 """
 
 from graphlib import CycleError, TopologicalSorter
@@ -38,7 +38,15 @@ PROVING = (
     {"bench"},
     *TOP,
 )
-RUNNING = (GROUND, {"run"}, {"sweeps", "analysis", "build"}, {"api"}, {"bench"}, *TOP)
+RUNNING = (
+    GROUND,
+    {"run", "progress"},
+    {"sweeps", "analysis", "build"},
+    {"modules"},
+    {"api"},
+    {"bench"},
+    *TOP,
+)
 SYMBOLIC = {"sympy", "pydantic", "pint", "z3", "tomli_w", "typer", "rich"}
 
 

@@ -1,0 +1,154 @@
+"""The search for a state of rest: long steps of the implicit Euler method, then Newton's method.
+
+Input: a generated module, its parameters and constant inputs, the rows that are to come to rest.
+Output: the state x (n,) at which their rates are zero, or a `RunError` that names what moves on.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, final
+
+import numpy as np
+
+from piezo_sym.errors import RunError
+from piezo_sym.run.module import row_name
+
+if TYPE_CHECKING:
+    from piezo_sym.run.checks import FloatArray
+    from piezo_sym.run.module import GeneratedModule
+
+MOST_STEPS, MOST_MOVES = 400, 40
+LONGEST = 1e15  # of the first Euler step
+GROWTH = 4.0  # of the Euler step
+CONTRACTION = 0.25  # a second Newton move larger than this part of the first: the step is too long
+AT_REST = 1e-9  # a move of this part of the states' sizes
+ROUND_OFF = 1e-13
+UNDETERMINED = 1e-6  # of a direction of unit length: less is round-off
+SINGULAR = 1e-10  # of the greatest singular value, after rows and columns are made equal in size
+
+
+@final
+@dataclass(frozen=True)
+class Search:
+    """A module at constant inputs, whose states in the rows `free` are to come to rest."""
+
+    module: GeneratedModule
+    parameters: Any
+    u: FloatArray
+    free: np.ndarray[Any, np.dtype[np.intp]]
+
+    def rates(self, x: FloatArray) -> FloatArray:
+        """Return dx/dt of the free rows."""
+        with np.errstate(all="ignore"):
+            found: FloatArray = self.module.rhs(x, self.u, self.parameters)[self.free]
+        return found
+
+    def slope(self, x: FloatArray) -> FloatArray:
+        """Return the Jacobian of the free rows by the free states."""
+        with np.errstate(all="ignore"):
+            full = self.module.jacobian(x, self.u, self.parameters)
+        part: FloatArray = full[np.ix_(self.free, self.free)]
+        return part
+
+    def inside(self, x: FloatArray) -> bool:
+        """Return whether x is in the domain and has rates."""
+        with np.errstate(all="ignore"):
+            margins = self.module.margins(x, self.u, self.parameters)
+        strict = np.array([condition.strict for condition in self.module.DOMAIN], dtype=bool)
+        return bool(
+            np.all(np.where(strict, margins > 0, margins >= 0)) and np.isfinite(self.rates(x)).all()
+        )
+
+    def moved(self, x: FloatArray, move: FloatArray) -> FloatArray:
+        """Return x with its free rows moved."""
+        y = x.copy()
+        y[self.free] += move
+        return y
+
+    def settled(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return a state almost at rest, and the sizes of the free states on the way to it."""
+        if not self.inside(x):
+            what = "the initial state is outside the domain, or has no rates"
+            raise RunError(what, self._model, remedy="give another as 'initial', or other inputs")
+        eye = np.eye(self.free.size)
+        size: FloatArray = np.abs(x[self.free])
+        if not np.any(self.rates(x)):
+            return x, size
+        first = step = 1e-3 / (float(np.linalg.norm(self.slope(x), 2)) or 1.0)
+        move: FloatArray = np.zeros(self.free.size)
+        for _ in range(MOST_STEPS):
+            if step > LONGEST * first:
+                break
+            matrix = eye - step * self.slope(x)
+            move = np.asarray(np.linalg.solve(matrix, step * self.rates(x)), dtype=float)
+            ahead = self.moved(x, move)
+            reached = np.maximum(size, np.maximum(np.abs(ahead[self.free]), np.abs(move)))
+            if not self.inside(ahead) or not self._contracts(matrix, step, move, ahead, reached):
+                step /= GROWTH
+                continue
+            x, size = ahead, reached
+            if _part(move, size) <= AT_REST and step * np.linalg.norm(self.slope(x), 2) > 1:
+                return x, size
+            step *= GROWTH
+        raise self._none(move / step, size)
+
+    def _contracts(
+        self, matrix: FloatArray, step: float, move: FloatArray, ahead: FloatArray, size: FloatArray
+    ) -> bool:
+        """Return whether a second move of Newton's method is much smaller than the first."""
+        again = np.asarray(np.linalg.solve(matrix, step * self.rates(ahead) - move), dtype=float)
+        return _part(again, size) <= CONTRACTION * _part(move, size) + ROUND_OFF
+
+    def at_rest(self, x: FloatArray, size: FloatArray) -> FloatArray:
+        """Return the state of rest near x, by Newton's method, moved no more than it must be."""
+        for _ in range(MOST_MOVES):
+            left, values, right, row_size = self._factors(x, size)
+            kept = values > SINGULAR * values[0] if values.size else values > 0
+            parts = left.T[kept] @ (self.rates(x) / row_size) / values[kept]
+            move = -size * (right[kept].T @ parts)
+            if not self.inside(self.moved(x, move)):
+                break
+            x = self.moved(x, move)
+            if _part(move, size) <= ROUND_OFF:
+                break
+        left, values, right, row_size = self._factors(x, size)
+        if np.max(np.abs(self.rates(x) / row_size), initial=0.0) > AT_REST:
+            raise self._none(self.rates(x), size)
+        return x
+
+    def _factors(
+        self, x: FloatArray, size: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Return the singular value decomposition of the Jacobian over the rows' sizes (n,)."""
+        slope = self.slope(x) * size
+        row_size = np.max(np.abs(slope), axis=1, initial=0.0)
+        row_size[row_size == 0] = 1.0
+        left, values, right = np.linalg.svd(slope / row_size[:, None])
+        return left, values, right, row_size
+
+    def undetermined(self, x: FloatArray, size: FloatArray) -> list[int]:
+        """Return the rows along which other states are at rest, too."""
+        _, values, right, _ = self._factors(x, size)
+        open_ = right[values <= SINGULAR * values[0]] if values.size else right
+        return [int(row) for row in self.free[np.any(np.abs(open_) > UNDETERMINED, axis=0)]]
+
+    def _none(self, rates: FloatArray, size: FloatArray) -> RunError:
+        """Return the error that nothing comes to rest, with the state that moves most."""
+        row = int(self.free[int(np.argmax(np.abs(rates) / np.where(size > 0, size, np.inf)))])
+        name = row_name(self.module.STATES, self.parameters, row)
+        what = f"no state of rest is found: '{name}' goes on and on"
+        remedy = "give other inputs"
+        if self.module.BODIES:
+            body = self.module.BODIES[0].name
+            remedy += f", or hold a body that heats: temperatures={{'{body}': ...}}"
+        return RunError(what, self._model, remedy=remedy)
+
+    @property
+    def _model(self) -> str:
+        return f"model '{self.module.NAME}'"
+
+
+def _part(move: FloatArray, size: FloatArray) -> float:
+    """Return the largest of the moves, as a part of the states' sizes."""
+    return float(np.max(np.abs(move) / np.where(size > 0, size, 1.0), initial=0.0))
