@@ -18,6 +18,7 @@ from typing import final
 
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.codegen import numpy_module
+from piezo_sym.codegen.differences import sharp_program
 from piezo_sym.codegen.lower import program_of
 from piezo_sym.codegen.program import Function, Row, bank_of
 from piezo_sym.codegen.quantities import Quantities, quantities_of
@@ -142,7 +143,7 @@ def probe_of(iphs: IPHS) -> Probe:
         _function("sizes", sizes),
         _function("edges", [(edge.tree, bank_of(edge.tree, q.lanes)) for edge in edges]),
     )
-    program = program_of(q, functions)
+    program = sharp_program(program_of(q, functions))
     states = {name: port.state for name, port in q.bodies.items()}
     slots = tuple(tuple(row.slot for row in function.rows) for function in functions)
     keys = tuple((element, what) for element, what, _ in laws)
