@@ -14,7 +14,7 @@ exact    a point -> the row's exact value        exact
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from types import ModuleType
 
 from piezo_sym.falsify.hunt import POINTS, Attack, Hunt
@@ -28,7 +28,6 @@ def falsify(
     iphs: IPHS,
     module: ModuleType,
     claims: Iterable[tuple[str, str]],
-    hints: Iterable[Mapping[str, object]] = (),
     *,
     points: int = POINTS,
 ) -> tuple[Attack, ...]:
@@ -39,7 +38,6 @@ def falsify(
     iphs : the system.
     module : its NumPy module, from `module_from` and the text about to be written.
     claims : (id, element) of the rows; those that numbers say nothing of are left out.
-    hints : points by name, such as solvers' models; temperatures may stand for entropies.
     points : inside the domain; fewer only in tests of many small networks.
 
     Returns
@@ -52,4 +50,4 @@ def falsify(
     ContradictionError
         If a row is false at a point, confirmed by exact arithmetic in the spec's own laws.
     """
-    return Hunt(iphs, module, tuple(claims), tuple(hints), points).attacks()
+    return Hunt(iphs, module, tuple(claims), points).attacks()

@@ -82,15 +82,17 @@ class Claim:
     def _balance(self, view: View) -> Pair:
         """Return exergy lost, production with the environments', or what a coldest body gains."""
         alone = self.id == "invariant"
-        bodies = [
-            b.element for b, _ in self.circuit.of(Body) if not alone or b.element == self.element
-        ]
-        ((factor, _),) = view.get("temperature", bodies[0])[:1]
-        exchanges = [(p, x) for p, x in self.circuit.of(Exchange) if x.body in bodies]
+        states = {
+            placed.element: body.state
+            for placed, body in self.circuit.of(Body)
+            if not alone or placed.element == self.element
+        }
+        ((factor, _),) = view.get("temperature", next(iter(states)))[:1]
+        exchanges = [(p, x) for p, x in self.circuit.of(Exchange) if x.body in states]
         if self.id == "exergy":
             ((factor, _),) = view.get("input", exchanges[0][1].input)
         factor = 1 if self.id == "environment" else factor
-        rates = [pair for body in bodies for pair in view.get("rate", body)]
+        rates = [pair for state in states.values() for pair in view.get("rate", state)]
         produced = _sum(size for _, size in view.get("production", ""))
         total = factor * _sum(rate for rate, _ in rates)
         scale = abs(factor) * (_sum(size for _, size in rates) + produced)

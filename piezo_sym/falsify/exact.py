@@ -20,7 +20,6 @@ from piezo_sym.falsify.numbers import exact
 from piezo_sym.falsify.point import Point, evaluate
 from piezo_sym.falsify.space import Array, Space
 from piezo_sym.iphs import IPHS
-from piezo_sym.spec.elements.ports import Body
 
 BITS = 1024
 #: What has shrunk to this part of what it was is no jump.
@@ -43,14 +42,14 @@ Watched = tuple[Any, ...] | None
 class _View:
     """The checker's point as the rows look at it; what it cannot tell is an enclosure of all."""
 
-    def __init__(self, at: Point, inputs: dict[str, Fraction], states: dict[str, str]) -> None:
-        self.at, self.inputs, self.states = at, inputs, states
+    def __init__(self, at: Point, inputs: dict[str, Fraction]) -> None:
+        self.at, self.inputs = at, inputs
 
     def get(self, what: str, name: str) -> list[tuple[Any, Any]]:
         if what == "input":
             found: Any = self.inputs[name]
         elif what == "rate":
-            found = self.at.rates[self.states[name]]
+            found = self.at.rates[name]
         elif name:
             found = getattr(self.at, TABLES[what])[name]
         else:
@@ -65,7 +64,6 @@ class Exact:
     def __init__(self, iphs: IPHS) -> None:
         """Read the spec; the checker's `InputError` if it cannot."""
         self.spec = read_spec(iphs.model.to_toml())
-        self.states = {body.element: port.state for body, port in iphs.circuit.of(Body)}
         self.points: dict[tuple[Any, ...], Point] = {}
 
     def broken(self, claim: Claim, space: Space, point: Array) -> str | None:
@@ -85,7 +83,7 @@ class Exact:
         inputs = dict(
             zip((f.name for f in space.module.INPUTS), values[space.inputs_at :], strict=False)
         )
-        view = _View(at, inputs, self.states)
+        view = _View(at, inputs)
         with ctx.workprec(BITS):
             if claim.says(view):
                 for name, value, _, strict in claim.at(view):

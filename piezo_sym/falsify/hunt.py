@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from fractions import Fraction
 from itertools import chain
 from operator import itemgetter
 from types import ModuleType
@@ -19,13 +18,11 @@ from piezo_sym.checker import InputError
 from piezo_sym.errors import ContradictionError
 from piezo_sym.expressions.tree import names
 from piezo_sym.falsify.claims import TOLERANCE, Claim, claim_of
-from piezo_sym.falsify.columns import pairs, positive
 from piezo_sym.falsify.exact import Exact
-from piezo_sym.falsify.points import FEW, STAGES, Draw, Roots, warmed
+from piezo_sym.falsify.points import FEW, STAGES, Draw, Roots
 from piezo_sym.falsify.probe import probe_of
 from piezo_sym.falsify.space import EXTREME, LARGEST, LEAST, Array, Mask, Seen, Space
 from piezo_sym.iphs import IPHS
-from piezo_sym.spec.elements.ports import Body
 from piezo_sym.spec.tables import conditions
 
 POINTS = 100_000
@@ -128,7 +125,6 @@ class Hunt:
         iphs: IPHS,
         module: ModuleType,
         claims: tuple[tuple[str, str], ...],
-        hints: tuple[Mapping[str, object], ...],
         points: int,
     ) -> None:
         self.iphs, self.wanted = iphs, points
@@ -142,10 +138,7 @@ class Hunt:
         self.conditioned = {name for tree in trees for name in names(tree)}
         most = min(MOST_LANES, max(sizes.values(), default=1))
         known = [self.space.own(lane) for lane in range(0, most, LANES)]
-        known += [self._hinted(hint) for hint in hints]
-        self.draw = Draw(
-            self.space, np.concatenate(known, axis=1), positive(iphs, self.space), pairs(self.space)
-        )
+        self.draw = Draw(self.space, np.concatenate(known, axis=1))
 
     def attacks(self) -> tuple[Attack, ...]:
         """Return what became of each row.
@@ -171,11 +164,11 @@ class Hunt:
             if rest is None:
                 track.see(kind, seen)
                 continue
-            changed, rows = points.copy(), space.places["INPUTS"]
+            changed, columns = points.copy(), space.columns_of
             for name in rest[0]:
-                changed[space.inputs_at + rows[name].start] = 0
+                changed[columns[name]] = 0
             for name in rest[1]:
-                changed[space.inputs_at + rows[name].start] = seen.u[rows[rest[1][0]].start]
+                changed[columns[name]] = points[columns[rest[1][0]]]
             bound = self.conditioned.isdisjoint({*rest[0], *rest[1][1:]})
             track.see(kind, space.at(changed if bound else self.draw.inside(changed)))
 
@@ -240,10 +233,8 @@ class Hunt:
 
     def _jumps(self, claim: Claim, exact: Exact) -> None:
         """Look at a law on both sides of the kinks that states and inputs reach."""
-        sizes = [row.stop - row.start for row in self.space.edge_rows]
-        kinks = np.repeat([edge.kink for edge in self.space.probe.edges], sizes)
         for roots in self.draw.roots:
-            near = kinks[roots.edge] & (roots.column >= self.space.inputs_at)
+            near = self.space.kinks[roots.edge] & (roots.column >= self.space.inputs_at)
             near &= np.abs(roots.high) < EXTREME
             beyond = roots.high + (roots.high - roots.low)  # on an edge itself either branch may be
             ends = [self.space.at(roots.at(value)) for value in (roots.low, beyond)]
@@ -284,16 +275,3 @@ class Hunt:
         row = f"{claim.id} of {claim.element}" if claim.element else claim.id
         what = f"a proof and a number disagree: {row} is PROVED, but {value} at {at}"
         return ContradictionError(what, self.iphs.model.name, remedy="report it with the spec")
-
-    def _hinted(self, hint: Mapping[str, object]) -> Array:
-        """Return the spec's own point with the values of a hint; a temperature sets the entropy."""
-        point = self.space.own()
-        for n, (name, lane) in enumerate(self.space.columns):
-            given = hint.get(f"{name}_{lane + 1}", hint.get(name))
-            point[n] = point[n] if given is None else float(Fraction(str(given)))
-        for row, (_, port) in enumerate(self.iphs.circuit.of(Body)):
-            if port.temperature in hint and port.state not in hint:
-                column = self.space.states_at + self.space.places["STATES"][port.state].start
-                wanted = float(Fraction(str(hint[port.temperature])))
-                point[column] = warmed(self.space, point, column, row, wanted)
-        return point

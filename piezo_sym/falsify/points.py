@@ -1,6 +1,6 @@
 """Points to attack at: the same ones everywhere, for a fixed seed and no clock decide.
 
-Input: a `Space`, points known to matter (the spec's own, hints).  Output: points inside the domain
+Input: a `Space`, points known to matter (the spec's own).  Output: points inside the domain
 by the way they were found: `kinks` (bisected to neighbouring floats on an edge, and steps off it),
 `corners` (kinks of kinks), `drawn` (logarithmic ranges, near-equalities, own values scaled),
 `walked` (from points inside, where drawing finds few).
@@ -14,11 +14,8 @@ from functools import cached_property
 from typing import final
 
 import numpy as np
-import numpy.typing as npt
 
-from piezo_sym.falsify.space import LARGEST, LEAST, Array, Space
-
-Index = npt.NDArray[np.int64]
+from piezo_sym.falsify.space import LARGEST, LEAST, Array, Index, Space
 
 #: Fewer points inside than these are too few to say anything; then one walks.
 FEW = 1000
@@ -63,21 +60,17 @@ class Draw:
     ----------
     space : whose points.
     known : points inside the domain, to start from; the first is the spec's own.
-    positive : columns that the domain keeps from being negative.
-    pairs : columns of equal dimension.
     """
 
     space: Space
     known: Array
-    positive: npt.NDArray[np.bool_]
-    pairs: Index
     rng: np.random.Generator = field(default_factory=lambda: np.random.default_rng(16))
     roots: list[Roots] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         """Note scales of each column: its known values, those of equal dimension, 1."""
         scales = [[1.0, *row] for row in np.abs(self.known).tolist()]
-        for one, other in self.pairs.tolist():
+        for one, other in self.space.pairs.tolist():
             scales[one] += np.abs(self.known[other]).tolist()
         self.scales = [sorted({s for s in row if s > 0})[:24] for row in scales]
 
@@ -190,7 +183,7 @@ class Draw:
         with np.errstate(over="ignore"):
             values = _bounded(np.where(kind == 14, simple, sign * scale * factor))
         values[np.abs(values) < LEAST] = 0
-        return np.abs(values) if self.positive[column] else values
+        return np.abs(values) if self.space.positive[column] else values
 
     def drawn(self, count: int) -> Array:
         """Return points known, with some or all columns drawn anew from the table."""
@@ -206,12 +199,12 @@ class Draw:
 
     def _paired(self, points: Array) -> Array:
         """Set some columns to others of equal dimension, or near them."""
-        count = points.shape[1]
-        if len(self.pairs):
-            place = np.flatnonzero(self.rng.random(count) < 0.2)
-            one, other = self.pairs[self.rng.integers(0, len(self.pairs), len(place))].T
-            off = OFF[self.rng.integers(0, len(OFF), len(place))]
-            sign = np.where((self.rng.random(len(place)) < 0.2) & ~self.positive[one], -1, 1)
+        pairs, rng = self.space.pairs, self.rng
+        if len(pairs):
+            place = np.flatnonzero(rng.random(points.shape[1]) < 0.2)
+            one, other = pairs[rng.integers(0, len(pairs), len(place))].T
+            off = OFF[rng.integers(0, len(OFF), len(place))]
+            sign = np.where((rng.random(len(place)) < 0.2) & ~self.space.positive[one], -1, 1)
             points[one, place] = sign * points[other, place] * (1 + off)
         return points
 
@@ -241,18 +234,6 @@ class Draw:
             new = self.inside(self.moved(start, max(1, min(16, wanted // 512)), 2.0 + n % 12))
             points = np.concatenate([points, new], axis=1)
         return points[:, first:]
-
-
-def warmed(space: Space, point: Array, column: int, row: int, wanted: float) -> Array:
-    """Return the entropy in `column` at which the temperature in `row` reaches a value."""
-    low, high = _key(np.array([-LARGEST])), _key(np.array([LARGEST]))
-    for _ in range(64):
-        middle = _middle(low, high)
-        points = point.copy()
-        points[column] = _float(middle)
-        above = space.at(points).temperatures[row] >= wanted
-        low, high = np.where(above, low, middle), np.where(above, middle, high)
-    return _float(high)
 
 
 def _normal(points: Array) -> Array:

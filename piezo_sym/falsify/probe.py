@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import importlib.abc
 import importlib.util
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import reduce
 from types import ModuleType
@@ -84,19 +84,17 @@ class Probe:
 
     Attributes
     ----------
+    iphs : the system.
     module : with functions `laws`, `sizes` and `edges`.
-    laws : (element, what) of each row; what is law, effort, output, slope or hole (where > 0, the
-        element's laws have no value).
-    edges : the edges, row by row.
-    slots : of the rows of `laws` and of `edges`.
-    states : the state of each body, by element.
+    laws : the bank of each row of `laws`, by element and quantity: law, effort, output, slope or
+        hole (positive where the element's laws have no value).
+    edges : for each row of `edges` whether a law changes branches there, and its bank.
     """
 
+    iphs: IPHS
     module: ModuleType
-    laws: tuple[tuple[str, str], ...]
-    edges: tuple[Edge, ...]
-    slots: tuple[tuple[Slot, ...], tuple[Slot, ...]]
-    states: dict[str, str]
+    laws: Mapping[tuple[str, str], str | None]
+    edges: tuple[tuple[bool, str | None], ...]
 
 
 @final
@@ -126,28 +124,28 @@ def probe_of(iphs: IPHS) -> Probe:
     """Return the probe of a system."""
     q = quantities_of(iphs)
     known = {quantity.name: quantity.value for quantity in q.defined}
-    laws = (*_laws(q), *_holes(iphs, q, known))
+    laws = {(name, what): tree for name, what, tree in (*_laws(q), *_holes(iphs, q, known))}
     named = [item.value for item in q.defined if not isinstance(item.value, LaneSum)]
     trees = named + [limit.margin for limit in q.limits]
-    trees += [tree for _, what, tree in laws if what != "hole"]
+    trees += [tree for (_, what), tree in laws.items() if what != "hole"]
     found = [edge for tree in trees for edge in _edges(tree)]
     found += [Edge(limit.margin) for limit in q.limits] + [Edge(tree) for tree in _equal(iphs, q)]
     edges = tuple(dict.fromkeys(e for e in found if not isinstance(e.tree, Num)))[:MOST_EDGES]
-    values = [(tree, bank_of(tree, q.lanes)) for _, _, tree in laws]
+    values = [(tree, bank_of(tree, q.lanes)) for tree in laws.values()]
+    turns = [(edge.tree, bank_of(edge.tree, q.lanes)) for edge in edges]
     sizes = [
         (ONE if what in {"effort", "hole"} else _size(_own(tree, known)), bank)
-        for (_, what, _), (tree, bank) in zip(laws, values, strict=True)
+        for (_, what), (tree, bank) in zip(laws, values, strict=True)
     ]
     functions = (
         _function("laws", values),
         _function("sizes", sizes),
-        _function("edges", [(edge.tree, bank_of(edge.tree, q.lanes)) for edge in edges]),
+        _function("edges", turns),
     )
-    program = sharp_program(program_of(q, functions))
-    states = {name: port.state for name, port in q.bodies.items()}
-    slots = tuple(tuple(row.slot for row in function.rows) for function in functions)
-    keys = tuple((element, what) for element, what, _ in laws)
-    return Probe(module_from(numpy_module(program)), keys, edges, (slots[0], slots[2]), states)
+    module = module_from(numpy_module(sharp_program(program_of(q, functions))))
+    banks = dict(zip(laws, (bank for _, bank in values), strict=True))
+    kinks = tuple((edge.kink, bank) for edge, (_, bank) in zip(edges, turns, strict=True))
+    return Probe(iphs, module, banks, kinks)
 
 
 def _function(name: str, rows: list[tuple[Expr, str | None]]) -> Function:

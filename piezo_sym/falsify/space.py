@@ -9,17 +9,22 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import accumulate, pairwise
+from itertools import accumulate, pairwise, starmap
 from types import ModuleType
-from typing import Any, final
+from typing import Any, TypeVar, final
 
 import numpy as np
 import numpy.typing as npt
 
+from piezo_sym.expressions.tree import Cmp, Num, Sym
 from piezo_sym.falsify.probe import Probe
+from piezo_sym.spec.tables import conditions, greater
+from piezo_sym.spec.units import parse_unit
 
 Array = npt.NDArray[np.float64]
+Index = npt.NDArray[np.int64]
 Mask = npt.NDArray[np.bool_]
+Key = TypeVar("Key")
 
 #: No value of a point is smaller or larger, but for zero; beyond EXTREME products overflow.
 LEAST, LARGEST, EXTREME = 1e-300, 1e300, 1e30
@@ -47,6 +52,11 @@ class Space:
         return tuple((f.name, lane) for f in self.fields for lane in range(self.lanes(f.bank)))
 
     @cached_property
+    def columns_of(self) -> Mapping[str, slice]:
+        """The columns of each parameter, input and state."""
+        return self._slices((field.name, field.bank) for field in self.fields)
+
+    @cached_property
     def inputs_at(self) -> int:
         """The first column of the inputs."""
         return sum(self.lanes(field.bank) for field in self.module.PARAMETERS)
@@ -55,6 +65,24 @@ class Space:
     def states_at(self) -> int:
         """The first column of the states."""
         return self.inputs_at + len(self.module.INPUTS)
+
+    @cached_property
+    def positive(self) -> Mask:
+        """Which columns a condition of the domain keeps from being negative."""
+        found = set()
+        for condition in conditions(self.probe.iphs.model):
+            match greater(condition.tree):
+                case Cmp(_, Sym(name), Num(value)) if value >= 0:
+                    found.add(name)
+        return np.array([name in found for name, _ in self.columns])
+
+    @cached_property
+    def pairs(self) -> Index:
+        """Pairs of columns of equal dimension, shape (pairs, 2)."""
+        units = {field.name: parse_unit(field.unit).dimension for field in self.fields}
+        columns = [(n, units[name]) for n, (name, _) in enumerate(self.columns)]
+        pairs = [(a, b) for a, one in columns for b, other in columns if a != b and one == other]
+        return np.array(pairs, dtype=np.int64).reshape(-1, 2)
 
     @cached_property
     def block(self) -> int:
@@ -66,29 +94,29 @@ class Space:
         return self.counts[bank] if bank else 1
 
     @cached_property
-    def places(self) -> Mapping[str, Mapping[str, slice]]:
+    def rows(self) -> Mapping[str, Mapping[str, slice]]:
         """The rows of each record of a module's tables in a result with a row per lane."""
-        tables = ("PARAMETERS", "INPUTS", "STATES", "PROCESSES", "BODIES")
-        records = {table: getattr(self.module, table) for table in tables}
         return {
-            table: dict(zip([f.name for f in found], self.slices(found), strict=True))
-            for table, found in records.items()
+            table: self._slices((r.name, r.bank) for r in getattr(self.module, table))
+            for table in ("STATES", "PROCESSES", "BODIES")
         }
 
     @cached_property
     def law_rows(self) -> Mapping[tuple[str, str], slice]:
-        """The rows of the probe's laws, by element and what they are."""
-        return dict(zip(self.probe.laws, self.slices(self.probe.slots[0]), strict=True))
+        """The rows of the probe's laws, by element and quantity."""
+        return self._slices(self.probe.laws.items())
 
     @cached_property
-    def edge_rows(self) -> tuple[slice, ...]:
-        """The rows of the probe's edges."""
-        return self.slices(self.probe.slots[1])
+    def kinks(self) -> Mask:
+        """Which rows of the probe's edges are kinks."""
+        edges = self.probe.edges
+        return np.array([kink for kink, bank in edges for _ in range(self.lanes(bank))], dtype=bool)
 
-    def slices(self, parts: Iterable[Any]) -> tuple[slice, ...]:
-        """Return the rows of records or slots."""
-        ends = [0, *accumulate(self.lanes(part.bank) for part in parts)]
-        return tuple(slice(a, b) for a, b in pairwise(ends))
+    def _slices(self, banks: Iterable[tuple[Key, str | None]]) -> Mapping[Key, slice]:
+        """Return the rows of each key, given its bank."""
+        keys = list(banks)
+        ends = [0, *accumulate(self.lanes(bank) for _, bank in keys)]
+        return dict(zip((key for key, _ in keys), starmap(slice, pairwise(ends)), strict=True))
 
     @cached_property
     def _given(self) -> Mapping[str, Array]:
@@ -115,8 +143,8 @@ class Space:
         """Return points as states, inputs and parameters of the module."""
         values: dict[str, Any] = {f"{bank}_count": count for bank, count in self.counts.items()}
         for field in self.module.PARAMETERS:
-            rows = self.places["PARAMETERS"][field.name]
-            values[field.name] = points[rows] if field.bank else points[rows.start]
+            columns = self.columns_of[field.name]
+            values[field.name] = points[columns] if field.bank else points[columns.start]
         p = self.module.Parameters(**values)
         return points[self.states_at :], points[self.inputs_at : self.states_at], p
 
@@ -151,19 +179,18 @@ class Seen:
         """Return quantities of an element as rows with their sizes."""
         space = self.space
         if what in ("heat", "production"):
-            row = space.places["PROCESSES"][name] if name else slice(None)
+            row = space.rows["PROCESSES"][name] if name else slice(None)
             if what == "production":
                 return [(value, np.abs(value)) for value in self.entropy_production[row]]
             law, effort = space.law_rows[name, "output"], space.law_rows[name, "effort"]
             return [*zip(self.heat[row], self.sizes[law] * np.abs(self.laws[effort]), strict=True)]
         if what == "input":
-            return [(value, 0) for value in self.u[space.places["INPUTS"][name]]]
-        law = space.law_rows[name, "slope" if what == "slope" else "law"]
+            return [(value, 0) for value in self.points[space.columns_of[name]]]
         if what == "rate":
-            rows = self.rhs[space.places["STATES"][space.probe.states[name]]]
-            return [(value, np.abs(value)) for value in rows]
+            return [(value, np.abs(value)) for value in self.rhs[space.rows["STATES"][name]]]
+        law = space.law_rows[name, "slope" if what == "slope" else "law"]
         values = (
-            self.temperatures[space.places["BODIES"][name]]
+            self.temperatures[space.rows["BODIES"][name]]
             if what == "temperature"
             else self.laws[law]
         )

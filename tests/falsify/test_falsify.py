@@ -267,24 +267,6 @@ def test_a_domain_of_which_no_point_is_found_says_so(stack):
     assert [attack.points for attack in falsify(stack, module, [("sigma", "")])] == [0]
 
 
-def test_a_hint_leads_where_nothing_else_does(tmp_path):
-    """The law is active in a speck that no name, edge or range of the spec points to."""
-    law = "a*v*(1 + 1e6*tanh(1e4*(abs(v/v_1 - 0.7310) - 1e-9)) - 1e6*tanh(1e4*abs(v/v_1 - 0.7310)))"
-    iphs = built(tmp_path, damper(law), *of_names(law))
-    with pytest.raises(ContradictionError):
-        attacked(iphs, PASSIVE, hints=({"p": "731/500", "T": 400, "v_1": 1},), points=2000)
-
-
-def test_temperatures_of_hints_become_entropies(stack):
-    from piezo_sym.falsify.hunt import Hunt
-
-    hunt = Hunt(stack, module_of(stack), (), ({"T": "8000/21", "phi_2": 0.25, "d": 7},), 100)
-    point = hunt.draw.known[:, 1:2]
-    words = hunt.space.words(point[:, 0])
-    assert hunt.space.at(point).temperatures[0, 0] == pytest.approx(8000 / 21, rel=1e-13)
-    assert (words["phi[1]"], words["phi[2]"], words["d"]) == ("0.0", "0.25", "7.0")
-
-
 def test_the_module_is_attacked_not_the_spec(stack):
     """A module that differs from its spec is no contradiction of the proof, but it is told."""
     module = module_of(stack)
