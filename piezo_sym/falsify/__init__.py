@@ -9,7 +9,8 @@ space    module, probe -> columns of points      space
 points   Space -> points inside the domain       points
 claims   row -> a number negative where false    claims
 hunt     points -> the worst ones of each row    hunt
-exact    a point -> the row's exact value        exact
+exact    a point -> the row's exact value        exact, point, numbers
+jumps    kinks -> a law's jump, exactly          jumps
 """
 
 from __future__ import annotations

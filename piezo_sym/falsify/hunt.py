@@ -19,9 +19,10 @@ from piezo_sym.errors import ContradictionError
 from piezo_sym.expressions.tree import names
 from piezo_sym.falsify.claims import TOLERANCE, Claim, claim_of
 from piezo_sym.falsify.exact import Exact
-from piezo_sym.falsify.points import FEW, STAGES, Draw, Roots
+from piezo_sym.falsify.jumps import jump
+from piezo_sym.falsify.points import FEW, STAGES, Draw
 from piezo_sym.falsify.probe import probe_of
-from piezo_sym.falsify.space import EXTREME, LARGEST, LEAST, Array, Mask, Seen, Space
+from piezo_sym.falsify.space import Array, Mask, Seen, Space
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.tables import conditions
 
@@ -29,10 +30,6 @@ POINTS = 100_000
 #: Lanes that points have; of those of the spec, so many are looked at.
 LANES, MOST_LANES = 2, 512
 KEPT, CHECKED, CHILDREN, DESCENTS = 8, 4, 24, 8
-#: Of a law's size; between neighbouring floats it may change by less than this.
-JUMP = 1e-6
-#: Off a jump by so many times the distance of two floats, a law has not changed by more.
-OFF_A_JUMP = (10, 100)
 #: Stands for a zero where a row says > 0: not negative, but to be looked at exactly.
 ZERO = -1e-300
 
@@ -226,47 +223,12 @@ class Hunt:
         if track.lost and rounding is None and exact.has_value(claim, *track.lost):
             rounding = track.lost
         if claim.id == "continuous":
-            self._jumps(claim, exact)
+            found = jump(claim, self.space, self.draw.roots, exact)
+            if found:
+                raise self._contradiction(claim, found[0], self.space.words(found[1]))
         worst = rounding[0].words(rounding[1]) if rounding else None
         points = int(str(track.points)[0]) * 10 ** (len(str(track.points)) - 1)
         return Attack(claim.id, claim.element, points, worst, rounding is not None)
-
-    def _jumps(self, claim: Claim, exact: Exact) -> None:
-        """Look at a law on both sides of the kinks that states and inputs reach."""
-        for roots in self.draw.roots:
-            near = self.space.kinks[roots.edge] & (roots.column >= self.space.inputs_at)
-            near &= np.abs(roots.high) < EXTREME
-            beyond = roots.high + (roots.high - roots.low)  # on an edge itself either branch may be
-            ends = [self.space.at(roots.at(value)) for value in (roots.low, beyond)]
-            near &= ends[0].inside & ends[1].inside & ~self.space.at(roots.base).extreme
-            for what in ("law", "output"):
-                row = self.space.law_rows.get((claim.element, what), slice(0))
-                leap, size = self._leap(row, roots, ends)
-                big = np.where(near, leap / size, 0)
-                for n in np.argsort(-big, kind="stable")[:2]:
-                    pair = (ends[0].points[:, n], ends[1].points[:, n])
-                    if big[n] <= JUMP:
-                        break
-                    value = exact.jump(
-                        claim, self.space, *pair, leap[n] if leap[n] < LARGEST else 0
-                    )
-                    if value:
-                        raise self._contradiction(claim, value, self.space.words(pair[1]))
-
-    def _leap(self, row: slice, roots: Roots, ends: list[Seen]) -> tuple[Array, Array]:
-        """Return by how much a law changes, 0 if farther off it changes more, and its size."""
-        low, high = (end.laws[row] for end in ends)
-        with np.errstate(all="ignore"):
-            leap = np.nan_to_num(np.abs(high - low), nan=0, posinf=LARGEST)
-            size = np.minimum(ends[0].sizes[row] + ends[1].sizes[row], LARGEST)
-            for off in OFF_A_JUMP:
-                step = off * (roots.high - roots.low)
-                for value, other in ((roots.low - step, high), (roots.high + step, low)):
-                    there = self.space.at(roots.at(value)).laws[row]
-                    far = np.nan_to_num(np.abs(there - other), nan=LARGEST, posinf=LARGEST)
-                    leap = np.where(far > 1.25 * leap, 0, leap)
-        most = leap.max(axis=0, initial=0)
-        return most, np.where(leap == most, size, 0).max(axis=0, initial=LEAST)
 
     def _contradiction(
         self, claim: Claim, value: str, words: Mapping[str, str]

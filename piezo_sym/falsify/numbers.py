@@ -1,12 +1,12 @@
-"""The value of a law at a point, exactly: rationals where all is rational, else enclosures.
+"""The value of a law at a point, exactly: a rational where all numbers are, else an enclosure.
 
-Input: a tree and numbers for its symbols (rationals of FLINT, enclosures, or what computes like
-them).  Output: its value at the present precision; what that does not decide cannot be told.
+Input: a tree of the checker, and what gives the values of its symbols, rationals or balls of FLINT.
+Output: its value at the present precision, or an error that says what prevents it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
@@ -15,11 +15,13 @@ from flint import arb, fmpq, fmpz
 from piezo_sym.checker.laws import KINKS, Node, increasing, made, unkinked
 
 MAX_BITS = 40_000
-HUGE = {"sin": 2**4096, "cos": 2**4096}
+#: Arguments beyond these are not computed: a function's value would need too many digits.
+LARGEST, LARGEST_ANGLE = 2**34, 2**4096
+ValueOf = Callable[[Any], Any]
 
 
 class CannotTell(ArithmeticError):
-    """The precision does not decide a comparison, or a number is beyond what is computed."""
+    """The precision does not decide a comparison, or a number is too large to be computed."""
 
 
 class NoValue(ArithmeticError):
@@ -27,7 +29,7 @@ class NoValue(ArithmeticError):
 
 
 def exact(number: Any) -> Any:
-    """Return a number as an exact rational of FLINT; what is none stays."""
+    """Return a Python number as an exact rational of FLINT; FLINT's numbers stay."""
     if not isinstance(number, int | float | Fraction):
         return number
     ratio = Fraction(number)
@@ -42,25 +44,24 @@ def sign(number: Any) -> int:
     return told
 
 
-def holds(condition: Node, words: Mapping[Any, Any]) -> bool:
+def holds(condition: Node, value_of: ValueOf) -> bool:
     """Return whether a comparison holds."""
-    told = sign(compute(made("x - z", x=condition.args[0], z=condition.args[1]), words))
+    told = sign(compute(made("x - z", x=condition.args[0], z=condition.args[1]), value_of))
     return {"<": told < 0, "<=": told <= 0, ">": told > 0, ">=": told >= 0}[condition.value]
 
 
-def compute(node: Node, words: Mapping[Any, Any]) -> Any:
+def compute(node: Node, value_of: ValueOf) -> Any:
     """Return the value of a law; raises `NoValue` or `CannotTell`."""
     if node.op in ("num", "sym"):
-        return exact(node.value) if node.op == "num" else words[node.value]
+        return exact(node.value) if node.op == "num" else value_of(node.value)
     if node.op == "if":
-        return compute(node.args[1 if holds(node.args[0], words) else 2], words)
-    if not all(holds(order, words) for order in increasing(node)):
+        return compute(node.args[1 if holds(node.args[0], value_of) else 2], value_of)
+    if not all(holds(order, value_of) for order in increasing(node)):
         raise NoValue
     if node.op in KINKS and node.op not in ("min", "max"):
-        return compute(
-            unkinked(node) if node.op != "abs" else made("max(x, -x)", x=node.args[0]), words
-        )
-    args = [compute(arg, words) for arg in node.args]
+        plain = unkinked(node) if node.op != "abs" else made("max(x, -x)", x=node.args[0])
+        return compute(plain, value_of)
+    args = [compute(arg, value_of) for arg in node.args]
     found = sum(args[1:], args[0]) if node.op == "+" else _operation(node, args[0], args[-1])
     if isinstance(found, fmpq):
         long = found.p.bit_length() + found.q.bit_length() > MAX_BITS
@@ -68,6 +69,14 @@ def compute(node: Node, words: Mapping[Any, Any]) -> Any:
     if not found.is_finite():
         raise CannotTell
     return found
+
+
+def text(number: Any) -> str:
+    """Return an exact value as text: a short fraction, or 17 digits."""
+    short = str(number)
+    if isinstance(number, arb) or len(short) > 40:
+        return str(arb(exact(number)).mid().str(17, radius=False))
+    return short
 
 
 def _operation(node: Node, x: Any, z: Any) -> Any:
@@ -91,7 +100,7 @@ def _operation(node: Node, x: Any, z: Any) -> Any:
             return exact(0) if x == 1 else _real(x).log()
     if x == 0:
         return exact(1 if node.op in ("exp", "cos", "cosh") else 0)
-    if not abs(x) < HUGE.get(node.op, 2**34):
+    if not abs(x) < (LARGEST_ANGLE if node.op in ("sin", "cos") else LARGEST):
         raise CannotTell
     return getattr(_real(x), node.op)()
 

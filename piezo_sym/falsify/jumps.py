@@ -1,0 +1,152 @@
+"""Jumps of laws: values on both sides of a kink that do not meet, however near the sides are.
+
+Input: a row `continuous`, and brackets of kinks between neighbouring floats.  Output: the jump, as
+text, shown by exact arithmetic on two sides that are brought together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from flint import ctx, fmpq
+
+from piezo_sym.falsify.claims import Claim
+from piezo_sym.falsify.exact import BITS, Exact
+from piezo_sym.falsify.numbers import text
+from piezo_sym.falsify.point import Point
+from piezo_sym.falsify.points import Roots
+from piezo_sym.falsify.space import EXTREME, LARGEST, LEAST, Array, Seen, Space
+
+#: Between neighbouring floats a law may change by this part of its size.
+JUMP = 1e-6
+#: At these multiples of the distance of two floats from a jump, a law has not changed by more.
+OFF_A_JUMP = (10, 100)
+#: A difference that has shrunk to this part of the largest is no jump.
+FADED = Fraction(1, 10**6)
+#: Two sides of a jump are brought together to these relative distances, and differ as before.
+NEAR, NEARER, SAME = Fraction(1, 10**40), Fraction(1, 10**80), Fraction(9, 10)
+#: The kink may lie beside the one found in floating point, by these parts of its place.
+WIDER = (Fraction(0), Fraction(1, 10**15), Fraction(1, 10**12))
+Values = list[Any] | None
+
+
+def jump(
+    claim: Claim, space: Space, found: Iterable[Roots], exact: Exact
+) -> tuple[str, Array] | None:
+    """Return a jump of a law at one of the kinks found, and a point beside it; or None."""
+    for roots in found:
+        for low, high, leap in _suspects(claim, space, roots):
+            value = _confirmed(claim, space, low, high, leap, exact)
+            if value:
+                return value, high
+    return None
+
+
+def _suspects(claim: Claim, space: Space, roots: Roots) -> Iterator[tuple[Array, Array, float]]:
+    """Yield pairs of points beside kinks in states and inputs, and by how much the law changes."""
+    near = space.kinks[roots.edge] & (roots.column >= space.inputs_at)
+    near &= np.abs(roots.high) < EXTREME
+    beyond = roots.high + (roots.high - roots.low)  # on an edge itself either branch may be
+    ends = [space.at(roots.at(value)) for value in (roots.low, beyond)]
+    near &= ends[0].inside & ends[1].inside & ~space.at(roots.base).extreme
+    for what in ("law", "output"):
+        row = space.law_rows.get((claim.element, what), slice(0))
+        leap, size = _leap(space, row, roots, ends)
+        big = np.where(near, leap / size, 0)
+        for n in np.argsort(-big, kind="stable")[:2]:
+            if big[n] > JUMP:
+                change = float(leap[n]) if leap[n] < LARGEST else 0.0
+                yield ends[0].points[:, n], ends[1].points[:, n], change
+
+
+def _leap(space: Space, row: slice, roots: Roots, ends: list[Seen]) -> tuple[Array, Array]:
+    """Return by how much a law changes, 0 if farther off it changes more, and its size."""
+    low, high = (end.laws[row] for end in ends)
+    with np.errstate(all="ignore"):
+        leap = np.nan_to_num(np.abs(high - low), nan=0, posinf=LARGEST)
+        size = np.minimum(ends[0].sizes[row] + ends[1].sizes[row], LARGEST)
+        for off in OFF_A_JUMP:
+            step = off * (roots.high - roots.low)
+            for value, other in ((roots.low - step, high), (roots.high + step, low)):
+                there = space.at(roots.at(value)).laws[row]
+                far = np.nan_to_num(np.abs(there - other), nan=LARGEST, posinf=LARGEST)
+                leap = np.where(far > 1.25 * leap, 0, leap)
+    most = leap.max(axis=0, initial=0)
+    return most, np.where(leap == most, size, 0).max(axis=0, initial=LEAST)
+
+
+def _confirmed(
+    claim: Claim, space: Space, low: Array, high: Array, leap: float, exact: Exact
+) -> str | None:
+    """Return the jump of a law between two points, or None if it fades as they meet."""
+    point = [Fraction(v) for v in low.tolist()]
+    column = int(np.flatnonzero(low != high)[0])
+    near, far = point[column], Fraction(float(high[column]))
+
+    def values_at(value: Fraction) -> Values:
+        at = exact.at(space, [*point[:column], value, *point[column + 1 :]])
+        return _watched(claim, at) if at.inside else None
+
+    for wider in WIDER:
+        off = wider * max(abs(near), abs(far)) * (1 if far > near else -1)
+        if _gap(values_at(near - off), values_at(far + off)) > Fraction(leap) / 10:
+            gap = _narrowed(values_at, near - off, far + off)
+            shown = f"its values differ by {text(gap or 0)} at a distance of {float(NEARER):g}"
+            return shown if gap else None
+    return None
+
+
+def _narrowed(
+    values_at: Callable[[Fraction], Values], low: Fraction, high: Fraction
+) -> Fraction | None:
+    """Return by how much values differ on two sides that come together, if it does not fade."""
+    scale, gaps = max(abs(low), abs(high)), []
+    one, other = values_at(low), values_at(high)
+    gap = most = _gap(one, other)
+    for limit in (NEAR, NEARER):
+        while abs(high - low) > limit * scale:
+            middle = (low + high) / 2
+            value = values_at(middle)
+            left, right = _gap(one, value), _gap(value, other)
+            if value is None or gap <= FADED * most:
+                return None
+            calm = (
+                1000 * min(left, right) <= max(left, right) or max(left, right) > SAME * 3 * gap / 2
+            )
+            if limit == NEARER and not calm:  # no step and no pole, but a swing not yet resolved
+                return None
+            if left >= right:
+                high, other, gap = middle, value, left
+            else:
+                low, one, gap = middle, value, right
+        gaps.append(gap)
+    return gaps[1] if gaps[1] > SAME * gaps[0] else None
+
+
+def _watched(claim: Claim, at: Point) -> list[Any]:
+    """Return what jumps if a law does: its values, or all rates where the law is a store's."""
+    for what in ("output", "temperature", "conductance"):
+        if (what, claim.element) in at.values:
+            return at.values[what, claim.element]
+    return [value for (what, _), own in at.values.items() if what == "rate" for value in own]
+
+
+def _gap(one: Values, other: Values) -> Fraction:
+    """Return the largest difference of two vectors, as a lower bound; 0 where one is not known."""
+    if not one or not other:
+        return Fraction(0)
+    with ctx.workprec(BITS):
+        return max(_least(a - b) for a, b in zip(one, other, strict=True))
+
+
+def _least(gap: Any) -> Fraction:
+    """Return the least size that an enclosure allows."""
+    if isinstance(gap, fmpq):
+        return Fraction(int(abs(gap).p), int(gap.q))
+    if not gap.is_finite():
+        return Fraction(0)
+    mantissa, exponent = gap.abs_lower().man_exp()
+    return int(mantissa) * Fraction(2) ** int(exponent)
