@@ -39,15 +39,13 @@ class Deferred:
     def read(self) -> Read:
         """Return its value and shape."""
         field = self.scope.file.known.field
-        path = field.path
-        if not self.kind:  # a statement is executed whatever is chosen
-            field.path = field.one
-        if field.path not in self.known:
-            read, test = self.scope.read, self.kind == "int"
-            found = (read.test(self.node), TEST) if test else read.numeric(self.node)
-            self.known[field.path] = found
-        found, field.path = self.known[field.path], path
-        return found
+        # a statement is executed whatever is chosen
+        with field.on_path(field.path if self.kind else field.one):
+            if field.path not in self.known:
+                read, test = self.scope.read, self.kind == "int"
+                found = (read.test(self.node), TEST) if test else read.numeric(self.node)
+                self.known[field.path] = found
+            return self.known[field.path]
 
     @property
     def value(self) -> Value:

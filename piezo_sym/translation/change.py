@@ -24,17 +24,16 @@ def put(value: Value, new: Mapping[int, Value]) -> Value:
     field = value.field
     if value.parts.isdisjoint(new):
         return value
-    path, field.path = field.path, None
     parts = []
-    for mono, c in value.terms.items():
-        term = field.number(c)
-        for g, e in mono:
-            same = field.gens[g].parts.isdisjoint(new)
-            factor = Value(field, {((g, e),): 1}) if same else None
-            term = term * (factor or power(_put(field, g, new), Fraction(e)))
-        parts.append(term)
-    field.path = path
-    return field.total(parts)
+    with field.on_path(None):
+        for mono, c in value.terms.items():
+            term = field.number(c)
+            for g, e in mono:
+                same = field.gens[g].parts.isdisjoint(new)
+                factor = Value(field, {((g, e),): 1}) if same else None
+                term = term * (factor or power(_put(field, g, new), Fraction(e)))
+            parts.append(term)
+        return field.total(parts)
 
 
 def _put(field: Field, g: int, new: Mapping[int, Value]) -> Value:

@@ -146,11 +146,9 @@ class Expressions:
     def chosen(self, test: Value, then: ast.expr, other: ast.expr) -> Read:
         """Return one value where `test` is 1, and the other where it is 0."""
         field, parts = self.field, list[Read]()
-        path, one = field.path, field.one
-        for chosen, node in ((test, then), (one - test, other)):
-            field.path = path and path * chosen
-            parts.append(self.any(node))
-        field.path = path
+        for chosen, node in ((test, then), (field.one - test, other)):
+            with field.on_path(field.path and field.path * chosen):
+                parts.append(self.any(node))
         if parts[0][1] == parts[1][1] == WHOLE:
             raise refused(then, "a choice of integers")
         (first, shape), (second, shape_of_other) = map(self._real, parts)

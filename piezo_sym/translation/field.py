@@ -10,7 +10,8 @@ one is 1, and each is its own square.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Mapping
+from collections.abc import Hashable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -165,6 +166,15 @@ class Field:
         self.never: dict[tuple[Value, int, Value, int], bool] = {}
         self.asked: dict[frozenset[tuple[Value, int]], bool] = {}
         self.unknown = 0
+
+    @contextmanager
+    def on_path(self, path: Value | None) -> Iterator[None]:
+        """Note what is needed on a path alone, or not at all (None)."""
+        before, self.path = self.path, path
+        try:
+            yield
+        finally:
+            self.path = before
 
     # Generators
 

@@ -91,7 +91,6 @@ def different(language: str, text: str, iphs: IPHS, reference: Reference) -> tup
         if len(text) > MOST_TEXT:
             raise NotShownError("the text is too long")
         known.field.needs.clear()
-        known.field.path = known.field.one  # whatever a refusal before has left
         rows = _read(language, text, iphs, known)
         needs = tuple(known.field.needs)
         found = list(_differences(language, rows, iphs, known))

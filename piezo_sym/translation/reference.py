@@ -117,9 +117,8 @@ def _values(
         for lane, part in enumerate(parts):
             place = [lane] if len(parts) > 1 else []
             yield ("initial_state", n, *place), _start(read, part)
-    field.path = None
-    yield from _jacobian(read, slots["rhs"], listed["rhs"])
-    field.path = field.one
+    with field.on_path(None):
+        yield from _jacobian(read, slots["rhs"], listed["rhs"])
 
 
 def _start(read: SystemReader, part: str | float) -> Value:

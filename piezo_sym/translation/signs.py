@@ -226,12 +226,11 @@ def lifted(function: Callable[[Value], Value], value: Value) -> Value:
     form = field.gens[first].arg if first is not None else None
     if form is None:
         return function(value)
-    path, parts = field.path, []
+    parts = []
     for side in (1, 0, -1):
         chosen = field.generator("sign", form, side)
-        field.path = path and path * chosen
-        parts.append(chosen * lifted(function, field.at(value, {form: side})))
-    field.path = path
+        with field.on_path(field.path and field.path * chosen):
+            parts.append(chosen * lifted(function, field.at(value, {form: side})))
     return field.total(parts)
 
 

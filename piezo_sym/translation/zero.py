@@ -280,7 +280,5 @@ def _solved(d: Value) -> dict[int, Value]:
 
 
 def _inverse(value: Value) -> Value:
-    path, value.field.path = value.field.path, None
-    found = power(value, Fraction(-1))
-    value.field.path = path
-    return found
+    with value.field.on_path(None):
+        return power(value, Fraction(-1))
