@@ -28,7 +28,7 @@ SIGNATURES |= {"energy": "x p", "entropy": "x p", "states": "p", "processes": "p
 _HELPERS = r"pick|sign|min|max|saturate|deadzone|power_[2-8]"
 
 
-def read_c(text: str, name: str, known: Proved) -> dict[Key, Value]:
+def read_c(text: str, known: Proved) -> dict[Key, Value]:
     """Return every row that the functions of a C file write.
 
     Raises
@@ -36,6 +36,7 @@ def read_c(text: str, name: str, known: Proved) -> dict[Key, Value]:
     NotShownError
         If something is outside the grammar; it says what.
     """
+    name = known.iphs.model.name
     tokens, file = Tokens(text, name), File(known, name, SIGNATURES, "parameters", CALLS)
     rows, seen = dict[Key, Value](), set[str]()
     while tokens.peek():

@@ -166,7 +166,7 @@ class Scope:
         match node:
             case ast.Attribute(ast.Name(p), name) if self.roles.get(p) == "p":
                 name = name.rstrip("_")
-                if name in known.parameters and name in known.banks:
+                if name in known.iphs.model.parameters and name in known.banks:
                     return known.names[name]
             case ast.BinOp(left, ast.Add(), right):
                 while isinstance(left, ast.BinOp) and isinstance(left.op, ast.Add):

@@ -23,7 +23,6 @@ from dataclasses import replace
 from typing import final
 
 from piezo_sym.expressions.functions import RECORDS
-from piezo_sym.iphs import IPHS
 from piezo_sym.translation.c_data import (
     Tables,
     strict,
@@ -76,7 +75,7 @@ _RESULTS = {"stage out": "rhs", "stage rows": "ledger", "stage m": "margins"}
 _RESULTS |= {"slopes out": NOT_COMPARED}
 
 
-def read_step(text: str, iphs: IPHS, known: Proved) -> dict[Key, Value]:
+def read_step(text: str, known: Proved) -> dict[Key, Value]:
     """Return every row that the integrands and the stage of a printed step write.
 
     Parameters
@@ -88,17 +87,17 @@ def read_step(text: str, iphs: IPHS, known: Proved) -> dict[Key, Value]:
     NotShownError
         If something is outside the grammar; it says what.
     """
-    return _Step(Tokens(text, iphs.model.name, MACROS, _SPELLED), iphs, known).rows()
+    return _Step(Tokens(text, known.iphs.model.name, MACROS, _SPELLED), known).rows()
 
 
 @final
 class _Step:
     """Reads a file, part by part."""
 
-    def __init__(self, tokens: Tokens, iphs: IPHS, known: Proved) -> None:
-        self.tokens, self.iphs, self.field = tokens, iphs, known.field
+    def __init__(self, tokens: Tokens, known: Proved) -> None:
+        self.tokens, self.iphs, self.field = tokens, known.iphs, known.field
         calls = {name: CALLS[name] for name in _LIBRARY}
-        self.file = File(known, iphs.model.name, _SIGNATURES, "reals", calls, _RESULTS)
+        self.file = File(known, self.iphs.model.name, _SIGNATURES, "reals", calls, _RESULTS)
         self.file.helpers["min"] = Helper((("a", "double"), ("b", "double")), _LEAST)
         self.branches, self.slopes = list[Branch](), list[Branch]()
         self.found: dict[Key, Value] = {}

@@ -24,7 +24,7 @@ from piezo_sym.spec.tables import conditions
 from piezo_sym.translation.change import spelled
 from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import Key, Proved
-from piezo_sym.translation.reference import known_by, margins_of, of_system
+from piezo_sym.translation.reference import margins_of, of_system
 from piezo_sym.translation.system_reader import SystemReader
 
 
@@ -60,7 +60,8 @@ def proved_step(iphs: IPHS) -> Proved:
     for function, rows in {"rhs": listed["rhs"], "ledger": ledger.values()}.items():
         values |= {(function, n): value for n, value in enumerate(rows)}
     functions = {slot.label: value for slot, value in means.values()}
-    return known_by(read, slots, values, [*read.field.needs], domain, functions)
+    needs = tuple(read.field.needs)
+    return Proved(iphs, read.field, read.names, read.banks, slots, values, needs, domain, functions)
 
 
 def _means(read: SystemReader) -> Iterator[tuple[str, tuple[Slot, Value]]]:

@@ -12,8 +12,10 @@ from itertools import accumulate, pairwise
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
+from piezo_sym.iphs import IPHS
 from piezo_sym.translation.change import put
 from piezo_sym.translation.field import Field, Need, NotShownError, Value
+from piezo_sym.translation.system_reader import rounded
 
 #: A function, its row, and for an entry its column and whether it is of equal lanes.
 Key = tuple[str | int, ...]
@@ -53,6 +55,7 @@ class Proved:
 
     Attributes
     ----------
+    iphs : the system.
     field : of all values.
     names : parameters, states and inputs, in lane 0 where they have one per lane.
     banks : the bank of each of these that has.
@@ -60,11 +63,10 @@ class Proved:
     values : by function and row; what is not listed is zero.
     needs : what the laws divide by, and take roots and logarithms of.
     margins : of the conditions of the domain, and whether each is strict.
-    numbers : numbers of the spec that have to be rounded to be printed, by what they become.
-    parameters, inputs : the names that are parameters, the rows of u.
     means : of a stage, for each name that is a co-state's mean the co-state.
     """
 
+    iphs: IPHS
     field: Field
     names: Mapping[str, Value]
     banks: Mapping[str, str]
@@ -72,16 +74,18 @@ class Proved:
     values: Mapping[Key, Value]
     needs: tuple[Need, ...]
     margins: tuple[tuple[Value, bool], ...]
-    numbers: Mapping[float, Fraction]
-    parameters: frozenset[str]
-    inputs: tuple[Slot, ...]
     means: Mapping[str, Value]
+
+    @cached_property
+    def numbers(self) -> Mapping[float, Fraction]:
+        """The numbers of the spec that are rounded when they are printed, by the printed one."""
+        return dict(rounded(self.iphs))
 
     @cached_property
     def layouts(self) -> dict[str, Layout]:
         """The layout of each function's result, and of the arguments x and u."""
-        found = {}
-        for name, slots in {**self.slots, "x": self.slots["rhs"], "u": self.inputs}.items():
+        found, inputs = {}, tuple(map(Slot, self.iphs.model.inputs))
+        for name, slots in {**self.slots, "x": self.slots["rhs"], "u": inputs}.items():
             rows = (self.sizes[slot.bank] if slot.bank else self.field.one for slot in slots)
             places = accumulate(rows, Value.__add__, initial=self.field.zero)
             found[name] = Layout(slots, tuple(places))
@@ -124,7 +128,7 @@ class Proved:
         bank = name.removesuffix("_count")
         if bank != name and bank in self.sizes:
             return self.sizes[bank], True
-        if name not in self.parameters or name in self.banks:
+        if name not in self.iphs.model.parameters or name in self.banks:
             raise NotShownError(f"{name} is no parameter that lanes share")
         return self.names[name], False
 

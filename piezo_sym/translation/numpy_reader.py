@@ -264,7 +264,7 @@ class _Function:
             case ast.Call(ast.Name("_lanes"), [ast.Attribute(ast.Name(p), name), size, axes], []):
                 bank = self.known.banks.get(name, "")
                 dimensions = f"{self.x}.ndim" if self.x else "1"
-                known = name in self.known.parameters and self.roles.get(p) == "p"
+                known = name in self.known.iphs.model.parameters and self.roles.get(p) == "p"
                 known = known and ast.unparse(axes) == dimensions
                 if bank and known and self.read.whole(size) == self.known.sizes[bank]:
                     return self.known.names[name], Shape("maybe", bank)

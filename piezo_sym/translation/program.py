@@ -72,7 +72,7 @@ def program_rows(iphs: IPHS, texts: Mapping[str, str]) -> tuple[Row, ...]:
         found = [
             row
             for ending, language in READ.items()
-            for row in different(language, texts[ending], iphs, known)
+            for row in different(language, texts[ending], known)
         ]
     except (NotShownError, RecursionError) as error:
         found = [_open(str(error))]
@@ -84,33 +84,31 @@ def _open(reason: str) -> Row:
     return Row("program", "", STATEMENT, Verdict.OPEN, reason=reason)
 
 
-def different(language: str, text: str, iphs: IPHS, reference: Reference) -> tuple[Row, ...]:
+def different(language: str, text: str, reference: Reference) -> tuple[Row, ...]:
     """Return a row on what differs in the NumPy or C text, or the step's, if anything does."""
     known = reference.stage if language == "step" else reference.system
     try:
         if len(text) > MOST_TEXT:
             raise NotShownError("the text is too long")
         known.field.needs.clear()
-        rows = _read(language, text, iphs, known)
+        rows = _read(language, text, known)
         needs = tuple(known.field.needs)
-        found = list(_differences(language, rows, iphs, known))
+        found = list(_differences(language, rows, known))
         found += [_open(f"{language} {text}") for text in _unmet(needs, known)]
     except (NotShownError, RecursionError) as error:
         found = [_open(f"{language}: {error}")]
     return tuple(sorted(found, key=lambda row: row.verdict is not Verdict.REFUTED)[:1])
 
 
-def _read(language: str, text: str, iphs: IPHS, known: Proved) -> Mapping[Key, Value]:
+def _read(language: str, text: str, known: Proved) -> Mapping[Key, Value]:
     if language == "step":
-        return read_step(text, iphs, known)
+        return read_step(text, known)
     if language == "C":
-        return read_c(text, iphs.model.name, known)
-    return read_numpy(numpy_functions(text, iphs), known)
+        return read_c(text, known)
+    return read_numpy(numpy_functions(text, known.iphs), known)
 
 
-def _differences(
-    language: str, rows: Mapping[Key, Value], iphs: IPHS, known: Proved
-) -> Iterator[Row]:
+def _differences(language: str, rows: Mapping[Key, Value], known: Proved) -> Iterator[Row]:
     """Yield for each row that is not shown to be the proved one what is wrong with it."""
     tried = 0
     for key in dict.fromkeys((*known.values, *rows)):
@@ -121,7 +119,7 @@ def _differences(
             yield _open(f"{place} is not written")
         elif found := _doubt(key, printed - wanted, edges_of(wanted) if matrix else frozenset()):
             tried += 1
-            at = witness(printed, wanted, known, iphs) if tried <= MOST_TRIED else None
+            at = witness(printed, wanted, known) if tried <= MOST_TRIED else None
             reason = f"{place} {found}"
             if at:
                 reason = f"{place} is {at.printed}, and {at.proved} is proved"

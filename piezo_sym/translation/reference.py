@@ -10,7 +10,6 @@ co-states and laws of one lane, so they hold for lanes that differ.
 
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from types import MappingProxyType
 
 import sympy as sp
 
@@ -20,9 +19,9 @@ from piezo_sym.iphs import IPHS
 from piezo_sym.spec.elements.ports import Body
 from piezo_sym.spec.tables import conditions
 from piezo_sym.translation.change import across, derivative
-from piezo_sym.translation.field import Need, NotShownError, Value
+from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import ALL, LEAST, SAME, Key, Proved
-from piezo_sym.translation.system_reader import SystemReader, rounded
+from piezo_sym.translation.system_reader import SystemReader
 from piezo_sym.translation.zero import is_zero
 
 
@@ -39,33 +38,8 @@ def proved(iphs: IPHS) -> Proved:
     read.assume_temperatures()
     slots = _slots(iphs)
     values = dict(_values(read, slots))
-    return known_by(read, slots, values, [*read.field.needs], domain)
-
-
-def known_by(
-    read: SystemReader,
-    slots: Mapping[str, tuple[Slot, ...]],
-    values: Mapping[Key, Value],
-    needs: Sequence[Need],
-    domain: tuple[tuple[Value, bool], ...],
-    means: Mapping[str, Value] = MappingProxyType({}),
-) -> Proved:
-    """Return what a reader has read as readers of printed text need it."""
-    model = read.iphs.model
-    read.field.needs.clear()
-    return Proved(
-        read.field,
-        read.names,
-        read.banks,
-        slots,
-        values,
-        tuple(needs),
-        domain,
-        dict(rounded(read.iphs)),
-        frozenset(model.parameters),
-        tuple(map(Slot, model.inputs)),
-        means,
-    )
+    needs = tuple(read.field.needs)
+    return Proved(iphs, read.field, read.names, read.banks, slots, values, needs, domain, {})
 
 
 def _slots(iphs: IPHS) -> dict[str, tuple[Slot, ...]]:

@@ -127,9 +127,8 @@ class SystemReader:
         field = self.field
         if isinstance(expr, sp.Symbol):
             if expr not in self._known:
-                path, field.path = field.path, field.one
-                self._known[expr] = field.letter(self(self._definitions[expr]))
-                field.path = path
+                with field.on_path(field.one):
+                    self._known[expr] = field.letter(self(self._definitions[expr]))
             return self._known[expr]
         if isinstance(expr, sp.Rational):
             return field.number(Fraction(int(expr.p), int(expr.q)))
@@ -166,13 +165,12 @@ class SystemReader:
         return call(function, args[0])
 
     def _chosen(self, expr: sp.Piecewise) -> Value:
-        field, path, left, parts = self.field, self.field.path, self.field.one, []
+        field, left, parts = self.field, self.field.one, []
         for value, condition in expr.args:
             here = left * self._test(condition)
-            field.path = path and path * here
-            parts.append(here * self(value))
+            with field.on_path(field.path and field.path * here):
+                parts.append(here * self(value))
             left = left - here
-        field.path = path
         if left.terms:
             raise NotShownError("a choice of the proved system leaves a case out")
         return field.total(parts)

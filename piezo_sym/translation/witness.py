@@ -17,7 +17,6 @@ from typing import Any, final
 from flint import arb, ctx, fmpq
 
 from piezo_sym.expressions.functions import RECORDS
-from piezo_sym.iphs import IPHS
 from piezo_sym.translation.field import Value
 from piezo_sym.translation.known import Proved
 
@@ -45,11 +44,11 @@ class UndecidedError(Exception):
     """A value is not defined at a point, or the intervals are too wide."""
 
 
-def witness(printed: Value, wanted: Value, known: Proved, iphs: IPHS) -> Witness | None:
+def witness(printed: Value, wanted: Value, known: Proved) -> Witness | None:
     """Return a point of the domain at which two values differ."""
     difference = printed - wanted
     size = len(difference.terms) + len(printed.terms) + len(wanted.terms)
-    for point in islice(_points(known, iphs), max(2, min(POINTS, MOST_TERMS // size))):
+    for point in islice(_points(known), max(2, min(POINTS, MOST_TERMS // size))):
         try:
             if not all(_inside(margin, point, strict) for margin, strict in known.margins):
                 continue
@@ -68,9 +67,9 @@ def _inside(margin: Value, point: Point, strict: bool) -> bool:
     return all(value > 0 if strict else value >= 0 for value in found)
 
 
-def _points(known: Proved, iphs: IPHS) -> Iterator[Point]:
+def _points(known: Proved) -> Iterator[Point]:
     """Yield points: the spec's numbers and others near, states of every size."""
-    model, chance = iphs.model, random.Random(0)
+    model, chance = known.iphs.model, random.Random(0)
     given = {n: e.si for table in (model.parameters, model.inputs) for n, e in table.items()}
     for n in range(POINTS):
         numbers: dict[str, tuple[Fraction, ...]] = {}

@@ -34,9 +34,9 @@ def iphs_of(name):
     return derive(load(str(SPECS / name) if name.endswith(".toml") else name))
 
 
-def verdict(iphs, known, language, text):
+def verdict(known, language, text):
     """Return the verdict on one text of a system."""
-    found = different(language, text, iphs, known)
+    found = different(language, text, known)
     return found[0].verdict if found else Verdict.PROVED
 
 
@@ -55,7 +55,7 @@ def survivors(name, language, sample=None):
     known, counts, alive = reference_of(iphs), Counter(), []
     for n, (what, text) in enumerate(made):
         known = reference_of(iphs) if n % 100 == 99 else known  # it grows by what is read
-        counts[found := verdict(iphs, known, language, text)] += 1
+        counts[found := verdict(known, language, text)] += 1
         alive += [what] if found is Verdict.PROVED else []
     return alive, counts
 
@@ -89,7 +89,7 @@ def test_a_change_of_a_quantity_before_it_is_printed_is_refuted(language):
         others = list(program.quantities)
         others[n] = replace(quantity, value=changed)
         text = printed(iphs, replace(program, quantities=tuple(others)))[language]
-        assert verdict(iphs, known, language, text) is Verdict.REFUTED, quantity.name
+        assert verdict(known, language, text) is Verdict.REFUTED, quantity.name
 
 
 def test_a_refuted_row_has_numbers():
