@@ -1,13 +1,13 @@
-"""The net under the prover: rows about to be PROVED are attacked with numbers first.
+"""Rows about to be called PROVED are tried at many points first, to find errors of the prover.
 
-Input: an `IPHS`, its generated NumPy module, the rows.  Output: an `Attack` per row; a point at
-which exact arithmetic finds a row false raises `ContradictionError`.
+Input: an `IPHS`, its generated NumPy module, the rows.  Output: an `Attack` per row.  If exact
+arithmetic finds a row false at a point, `ContradictionError` is raised.
 
 stage    from -> to                              in
 probe    IPHS -> laws and edges, printed         probe
 space    module, probe -> columns of points      space
 points   Space -> points inside the domain       points
-claims   row -> a number negative where false    claims
+claims   row -> numbers, negative where false    claims
 hunt     points -> the worst ones of each row    hunt
 exact    a point -> the row's exact value        exact, point, numbers
 jumps    kinks -> a law's jump, exactly          jumps
@@ -38,13 +38,13 @@ def falsify(
     ----------
     iphs : the system.
     module : its NumPy module, from `module_from` and the text about to be written.
-    claims : (id, element) of the rows; those that numbers say nothing of are left out.
-    points : inside the domain; fewer only in tests of many small networks.
+    claims : (id, element) of the rows; rows that cannot be evaluated at a point are left out.
+    points : how many points inside the domain are tried; fewer in tests of many small networks.
 
     Returns
     -------
     tuple of Attack
-        No row was found false; `points` is 0 where no point of the domain was found.
+        One per row, in their order; `points` is 0 if no point of the domain was found.
 
     Raises
     ------

@@ -1,8 +1,8 @@
-"""What each row says, as numbers that are negative where it is false; in floats or exactly.
+"""What each row says, as numbers that are negative where it is false, in floats or exactly.
 
-Input: a row and a `View`, which gives quantities by element as (value, size) pairs, one per lane or
-body.  Output: (value, scale, strict) triples: the row says value >= 0, strictly > 0; scale is the
-size of what cancels in the value, 0 for exact numbers.
+Input: a row and a `View` of one point or many.  Output: (name, value, scale, strict) tuples: the
+row says value >= 0, or > 0 if strict.  The scale is the sum of the absolute values of the terms of
+the value, so that value/scale tells rounding from a change of sign; it is 0 for exact numbers.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from piezo_sym.iphs import IPHS
 from piezo_sym.spec.circuit import Circuit
 from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, Port, Resistor, Source
 
-#: Of the sum of absolute terms; a balance that is off by less is rounding.
+#: A balance below zero by less than this part of its scale is rounding.
 TOLERANCE = 1e-9
 BALANCES = {
     "exergy": "the exergy lost",
     "environment": "the production",
     "invariant": "the entropy gained, times T",
 }
-#: What is looked at where a law is: at its value and at its size.
+#: The value of a quantity and its size, the sum of the absolute values of its terms.
 Pair = tuple[Any, Any]
 
 
@@ -30,18 +30,22 @@ class View(Protocol):
     """Quantities at one point, or at many."""
 
     def get(self, what: str, name: str) -> list[Pair]:
-        """Return heat, production, temperature, slope, conductance, rate or input of an element."""
+        """Return a quantity, one pair per lane.
+
+        It is the heat, production, temperature, slope or conductance of an element, the rate of a
+        state, or an input; without a name, the production of all elements.
+        """
 
 
 @final
 @dataclass(frozen=True)
 class Claim:
-    """A row that numbers say something of.
+    """A row that can be evaluated at a point.
 
     Attributes
     ----------
     id, element : of the row.
-    port : the element's, its last.
+    port : the last port of the element.
     circuit : of the system.
     """
 
@@ -52,16 +56,16 @@ class Claim:
 
     @property
     def climbs(self) -> bool:
-        """Whether value over scale is smooth, so that going downhill leads anywhere."""
+        """Whether value/scale varies smoothly, so that descending it makes sense."""
         return self.id in {"passive", "conductance", "temperature"}
 
     @property
     def numbers(self) -> bool:
-        """Whether the row is about numbers; else about whether, or how, laws have values."""
+        """Whether the row is an inequality; else it says that laws have values, or do not jump."""
         return self.id not in {"welldef", "continuous"}
 
     def at(self, view: View) -> Iterator[tuple[str, Any, Any, bool]]:
-        """Yield what must not be negative, by name, its scale, whether it must not be zero."""
+        """Yield (name, value, scale, strict) of what must not be negative."""
         match self.id:
             case "passive" | "conductance":
                 what = "heat" if isinstance(self.port, Resistor) else "conductance"
@@ -80,7 +84,7 @@ class Claim:
                     yield "conductance", *view.get("conductance", placed.element)[0], False
 
     def _balance(self, view: View) -> Pair:
-        """Return exergy lost, production with the environments', or what a coldest body gains."""
+        """Return the exergy lost, the production, or what the coldest body gains, and its scale."""
         alone = self.id == "invariant"
         states = {
             placed.element: body.state
@@ -109,7 +113,7 @@ class Claim:
         return total, scale
 
     def says(self, view: View) -> Any:
-        """Return where the row says something: `invariant` of a body that is coldest."""
+        """Return where the row applies: `invariant` only where its body is the coldest."""
         if self.id != "invariant":
             return True
         ((hot, _),) = view.get("temperature", self.element)
@@ -125,7 +129,7 @@ class Claim:
         return cold
 
     def rest(self) -> tuple[tuple[str, ...], tuple[str, ...]] | None:
-        """Return for `exergy` the inputs that are zero, and those that are one temperature."""
+        """Return for `exergy` the inputs that it sets to zero, and those that it sets equal."""
         if self.id != "exergy":
             return None
         outside = tuple(port.input for _, port in self.circuit.of(Exchange))
@@ -134,7 +138,7 @@ class Claim:
 
 
 def claim_of(iphs: IPHS, id_: str, element: str) -> Claim | None:
-    """Return the claim of a row, or None if numbers say nothing of it."""
+    """Return the claim of a row, or None if it cannot be evaluated at a point."""
     ports = [placed.port for placed in iphs.circuit.ports if placed.element == element]
     claim = Claim(id_, element, ports[-1] if ports else None, iphs.circuit)
     match id_, claim.port:

@@ -1,4 +1,4 @@
-"""The attack itself: points block by block, the worst of each row kept, followed and confirmed.
+"""The attack: rows are evaluated at blocks of points, their worst points descended and confirmed.
 
 Input: an `IPHS`, its module, rows.  Output: an `Attack` per row, or a `ContradictionError`.
 """
@@ -27,10 +27,10 @@ from piezo_sym.iphs import IPHS
 from piezo_sym.spec.tables import conditions
 
 POINTS = 100_000
-#: Lanes that points have; of those of the spec, so many are looked at.
+#: Lanes per bank of the points; and how many lanes of the spec's own values are tried, at most.
 LANES, MOST_LANES = 2, 512
 KEPT, CHECKED, CHILDREN, DESCENTS = 8, 4, 24, 8
-#: Stands for a zero where a row says > 0: not negative, but to be looked at exactly.
+#: Stands for a zero where a row says > 0: nearly right in floats, and to be evaluated exactly.
 ZERO = -1e-300
 
 
@@ -42,10 +42,10 @@ class Attack:
     Attributes
     ----------
     id, element : of the row.
-    points : inside the domain at which it held, at least; one digit, for another processor's
-        last bits decide on some points otherwise, and the number is published.
-    worst : a point at which the module's number breaks it, by name, though the exact one does not.
-    rounding : whether there is one.
+    points : how many points inside the domain it held at, rounded down to one digit: the number is
+        published, and rounding of another processor may put a few points outside.
+    worst : values by name at a point where the row is false in floats, though not exactly.
+    rounding : whether there is such a point.
     """
 
     id: str
@@ -58,7 +58,7 @@ class Attack:
 @final
 @dataclass(eq=False)
 class Track:
-    """What is kept of a claim: how many points, and the worst, by the way they were found."""
+    """The points tried for a claim: how many, and the worst ones by the way they were found."""
 
     claim: Claim
     points: int = 0
@@ -66,7 +66,7 @@ class Track:
     lost: tuple[Space, Array] | None = None
 
     def see(self, kind: str, seen: Seen) -> None:
-        """Take in points that are inside the domain."""
+        """Evaluate the claim at points inside the domain."""
         with np.errstate(all="ignore"):
             says = np.broadcast_to(self.claim.says(seen), seen.x.shape[1:])
             self.points += int(says.sum())
@@ -80,7 +80,7 @@ class Track:
             self._keep(kind, seen, np.where((key < 0) & seen.extreme, key / 1000, key))
 
     def _least(self, seen: Seen, says: Mask) -> Array:
-        """Return the least number of the claim relative to its scale, 2 where it has none."""
+        """Return the least value of the claim over its scale, 2 where it does not apply."""
         least: Array = np.full(says.shape, 2.0)
         for _, value, scale, strict in self.claim.at(seen):
             value, scale = np.asarray(value, dtype=float), np.asarray(scale, dtype=float)
@@ -98,7 +98,7 @@ class Track:
         return np.where(says, least, 2)
 
     def _keep(self, kind: str, seen: Seen, key: Array) -> None:
-        """Keep the worst points of their kind."""
+        """Keep the worst points found in one way."""
         known = self.worst.setdefault(kind, [])
         place = np.flatnonzero(key < (known[-1][0] if len(known) == KEPT else np.inf))
         first = place[np.argsort(key[place], kind="stable")[:KEPT]]
@@ -107,7 +107,7 @@ class Track:
         del known[KEPT:]
 
     def _lose(self, seen: Seen, lost: Mask) -> None:
-        """Note a point where a law is nan though nothing overflowed."""
+        """Keep a point where a law is nan though nothing overflowed."""
         if self.claim.climbs and self.lost is None and lost.any():
             place = np.flatnonzero(lost & ~seen.out_of_range & ~np.isinf(seen.laws).any(axis=0))
             self.lost = (seen.space, seen.points[:, place[0]]) if len(place) else None
@@ -193,7 +193,7 @@ class Hunt:
         yield from self._descended()
 
     def _descended(self) -> Iterator[tuple[str, Space, Array]]:
-        """Yield steps from the worst points of each row, from where they led, and so on."""
+        """Yield steps from the worst points of each row, repeatedly."""
         for n in range(DESCENTS):
             starts = [
                 point
@@ -209,7 +209,7 @@ class Hunt:
                 yield "descended", self.space, self.draw.inside(moved)
 
     def _judged(self, track: Track, exact: Exact) -> Attack:
-        """Return what became of a row, its suspicious points evaluated exactly."""
+        """Return what became of a row after its suspicious points were evaluated exactly."""
         claim, rounding = track.claim, None
         most = CHECKED if claim.numbers else KEPT
         for key, space, point in chain(*(worst[:most] for worst in track.worst.values())):
@@ -217,7 +217,7 @@ class Hunt:
             if value:
                 raise self._contradiction(claim, value, space.words(point))
             here = space.at(point[:, None])
-            plain = not here.out_of_range[0]  # else underflow, which is none either
+            plain = not here.out_of_range[0]  # else it is an underflow, which is not reported
             told = key < ZERO and claim.numbers and plain
             rounding = rounding or ((space, point) if told else None)
         if track.lost and rounding is None and exact.has_value(claim, *track.lost):

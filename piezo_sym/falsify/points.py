@@ -1,9 +1,9 @@
-"""Points to attack at: the same ones everywhere, for a fixed seed and no clock decide.
+"""Points at which rows are tried; a fixed seed makes them the same on every machine.
 
-Input: a `Space`, points known to matter (the spec's own).  Output: points inside the domain
-by the way they were found: `kinks` (bisected to neighbouring floats on an edge, and steps off it),
-`corners` (kinks of kinks), `drawn` (logarithmic ranges, near-equalities, own values scaled),
-`walked` (from points inside, where drawing finds few).
+Input: a `Space` and points inside the domain to start from.  Output: more points inside it, found
+in four ways: `kinks` (an edge bisected to neighbouring floats along one column, and points beside
+it), `corners` (kinks found from kinks), `drawn` (random values in logarithmic ranges, near known
+values and near equality) and `walked` (random steps from points inside, where drawing finds few).
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ import numpy as np
 
 from piezo_sym.falsify.space import LARGEST, LEAST, Array, Index, Space
 
-#: Fewer points inside than these are too few to say anything; then one walks.
+#: With fewer points than these, drawn ones are added to those that walks start from.
 FEW = 1000
 WALKS = 40
-#: Zero is bracketed by this, since a product of less may be zero.
+#: A root at zero is bracketed by these values, as products of smaller ones may underflow.
 TINY = 1e-280
 TABLE = 8192
-#: Edges are solved for from points known, then from points on edges; so often each.
+#: Edges are solved for from known points, then from points on edges; at most so often each.
 STAGES = (("kinks", 16), ("corners", 12))
 FAR = (-290, -100, -30, -15, -9, -6)
 DECADES = (*FAR, -4, -3, -2, -1, -0.3, 0, 0.3, 1, 2, 3, 4, 6, 9, 15, 30, 100)
@@ -59,7 +59,7 @@ class Draw:
     Attributes
     ----------
     space : whose points.
-    known : points inside the domain, to start from; the first is the spec's own.
+    known : points inside the domain to start from; the first has the spec's own values.
     """
 
     space: Space
@@ -68,7 +68,7 @@ class Draw:
     roots: list[Roots] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        """Note scales of each column: its known values, those of equal dimension, 1."""
+        """Collect the scales of each column: 1, its known values and those of equal dimension."""
         scales = [[1.0, *row] for row in np.abs(self.known).tolist()]
         for one, other in self.space.pairs.tolist():
             scales[one] += np.abs(self.known[other]).tolist()
@@ -142,7 +142,7 @@ class Draw:
     # Drawing
 
     def learn(self, points: Array) -> None:
-        """Take values that lie on edges as scales, and some points as ones to start from."""
+        """Add values on edges to the scales, and some points to those to start from."""
         roots = self.roots[-1]
         for column, value in zip(roots.column.tolist(), np.abs(roots.high).tolist(), strict=True):
             if 1e-100 < value < 1e100 and len(self.scales[column]) < 64:
@@ -155,13 +155,13 @@ class Draw:
 
     @cached_property
     def table(self) -> Array:
-        """Values to draw from per column, twice in a row; made when scales are learnt."""
+        """Values to draw from per column, repeated once so that any start leaves enough of them."""
         fixed = self._one_sided(self.known[:, -32:])
         once = np.array([self._values(column, fixed[column]) for column in range(len(self.scales))])
         return np.concatenate([once, once], axis=1)
 
     def _one_sided(self, bases: Array) -> list[bool]:
-        """Return for which columns no point stays inside with that column's sign turned."""
+        """Return for each column whether no point stays in the domain if its sign changes."""
         found = []
         for column in range(len(bases)):
             turned = bases.copy()
@@ -170,7 +170,7 @@ class Draw:
         return found
 
     def _values(self, column: int, fixed: bool) -> Array:
-        """Return values to draw: scales times factors near 1, moderate, wide; simple numbers."""
+        """Return values to draw: scales times factors near 1 or of many decades, simple numbers."""
         u, v = self.rng.random((2, TABLE))
         kind = np.arange(TABLE) % 16
         exponent = np.select([kind < 6, kind < 9], [4 * u - 2, 18 * u - 9], 600 * u - 300)
@@ -186,7 +186,7 @@ class Draw:
         return np.abs(values) if self.space.positive[column] else values
 
     def drawn(self, count: int) -> Array:
-        """Return points known, with some or all columns drawn anew from the table."""
+        """Return known points with some or all columns replaced by values of the table."""
         rng, columns = self.rng, len(self.scales)
         first = np.where(rng.random(count) < 0.3, 0, rng.integers(0, self.known.shape[1], count))
         share = np.array([1.5 / columns, 4 / columns, 0.5, 1.0])[rng.integers(0, 4, count)]
@@ -198,7 +198,7 @@ class Draw:
         return self._paired(points)
 
     def _paired(self, points: Array) -> Array:
-        """Set some columns to others of equal dimension, or near them."""
+        """Set some values to others of equal dimension, or close to them."""
         pairs, rng = self.space.pairs, self.rng
         if len(pairs):
             place = np.flatnonzero(rng.random(points.shape[1]) < 0.2)
@@ -209,7 +209,7 @@ class Draw:
         return points
 
     def moved(self, points: Array, each: int, finest: float) -> Array:
-        """Return steps from points: two columns changed, relatively, down to 10**-finest."""
+        """Return points with two values changed by relative steps from 1 down to 10**-finest."""
         rng, points = self.rng, np.repeat(points, each, axis=1)
         count = points.shape[1]
         size = _power(np.multiply(-finest, rng.random(count)))
@@ -225,7 +225,7 @@ class Draw:
         return _normal(points)
 
     def walked(self, points: Array, wanted: int) -> Array:
-        """Return new points inside, found by steps from points inside."""
+        """Return new points inside the domain, found by steps from points inside."""
         first = points.shape[1]
         for n in range(WALKS if first else 0):
             if points.shape[1] - first >= wanted:
@@ -237,7 +237,7 @@ class Draw:
 
 
 def _normal(points: Array) -> Array:
-    """Return those of some points with no value so small that arithmetic loses its digits."""
+    """Return the points without subnormal or nearly subnormal values."""
     size = np.abs(points)
     return points[:, ((size == 0) | (size >= LEAST)).all(axis=0)]
 
@@ -247,13 +247,13 @@ def _bounded(values: Array) -> Array:
 
 
 def _power(exponents: Array) -> Array:
-    """Return about 10**exponents, by exact products alone, so that it is the same everywhere."""
+    """Return about 10**exponents by products alone, so that all machines give the same bits."""
     whole = np.floor(exponents)
     return POWERS[whole.astype(np.int64) + 300] * (1 + 9 * (exponents - whole))
 
 
 def _key(values: Array) -> Index:
-    """Return whole numbers in the order of floats, neighbours next to each other."""
+    """Return integers in the order of the floats; neighbouring floats differ by 1."""
     bits = values.view(np.int64)
     return np.where(bits < 0, np.iinfo(np.int64).min - bits, bits)
 

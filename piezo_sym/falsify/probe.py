@@ -1,9 +1,10 @@
-"""What an attack looks at besides the module: laws one by one, and where they turn or vanish.
+"""Functions that an attack evaluates besides those of the module: single laws, and edges.
 
-Input: an `IPHS`.  Output: a `Probe`, a module of functions printed like any other: `laws` (values),
-`sizes` (the same with every sum taken of absolute values, so that value/size tells cancellation
-from a change of sign) and `edges`.  An edge is an expression whose zeros are places to look at:
-sides of a comparison, bounds of the domain, divisors, arguments of roots, sums, equal quantities.
+Input: an `IPHS`.  Output: a `Probe`, whose module is printed like any other.  Its functions are
+`laws`, `sizes` (laws with the terms of every sum replaced by their absolute values, so that
+value/size tells cancellation from a change of sign) and `edges`.  An edge is an expression near
+whose zeros a law may be wrong: the difference of the sides of a comparison, a bound of the domain,
+a divisor, the argument of a root, a sum, the difference of quantities of equal dimension.
 """
 
 from __future__ import annotations
@@ -71,7 +72,7 @@ MOST_EDGES = 400
 @final
 @dataclass(frozen=True)
 class Edge:
-    """An expression whose zeros are looked for; at a `kink` a law changes branches."""
+    """An expression whose zeros are searched for; at those of a `kink` a law changes branches."""
 
     tree: Expr
     kink: bool = False
@@ -80,7 +81,7 @@ class Edge:
 @final
 @dataclass(frozen=True)
 class Probe:
-    """A module of its own, and what its rows are.
+    """The printed functions of a system, and what their rows are.
 
     Attributes
     ----------
@@ -111,7 +112,7 @@ class _Text(importlib.abc.InspectLoader):
 
 
 def module_from(text: str, name: str = "attacked") -> ModuleType:
-    """Return a fresh module made of generated text, which no file and no import knows."""
+    """Return a new module made of generated text, without a file or an entry in `sys.modules`."""
     spec = importlib.util.spec_from_loader(name, loader := _Text(text))
     if spec is None:
         raise ImportError(name)
@@ -154,12 +155,12 @@ def _function(name: str, rows: list[tuple[Expr, str | None]]) -> Function:
 
 
 def _own(tree: Expr, known: dict[str, Expr]) -> Expr:
-    """Return what a name stands for."""
+    """Return the expression that a name stands for."""
     return known.get(tree.name, tree) if isinstance(tree, Sym) else tree
 
 
 def _laws(q: Quantities) -> Iterator[tuple[str, str, Expr]]:
-    """Yield every law by its name, with the effort of dissipative ones, and slopes of bodies."""
+    """Yield (element, quantity, expression) of every law, effort of a resistor, slope of a body."""
     forces = iter(zip(q.forces, q.outputs, strict=True))
     for placed in q.iphs.circuit.ports:
         element, port = placed.element, placed.port
@@ -183,7 +184,7 @@ def _laws(q: Quantities) -> Iterator[tuple[str, str, Expr]]:
 
 
 def _size(node: Expr) -> Expr:
-    """Return an expression with each sum taken of absolute values."""
+    """Return an expression with the terms of each sum replaced by their absolute values."""
     match node:
         case Add(terms):
             return add(*map(_size, terms))
@@ -207,7 +208,7 @@ def _absolute(node: Expr) -> Expr:
 
 
 def _holes(iphs: IPHS, q: Quantities, known: dict[str, Expr]) -> Iterator[tuple[str, str, Expr]]:
-    """Yield where the laws of each element, and of the junction, have no value."""
+    """Yield expressions, positive where an element's laws or the junction have no value."""
     found: dict[str, list[Expr]] = {}
     for element, what, tree in _laws(q):
         if what != "effort":
@@ -218,7 +219,7 @@ def _holes(iphs: IPHS, q: Quantities, known: dict[str, Expr]) -> Iterator[tuple[
 
 
 def _hole(node: Node) -> Expr:
-    """Return an expression that is > 0 where a law has no value, on the branches taken."""
+    """Return an expression that is positive where a law has no value on the branch taken."""
     match node:
         case If(then, condition, other):
             inside = If(_hole(then), condition, _hole(other))
@@ -242,7 +243,7 @@ def _hole(node: Node) -> Expr:
 
 
 def _any(parts: list[Expr]) -> Expr:
-    """Return the largest of some expressions that are not negative."""
+    """Return the largest of some nonnegative expressions."""
     kept = [part for part in dict.fromkeys(parts) if part != ZERO]
     return reduce(lambda one, other: Call("max", (one, other)), kept) if kept else ZERO
 

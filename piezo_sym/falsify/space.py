@@ -1,7 +1,7 @@
-"""Points of a model as columns of one array, and what its module and its probe say at them.
+"""Points of a model as one array, and the functions of its module and its probe at them.
 
-Input: a module, a probe, bank sizes.  Output: a `Space`; points are arrays of shape (columns, n),
-their columns every parameter, input and state, a bank's one per lane.
+Input: a module, a probe, bank sizes.  Output: a `Space`.  Its n points are an array of shape
+(columns, n); the columns are all parameters, inputs and states, one per lane of a bank.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ Index = npt.NDArray[np.int64]
 Mask = npt.NDArray[np.bool_]
 Key = TypeVar("Key")
 
-#: No value of a point is smaller or larger, but for zero; beyond EXTREME products overflow.
+#: Bounds on the absolute values of a point other than 0; beyond EXTREME products overflow.
 LEAST, LARGEST, EXTREME = 1e-300, 1e300, 1e30
-#: Numbers of a state array worked on together; the module's `rhs` splits what is larger.
+#: States times points that are evaluated together; the module's `rhs` splits larger arrays.
 BLOCK = 100_000
 
 
@@ -86,7 +86,7 @@ class Space:
 
     @cached_property
     def block(self) -> int:
-        """How many points are worked on together."""
+        """How many points are evaluated together."""
         return max(1, min(8192, BLOCK // max(1, len(self.columns) - self.states_at)))
 
     def lanes(self, bank: str | None) -> int:
@@ -95,7 +95,7 @@ class Space:
 
     @cached_property
     def rows(self) -> Mapping[str, Mapping[str, slice]]:
-        """The rows of each record of a module's tables in a result with a row per lane."""
+        """The rows of each state, process and body in results, which have one row per lane."""
         return {
             table: self._slices((r.name, r.bank) for r in getattr(self.module, table))
             for table in ("STATES", "PROCESSES", "BODIES")
@@ -131,12 +131,12 @@ class Space:
         return dict(zip(names, parts, strict=True))
 
     def own(self, first: int = 0) -> Array:
-        """Return the spec's own values as one point, of a bank's lanes those from `first` on."""
+        """Return the spec's own values as one point, with the lanes of a bank from `first` on."""
         parts = ((self._given[name], lane) for name, lane in self.columns)
         return np.array([[part[(first + lane) % len(part)]] for part, lane in parts])
 
     def at(self, points: Array) -> Seen:
-        """Return what is seen at points."""
+        """Return the functions evaluated at points."""
         return Seen(self, points)
 
     def split(self, points: Array) -> tuple[Array, Array, Any]:
@@ -149,7 +149,7 @@ class Space:
         return points[self.states_at :], points[self.inputs_at : self.states_at], p
 
     def words(self, point: Array) -> dict[str, str]:
-        """Return a point as text, value by value, each float such that it reads back exactly."""
+        """Return the values of a point as text that reads back exactly."""
         single = {field.name for field in self.fields if field.bank is None}
         return {
             name if name in single else f"{name}[{lane + 1}]": repr(float(value))
@@ -159,7 +159,7 @@ class Space:
 
 @final
 class Seen:
-    """What the functions of a module and its probe give at points, each computed when asked for."""
+    """The results of the functions of a module and its probe at points, computed when asked for."""
 
     def __init__(self, space: Space, points: Array) -> None:
         self.space = space
@@ -167,7 +167,7 @@ class Seen:
         self.x, self.u, self.p = space.split(points)
 
     def __getattr__(self, name: str) -> Array:
-        """Return the result of a function of the module or the probe, and keep it."""
+        """Return the result of a function of the module or the probe, computed once."""
         home = self.space.probe.module if name in PROBED else self.space.module
         arguments = (self.x, self.p) if name == "temperatures" else (self.x, self.u, self.p)
         with np.errstate(all="ignore"):
@@ -176,7 +176,7 @@ class Seen:
         return value
 
     def get(self, what: str, name: str) -> list[tuple[Any, Any]]:
-        """Return quantities of an element as rows with their sizes."""
+        """Return a quantity as (value, size) pairs of rows, see `View`."""
         space = self.space
         if what in ("heat", "production"):
             row = space.rows["PROCESSES"][name] if name else slice(None)
@@ -205,23 +205,24 @@ class Seen:
 
     @cached_property
     def extreme(self) -> Mask:
-        """Which points have a value so large or small that products of it overflow."""
+        """Which points have a value so large or small that products with it overflow."""
         size = np.abs(self.points)
         found: Mask = np.any((size > EXTREME) | ((size > 0) & (size < 1 / EXTREME)), axis=0)
         return found
 
     @cached_property
     def out_of_range(self) -> Mask:
-        """Which points have a number or a temperature beyond what products of doubles hold.
+        """Which points have a value or a temperature whose products overflow.
 
-        A nan there says nothing.  A temperature is an exponential as a rule: any entropy may do it.
+        A nan there means nothing.  As a temperature is exponential in the entropy as a rule, it may
+        overflow at plain values.
         """
         size = np.abs(self.temperatures)
         found: Mask = self.extreme | np.any((size > EXTREME) | (size < 1 / EXTREME), axis=0)
         return found
 
     def holed(self, element: str) -> Mask:
-        """Return where an element's laws have no value; for none, what the junction divides by."""
+        """Return where an element's laws, or without a name the junction's, have no value."""
         row = self.space.law_rows.get((element, "hole"), slice(0))
         found: Mask = np.any(self.laws[row] > 0, axis=0)
         return found
