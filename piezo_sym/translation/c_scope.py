@@ -18,7 +18,7 @@ from piezo_sym.translation.c_file import COMPARISONS, File, Helper
 from piezo_sym.translation.change import moved
 from piezo_sym.translation.expressions import PLAIN, TEST, WHOLE, Expressions, Read, refused
 from piezo_sym.translation.field import NotShownError, Value
-from piezo_sym.translation.signs import compare
+from piezo_sym.translation.signs import compare, on_path
 from piezo_sym.translation.zero import is_zero
 
 
@@ -40,7 +40,7 @@ class Deferred:
         """Return its value and shape."""
         field = self.scope.file.known.field
         # a statement is executed whatever is chosen
-        with field.on_path(field.path if self.kind else field.one):
+        with on_path(field, field.path if self.kind else field.one):
             if field.path not in self.known:
                 read, test = self.scope.read, self.kind == "int"
                 found = (read.test(self.node), TEST) if test else read.numeric(self.node)

@@ -1,8 +1,8 @@
 """Values with names replaced, moved to another lane, and differentiated.
 
-Input: values.  Output: values of the same field.  A derivative by the state of a bank's lane has
-two parts: `derivative` in the lane itself, and `across`, by way of sums over lanes, for every lane.
-Signs have the derivative 0: what is said of derivatives holds inside the branches of a law.
+Input: values.  Output: values of the same field.  A derivative by a state of one lane of a bank has
+two parts: `derivative` is that of the lane's own terms, `across` that of sums over the bank, which
+every lane has.  The derivative of a sign is 0: derivatives hold inside the branches of a law.
 """
 
 import ast
@@ -13,19 +13,19 @@ from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.translation.expressions import PLAIN, Expressions, Read
 from piezo_sym.translation.field import Field, Generator, NotShownError, Value
 from piezo_sym.translation.functions import call, power
-from piezo_sym.translation.signs import compare, sign_of
+from piezo_sym.translation.signs import compare, on_path, sign_of
 
-#: What the rules of records call.
+#: The functions that rules of records may call.
 _CALLS = {name: name for name, record in RECORDS.items() if record.smooth}
 
 
 def put(value: Value, new: Mapping[int, Value]) -> Value:
-    """Return a value with generators replaced, in functions too; sums keep the lane they bind."""
+    """Return a value with generators replaced, except in sums over the lanes they belong to."""
     field = value.field
     if value.parts.isdisjoint(new):
         return value
     parts = []
-    with field.on_path(None):
+    with on_path(field, None):
         for mono, c in value.terms.items():
             term = field.number(c)
             for g, e in mono:
@@ -56,7 +56,7 @@ def _put(field: Field, g: int, new: Mapping[int, Value]) -> Value:
 
 
 def spelled(value: Value) -> Value:
-    """Return a value with what letters stand for in their place."""
+    """Return a value with all letters written out."""
     gens = value.field.gens
     while letters := {g: gens[g].arg for g in value.parts if gens[g].kind == "letter"}:
         value = put(value, {g: arg for g, arg in letters.items() if arg is not None})
@@ -64,7 +64,7 @@ def spelled(value: Value) -> Value:
 
 
 def moved(value: Value, bank: str, lane: int) -> Value:
-    """Return a value of a row's lane of a bank (0) in a column's (1), or the other way round."""
+    """Return a value with names of one lane of a bank (0: row, 1: column) moved to the other."""
     field, new = value.field, {}
     for g in value.parts:
         mark = field.gens[g].mark
@@ -77,7 +77,7 @@ Inner = Callable[[Generator], Value]
 
 
 def derivative(value: Value, state: int) -> Value:
-    """Return the derivative by a name, sums over the name's own bank left aside."""
+    """Return the derivative by a name, without that of sums over the name's own bank."""
     field = value.field
     bank = next(iter(field.gens[state].lanes), ("", 0))[0]
 
@@ -90,7 +90,7 @@ def derivative(value: Value, state: int) -> Value:
 
 
 def across(value: Value, state: int, lane: int) -> Value:
-    """Return the derivative by a name of a lane, by way of sums over its bank alone."""
+    """Return the derivative by a name of a lane of the sums over its bank only."""
     field = value.field
     bank = next(iter(field.gens[state].lanes))[0]
 
@@ -103,7 +103,7 @@ def across(value: Value, state: int, lane: int) -> Value:
 
 
 def _chain(value: Value, state: int, own: Value, of_sum: Inner) -> Value:
-    """Return a derivative, given that of the name itself and that of sums over lanes."""
+    """Return a derivative by the chain rule, given those of the name itself and of sums."""
     field, parts = value.field, list[Value]()
     if state not in value.parts:
         return field.zero

@@ -5,10 +5,10 @@ Input: an `IPHS`.  Output: a `Proved`, the rows of `integrands` and `stage`.  A 
     K = J0 Ebar - sum_k b_k W_k(zbar_k) + g u,    in a body's row heats/Tbar + exchanges
 
 at the state x = X(c) and the means Ebar of co-states over the step.  That is the proved system's
-right side with co-states as names.  Those affine in their state are functions of x, for their means
-are those values; the others are names that x says nothing of: what holds for all values of them
-holds for their means.  A stage is given g = Ebar + c, c free of the state: means of functions of
-the state, each a co-state and such a c.
+right side with co-states as names.  A co-state that is affine in its state has its value at x as
+its mean, so it is a function of x.  The others are names independent of x: what holds for all their
+values holds for their means.  A stage is given g = Ebar + c, the means of co-states plus terms c
+that do not depend on the state.
 """
 
 from collections.abc import Iterator
@@ -65,7 +65,7 @@ def proved_step(iphs: IPHS) -> Proved:
 
 
 def _means(read: SystemReader) -> Iterator[tuple[str, tuple[Slot, Value]]]:
-    """Yield each co-state that is not affine in its state: the slot of its mean, and its value."""
+    """Yield co-states that are not affine in their state, slots of their means, their values."""
     iphs, known = read.iphs, dict(read.iphs.costates)
     for slot, (_, port) in zip(iphs.system.states, iphs.circuit.of(Storage, Body), strict=True):
         costate, law = costate_name(port), rename(port.law, {port.letter: port.state})
@@ -79,7 +79,7 @@ def _means(read: SystemReader) -> Iterator[tuple[str, tuple[Slot, Value]]]:
 
 
 def _is_affine(value: Value, state: int) -> bool:
-    """Return whether each term has the state once, as a factor, or is free of it."""
+    """Return whether each term has the state as a simple factor, or does not depend on it."""
     gens = value.field.gens
     return all(
         state not in gens[g].parts or (g, e) == (state, 1) for mono in value.terms for g, e in mono
@@ -87,7 +87,7 @@ def _is_affine(value: Value, state: int) -> bool:
 
 
 def _ledger(read: SystemReader, listed: dict[str, list[Value]]) -> Iterator[tuple[Slot, Value]]:
-    """Yield what the ledger takes of a stage."""
+    """Yield the rows of the ledger: powers, heats, entropy produced and brought."""
     system = read.iphs.system
     parts = {"power of": "supply", "heat of": "heat", "entropy produced by": "entropy_production"}
     for words, function in parts.items():

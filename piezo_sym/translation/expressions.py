@@ -19,7 +19,7 @@ from typing import final
 
 from piezo_sym.translation.field import Field, NotShownError, Value
 from piezo_sym.translation.functions import call, power, size_of
-from piezo_sym.translation.signs import choose, compare, side_of
+from piezo_sym.translation.signs import choose, compare, on_path, side_of
 
 MOST_MAGNITUDE = 300
 MOST_WHOLE = 2**31 - 1
@@ -147,7 +147,7 @@ class Expressions:
         """Return one value where `test` is 1, and the other where it is 0."""
         field, parts = self.field, list[Read]()
         for chosen, node in ((test, then), (field.one - test, other)):
-            with field.on_path(field.path and field.path * chosen):
+            with on_path(field, field.path and field.path * chosen):
                 parts.append(self.any(node))
         if parts[0][1] == parts[1][1] == WHOLE:
             raise refused(then, "a choice of integers")

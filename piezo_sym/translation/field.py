@@ -1,17 +1,16 @@
 """Normal forms: sums of products of independent generators, with exact coefficients.
 
-Input: values of one `Field`.  Output: values in which equal expressions look equal.  Generators are
-names (of one lane of a bank, where they have one), functions of values (``exp``, ``log``, ``sin``,
-``cos``, ``tanh``), powers of sums that are no whole positive ones, sums over the lanes of a bank,
-letters, and signs.  A letter stands for one long value; it is spelled out where letters alone do
-not decide.  ``sign(d, s)`` is 1 where d has the sign s, else 0.  Of the signs of one value exactly
-one is 1, and each is its own square.
+Input: values of one `Field`.  Output: values of which equal ones have equal terms, as a rule.
+Generators are names (of one lane, if they belong to a bank), smooth functions of values, powers of
+sums with exponents other than positive integers, sums over the lanes of a bank, letters and signs.
+A letter abbreviates one long value; it is written out only if a comparison fails without.
+``sign(d, s)`` is 1 where d has the sign s, else 0; for each d exactly one of the three is 1, and
+the square of a sign is the sign itself.
 """
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -25,25 +24,25 @@ Lane = tuple[str, int]  # a bank, and which of its lanes: 0 a row's, 1 a column'
 MOST_WORK = 10_000_000
 MOST_BITS = 20_000
 MOST_POWER = 64
-#: A value that has a name in a text gets a letter here if it has more terms.
+#: A named value of a text becomes a letter if it has more terms than this.
 MOST_SPELLED = 6
 
 
 class NotShownError(Exception):
-    """A text is outside the grammar, or a value too large: nothing is said of it."""
+    """A text is outside the grammar, or a value is too large; nothing is known of it then."""
 
 
 @final
 @dataclass(frozen=True)
 class Generator:
-    """What a value is made of.
+    """A factor of the terms of values.
 
     Attributes
     ----------
     kind, arg : ``name``, or a function and its argument.
     mark : the name, bank and lane of a name; the side of a sign; the bank of a sum.
-    lanes : on which it depends.
-    parts : the generators in it, itself among them.
+    lanes : the lanes on which it depends.
+    parts : the generators in it, including itself.
     """
 
     kind: str
@@ -90,7 +89,7 @@ class Value:
         return self.field.times(self, other)
 
     def generators(self) -> set[int]:
-        """Return the generators that stand in it by themselves, not in functions alone."""
+        """Return the generators that are factors of its terms, not those inside functions only."""
         return {g for mono in self.terms for g, _ in mono}
 
     @cached_property
@@ -101,7 +100,7 @@ class Value:
 
     @cached_property
     def parts(self) -> frozenset[int]:
-        """The generators in the value, those in functions too."""
+        """The generators in the value, including those inside functions."""
         gens = self.field.gens
         return frozenset().union(*(gens[g].parts for g in self.generators()))
 
@@ -119,9 +118,9 @@ class Value:
 @final
 @dataclass(frozen=True)
 class Need:
-    """What has to hold where `path` is 1: `value` is not zero, not negative or positive.
+    """A condition on `value` where `path` is 1: nonzero, nonnegative or positive, as `kind` says.
 
-    `derived` says that derivatives need it, laws do not.
+    `derived` says that only derivatives need it.
     """
 
     kind: str
@@ -136,16 +135,16 @@ class Field:
 
     Attributes
     ----------
-    gens : the generators; a value has them by their number.
-    path : a product of signs, 1 where what is computed at the moment is chosen.
-    derived : whether it is a derivative.
-    needs : what divisions, roots and logarithms needed, where `path` is not None.
+    gens : the generators; values refer to them by index.
+    path : a product of signs, 1 where the branch being read is taken; None to collect no needs.
+    derived : whether a derivative is being read.
+    needs : the conditions of the divisions, roots and logarithms read so far.
     states : the names by which derivatives are taken.
     signed : generators that are positive (2) or not negative (1).
-    assumed : other values of which the domain says so.
-    signs, forms, factors, never, asked : what was found of signs and factors, see `signs`, `zero`.
-    unknown : how often a solver did not know.
-    work : how many products of two terms were made.
+    assumed : other values of which the domain says the same.
+    signs, forms, factors, never, asked : results kept by `signs`, `zero` and `possible`.
+    unknown : how often a solver gave no answer.
+    work : how many products of two terms were formed.
     """
 
     def __init__(self) -> None:
@@ -166,15 +165,6 @@ class Field:
         self.never: dict[tuple[Value, int, Value, int], bool] = {}
         self.asked: dict[frozenset[tuple[Value, int]], bool] = {}
         self.unknown = 0
-
-    @contextmanager
-    def on_path(self, path: Value | None) -> Iterator[None]:
-        """Note what is needed on a path alone, or not at all (None)."""
-        before, self.path = self.path, path
-        try:
-            yield
-        finally:
-            self.path = before
 
     # Generators
 
@@ -215,7 +205,7 @@ class Field:
         return value if chosen else self.generator("letter", value)
 
     def raised(self, g: int, exponent: Exponent) -> Value:
-        """Return a power of a generator, not yet in normal form where that is a sum's."""
+        """Return a power of a generator; for a power of a sum it is not yet in normal form."""
         return Value(self, {((g, exponent),): 1})
 
     # Sums and products
@@ -249,7 +239,7 @@ class Field:
         return self.total([Value(self, terms), *more])
 
     def _join(self, m: Mono, n: Mono) -> tuple[Mono, Value | None] | None:
-        """Return a product of two products: one product, times a sum if a power of it is whole."""
+        """Return a product of monomials: one monomial, and a sum to multiply it with, or none."""
         found = dict(m)
         for g, e in n:
             found[g] = found.get(g, 0) + e
@@ -272,7 +262,7 @@ class Field:
         return tuple(sorted(found.items())), extra
 
     def whole_power(self, base: Value, n: int) -> Value:
-        """Return a power with an exponent >= 0, or that of a number."""
+        """Return an integer power; a negative one of a number only."""
         if abs(n) > MOST_POWER and (len(base.terms) != 1 or base.constant not in {None, 1, -1}):
             raise NotShownError("a power is too large")
         if len(base.terms) == 1:
@@ -284,7 +274,7 @@ class Field:
         return made
 
     def at(self, value: Value, sides: Mapping[Value, int]) -> Value:
-        """Return a value where some differences have given signs."""
+        """Return a value where some differences have the given signs."""
         terms: dict[Mono, Exponent] = {}
         for mono, c in value.terms.items():
             left = []

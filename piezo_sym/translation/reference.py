@@ -1,8 +1,8 @@
 """The proved system in normal form: what each function of a module has to be.
 
-Input: an `IPHS`.  Output: a `Proved`, the rows of every function and the entries of the Jacobian as
-values, and what the laws themselves divide by.  The Jacobian is the derivative of the proved rates,
-made here; that the co-states are the gradient of the energy is checked here.
+Input: an `IPHS`.  Output: a `Proved`: the rows of every function and the entries of the Jacobian as
+values, and what the laws divide by.  The Jacobian is derived here from the proved rates, and the
+co-states are checked here to be the gradient of the energy.
 
 A parameter of a bank is one number per lane, as it is in printed modules; the proofs close on named
 co-states and laws of one lane, so they hold for lanes that differ.
@@ -21,6 +21,7 @@ from piezo_sym.spec.tables import conditions
 from piezo_sym.translation.change import across, derivative
 from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import ALL, LEAST, SAME, Key, Proved
+from piezo_sym.translation.signs import on_path
 from piezo_sym.translation.system_reader import SystemReader
 from piezo_sym.translation.zero import is_zero
 
@@ -52,7 +53,7 @@ def _slots(iphs: IPHS) -> dict[str, tuple[Slot, ...]]:
 
 
 def of_system(read: SystemReader) -> dict[str, list[Value]]:
-    """Return the rows of what a system does at a state: rates, ports, processes."""
+    """Return the rows of rates, outputs, supplied power, heats and entropy production."""
     system = read.iphs.system
     outputs, inputs = read.rows(system.y), read.rows(system.u)
     heats = zip(read.rows(system.W), read.rows(system.drive), strict=True)
@@ -67,7 +68,7 @@ def of_system(read: SystemReader) -> dict[str, list[Value]]:
 
 
 def margins_of(values: Sequence[Value]) -> Iterator[tuple[Key, Value]]:
-    """Yield rows of margins, least over lanes where they have some."""
+    """Yield rows of margins; that of a bank is the least over its lanes."""
     for n, margin in enumerate(values):
         yield ("margins", n, *([LEAST] if margin.lanes else [])), margin
 
@@ -91,7 +92,7 @@ def _values(
         for lane, part in enumerate(parts):
             place = [lane] if len(parts) > 1 else []
             yield ("initial_state", n, *place), _start(read, part)
-    with field.on_path(None):
+    with on_path(field, None):
         yield from _jacobian(read, slots["rhs"], listed["rhs"])
 
 
@@ -102,7 +103,7 @@ def _start(read: SystemReader, part: str | float) -> Value:
 
 
 def _energy(read: SystemReader) -> Value:
-    """Return the energy; its gradient is the co-states."""
+    """Return the energy, its gradient checked to be the co-states."""
     iphs, system, parts = read.iphs, read.iphs.system, list[Value]()
     stored = [iphs.symbols.law(law, {}) for law in iphs.energies]
     _tie(iphs, "U", zip(stored, system.states, strict=True), iphs.U)
@@ -116,7 +117,7 @@ def _energy(read: SystemReader) -> Value:
 
 
 def _tie(iphs: IPHS, name: str, terms: Iterator[tuple[sp.Expr, Slot]], shown: sp.Expr) -> None:
-    """Refuse a total that is shown and is not that of its terms, a bank's summed over lanes."""
+    """Raise `NotShownError` if a published total is not the sum of its terms over all lanes."""
     total = iphs.system.E.lanes.sum
     parts = (total(term, slot.bank) if slot.bank else term for term, slot in terms)
     if sp.expand(sp.Add(*parts) - shown) != 0:

@@ -71,6 +71,16 @@ def _sign_of_term(field: Field, mono: Mono, c: Exponent) -> int:
 
 
 @contextmanager
+def on_path(field: Field, path: Value | None) -> Iterator[None]:
+    """Set a field's path for a while."""
+    before, field.path = field.path, path
+    try:
+        yield
+    finally:
+        field.path = before
+
+
+@contextmanager
 def reading(field: Field, function: str) -> Iterator[None]:
     """Forget what the domain says of signs where a function is read that holds outside of it.
 
@@ -229,7 +239,7 @@ def lifted(function: Callable[[Value], Value], value: Value) -> Value:
     parts = []
     for side in (1, 0, -1):
         chosen = field.generator("sign", form, side)
-        with field.on_path(field.path and field.path * chosen):
+        with on_path(field, field.path and field.path * chosen):
             parts.append(chosen * lifted(function, field.at(value, {form: side})))
     return field.total(parts)
 

@@ -23,7 +23,7 @@ from piezo_sym.spec.elements.ports import Body
 from piezo_sym.spec.tables import conditions, lane_parameters, law_fields, states
 from piezo_sym.translation.field import Field, NotShownError, Value
 from piezo_sym.translation.functions import call, power, size_of
-from piezo_sym.translation.signs import assume, compare, reading
+from piezo_sym.translation.signs import assume, compare, on_path, reading
 
 _RELATIONS = {sp.Gt: ">", sp.Ge: ">=", sp.Lt: "<", sp.Le: "<=", sp.Eq: "==", sp.Ne: "!="}
 
@@ -127,7 +127,7 @@ class SystemReader:
         field = self.field
         if isinstance(expr, sp.Symbol):
             if expr not in self._known:
-                with field.on_path(field.one):
+                with on_path(field, field.one):
                     self._known[expr] = field.letter(self(self._definitions[expr]))
             return self._known[expr]
         if isinstance(expr, sp.Rational):
@@ -168,7 +168,7 @@ class SystemReader:
         field, left, parts = self.field, self.field.one, []
         for value, condition in expr.args:
             here = left * self._test(condition)
-            with field.on_path(field.path and field.path * here):
+            with on_path(field, field.path and field.path * here):
                 parts.append(here * self(value))
             left = left - here
         if left.terms:

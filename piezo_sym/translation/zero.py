@@ -1,8 +1,8 @@
 """Whether a value is zero for all values of its names, on every branch and every lane.
 
-Input: a `Value`.  Output: yes, or not shown.  Where signs choose, every choice that does not
-contradict itself is looked at; where a difference is zero, that is put in.  What stands under a
-fraction is multiplied out.  A sum over lanes is zero if its terms are.
+Input: a `Value`.  Output: whether it is shown to be zero.  A value with signs is examined for each
+combination of signs that is possible; where a difference is zero, a generator is eliminated by it.
+Denominators are multiplied out.  A sum over lanes is zero if its terms are.
 """
 
 from collections import Counter
@@ -15,7 +15,7 @@ from piezo_sym.translation.change import put
 from piezo_sym.translation.field import Field, NotShownError, Value
 from piezo_sym.translation.functions import power
 from piezo_sym.translation.possible import impossible
-from piezo_sym.translation.signs import has_sign, sides_of, sign, sign_of
+from piezo_sym.translation.signs import has_sign, on_path, sides_of, sign, sign_of
 
 MOST_CASES = 500
 MOST_STEPS = 12
@@ -24,7 +24,7 @@ Edges = frozenset[Value]
 
 
 def is_zero(value: Value, *, edges: Edges = frozenset()) -> bool:
-    """Return whether a value is shown to be zero, but where a difference of `edges` is zero."""
+    """Return whether a value is shown to be zero, except where a difference in `edges` is zero."""
     gens = value.field.gens
     letters = [g for g in value.parts if gens[g].kind == "letter"]
     try:
@@ -34,22 +34,23 @@ def is_zero(value: Value, *, edges: Edges = frozenset()) -> bool:
         if not letters:
             raise
     spelled = (_spelled(value, letter) for letter in sorted(letters, reverse=True))
-    new = next((new for new in spelled if new != value), None)  # none: all stand in sums over lanes
+    new = next((new for new in spelled if new != value), None)  # none if all are in sums over lanes
     return new is not None and is_zero(new, edges=edges)
 
 
 def edges_of(value: Value) -> Edges:
-    """Return the differences of states whose signs choose in a value, which may bend there."""
+    """Return the differences with states whose signs occur in a value; it may have kinks there."""
     field = value.field
     found = (field.gens[g].arg for g in value.parts if field.gens[g].kind == "sign")
     return frozenset(d for d in found if d is not None and d.parts & field.states)
 
 
 def _spelled(value: Value, letter: int) -> Value:
-    """Return a value without a letter: by a name in what it stands for, or spelled out.
+    """Return a value without a letter.
 
-    What is linear in a state by a factor that is not zero becomes a new name, and that state what
-    it then has to be: an equation holds for all values of the one if for all of the other.
+    If the letter's value is linear in a state with a nonzero factor, a new name replaces the letter
+    and the state is expressed by it: as the name takes all values when the state does, the equation
+    holds for all values of the one if for all of the other.  Else the letter is written out.
     """
     field, arg = value.field, value.field.gens[letter].arg
     assert arg is not None
@@ -80,7 +81,7 @@ def _is_zero(value: Value, *, edges: Edges) -> bool:
 
 
 def cleared(value: Value) -> Value:
-    """Return a value times the sums that it is divided by."""
+    """Return a value times its denominators that are sums."""
     field = value.field
     while True:
         least: dict[int, Fraction] = {}
@@ -122,7 +123,7 @@ def _is_sum(field: Field, g: int) -> bool:
 
 
 def _groups(value: Value) -> list[tuple[Value, ...]]:
-    """Return the differences whose signs choose, those that stand in one product together."""
+    """Return the differences whose signs occur, grouped by products that share them."""
     field, groups = value.field, list[set[Value]]()
     for mono in value.terms:
         gens = (field.gens[g] for g, _ in mono)
@@ -135,7 +136,7 @@ def _groups(value: Value) -> list[tuple[Value, ...]]:
 
 
 def _by_cases(value: Value, groups: Sequence[tuple[Value, ...]], *, edges: Edges) -> bool:
-    """Return whether a value is zero, each group of choices looked at by itself."""
+    """Return whether a value is zero, with the signs of each group replaced by itself."""
     left = value
     for group in groups:
         here = _chosen_by(value, group)
@@ -147,7 +148,7 @@ def _by_cases(value: Value, groups: Sequence[tuple[Value, ...]], *, edges: Edges
 
 
 def _common(cases: list[Case]) -> Value | None:
-    """Return what a value is in every case that can be, or None if it is not the same in all."""
+    """Return the value that all possible cases share, or None if that is not shown."""
     while cases:
         (base, sides), *rest = cases
         wrong = [case for case in rest if _differs(base, case)]
@@ -162,7 +163,7 @@ def _common(cases: list[Case]) -> Value | None:
 def _cases(
     value: Value, sides: dict[Value, int], left: list[int], *, edges: Edges
 ) -> Iterator[Case]:
-    """Yield what a value is in each case that does not contradict itself, and the signs there."""
+    """Yield a value and the signs in each case without two contradictory signs."""
     field = value.field
     found = Counter(
         gen.arg for mono in value.terms for g, _ in mono if (gen := field.gens[g]).kind == "sign"
@@ -182,7 +183,7 @@ def _cases(
 
 
 def _never(first: Value, s: int, second: Value, t: int) -> bool:
-    """Return whether two differences cannot have these signs; what was found is kept."""
+    """Return whether two differences cannot have these signs; the result is kept."""
     field, key = first.field, (first, s, second, t)
     if key not in field.never:
         field.never[key] = _contradict(*key)
@@ -190,7 +191,7 @@ def _never(first: Value, s: int, second: Value, t: int) -> bool:
 
 
 def _chosen_by(value: Value, group: Sequence[Value]) -> Value:
-    """Return the terms in which differences of a group choose."""
+    """Return the terms that have signs of a group of differences."""
     gens = value.field.gens
     terms = {
         mono: c
@@ -201,7 +202,7 @@ def _chosen_by(value: Value, group: Sequence[Value]) -> Value:
 
 
 def _contradict(first: Value, s: int, second: Value, t: int) -> bool:
-    """Return whether two differences cannot have these signs: a sum of theirs has another one."""
+    """Return whether two differences cannot have these signs, as their sum has another one."""
     number = first.field.number
     for scale, turns in product(_scales(first, second), product((1, -1), repeat=2)):
         signs = turns[0] * s, turns[1] * t
@@ -224,7 +225,7 @@ def _scales(first: Value, second: Value) -> Iterator[Value]:
 
 
 def _differs(base: Value, case: Case) -> bool:
-    """Return whether a case that can be has not been shown to have the value `base`."""
+    """Return whether a case is possible and not shown to have the value `base`."""
     value, edges = case[0] - base, {d: side for d, side in case[1].items() if side == 0}
     others = {d: side for d, side in case[1].items() if side}
     while edges:
@@ -239,7 +240,7 @@ def _differs(base: Value, case: Case) -> bool:
 
 
 def _remainder(value: Value, d: Value) -> Value:
-    """Return a value where d = 0, powers put in of a generator that d has a power of."""
+    """Return the remainder of a value by d, in a generator whose leading factor in d is nonzero."""
     field, value = d.field, cleared(value)
     for g in sorted(d.generators()):
         powers = {mono: dict(mono).get(g, 0) for mono in d.terms}
@@ -280,5 +281,5 @@ def _solved(d: Value) -> dict[int, Value]:
 
 
 def _inverse(value: Value) -> Value:
-    with value.field.on_path(None):
+    with on_path(value.field, None):
         return power(value, Fraction(-1))
