@@ -6,8 +6,8 @@ temperature, stable or not, and the jumps where a stable part ends.
 
     drift(T, f) = 0        traced as a curve in (log f, log T), from every zero at the two ends
 
-A stable part ends in a fold, where it meets an unstable one. Who moves the frequency past it sees
-the temperature jump: it runs away to another branch, or falls back to one.
+A stable part ends in a fold, where it meets an unstable one.  When the frequency moves past a
+fold, the temperature jumps to another branch, up or down.
 """
 
 from collections.abc import Iterator, Mapping
@@ -17,29 +17,30 @@ from typing import final
 
 import numpy as np
 
-from piezo_sym.analysis.balance import grid, scan, settled, temperature_range, zeros
-from piezo_sym.analysis.curves import Point, folds, traced, with_folds
+from piezo_sym.analysis.balance import grid, scan, temperature_range, zeros
+from piezo_sym.analysis.curves import Curve, Point, folds, traced, with_folds
+from piezo_sym.analysis.newton import settled
 from piezo_sym.analysis.repeating import Driven, refuse_not_following
 from piezo_sym.analysis.stroboscope import Stroboscope, stroboscope
 from piezo_sym.run.checks import FloatArray, span_of
 from piezo_sym.run.module import GeneratedModule, checked
 from piezo_sym.run.parameters import LaneValue
 
-STEPS = 256  # a period
-SAME = 1e-3  # zeros nearer than this in log T are one
+STEPS = 256  # per period
+SAME = 1e-3  # zeros that differ by less in log T are one
 
 
 @final
 @dataclass(frozen=True)
 class Jump:
-    """Where a stable part of a curve ends: move the frequency on, and the temperature jumps.
+    """Where a stable part of a curve ends: past this frequency the temperature jumps.
 
     Attributes
     ----------
     frequency : at which it ends [Hz].
     upward : whether it ends as the frequency rises.
     temperature : mean of the body there [K].
-    lands : mean temperature of the stable state that it goes to [K], nan if none is known.
+    lands : mean temperature of the stable state that it jumps to [K], nan if none is known.
     """
 
     frequency: float
@@ -58,16 +59,16 @@ class Branches:
 
     Attributes
     ----------
-    curves : each a tuple of points in order, with `.frequency` [Hz], `.stable` and `.state`.
+    curves : each a tuple of `Point` in order: `.frequency` [Hz], `.stable`, `.state`.
     jumps : a `Jump` where a stable part ends: `.frequency` [Hz], `.upward`, `.temperature` and
         `.lands` [K].
     """
 
-    curves: tuple[tuple[Point, ...], ...]
+    curves: tuple[Curve, ...]
     jumps: tuple[Jump, ...]
 
     def __repr__(self) -> str:
-        """Return how many curves and points there are, and where it jumps."""
+        """Return the numbers of curves and points, and the frequencies of jumps."""
         points = sum(len(curve) for curve in self.curves)
         jumps = ", ".join(f"{jump.frequency:.6g} Hz" for jump in self.jumps) or "none"
         return f"Branches(curves: {len(self.curves)}, points: {points}, jumps: {jumps})"
@@ -81,7 +82,7 @@ class Branches:
         """
         lands = {jump.frequency: jump.lands for jump in self.jumps}
         rows = [
-            (n, *p.described(), _nan_elsewhere(lands.get(p.frequency)))
+            (n, *p.described(), _jumps_to(lands.get(p.frequency)))
             for n, curve in enumerate(self.curves)
             for p in curve
         ]
@@ -89,8 +90,8 @@ class Branches:
         return dict(zip(COLUMNS, columns, strict=True))
 
 
-def _nan_elsewhere(lands: float | None) -> float:
-    """Return where a fold lands, inf if it is not known; nan for what is no fold."""
+def _jumps_to(lands: float | None) -> float:
+    """Return the entry of a table: nan for a point that is no fold, inf if `lands` is unknown."""
     if lands is None:
         return np.nan
     return np.inf if np.isnan(lands) else lands
@@ -133,8 +134,8 @@ def steady_branches(
     low, high = span_of(frequencies, "steady_branches.frequencies", "Hz")
     refuse_not_following(checked(module), inputs, low, high)
     strobe = stroboscope(module, inputs, low, parameters, initial, STEPS)
-    span = np.log([[low, high], temperature_range(strobe, low, temperatures)])
-    curves: list[tuple[Point, ...]] = []
+    span = np.log([[low, high], temperature_range(strobe, temperatures)])
+    curves: list[Curve] = []
     ends: list[tuple[int, Point, bool]] = []
     for curve in _curves(strobe, span):
         found = tuple(folds(strobe, curve))
@@ -144,30 +145,28 @@ def steady_branches(
     return Branches(whole, tuple(_jump(strobe, whole, point, up) for _, point, up in ends))
 
 
-def _curves(strobe: Stroboscope, span: FloatArray) -> Iterator[tuple[Point, ...]]:
+def _curves(strobe: Stroboscope, span: FloatArray) -> Iterator[Curve]:
     """Yield curves from the zeros at both ends of the range of frequencies, each once."""
     reached: list[FloatArray] = []
     for log_f, way in ((span[0, 0], 1.0), (span[0, 1], -1.0)):
-        f = float(np.exp(log_f))
+        end = strobe.at(float(np.exp(log_f)))
         asked = grid(*np.exp(span[1]).tolist())
-        known = [state for state in scan(strobe, f, asked, strobe.start(f)) if state]
-        for zero in zeros(strobe, f, known):
+        known = [state for state in scan(end, asked, end.start) if state]
+        for zero in zeros(end, known):
             place = np.array([log_f, np.log(zero.temperature)])
             if any(np.max(np.abs(place - other)) < SAME for other in reached):
                 continue
-            curve = tuple(traced(strobe, place, zero, way, span))
+            curve = tuple(traced(end, place, zero, way, span))
             if not curve:
                 continue
             reached += [curve[0].place, curve[-1].place]
             yield curve
 
 
-def _jump(
-    strobe: Stroboscope, curves: tuple[tuple[Point, ...], ...], fold: Point, upward: bool
-) -> Jump:
-    """Return where the temperature goes from a fold: the drift just beyond it says which way."""
+def _jump(strobe: Stroboscope, curves: tuple[Curve, ...], fold: Point, upward: bool) -> Jump:
+    """Return the jump at a fold: the sign of the drift just past it gives the direction."""
     beyond = fold.frequency * (1.01 if upward else 0.99)
-    heats = settled(strobe, beyond, fold.state.temperature, fold.state.x, None).drift > 0
+    heats = settled(strobe.at(beyond), fold.state.temperature, fold.state.x).drift > 0
     log_f = float(np.log(beyond))
     found = [p for p in _crossings(curves, log_f) if (p[0] > fold.place[1]) == heats]
     found.sort(reverse=not heats)
@@ -175,10 +174,8 @@ def _jump(
     return Jump(fold.frequency, upward, fold.state.period.mean, float(lands))
 
 
-def _crossings(
-    curves: tuple[tuple[Point, ...], ...], log_f: float
-) -> Iterator[tuple[float, float]]:
-    """Yield log T at t = 0 and mean T of the stable states at a frequency, between points."""
+def _crossings(curves: tuple[Curve, ...], log_f: float) -> Iterator[tuple[float, float]]:
+    """Yield log T at t = 0 and mean T of the stable states at a frequency, interpolated."""
     for curve in curves:
         for a, b in pairwise(curve):
             if a.stable and b.stable and (a.place[0] - log_f) * (b.place[0] - log_f) <= 0:

@@ -4,27 +4,28 @@ Input: a `Stroboscope`, a zero of its drift, the ranges of both axes.  Output: p
 
     drift(T, f) = 0        in (log f, log T)
 
-A step goes along the last chord, and then across it, by secants, to where the drift is zero again;
-so a curve is followed around its folds, where it is vertical over the frequency.
+A step goes along the last chord, then by the secant method at a right angle to it, to where the
+drift is zero again.  So a curve is followed around its folds, where it is vertical over f.
 """
 
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import final
+from typing import TypeAlias, final
 
 import numpy as np
 
-from piezo_sym.analysis.balance import Settled, SteadyWarning, settled
+from piezo_sym.analysis.balance import SteadyWarning
+from piezo_sym.analysis.newton import Settled, settled
 from piezo_sym.analysis.stroboscope import Stroboscope
 from piezo_sym.errors import RunError
 from piezo_sym.run.checks import FloatArray
 
 LONGEST, SHORTEST = 0.12, 1e-4  # step along a curve, in log f and log T
-SHARP = 0.2  # rad: a curve may turn so much in a step
+MOST_TURN = 0.2  # rad, of a curve in one step
 MOST_POINTS = 2000
-NEARBY = 1e-5  # in log T: a difference that a derivative is taken over
-FIRST = 1e-4  # move of a secant that knows no steepness
+DIFFERENCE = 1e-5  # in log T, for a difference quotient
+FIRST = 1e-4  # step of the secant method where the slope is unknown
 EXACT = 1e-8  # in log f and log T
 MOST_SECANTS = 20
 
@@ -36,8 +37,8 @@ class Point:
 
     frequency: float
     state: Settled
-    rising: float  # drift per second over log T: stable if negative
-    steepness: float  # of the drift per second, along the line on which the point was found
+    rising: float  # derivative of the drift per second by log T: stable if negative
+    steepness: float  # the same along the line on which the point was found
     place: FloatArray  # (log f, log T)
 
     @property
@@ -51,10 +52,19 @@ class Point:
         return self.frequency, T.mean, T.coldest, T.hottest, float(self.stable)
 
 
+Curve: TypeAlias = tuple[Point, ...]
+
+
 def traced(
     strobe: Stroboscope, place: FloatArray, zero: Settled, way: float, span: FloatArray
 ) -> Iterator[Point]:
-    """Yield the points of the curve through a zero, to where it leaves the ranges."""
+    """Yield the points of the curve from a zero on, to where it leaves the ranges.
+
+    Parameters
+    ----------
+    way : 1 or -1: whether the frequency rises or falls at first.
+    span : least and greatest log f, and log T: shape (2, 2).
+    """
     tangent, known = np.array([way, 0.0]), False
     try:
         point = _corrected(strobe, place, np.array([0.0, 1.0]), zero)
@@ -73,20 +83,20 @@ def traced(
         ahead = new.place - point.place
         step = float(np.hypot(*ahead))
         turn = float(np.arccos(np.clip(ahead @ tangent / step, -1, 1)))
-        if known and turn > SHARP and length > SHORTEST:
+        if known and turn > MOST_TURN and length > SHORTEST:
             length /= 2
             continue
         tangent, point, known = ahead / step, new, True
         yield point
         if not np.all((span[:, 0] + EXACT < new.place) & (new.place < span[:, 1] - EXACT)):
             return
-        length = min(LONGEST, length * (1.5 if turn < SHARP / 3 else 1.0))
+        length = min(LONGEST, length * (1.5 if turn < MOST_TURN / 3 else 1.0))
 
 
 def _next(
     strobe: Stroboscope, point: Point, tangent: FloatArray, length: float, span: FloatArray
 ) -> Point | None:
-    """Return the next point, at most `length` on; on the edge, if it would leave the range."""
+    """Return the next point, about `length` on or where f leaves its range; None: none is found."""
     guess = point.place + length * tangent
     across, hint = np.array([-tangent[1], tangent[0]]), point.steepness
     if not span[0, 0] <= guess[0] <= span[0, 1]:
@@ -113,50 +123,46 @@ def _corrected(
 
     Parameters
     ----------
-    steepness : of the drift along the line, if it is known from a point nearby.
+    steepness : derivative of the drift per second along the line, if known from a point nearby.
 
     Raises
     ------
-    RunError : the secants do not meet one, or nothing settles on the way.
+    RunError : the secant method does not converge, or nothing settles on the way.
     """
     s, before = 0.0, (0.0, 0.0)
     for n in range(MOST_SECANTS):
         place = guess + s * across
-        f = float(np.exp(place[0]))
-        state = settled(strobe, f, float(np.exp(place[1])), near.x, near.slope)
-        rate = state.drift * f
+        strobe = strobe.at(float(np.exp(place[0])))
+        state = settled(strobe, float(np.exp(place[1])), near.x, near.slope)
+        rate = state.drift * strobe.frequency
         if n:
             steepness = (rate - before[1]) / (s - before[0])
         move = -rate / steepness if steepness else FIRST
         if (n and abs(move) <= EXACT) or rate == 0:
-            return _point(strobe, f, state, place, steepness)
+            return _point(strobe, state, place, steepness)
         before, near = (s, rate), state
         s += float(np.clip(move, -LONGEST, LONGEST)) or FIRST
-    what = f"no steady state near {f:g} Hz and {near.temperature:.6g} K"
-    raise RunError(what, f"model '{strobe.module.NAME}'")
+    what = f"no steady state near {strobe.frequency:g} Hz and {near.temperature:.6g} K"
+    raise RunError(what, strobe.where)
 
 
-def _point(
-    strobe: Stroboscope, f: float, state: Settled, place: FloatArray, steepness: float
-) -> Point:
-    """Return a zero of the drift as a point, with how the drift changes with the temperature."""
-    T = state.temperature * (1 + NEARBY)
-    beside = settled(strobe, f, T, state.x, state.slope)
-    rising = (beside.drift - state.drift) * f / NEARBY
-    return Point(f, state, rising, steepness, place)
+def _point(strobe: Stroboscope, state: Settled, place: FloatArray, steepness: float) -> Point:
+    """Return a zero of the drift as a point, with the derivative of the drift by temperature."""
+    T = state.temperature * (1 + DIFFERENCE)
+    beside = settled(strobe, T, state.x, state.slope)
+    rising = (beside.drift - state.drift) * strobe.frequency / DIFFERENCE
+    return Point(strobe.frequency, state, rising, steepness, place)
 
 
-def folds(strobe: Stroboscope, curve: tuple[Point, ...]) -> Iterator[tuple[int, Point, bool]]:
-    """Yield each fold, the number of the point nearest to it, and whether it is the highest f."""
+def folds(strobe: Stroboscope, curve: Curve) -> Iterator[tuple[int, Point, bool]]:
+    """Yield the index of the point nearest to a fold, the fold, and whether f is highest there."""
     for n in range(1, len(curve) - 1):
         a, b, c = curve[n - 1 : n + 2]
         if (b.place[0] - a.place[0]) * (c.place[0] - b.place[0]) < 0:
             yield n, _fold(strobe, a, b, c), bool(b.place[0] > a.place[0])
 
 
-def with_folds(
-    curve: tuple[Point, ...], folds: tuple[tuple[int, Point, bool], ...]
-) -> tuple[Point, ...]:
+def with_folds(curve: Curve, folds: tuple[tuple[int, Point, bool], ...]) -> Curve:
     """Return a curve with its folds in place of the points nearest to them."""
     at = {n: point for n, point, _ in folds}
     return tuple(at.get(n, point) for n, point in enumerate(curve))
@@ -173,7 +179,7 @@ def _fold(strobe: Stroboscope, a: Point, b: Point, c: Point) -> Point:
             break
         guess = b.place + np.array([np.polyval(curve, top), top])
         new = _corrected(strobe, guess, np.array([1.0, 0.0]), b.state)
-        if (new.place[0] - b.place[0]) * curve[0] > 0:  # no further out than b
+        if (new.place[0] - b.place[0]) * curve[0] > 0:  # not beyond b
             break
         a, c = (b, c) if (new.place[1] - b.place[1]) * (c.place[1] - b.place[1]) > 0 else (a, b)
         b = new

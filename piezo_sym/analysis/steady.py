@@ -1,15 +1,15 @@
-"""Periodic steady states: where a driven model ends up when its body no longer drifts.
+"""Periodic steady states of a driven model: states that repeat after one period of the inputs.
 
-Input: a generated module with one body, inputs that repeat, their frequency.  Output: a
-`SteadyState`, or all of them: one period of it as a Dataset, the body's temperature, the heat of a
-cycle, by how much the states fail to repeat, and whether it is stable.
+Input: a generated module with one body, periodic inputs, their frequency.  Output: a `SteadyState`,
+or all of them: one period as a Dataset, the body's temperature, the heat of a period, the error of
+repetition, and whether it is stable.
 
     P(x; f) = x        P: the state to that one period later; stable: |eigenvalues of dP/dx| <= 1
 
-Found in two steps: zeros of the heat balance over a range of temperatures (`balance`), then
-Newton's method on the whole state, with twice as many steps a period until it no longer moves.
-A drive can have several steady states: in ``piezo_stack`` at 50 Hz one at 354 K, one at 4750 K, and
-an unstable one between them, from which the temperature runs away one way or the other.
+They are found in two stages: zeros of the heat balance over a range of temperatures (`balance`),
+then Newton's method on the whole state, with the steps per period doubled until it converges.
+There can be several steady states: ``piezo_stack`` at 50 Hz has one at 354 K, one at 4750 K, and an
+unstable one between them, from which the temperature goes to one of the others.
 """
 
 from __future__ import annotations
@@ -22,7 +22,6 @@ from typing import TYPE_CHECKING, final
 import numpy as np
 
 from piezo_sym.analysis.balance import (
-    Settled,
     SteadyWarning,
     between,
     grid,
@@ -30,8 +29,8 @@ from piezo_sym.analysis.balance import (
     temperature_range,
     zeros,
 )
-from piezo_sym.analysis.fixed import closed, whole_slope
-from piezo_sym.analysis.repeating import moves
+from piezo_sym.analysis.newton import Settled, fixed_point, jacobian
+from piezo_sym.analysis.repeating import any_varies
 from piezo_sym.analysis.stroboscope import Stroboscope, stroboscope
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.checks import number, positive
@@ -45,10 +44,11 @@ if TYPE_CHECKING:
     from piezo_sym.run.parameters import LaneValue
 
 RTOL = 1e-6
-STEPS, MOST_STEPS = 256, 1 << 16  # a period
+STEPS, MOST_STEPS = 256, 1 << 16  # per period
 SAMPLES = 400  # of the orbit returned
 ORBIT_RTOL = 1e-8
-OPEN, MOST_OPEN = 100.0, 0.1  # times the accuracy, of the sizes: what repeats no better is none
+#: Largest residual of a steady state: times its accuracy, and in all.
+RESIDUAL, MOST_RESIDUAL = 100.0, 0.1
 MARGIN = 1e-6  # of a multiplier over 1: the accuracy of its difference quotient
 STILL = "no input moves, and no state of rest is found"
 SIMULATE = "run simulate() until it rests, or give an input that repeats with the frequency"
@@ -64,9 +64,9 @@ class SteadyState:
     frequency : of the inputs [Hz].
     temperature, coldest, hottest : of the body, over a period: mean, least, greatest.
     loss : heat released by all processes in a period [J].
-    residual : by how much the states fail to repeat in `orbit`, as a part of their sizes.
+    residual : largest change of a state over `orbit`, as a part of its size.
     multiplier : the greatest magnitude of the eigenvalues of dP/dx.
-    stable : whether it is at most 1; a motion that neither grows nor decays is allowed.
+    stable : whether the multiplier is at most 1: motions that neither grow nor decay are allowed.
     initial : the state at t = 0, as `simulate(initial=...)` takes it.
     orbit : one period, 401 samples, as `simulate` returns it.
     """
@@ -83,7 +83,7 @@ class SteadyState:
     orbit: xarray.Dataset
 
     def __repr__(self) -> str:
-        """Return where it is, without its orbit."""
+        """Return temperature, frequency and stability, without the orbit."""
         kind = "stable" if self.stable else "unstable"
         return f"SteadyState({self.temperature:.6g} K at {self.frequency:g} Hz, {kind})"
 
@@ -101,7 +101,8 @@ def periodic_steady_state(
     """Return the periodic steady state that a run from its initial state goes to.
 
     That is the first zero of the heat balance in the direction in which the body's temperature
-    drifts at the start, all else settled. Where heat is not the slowest motion, compare with a run.
+    drifts at the start, once all else has settled. Where the temperature is not the slowest motion,
+    compare with a run.
 
     >>> from piezo_sym import periodic_steady_state, sine
     >>> periodic_steady_state("piezo_stack", inputs={"V_in": sine(100, 50)}, frequency=50)
@@ -110,30 +111,30 @@ def periodic_steady_state(
     Parameters
     ----------
     module : a generated module; `piezo_sym.periodic_steady_state` also takes a model, name, path.
-    inputs : as for `simulate`; they repeat with `frequency` [Hz], at t = 0 as at 1/frequency.
-        Of several inputs, it is the greatest frequency that they have in common. If none moves,
-        what is looked for is a state of rest; a run may be the better way to it.
+    inputs : as for `simulate`; they repeat with the period 1/frequency.
+    frequency : of the inputs [Hz]; of several, the greatest that they have in common. If no input
+        varies, a state of rest is searched for; `simulate` may find it sooner.
     parameters, initial : as for `simulate`.
-    temperatures : where to look [K]: least and greatest, of the body at t = 0; when left out, from
-        the module's own start (lower if the body cools there) to 20 times that.
+    temperatures : range to search [K]: least and greatest, of the body at t = 0; when left out,
+        from the module's own start (lower if the body cools there) to 20 times that.
     rtol : accuracy of the states at t = 0, as a part of their sizes, 1e-9 to 0.01.
 
     Raises
     ------
-    UsageError : an argument is wrong, an input does not repeat, or moves too fast for the period,
-        or there is not one body.
+    UsageError : an argument is wrong, an input does not repeat or varies too fast for the period,
+        or the model has not exactly one body.
     RunError : no steady state lies in the range; the message says which way the body drifts.
     """
-    strobe, f = _read(module, inputs, frequency, parameters, initial)
+    strobe = _strobe(module, inputs, frequency, parameters, initial)
     accuracy = _accuracy(rtol)
-    known = _known(strobe, f, temperatures)
+    known = _known(strobe, temperatures)
     try:
-        first = _first(strobe, f, known)
+        first = _first(strobe, known)
     except RunError as error:
-        if moves(strobe.module, inputs, f):
+        if any_varies(strobe.inputs):
             raise
         raise RunError(f"{STILL}: {error.what}", error.where, remedy=SIMULATE) from error
-    return _state(strobe, f, first, accuracy)
+    return _state(strobe, first, accuracy)
 
 
 def periodic_steady_states(
@@ -148,27 +149,27 @@ def periodic_steady_states(
 ) -> tuple[SteadyState, ...]:
     """Return all periodic steady states in a range of temperatures, stable or not, coldest first.
 
-    Two that are closer together than a hundredth of their temperature may be missed, and so may
-    states whose period is a multiple of the inputs'. Parameters and errors are as for
-    `periodic_steady_state`; none found is no error.
+    Two that differ by less than a hundredth of their temperature may be missed, and states whose
+    period is a multiple of the inputs' are not found. Parameters and errors are as for
+    `periodic_steady_state`, but to find none is no error.
     """
-    strobe, f = _read(module, inputs, frequency, parameters, initial)
+    strobe = _strobe(module, inputs, frequency, parameters, initial)
     accuracy = _accuracy(rtol)
-    found = zeros(strobe, f, _known(strobe, f, temperatures))
-    if not found and not moves(strobe.module, inputs, f):
+    found = zeros(strobe, _known(strobe, temperatures))
+    if not found and not any_varies(strobe.inputs):
         warnings.warn(f"{STILL}; {SIMULATE}", SteadyWarning, stacklevel=2)
-    return tuple(_state(strobe, f, zero, accuracy) for zero in found)
+    return tuple(_state(strobe, zero, accuracy) for zero in found)
 
 
-def _read(
+def _strobe(
     module: GeneratedModule,
     inputs: Mapping[str, InputValue],
     frequency: float,
     parameters: Mapping[str, LaneValue] | None,
     initial: Mapping[str, LaneValue] | None,
-) -> tuple[Stroboscope, float]:
+) -> Stroboscope:
     f = positive(frequency, "periodic_steady_state.frequency")
-    return stroboscope(module, lambda _: inputs, f, parameters, initial, STEPS), f
+    return stroboscope(module, lambda _: inputs, f, parameters, initial, STEPS)
 
 
 def _accuracy(rtol: object) -> float:
@@ -179,21 +180,19 @@ def _accuracy(rtol: object) -> float:
     return value
 
 
-def _known(
-    strobe: Stroboscope, frequency: float, given: tuple[float, float] | None
-) -> list[Settled]:
-    """Return settled states over the range, and below it while the body cools at its low end."""
-    low, high = temperature_range(strobe, frequency, given)
-    start = strobe.start(frequency)
+def _known(strobe: Stroboscope, given: tuple[float, float] | None) -> list[Settled]:
+    """Return settled states over the range; if none is given, also below while the body cools."""
+    low, high = temperature_range(strobe, given)
+    start = strobe.start
     asked = grid(low, high)
-    known = [state for state in scan(strobe, frequency, asked, start) if state]
+    known = [state for state in scan(strobe, asked, start) if state]
     if len(known) < len(asked):
         lost = sorted(set(asked) - {state.temperature for state in known})
         text = f"nothing settles at {len(lost)} of {len(asked)} temperatures, first {lost[0]:.6g} K"
         warnings.warn(f"{text}; steady states there may be missed", SteadyWarning, stacklevel=3)
     if given is None and known and known[0].temperature == low and known[0].drift < 0:
         below = [2 * low - T for T in grid(low, 1.99 * low)[1:]]
-        for state in scan(strobe, frequency, below, known[0].x):
+        for state in scan(strobe, below, known[0].x):
             if state is None:
                 break
             known.insert(0, state)
@@ -202,17 +201,17 @@ def _known(
     return known
 
 
-def _first(strobe: Stroboscope, frequency: float, known: list[Settled]) -> Settled:
-    """Return the zero that a run from the start goes to."""
-    T = strobe.temperature(strobe.start(frequency))
+def _first(strobe: Stroboscope, known: list[Settled]) -> Settled:
+    """Return the zero in the direction of the drift at the start."""
+    T = strobe.temperature(strobe.start)
     if not known:
         what = f"nothing settles at {T:.6g} K or anywhere in the range"
-        raise RunError(what, f"model '{strobe.module.NAME}'", remedy="look at the inputs")
+        raise RunError(what, strobe.where, remedy="look at the inputs")
     at = min(known, key=lambda state: abs(state.temperature - T))
     if at.drift == 0:
         return at
     heats = at.drift > 0
-    found = zeros(strobe, frequency, known)
+    found = zeros(strobe, known)
     side = [zero for zero in found if (zero.temperature > at.temperature) == heats]
     if not side:
         last = known[-1 if heats else 0]
@@ -222,52 +221,50 @@ def _first(strobe: Stroboscope, frequency: float, known: list[Settled]) -> Settl
         )
         remedy = "let an ambient cool the body, or " if heats else ""
         remedy += "give a wider range as 'temperatures'"
-        raise RunError(what, f"model '{strobe.module.NAME}' at {frequency:g} Hz", remedy=remedy)
+        raise RunError(what, f"{strobe.where} at {strobe.frequency:g} Hz", remedy=remedy)
     return side[0] if heats else side[-1]
 
 
-def _state(strobe: Stroboscope, frequency: float, zero: Settled, rtol: float) -> SteadyState:
+def _state(strobe: Stroboscope, zero: Settled, rtol: float) -> SteadyState:
     """Return the steady state at a zero of the heat balance, to the accuracy asked for."""
-    slope = whole_slope(strobe, frequency, zero.x)
+    slope = jacobian(strobe, zero.x)
     x, before = zero.x, None
-    while before is None or _moved(strobe, frequency, x, before) > rtol:
+    while before is None or _moved(strobe, x, before) > rtol:
         before = x
         strobe = replace(strobe, steps=2 * strobe.steps)
         if strobe.steps > MOST_STEPS:
             what = f"rtol {rtol:g} asks for more than {MOST_STEPS} steps a period"
-            raise RunError(what, f"model '{strobe.module.NAME}'", remedy="give a larger rtol")
-        x = closed(strobe, frequency, x, slope)
-    found = _described(strobe, frequency, x, slope)
-    _refuse_open(strobe, found, rtol)
+            raise RunError(what, strobe.where, remedy="give a larger rtol")
+        x = fixed_point(strobe, x, slope)
+    found = _described(strobe, x, slope)
+    _refuse_residual(strobe, found, rtol)
     return found
 
 
-def _refuse_open(strobe: Stroboscope, found: SteadyState, rtol: float) -> None:
-    """Raise `RunError` if a period with steps that adapt does not repeat: the fixed ones misled."""
-    allowed = min(MOST_OPEN, OPEN * max(rtol, ORBIT_RTOL))
+def _refuse_residual(strobe: Stroboscope, found: SteadyState, rtol: float) -> None:
+    """Raise `RunError` if a period with adaptive steps does not repeat: fixed ones were too few."""
+    allowed = min(MOST_RESIDUAL, RESIDUAL * max(rtol, ORBIT_RTOL))
     if found.residual > allowed * max(1.0, found.multiplier):
         what = f"the state found at {found.temperature:.6g} K does not repeat: it is off by "
         what += f"{found.residual:.1g} of its size after a period"
-        where = f"model '{strobe.module.NAME}' at {found.frequency:g} Hz"
+        where = f"{strobe.where} at {found.frequency:g} Hz"
         raise RunError(what, where, remedy="simulate until it settles")
 
 
-def _moved(strobe: Stroboscope, frequency: float, x: FloatArray, before: FloatArray) -> float:
-    """Return the error of x, of which the steps have been halved: a third of the last move."""
-    size = strobe.look(x, frequency).size
+def _moved(strobe: Stroboscope, x: FloatArray, before: FloatArray) -> float:
+    """Return the error of x after the steps have been halved: a third of the change, at order 2."""
+    size = strobe.look(x).size
     return float(np.max(np.abs(x - before) / size)) / 3
 
 
-def _described(
-    strobe: Stroboscope, frequency: float, x: FloatArray, slope: FloatArray
-) -> SteadyState:
-    orbit = strobe.run(x, frequency, times=SAMPLES + 1, rtol=ORBIT_RTOL)
+def _described(strobe: Stroboscope, x: FloatArray, slope: FloatArray) -> SteadyState:
+    orbit = strobe.run(x, times=SAMPLES + 1, rtol=ORBIT_RTOL)
     states, T = strobe.states_of(orbit), strobe.temperature_of(orbit)
-    size = strobe.look(x, frequency).size
+    size = strobe.look(x).size
     heats = [orbit[f"heat_{name}"] for name in {r.name: None for r in strobe.module.PROCESSES}]
     multiplier = float(np.max(np.abs(np.linalg.eigvals(slope))))
     return SteadyState(
-        frequency=frequency,
+        frequency=strobe.frequency,
         temperature=float((T[0] + T[-1]) / 2 + T[1:-1].sum()) / SAMPLES,
         coldest=float(T.min()),
         hottest=float(T.max()),

@@ -1,19 +1,20 @@
-"""The stroboscopic map: a model driven with a period, looked at once a period.
+"""The stroboscopic map of a periodically driven model: the state after one period of its inputs.
 
-Input: a generated module with one body, its inputs as a function of the frequency, parameters.
-Output: a `Stroboscope`, whose `look` maps the state x (n,) at t = 0 to that one period later.
+Input: a generated module with one body, its inputs as a function of the frequency, a frequency,
+parameters.  Output: a `Stroboscope`, whose `look` maps the state x (n,) at t = 0 to the state one
+period later.
 
     x' = P(x; f)        a periodic steady state is a fixed point of P
 
-The module runs with a fixed number of steps a period, so that P is smooth in x and f (a mesh that a
-tolerance chooses would make it jump), and both balances are exact.
+Every period has the same number of steps, so that P is smooth in x and f: with steps chosen by a
+tolerance it would have small jumps.  Both balances hold exactly.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
@@ -36,23 +37,24 @@ if TYPE_CHECKING:
 
     from piezo_sym.run.checks import FloatArray
     from piezo_sym.run.engine import Engine
+    from piezo_sym.run.inputs import Inputs
     from piezo_sym.run.module import GeneratedModule
     from piezo_sym.run.parameters import LaneValue
 
-LOOKS = 16  # times in a period at which sizes and the mean temperature are taken
+SAMPLES = 16  # of a period, for the sizes of states and the mean temperature
 FLOOR = 1e-15  # so that no size is 0
-GENTLE = 1.01  # a difference quotient may change the temperature by so much
-FINE = 1e-9  # rtol where nothing can compile
+LARGEST_RATIO = 1.01  # of two temperatures in a difference quotient
+LSODA_RTOL = 1e-9  # where there is no compiler
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class Period:
-    """One period from a state x (n,): the state after it, sizes (n,), the body's temperature."""
+    """One period from a state x (n,)."""
 
-    end: FloatArray
-    size: FloatArray
-    mean: float
+    end: FloatArray  # the state (n,) after it
+    size: FloatArray  # largest magnitude of each state (n,); for a bank that of all its lanes
+    mean: float  # temperature of the body [K]
     coldest: float
     hottest: float
 
@@ -60,65 +62,79 @@ class Period:
 @final
 @dataclass(frozen=True)
 class Stroboscope:
-    """A model, driven with a period, that is looked at once a period."""
+    """A periodically driven model, with one body, at one frequency of its inputs."""
 
     module: GeneratedModule
-    inputs: Driven
+    inputs_at: Driven
+    frequency: float  # Hz
     parameters: Mapping[str, LaneValue]
     initial: Mapping[str, LaneValue]
-    steps: int
+    steps: int  # per period
 
-    def look(self, x: FloatArray, frequency: float) -> Period:
-        """Return what one period does to the state x (n,) at t = 0.
+    @property
+    def period(self) -> float:
+        """Its length [s]."""
+        return 1 / self.frequency
+
+    @property
+    def where(self) -> str:
+        """The place that errors name."""
+        return f"model '{self.module.NAME}'"
+
+    def at(self, frequency: float) -> Stroboscope:
+        """Return the same model at a frequency [Hz]."""
+        return self if frequency == self.frequency else replace(self, frequency=frequency)
+
+    def look(self, x: FloatArray) -> Period:
+        """Return the period that begins with the state x (n,) at t = 0.
 
         Raises
         ------
         RunError : the run leaves the domain.
         """
-        states = self._period(x, frequency)
+        states = self._period(x)
         size = np.maximum(np.max(np.abs(states), axis=1), FLOOR)
         for part in rows(self.module.STATES, self.values):
             size[part] = np.max(size[part])
         T = np.asarray(self.module.temperatures(states, self.values))[0]
-        mean = float((T[0] + T[-1]) / 2 + T[1:-1].sum()) / LOOKS
+        mean = float((T[0] + T[-1]) / 2 + T[1:-1].sum()) / SAMPLES
         return Period(states[:, -1], size, mean, float(T.min()), float(T.max()))
 
-    def _period(self, x: FloatArray, frequency: float) -> FloatArray:
-        """Return the states (n, LOOKS + 1) of one period; in C, nothing else is made of the run."""
+    def _period(self, x: FloatArray) -> FloatArray:
+        """Return the states (n, SAMPLES + 1) of one period; no Dataset is built, for speed."""
         if self.engine is None:
-            return self.states_of(self.run(x, frequency, times=LOOKS + 1, rtol=FINE))
-        system, step = self._driven(frequency), FixedStep(1 / frequency / self.steps)
+            return self.states_of(self.run(x, times=SAMPLES + 1, rtol=LSODA_RTOL))
+        system, step = self._system, FixedStep(self.period / self.steps)
         check_start(system, x)
-        times = np.linspace(0.0, 1 / frequency, LOOKS + 1)
+        times = np.linspace(0.0, self.period, SAMPLES + 1)
         return fixed([system], self.engine, x[None], times, step).trajectory(0).states
 
     @cached_property
-    def _driven(self) -> Callable[[float], System]:
-        """The model with its inputs at a frequency, which are looked at once."""
+    def inputs(self) -> Inputs:
+        """The inputs over one period."""
+        return read_inputs(self.module, self.inputs_at(self.frequency), self.period)
 
-        @lru_cache(maxsize=8)
-        def at(frequency: float) -> System:
-            inputs = read_inputs(self.module, self.inputs(frequency), 1 / frequency)
-            system = System(self.module, self.values, inputs)
-            check_inputs(system, self.start(frequency), np.array([0.0, 1 / frequency]))
-            return system
+    @cached_property
+    def _system(self) -> System:
+        """The module with its parameters and inputs, checked."""
+        system = System(self.module, self.values, self.inputs)
+        check_inputs(system, self.start, np.array([0.0, self.period]))
+        return system
 
-        return at
-
-    def run(self, x: FloatArray, frequency: float, **accuracy: Any) -> xarray.Dataset:
-        """Return a run of one period from the state x (n,)."""
+    def run(self, x: FloatArray, **options: Any) -> xarray.Dataset:
+        """Return a run of one period from the state x (n,); options as for `simulate`."""
         return simulate(
             self.module,
-            inputs=self.inputs(frequency),
-            duration=1 / frequency,
+            inputs=self.inputs_at(self.frequency),
+            duration=self.period,
             parameters=self.parameters,
             initial=self.named(x),
             method=METHOD if self.engine else "LSODA",
-            **accuracy,
+            **options,
         )
 
     def states_of(self, run: xarray.Dataset) -> FloatArray:
-        """Return the states of a run (n, nt), banks spread."""
+        """Return the states of a run (n, nt), one row per lane of a bank."""
         values = [run[record.name].values.T for record in self.module.STATES]
         return np.concatenate([np.atleast_2d(value) for value in values])
 
@@ -134,7 +150,7 @@ class Stroboscope:
 
     @cached_property
     def engine(self) -> Engine | None:
-        """The module in C; where nothing compiles it, LSODA follows a period to 1e-9, slowly."""
+        """The module in C; None without a compiler: LSODA then runs each period, slowly."""
         return compiled(self.module)
 
     @cached_property
@@ -142,13 +158,14 @@ class Stroboscope:
         """The module's frozen `Parameters`."""
         return read_parameters(self.module, self.parameters)
 
-    def start(self, frequency: float) -> FloatArray:
-        """Return the state (n,) that a run starts from."""
-        u = read_inputs(self.module, self.inputs(frequency), 1 / frequency).segments[0].at(0.0)
+    @property
+    def start(self) -> FloatArray:
+        """The state (n,) that a run starts from."""
+        u = self.inputs.segments[0].at(0.0)
         return read_initial(self.module, self.values, u, self.initial)
 
     def temperature(self, x: FloatArray) -> float:
-        """Return the body's temperature in the state x (n,); inf far outside of what it can be."""
+        """Return the body's temperature in the state x (n,); inf where it overflows."""
         with np.errstate(over="ignore"):
             return float(self.module.temperatures(x, self.values)[0])
 
@@ -159,19 +176,19 @@ class Stroboscope:
             if self.temperature(_moved(x, row, 1e-3 * max(1.0, abs(x[row])))) != T:
                 return row
         what = f"the temperature of '{self.module.BODIES[0].name}' depends on no state"
-        raise RunError(what, f"model '{self.module.NAME}'", "a temperature that rises with entropy")
+        raise RunError(what, self.where, "a temperature that rises with entropy")
 
     def at_temperature(self, x: FloatArray, T: float) -> FloatArray:
-        """Return the state x (n,) with the body's entropy such that its temperature is T.
+        """Return the state x (n,) with the body's entropy changed so that its temperature is T.
 
-        By Newton's method on log T, which is linear in the entropy for an exponential law, and
-        proved to rise with it.
+        By Newton's method on log T: it is proved to increase with the entropy, and linear in it
+        for an exponential law.
         """
         found, row = x.copy(), self.entropy_row(x)
         step = 1e-3 * max(1.0, abs(x[row]))
         for _ in range(100):
             now = self.temperature(found)
-            while not self.temperature(_moved(found, row, step)) < now * GENTLE:
+            while not self.temperature(_moved(found, row, step)) < now * LARGEST_RATIO:
                 step /= 10
             ahead = self.temperature(_moved(found, row, step))
             move = np.log(T / now) * step / np.log(ahead / now)
@@ -182,7 +199,7 @@ class Stroboscope:
 
 
 def _moved(x: FloatArray, row: int, by: float) -> FloatArray:
-    """Return the state x (n,) with one row moved."""
+    """Return the state x (n,) with one row changed."""
     moved = x.copy()
     moved[row] += by
     return moved
@@ -190,13 +207,17 @@ def _moved(x: FloatArray, row: int, by: float) -> FloatArray:
 
 def stroboscope(
     module: GeneratedModule,
-    inputs: Driven,
+    inputs_at: Driven,
     frequency: float,
     parameters: Mapping[str, LaneValue] | None,
     initial: Mapping[str, LaneValue] | None,
     steps: int,
 ) -> Stroboscope:
-    """Return the stroboscope of a module, checked at one frequency; more steps if inputs need them.
+    """Return the stroboscope of a module, checked by a run of one period.
+
+    Parameters
+    ----------
+    steps : per period; doubled until they resolve the inputs.
 
     Raises
     ------
@@ -208,10 +229,10 @@ def stroboscope(
         what = f"model '{module.NAME}' has {len(bodies)} bodies"
         remedy = "simulate until it settles"
         raise UsageError(what, "periodic_steady_state.model", "a model with one body", remedy)
-    refuse_unperiodic(module, inputs(frequency), frequency)
-    steps = steps_needed(inputs(frequency), frequency, steps)
+    refuse_unperiodic(module, inputs_at(frequency), frequency)
+    steps = steps_needed(inputs_at(frequency), frequency, steps)
     known_keys(initial, [record.name for record in module.STATES], "periodic_steady_state.initial")
-    strobe = Stroboscope(module, inputs, parameters or {}, initial or {}, steps)
-    accuracy = {"step": 1 / frequency / steps} if strobe.engine else {"rtol": FINE}
-    strobe.run(strobe.start(frequency), frequency, times=2, **accuracy)  # its errors say why
+    strobe = Stroboscope(module, inputs_at, frequency, parameters or {}, initial or {}, steps)
+    accuracy = {"step": strobe.period / steps} if strobe.engine else {"rtol": LSODA_RTOL}
+    strobe.run(strobe.start, times=2, **accuracy)  # raises what a run says of these arguments
     return strobe

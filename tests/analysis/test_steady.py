@@ -16,7 +16,8 @@ from piezo_sym import (
     triangle,
 )
 from piezo_sym.analysis import loops, steady
-from piezo_sym.analysis.balance import SteadyWarning, settled
+from piezo_sym.analysis.balance import SteadyWarning
+from piezo_sym.analysis.newton import settled
 from piezo_sym.analysis.stroboscope import stroboscope
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.engine import EngineWarning
@@ -310,9 +311,9 @@ def test_equal_hysterons_settle_as_one():
 def test_the_settled_state_repeats_but_for_its_entropy(stack):
     drive = {"V_in": sine(100, 50)}
     strobe = stroboscope(stack, lambda _: drive, 50, None, None, 256)
-    found = settled(strobe, 50, 350.0, strobe.start(50), None)
+    found = settled(strobe, 350.0, strobe.start)
     assert strobe.temperature(found.x) == pytest.approx(350.0, rel=1e-12)
-    again = strobe.look(found.x, 50)
+    again = strobe.look(found.x)
     assert np.abs((again.end - found.x)[:-1] / again.size[:-1]).max() < 1e-7
     assert again.end[-1] - found.x[-1] == pytest.approx(found.drift, rel=1e-9)
 
