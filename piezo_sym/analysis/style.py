@@ -1,4 +1,4 @@
-"""How figures look: one column of a journal, legible there, told apart without colour.
+"""The look of figures: one journal column wide, legible in print, lines distinct without colour.
 
 Input: sizes, labels, data.  Output: Matplotlib figures without any global state, and their files: a
 PNG to look at, an SVG to print, a CSV of the data; the same bytes in every run.
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-#: Okabe and Ito's colours, told apart by colour-blind readers; dashes, for print in grey.
+#: Okabe and Ito's colours, which colour-blind readers can distinguish; dashes, for print in grey.
 COLOURS = ("#0072B2", "#009E73", "#E69F00", "#D55E00", "#CC79A7", "#56B4E9", "#000000", "#F0E442")
 DASHES: tuple[str | tuple[int, tuple[int, ...]], ...] = ("-", (0, (6, 2)), (0, (6, 2, 1, 2)), ":")
 COLUMN = 3.5  # inches
@@ -42,6 +42,22 @@ def dress(axes: Axes) -> None:
     axes.tick_params(labelsize=SMALL)
 
 
+def draw_lines(
+    axes: Axes,
+    x: xarray.DataArray,
+    y: xarray.DataArray,
+    over: str,
+    unit: str,
+    linewidth: float = 1.1,
+) -> None:
+    """Draw y over x, one line per value of the dimension `over`, with that value as its label."""
+    for value, colour, dash in zip(y[over].values, COLOURS, DASHES, strict=False):
+        along = x.sel({over: value}) if over in x.dims else x
+        line = y.sel({over: value})
+        label = f"{value:.0f} {unit}"
+        axes.plot(along, line, linestyle=dash, color=colour, linewidth=linewidth, label=label)
+
+
 def name_axes(axes: Axes, x: str, y: str) -> None:
     """Write what the axes show, with units."""
     axes.set_xlabel(x, fontsize=LABEL)
@@ -55,7 +71,7 @@ def legend(axes: Axes, title: str, **place: Any) -> None:
 
 
 def save(figure: Figure, data: xarray.Dataset, folder: Path, name: str) -> tuple[Path, ...]:
-    """Write a figure as PNG and SVG and its data as CSV, each in one step; return the paths.
+    """Write a figure as PNG and SVG and its data as CSV, each file atomically; return the paths.
 
     Raises
     ------
@@ -83,6 +99,6 @@ def _content(figure: Figure, data: xarray.Dataset, ending: str) -> bytes:
 
 
 def _with_unit(data: xarray.Dataset, name: str) -> str:
-    """Return the head of a column: its name, and its unit if it has one."""
+    """Return the header of a column: its name, and its unit if it has one."""
     unit = data[name].attrs.get("units", "1")
     return name if unit == "1" else f"{name} [{unit}]"

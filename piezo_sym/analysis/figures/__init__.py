@@ -1,7 +1,7 @@
-"""The figures of the paper's section 4, each in a file: its data, part by part, and its drawing.
+"""The figures of the paper's section 4: the data of their curves, and their drawing.
 
-Input: the generated module of ``piezo_stack``.  Output: an `xarray.Dataset` and a Matplotlib figure
-each.  The paper does not say when its loops are taken; each file says what is shown, and why.
+Input: the generated module of ``piezo_stack``.  Output: for each an `xarray.Dataset` and a
+Matplotlib figure.  Where the paper does not say what it shows, each file says what is shown here.
 
 What section 4 claims, and what the model with Table 1 gives (tests/analysis/test_claims.py):
 
@@ -41,10 +41,9 @@ Table 1    values within standard ranges          a = 10 C/m moves the tip 2 mm 
 
 from piezo_sym.analysis.figures.figure import PaperFigure, data_of
 from piezo_sym.analysis.figures.figure_2 import FIGURE_2
-from piezo_sym.analysis.figures.figure_3 import FIGURE_3
 from piezo_sym.analysis.figures.figure_4 import FIGURE_4
 from piezo_sym.analysis.figures.figure_5 import FIGURE_5
-from piezo_sym.analysis.figures.figure_6 import FIGURE_6
+from piezo_sym.analysis.figures.hysteresis import FIGURE_3, FIGURE_6
 
 FIGURES = (FIGURE_2, FIGURE_3, FIGURE_4, FIGURE_5, FIGURE_6)
 

@@ -1,4 +1,4 @@
-"""What a figure of the paper is: one run or search for each of its curves, joined, and drawn.
+"""A figure of the paper: the data of each of its curves, from a run or a search, and the drawing.
 
 Input: a generated module.  Output: `PaperFigure`, and its data as an `xarray.Dataset`.
 """
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from piezo_sym.run import GeneratedModule
 
 ZERO_CELSIUS = 273.15
+CELSIUS = "\N{DEGREE SIGN}C"
 #: Environment temperatures of the paper [degrees Celsius].
 TEMPERATURES = (25.0, 30.0, 35.0, 40.0)
 AMPLITUDE = 100.0  # of the voltage [V]
@@ -24,10 +25,9 @@ AMPLITUDE = 100.0  # of the voltage [V]
 @final
 @dataclass(frozen=True)
 class PaperFigure:
-    """A figure: what its curves differ in, the data of one curve, and the drawing of all."""
+    """A figure: the dimension over which its curves differ, the data of one, the drawing of all."""
 
     name: str
-    shows: str
     over: str  # dimension in which the curves differ
     values: tuple[float, ...]
     units: str

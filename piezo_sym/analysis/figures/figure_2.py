@@ -1,8 +1,8 @@
 """Figure 2: the voltage of a hysteron's resistance over its current, at several temperatures.
 
-Input: the generated module of ``piezo_stack``.  Output: `FIGURE_2`.  Values are those of the module
-(heat over current), not of the formula typed again; the paper does not name its temperatures, taken
-are those of the other figures.
+Input: the generated module of ``piezo_stack``.  Output: `FIGURE_2`.  Values are computed by the
+module, as heat over current, not by a second copy of the formula.  The paper does not name the
+temperatures; these are those of its other figures.
 
     w_T(i) = rho/(T - T_0) deadzone(i, i_0)
 """
@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from piezo_sym.analysis.figures.figure import TEMPERATURES, ZERO_CELSIUS, PaperFigure
-from piezo_sym.analysis.style import COLOURS, DASHES, column_figure, legend, name_axes
+from piezo_sym.analysis.figures.figure import CELSIUS, TEMPERATURES, ZERO_CELSIUS, PaperFigure
+from piezo_sym.analysis.style import column_figure, draw_lines, legend, name_axes
 
 if TYPE_CHECKING:
     import xarray
@@ -45,10 +45,7 @@ def curve(module: GeneratedModule, celsius: float) -> xarray.Dataset:
 def draw(data: xarray.Dataset) -> Figure:
     """Return Figure 2."""
     figure, axes = column_figure(2.5)
-    for celsius, colour, dash in zip(data["T"].values, COLOURS, DASHES, strict=False):
-        label = f"{celsius:.0f} \N{DEGREE SIGN}C"
-        line = data.w_T.sel(T=celsius)
-        axes.plot(data.i, line, linestyle=dash, color=colour, linewidth=1.2, label=label)
+    draw_lines(axes, data.i, data.w_T, "T", CELSIUS, linewidth=1.2)
     name_axes(axes, "current $i$ [A]", "voltage $w_T(i)$ [V]")
     legend(axes, "$T$", loc="upper left")
     return figure
@@ -61,6 +58,4 @@ def summary(data: xarray.Dataset) -> str:
     return "resistance outside the dead zone [ohm]: " + ", ".join(f"{s:.3g}" for s in slopes)
 
 
-FIGURE_2 = PaperFigure(
-    "figure_2", "the operator w_T", "T", TEMPERATURES, "degC", curve, draw, summary
-)
+FIGURE_2 = PaperFigure("figure_2", "T", TEMPERATURES, "degC", curve, draw, summary)

@@ -1,18 +1,19 @@
 """Figure 4: static temperature change of the body over the frequency, for four inductances.
 
 Input: the generated module of ``piezo_stack``.  Output: `FIGURE_4`: 100 V, 25 degrees Celsius.
-Shown is the mean temperature of the true periodic steady states: the stable ones as lines, unstable
-ones between them thin and dotted, and arrows where the temperature jumps.
+Shown is the mean temperature of the periodic steady states: stable ones as solid lines, unstable
+ones thin and dotted, and arrows where the temperature jumps.
 
-With Table 1's numbers the damper's heat grows with alpha^2, so with T^2, and the cooling with T
-only.  Up to 58 to 71 Hz, by the inductance, there is a cool steady state, whose temperature rises
-with the frequency, as the paper reports; past the fold none, and the temperature runs away until
-the inductance limits the current, at thousands of kelvin.  The hot state cools down as the
-frequency rises, since it follows the resonance of inductance and reflected capacitance.
+With Table 1's numbers the damper's heat grows with alpha^2, so with T^2, but the cooling only with
+T.  Up to a fold at 58 to 71 Hz, depending on the inductance, there is a cool steady state, whose
+temperature rises with the frequency, as the paper reports.  Past the fold there is none, and the
+temperature rises until the inductance limits the current, at thousands of kelvin.  The temperature
+of this hot state falls with the frequency, as it follows the resonance of inductance and reflected
+capacitance.
 
-Shaded are bodies above 400 K.  There the printed laws have left any sensible range: alpha = a T/T_0
-and rho/(T - T_0) are fits near room temperature; stacks on sale are rated to 350 to 420 K, and at
-the Curie temperature of soft PZT (420 to 620 K) the piezoelectric effect is gone.
+Temperatures above 400 K are shaded: there the laws are not valid.  alpha = a T/T_0 and
+rho/(T - T_0) are fits near room temperature; commercial stacks are rated to 350 to 420 K, and at
+the Curie temperature of soft PZT (420 to 620 K) the piezoelectric effect vanishes.
 """
 
 from __future__ import annotations
@@ -37,9 +38,9 @@ T_E = TEMPERATURES[0] + ZERO_CELSIUS  # K
 INDUCTANCES = (0.1, 0.5, 1.0, 5.0)  # mH
 FREQUENCIES = (10.0, 1000.0)  # Hz
 HOTTEST = 1e4  # K: where curves end
-SENSIBLE = 400.0  # K: above, the printed law means nothing
+VALID = 400.0  # K: above, the laws are not valid
 LEAST, MOST = 1.0, 1e4  # of the axis [K]
-MARKS = ("o", "s", "^", "D")  # dashes are taken: they say what is stable
+MARKS = ("o", "s", "^", "D")  # not dashes, which tell stable from unstable
 APART = 0.3  # marks on a line, as a part of the diagonal
 
 
@@ -67,7 +68,7 @@ def draw(data: xarray.Dataset) -> Figure:
     figure, axes = column_figure(3.1)
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.axhspan(SENSIBLE - T_E, MOST, color="0.9", linewidth=0, zorder=0)
+    axes.axhspan(VALID - T_E, MOST, color="0.9", linewidth=0, zorder=0)
     for n, (millihenry, colour) in enumerate(zip(data.L.values, COLOURS, strict=False)):
         one = data.sel(L=millihenry).dropna("point", subset=["frequency"])
         look = {"color": colour, "marker": MARKS[n], "markersize": 3}
@@ -78,7 +79,7 @@ def draw(data: xarray.Dataset) -> Figure:
             _draw_curve(axes, part, label, {**look, "markevery": apart})
             label = "_again"
         _draw_jumps(axes, one, look)
-    text = f"over {SENSIBLE:.0f} K: outside\nthe laws' range"
+    text = f"over {VALID:.0f} K: outside\nthe laws' range"
     axes.text(11, 130, text, fontsize=SMALL - 1, color="0.25", va="bottom")
     axes.set_xlim(*FREQUENCIES)
     axes.set_ylim(LEAST, MOST)
@@ -114,6 +115,4 @@ def summary(data: xarray.Dataset) -> str:
     return f"runaway from [Hz], by inductance: {shown}"
 
 
-FIGURE_4 = PaperFigure(
-    "figure_4", "steady temperature over frequency", "L", INDUCTANCES, "mH", curve, draw, summary
-)
+FIGURE_4 = PaperFigure("figure_4", "L", INDUCTANCES, "mH", curve, draw, summary)

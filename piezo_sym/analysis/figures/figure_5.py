@@ -5,16 +5,17 @@ at 50 V and at the environment's temperature.  In thermal equilibrium the tip re
 
     q = V a T_e/(T_0 k)
 
-The step leaves 0.3 J in the body, which warms it by 0.05 K; after the 10 ms shown the tip is
-therefore 2e-4 of its travel further out than that, and comes back with c_0/lam = 2.5 s.
+The step leaves 0.3 J in the body, which warms it by 0.05 K; after the 10 ms shown, the tip is
+therefore further out than that by 2e-4 of its travel, and returns with the time constant c_0/lam =
+2.5 s.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from piezo_sym.analysis.figures.figure import TEMPERATURES, ZERO_CELSIUS, PaperFigure
-from piezo_sym.analysis.style import COLOURS, DASHES, column_figure, legend, name_axes
+from piezo_sym.analysis.figures.figure import CELSIUS, TEMPERATURES, ZERO_CELSIUS, PaperFigure
+from piezo_sym.analysis.style import column_figure, draw_lines, legend, name_axes
 from piezo_sym.run import simulate, step
 from piezo_sym.run.runs import METHOD
 
@@ -60,11 +61,7 @@ def curve(module: GeneratedModule, celsius: float) -> xarray.Dataset:
 def draw(data: xarray.Dataset) -> Figure:
     """Return Figure 5, over the time since the step."""
     figure, axes = column_figure()
-    for celsius, colour, dash in zip(data.T_e.values, COLOURS, DASHES, strict=False):
-        one = data.sel(T_e=celsius)
-        label = f"{celsius:.0f} \N{DEGREE SIGN}C"
-        time = (one.time - AT) * 1e3
-        axes.plot(time, one.q * 1e3, linestyle=dash, color=colour, linewidth=1.1, label=label)
+    draw_lines(axes, (data.time - AT) * 1e3, data.q * 1e3, "T_e", CELSIUS)
     name_axes(axes, "time since the step [ms]", "displacement $q$ [mm]")
     axes.set_xlim(-AT * 1e3, (DURATION - AT) * 1e3)
     legend(axes, "$T_{\\mathrm{e}}$", loc="lower right")
@@ -77,6 +74,4 @@ def summary(data: xarray.Dataset) -> str:
     return f"displacement at the end [mm]: {ends}"
 
 
-FIGURE_5 = PaperFigure(
-    "figure_5", "step response", "T_e", TEMPERATURES, "degC", curve, draw, summary
-)
+FIGURE_5 = PaperFigure("figure_5", "T_e", TEMPERATURES, "degC", curve, draw, summary)

@@ -1,54 +1,124 @@
-"""Hysteresis of displacement over voltage, as in Figures 3 and 6: which loop is taken, and how.
+"""Figures 3 and 6: hysteresis of displacement over voltage, by temperature and by frequency.
 
-Input: the generated module, a frequency, a temperature of the environment.  Output: a run of ten
-periods; of these the last is drawn.
+Input: the generated module of ``piezo_stack``.  Output: `FIGURE_3`: 100 V, 100 Hz, at four
+temperatures of the environment; `FIGURE_6`: 100 V, 25 degrees Celsius, at four frequencies.  The
+runs of Figure 6 have different lengths, so their data lie over periods of the drive, not over time.
 
-The paper does not say when its loops are taken.  A periodic steady state it cannot be: with Table 1
-at 100 V and 100 Hz the only one has 2722 K (Figure 4).  The first period is no loop.  Shown is the
-tenth after a start at rest in thermal equilibrium: by then the start has died out (the tip returns
-to within 0.3 % of its travel) and the body has warmed by a few kelvin.
+The paper does not say when its loops are taken.  They cannot be periodic steady states: with Table
+1 at 100 V and 100 Hz the only one has 2722 K (Figure 4).  The first period is not closed.  Shown is
+the tenth after a start at rest in thermal equilibrium: by then the initial transient has decayed
+(the tip returns to within 0.3 % of its travel) and the body has warmed by a few kelvin.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from piezo_sym.analysis import loops
-from piezo_sym.analysis.figures.figure import AMPLITUDE
+from piezo_sym.analysis.figures.figure import (
+    AMPLITUDE,
+    CELSIUS,
+    TEMPERATURES,
+    ZERO_CELSIUS,
+    PaperFigure,
+)
+from piezo_sym.analysis.style import column_figure, draw_lines, legend, name_axes
 from piezo_sym.run import simulate, sine
 from piezo_sym.run.runs import METHOD
 
 if TYPE_CHECKING:
     import xarray
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
     from piezo_sym.run import GeneratedModule
 
+FREQUENCIES = (10.0, 50.0, 100.0, 200.0)  # Hz, of Figure 6
+FREQUENCY = 100.0  # Hz, of Figure 3
 PERIODS = 10
-SAMPLES_A_PERIOD = 400
+SAMPLES = 400  # per period
 RTOL = 1e-7
 
 
-def run(module: GeneratedModule, frequency: float, T_e: float) -> xarray.Dataset:
-    """Return voltage, displacement and temperature over ten periods."""
-    whole = simulate(
+def run(module: GeneratedModule, celsius: float, frequency: float = FREQUENCY) -> xarray.Dataset:
+    """Return voltage, displacement and temperature over ten periods.
+
+    Parameters
+    ----------
+    celsius : temperature of the environment [degrees Celsius].
+    frequency : of the voltage [Hz].
+    """
+    found = simulate(
         module,
-        inputs={"V_in": sine(AMPLITUDE, frequency), "T_e": T_e},
+        inputs={"V_in": sine(AMPLITUDE, frequency), "T_e": celsius + ZERO_CELSIUS},
         duration=PERIODS / frequency,
         rtol=RTOL,
-        times=PERIODS * SAMPLES_A_PERIOD + 1,
+        times=PERIODS * SAMPLES + 1,
         method=METHOD,
     )
-    return whole[["V_in", "q", "T_body"]]
+    return found[["V_in", "q", "T_body"]]
 
 
-def loop(data: xarray.Dataset) -> xarray.Dataset:
-    """Return the last period of a run."""
-    return data.isel(
-        {"time" if "time" in data.dims else "turn": slice(-SAMPLES_A_PERIOD - 1, None)}
-    )
+def over_turns(module: GeneratedModule, frequency: float) -> xarray.Dataset:
+    """Return the run at one frequency [Hz], over periods of the drive."""
+    found = run(module, TEMPERATURES[0], frequency)
+    turns = np.arange(found.sizes["time"]) / SAMPLES
+    moved = found.rename(time="turn").assign_coords(turn=("turn", turns))
+    moved.turn.attrs.update({"units": "1", "long_name": "turns of the drive"})
+    return moved
 
 
-def measured(data: xarray.Dataset) -> loops.Loop:
-    """Return the measures of displacement [m] over voltage [V] in the last period of a run."""
-    last = loop(data)
-    return loops.measure(last.V_in.values, last.q.values)
+def last_periods(data: xarray.Dataset) -> xarray.Dataset:
+    """Return the last period of each run."""
+    return data.isel({"time" if "time" in data.dims else "turn": slice(-SAMPLES - 1, None)})
+
+
+def measured(data: xarray.Dataset, over: str) -> list[loops.Loop]:
+    """Return the measures of displacement [m] over voltage [V] in the last period of each run."""
+    last = last_periods(data)
+    each = (last.sel({over: value}) for value in data[over].values)
+    return [loops.measure(one.V_in.values, one.q.values) for one in each]
+
+
+def _drawn(data: xarray.Dataset, over: str, unit: str) -> tuple[Figure, Axes]:
+    """Return a figure with the last period of each run, and its axes."""
+    figure, axes = column_figure()
+    last = last_periods(data)
+    draw_lines(axes, last.V_in, last.q * 1e3, over, unit)
+    name_axes(axes, "voltage $V_{\\mathrm{in}}$ [V]", "displacement $q$ [mm]")
+    return figure, axes
+
+
+def draw_3(data: xarray.Dataset) -> Figure:
+    """Return Figure 3."""
+    figure, axes = _drawn(data, "T_e", CELSIUS)
+    legend(axes, "$T_{\\mathrm{e}}$", loc="upper left")
+    return figure
+
+
+def draw_6(data: xarray.Dataset) -> Figure:
+    """Return Figure 6."""
+    figure, axes = _drawn(data, "frequency", "Hz")
+    axes.set_ylim(-2.3, 3.1)
+    legend(axes, "$f$", loc="upper center", ncols=4, handlelength=2, columnspacing=1)
+    return figure
+
+
+def slopes(data: xarray.Dataset) -> str:
+    """Return the slopes of the loops of Figure 3, for a log."""
+    found = ", ".join(f"{one.slope * 1e6:.3f}" for one in measured(data, "T_e"))
+    return f"slope of the loops, tenth period [um/V]: {found}"
+
+
+def widths(data: xarray.Dataset) -> str:
+    """Return widths and slopes of the loops of Figure 6, for a log."""
+    found = measured(data, "frequency")
+    widths = ", ".join(f"{one.width * 1e3:.3f}" for one in found)
+    slopes = ", ".join(f"{one.slope * 1e6:.2f}" for one in found)
+    return f"width of the loops at 0 V, tenth period [mm]: {widths}; slope [um/V]: {slopes}"
+
+
+FIGURE_3 = PaperFigure("figure_3", "T_e", TEMPERATURES, "degC", run, draw_3, slopes)
+FIGURE_6 = PaperFigure("figure_6", "frequency", FREQUENCIES, "Hz", over_turns, draw_6, widths)
