@@ -1,7 +1,6 @@
-"""``piezo-sym bench``: this package against what its users would otherwise use.
+"""``piezo-sym bench``: this package compared with SciPy on lambdified SymPy.
 
-Input: a model.  Output: rows, each a ratio of times with its spread and the error of both sides.
-No speed stands without its error, and no time without what it is compared with.
+Input: a model.  Output: rows, each a ratio of times with its spread, and the errors of both sides.
 """
 
 from piezo_sym.bench.measure import GROUPS, bench

@@ -1,6 +1,6 @@
-"""Things that are compared: each a call, and the error of what it computes.
+"""Comparisons: pairs of calls, timed in turns, with the errors of their results.
 
-Input: contestants, paired.  Output: rows with times taken in turns, and their cells as text.
+Input: pairs of contestants.  Output: `Comparison` rows, and their cells as text.
 """
 
 from collections.abc import Callable, Sequence
@@ -34,7 +34,7 @@ class Contestant:
 @final
 @dataclass(frozen=True, eq=False)
 class Pair:
-    """Something else, and what is ours; there may be nothing to compare with."""
+    """A contestant from elsewhere, if there is one, and one of this package."""
 
     other: Contestant | None
     ours: Contestant
@@ -113,5 +113,5 @@ def _duration(spread: Spread | None) -> str:
 
 
 def _error(value: float | None) -> str:
-    """Return an error in one digit, for more would mean nothing."""
+    """Return an error with one digit."""
     return "-" if value is None else f"{value:.0e}"

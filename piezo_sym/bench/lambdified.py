@@ -1,4 +1,4 @@
-"""Today's usual way: lambdified SymPy, integrated by SciPy's solve_ivp.
+"""The usual way without this package: lambdified SymPy, integrated by SciPy's solve_ivp.
 
 Input: a `Problem`.  Output: its rates as functions, and the state at the end of a run.
 """

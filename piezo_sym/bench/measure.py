@@ -1,9 +1,10 @@
 """The groups of `piezo-sym bench`: rates of one state and of many, and whole runs at equal error.
 
-Input: a `Model`, and what drives it.  Output: a `Report`.  Rates are compared with SymPy's in 30
-digits, in units of each row's largest; ends of runs with an own tight run, which another confirms,
-in units of the largest that each state becomes.  All is measured in one process, in turns, so
-that its ratios hold on a busy machine too.
+Input: a `Model` and its inputs.  Output: a `Report`.  The error of a rate is its distance from
+SymPy in 30 digits, over the largest value of its row.  That of a run is its distance at the end
+from a run with a tight tolerance, which a second solver confirms, over the largest magnitude of
+each state.  All calls are timed in one process, in turns, so that the ratios hold on a busy
+machine, too.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
 MANY, CHECKED, DIGITS = 10_000, 8, 30
 #: The error that runs are tuned to, the tolerances that are tried, and for how long [s].
 TARGET, LADDER, PATIENCE = 1e-6, tuple(float(f"1e-{n}") for n in range(2, 13)), 60.0
-#: Two runs, of which the first is taken for the truth; the others where no step is small enough.
+#: A reference and the run that confirms it; SCIPY where the solver finds no step small enough.
 OWN, SCIPY = ((METHOD, 1e-9), ("LSODA", 1e-10)), (("LSODA", 1e-12), ("LSODA", 1e-10))
 MEASURE = "of a rate, against 30 digits, in units of the row's largest"
 
@@ -43,7 +44,7 @@ MEASURE = "of a rate, against 30 digits, in units of the row's largest"
 @final
 @dataclass(frozen=True)
 class Report:
-    """Rows, and what was left out, each with its reason."""
+    """The rows, and the reason for each comparison that was left out."""
 
     model: str
     rows: tuple[Comparison, ...] = ()
@@ -51,7 +52,7 @@ class Report:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What errors are, tolerances, and what was left out, one line each."""
+        """How errors are measured, the tolerances, and what was left out: one line each."""
         measures = {f"errors of {row.group}: {row.measure}": None for row in self.rows}
         noted = {f"{row.group}, {row.other}: {row.note}": None for row in self.rows if row.note}
         return (*measures, *noted, *(f"left out: {line}" for line in self.left_out))
@@ -75,7 +76,7 @@ def bench(
     duration : of a run [s].
     only : names of groups; all when empty.
     rounds : how often every call is timed.
-    say : told which group is being measured.
+    say : called with the name of each group before it is measured.
 
     Raises
     ------
@@ -191,9 +192,9 @@ def tuned(
     solve: Callable[[float], FloatArray],
     error: Callable[[FloatArray], float],
 ) -> Contestant | str:
-    """Return a solver at the loosest tolerance that reaches the target with the next tighter one.
+    """Return a solver at the loosest tolerance that reaches the target, as the next tighter does.
 
-    One that fails is off; the reason where there is no such tolerance.
+    A solver that fails has not reached it.  Where there is no such tolerance, return the reason.
     """
     start, good = perf_counter(), None
     for rtol in LADDER:

@@ -1,10 +1,10 @@
-"""One model, driven, as every competitor gets it: explicit rates in SymPy, numbers in them.
+"""A model with its inputs as every competitor gets it: explicit rates in SymPy.
 
 Input: a `Model` and its inputs.  Output: a `Problem`
 
     dx/dt = f(t, x),  x(0) given
 
-with banks written out, parameters and inputs put in.
+with banks expanded into their lanes, and the values of parameters and inputs substituted.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ if TYPE_CHECKING:
     from piezo_sym.spec.model import Model
 
 TIME = sp.Symbol("t", real=True)
-#: When the rates of many states are computed, so that an input in motion is one number.
+#: Time [s] at which the rates of many states are compared.
 INSTANT = 1.25e-3
-#: The shipped actuator rests without a voltage: given no inputs, it is driven with this one.
+#: The shipped actuator, and its input where none is given: without a voltage it stays at rest.
 SHIPPED, DRIVEN = "piezo_stack", {"V_in": Sine(100.0, 100.0, 0.0, 0.0)}
 
 
@@ -51,7 +51,7 @@ class Problem:
     inputs, duration : what drives the module, and for how long [s].
     counts : sizes of banks other than the spec's, as parameters of the module.
     states, rates : symbols of x, and dx/dt as expressions of `TIME` and x alone.
-    start, scale : x(0) (n,), and by what the error of each state is measured (n,).
+    start, scale : x(0) (n,), and the unit of each state's error (n,).
     """
 
     model: Model
@@ -116,11 +116,11 @@ def problem_of(
 def explicit(
     model: Model, signals: Mapping[str, Signal], sizes: Mapping[str, int], free: str = ""
 ) -> tuple[tuple[sp.Symbol, ...], tuple[sp.Expr, ...]]:
-    """Return the states and their rates, with the numbers of parameters and inputs put in.
+    """Return the states and their rates, with the values of parameters and inputs substituted.
 
     Parameters
     ----------
-    free : a parameter that stays what it is, the symbol of its name.
+    free : a parameter that stays a symbol, with its own name.
     """
     iphs = derive(model).expand(sizes)
     known = {iphs.symbols[n]: sp.Float(p.si) for n, p in iphs.model.parameters.items() if n != free}
@@ -130,7 +130,7 @@ def explicit(
 
 
 def as_expression(signal: Signal, name: str) -> sp.Expr:
-    """Return a signal as an expression of `TIME`; competitors are given no other kinds."""
+    """Return a constant or a sine as an expression of `TIME`."""
     match signal:
         case Constant(value):
             return sp.Float(value)

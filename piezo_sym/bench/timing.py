@@ -1,7 +1,7 @@
-"""Times of calls, taken in turns so that all of them meet the same noise.
+"""Times of calls, measured in turns so that all are exposed to the same noise.
 
 Input: calls without arguments.  Output: one `Times` per call; medians with quartiles, and ratios
-of times that were taken one after the other.
+of times measured in the same round.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from typing import final
 
 import numpy as np
 
-#: A measurement lasts at least so long [s]: shorter calls are repeated within it.
+#: Least duration of a measurement [s]: shorter calls are repeated within it.
 SHORTEST = 0.004
-#: A call that has taken so long in all [s] is not measured again.
+#: Total time [s] after which a call is not measured again.
 PATIENCE = 20.0
 
 
@@ -77,6 +77,6 @@ def _seconds(call: Callable[[], object], number: int) -> float:
 
 
 def _number(call: Callable[[], object], once: float) -> int:
-    """Return how many calls a measurement takes; a first call, which may be slow, is no guide."""
+    """Return the calls per measurement; a short one is timed again, for the first may be slow."""
     again = _seconds(call, 1) if once < SHORTEST else once
     return max(1, int(np.ceil(SHORTEST / max(again, 1e-9))))

@@ -1,7 +1,7 @@
-"""The command ``piezo-sym``: one file a command, one line an error.
+"""The command ``piezo-sym``: one file per command, one line per error.
 
-Input: the words of a command line.  Output: text, files, and an exit code: 0 good, 1 a required
-property is not proved or a file drifted, 2 the spec or the command is wrong.
+Input: the words of a command line.  Output: text, files, and an exit code: 0 success, 1 a required
+property is not proved or a generated file is out of date, 2 the spec or the command is wrong.
 """
 
 import sys
@@ -19,7 +19,7 @@ from piezo_sym.cli.simulate import simulate
 from piezo_sym.cli.verify import verify
 from piezo_sym.errors import PiezoError, one_line
 
-#: What typer raises for a wrong command line, in every version of it.
+#: The exception typer raises for a wrong command line; its module differs between versions.
 CommandError: Any = typer.BadParameter.__mro__[2]
 
 #: Exit code of a command that the user stopped (Ctrl-C), as shells have it.
@@ -53,7 +53,7 @@ def _options(
         ),
     ] = False,
 ) -> None:
-    """Do nothing: its option answers before a command is looked for."""
+    """Do nothing: the callback of the option has run before any command is looked up."""
 
 
 def main() -> None:
@@ -73,7 +73,7 @@ def run(words: list[str]) -> int:
     except MemoryError:
         return _failed("out of memory; use smaller banks or fewer --times", 2)
     except (KeyboardInterrupt, typer.Abort):
-        code = STOPPED  # which newer versions of typer return themselves
+        code = STOPPED  # newer versions of typer return this code themselves
     if code == STOPPED:
         return _failed("stopped", STOPPED)
     return code if isinstance(code, int) else 0

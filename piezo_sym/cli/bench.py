@@ -1,4 +1,4 @@
-"""``piezo-sym bench [SPEC]``: speed and error beside what one would otherwise use."""
+"""``piezo-sym bench [SPEC]``: speed and error, compared with SciPy on lambdified SymPy."""
 
 from dataclasses import asdict
 from json import dumps

@@ -1,7 +1,7 @@
 """Verdicts as JUnit XML, which continuous integration shows.
 
-Input: reports, and what a second program says of them.  Output: the text of the file: a suite per
-model, a case per property; a suite more per model for the second program.
+Input: reports, and the verdicts of the second program.  Output: the text of the file: one suite per
+model with one case per property, and a second suite per model for the second program.
 """
 
 from __future__ import annotations
@@ -30,35 +30,30 @@ def junit_xml(
     root = ET.Element("testsuites", name=f"piezo-sym {VERSION}")
     for report, second in reports:
         failed = [row.verdict.value for row in report.failures]
-        suite = ET.SubElement(
-            root,
-            "testsuite",
-            name=report.model,
-            tests=str(len(report.rows)),
-            failures=str(failed.count("REFUTED")),
-            errors=str(failed.count("OPEN")),
-        )
+        counts = len(report.rows), failed.count("REFUTED"), failed.count("OPEN")
+        suite = _suite(root, report.model, *counts)
         for row in report.rows:
             _case(suite, report, row)
         if second is not None:
             _rechecked(root, report, second)
     for error in errors:
-        suite = ET.SubElement(
-            root, "testsuite", name=error.where or "spec", tests="1", failures="0", errors="1"
-        )
+        suite = _suite(root, error.where or "spec", 1, 0, 1)
         case = ET.SubElement(suite, "testcase", classname=error.where or "spec", name="load")
         ET.SubElement(case, "error", message=str(error), type=type(error).__name__)
     ET.indent(root)
     return ET.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
 
 
+def _suite(root: ET.Element, name: str, tests: int, failures: int, errors: int) -> ET.Element:
+    counts = {"tests": str(tests), "failures": str(failures), "errors": str(errors)}
+    return ET.SubElement(root, "testsuite", {"name": name, **counts})
+
+
 def _rechecked(root: ET.Element, report: Report, second: Recheck) -> None:
-    """Add the suite of what a second program says."""
+    """Add the suite of the second program's verdicts."""
     faults = len(second.faults(report.information))
     tests, name = len(second.rows) + bool(second.failed), f"{report.model}, rechecked"
-    suite = ET.SubElement(
-        root, "testsuite", name=name, tests=str(tests), failures=str(faults), errors="0"
-    )
+    suite = _suite(root, name, tests, faults, 0)
     for key, word in second.rows.items():
         case = ET.SubElement(suite, "testcase", classname=name, name=" ".join(filter(None, key)))
         if word == "confirmed":

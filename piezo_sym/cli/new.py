@@ -25,7 +25,7 @@ def new(
 
     path = Path(f"{name}.toml")
     text = starter(name, "NAME")
-    if os.path.lexists(path):  # a link that leads nowhere is not written through, either
+    if os.path.lexists(path):  # also true of a broken link, which must not be written through
         remedy = "give another name, or move the file away"
         raise FileError("is there already", path_text(path), remedy=remedy)
     write_text(path, text)

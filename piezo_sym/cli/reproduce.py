@@ -27,13 +27,13 @@ def reproduce(
     from piezo_sym.run.engine.engine import engine_of
 
     module = module_of("piezo_stack")
-    engine_of(module)  # steady states take thousands of runs: without a compiler nothing is begun
+    engine_of(module)  # raises without a compiler: figure 4 takes thousands of runs
     with warnings_as_lines():
         _write(module, out)
 
 
 def _write(module: ModuleType, out: Path) -> None:
-    """Write the figures one by one, and what each shows."""
+    """Write each figure once its curves are computed, and print its summary."""
     from piezo_sym.analysis.figures import FIGURES
     from piezo_sym.analysis.style import save
 

@@ -54,7 +54,7 @@ def _lines(iphs: IPHS) -> Iterator[str]:
 
 
 def _domain(iphs: IPHS) -> Iterator[str]:
-    """Yield the conditions that all proofs rest on; of those that no one wrote, what needs them."""
+    """Yield the conditions that all proofs assume; an implied one with the law that needs it."""
     from piezo_sym.spec.tables import condition_text, conditions
 
     yield "\nDomain"

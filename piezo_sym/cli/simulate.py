@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
@@ -121,7 +120,7 @@ def _print(result: xarray.Dataset) -> None:
 
 
 def _write(result: xarray.Dataset, path: Path) -> None:
-    """Write a result in one step; its folder is made if need be."""
+    """Write a result atomically; its folder is created where it does not exist."""
     if path.suffix == ".nc":
         write_bytes(path, bytes(result.to_netcdf(engine="scipy")))
     else:
@@ -130,14 +129,11 @@ def _write(result: xarray.Dataset, path: Path) -> None:
 
 
 def columns(result: xarray.Dataset) -> Any:
-    """Return a result as a table with one column a quantity, one per lane for banks."""
+    """Return a result as a table: one column per quantity, for a bank one per lane."""
     import pandas as pd
 
-    found: Mapping[str, Any] = {"time": result.time.values}
-    for name, variable in result.data_vars.items():
-        if variable.ndim == 1:
-            found = {**found, str(name): variable.values}
-        else:
-            lanes = {f"{name}_{n + 1}": lane for n, lane in enumerate(variable.values.T)}
-            found = {**found, **lanes}
-    return pd.DataFrame(found)
+    parts = [
+        one.to_series() if one.ndim == 1 else one.to_pandas().add_prefix(f"{name}_")
+        for name, one in result.data_vars.items()
+    ]
+    return pd.concat(parts, axis=1).reset_index()

@@ -57,7 +57,7 @@ def verify(
 
 
 def _show(found: dict[str, Report], second: dict[str, Recheck], *, as_json: bool) -> None:
-    """Print the verdicts, as tables or as JSON, and what the second program says of them."""
+    """Print the verdicts, as tables or as JSON, and those of the second program."""
     for spec, report in found.items():
         if not as_json:
             _print(report)
@@ -69,7 +69,7 @@ def _show(found: dict[str, Report], second: dict[str, Recheck], *, as_json: bool
 
 
 def _reports(specs: list[str]) -> tuple[dict[str, Report], list[PiezoError]]:
-    """Return the verdicts on the specs that are right, and the errors of the others."""
+    """Return the reports of the specs that load, and the errors of the others."""
     from piezo_sym.spec.load import load
     from piezo_sym.verification.process import examined_model
 
@@ -87,7 +87,7 @@ def _reports(specs: list[str]) -> tuple[dict[str, Report], list[PiezoError]]:
 
 
 def _rechecked(spec: str, report: Report) -> Recheck:
-    """Return what a second program says of the verdicts on a spec."""
+    """Return the second program's verdicts on a spec."""
     from piezo_sym.proofs import proofs_json
     from piezo_sym.spec.load import load
     from piezo_sym.spec.source import find, read
@@ -97,7 +97,7 @@ def _rechecked(spec: str, report: Report) -> Recheck:
 
 
 def _rows(report: Report, second: Recheck | None) -> list[dict[str, object]]:
-    """Return the rows as plain data, each with what the second program says of it if it ran."""
+    """Return the rows as plain data, each with the second program's verdict if it ran."""
     rows = []
     for row in report.rows:
         said = {"recheck": second.rows.get((row.id, row.element))} if second else {}

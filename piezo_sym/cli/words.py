@@ -1,4 +1,4 @@
-"""Words of a command line as values: ``NAME=VALUE``, with numbers, signals or files.
+"""Values of options on the command line: ``NAME=VALUE`` with numbers, signals or files.
 
 Input: what a user typed.  Output: names and values, or an error that names the option.
 """
@@ -18,7 +18,7 @@ SIGNALS = ("sine", "step", "ramp", "triangle", "chirp")
 def pairs(
     texts: Iterable[str], option: str, read: Callable[[str, str], Any]
 ) -> Iterable[tuple[str, Any]]:
-    """Yield the name and value of each ``NAME=VALUE``, read by `read` from text and place."""
+    """Yield the name and value of each ``NAME=VALUE``; `read` converts a text, given its place."""
     seen: set[str] = set()
     for given in texts:
         name, equals, value = given.partition("=")
