@@ -43,7 +43,7 @@ class Axis:
 
     @property
     def divides(self) -> bool:
-        """Whether runs at different points cannot go through C together."""
+        """Whether runs at different points need separate calls of C."""
         return any(target.divides for target in self.targets)
 
     def part(self, points: slice) -> Axis:
@@ -55,8 +55,8 @@ class Axis:
     def coordinates(self) -> Iterator[tuple[str, Attributed]]:
         """Yield the name of each coordinate along this axis, its values and attributes.
 
-        The user's labels are the index of the dimension; where it is named like the only target,
-        they stand for that target's values.
+        A user's labels are the index of the dimension.  If the dimension has the name of its
+        target, they replace that target's values.
         """
         if self.labels is not None:
             unit = {"long_name": f"labels of {listing(t.name for t in self.targets)}"}
@@ -75,7 +75,7 @@ def read_axes(
 
     Parameters
     ----------
-    lanes : the size of each bank, where it is not swept.
+    lanes : the size of each bank if it is not swept.
 
     Raises
     ------
@@ -151,9 +151,9 @@ def unzipped(
 
 
 def refuse_lists(axes: tuple[Axis, ...], lanes: Mapping[str, int]) -> None:
-    """Raise `UsageError` where one value per lane meets another number of lanes.
+    """Raise `UsageError` where a swept list has not one value per lane of its bank.
 
-    A size that is swept along another axis than the lists meets all their lengths.
+    If the size of the bank is swept along another axis, each list meets every size.
     """
     sizes = {t.bank: (axis, t) for axis in axes for t in axis.targets if t.is_size}
     for axis in axes:
@@ -171,9 +171,9 @@ def refuse_lists(axes: tuple[Axis, ...], lanes: Mapping[str, int]) -> None:
 
 
 def single_numbers(axes: tuple[Axis, ...]) -> dict[str, float]:
-    """Return a number for each swept parameter of a bank, in place of a spec's list.
+    """Return a number for each swept parameter of a bank, to replace a list in the spec.
 
-    It fits the bank at every size, which a list of the spec need not.
+    A number fits the bank at every size; the spec's list may not.
     """
     targets = [target for axis in axes for target in axis.targets]
     swept = [t for t in targets if t.kind == "parameters" and t.bank and not t.is_size]

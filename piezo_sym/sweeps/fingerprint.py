@@ -1,7 +1,7 @@
-"""The fingerprint of a sweep: two sweeps have one exactly if they ask for the same runs.
+"""The fingerprint of a sweep: equal for two sweeps exactly if they request the same runs.
 
-Input: a `Plan` and the hash of its spec.  Output: SHA-256 as text.  Functions count by name, code
-and what they hold, are bound to or find by name, so that one that was edited is another.
+Input: a `Plan` and the hash of its spec.  Output: SHA-256 as text.  A function contributes its
+name, its code and all values that it refers to, so that an edited function changes the result.
 """
 
 import hashlib
@@ -13,7 +13,7 @@ import numpy as np
 
 from piezo_sym.sweeps.plan import Plan
 
-#: How boxes are cut, and who runs them, says nothing about what runs.
+#: Fields that say how runs are divided and executed, not which runs they are.
 LEFT_OUT = ("most", "together", "engine", "side_by_side")
 
 
@@ -28,7 +28,7 @@ def fingerprint(plan: Plan, spec_sha256: str) -> str:
 
 
 def parts(value: object, met: dict[int, object] | None = None) -> Iterator[bytes]:
-    """Yield what a value consists of; an object that was met before counts no more."""
+    """Yield the contents of a value as bytes; an object that was met before adds nothing."""
     met = {} if met is None else met
     yield type(value).__name__.encode()
     if isinstance(value, float | int | str | bytes | None):
@@ -41,13 +41,13 @@ def parts(value: object, met: dict[int, object] | None = None) -> Iterator[bytes
         return
     if id(value) in met:
         return
-    met[id(value)] = value  # kept, so that no other object gets its id meanwhile
+    met[id(value)] = value  # kept alive, so that no other object gets its id
     for part in held(value):
         yield from parts(part, met)
 
 
 def held(value: object) -> Iterator[object]:
-    """Yield what a container, a record, or an object of a user's holds."""
+    """Yield the contents of a container, a record, or a user's object."""
     if isinstance(value, Mapping):
         for key in sorted(value, key=repr):
             yield from (key, value[key])
@@ -64,9 +64,9 @@ def held(value: object) -> Iterator[object]:
 
 
 def held_by_callable(value: object) -> Iterator[object]:
-    """Yield what a function, or another object of a user's, consists of.
+    """Yield the contents of a function or of another object of a user.
 
-    Of a function: its code, what it is bound to, closes over and finds by name.
+    Of a function: its code, the object it is bound to, defaults, closure and globals that it reads.
     """
     yield str(getattr(value, "__qualname__", ""))
     code = getattr(value, "__code__", None)

@@ -1,4 +1,4 @@
-"""What surrounds the results of a sweep: coordinates, inputs, attributes.
+"""The Dataset of a sweep before its results: coordinates, inputs, attributes.
 
 Input: a `Plan` and its module.  Output: a Dataset with all but the results and their errors.
 """
@@ -32,7 +32,7 @@ ERROR_ATTRS = described("1", "why a run failed; empty where it did not") | {"mis
 
 
 def frame_of(plan: Plan, module: GeneratedModule) -> xarray.Dataset:
-    """Return the frame of a sweep; a function that reduces runs brings time and most banks itself.
+    """Return the frame of a sweep; time and banks only where its results have them.
 
     Raises
     ------
@@ -48,7 +48,7 @@ def frame_of(plan: Plan, module: GeneratedModule) -> xarray.Dataset:
                 what = f"the coordinate '{name}' has the name of another quantity"
                 raise UsageError(what, "sweep.over", remedy="rename one in the spec")
             taken.add(name)
-            # as an index: of an array, xarray first tries whether other libraries know it
+            # as an index: of an array, xarray first tries to import other array libraries
             coords[name] = ((axis.dim,), pandas.Index(values), attrs)
     left_out = {*(() if plan.reduce is None else ("time",))}
     left_out |= {bank for bank in module.BANKS if own and bank not in plan.largest_banks}
@@ -89,7 +89,7 @@ def inputs_of(
 
 
 def reduced(plan: Plan, wave: xarray.Variable) -> xarray.Variable:
-    """Return an input (..., nt) as the plan's reduction keeps it."""
+    """Return an input (..., nt) reduced over time as the plan says."""
     if not isinstance(plan.reduce, str):
         return wave
     mean = np.asarray(wave.values[..., plan.kept] @ weights(plan.samples[plan.kept]))

@@ -1,7 +1,7 @@
-"""Runs with equal inputs and sizes: their systems and where they start.
+"""Runs with equal inputs and sizes: their systems and initial states.
 
-Input: a `Plan`, its module, points of the grid.  Output: a `Group`.  What a run is refused for at
-t = 0 is its error, in the words of a single run.
+Input: a `Plan`, its module, points of the grid.  Output: a `Group`.  A run that cannot start has
+the same error as from `simulate`.
 """
 
 from dataclasses import dataclass
@@ -28,11 +28,11 @@ from piezo_sym.sweeps.targets import Target
 @final
 @dataclass(frozen=True)
 class Group:
-    """Some runs.
+    """Runs with equal inputs and sizes.
 
     Attributes
     ----------
-    systems : of each run, with equal inputs and sizes.
+    systems : of each run.
     start : states (runs, n) at t = 0.
     errors : of each run, why it cannot start, or "".
     """
@@ -45,7 +45,7 @@ class Group:
 def group_at(
     plan: Plan, module: GeneratedModule, engine: Engine | None, points: NDArray[np.intp]
 ) -> Group:
-    """Return the runs at points (runs, axes) that differ along no axis that divides them."""
+    """Return the runs at points (runs, axes), which have equal inputs and sizes."""
     inputs = inputs_at_point(plan, module, points[0])
     base = base_at_point(plan, module, points[0])
     columns = {
@@ -61,7 +61,7 @@ def group_at(
 
 @final
 class Read:
-    """Parameters that note which of them are read."""
+    """Parameters that record which of them are read."""
 
     def __init__(self, parameters: Any) -> None:
         self.parameters, self.names = parameters, set[str]()
@@ -92,7 +92,7 @@ def inputs_at_point(plan: Plan, module: GeneratedModule, point: NDArray[np.intp]
 
 
 def base_at_point(plan: Plan, module: GeneratedModule, point: NDArray[np.intp]) -> Any:
-    """Return the parameters of the runs at a point, before those that are swept."""
+    """Return the parameters of the runs at a point: swept sizes, but no other swept values."""
     sizes = {t.name: int(t.values[point[n]]) for n, t in plan.swept() if t.is_size}
     return read_parameters(module, {**plan.parameters, **sizes})
 
@@ -100,7 +100,7 @@ def base_at_point(plan: Plan, module: GeneratedModule, point: NDArray[np.intp]) 
 def starts(plan: Plan, systems: Systems, points: NDArray[np.intp]) -> tuple[FloatArray, list[str]]:
     """Return the states (runs, n) at t = 0, nan where there is none, and the errors.
 
-    Where no parameter that differs is read, one state serves all.
+    If the initial state reads no swept parameter, it is computed once for all runs.
     """
     first = systems[0]
     module, u = first.module, first.inputs.segments[0].at(0.0)
@@ -132,7 +132,7 @@ def started(module: GeneratedModule, parameters: Any, u: FloatArray) -> FloatArr
 def check_starts(
     systems: Systems, engine: Engine | None, start: FloatArray, errors: list[str]
 ) -> None:
-    """Fill in the errors of runs whose start is outside the domain; C says which to look at."""
+    """Fill in the errors of runs whose start is outside the domain; C finds them."""
     fine = inside(systems, engine, start) if engine else np.zeros(len(systems), dtype=bool)
     for k in np.flatnonzero(~fine).tolist():
         if not errors[k]:

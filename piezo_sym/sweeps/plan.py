@@ -28,11 +28,11 @@ Reduction: TypeAlias = Literal["last", "mean"] | Callable[[Any], object]
 #: Where a box is in the grid: a slice for each axis.
 Region: TypeAlias = tuple[slice, ...]
 
-#: At most so many runs go through C in one call, or through SciPy before they are kept; and at most
-#: so many numbers may come out of one call.
+#: The most runs in one call of C, and by SciPy before results are kept; and the most numbers that
+#: one call may return.
 MOST_TOGETHER, MOST_BY_SCIPY = 512, 32
 MOST_NUMBERS = 8_000_000
-#: Where only reductions are kept, a box has up to so many runs if so many boxes remain.
+#: Where only reductions are kept: the most runs in a box, if at least `ENOUGH_BOXES` remain.
 MOST_REDUCED = 512
 ENOUGH_BOXES = 256
 
@@ -46,16 +46,16 @@ class Plan:
     ----------
     axes : in the user's order.
     signals : of each input, where it is not swept.
-    parameters, initial : as the user gave them, without those swept; but one number for each
-        swept parameter of a bank, for a spec's list need not fit the sizes.
+    parameters, initial : as the user gave them, without those swept; and one number for each
+        swept parameter of a bank, since a list in the spec may not fit the swept sizes.
     samples : the sample times (nt,) [s].
     method, rtol, step : of each run; the step is None where rtol counts.
     reduce, each : the reduction, and whether its function takes one run or many.
     largest_banks : the largest size of each bank whose size is swept.
-    together : runs in one call of C, at most.
-    most : runs in a box, at most.
-    engine : what runs them, in words, as an attribute of `simulate` says.
-    side_by_side : whether runs in one call of C share vectors, or go one by one.
+    together : the most runs in one call of C.
+    most : the most runs in a box.
+    engine : the `engine` attribute of the Dataset, as of `simulate`.
+    side_by_side : whether runs in one call of C share vectors, or are computed one by one.
     """
 
     axes: tuple[Axis, ...]
@@ -106,7 +106,7 @@ class Plan:
         return tuple(shape)
 
     def regions(self) -> Iterator[Region]:
-        """Yield where each box is."""
+        """Yield the region of each box."""
         along = zip(self.shape, self.box_shape, strict=True)
         yield from product(
             *(
@@ -116,7 +116,7 @@ class Plan:
         )
 
     def part(self, region: Region) -> Plan:
-        """Return the plan of one box: all that its task has to know."""
+        """Return the plan of one box, which is all that its task needs."""
         cut = zip(self.axes, region, strict=True)
         return replace(self, axes=tuple(axis.part(points) for axis, points in cut))
 
@@ -135,7 +135,7 @@ class Plan:
                 yield runs[first : first + self.together]
 
     def swept(self) -> Iterator[tuple[int, Target]]:
-        """Yield each quantity swept, after the number of its axis."""
+        """Yield the number of the axis and the target, for each quantity swept."""
         for n, axis in enumerate(self.axes):
             for target in axis.targets:
                 yield n, target

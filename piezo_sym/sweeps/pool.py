@@ -1,8 +1,8 @@
 """Boxes run side by side: in threads, or by any executor of `concurrent.futures`.
 
-Input: boxes, and a function that runs one or that sends it away.  Output: results as they come,
-in the order of the boxes where some come together.  Few are on their way at once, so that results
-do not pile up.
+Input: boxes, and a function that submits one.  Output: results as they are completed; those that
+complete together in the order of the boxes.  Few boxes are submitted at once, so that results do
+not accumulate.
 """
 
 from __future__ import annotations
@@ -29,19 +29,19 @@ if TYPE_CHECKING:
 
 Submit: TypeAlias = "Callable[[Region], Future[Result]]"
 
-#: Tasks given to somebody else's executor at once: it may have many workers.
+#: Tasks submitted at once to a user's executor, which may have many workers.
 SENT_AT_ONCE = 256
 
 
 class Stopped(Exception):
-    """The sweep was stopped: ends the work of its threads, and is seen by nobody."""
+    """The sweep was stopped: raised in its threads to end their work, and never passed on."""
 
 
 @contextmanager
 def threads_for(plan: Plan, module: GeneratedModule, count: int) -> Iterator[tuple[Submit, int]]:
-    """Give a way to run boxes in threads of our own; they end with the context, soon.
+    """Yield a function that submits a box to own threads; they end soon after the context does.
 
-    One thread is the caller's: a debugger stops in a function of the user's there.
+    A single thread is the caller's own, so that a debugger stops in a user's function.
     """
     if count == 1:
         yield lambda region: at_hand(run_box(plan.part(region), module, ignore)), 1
@@ -105,13 +105,13 @@ def run_sent(sent: bytes) -> Result:
 
 
 def ignore(_: float) -> None:
-    """Let a run go on."""
+    """Do nothing: no one watches these runs."""
 
 
 def results(
     submit: Submit, boxes: Iterable[Region], at_once: int
 ) -> Generator[tuple[Region, Result], None, None]:
-    """Yield boxes and results as they come; what is not begun when the caller stops is cancelled.
+    """Yield boxes and results as they are completed; if the caller stops, cancel the others.
 
     Raises
     ------
@@ -137,10 +137,10 @@ def results(
 def arrivals(
     pending: dict[Future[Result], Region],
 ) -> Generator[tuple[Region, Result], None, None]:
-    """Wait, and take what came: those that came together in the order sent."""
+    """Wait, and yield what is completed, in the order submitted."""
     still = wait(pending, return_when=FIRST_COMPLETED).not_done
     ready = [(f, pending.pop(f)) for f in reversed(list(pending)) if f not in still]
-    while ready:  # none is held while the next is waited for
+    while ready:  # drops each result before the next is waited for
         future, box = ready.pop()
         yield box, future.result()
 

@@ -1,7 +1,7 @@
-"""All quantities of many runs, as arrays: computed for a whole group at once.
+"""All quantities of many runs, as arrays computed for a whole group at once.
 
-Input: runs in C, or the `Trajectory` of one run.  Output: arrays (runs, time, [lanes]) by name, as
-`simulate` names them; `layout` gives their dimensions, order and units.
+Input: runs in C, or the `Trajectory` of one run.  Output: arrays (runs, time, [lanes]), with the
+names that `simulate` gives them; `layout` gives their dimensions, order and units.
 """
 
 from collections.abc import Iterator, Sequence
@@ -44,7 +44,7 @@ def of_runs(runs: Runs, engine: Engine, u: FloatArray, kept: slice) -> dict[str,
     Parameters
     ----------
     u : inputs (m, nt) at all samples.
-    kept : which samples count.
+    kept : the samples to return.
     """
     with np.errstate(all="ignore"):
         return dict(quantities(runs, engine, np.ascontiguousarray(u[:, kept].T), kept))
@@ -53,7 +53,7 @@ def of_runs(runs: Runs, engine: Engine, u: FloatArray, kept: slice) -> dict[str,
 def quantities(
     runs: Runs, engine: Engine, u: FloatArray, kept: slice
 ) -> Iterator[tuple[str, NDArray[Any]]]:
-    """Yield the quantities in no certain order; rows of a bank stay together."""
+    """Yield the quantities, in an order of no meaning."""
     system = runs.systems[0]
     module = system.module
     call = Members(engine, runs.systems.parameters)
@@ -63,24 +63,24 @@ def quantities(
     ends = np.cumsum([ports, processes, processes, len(exchanging)])
     supplied, heat, produced, exchanged, _ = np.split(sums, ends, axis=2)
     first = np.ascontiguousarray(runs.start[:, None])
-    yield from spread(system, module.STATES, x)
-    yield from spread(system, module.OUTPUTS, call("outputs", x, ports, u), "y_")
+    yield from by_record(system, module.STATES, x)
+    yield from by_record(system, module.OUTPUTS, call("outputs", x, ports, u), "y_")
     bodies = call("temperatures", x, len(module.BODIES))
-    yield from spread(system, module.BODIES, bodies, "T_")
+    yield from by_record(system, module.BODIES, bodies, "T_")
     for name in ("energy", "entropy"):
         yield name, call(name, x, 1)[..., 0]
-    yield from spread(system, module.OUTPUTS, supplied, "supplied_")
-    yield from spread(system, module.PROCESSES, heat, "heat_")
-    yield from spread(system, module.PROCESSES, produced, "produced_")
+    yield from by_record(system, module.OUTPUTS, supplied, "supplied_")
+    yield from by_record(system, module.PROCESSES, heat, "heat_")
+    yield from by_record(system, module.PROCESSES, produced, "produced_")
     brought = [module.OUTPUTS[n] for n in exchanging]
-    yield from spread(system, brought, exchanged, "entropy_exchanged_")
+    yield from by_record(system, brought, exchanged, "entropy_exchanged_")
     made = np.sum(produced, axis=2) + np.sum(exchanged, axis=2)
     for name, booked in (("energy", np.sum(supplied, axis=2)), ("entropy", made)):
         gained = call(name, x, 1)[..., 0] - call(name, first, 1)[..., 0]
         yield f"{name}_residual", gained - booked
 
 
-def spread(
+def by_record(
     system: System, records: Sequence[Record], values: FloatArray, prefix: str = ""
 ) -> Iterator[tuple[str, FloatArray]]:
     """Yield the columns of values (runs, time, rows) by record."""

@@ -1,6 +1,6 @@
-"""What a user asked of a sweep, checked before anything runs.
+"""The arguments of a sweep, checked before anything runs.
 
-Input: the arguments of `sweep`.  Output: a `Plan`, or an error of one line.
+Input: the arguments of `sweep`.  Output: a `Plan`, or a `UsageError`.
 """
 
 from collections.abc import Iterator, Mapping
@@ -78,20 +78,21 @@ def read_plan(
         numbers = samples.size * row_numbers(module, base, axes)
         together = most_together(numbers, chosen.method)
         return Plan(
-            axes,
-            signals.signals,
-            end,
-            *given,
-            samples,
-            chosen.method,
-            bound,
-            fixed,
-            reduce,  # type: ignore[arg-type]  # checked above
-            reduce_by == "run",
-            largest_banks(axes),
-            together,
-            together if reduce is None else box_of_reduced(axes, together),
-            chosen.note,
+            axes=axes,
+            signals=signals.signals,
+            duration=end,
+            parameters=given[0],
+            initial=given[1],
+            samples=samples,
+            method=chosen.method,
+            rtol=bound,
+            step=fixed,
+            reduce=reduce,  # type: ignore[arg-type]  # checked above
+            each=reduce_by == "run",
+            largest_banks=largest_banks(axes),
+            together=together,
+            most=together if reduce is None else box_of_reduced(axes, together),
+            engine=chosen.note,
         )
 
 
@@ -127,20 +128,20 @@ def refuse_sizes(
     initial: Mapping[str, Any],
     u: FloatArray,
 ) -> None:
-    """Raise what lists of one number per lane are refused for, at every size of their bank."""
+    """Raise `UsageError` where a list that is not swept does not fit every size of its bank."""
     sizes = {t.name: t.values for axis in axes for t in axis.targets if t.is_size}
     one: list[dict[str, Any]] = [{name: n} for name, v in sizes.items() for n in dict.fromkeys(v)]
     for change in one or [{}]:
         found = read_parameters(module, {**parameters, **change})
         try:
             own_initial(module, found, u)
-        except PiezoError:  # a swept value may be what makes it right
+        except PiezoError:  # a swept value may replace what is wrong; each run is checked
             continue
         read_initial(module, found, u, initial)
 
 
 def refuse_reduction(reduce: object, reduce_by: object) -> None:
-    """Raise `UsageError` if nothing can be reduced that chosen."""
+    """Raise `UsageError` if there is no such reduction."""
     if not (reduce is None or reduce in REDUCTIONS or callable(reduce)):
         expected = f"{listing(map(repr, REDUCTIONS))}, or a function of a Dataset"
         raise UsageError(f"{quote(reduce)} is no reduction", "sweep.reduce", expected)
@@ -150,13 +151,13 @@ def refuse_reduction(reduce: object, reduce_by: object) -> None:
 
 
 def box_of_reduced(axes: tuple[Axis, ...], together: int) -> int:
-    """Return how many runs make a box where little is kept of each: many boxes, if it can be."""
+    """Return the most runs in a box where only reductions are kept; many boxes if possible."""
     size = prod(axis.size for axis in axes)
     return max(together, min(MOST_REDUCED, size // ENOUGH_BOXES))
 
 
 def row_numbers(module: GeneratedModule, base: Any, axes: tuple[Axis, ...]) -> int:
-    """Return how many numbers a run leaves at each sample, about, at the largest sizes."""
+    """Return about how many numbers a run yields at each sample, at the largest sizes."""
     sizes = {bank: lanes(base, bank) for bank in module.BANKS} | largest_banks(axes)
     count: dict[str | None, int] = {None: 1}
     count.update(sizes)

@@ -1,7 +1,7 @@
-"""Reductions: what is kept of runs, so that a sweep need not keep trajectories.
+"""Reductions of runs, so that a sweep need not keep trajectories.
 
 Input: the quantities of a group's runs.  Output: quantities without time, or what a user's function
-makes of the Dataset of one run, or of many runs over the dimension `member`.
+returns for the Dataset of one run, or of many runs over the dimension `member`.
 """
 
 from __future__ import annotations
@@ -44,9 +44,9 @@ def over_time(found: Quantities, weight: FloatArray) -> Quantities:
 def run_by_run(
     function: Callable[[Any], object], runs: xarray.Dataset, errors: list[str]
 ) -> xarray.Dataset | None:
-    """Return what a function makes of each run, over `member`; None if no run is left.
+    """Return what a function returns for each run, over `member`; None if all runs failed.
 
-    A run on which the function fails gets that as its error.
+    A run for which the function raises an exception has that as its error.
     """
     made: dict[int, xarray.Dataset] = {}
     for k in (k for k, error in enumerate(errors) if not error):
@@ -70,7 +70,7 @@ def run_by_run(
 
 
 def refuse_other_names(first: Iterable[Any], *others: Iterable[Any]) -> None:
-    """Raise `UsageError` if a function gives other names for some runs than for others."""
+    """Raise `UsageError` if a function returns different names for different runs."""
     for other in others:
         if set(other) != set(first):
             given = (
@@ -80,7 +80,7 @@ def refuse_other_names(first: Iterable[Any], *others: Iterable[Any]) -> None:
 
 
 def refuse_other_sizes(name: str, known: tuple[int, ...], given: tuple[int, ...]) -> None:
-    """Raise `UsageError` if a function gives a quantity another shape than for runs before."""
+    """Raise `UsageError` if a quantity has another shape than for the runs before."""
     if given != known:
         what = f"the function gives '{name}' other sizes for one run than for another"
         raise UsageError(what, WHERE, "the same for every run")
@@ -89,7 +89,7 @@ def refuse_other_sizes(name: str, known: tuple[int, ...], given: tuple[int, ...]
 def all_at_once(
     function: Callable[[Any], object], runs: xarray.Dataset, errors: list[str]
 ) -> xarray.Dataset:
-    """Return what a function makes of many runs over `member`."""
+    """Return what a function returns for many runs, over `member`."""
     made = named(function(runs))
     for name, variable in made.data_vars.items():
         if variable.sizes.get(MEMBER) != len(errors):
@@ -100,7 +100,7 @@ def all_at_once(
 
 
 def named(value: object) -> xarray.Dataset:
-    """Return a function's result as a Dataset; raise `UsageError` if it is of no use."""
+    """Return a function's result as a Dataset; raise `UsageError` if that cannot be done."""
     if isinstance(value, xarray.Dataset):
         for name, variable in value.data_vars.items():
             if variable.dtype.kind not in "fiub":

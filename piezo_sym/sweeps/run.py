@@ -1,7 +1,7 @@
-"""One box of a sweep, run: the work of one task, in a thread or in another process.
+"""Run one box of a sweep: the work of one task, in a thread or in another process.
 
-Input: the `Plan` of a box, its module.  Output: a `Result`: what is kept of each run, and why those
-that failed did.
+Input: the `Plan` of a box, its module.  Output: a `Result`: the quantities kept of each run, and
+the error of each that failed.
 """
 
 from __future__ import annotations
@@ -53,14 +53,14 @@ Watch: TypeAlias = Callable[[float], object]
 @final
 @dataclass(frozen=True)
 class Result:
-    """What is left of the runs of a box.
+    """The results of a box.
 
     Attributes
     ----------
     errors : why each run failed, or "", over the axes of the sweep.
-    quantities : over these axes first; nan where a run failed; none where no run is left for a
-        function to reduce.
-    coords : of dimensions that a reduction's function made.
+    quantities : over these axes first; nan where a run failed; empty if a function reduces the runs
+        and all of them failed.
+    coords : of dimensions that a function created.
     """
 
     errors: NDArray[Any]
@@ -74,12 +74,12 @@ def run_box(plan: Plan, module: GeneratedModule, watch: Watch) -> Result:
     Parameters
     ----------
     plan : of the box alone.
-    watch : told the time that runs have reached, now and then; what it raises ends the work.
+    watch : called now and then with the time reached; an exception from it ends the work.
 
     Raises
     ------
     EngineError : there is no compiler here.
-    UsageError : the reduction gives something of no use.
+    UsageError : the reduction's function returns something that cannot be used.
     """
     engine = engine_of(module) if plan.method == METHOD else None
     errors = np.full(plan.size, "", dtype=object)
@@ -110,9 +110,9 @@ def filled_in(
     runs: NDArray[np.intp],
     part: xarray.Variable,
 ) -> xarray.Variable:
-    """Return a quantity of a box with that of some of its runs filled in.
+    """Return a quantity of a box with the values of some of its runs filled in.
 
-    Where a bank has fewer lanes than the largest of the sweep, the others are nan.
+    Lanes that a bank does not have at these runs are nan.
     """
     sizes = zip(part.dims[1:], part.shape[1:], strict=True)
     shape = (plan.size, *(plan.largest_banks.get(str(dim), size) for dim, size in sizes))
@@ -130,7 +130,7 @@ def filled_in(
 def group_result(
     plan: Plan, group: Group, engine: Engine | None, points: NDArray[np.intp], watch: Watch
 ) -> tuple[Quantities, Quantities]:
-    """Return what is kept of a group, its errors filled in, and a function's coordinates."""
+    """Return the quantities kept of a group, and a function's coordinates; fill in its errors."""
     system = group.systems[0]
     u = system.inputs.at_samples(plan.samples)
     arrays = in_c(plan, group, engine, u, watch) if engine else one_by_one(plan, group, watch)
@@ -155,7 +155,7 @@ def with_failed(
     known: Mapping[str, xarray.Variable],
     times: int,
 ) -> dict[str, NDArray[Any]]:
-    """Return quantities of the runs that came through as those of all, nan for the others."""
+    """Return quantities of all runs from those of the successful ones; the others are nan."""
     through = [not error for error in errors]
     if all(through):
         return found
@@ -168,9 +168,9 @@ def with_failed(
 def in_c(
     plan: Plan, group: Group, engine: Engine, u: FloatArray, watch: Watch
 ) -> dict[str, NDArray[Any]]:
-    """Return every quantity of the runs that come through; note the errors of the others.
+    """Return every quantity of the runs that succeed in C; fill in the errors of the others.
 
-    Those whose inputs leave the domain stop there, as with `simulate`.
+    As with `simulate`, a run whose inputs leave the domain is an error.
     """
     started = [k for k, error in enumerate(group.errors) if not error]
     if not started:
@@ -212,7 +212,7 @@ def stepped(plan: Plan, systems: Systems, engine: Engine, x: FloatArray, watch: 
 
 
 def one_by_one(plan: Plan, group: Group, watch: Watch) -> dict[str, NDArray[Any]]:
-    """Return every quantity of the runs that come through SciPy; note the errors of the others."""
+    """Return every quantity of the runs that succeed in SciPy; fill in the errors of the others."""
     parts = []
     for k, system in enumerate(group.systems):
         if group.errors[k]:

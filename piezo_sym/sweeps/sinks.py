@@ -1,4 +1,4 @@
-"""Where results go: into memory, or by `store` onto the disk, box by box.
+"""Sinks collect the results of boxes: in memory here, on disk in `store`.
 
 Input: a `Plan`, its frame, `Result` records.  Output: a Dataset over the swept dimensions.
 """
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Sink(ABC):
-    """Takes the results of boxes, in any order."""
+    """Collects the results of boxes, in any order."""
 
     @abstractmethod
     def missing(self) -> Iterable[Region]:
@@ -66,13 +66,13 @@ class Memory(Sink):
         for name, one in result.quantities.items():
             if name not in self._found:
                 shape = (*self._plan.shape, *one.shape[len(region) :])
-                # nan where a function may leave gaps
+                # a function that fails for a whole box leaves nan
                 room = np.full(shape, np.nan) if callable(self._plan.reduce) else np.empty(shape)
                 self._found[name] = xarray.Variable(one.dims, room, one.attrs)
             write(self._found[name].values, region, name, one)
 
     def dataset(self) -> xarray.Dataset:
-        """Return all results; those of a function that never ran have no names."""
+        """Return all results; only errors, if the reduction never ran."""
         errors = xarray.Variable(self._plan.dims, self._errors, ERROR_ATTRS)
         found = self._frame.assign_coords(self._coords).assign({**self._found, "error": errors})
         return found[[*self._found, *self._frame.data_vars, "error"]]

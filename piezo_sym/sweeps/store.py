@@ -1,7 +1,7 @@
-"""A Zarr store of a sweep: written box by box, and taken up again where it was stopped.
+"""A Zarr store of a sweep: written box by box, so that an interrupted sweep can continue.
 
-Input: a path, a `Plan`, its frame.  Output: a `Store`.  A box is done when its part of `error` is
-written, last of all: until then that says "not run".
+Input: a path, a `Plan`, its frame.  Output: a `Store`.  The part of `error` of a box is written
+last; until then it says "not run".
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ UNREADABLE = (OSError, ValueError, KeyError, RuntimeError)
 
 
 def store_at(path: Path, plan: Plan, frame: xarray.Dataset, spec_sha256: str) -> tuple[Plan, Store]:
-    """Return the store at a path, made if there is none, and the plan with the store's boxes.
+    """Return the store at a path, created if there is none, and the plan with its boxes.
 
     Raises
     ------
@@ -64,7 +64,7 @@ def store_at(path: Path, plan: Plan, frame: xarray.Dataset, spec_sha256: str) ->
 
 
 def difference(group: Any, frame: xarray.Dataset, dims: tuple[str, ...]) -> str:
-    """Return in what the sweep in a store differs from this one, as far as it can be told."""
+    """Return how the sweep in a store differs from this one, as far as the store shows it."""
     other = [name for name, value in frame.attrs.items() if not same(group.attrs.get(name), value)]
     other += [name for name in group.attrs if name not in {*frame.attrs, MARK, BOX, RESULTS}]
     swept = group["error"].metadata.dimension_names or ()
@@ -84,10 +84,10 @@ def same(one: Any, other: Any) -> bool:
 
 
 def create(path: Path, plan: Plan, frame: xarray.Dataset, marks: dict[str, object]) -> None:
-    """Make a store in which nothing has run; it appears at its path when it is whole."""
+    """Create a store in which nothing has run; it is moved to its path when complete."""
     errors = np.full(plan.shape, NOT_RUN, dtype=object)
     empty = frame.assign(error=(plan.dims, errors, ERROR_ATTRS)).assign_attrs(marks)
-    # a chunk that is not there has not run
+    # a missing chunk reads as not run
     encoding = {"error": {"chunks": plan.box_shape, "fill_value": NOT_RUN}}
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -101,9 +101,9 @@ def create(path: Path, plan: Plan, frame: xarray.Dataset, marks: dict[str, objec
 
 
 def consolidate(path: Path) -> None:
-    """Write what arrays there are in one place, where others who open a store look for it.
+    """Write consolidated metadata, which readers of a store look for.
 
-    zarr warns that its format 3 does not speak of that yet; xarray warns where it is missing.
+    zarr warns that its format 3 does not define them yet; xarray warns where they are missing.
     """
     import zarr
 
@@ -114,17 +114,17 @@ def consolidate(path: Path) -> None:
 
 @final
 class Store(Sink):
-    """Writes results into arrays over the grid, a chunk of each a box."""
+    """Writes results into arrays over the grid, one chunk per box."""
 
     def __init__(self, path: Path, group: Any, plan: Plan) -> None:
         self._path, self._group, self._plan = path, group, plan
 
     def missing(self) -> Iterator[Region]:
-        """Yield the boxes that were not written to their end."""
+        """Yield the boxes that are not written completely."""
         for region in self._plan.regions():
             try:
                 done = not np.any(np.asarray(self._group["error"][region]) == NOT_RUN)
-            except UNREADABLE:  # it was being written when all ended
+            except UNREADABLE:  # the process ended while it was written
                 done = False
             if not done:
                 yield region
@@ -166,9 +166,9 @@ class Store(Sink):
         )
 
     def dataset(self) -> xarray.Dataset:
-        """Return the store as a Dataset that is read when its values are asked for.
+        """Return the store as a Dataset that reads values on demand.
 
-        It is as one in memory: without the store's marks, and with errors as Python has texts.
+        As in memory, it has no attributes of the store, and errors are Python strings.
         """
         consolidate(self._path)
         found: xarray.Dataset = xarray.open_zarr(self._path, chunks=None, consolidated=False)

@@ -142,7 +142,7 @@ def sweep(
 
 
 def run_missing(sink: Sink, submit: Submit, at_once: int, progress: object, total: int) -> None:
-    """Run what a sink misses, and hand it the results as they come."""
+    """Run the boxes that a sink lacks, and give it the results as they are completed."""
     boxes = list(sink.missing())
     done = total - sum(prod(part.stop - part.start for part in box) for box in boxes)
     with progress_of(progress, total) as tell, closing(results(submit, boxes, at_once)) as found:
@@ -153,7 +153,7 @@ def run_missing(sink: Sink, submit: Submit, at_once: int, progress: object, tota
 
 
 def refuse_executor(executor: object, threads: object) -> None:
-    """Raise `UsageError` if nothing can be submitted to an executor."""
+    """Raise `UsageError` if `executor` is none, or threads are given, too."""
     if executor is None:
         return
     if threads is not None:
@@ -166,7 +166,7 @@ def refuse_executor(executor: object, threads: object) -> None:
 def sink_of(
     plan: Plan, module: GeneratedModule, store: str | Path | None, threads: int
 ) -> tuple[Plan, Sink]:
-    """Return where results go, and the plan with the boxes that it keeps."""
+    """Return the sink of the results, and the plan with the sink's boxes."""
     frame = frame_of(plan, module)
     plan = replace(plan, most=max(1, min(plan.most, -(-plan.size // (2 * threads)))))
     if store is None:
@@ -177,7 +177,7 @@ def sink_of(
 
 
 def warn(found: xarray.Dataset, plan: Plan) -> None:
-    """Say in one line that runs failed."""
+    """Warn in one line if runs failed."""
     errors = found["error"].values.ravel()
     failed = np.flatnonzero(errors != "")
     if failed.size:

@@ -1,9 +1,9 @@
 """What can be swept: parameters, sizes of banks, inputs and initial values, by name.
 
-Input: a generated module, a user's name for a quantity and its values.  Output: a `Target`, whose
-values are checked and come one per point of an axis.
+Input: a generated module, a user's name for a quantity and its values.  Output: a `Target` with
+checked values, one per point of an axis.
 
-A plain name is enough where only one thing has it; else "parameters.x", "inputs.x", "initial.x".
+A name that belongs to several quantities needs a prefix: "parameters.x", "inputs.x", "initial.x".
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Target:
     bank : the bank that it belongs to, or whose size it is, if any.
     is_size : whether it is the number of lanes of a bank.
     values : one per point: an array of numbers, or numbers, tuples of one per lane, and signals.
-    texts : what stands for each value on a coordinate, where not all are numbers.
+    texts : labels of the values on a coordinate, if not all values are numbers.
     """
 
     kind: Kind
@@ -60,7 +60,7 @@ class Target:
 
     @property
     def divides(self) -> bool:
-        """Whether runs with different values cannot go through C together."""
+        """Whether runs with different values need separate calls of C."""
         return self.is_size or self.kind == "inputs"
 
     def along(self, values: FloatArray | tuple[Value, ...]) -> Target:
@@ -118,7 +118,7 @@ def targets(module: GeneratedModule) -> Iterator[Target]:
 def read_values(
     target: Target, given: Sequence[object] | FloatArray, where: str, duration: float
 ) -> FloatArray | tuple[Value, ...]:
-    """Return a target's values, one per point; raise `UsageError` at the first that is none."""
+    """Return a target's values, one per point; raise `UsageError` at the first that is invalid."""
     if target.is_size:
         return tuple(whole(value, f"{where}[{n}]", 1) for n, value in enumerate(given))
     if isinstance(given, np.ndarray) and given.ndim == 1 and given.dtype.kind in "iuf":
