@@ -1,8 +1,8 @@
-"""`plot`: a run at a glance: states, inputs and outputs, temperatures, and the ledger.
+"""`plot`: a dashboard of a run: states, inputs and outputs, temperatures, and the ledger.
 
-Input: the `xarray.Dataset` of a run.  Output: a Matplotlib figure: a panel for each unit that
-states, inputs, outputs and temperatures have; heat released and entropy produced, stacked by
-process; the residual of the energy balance.  Panels that would be empty are left out.
+Input: the `xarray.Dataset` of a run.  Output: a Matplotlib figure with one panel per unit of the
+states, inputs, outputs and temperatures; heat released and entropy produced, stacked by process;
+the residual of the energy balance.  Empty panels are left out.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 ACROSS = 3  # panels in a row
 WIDTH, HEIGHT = 3.2, 2.1  # of a panel, inches
 MOST_NAMES = 6  # in a legend
-MOST_LANES = 8  # drawn one by one; more are drawn as the range they fill
+MOST_LANES = 8  # drawn one by one; of more, the mean and the range are drawn
 LEDGER = ("energy_residual", "entropy_residual", "energy", "entropy")
 SUMS = ("supplied_", "heat_", "produced_", "entropy_exchanged_")
 
@@ -94,7 +94,7 @@ def refuse_others(run: xarray.Dataset) -> None:
 
 
 def _panels(run: xarray.Dataset) -> Iterator[Panel]:
-    """Yield the label of each panel, and what draws it."""
+    """Yield the label of each panel, and the function that draws it."""
     for unit, names in _by_unit(run).items():
         yield f"{_short(names)} [{unit}]", partial(_lines, run=run, names=names)
     if heats := _with_prefix(run, "heat_"):
@@ -127,7 +127,7 @@ def _short(names: list[str]) -> str:
 
 
 def _lines(axes: Axes, run: xarray.Dataset, names: list[str], prefix: str = "") -> None:
-    """Draw variables as lines; the lanes of a bank as thin ones, or as the range they fill."""
+    """Draw variables as lines; of a bank every lane, or mean and range if there are many."""
     time = run.time.values
     mark = "." if time.size == 1 else ""
     for n, name in enumerate(names):
@@ -144,13 +144,13 @@ def _lines(axes: Axes, run: xarray.Dataset, names: list[str], prefix: str = "") 
 
 
 def _lanes(variable: xarray.DataArray) -> FloatArray:
-    """Return a variable over time and, if it is a bank's, lanes: shape (nt, lanes)."""
+    """Return a variable over time and lanes, (nt, lanes); one lane if it has no bank."""
     values = np.asarray(variable.transpose("time", ...).values, dtype=float)
     return values.reshape(values.shape[0], -1)
 
 
 def _stack(axes: Axes, run: xarray.Dataset, names: list[str], prefix: str) -> None:
-    """Draw what processes have summed up to, one on top of the other; lanes of a bank together."""
+    """Draw the integrals of processes, stacked; the lanes of a bank are added up."""
     time = run.time.values
     base = np.zeros(time.size)
     for n, name in enumerate(names):
@@ -165,6 +165,6 @@ def _stack(axes: Axes, run: xarray.Dataset, names: list[str], prefix: str) -> No
 
 
 def _small_legend(axes: Axes) -> None:
-    """Add a legend where more than one thing is drawn."""
+    """Add a legend where more than one variable is drawn."""
     if len(axes.get_legend_handles_labels()[1]) > 1:
         axes.legend(fontsize=SMALL - 1, loc="best", framealpha=0.6, handlelength=1.5)

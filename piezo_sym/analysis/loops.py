@@ -1,8 +1,8 @@
 """Measures of a hysteresis loop: area, width, slope of its chord, phase, closure.
 
-Input: two arrays of equal length, the samples (n,) of one period, in order, both ends included:
-what drives (x, such as a voltage) and what answers (y, such as a displacement or a charge).
-Output: numbers in the units of the two.
+Input: the samples (n,) of one period, in order, both ends included: of the drive x, such as a
+voltage, and of the response y, such as a displacement or a charge.  Output: numbers in the units of
+the two.
 
     area = closed integral of x dy      > 0 where y lags behind x
 
@@ -32,7 +32,7 @@ FEWEST = 8  # samples; fewer make no loop
 @final
 @dataclass(frozen=True)
 class Loop:
-    """The measures of one loop, of x (what drives) and y (what answers)."""
+    """The measures of one loop of the response y over the drive x."""
 
     area: float  # unit of x times unit of y
     width: float  # unit of y
@@ -94,7 +94,7 @@ def slope(x: ArrayLike, y: ArrayLike) -> float:
 
 
 def phase(x: ArrayLike, y: ArrayLike) -> float:
-    """Return by how much the fundamental of y lags behind that of x [rad], in (-pi, pi].
+    """Return the phase lag of the fundamental of y behind that of x [rad], in (-pi, pi].
 
     The samples are taken to be evenly spaced in time over one period.
     """
@@ -104,7 +104,7 @@ def phase(x: ArrayLike, y: ArrayLike) -> float:
 
 
 def closure(x: ArrayLike, y: ArrayLike) -> float:
-    """Return by how much y differs between the end and the beginning: 0 for a closed loop."""
+    """Return the difference of y between the end and the beginning: 0 for a closed loop."""
     _, b = _loop(x, y)
     return float(b[-1] - b[0])
 

@@ -72,8 +72,8 @@ class Stroboscope:
     steps: int  # per period
 
     @property
-    def period(self) -> float:
-        """Its length [s]."""
+    def duration(self) -> float:
+        """The length of one period [s]."""
         return 1 / self.frequency
 
     @property
@@ -104,21 +104,21 @@ class Stroboscope:
         """Return the states (n, SAMPLES + 1) of one period; no Dataset is built, for speed."""
         if self.engine is None:
             return self.states_of(self.run(x, times=SAMPLES + 1, rtol=LSODA_RTOL))
-        system, step = self._system, FixedStep(self.period / self.steps)
+        system, step = self._system, FixedStep(self.duration / self.steps)
         check_start(system, x)
-        times = np.linspace(0.0, self.period, SAMPLES + 1)
+        times = np.linspace(0.0, self.duration, SAMPLES + 1)
         return fixed([system], self.engine, x[None], times, step).trajectory(0).states
 
     @cached_property
     def inputs(self) -> Inputs:
         """The inputs over one period."""
-        return read_inputs(self.module, self.inputs_at(self.frequency), self.period)
+        return read_inputs(self.module, self.inputs_at(self.frequency), self.duration)
 
     @cached_property
     def _system(self) -> System:
         """The module with its parameters and inputs, checked."""
         system = System(self.module, self.values, self.inputs)
-        check_inputs(system, self.start, np.array([0.0, self.period]))
+        check_inputs(system, self.start, np.array([0.0, self.duration]))
         return system
 
     def run(self, x: FloatArray, **options: Any) -> xarray.Dataset:
@@ -126,7 +126,7 @@ class Stroboscope:
         return simulate(
             self.module,
             inputs=self.inputs_at(self.frequency),
-            duration=self.period,
+            duration=self.duration,
             parameters=self.parameters,
             initial=self.named(x),
             method=METHOD if self.engine else "LSODA",
@@ -233,6 +233,6 @@ def stroboscope(
     steps = steps_needed(inputs_at(frequency), frequency, steps)
     known_keys(initial, [record.name for record in module.STATES], "periodic_steady_state.initial")
     strobe = Stroboscope(module, inputs_at, frequency, parameters or {}, initial or {}, steps)
-    accuracy = {"step": strobe.period / steps} if strobe.engine else {"rtol": LSODA_RTOL}
+    accuracy = {"step": strobe.duration / steps} if strobe.engine else {"rtol": LSODA_RTOL}
     strobe.run(strobe.start, times=2, **accuracy)  # raises what a run says of these arguments
     return strobe
