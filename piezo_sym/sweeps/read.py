@@ -75,8 +75,7 @@ def read_plan(
         refuse_sizes(module, axes, *given, signals.segments[0].at(0.0))
         refuse_reduction(reduce, reduce_by)
         chosen = choose_method(module, named, step)
-        numbers = samples.size * row_numbers(module, base, axes)
-        together = most_together(numbers, chosen.method)
+        together = most_together(samples.size * row_numbers(module, base, axes), chosen.method)
         return Plan(
             axes=axes,
             signals=signals.signals,
