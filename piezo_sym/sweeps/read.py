@@ -63,8 +63,7 @@ def read_plan(
     """
     with named_sweep():
         named, bound = checked_method(method), read_rtol(rtol)
-        fixed = read_step(step, order, named, rtol)
-        end = positive(duration, "sweep.duration")
+        fixed, end = read_step(step, order, named, rtol), positive(duration, "sweep.duration")
         only_end = reduce == "last" and times is every is step is None
         samples = sample_times(2 if only_end else times, every, step, end)
         signals = read_inputs(module, inputs, end)
@@ -76,23 +75,10 @@ def read_plan(
         refuse_reduction(reduce, reduce_by)
         chosen = choose_method(module, named, step)
         together = most_together(samples.size * row_numbers(module, base, axes), chosen.method)
-        return Plan(
-            axes=axes,
-            signals=signals.signals,
-            duration=end,
-            parameters=given[0],
-            initial=given[1],
-            samples=samples,
-            method=chosen.method,
-            rtol=bound,
-            step=fixed,
-            reduce=reduce,  # type: ignore[arg-type]  # checked above
-            each=reduce_by == "run",
-            largest_banks=largest_banks(axes),
-            together=together,
-            most=together if reduce is None else box_of_reduced(axes, together),
-            engine=chosen.note,
-        )
+        boxes = together if reduce is None else box_of_reduced(axes, together)
+        how = (chosen.method, bound, fixed, reduce, reduce_by == "run", largest_banks(axes))
+        sizes = (together, boxes, chosen.note)
+        return Plan(axes, signals.signals, end, *given, samples, *how, *sizes)  # type: ignore[arg-type]  # reduce is checked
 
 
 def most_together(numbers: int, method: str) -> int:
