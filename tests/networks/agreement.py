@@ -14,13 +14,12 @@ import numpy as np
 from precise import DIGITS, measured
 from tableau import STORES, Tableau, pairs_of, state
 
-from piezo_sym import derive
+from piezo_sym import Model, PiezoError, derive
 from piezo_sym.build import render
-from piezo_sym.errors import NetworkError, PiezoError
+from piezo_sym.errors import NetworkError
 from piezo_sym.modules import load_module
 from piezo_sym.proofs import Verdict, obligations, prove
 from piezo_sym.spec.load import parse
-from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import banks
 from piezo_sym.verification.examine import examine
 

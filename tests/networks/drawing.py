@@ -4,8 +4,7 @@ import time
 
 import pytest
 
-from piezo_sym import derive
-from piezo_sym.errors import PiezoError
+from piezo_sym import PiezoError, derive
 from piezo_sym.spec.load import parse
 
 HEAD = """

@@ -1,15 +1,19 @@
 """Random networks: specs as plain data, over every kind of element.
 
-Output: a Hypothesis strategy `networks`.  A network has a tree of elements that give the across
-variable of each node (capacitor, mass, source, resistor), and chords that give their through
-variable (inductor, spring, hysteron, damper); that is a network with one solution.  Then a few
-elements are put anywhere, and most such networks have none, or need a law the other way round.
+Output: a Hypothesis strategy `networks`, and `explore`, which checks many.  A network has a tree
+of elements that give the across variable of each node (capacitor, mass, source, resistor), and
+chords that give their through variable (inductor, spring, hysteron, damper); that is a network with
+one solution.  Then a few elements are put anywhere, and most such networks have none, or need a law
+the other way round.
 """
 
 from dataclasses import dataclass, field
 
+from hypothesis import HealthCheck, given, reject, seed, settings
 from hypothesis import strategies as st
 from kinds import KINDS
+
+from piezo_sym import Model, PiezoError, derive
 
 CHANCE = st.integers(0, 99)
 REFERENCE = {"e": "gnd", "m": "wall"}
@@ -216,3 +220,28 @@ def networks(draw):
         "initial": {draft.elements[name].get("state", f"S_{name}"): 0.1 for name in bodies},
         "elements": {name: draft.elements[name] for name in order},
     }
+
+
+def explore(number, check):
+    """Return what `check(spec, seed)` gave for each of a number of random networks.
+
+    Each check has networks of its own, the same in every run; those that it rejects do not count.
+    """
+    outcomes = []
+
+    @seed(check.__module__)
+    @settings(max_examples=number, suppress_health_check=list(HealthCheck), database=None)
+    @given(networks(), st.integers(0, 10**6))
+    def each(spec, number):
+        outcomes.append(check(spec, number))
+
+    each()
+    return outcomes
+
+
+def derivable(spec):
+    """Return the system of a network; a check rejects one that is refused."""
+    try:
+        return derive(Model(**spec))
+    except PiezoError:
+        reject()

@@ -13,21 +13,17 @@ from agreement import (
     check_entropy,
     point,
 )
-from hypothesis import HealthCheck, assume, given, settings
-from hypothesis import strategies as st
-from strategy import networks
+from strategy import derivable, explore
 from test_specs import points
 
 from piezo_sym import derive, load
 from piezo_sym.codegen import collocation_of, lower, printed
-from piezo_sym.errors import PiezoError
 from piezo_sym.modules import load_module, module_of
 from piezo_sym.run.collocation import FixedStep, fixed
 from piezo_sym.run.engine.batch import is_lossy
 from piezo_sym.run.engine.engine import OFFERED, engine_of
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.system import System
-from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import banks
 
 SPECS = sorted(Path(__file__).with_name("specs").glob("*.toml"))
@@ -64,25 +60,21 @@ def check_twins(first, second, x, u):
         assert np.allclose(found, wanted, rtol=AGREEMENT, atol=AGREEMENT * size), name
 
 
-def check(spec, iphs, seed):
+def check(spec, seed):
     """Check the compiled module of a network at two states."""
-    with tempfile.TemporaryDirectory() as folder:
-        check_in(folder, spec, iphs, seed)
-
-
-def check_in(folder, spec, iphs, seed):
-    """Check the module of a network that is written into a folder."""
-    module, compiled = twins(iphs, folder)
+    iphs = derivable(spec)
     places = [point(spec, iphs, seed + n) for n in range(2)]
     systems = [iphs.expand(), *([iphs] if banks(iphs.model) else [])]
-    for x, u in places:
-        check_twins(module, compiled, x, u)
-        for system in systems:
-            check_against_sympy(compiled, system, x, u)
-        check_against_tableau(compiled, spec, x, u)
-        check_entropy(compiled, spec, x, u)
-    check_batch(compiled, places)
-    check_start(module, compiled, places[0])
+    with tempfile.TemporaryDirectory() as folder:
+        module, compiled = twins(iphs, folder)
+        for x, u in places:
+            check_twins(module, compiled, x, u)
+            for system in systems:
+                check_against_sympy(compiled, system, x, u)
+            check_against_tableau(compiled, spec, x, u)
+            check_entropy(compiled, spec, x, u)
+        check_batch(compiled, places)
+        check_start(module, compiled, places[0])
 
 
 def check_start(module, compiled, place):
@@ -109,24 +101,6 @@ def check_start(module, compiled, place):
     assert np.all(np.diff(sums[:, -2:], axis=0) >= 0)
 
 
-def explore(number):
-    """Check a number of random networks that can be derived; return how many there were."""
-    derived = []
-
-    @settings(max_examples=number, suppress_health_check=list(HealthCheck), database=None)
-    @given(networks(), st.integers(0, 10**6))
-    def each(spec, seed):
-        try:
-            iphs = derive(Model(**spec))
-        except PiezoError:
-            assume(False)
-        check(spec, iphs, seed)
-        derived.append(spec)
-
-    each()
-    return len(derived)
-
-
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
 def test_specs(path):
     model = load(path)
@@ -138,9 +112,9 @@ def test_specs(path):
 
 
 def test_networks():
-    assert explore(5) >= 5
+    assert len(explore(5, check)) >= 5
 
 
 @pytest.mark.long
 def test_many_networks():
-    assert explore(200) >= 200
+    assert len(explore(200, check)) >= 200

@@ -3,10 +3,9 @@
 import pytest
 from agreement import DERIVED, REFUSED, check
 
-from piezo_sym import derive
-from piezo_sym.errors import NetworkError, PiezoError
+from piezo_sym import Model, PiezoError, derive
+from piezo_sym.errors import NetworkError
 from piezo_sym.spec.load import parse
-from piezo_sym.spec.model import Model
 
 BODY = {"kind": "thermal_mass", "temperature": "T_0*exp(S/c)"}
 CAPACITOR = {"kind": "capacitor", "between": ["b", "gnd"], "capacitance": "C"}

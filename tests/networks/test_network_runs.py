@@ -2,24 +2,20 @@
 
 import re
 import tempfile
-from collections import Counter
 from pathlib import Path
 
 import numpy as np
 import pytest
 from agreement import point
-from hypothesis import HealthCheck, assume, given, settings
-from hypothesis import strategies as st
 from runs import METHOD, check_run, distance, jumps, written
-from strategy import networks
+from strategy import derivable, explore
 
-from piezo_sym import derive, load, sine
-from piezo_sym.errors import PiezoError, RunError
+from piezo_sym import Model, load, sine
+from piezo_sym.errors import RunError
 from piezo_sym.modules import module_of
 from piezo_sym.run import simulate
 from piezo_sym.run.module import rows
 from piezo_sym.spec.load import parse
-from piezo_sym.spec.model import Model
 
 SPECS = sorted(Path(__file__).with_name("specs").glob("*.toml"))
 #: What a run is asked for, and how far its states may be from the reference.
@@ -53,8 +49,9 @@ def attempted(run):
         return float(re.search(r" t = (\S+) s", message)[1])
 
 
-def check(spec, iphs, seed):
+def check(spec, seed):
     """Run a network from some state with every accuracy, and return how that came out."""
+    iphs = derivable(spec)
     x, u = point(spec, iphs, seed)
     with tempfile.TemporaryDirectory() as folder:
         module = written(iphs.model, folder, allow_unproved=True)
@@ -69,23 +66,6 @@ def check(spec, iphs, seed):
             elif not (isinstance(found, float) and jumps(spec)):
                 assert distance(found, wanted, module) <= bound
     return STOPPED if isinstance(wanted, float) else FINISHED
-
-
-def explore(number):
-    """Check a number of random networks that can be derived; count how their runs came out."""
-    outcomes = Counter()
-
-    @settings(max_examples=number, suppress_health_check=list(HealthCheck), database=None)
-    @given(networks(), st.integers(0, 10**6))
-    def each(spec, seed):
-        try:
-            iphs = derive(Model(**spec))
-        except PiezoError:
-            assume(False)
-        outcomes[check(spec, iphs, seed)] += 1
-
-    each()
-    return outcomes
 
 
 SHORT = {"duration": 1e-3, "times": 11}
@@ -159,11 +139,10 @@ def test_a_run_never_takes_entropy_even_of_a_model_that_would(accuracy, tmp_path
 
 
 def test_networks():
-    outcomes = explore(4)
-    assert outcomes[FINISHED] >= 3
+    assert explore(4, check).count(FINISHED) >= 3
 
 
 @pytest.mark.long
 def test_many_networks():
-    outcomes = explore(150)  # runs that leave their domain are those of tests/run/test_run_edge.py
-    assert outcomes[FINISHED] >= 75
+    # runs that leave their domain are those of tests/run/test_run_edge.py
+    assert explore(150, check).count(FINISHED) >= 75
