@@ -11,11 +11,10 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+from piezo_sym import PiezoError, load
 from piezo_sym.cli.words import pairs, signal
-from piezo_sym.errors import PiezoError
 from piezo_sym.files import write_text
 from piezo_sym.run.checks import positive
-from piezo_sym.spec.load import load
 from tests.benchmarks.groups import GROUPS, bench
 from tests.benchmarks.output import as_json, markdown
 from tests.benchmarks.settings import QUICK, THOROUGH

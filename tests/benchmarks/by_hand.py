@@ -17,12 +17,12 @@ from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 
+from piezo_sym import load
 from piezo_sym.bench.contest import Contestant
 from piezo_sym.bench.problem import SHIPPED
 from piezo_sym.errors import EngineError
 from piezo_sym.run.engine.compiler import FLAGS, build, compilers
 from piezo_sym.run.engine.records import ParameterRecords
-from piezo_sym.spec.load import load
 from tests.benchmarks import hand_written
 from tests.benchmarks.ours import inputs_at_instant
 

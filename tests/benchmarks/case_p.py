@@ -13,16 +13,16 @@ from typing import TYPE_CHECKING, final
 
 import numpy as np
 
+from piezo_sym import load
 from piezo_sym.bench import problem as explicit
 from piezo_sym.bench.problem import DRIVEN, SHIPPED
 from piezo_sym.run.signals import Constant
-from piezo_sym.spec.load import load
 
 if TYPE_CHECKING:
+    from piezo_sym import Model
     from piezo_sym.bench.problem import Problem
     from piezo_sym.run.checks import FloatArray
     from piezo_sym.run.inputs import InputValue
-    from piezo_sym.spec.model import Model
 
 #: State at a time [s], and how far it is known, in units of the scale: q, p, Q_C, phi, S.
 KNOWN: tuple[tuple[float, tuple[float, ...], float], ...] = (

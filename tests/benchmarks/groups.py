@@ -30,9 +30,9 @@ from tests.benchmarks.settings import THOROUGH
 from tests.benchmarks.sweeps import sweep_rows
 
 if TYPE_CHECKING:
+    from piezo_sym import Model
     from piezo_sym.bench.problem import Problem
     from piezo_sym.run.inputs import InputValue
-    from piezo_sym.spec.model import Model
     from tests.benchmarks.settings import Settings
 
 LONGER = 100

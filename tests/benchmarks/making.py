@@ -12,12 +12,10 @@ from typing import TYPE_CHECKING
 
 from sympy.core.cache import clear_cache
 
+from piezo_sym import Model, derive, verify
 from piezo_sym.bench.contest import Contestant, Pair, compared
 from piezo_sym.build import render
-from piezo_sym.derivation import derive
-from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import banks
-from piezo_sym.verification import verify
 from tests.benchmarks.report import Part
 
 if TYPE_CHECKING:

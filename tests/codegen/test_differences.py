@@ -9,8 +9,8 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from piezo_sym import generate
 from piezo_sym.algebra.symbols import to_sympy
-from piezo_sym.build import generate
 from piezo_sym.codegen.differences import sharp
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.text import spell

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from piezo_sym import derive, verify
-from piezo_sym.build import generate
+from piezo_sym import derive, generate, verify
 from piezo_sym.errors import UsageError
 from piezo_sym.modules import load_module
 from piezo_sym.run.engine.engine import engine_of

@@ -11,8 +11,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from piezo_sym import derive
-from piezo_sym.errors import PiezoError
+from piezo_sym import PiezoError, derive
 from piezo_sym.proofs import Verdict, obligations, prove
 from piezo_sym.proofs.solvers import opinions
 from piezo_sym.spec.load import parse

@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from piezo_sym import load
 from piezo_sym.modules import module_of
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.module import lanes
 from piezo_sym.run.parameter_table import ParameterTable
 from piezo_sym.run.system import Systems
-from piezo_sym.spec.load import load
 
 NUMBERS = st.floats(1e-6, 1e6)
 

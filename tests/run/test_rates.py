@@ -9,14 +9,13 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from piezo_sym import load
+from piezo_sym import Model, load
 from piezo_sym.codegen.c.names import KEPT
 from piezo_sym.modules import module_of
 from piezo_sym.run.engine.c_sources import c_source
 from piezo_sym.run.engine.compiler import FLAGS, build, compilers
 from piezo_sym.run.engine.engine import OFFERED, engine_of
 from piezo_sym.run.parameters import read_parameters
-from piezo_sym.spec.model import Model
 
 SPECS = sorted((Path(__file__).parents[1] / "networks" / "specs").glob("*.toml"))
 BATCHES = [(), (1,), (7,), (16,), (17,), (1000,), (0,), (3, 11), (1, 5, 50)]

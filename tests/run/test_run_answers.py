@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, simpson
 
-from piezo_sym.run import chirp, ramp, samples, simulate, sine, step, triangle
+from piezo_sym import chirp, ramp, samples, sine, step, triangle
+from piezo_sym.run import simulate
 from piezo_sym.run.inputs import as_signal, read_inputs
 from piezo_sym.run.integrate import Stretch
 from piezo_sym.run.scales import magnitudes

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from piezo_sym import samples_from_csv
 from piezo_sym.errors import FileError, UsageError
-from piezo_sym.run import samples_from_csv
 
 
 @pytest.fixture

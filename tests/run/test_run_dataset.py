@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 import xarray
 
-from piezo_sym import progress
+from piezo_sym import progress, sine
 from piezo_sym import simulate as simulate_shipped
+from piezo_sym import step as signal
 from piezo_sym.errors import UsageError
-from piezo_sym.run import simulate, sine
-from piezo_sym.run import step as signal
+from piezo_sym.run import simulate
 
 NAMES = {
     **dict.fromkeys(["q"], "m"),
@@ -115,7 +115,8 @@ sys.path[:0] = sys.argv[1:]
 import hand_written
 from piezo_sym import simulate as simulate_shipped
 from piezo_sym.errors import UsageError
-from piezo_sym.run import simulate, sine
+from piezo_sym import sine
+from piezo_sym.run import simulate
 light = {"scipy.integrate", "xarray"} & set(sys.modules)
 simulate(hand_written, inputs={"V_in": sine(100, 100)}, duration=1e-3)
 heavy = {"sympy", "pydantic", "pint", "z3", "matplotlib"} & set(sys.modules)

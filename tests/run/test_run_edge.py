@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 import piezo_sym
+from piezo_sym import ramp, sine, step
 from piezo_sym.errors import RunError
 from piezo_sym.modules import module_of
-from piezo_sym.run import ramp, simulate, sine, step
+from piezo_sym.run import simulate
 
 
 @pytest.fixture(scope="module")

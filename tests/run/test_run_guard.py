@@ -5,8 +5,9 @@ from math import log
 import numpy as np
 import pytest
 
+from piezo_sym import ramp, step
 from piezo_sym.errors import RunError
-from piezo_sym.run import ramp, simulate, step
+from piezo_sym.run import simulate
 
 METHODS = ["RK45", "Radau", "LSODA"]
 

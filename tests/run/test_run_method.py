@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 
 import piezo_sym
+from piezo_sym import sine
 from piezo_sym.errors import EngineError
-from piezo_sym.run import simulate, sine
+from piezo_sym.run import simulate
 from piezo_sym.run.engine import EngineWarning, compiler
 from piezo_sym.run.engine.library import CACHE
 from tests.conftest import write_script

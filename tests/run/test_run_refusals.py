@@ -5,8 +5,9 @@ from math import inf, nan
 import numpy as np
 import pytest
 
+from piezo_sym import samples
 from piezo_sym.errors import UsageError
-from piezo_sym.run import samples, simulate
+from piezo_sym.run import simulate
 
 REFUSED = [
     ({"inputs": {"V_inn": 1}}, "simulate.inputs: unknown name 'V_inn'; did you mean 'V_in'?"),

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from piezo_sym import chirp, ramp, samples, sine, step, triangle
 from piezo_sym.errors import UsageError
-from piezo_sym.run import chirp, ramp, samples, sine, step, triangle
 from piezo_sym.run.inputs import Inputs, as_signal
 
 numbers = st.floats(-1e6, 1e6)

@@ -103,8 +103,7 @@ def proved(text, until="laws"):
     ----------
     until : "laws", the prover on laws alone; "decide", the prover; "verify", all of it.
     """
-    from piezo_sym import derive, verify
-    from piezo_sym.errors import PiezoError
+    from piezo_sym import PiezoError, derive, verify
     from piezo_sym.proofs import decide
     from piezo_sym.spec.load import parse
 

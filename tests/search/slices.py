@@ -10,7 +10,7 @@ from collections import Counter
 
 import tomli_w
 
-from piezo_sym.errors import PiezoError
+from piezo_sym import PiezoError
 from piezo_sym.expressions.parse import parse_condition, parse_law
 from tests.search.judge import Fault, judge
 from tests.search.laws import read

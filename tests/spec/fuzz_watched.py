@@ -9,12 +9,10 @@ import time
 
 from fuzz_texts import law_texts, spec_texts
 
-from piezo_sym import derive
-from piezo_sym.errors import PiezoError
+from piezo_sym import Model, PiezoError, derive
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import Expr
 from piezo_sym.spec.load import parse
-from piezo_sym.spec.model import Model
 from piezo_sym.spec.units import parse_unit
 
 SLOW = 1.0

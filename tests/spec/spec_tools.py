@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from piezo_sym.errors import PiezoError
+from piezo_sym import PiezoError
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.spec.load import parse
 from piezo_sym.spec.source import MODELS

@@ -8,9 +8,8 @@ from hypothesis import strategies as st
 from spec_laws import steady
 from spec_tools import SHIPPED, SLOW, check_message
 
-from piezo_sym.errors import PiezoError
+from piezo_sym import Model, PiezoError
 from piezo_sym.spec.load import parse
-from piezo_sym.spec.model import Model
 
 TOKENS = re.findall(r"\w+|\s+|.", SHIPPED)
 WORDS = st.sampled_from(sorted({token for token in TOKENS if token.strip()})) | st.sampled_from(

@@ -6,8 +6,9 @@ import time
 import pytest
 from spec_tools import MINIMAL, SHIPPED, check_message, edited_text, refusal
 
+from piezo_sym import load
 from piezo_sym.errors import FileError, SpecError, UsageError
-from piezo_sym.spec.load import load, parse
+from piezo_sym.spec.load import parse
 from piezo_sym.spec.source import data, find, read, shipped
 
 

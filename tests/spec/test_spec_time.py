@@ -7,11 +7,10 @@ import pytest
 from spec_tools import edited_text, refusal
 from test_spec_parse import HOSTILE
 
-from piezo_sym import derive, verify
+from piezo_sym import PiezoError, derive, load, verify
 from piezo_sym.build import render
-from piezo_sym.errors import PiezoError
 from piezo_sym.expressions import parse as parse_module
-from piezo_sym.spec.load import load, parse
+from piezo_sym.spec.load import parse
 from piezo_sym.spec.units import parse_unit
 from piezo_sym.verification import process
 

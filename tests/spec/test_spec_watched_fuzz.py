@@ -9,7 +9,8 @@ import fuzz_watched
 import pytest
 from fuzz_texts import law_texts, spec_texts
 
-from piezo_sym.errors import PiezoError, SpecError
+from piezo_sym import PiezoError
+from piezo_sym.errors import SpecError
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import Expr
 from piezo_sym.spec.load import parse
