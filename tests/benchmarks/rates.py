@@ -28,6 +28,7 @@ from tests.benchmarks.runs import failure, unable
 if TYPE_CHECKING:
     from piezo_sym.bench.problem import Problem
     from piezo_sym.run.checks import FloatArray
+    from tests.benchmarks.peers import Peer
     from tests.benchmarks.peers.peer import Rates
     from tests.benchmarks.settings import Settings
 
@@ -107,26 +108,26 @@ def _lambdified(problem: Problem, sample: Sample, modules: str, cse: bool) -> Co
     return _one_at_a_time(name, partial(field(problem, modules, cse), INSTANT), sample)
 
 
-def batch_rows(problem: Problem, settings: Settings) -> Part:
+def batch_rows(problem: Problem, settings: Settings, peers: tuple[Peer, ...] = PEERS) -> Part:
     """Return the rows of the group `batch`, also with banks of 64 lanes where there are banks."""
-    parts = [_batch(problem, settings)]
+    parts = [_batch(problem, settings, peers)]
     module = problem.module
     if module.BANKS and not any(
         isinstance(p.value, tuple) for p in problem.model.parameters.values()
     ):
         sizes = dict.fromkeys(module.BANKS, MANY)
         large = problem_of(problem.model, problem.inputs, problem.duration, sizes)
-        parts.append(_batch(large, settings))
+        parts.append(_batch(large, settings, peers))
     return Part(
         tuple(row for part in parts for row in part.rows),
         tuple(dict.fromkeys(line for part in parts for line in part.left_out)),
     )
 
 
-def _batch(problem: Problem, settings: Settings) -> Part:
+def _batch(problem: Problem, settings: Settings, peers: tuple[Peer, ...]) -> Part:
     sample = sample_of(problem, settings.columns)
     numpy = _at_once("generated NumPy", rates_of(problem), sample)
-    others, left_out = _others(problem, sample)
+    others, left_out = _others(problem, sample, peers)
     pairs = [Pair(others[0], numpy)]
     hand = hand_of(problem)
     try:
@@ -145,11 +146,13 @@ def _batch(problem: Problem, settings: Settings) -> Part:
     return Part(rows, tuple(left_out))
 
 
-def _others(problem: Problem, sample: Sample) -> tuple[list[Contestant], list[str]]:
+def _others(
+    problem: Problem, sample: Sample, peers: tuple[Peer, ...]
+) -> tuple[list[Contestant], list[str]]:
     """Return the rates of those peers that have them, and why others are left out."""
     found: list[Contestant] = []
     left_out: list[str] = []
-    for peer in PEERS:
+    for peer in peers:
         reason = unable(peer, problem, events=False)
         if not peer.rates:
             continue

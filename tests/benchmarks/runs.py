@@ -34,13 +34,19 @@ MOST_WORDS = 120
 
 
 def run_rows(
-    group: str, problem: Problem, target: float, settings: Settings, independent: bool
+    group: str,
+    problem: Problem,
+    target: float,
+    settings: Settings,
+    independent: bool,
+    peers: tuple[Peer, ...] = PEERS,
 ) -> Part:
     """Return the rows of one group of runs.
 
     Parameters
     ----------
     independent : whether LSODA has a say in the reference, where no numbers are known.
+    peers : what this package is compared with.
     """
     try:
         exact = reference_of(problem, independent)
@@ -50,7 +56,7 @@ def run_rows(
     ours = _tuned(RUN, solve, exact, target, settings, "rtol")
     if isinstance(ours, str):
         return Part(left_out=(f"{group}, {ours}",))
-    found = [_peer(peer, exact, target, settings) for peer in PEERS]
+    found = [_peer(peer, exact, target, settings) for peer in peers]
     found += [_usual(exact, settings)]
     found += [_simulated(*row, exact, target, settings) for row in _datasets(exact)]
     others = [contestant for contestant in found if isinstance(contestant, Contestant)]

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from piezo_sym import Model, load
-from piezo_sym.errors import EngineError
 from tests.benchmarks.by_hand import hand_of
 from tests.benchmarks.case_p import problem_of
 from tests.benchmarks.ours import run_in_c, states, whole
@@ -75,13 +74,12 @@ def broken(*_):
     raise TypeError("cannot\ndo this")
 
 
-def test_a_peer_that_fails_is_left_out(case_p, monkeypatch):
+def test_a_peer_that_fails_is_left_out(case_p):
     peers = (LSODA, replace(LSODA, name="first", solver=broken, rates=broken))
-    monkeypatch.setattr("tests.benchmarks.runs.PEERS", peers)
-    monkeypatch.setattr("tests.benchmarks.rates.PEERS", peers)
-    run = run_rows("run", replace(case_p, duration=1e-3), 1e-3, SMALL, independent=False)
+    brief = replace(case_p, duration=1e-3)
+    run = run_rows("run", brief, 1e-3, SMALL, independent=False, peers=peers)
     assert run.left_out == ("run, first: fails: cannot\\ndo this",)
-    batch = batch_rows(replace(case_p, duration=1e-2), SMALL)
+    batch = batch_rows(replace(case_p, duration=1e-2), SMALL, peers)
     assert batch.left_out == ("batch, sympy: fails: cannot\\ndo this",)
 
 
@@ -121,14 +119,12 @@ def test_runs_stand_at_equal_error(case_p):
     assert all(row.ratio.median > 0 for row in part.rows)
 
 
-def test_without_a_compiler_runs_are_left_out(case_p, monkeypatch):
-    def refuse(_):
-        raise EngineError("there is no compiler")
-
-    monkeypatch.setattr("tests.benchmarks.ours.engine_of", refuse)
+@pytest.mark.usefixtures("no_compiler")
+def test_without_a_compiler_runs_are_left_out(case_p):
     part = run_rows("run", case_p, 1e-5, SMALL, independent=False)
     assert part.rows == ()
-    assert part.left_out == ("run: there is no compiler",)
+    (reason,) = part.left_out
+    assert reason.startswith("run: engine: no C compiler is found; ")
 
 
 def test_rates_stand_beside_those_written_by_hand(case_p):

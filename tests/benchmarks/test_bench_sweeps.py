@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from piezo_sym import load, simulate
-from piezo_sym.errors import EngineError
 from tests.benchmarks.case_p import problem_of
 from tests.benchmarks.family import family_of, varied
 from tests.benchmarks.peers import PEERS
@@ -111,12 +110,10 @@ def test_a_target_out_of_reach_is_said(problem):
     assert "at best, not 1e-30" in part.left_out[0]
 
 
-def test_without_a_compiler_sweeps_are_left_out(problem, monkeypatch):
-    def refuse(_):
-        raise EngineError("there is no compiler")
-
-    monkeypatch.setattr("tests.benchmarks.family.engine_of", refuse)
-    assert sweep_rows(problem, SMALL).left_out == ("sweep: there is no compiler",)
+@pytest.mark.usefixtures("no_compiler")
+def test_without_a_compiler_sweeps_are_left_out(problem):
+    (reason,) = sweep_rows(problem, SMALL).left_out
+    assert reason.startswith("sweep: engine: no C compiler is found; ")
 
 
 def test_another_model_varies_its_first_positive_parameter():

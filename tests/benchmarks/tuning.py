@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from time import perf_counter
 from typing import TYPE_CHECKING, final
 
-from piezo_sym.errors import PiezoError
+from piezo_sym import PiezoError
 
 if TYPE_CHECKING:
     from piezo_sym.run.checks import FloatArray
@@ -40,15 +40,16 @@ class _Search:
     solve: Callable[[float], FloatArray]
     error: Callable[[FloatArray], float]
     target: float
+    clock: Callable[[], float]
     spent: float = 0.0
     best: float = float("inf")
 
     def tried(self, tolerance: float) -> Tuned | None:
         """Return a tolerance that reaches the target, or nothing; a solver that fails is off."""
-        start, found = perf_counter(), float("inf")
+        start, found = self.clock(), float("inf")
         with suppress(ArithmeticError, RuntimeError, ValueError, PiezoError):
             found = self.error(self.solve(tolerance))
-        self.spent += perf_counter() - start
+        self.spent += self.clock() - start
         self.best = min(self.best, found)
         return Tuned(tolerance, found) if found <= self.target else None
 
@@ -58,6 +59,7 @@ def tuned(
     error: Callable[[FloatArray], float],
     target: float,
     patience: float,
+    clock: Callable[[], float] = perf_counter,
 ) -> Tuned | str:
     """Return the tolerance to use, or why there is none.
 
@@ -68,8 +70,9 @@ def tuned(
     ----------
     solve, error : tolerance -> state at the end -> its error; a solver that fails counts as off.
     patience : seconds; no further decade is tried once they are spent.
+    clock : the time [s].
     """
-    search = _Search(solve, error, target)
+    search = _Search(solve, error, target, clock)
     good: Tuned | None = None
     loose: float | None = None
     for tolerance in LADDER:

@@ -14,7 +14,7 @@ from tests.search.proving import Prover
 from tests.search.slices import SPECS, slice_of
 
 
-def main():
+def main(words=None, prover_of=Prover):
     """Run the slices asked for that are not there yet."""
     parser = argparse.ArgumentParser(prog="python -m tests.search", description=__doc__)
     parser.add_argument("--slices", default="0:1", help="from:to, to not included")
@@ -22,10 +22,10 @@ def main():
     parser.add_argument("--specs", type=int, default=SPECS, help="specs of a slice")
     parser.add_argument("--limit", type=float, default=60, help="seconds of a spec")
     parser.add_argument("--stage", choices=("laws", "decide", "verify"), default="laws")
-    asked = parser.parse_args()
+    asked = parser.parse_args(words)
     done = {record["slice"] for record in records(asked.out)}
     first, last = map(int, asked.slices.split(":"))
-    prover = Prover(asked.limit, asked.stage)
+    prover = prover_of(asked.limit, asked.stage)
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     try:
         for number in range(first, last):

@@ -168,14 +168,10 @@ class Silent:
         pass
 
 
-def test_a_slice_that_is_there_is_not_run_again(tmp_path, monkeypatch, capsys):
+def test_a_slice_that_is_there_is_not_run_again(tmp_path, capsys):
     out = tmp_path / "out.jsonl"
-    monkeypatch.setattr(program, "Prover", Silent)
     for slices in ("0:2", "1:3"):
-        monkeypatch.setattr(
-            "sys.argv", ["search", "--slices", slices, "--out", str(out), "--specs", "1"]
-        )
-        program.main()
+        program.main(["--slices", slices, "--out", str(out), "--specs", "1"], Silent)
     assert [json.loads(line)["slice"] for line in out.read_text().splitlines()] == [0, 1, 2]
     assert Silent.asked == 3
     assert "60 laws" in capsys.readouterr().out
