@@ -1,6 +1,7 @@
 """Members in lanes of vectors run as they do one by one, whatever the network."""
 
-from dataclasses import replace
+import os
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -9,14 +10,12 @@ import pytest
 from piezo_sym import load, sine, sweep
 from piezo_sym.modules import module_of
 from piezo_sym.run.collocation import FixedStep, fixed, with_tolerance
-from piezo_sym.run.engine import library as libraries
-from piezo_sym.run.engine.batch import collocation_library
-from piezo_sym.run.engine.compiler import FLAGS
 from piezo_sym.run.engine.engine import engine_of
-from piezo_sym.run.engine.library import read_source
+from piezo_sym.run.engine.library import Sources, library, read_source
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.parameters import read_initial, read_parameters
 from piezo_sym.run.system import System
+from tests.conftest import write_script
 
 SPECS = sorted((Path(__file__).parents[1] / "networks" / "specs").glob("*.toml"))
 
@@ -148,23 +147,27 @@ def test_balances_close_where_newton_overshoots(above):
 
 @pytest.mark.parametrize("layout", ["one", "many", "lanes"])
 @pytest.mark.parametrize("stages", [1, 2, 5])
-def test_steps_in_vectors_are_compiled(layout, stages, monkeypatch):
-    engine = engine_of(module_of(load("piezo_stack")))
-    step = read_source(engine.module, "_step.c")
-    sources = replace(engine.sources, step=step, stages=stages, layout=layout)
-    monkeypatch.setattr(libraries, "FLAGS", FLAGS[:-1])  # the last are those without vectors
-    assert libraries.library(sources).is_file()
+def test_steps_in_vectors_are_compiled(layout, stages, no_compiler):
+    """By a compiler that refuses those without vectors; it does not optimize, to be quick."""
+    module = module_of(load("piezo_stack"))
+    texts = (read_source(module, ending) for ending in (".h", ".c", "_step.c"))
+    compiles(no_compiler, '*-DPLAIN*) exit 1;; *) set -- "$@" -O0;;')
+    assert library(Sources("piezo_stack", *texts, stages, layout)).is_file()
+
+
+def compiles(folder, cases):
+    """Put a compiler into a folder that takes its words in these cases of the shell."""
+    real = shutil.which("cc", path=os.defpath)
+    says = f'case "$*" in {cases} esac; exec {real} "$@"'
+    write_script(folder / "cc", f"PATH={os.defpath}; export PATH; {says}")
 
 
 @pytest.mark.parametrize("stages", [2, 3, 4, 5])
-def test_stages_in_vectors_compute_what_stages_one_by_one_do(stages, monkeypatch, tmp_path):
+def test_stages_in_vectors_compute_what_stages_one_by_one_do(stages, request):
     members = Members(load("piezo_stack"), size=1, duration=0.02, inputs={"V_in": sine(100, 100)})
     found = members.run(rtol=1e-4, stages=stages)
-    monkeypatch.setattr(libraries, "FLAGS", FLAGS[-1:])  # without vectors
-    monkeypatch.setattr(libraries, "cache_folder", lambda: tmp_path)
-    collocation_library.cache_clear()
-    wanted = members.run(rtol=1e-4, stages=stages)
-    collocation_library.cache_clear()
+    compiles(request.getfixturevalue("no_compiler"), "*--version* | *-DPLAIN*) ;; *) exit 1;;")
+    wanted = members.run(rtol=1e-4, stages=stages)  # without vectors
     assert np.array_equal(found.states, wanted.states)
     assert np.array_equal(found.sums, wanted.sums)
     assert np.array_equal(found.work, wanted.work)
