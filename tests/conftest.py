@@ -1,8 +1,10 @@
 """Property tests draw the same examples in every run; all workers share one cache of their own."""
 
 import os
+import resource
 import shutil
 import sys
+from contextlib import contextmanager
 
 import pytest
 from hypothesis import settings
@@ -78,6 +80,17 @@ def no_compiler(cache, tmp_path, monkeypatch):  # noqa: ARG001  # what was compi
     monkeypatch.delenv("CC", raising=False)
     monkeypatch.setitem(sys.modules, "ziglang", None)
     return tmp_path / "bin"
+
+
+@contextmanager
+def full_disk():
+    """Let this process, and those it starts, write no byte to any file: "File too large"."""
+    usual, most = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (0, most))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (usual, most))
 
 
 def write_script(path, text):

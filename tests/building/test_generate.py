@@ -10,6 +10,7 @@ import pytest
 from piezo_sym import Model, PiezoError, generate
 from piezo_sym.build import render
 from piezo_sym.errors import FileError, ProofError
+from tests.conftest import full_disk
 
 ROOT = Path(__file__).parents[2]
 COMMITTED = ROOT / "generated" / "piezo_stack" / "piezo_stack.py"
@@ -40,15 +41,19 @@ def test_generate_leaves_nothing_else(model, tmp_path):
     assert sorted(p.name for p in tmp_path.rglob("*") if p.is_file()) == FILES
 
 
-def test_a_write_that_fails_leaves_the_old_file(model, tmp_path, monkeypatch):
+def test_a_file_that_cannot_be_replaced_is_named(model, tmp_path):
+    path, *_ = generate(model, tmp_path)
+    path.unlink()
+    path.mkdir()
+    with pytest.raises(FileError, match=r"piezo_stack.py': cannot be written \(Is a directory\)"):
+        generate(model, tmp_path)
+    assert sorted(p.name for p in path.parent.iterdir()) == FILES
+
+
+def test_a_full_disk_leaves_the_old_file(model, tmp_path):
     path, *_ = generate(model, tmp_path)
     path.write_text("old")
-
-    def fails(*_):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(Path, "replace", fails)
-    with pytest.raises(FileError, match=r"cannot be written \(No space left on device\)"):
+    with full_disk(), pytest.raises(FileError, match=r"cannot be written \(File too large\)"):
         generate(model, tmp_path)
     assert path.read_text() == "old"
     assert sorted(p.name for p in path.parent.iterdir()) == FILES

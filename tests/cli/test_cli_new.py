@@ -11,6 +11,7 @@ import pytest
 
 from piezo_sym import load
 from piezo_sym.spec.schema import schema
+from tests.conftest import full_disk
 
 
 @pytest.fixture(autouse=True)
@@ -111,12 +112,10 @@ def test_a_link_that_is_there_is_not_written_through(refused, folder):
     assert not (folder / "elsewhere.toml").exists()
 
 
-def test_a_folder_that_cannot_be_written_is_one_line(refused, folder, monkeypatch):
-    def denied(**_):
-        raise PermissionError(13, "Permission denied")
-
-    monkeypatch.setattr("piezo_sym.files.tempfile.mkstemp", denied)
-    assert refused("new", "actuator").startswith("'actuator.toml': cannot be written (Permission")
+def test_a_full_disk_is_one_line(refused, folder):
+    with full_disk():
+        message = refused("new", "actuator")
+    assert message.startswith("'actuator.toml': cannot be written (File too large")
     assert files(folder) == []
 
 

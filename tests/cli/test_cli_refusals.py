@@ -2,6 +2,8 @@
 
 import pytest
 
+from tests.conftest import full_disk
+
 LAWS = ["__import__('os').system('touch canary')", "9**9**9", "exp(", "v if v else 0", "\\uff34"]
 EDITS = {
     "text": [('"d*v"', f'"{law}"', "elements.damper.force") for law in LAWS],
@@ -88,12 +90,9 @@ def test_an_output_below_a_file_is_one_line(refused, spec_file, tmp_path):
     assert files(tmp_path) == ["mine.toml"]
 
 
-def test_an_unwritable_folder_is_one_line(refused, spec_file, tmp_path, monkeypatch):
-    def denied(*_, **__):
-        raise PermissionError(13, "Permission denied")
-
+def test_a_full_disk_is_one_line(refused, spec_file, tmp_path):
     path = spec_file()
-    monkeypatch.setattr("tempfile.mkstemp", denied)
-    message = refused("generate", path, "--out", tmp_path / "closed")
-    assert "cannot be written (Permission denied)" in message
+    with full_disk():
+        message = refused("generate", path, "--out", tmp_path / "full")
+    assert "cannot be written (File too large)" in message
     assert [name for name in files(tmp_path) if name.endswith(".py")] == []

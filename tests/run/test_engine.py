@@ -20,7 +20,7 @@ from piezo_sym.run.engine.compiler import compilers, processor
 from piezo_sym.run.engine.engine import Members
 from piezo_sym.run.engine.records import ParameterRecords
 from piezo_sym.run.parameter_table import ParameterTable
-from tests.conftest import write_script
+from tests.conftest import full_disk, write_script
 
 ROOT = Path(__file__).parents[2]
 FILES = ROOT / "generated" / "piezo_stack"
@@ -183,10 +183,10 @@ def test_a_cache_that_cannot_be_written_is_one_line(module, tmp_path):
         assert rates(compiled(module), module).shape == STATE.shape
 
 
-def test_no_folder_at_all_is_one_line(module, tmp_path, monkeypatch):
+def test_no_folder_at_all_is_one_line(module, tmp_path):
     (tmp_path / "cache").write_text("a file where the folder should be")
-    monkeypatch.setattr(libraries, "temporary_folder", lambda: tmp_path / "cache")
-    assert "the cache cannot be written (Not a directory); set " in refused(module)
+    with full_disk():
+        assert "the cache cannot be written (Not a directory); set " in refused(module)
 
 
 @pytest.mark.parametrize("content", [b"", b"no library", b"\x7fELF"])

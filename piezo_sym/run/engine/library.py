@@ -200,7 +200,7 @@ def _kept(sources: Sources, compiler: Compiler, flags: tuple[str, ...], *, again
     try:
         _build(sources, compiler, flags, path)
     except OSError as error:
-        why = f"the cache cannot be written ({error.strerror or type(error).__name__})"
+        why = f"the cache cannot be written ({error.strerror})"
         where, remedy = path_text(cache_folder()), f"set {CACHE} to a folder that can be written"
         try:
             path = temporary_folder() / place
