@@ -11,8 +11,9 @@ from pathlib import Path
 
 import mpmath as mp
 import numpy as np
+from kinds import KINDS
 from precise import DIGITS, measured
-from tableau import STORES, Tableau, pairs_of, state
+from tableau import Tableau, pairs_of, state
 
 from piezo_sym import Model, PiezoError, derive
 from piezo_sym.build import render
@@ -106,7 +107,7 @@ def check_refusal(error, spec):
 
 def ends_of(element):
     """Return the nodes of an element."""
-    if element["kind"] in {"transducer", "transformer", "lever"}:
+    if KINDS[element["kind"]].form == "coupling":
         return pairs_of(element)
     return (element.get("between", ()), (element["at"],) if "at" in element else ())
 
@@ -116,7 +117,7 @@ def generic(spec):
     names = [
         f"{state(name, e)}{lane}"
         for name, e in spec["elements"].items()
-        if e["kind"] in {*STORES, "thermal_mass"}
+        if KINDS[e["kind"]].letter
         for lane in ([f"_{n + 1}" for n in range(e["count"])] if "count" in e else [""])
     ]
     rng = np.random.default_rng(1)

@@ -1,8 +1,12 @@
-"""One function a kind of element: its fields, drawn; the table `KINDS` lists them all.
+"""All that tests of random networks know of a kind of element: one row in `KINDS`.
 
-Input: a `strategy.Draft`, which names parameters, inputs, nodes and bodies.  Output: the fields of
-one element's table.
+A function draws the fields of its table, given a `strategy.Draft`, which names parameters, inputs,
+nodes and bodies.  The rest of a row is typed by hand from the kind's law, for the reference
+solution in `tableau`: nothing of the package is used.
 """
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 
 LINEAR = (
     "{r}*{z}",
@@ -46,18 +50,19 @@ def law(draft, letter, body, *, linear, lanes=None):
     return form.format(**words)
 
 
-def dissipative(draft, domain, through, across):
-    """Return a resistor's or damper's fields; `through`, `across`: (field, letter) of its law.
+def dissipative(draft):
+    """Return a resistor's or damper's fields.
 
     In a tree it gives the across variable, in a chord the other; a linear law may say either.
     """
-    body = draft.body()
-    field, letter = across if draft.role == "tree" else through
+    kind, body = KINDS[draft.kind], draft.body()
+    across, through = sorted(kind.laws, key=lambda name: not kind.laws[name][1])
+    name = across if draft.role == "tree" else through
     if draft.one_in(4):
-        field, letter = draft.pick((through, across))
-    text = law(draft, letter, body, linear=draft.linear or draft.one_in(2))
+        name = draft.pick((through, across))
+    text = law(draft, kind.laws[name][0], body, linear=draft.linear or draft.one_in(2))
     jumps = {"discontinuous": True} if "sign" in text else {}
-    return {"between": draft.pair(domain), field: text, "heats": body, **jumps}
+    return {"between": draft.pair(kind.domains), name: text, "heats": body, **jumps}
 
 
 def spring(draft):
@@ -93,14 +98,6 @@ def inductor(draft):
     }
 
 
-def resistor(draft):
-    return dissipative(draft, "e", ("current", "v"), ("voltage", "i"))
-
-
-def damper(draft):
-    return dissipative(draft, "m", ("force", "v"), ("velocity", "f"))
-
-
 def hysteron(draft):
     body = draft.body()
     count = None if draft.one_in(4) else draft.pick((1, 2, 3, 4))
@@ -124,23 +121,16 @@ def transducer(draft):
     return {**pairs, **draft.pick((hot, fixed))}
 
 
-def coupled(draft, domain):
+def coupled(draft):
     """Return two pairs of nodes, one of them the new one and an earlier one, and a ratio."""
     ratio = draft.parameter("n", "1", 0.5, 2)
     if not draft.one_in(8):
         draft.assume.append(f"{ratio} > 0")
+    domain = KINDS[draft.kind].domains
     new = draft.pair(domain)
     draft.ends = ()
     first, second = draft.pick(((new, draft.pair(domain)), (draft.pair(domain), new)))
     return {"first": first, "second": second, "ratio": draft.pick((ratio, f"2*{ratio}"))}
-
-
-def transformer(draft):
-    return coupled(draft, "e")
-
-
-def lever(draft):
-    return coupled(draft, "m")
 
 
 def thermal_mass(draft):
@@ -178,22 +168,84 @@ def velocity_source(draft):
     return {"at": draft.at(), "input": draft.input("m/s")}
 
 
+@dataclass(frozen=True)
+class Kind:
+    """One kind of element, by hand: how it is drawn, and what the reference solution knows of it.
+
+    Attributes
+    ----------
+    draw : draws the fields of its table.
+    domains : "e", "m" or both; "" for the thermal kinds.
+    form : a "store", "law" (of dissipation), "store, law" (in series), "source" or "coupling".
+    across : whether it gives an across variable, and so may be in a tree of the network; a coupling
+        that does not, gyrates.
+    nodes : the fields that name nodes.
+    letter, costate : of a store; the co-state is found from the words of a law and from its laws.
+    laws : field -> (the letter of what it is given, whether it gives the across variable).
+    weight : how often it is drawn, beside others.
+    """
+
+    draw: Callable
+    domains: str = ""
+    form: str = ""
+    across: bool = True
+    nodes: tuple[str, ...] = ("between",)
+    letter: str = ""
+    costate: Callable | None = None
+    laws: Mapping[str, tuple[str, bool]] = field(default_factory=dict)
+    weight: int = 1
+
+    @property
+    def in_tree(self):
+        """Whether it may give the across variable between two nodes."""
+        return self.form == "law" or (bool(self.form) and self.across)
+
+    @property
+    def is_chord(self):
+        """Whether it may give a through variable."""
+        return self.form == "law" or (bool(self.form) and not self.across)
+
+
+def over(size):
+    """Return the co-state of a store: its state over a law."""
+    return lambda state, law: state / law(size)
+
+
+def of_spring(q, law):
+    return law("stiffness") * (q - law("rest", "0"))
+
+
+PAIRS = ("first", "second")
+BOTH = ("electrical", "mechanical")
 KINDS = {
-    "spring": spring,
-    "mass": mass,
-    "capacitor": capacitor,
-    "inductor": inductor,
-    "resistor": resistor,
-    "hysteron": hysteron,
-    "damper": damper,
-    "transducer": transducer,
-    "transformer": transformer,
-    "lever": lever,
-    "thermal_mass": thermal_mass,
-    "conduction": conduction,
-    "ambient": ambient,
-    "force_source": force_source,
-    "voltage_source": voltage_source,
-    "current_source": current_source,
-    "velocity_source": velocity_source,
+    "capacitor": Kind(capacitor, "e", "store", letter="Q", costate=over("capacitance"), weight=2),
+    "mass": Kind(mass, "m", "store", nodes=("at",), letter="p", costate=over("mass"), weight=3),
+    "inductor": Kind(
+        inductor, "e", "store", across=False, letter="phi", costate=over("inductance")
+    ),
+    "hysteron": Kind(
+        hysteron,
+        "e",
+        "store, law",
+        across=False,
+        letter="phi",
+        costate=over("inductance"),
+        laws={"voltage": ("i", True)},
+        weight=2,
+    ),
+    "spring": Kind(spring, "m", "store", across=False, letter="q", costate=of_spring, weight=2),
+    "voltage_source": Kind(voltage_source, "e", "source"),
+    "velocity_source": Kind(velocity_source, "m", "source", nodes=("at",)),
+    "resistor": Kind(
+        dissipative, "e", "law", laws={"voltage": ("i", True), "current": ("v", False)}
+    ),
+    "damper": Kind(dissipative, "m", "law", laws={"velocity": ("f", True), "force": ("v", False)}),
+    "current_source": Kind(current_source, "e", "source", across=False),
+    "force_source": Kind(force_source, "m", "source", across=False, nodes=("at",)),
+    "transformer": Kind(coupled, "e", "coupling", nodes=PAIRS),
+    "lever": Kind(coupled, "m", "coupling", nodes=PAIRS, weight=2),
+    "transducer": Kind(transducer, "em", "coupling", across=False, nodes=BOTH),
+    "thermal_mass": Kind(thermal_mass, letter="S"),
+    "conduction": Kind(conduction),
+    "ambient": Kind(ambient),
 }

@@ -31,17 +31,7 @@ def table(z, *knots):
     return float(np.interp(z, x, y)) + beyond
 
 
-FUNCTIONS = {
-    "exp": math.exp,
-    "log": math.log,
-    "sqrt": math.sqrt,
-    "sin": math.sin,
-    "cos": math.cos,
-    "tanh": math.tanh,
-    "atan": math.atan,
-    "sinh": math.sinh,
-    "cosh": math.cosh,
-    "erf": math.erf,
+FUNCTIONS = {  # smooth functions are those of `math`
     "abs": abs,
     "sign": np.sign,
     "min": min,
@@ -68,7 +58,8 @@ def _value(node, words):
         case ast.BinOp(left, op, right):
             return OPERATORS[type(op)](_value(left, words), _value(right, words))
         case ast.Call(ast.Name(name), args):
-            return FUNCTIONS[name](*(_value(arg, words) for arg in args))
+            function = FUNCTIONS.get(name) or getattr(math, name)
+            return function(*(_value(arg, words) for arg in args))
         case ast.Compare(left, [op], [right]):
             return OPERATORS[type(op)](_value(left, words), _value(right, words))
         case ast.IfExp(test, then, other):

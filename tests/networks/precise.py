@@ -11,17 +11,6 @@ import mpmath as mp
 import sympy as sp
 
 DIGITS = 40
-FUNCTIONS = {
-    sp.exp: (mp.exp, mp.exp),
-    sp.log: (mp.log, lambda z: 1 / z),
-    sp.tanh: (mp.tanh, lambda z: 1 - mp.tanh(z) ** 2),
-    sp.sin: (mp.sin, mp.cos),
-    sp.cos: (mp.cos, mp.sin),
-    sp.atan: (mp.atan, lambda z: 1 / (1 + z**2)),
-    sp.sinh: (mp.sinh, mp.cosh),
-    sp.cosh: (mp.cosh, mp.sinh),
-    sp.erf: (mp.erf, lambda z: 2 / mp.sqrt(mp.pi) * mp.exp(-(z**2))),
-}
 RELATIONS = {sp.Lt: operator.lt, sp.Le: operator.le, sp.Gt: operator.gt, sp.Ge: operator.ge}
 
 
@@ -54,9 +43,9 @@ def _found(expr, values, known):
         (base, size), (exponent, _) = parts
         value = base**exponent
         return value, abs(value) * (1 + (abs(exponent / base) * size if base else 0))
-    function, slope = FUNCTIONS[expr.func]
+    function = getattr(mp, expr.func.__name__)
     ((arg, size),) = parts
-    return function(arg), abs(function(arg)) + abs(slope(arg)) * size
+    return function(arg), abs(function(arg)) + abs(mp.diff(function, arg)) * size
 
 
 def _product(parts):

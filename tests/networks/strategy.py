@@ -17,17 +17,21 @@ from piezo_sym import Model, PiezoError, derive
 
 CHANCE = st.integers(0, 99)
 REFERENCE = {"e": "gnd", "m": "wall"}
-TREE = {
-    "e": ("capacitor", "capacitor", "voltage_source", "resistor", "transformer"),
-    "m": ("mass", "mass", "mass", "velocity_source", "damper", "lever", "lever"),
-}
-CHORD = {
-    "e": ("inductor", "hysteron", "hysteron", "resistor", "current_source", "transducer"),
-    "m": ("spring", "damper", "force_source", "transducer", "spring"),
-}
+DISSIPATIVE = {"e": "resistor", "m": "damper"}
 COUNTS = ((1, 1), (2, 0), (0, 2), (2, 1), (1, 2), (3, 0), (0, 3), (1, 3), (3, 2))
 HEAT = ("ambient", "conduction")
+NODES = dict.fromkeys(name for kind in KINDS.values() for name in kind.nodes)
 WORDS = ("x", "u", "p", "h", "F", "J", "out", "n", "z", "W")
+
+
+def _often(domain, role):
+    """Return the kinds for a role in a domain, each as often as it weighs."""
+    fit = {n: kind for n, kind in KINDS.items() if domain in kind.domains and getattr(kind, role)}
+    return tuple(name for name, kind in fit.items() for _ in range(kind.weight))
+
+
+TREE = {domain: _often(domain, "in_tree") for domain in REFERENCE}
+CHORD = {domain: _often(domain, "is_chord") for domain in REFERENCE}
 
 
 @dataclass
@@ -50,6 +54,7 @@ class Draft:
     role: str = "chord"
     ends: tuple = ()
     name: str = ""
+    kind: str = ""
 
     def one_in(self, number):
         """Return whether a rare thing happens."""
@@ -108,9 +113,9 @@ class Draft:
     def add(self, kind, role, ends=()):
         """Put an element into the spec."""
         self.name = f"{kind[:3]}{len(self.elements)}"
-        self.role, self.ends = role, ends
+        self.kind, self.role, self.ends = kind, role, ends
         name = self.name
-        self.elements[name] = {"kind": kind, **KINDS[kind](self)}
+        self.elements[name] = {"kind": kind, **KINDS[kind].draw(self)}
         return name
 
 
@@ -124,15 +129,12 @@ def _tree(draft, domain, count):
     for n in range(count):
         node, earlier = f"{domain}{n}", draft.nodes[domain]
         kind = draft.pick(TREE[domain])
-        if kind in {"transformer", "lever"} and len(earlier) < 2:
-            kind = "resistor" if domain == "e" else "damper"
-        other = REFERENCE[domain] if domain == "m" and kind not in HAVE_TWO else draft.pick(earlier)
+        if KINDS[kind].form == "coupling" and len(earlier) < 2:
+            kind = DISSIPATIVE[domain]
+        other = REFERENCE[domain] if KINDS[kind].nodes == ("at",) else draft.pick(earlier)
         ends = draft.draw(st.permutations([node, other]))
         draft.add(kind, "tree", (domain, ends))
         draft.nodes[domain] = [*earlier, node]
-
-
-HAVE_TWO = {"damper", "lever"}
 
 
 def _chords(draft):
@@ -146,18 +148,17 @@ def _chords(draft):
 
 def _chord(draft, domain, ends):
     kind = draft.pick(CHORD[domain])
-    if kind == "transducer" and any(len(nodes) < 2 for nodes in draft.nodes.values()):
+    if KINDS[kind].form == "coupling" and any(len(nodes) < 2 for nodes in draft.nodes.values()):
         kind = "inductor" if domain == "e" else "spring"
-    if kind == "force_source" and "wall" not in ends:
-        kind = "damper"
+    if KINDS[kind].nodes == ("at",) and REFERENCE[domain] not in ends:
+        kind = DISSIPATIVE[domain]
     draft.add(kind, "chord", (domain, ends))
     if kind == "hysteron" and not draft.one_in(4):
         draft.add(kind, "chord", (domain, ends[::-1]))
 
 
 def _uses(draft, node):
-    fields = ("between", "at", "first", "second", "electrical", "mechanical")
-    ends = [element.get(f, ()) for element in draft.elements.values() for f in fields]
+    ends = [element.get(f, ()) for element in draft.elements.values() for f in NODES]
     return sum(node == end or node in end for end in ends if not isinstance(end, str)) + sum(
         node == end for end in ends if isinstance(end, str)
     )
@@ -174,7 +175,7 @@ def _anywhere(draft):
     """Put an element of any kind at any nodes: most such networks have no solution."""
     there = {domain for domain, nodes in draft.nodes.items() if len(nodes) > 1}
     fit = [kind for domain in sorted(there) for kind in (*TREE[domain], *CHORD[domain])]
-    fit = [kind for kind in fit if kind != "transducer" or len(there) == 2]
+    fit = [kind for kind in fit if there.issuperset(KINDS[kind].domains)]
     draft.add(draft.pick(fit), draft.pick(("tree", "chord")))
 
 

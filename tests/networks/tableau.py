@@ -9,28 +9,10 @@ Laws that are not linear are found by Newton's iteration.
 from dataclasses import dataclass, field
 
 import numpy as np
+from kinds import KINDS
 from law_values import value
 
 REFERENCES = {"gnd", "wall"}
-STORES = {  # letter of the state, field of the law, what the co-state is, whether it is an across
-    "capacitor": ("Q", lambda w, law: w["Q"] / law("capacitance"), True),
-    "mass": ("p", lambda w, law: w["p"] / law("mass"), True),
-    "inductor": ("phi", lambda w, law: w["phi"] / law("inductance"), False),
-    "hysteron": ("phi", lambda w, law: w["phi"] / law("inductance"), False),
-    "spring": ("q", lambda w, law: law("stiffness") * (w["q"] - law("rest", "0")), False),
-}
-SOURCES = {  # whether the input is an across variable
-    "voltage_source": True,
-    "velocity_source": True,
-    "current_source": False,
-    "force_source": False,
-}
-LAWS = {  # letter of the given variable, whether the law gives the across variable
-    "voltage": ("i", True),
-    "current": ("v", False),
-    "force": ("v", False),
-    "velocity": ("f", True),
-}
 SLOPE_STEP = 1e-6
 CLOSE = 1e-12
 MOST_STEPS = 60
@@ -81,30 +63,29 @@ class Tableau:
         return {n: v[lane % len(v)] if isinstance(v, list) else v for n, v in given.items()}
 
     def _add(self, name, element):
-        kind = element["kind"]
-        if kind == "hysteron":
+        kind = KINDS[element["kind"]]
+        if kind.form == "store, law":
             for lane in range(element.get("count", 1)):
                 label = f"{name}_{lane + 1}" if "count" in element else name
                 a, b = element["between"]
                 self._store(label, lane, element, (a, f"{label}:inner"), name)
                 self._resistor(label, lane, element, (f"{label}:inner", b))
-        elif kind in STORES:
+        elif kind.form == "store":
             self._store(name, 0, element, nodes_of(element), name)
-        elif kind in SOURCES:
-            across, given = SOURCES[kind], self.inputs[element["input"]]
-            sign = 1 if across else -1
-            self.branches.append(Branch(name, nodes_of(element), across, sign * given))
-        elif kind in {"resistor", "damper"}:
+        elif kind.form == "source":
+            given = self.inputs[element["input"]] * (1 if kind.across else -1)
+            self.branches.append(Branch(name, nodes_of(element), kind.across, given))
+        elif kind.form == "law":
             self._resistor(name, 0, element, nodes_of(element))
-        elif kind in {"transformer", "lever", "transducer"}:
+        elif kind.form == "coupling":
             self.couplings.append((name, element))
 
     def _store(self, label, lane, element, nodes, name):
-        letter, costate, across = STORES[element["kind"]]
-        symbol = state(name, element) + label.removeprefix(name)
-        words = {**self.words(lane), letter: self.states[symbol]}
-        given = costate(words, lambda f, other=None: value(element.get(f, other), words))
-        self.branches.append(Branch(label, nodes, across, given))
+        kind = KINDS[element["kind"]]
+        there = self.states[state(name, element) + label.removeprefix(name)]
+        words = {**self.words(lane), kind.letter: there}
+        given = kind.costate(there, lambda f, other=None: value(element.get(f, other), words))
+        self.branches.append(Branch(label, nodes, kind.across, given))
 
     def _resistor(self, label, lane, element, nodes):
         text, letter, across = law_of(element)
@@ -148,7 +129,7 @@ class Tableau:
         self._balance(matrix, first, row)
         self._balance(matrix, second, row + 1)
         words = self.words()
-        if element["kind"] == "transducer":
+        if not KINDS[element["kind"]].across:
             hot = (
                 {"T": self.temperatures[element["temperature"]]} if "temperature" in element else {}
             )
@@ -239,7 +220,7 @@ class Tableau:
             temperature = self.temperatures[element["heats"]]
             found.productions[branch.element] = heat / temperature
             flows[element["heats"]] += heat / temperature
-        elif element["kind"] in SOURCES:
+        elif KINDS[element["kind"]].form == "source":
             found.outputs[name] = -t if branch.across else e
         else:
             symbol = state(name, element) + branch.element.removeprefix(name)
@@ -267,8 +248,7 @@ class Tableau:
 
 def state(name, element):
     """Return the symbol of an element's state."""
-    letter = "S" if element["kind"] == "thermal_mass" else STORES[element["kind"]][0]
-    return element.get("state", f"{letter}_{name}")
+    return element.get("state", f"{KINDS[element['kind']].letter}_{name}")
 
 
 def nodes_of(element):
@@ -278,14 +258,14 @@ def nodes_of(element):
 
 def pairs_of(element):
     """Return the two pairs of nodes of a coupling."""
-    names = ("electrical", "mechanical") if element["kind"] == "transducer" else ("first", "second")
-    return tuple(tuple(element[name]) for name in names)
+    return tuple(tuple(element[name]) for name in KINDS[element["kind"]].nodes)
 
 
 def law_of(element):
     """Return a dissipative law, its letter, and whether it gives the across variable."""
-    name = next(name for name in LAWS if name in element)
-    return element[name], *LAWS[name]
+    laws = KINDS[element["kind"]].laws
+    name = next(name for name in laws if name in element)
+    return element[name], *laws[name]
 
 
 def _linear_slope(branch):

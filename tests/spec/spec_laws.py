@@ -8,6 +8,7 @@ import mpmath
 from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 
+from piezo_sym.expressions.functions import FUNCTIONS
 from piezo_sym.expressions.tree import (
     Add,
     Call,
@@ -32,7 +33,7 @@ steady = settings(
     suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow],
 )
 
-SMOOTH = ("exp", "sin", "cos", "tanh", "log", "sqrt", "atan", "sinh", "cosh", "erf")
+SMOOTH = tuple(name for name, record in FUNCTIONS.items() if record.smooth)
 KINKED = ("abs", "sign")
 TWO = ("min", "max")
 WIDE = ("deadzone", "saturate")
@@ -146,16 +147,12 @@ def namespace(lib, real):
     """Return what a law's text may use, by the definitions of the language."""
     return {
         "__builtins__": {},
+        **{name: getattr(lib, name) for name in SMOOTH},
         "exp": _real(lib.exp, -math.inf, 30 if lib is mpmath else 1e9),
         "log": lib.log if lib is math else _real(lib.log, mpmath.mpf("1e-60")),
         "sqrt": lib.sqrt if lib is math else _real(lib.sqrt, 0),
-        "sin": lib.sin,
-        "cos": lib.cos,
-        "tanh": lib.tanh,
-        "atan": lib.atan,
         "sinh": _real(lib.sinh, *((-30, 30) if lib is mpmath else (-1e9, 1e9))),
         "cosh": _real(lib.cosh, *((-30, 30) if lib is mpmath else (-1e9, 1e9))),
-        "erf": lib.erf,
         "abs": abs,
         "sign": _sign,
         "min": lambda a, b: a if a <= b else b,
