@@ -30,18 +30,7 @@ typedef REAL real;
 #define zero 0.0
 #define wide(value) (value)
 #define chosen(condition, then, other) ((condition) ? (then) : (other))
-#define exp_of exp
 #define expm1_of expm1
-#define log_of log
-#define sqrt_of sqrt
-#define sin_of sin
-#define cos_of cos
-#define tanh_of tanh
-#define atan_of atan
-#define sinh_of sinh
-#define cosh_of cosh
-#define erf_of erf
-#define pow_of pow
 #define is_above(a, b) ((a) > (b))
 #define is_at_least(a, b) ((a) >= (b))
 #define least(a, b) ((a) < (b) || (a) != (a) ? (a) : (b))

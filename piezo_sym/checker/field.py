@@ -14,7 +14,8 @@ from typing import Any, TypeAlias, cast
 
 from flint import fmpq, fmpq_mpoly_ctx
 
-from .laws import ARITHMETIC, KINKS, InputError, Node, compare, need, negated, num, unkinked, walk
+from .functions import KINKS
+from .laws import ARITHMETIC, InputError, Node, compare, need, negated, num, unkinked, walk
 
 SIZE, MAX_TERMS, MAX_PRODUCT, MAX_SIDES = 160, 3000, 60_000, 256
 CTX = fmpq_mpoly_ctx.get([f"x{n}" for n in range(SIZE)], "lex")

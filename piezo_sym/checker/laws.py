@@ -13,6 +13,8 @@ from functools import cache
 from itertools import pairwise
 from typing import Any, NamedTuple
 
+from .functions import KINKS, SMOOTH
+
 MAX_LENGTH, MAX_DIGITS, MAX_EXPONENT, MAX_POWER = 1000, 60, 400, 16
 MAX_TABLE, MAX_KNOTS = 4000, 64
 PLAIN = re.compile(
@@ -25,22 +27,10 @@ OPPOSITE = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
 #: What operations do in every algebra: numbers, rational functions, power series.
 ARITHMETIC: dict[str, Callable[..., Any]] = {"*": operator.mul, "/": operator.truediv}
 ARITHMETIC |= {"neg": operator.neg, "+": lambda *terms: sum(terms[1:], terms[0])}
-#: Functions with kinks, by their definition; derivatives of smooth y = f(x) and of operations.
-KINKS = {
-    "abs": "x if x >= 0 else -x",
-    "sign": "1 if x > 0 else -1 if x < 0 else 0",
-    "min": "x if x <= z else z",
-    "max": "x if x >= z else z",
-    "deadzone": "max(x - z, 0) + min(x + z, 0)",
-    "saturate": "min(max(x, -z), z)",
-}
-SLOPES = {"exp": "y", "log": "1/x", "sin": "cos(x)", "cos": "-sin(x)", "tanh": "1 - y**2"}
-SLOPES |= {"sinh": "cosh(x)", "cosh": "sinh(x)", "atan": "1/(1 + x**2)"}
-SLOPES["erf"] = "exp(-x**2)/sqrt(atan(1))"  # atan(1) = pi/4
-SMOOTH = tuple(SLOPES)
-FUNCTIONS = {name: 2 if "z" in KINKS.get(name, "") else 1 for name in (*SMOOTH, *KINKS)}
-KINKS["table"] = ""  # its pieces are made by halves
-SLOPES |= {"*": "dx*z + x*dz", "/": "dx/z - x*dz/z**2", "neg": "-dx"}
+#: The derivatives of operations on x and z, whose own are dx and dz.
+SLOPES = {"*": "dx*z + x*dz", "/": "dx/z - x*dz/z**2", "neg": "-dx"}
+ARGUMENTS = dict.fromkeys(SMOOTH, 1)
+ARGUMENTS |= {name: 2 if "z" in text else 1 for name, text in KINKS.items() if text}
 
 
 class InputError(Exception):
@@ -175,8 +165,9 @@ def derivative(node: Node, by: Any) -> Node:
         return made("n*y*dx", n=num(node.value), y=Node("**", (x,), node.value - 1), dx=dx)
     if node.op == "/" and dz == num(0):
         return Node("/", (dx, z))
-    slope = made(SLOPES[node.op], x=x, y=node, z=z, dx=dx, dz=dz)
-    return Node("*", (slope, dx)) if node.op in SMOOTH else slope
+    if node.op in SMOOTH:
+        return Node("*", (made(SMOOTH[node.op].slope, x=x, y=node), dx))
+    return made(SLOPES[node.op], x=x, z=z, dx=dx, dz=dz)
 
 
 def number(text: str) -> Fraction:
@@ -245,7 +236,9 @@ def _tree(node: ast.AST, text: str) -> Node:
         case ast.Call(ast.Name("table"), args, []) if len(args) % 2:
             need(2 <= len(args) // 2 <= MAX_KNOTS, "a table has too few knots, or too many")
             return Node("table", of(*args))
-        case ast.Call(ast.Name(name), args, []) if FUNCTIONS.get(name) == len(args):
+        case ast.Call(ast.Name(name), args, []) if name != "table" and ARGUMENTS.get(name) == len(
+            args
+        ):
             return Node(name, of(*args))
     raise ValueError(node)
 

@@ -15,39 +15,12 @@ import cvc5
 from cvc5 import Kind
 
 from .field import Field
-from .laws import KINKS, Node, compare, increasing, made, negated, num, sym, symbols, unkinked
+from .functions import KINKS, SMOOTH
+from .laws import Node, compare, increasing, made, negated, num, sym, symbols, unkinked
 
 EFFORT, MILLISECONDS, SECONDS, MOST_PAIRS = 100_000, 8000, 300, 12
 KINDS = {"+": Kind.ADD, "*": Kind.MULT, "neg": Kind.NEG, "if": Kind.ITE, "=": Kind.EQUAL}
 KINDS |= {"<": Kind.LT, "<=": Kind.LEQ, ">": Kind.GT, ">=": Kind.GEQ, "!=": Kind.DISTINCT}
-ABOVE = "x >= 0: y*(1 + x) >= x; x <= 0: y*(1 - x) <= x"
-#: What is known of y = f(x), and of two values y and b of f at x and a: "premise: fact".
-FACTS = {
-    "exp": "y > 0; y >= 1 + x; x <= 0: y <= 1; x <= 0: y <= 1 + x + x**2/2; x < 1: y*(1 - x) <= 1;"
-    "x >= 0: y >= 1 + x + x**2/2 + x**3/6; x <= 0: y*(1 - x + x**2/2 - x**3/6) <= 1",
-    "log": "x > 0: y <= x - 1; x > 0: x*y >= x - 1; x > 0: x*y**2 <= (x - 1)**2",
-    "sin": "y <= 1; y >= -1; x >= 0: y <= x; x <= 0: y >= x; x >= 0: y >= x - x**3/6;"
-    "x <= 0: y <= x - x**3/6",
-    "cos": "y <= 1; y >= -1; y >= 1 - x**2/2; y <= 1 - x**2/2 + x**4/24",
-    "tanh": "y < 1; y > -1; x >= 0: y <= x; x <= 0: y >= x; x >= 0: y >= x - x**3/3; x > 0: y > 0;"
-    "x <= 0: y <= x - x**3/3; x < 0: y < 0; x >= 0: (1 - y)*(1 + x + x**2) <= 1;"
-    "x <= 0: (1 + y)*(1 - x + x**2) <= 1",
-    "atan": f"y < 1.5708; y > -1.5708; x >= 0: y <= x; x <= 0: y >= x; {ABOVE}",
-    "sinh": "x >= 0: y >= x + x**3/6; x <= 0: y <= x + x**3/6; x >= 0: y*(1 - x**2/6) <= x;"
-    "x <= 0: y*(1 - x**2/6) >= x",
-    "cosh": "y >= 1 + x**2/2; y*(1 - x**2/2) <= 1",
-    "erf": f"y < 1; y > -1; x >= 0: y <= 1.1284*x; x <= 0: y >= 1.1284*x; {ABOVE}",
-}
-RISING = "x < a: y < b; x > a: y > b; x >= a: y >= b; x <= a: y <= b"
-EQUAL = "x <= a: x >= a: y <= b; x <= a: x >= a: y >= b"
-PAIRS = {
-    "exp": f"{RISING}; x + a <= 0: y*b <= 1; x + a >= 0: y*b >= 1",
-    "log": f"x > 0: a > 0: {RISING.replace('; ', '; x > 0: a > 0: ')}",
-    "tanh": f"{RISING}; x + a <= 0: y + b <= 0; x + a >= 0: y + b >= 0",
-    "sin": f"{EQUAL}; {EQUAL.replace('a', '-a').replace('b', '-b')}",
-    "cos": f"{EQUAL}; {EQUAL.replace('a', '-a')}",
-}
-PAIRS |= dict.fromkeys(("atan", "sinh", "erf"), PAIRS["tanh"]) | {"cosh": PAIRS["cos"]}
 
 
 class Claim(NamedTuple):
@@ -112,7 +85,7 @@ class _Query:
         y = sym(("value", node))
         if node.op == "/":
             self.add(compare(Node("*", (y, args[1])), "=", args[0]), compare(args[1], "!="))
-        elif node.op in FACTS:
+        elif node.op in SMOOTH:
             self._function(node.op, args[0], y)
         return self.term(y)
 
@@ -131,8 +104,9 @@ class _Query:
         if (name, x.op) in (("log", "exp"), ("exp", "log")):  # log(exp(a)) = a; a > 0 for the other
             self.add(compare(y, "=", x.args[0]), *[compare(x.args[0], ">")] * (name == "exp"))
         others = self.calls.setdefault(name, [])
-        pairs = [(PAIRS[name], {"a": a, "b": b}) for a, b in others[:MOST_PAIRS]]
-        for texts, words in [(FACTS[name], dict[str, Node]()), *pairs]:
+        known = SMOOTH[name]
+        pairs = [(known.pairs, {"a": a, "b": b}) for a, b in others[:MOST_PAIRS]]
+        for texts, words in [(known.facts, dict[str, Node]()), *pairs]:
             for text in texts.split(";"):
                 *premises, fact = (made(t.strip(), x=x, y=y, **words) for t in text.split(":"))
                 self.add(fact, *premises)

@@ -12,7 +12,8 @@ from typing import Any
 from . import laws
 from .certificate import check_certificate
 from .field import ZERO, Field
-from .laws import KINKS, InputError, Node, compare, made, need, negated, num, put, sym, symbols
+from .functions import KINKS
+from .laws import InputError, Node, compare, made, need, negated, num, put, sym, symbols
 from .prover import Claim, Prover, needed, partial, taken, true
 from .spec import Element, Spec
 from .system import Finding

@@ -15,6 +15,7 @@ from flint import arb, arb_series, ctx, fmpq
 
 from . import laws
 from .field import Field
+from .functions import KINKS, SMOOTH
 from .laws import InputError, Node, compare, made, need, num, put, sym
 from .prover import Prover
 
@@ -22,8 +23,8 @@ BITS, ORDER = 192, 10
 T, TANH, ALL = sym("s"), "1 - 2/(exp(2*x) + 1)", frozenset((-1, 0, 1))
 HOLD = {"=": {0}, ">": {1}, ">=": {0, 1}, "<": {-1}, "<=": {-1, 0}}
 RULES: dict[str, Any] = {"*": lambda a, b: a * b, "/": lambda a, b: a * b, "neg": lambda a: -a}
-RULES |= {"abs": abs, "min": min, "max": max} | dict.fromkeys(("exp", "cosh"), lambda _: 1)
-RULES |= dict.fromkeys(("sign", "tanh", "atan", "sinh", "erf"), lambda a: a)
+RULES |= {"abs": abs, "min": min, "max": max, "sign": lambda a: a}
+RULES |= {n: RULES["sign"] if f.sign == "x" else lambda _: 1 for n, f in SMOOTH.items() if f.sign}
 Found = frozenset[int]
 
 
@@ -60,7 +61,7 @@ class Signs:
         else:
             rule = RULES.get(node.op)
             found = frozenset(rule(*signs) for signs in product(*parts)) if rule else ALL
-        told = node.op in laws.KINKS or not {-1, 1} <= found
+        told = node.op in KINKS or not {-1, 1} <= found
         return found if told else self._looked(node)
 
     def _branches(self, node: Node) -> tuple[Node, ...]:
@@ -74,7 +75,7 @@ class Signs:
         """Return the signs of a tree as a whole."""
         tree = Node(node.op, tuple(map(self._settled, node.args)), node.value)
         found = self._expanded(tree) if self.hi != inf else ALL
-        rational = not any(part.op in laws.SMOOTH for part in laws.walk(tree))
+        rational = not any(part.op in SMOOTH for part in laws.walk(tree))
         if found == ALL and (self.hi == inf or rational):
             for side in ("=", ">=", "<="):
                 if self.prover.proves(compare(tree, side), self.where):
@@ -85,7 +86,7 @@ class Signs:
         """Return a tree without the choices that are settled, zero where it is zero."""
         if self.of(node) == {0}:
             return num(0)
-        if node.op in laws.KINKS:
+        if node.op in KINKS:
             return self._settled(laws.unkinked(node))
         branches = self._branches(node) if node.op == "if" else ()
         if len(branches) == 1:

@@ -14,7 +14,8 @@ from typing import Any
 
 from . import laws
 from .field import ONE, ZERO, Field, Ratio
-from .laws import KINKS, InputError, Node, need, num, parse, put, sym, symbols, walk
+from .functions import KINKS
+from .laws import InputError, Node, need, num, parse, put, sym, symbols, walk
 from .network import Flows, SingularError, Slot, flows
 from .prover import Claim, partial
 from .spec import Element, Spec

@@ -12,7 +12,8 @@ from typing import Any
 
 from flint import fmpz
 
-from .laws import ARITHMETIC, SMOOTH, InputError, Node, need, parse
+from .functions import SMOOTH
+from .laws import ARITHMETIC, InputError, Node, need, parse
 
 Dimension = Any  # of pint: a product of powers
 PLAIN = re.compile(r"[A-Za-z1-9*/^() -]{1,60}")

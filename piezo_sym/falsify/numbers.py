@@ -12,7 +12,8 @@ from typing import Any
 
 from flint import arb, fmpq, fmpz
 
-from piezo_sym.checker.laws import KINKS, Node, increasing, made, unkinked
+from piezo_sym.checker.functions import KINKS
+from piezo_sym.checker.laws import Node, increasing, made, unkinked
 
 MAX_BITS = 40_000
 #: Arguments beyond these are not computed: a function's value would need too many digits.

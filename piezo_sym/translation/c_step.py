@@ -44,7 +44,7 @@ from piezo_sym.translation.known import Key, Proved
 from piezo_sym.translation.signs import reading
 
 _LIBRARY = (*(record.in_c for record in RECORDS.values() if record.smooth), "pow")
-#: What the words of a step stand for, for numbers of one run.
+#: What the words of a step stand for, for numbers of one run; called functions have a line.
 MACROS = """\
 #if !defined(REAL_WIDTH) /* numbers of one run; run/engine has vectors of many */
 #define REAL_WIDTH 1
@@ -61,10 +61,10 @@ typedef REAL real;
 #define least(a, b) ((a) < (b) || (a) != (a) ? (a) : (b))
 #define OF(value, lane) (value)
 #endif
-""".replace("{functions}", "".join(f"#define {name}_of {name}\n" for name in _LIBRARY))
+"""
 #: A choice is made by a branch alone: what stands for ``?`` is no word of C.
 _SPELLED = {"real": "double", "zero": "0.0", "wide": "", "least": "min", "?": "no choice"}
-_SPELLED |= {f"{name}_of": name for name in (*_LIBRARY, *(f"power_{n}" for n in range(2, 9)))}
+_SPELLED |= {f"power_{n}_of": f"power_{n}" for n in range(2, 9)}
 _LEAST = ast.parse("a if a < b or a != a else b", mode="eval").body
 _SIGNATURES = {
     "integrands": "x p out",
@@ -87,7 +87,11 @@ def read_step(text: str, known: Proved) -> dict[Key, Value]:
     NotShownError
         If something is outside the grammar; it says what.
     """
-    return _Step(Tokens(text, known.iphs.model.name, MACROS, _SPELLED), known).rows()
+    lines = {f"#define {name}_of {name}\n": name for name in _LIBRARY}
+    lines = {line: name for line, name in lines.items() if line in text}
+    spelled = _SPELLED | {f"{name}_of": name for name in lines.values()}
+    macros = MACROS.replace("{functions}", "".join(lines))
+    return _Step(Tokens(text, known.iphs.model.name, macros, spelled), known).rows()
 
 
 @final

@@ -9,7 +9,7 @@ import pytest
 
 from piezo_sym import load
 from piezo_sym.modules import module_of
-from piezo_sym.run.engine.c_sources import c_source
+from piezo_sym.run.engine.c_sources import numbers_source
 from piezo_sym.run.engine.compiler import compilers
 
 SPECS = Path(__file__).parents[1] / "networks" / "specs"
@@ -31,7 +31,7 @@ void all_of(const real *x, const real *g, const real *b, const real *u, const {n
 
 def library(module, folder, width):
     """Compile the step of a module for numbers, or for vectors of them."""
-    head = f"#define REAL_WIDTH {width}\n{c_source('real.h')}" if width > 1 else ""
+    head = f"#define REAL_WIDTH {width}\n{numbers_source('real.h')}" if width > 1 else ""
     path = folder / f"width_{width}.c"
     path.write_text(head + HARNESS.format(name=module.NAME), encoding="utf-8")
     source = Path(module.__file__).parent

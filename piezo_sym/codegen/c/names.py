@@ -33,11 +33,9 @@ _FLOATS = "DIG EPSILON MANT_DIG MAX MAX_10_EXP MAX_EXP MIN MIN_10_EXP MIN_EXP"
 _CALLED = "copysign expm1 fabs pow " + " ".join(f"power_{n}" for n in range(2, 9))
 #: What a step's text and the engine's behind it have names for: numbers of one run, or vectors.
 _REALS = (
-    "PLAIN MODEL REAL_WIDTH LANE OF SET LANES NUMBER LANE_BY_LANE real mask pattern few zero "
-    "nowhere wide chosen any none_of size_of with_sign power_of_two small_expm1 reduced exp_of "
-    "expm1_of is_above is_at_least "
-    "sqrt_of log_of sin_of cos_of tanh_of atan_of sinh_of cosh_of erf_of pow_of whole_power least "
-    "largest_of bits_of real_of pick deadzone saturate sign"
+    "PLAIN MODEL REAL_WIDTH LANE OF SET LANES NUMBER FUNCTION real mask pattern few zero "
+    "nowhere wide chosen any none_of size_of with_sign power_of_two small_expm1 reduced is_above "
+    "is_at_least pow_of whole_power least largest_of bits_of real_of pick deadzone saturate sign"
 )
 _ENDS = (
     *("parameters", "states", "processes", "jacobian", "margins"),
@@ -47,7 +45,7 @@ _ENDS = (
 KEPT = (
     frozenset(f"{_CPLUSPLUS} {_MACROS} {_CALLED} {_REALS}".split())
     | {f"{kind}_{word}" for kind in ("FLT", "DBL", "LDBL") for word in _FLOATS.split()}
-    | {f"{r.in_c}{end}" for r in RECORDS.values() if r.transcendental for end in ("_of", "_each")}
+    | {f"{record.in_c}_of" for record in RECORDS.values() if record.smooth}
     | {f"{word}{end}" for word in ("M_PI", "M_E", "M_SQRT2", "M_LN2") for end in ("l", "f")}
 )
 

@@ -7,6 +7,7 @@ drives them.  Nothing is compared there: branches are given, so the text holds f
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import final
@@ -34,7 +35,7 @@ NOTE = """\
  */"""
 
 #: What the text says of `real` where nobody has defined it: it is one number.
-_REAL = """\
+REAL = """\
 #if !defined(REAL_WIDTH) /* numbers of one run; run/engine has vectors of many */
 #define REAL_WIDTH 1
 #define ALONE
@@ -45,16 +46,12 @@ typedef REAL real;
 #define zero 0.0
 #define wide(value) (value)
 #define chosen(condition, then, other) ((condition) ? (then) : (other))
-{functions}
-#define pow_of pow
-#define is_above(a, b) ((a) > (b))
+{functions}#define is_above(a, b) ((a) > (b))
 #define is_at_least(a, b) ((a) >= (b))
 #define least(a, b) ((a) < (b) || (a) != (a) ? (a) : (b))
 #define OF(value, lane) (value)
 #endif"""
-REAL = _REAL.replace(
-    "{functions}", "\n".join(f"#define {r.in_c}_of {r.in_c}" for r in RECORDS.values() if r.smooth)
-)
+_LIBRARY = (*(record.in_c for record in RECORDS.values() if record.smooth), "pow")
 
 
 def c_step(program: Program, made: Collocation) -> str:
@@ -73,7 +70,9 @@ def c_step(program: Program, made: Collocation) -> str:
     text = "\n\n".join(functions)
     head = f'{opening(program)}\n{NOTE}\n#include "{program.name}.h"\n\n#include <math.h>'
     record = record_text(program, printer.names)
-    return "\n\n".join([head, REAL, record, *powers(text, "real"), text, printer.tables()]) + "\n"
+    called = (name for name in _LIBRARY if re.search(rf"\b{name}_of\(", text))
+    real = REAL.replace("{functions}", "".join(f"#define {name}_of {name}\n" for name in called))
+    return "\n\n".join([head, real, record, *powers(text, "real"), text, printer.tables()]) + "\n"
 
 
 @final

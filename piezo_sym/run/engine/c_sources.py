@@ -54,6 +54,17 @@ def c_source(*names: str) -> str:
     return "\n".join(folder.joinpath(name).read_text(encoding="utf-8") for name in names)
 
 
+@cache
+def numbers_source(header: str) -> str:
+    """Return ``real.h`` or ``dual.h``, with the smooth functions that it does not define itself."""
+    from piezo_sym.codegen.c.style import function_slopes  # at a compilation alone
+
+    text = c_source(header)
+    slopes = function_slopes().items()
+    lines = (f"FUNCTION({name}, {slope})" for name, slope in slopes if f"{name}_of(" not in text)
+    return "\n".join([text, *lines])
+
+
 def functions_source(model: str) -> str:
     """Return the file to compile for the functions of a module."""
     return "\n".join([f'#include "{model}.c"', _prefix(model), c_source("columns.c")])
@@ -77,14 +88,14 @@ def steps_source(model: str, stages: int, layout: str, *, lossy: bool = False) -
     step = [f'#include "{model}_step.c"', _prefix(model)]
     if layout == "slopes":
         tables = tableau(stages, stages)
-        return "\n".join([c_source("dual.h"), *step, tables, c_source("derivatives.c")])
+        return "\n".join([numbers_source("dual.h"), *step, tables, c_source("derivatives.c")])
     lanes = stage_lanes(stages, layout, lossy=lossy)
     vectors = ["#if !defined(PLAIN)", f"#define LANES {lanes}", c_source("at_once.h"), "#endif"]
     head = [
         "#if defined(PLAIN)" if layout == "many" else "#if 1",
         "#define REAL_WIDTH 1",
         "#endif",
-        c_source("real.h"),
+        numbers_source("real.h"),
         *([f'#include "{model}.c"'] if lossy else []),
         *step,
         "extern const long MODEL(width);",
@@ -109,7 +120,7 @@ def stages_source(model: str, lanes: int) -> str:
         "#if defined(__GNUC__) /* of what is printed, some is for the engine alone */",
         *(f'#pragma GCC diagnostic ignored "-Wunused-{what}"' for what in unused),
         "#endif",
-        c_source("real.h"),
+        numbers_source("real.h"),
         f'#include "{model}_step.c"',
         _prefix(model),
     ]

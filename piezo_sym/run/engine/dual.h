@@ -31,24 +31,14 @@ static inline real dual_of(real x, double y, double slope)
     return found;
 }
 
-#define WITH_SLOPE(function, slope)                                                                \
+/* c_sources.py adds a line per function, with its slope in x and its value y, from its record. */
+#define FUNCTION(function, slope)                                                                  \
     static inline real function##_of(real a)                                                       \
     {                                                                                              \
         const double x = OF(a, 0), y = function(x);                                                \
         (void)x;                                                                                   \
         return dual_of(a, y, slope);                                                               \
     }
-WITH_SLOPE(exp, y)
-WITH_SLOPE(expm1, y + 1.0)
-WITH_SLOPE(log, 1.0 / x)
-WITH_SLOPE(sqrt, 0.5 / y)
-WITH_SLOPE(sin, cos(x))
-WITH_SLOPE(cos, -sin(x))
-WITH_SLOPE(tanh, 1.0 - y * y)
-WITH_SLOPE(atan, 1.0 / (1.0 + x * x))
-WITH_SLOPE(sinh, cosh(x))
-WITH_SLOPE(cosh, sinh(x))
-WITH_SLOPE(erf, 1.1283791670955126 * exp(-x * x))
 
 /* Powers with a constant exponent. */
 static inline real pow_of(real a, real b)

@@ -144,22 +144,15 @@ static inline real tanh_of(real z)
     return chosen(z < 0.0, -found, chosen(z == 0.0, z, found));
 }
 
-#define LANE_BY_LANE(name, function)                                                               \
-    static inline real name(real a)                                                                \
+/* The other functions, lane after lane: c_sources.py adds a line per function, from its record. */
+#define FUNCTION(function, slope)                                                                  \
+    static inline real function##_of(real a)                                                       \
     {                                                                                              \
         real found = a;                                                                            \
         for (int lane = 0; lane < REAL_WIDTH; ++lane)                                              \
             LANE(&found, 0, lane) = function(LANE(&a, 0, lane));                                   \
         return found;                                                                              \
     }
-LANE_BY_LANE(sqrt_of, sqrt)
-LANE_BY_LANE(log_of, log)
-LANE_BY_LANE(sin_of, sin)
-LANE_BY_LANE(cos_of, cos)
-LANE_BY_LANE(atan_of, atan)
-LANE_BY_LANE(sinh_of, sinh)
-LANE_BY_LANE(cosh_of, cosh)
-LANE_BY_LANE(erf_of, erf)
 
 static inline real pow_of(real a, real b)
 {
