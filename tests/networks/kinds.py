@@ -56,10 +56,10 @@ def dissipative(draft):
     In a tree it gives the across variable, in a chord the other; a linear law may say either.
     """
     kind, body = KINDS[draft.kind], draft.body()
-    across, through = sorted(kind.laws, key=lambda name: not kind.laws[name][1])
-    name = across if draft.role == "tree" else through
+    names = sorted(kind.laws, key=lambda name: kind.laws[name][1])
+    name = names[-1 if draft.role == "tree" else 0]
     if draft.one_in(4):
-        name = draft.pick((through, across))
+        name = draft.pick(names)
     text = law(draft, kind.laws[name][0], body, linear=draft.linear or draft.one_in(2))
     jumps = {"discontinuous": True} if "sign" in text else {}
     return {"between": draft.pair(kind.domains), name: text, "heats": body, **jumps}
@@ -198,12 +198,18 @@ class Kind:
     @property
     def in_tree(self):
         """Whether it may give the across variable between two nodes."""
-        return self.form == "law" or (bool(self.form) and self.across)
+        return True in self._gives
 
     @property
     def is_chord(self):
         """Whether it may give a through variable."""
-        return self.form == "law" or (bool(self.form) and not self.across)
+        return False in self._gives
+
+    @property
+    def _gives(self):
+        if self.form == "law":
+            return {gives for _, gives in self.laws.values()}
+        return {self.across} if self.form else set()
 
 
 def over(size):
