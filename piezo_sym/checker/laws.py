@@ -236,9 +236,7 @@ def _tree(node: ast.AST, text: str) -> Node:
         case ast.Call(ast.Name("table"), args, []) if len(args) % 2:
             need(2 <= len(args) // 2 <= MAX_KNOTS, "a table has too few knots, or too many")
             return Node("table", of(*args))
-        case ast.Call(ast.Name(name), args, []) if name != "table" and ARGUMENTS.get(name) == len(
-            args
-        ):
+        case ast.Call(ast.Name(name), args, []) if ARGUMENTS.get(name) == len(args):
             return Node(name, of(*args))
     raise ValueError(node)
 
