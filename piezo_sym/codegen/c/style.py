@@ -13,7 +13,6 @@ from dataclasses import replace
 from fractions import Fraction
 
 from piezo_sym.codegen.branches import with_branches
-from piezo_sym.expressions.calculus import rule
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.text import (
     ATOM,
@@ -26,7 +25,7 @@ from piezo_sym.expressions.text import (
     enclose,
     piece,
 )
-from piezo_sym.expressions.tree import Expr, Sym
+from piezo_sym.expressions.tree import Expr
 from piezo_sym.expressions.tree import names as names_in
 
 #: Functions of ``real``, one number or one per lane: the head of a step has the first, real.h both.
@@ -126,18 +125,6 @@ def is_constant(value: Expr) -> bool:
 def c_piece(node: Expr, style: Style) -> Piece:
     """Return an expression as C, with the strength of its outermost operator."""
     return piece(with_branches(node), style)
-
-
-def function_slopes() -> dict[str, str]:
-    """Return the slope of each smooth function, by its name in C: a text in x and its value y."""
-
-    def power(base: Piece, exponent: Fraction) -> Piece:
-        return f"pow({base[0]}, {c_number(exponent)[0]})", ATOM
-
-    style = replace(c_style({"x": "x", "y": "y"}, {}, ""), power=power)
-    smooth = (record for record in RECORDS.values() if record.smooth)
-    rules = {r.in_c: rule(r.slopes[0], Sym("x"), value=Sym("y")) for r in smooth}
-    return {name: c_piece(slope, style)[0] for name, slope in rules.items()}
 
 
 def helpers(text: str) -> Iterator[str]:

@@ -8,6 +8,11 @@ import re
 from functools import cache
 from pathlib import Path
 
+from piezo_sym.expressions.calculus import rule
+from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.expressions.text import ATOM, Style, piece
+from piezo_sym.expressions.tree import Sym
+
 #: Collocation steps of runs in lanes, behind a model's own text and the tables of their stages.
 _COLLOCATION = (
     *("newton.c", "nodes.c", "trajectory.c", "error.c", "crossings.c", "replay.c"),
@@ -44,6 +49,15 @@ _LEFT_OUT = (
 )
 #: What few models need: kinks in energies, and path functionals; a step says so.
 _PARTS = {"BENDS": "bends.c", "PATHS": "stop.c"}
+#: How the slope of a function is spelled.
+_SLOPE = Style(
+    lambda value: (repr(float(value)), ATOM),
+    lambda name: (name, ATOM),
+    lambda base, exponent: (f"pow({base[0]}, {float(exponent)})", ATOM),
+    lambda name, args: (f"{RECORDS[name].in_c}({', '.join(text for text, _ in args)})", ATOM),
+    lambda then, test, other: (f"({test} ? {then[0]} : {other[0]})", ATOM),
+    lambda arg, bank: (f"{bank}({arg[0]})", ATOM),
+)
 _TABLE = re.compile(r"static const double (\w+)\[[^;]*;\n?", re.DOTALL)
 
 
@@ -57,11 +71,10 @@ def c_source(*names: str) -> str:
 @cache
 def numbers_source(header: str) -> str:
     """Return ``real.h`` or ``dual.h``, with the smooth functions that it does not define itself."""
-    from piezo_sym.codegen.c.style import function_slopes  # at a compilation alone
-
-    text = c_source(header)
-    slopes = function_slopes().items()
-    lines = (f"FUNCTION({name}, {slope})" for name, slope in slopes if f"{name}_of(" not in text)
+    text, x, y = c_source(header), Sym("x"), Sym("y")
+    smooth = [record for record in RECORDS.values() if record.smooth]
+    slopes = {r.in_c: piece(rule(r.slopes[0], x, value=y), _SLOPE)[0] for r in smooth}
+    lines = [f"FUNCTION({f}, {slope})" for f, slope in slopes.items() if f"{f}_of(" not in text]
     return "\n".join([text, *lines])
 
 
