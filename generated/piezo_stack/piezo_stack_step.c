@@ -433,21 +433,22 @@ static const double basis_stage[1][1] = {
     {1.0}};
 
 /*
- * Steps of Gauss collocation that keep both balances: the rates that stages have to have, for the runs
- * of all lanes at once; newton.c finds them.
+ * Steps of Gauss collocation that keep both balances: their work space, and states within them.
+ * newton.c solves for the rates at the stages, in all lanes at once.
  *
- * Behind real.h, a generated <model>_step.c and the tables of a number of stages.  With rates K_j
- * the state goes along X(tau) = x + h sum_j K_j int_0^tau l_j; stage i has the co-states' means
- * int_0^1 (l_i/b_i) dU/dx(X) dtau, taken at NODES nodes of Gauss's rule, or at FINE of them where the
- * co-states ask for more, and piece by piece where energies have kinks.  A root counts only if it solves
- * the equations, these nodes do, all is finite, each stage lies in the domain and no process takes entropy.
+ * Comes after real.h, a generated <model>_step.c and the tables for a number of stages. With rates
+ * K_j at the stages, the state follows X(tau) = x + h sum_j K_j int_0^tau l_j. Stage i uses means
+ * of the co-states, int_0^1 (l_i/b_i) dU/dx(X) dtau, by Gauss quadrature with NODES nodes, or with
+ * FINE where these are too few, and piece by piece where energies have kinks. A root is accepted
+ * only if it solves the equations, the quadrature is accurate, all numbers are finite, each stage
+ * lies in the domain and no process consumes entropy.
  */
 
 #include <stddef.h>
 
 /*
- * What rounding leaves of a change, in parts of a state's size; how much of that may be left where
- * rates are made of much larger numbers; and the least size.
+ * NOISE is the round-off of a change, relative to the size of a state; up to MOST_NOISE times as
+ * much is accepted where rates are sums of much larger numbers. NO_SIZE keeps divisors above 0.
  */
 #define NOISE (sizeof(real) < sizeof(double) ? 1e-7 : 1e-16)
 #define MOST_NOISE (sizeof(real) < sizeof(double) ? 1e5 : 1e4)
@@ -455,27 +456,27 @@ static const double basis_stage[1][1] = {
 
 
 
-/* The runs of all lanes, as they take a step: sizes, and the numbers that it works on. */
+/* The work space of a step in all lanes: sizes, states, and intermediate results. */
 typedef struct {
     MODEL(reals) p;
-    const MODEL(parameters) *own; /* those of p, in the last lane that has taken some */
+    const MODEL(parameters) *own; /* the parameters that were loaded last into a lane of p */
     long n, inputs, means, branches, booked, slopes, processes;
-    long given; /* to a stage: means, and what path functionals give */
-    const long *lanes, *first; /* of each bank; of each state, its first row */
-    real *x, *end;             /* n: where the step begins, and where it ends */
+    long given; /* values given to a stage: means, and those of path functionals */
+    const long *lanes, *first; /* lanes of each bank; first row of each state */
+    real *x, *end;             /* n: states at the begin and the end of the step */
     real *rates;               /* STAGES*n */
     real *branch;              /* STAGES*branches */
     real *u;                   /* STAGES*inputs */
-    real *largest;             /* n: the largest magnitude of each state, by which errors count */
+    real *largest;             /* n: largest magnitude of each state, the scale of its errors */
     real *reached, *gap, *prior, *node, *mean, *side, *margin, *rows, *slope, *fresh, *real_factor;
     real *path, *yield;        /* parameters of path functionals; where one first yields in a step */
     mask fine;                 /* lanes whose means are taken at FINE nodes */
-    mask over;                 /* lanes whose stages choose their branches: they step over kinks */
-    mask sketch, sketched;     /* lanes whose steps may be cut at a switch; those found to have one */
-    double enough;             /* what changes, in units of noise, have to be below to tell that */
+    mask over;                 /* lanes that step over kinks: each stage chooses its branches */
+    mask sketch, sketched;     /* lanes that may stop early, beyond a switch; lanes that did */
+    double enough;             /* in units of noise: they stop when a change is below this */
     real iterations;           /* of Newton's method */
-    int most, late;            /* of them in a step; after which it may be given up */
-    double stays;              /* a change that is more than this part of the one before is noise */
+    int most, late;            /* of them in a step; after so many it may be given up */
+    double stays;              /* changes that shrink by no more than this factor stagnate */
 } MODEL(block);
 
 #define NUMBER real
@@ -488,12 +489,12 @@ typedef struct {
 #define MORE(a, b) ((a) + (b))
 #define LESS(a, b) ((a) - (b))
 /*
- * (1 - gamma J) d = r, solved: lanes of banks first, each by itself, then the shared unknowns in the
- * order of the model's tables.  Included twice: NUMBER is `real`, or a complex number of reals, and
- * NAMED(name) tells the two apart.
+ * Solution of (1 - gamma J) d = r: the states of each bank, lane by lane, are eliminated first,
+ * then the shared unknowns in the order of the model's tables. Included twice: NUMBER is `real`, or
+ * a complex number of reals, and NAMED(name) tells the two apart.
  */
 
-/* How many numbers a factorisation holds, and where a bank's part of it begins. */
+/* How many numbers a factorisation has. */
 static long NAMED(factor_size)(const MODEL(block) *m)
 {
     long size = MODEL(slots) + MODEL(unknowns);
@@ -505,7 +506,7 @@ static long NAMED(factor_size)(const MODEL(block) *m)
     return size;
 }
 
-/* Invert the blocks of lanes in place: entry (a, b) of each lane at m[(a*states + b)*lanes + j]. */
+/* Invert the block of each lane in place: its entry (a, b) is m[(a*states + b)*lanes + j]. */
 static void NAMED(invert)(NUMBER *restrict m, long states, long lanes)
 {
     for (long k = 0; k < states; ++k)
@@ -561,7 +562,7 @@ static void NAMED(factorise)(const MODEL(block) *m, NUMBER gamma, const real *sl
         NAMED(invert)(part, states, lanes);
         for (long a = 0; a < states; ++a)
             for (long c = 0; c < columns; ++c) {
-                const NUMBER factor = column[c] < MODEL(shared) ? gamma : ONE; /* or a border */
+                const NUMBER factor = column[c] < MODEL(shared) ? gamma : ONE; /* borders: 1 */
                 for (long j = 0; j < lanes; ++j) {
                     NUMBER sum = NONE;
                     for (long b = 0; b < states; ++b)
@@ -595,7 +596,7 @@ static void NAMED(factorise)(const MODEL(block) *m, NUMBER gamma, const real *sl
     }
 }
 
-/* Put the solution for the right-hand side r (n) in its place. */
+/* Replace the right-hand side r (n) by the solution. */
 static void NAMED(solve)(const MODEL(block) *m, NUMBER gamma, const real *slopes,
                          const NUMBER *restrict f, NUMBER *restrict r)
 {
@@ -672,12 +673,12 @@ static void NAMED(solve)(const MODEL(block) *m, NUMBER gamma, const real *slopes
 #undef MORE
 #undef LESS
 
-/* The numbers that a block says of itself: sizes, lanes of banks, first rows of states, bends. */
+/* Entries of `sizes`: counts, lanes of banks, first rows of states, and bend functions. */
 enum { SIZES = 7 + MODEL(banks) + MODEL(records) };
 
 /*
- * Make a block for runs of the sizes of p, `more` rows for the ledger behind the model's own.  Its
- * numbers lie from `at` on; returns how many these are.
+ * Set up the work space of runs with the sizes of p, in the memory from `at` on; returns how many
+ * numbers it takes. Ledgers have `more` rows behind the model's own.
  */
 static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, long *sizes, real *at)
 {
@@ -712,7 +713,7 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     return at - begin;
 }
 
-/* A state at a place of the step, reached by rates with these weights. */
+/* State i at a point of the step, which weights of the stages' rates say. */
 static inline real MODEL(reached_row)(const MODEL(block) *m, real h, const double *weight, long i)
 {
     real sum = zero;
@@ -721,14 +722,17 @@ static inline real MODEL(reached_row)(const MODEL(block) *m, real h, const doubl
     return m->x[i] + h * sum;
 }
 
-/* All states at a place of the step. */
+/* All states at a point of the step. */
 static void MODEL(reach)(const MODEL(block) *m, real h, const double *weight, real *restrict out)
 {
     for (long i = 0; i < m->n; ++i)
         out[i] = MODEL(reached_row)(m, h, weight, i);
 }
 
-/* Choose branches by their switching functions in some lanes; returns those where any changes. */
+/*
+ * Set branches by the signs of their switching functions, in some lanes; returns the lanes with
+ * changes.
+ */
 static mask MODEL(choose)(long branches, const real *side, real *branch, mask where)
 {
     mask changed = nowhere;
@@ -742,16 +746,19 @@ static mask MODEL(choose)(long branches, const real *side, real *branch, mask wh
 }
 
 /*
- * Means over a step, and what the rates at its stages have to be: stage by stage.  Behind gauss.c.
+ * The residuals (gaps) of a step's equations, stage by stage, and the means in them. Comes after
+ * gauss.c.
  */
 
-/* How nodes of means are reached, and from rates to the basis in which stages are solved for. */
+/*
+ * Tables: weights for the states at nodes; into the basis in which the stages decouple, and back.
+ */
 #define NODE_REACH node_reach
 #define FINE_REACH fine_reach
 #define BASIS_STAGE basis_stage
 #define STAGE_BASIS stage_basis
 
-/* The states alone that integrands read. */
+/* Of the states at a point of the step, those that integrands read. */
 static void MODEL(reach_read)(const MODEL(block) *m, real h, const double *weight)
 {
     for (long r = 0; r < MODEL(reads); ++r) {
@@ -762,7 +769,7 @@ static void MODEL(reach_read)(const MODEL(block) *m, real h, const double *weigh
     }
 }
 
-/* The functions of which stages are given means, at nodes of a step. */
+/* The integrands of the means, at nodes of a step. */
 static void MODEL(integrate)(const MODEL(block) *m, real h, const double reach[][STAGES], long nodes)
 {
     for (long q = 0; q < nodes; ++q) {
@@ -771,7 +778,7 @@ static void MODEL(integrate)(const MODEL(block) *m, real h, const double reach[]
     }
 }
 
-/* Means over the step, by the rule of each lane. */
+/* Means over the step, with as many nodes as each lane needs. */
 static void MODEL(average)(const MODEL(block) *m, real h)
 {
     MODEL(integrate)(m, h, node_reach, NODES);
@@ -795,7 +802,7 @@ static void MODEL(average)(const MODEL(block) *m, real h)
 }
 
 
-/* What the rates at the stages have to be, less what they are; returns where branches change. */
+/* Residuals: the rates by the laws at the stages less `rates`; returns where branches change. */
 static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
 {
     const mask over = m->over & going;
@@ -822,7 +829,7 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     return changed;
 }
 
-/* The gaps of each state, times a matrix. */
+/* Multiply the residuals of each state, a vector over the stages, by a matrix. */
 static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES])
 {
     for (long k = 0; k < m->n; ++k) {
@@ -837,11 +844,12 @@ static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES
     }
 }
 
-/* Newton's method for the rates at the stages of a step.  Behind gauss.c. */
+/* Newton's method for the rates at the stages of a step. Comes after gauss.c. */
 
 /*
- * A stage at a point, with co-states and efforts as they are there.  At an end of a step rates of paths
- * follow from those of its stages by weights: they may jump within the step, which has their means.
+ * The rates at a single point, with its own co-states in place of means. Path functionals may jump
+ * within a step, which knows only their means: at an end of it (`weight`), their rates are
+ * extrapolated from those of its stages.
  */
 static void MODEL(at_point)(const MODEL(block) *m, const real *x, const real *branch, const real *u,
                             const double *weight, real *rate, real *rows, real *side, real *margin)
@@ -851,26 +859,27 @@ static void MODEL(at_point)(const MODEL(block) *m, const real *x, const real *br
     MODEL(stage)(x, m->node, branch, u, &m->p, rate, rows, side, margin);
 }
 
-/* Iterations, and after how many a step is given up whose changes do not become smaller. */
+/* Most iterations of a step, and after how many it is given up if changes stagnate. */
 enum { MOST_ITERATIONS = 12, SOON = 1 };
 /*
- * A fixed step may begin far from its root: from beyond the bend of an exponential law Newton's method
- * comes back by its width each time, however short the step.
+ * The same for a fixed step, which may start far from its root: on the steep side of an exponential
+ * law an iteration moves by one width of it, however short the step. After NOISY iterations,
+ * changes that stagnate may be as large as MOST_NOISE.
  */
 enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
-/* Where a change is more than so much of the one before, slopes are taken anew. */
+/* Slopes are computed anew where a change is more than this part of the one before. */
 #define SLOW 0.1
-/* Where changes are smaller, in units of what is noise, the next is as much smaller as this one was. */
+/* Below this change, in units of noise, the next one is expected to shrink by the same factor. */
 #define NEAR 1e8
-/* What equations may leave, in parts of states: as much as changes below noise of what is very fast. */
+/* Largest residual of a root, relative to the state: round-off of a stiff state leaves as much. */
 #define LEFT 0.01
-/* Where the second change is more, in units of noise, it pays to look already then for more nodes. */
+/* If the second change is more than this, in units of noise, more nodes are considered at once. */
 #define FAR 1e9
-/* Changes go to and fro where so much of one is left, with the other sign. */
+/* Changes oscillate where at least this part of one comes back with the other sign. */
 #define TO_AND_FRO 0.5
 
 
-/* Newton's change of the rates, from the gaps; gaps become it. */
+/* Newton's change of the rates, which replaces the residuals in `gap`. */
 static void MODEL(change)(const MODEL(block) *m, real h)
 {
     MODEL(transform)(m, BASIS_STAGE);
@@ -881,8 +890,8 @@ static void MODEL(change)(const MODEL(block) *m, real h)
 }
 
 /*
- * Slopes in the middle of the step, on the branches of its middle stage, and what solves with them;
- * lanes that are not in `where` keep theirs.
+ * Slopes in the middle of the step, on the branches of its middle stage, and their factorisations;
+ * lanes that are not in `where` keep their slopes.
  */
 static void MODEL(prepare)(const MODEL(block) *m, real h, mask where)
 {
@@ -895,7 +904,7 @@ static void MODEL(prepare)(const MODEL(block) *m, real h, mask where)
     MODEL(factorise_real)(m, h * filter, m->slope, m->real_factor);
 }
 
-/* The lanes whose margins are those of a state in the domain. */
+/* The lanes in which all conditions of the domain hold. */
 static mask MODEL(within)(const real *margin)
 {
     mask good = none_of(nowhere);
@@ -906,7 +915,7 @@ static mask MODEL(within)(const real *margin)
     return good;
 }
 
-/* The lanes whose stages all lie in the domain, and whose processes take no entropy. */
+/* The lanes whose stages all lie in the domain, and in which no process consumes entropy. */
 static mask MODEL(accepted)(const MODEL(block) *m)
 {
     const long processes = m->processes, ports = MODEL(output_count);
@@ -926,9 +935,9 @@ static mask MODEL(accepted)(const MODEL(block) *m)
 }
 
 /*
- * How much of a change to take where changes go to and fro: slopes are those at one place of a step,
- * with co-states there for means, and a long step has others.  What the change before has left says
- * by how much it went too far.
+ * The part of a change to take where changes oscillate. Slopes are those at one point of a step,
+ * and differ along a long one, so that changes overshoot. The component of the new change along the
+ * last one says by how much.
  */
 static real MODEL(damping)(const MODEL(block) *m)
 {
@@ -947,8 +956,8 @@ static real MODEL(damping)(const MODEL(block) *m)
 }
 
 /*
- * The lanes whose rates solve the equations, not only change no more: a change is small, too, where
- * slopes are out of all proportion.
+ * The lanes whose rates solve the equations. A small change does not show that: changes are small,
+ * too, where slopes are far too large.
  */
 static mask MODEL(solves)(const MODEL(block) *m, real h)
 {
@@ -964,12 +973,12 @@ static mask MODEL(solves)(const MODEL(block) *m, real h)
     return good;
 }
 
-/* The lanes whose co-states ask for more nodes than they have, as the rates are now; see nodes.c. */
+/* The lanes whose means need more nodes, by the rates at hand; see nodes.c. */
 static mask MODEL(coarse_by_now)(MODEL(block) *m, real h);
 
 /*
- * The lanes whose stages, as their rates are now, lie beyond a switch: the step will be cut there, and
- * where that is needs no rates that are solved to round-off.
+ * The lanes in which a stage lies beyond a switch, by the rates at hand. Their steps will be cut
+ * there, and to locate that place rates need not be exact to round-off.
  */
 static mask MODEL(strayed)(const MODEL(block) *m)
 {
@@ -981,7 +990,7 @@ static mask MODEL(strayed)(const MODEL(block) *m)
     return found;
 }
 
-/* Take part of a change; returns the largest one in any state, in units of what is noise. */
+/* Add part of the change to the rates; returns the largest change of a state, in units of noise. */
 static real MODEL(changed)(const MODEL(block) *m, real h, real part, mask where)
 {
     real worst = zero;
@@ -1002,14 +1011,15 @@ static real MODEL(changed)(const MODEL(block) *m, real h, real part, mask where)
 }
 
 /*
- * Newton's method for the rates in some lanes, begun where they are; returns those that found them.
- * A lane that has found them stays as it is, however long the others take.
+ * Newton's method for the rates in some lanes, from those at hand; returns the lanes that converge.
+ * A lane that has converged does not change while others go on.
  */
 static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
 {
     mask going = where, found = nowhere;
-    mask renewed = nowhere; /* who has new equations, whose changes earlier ones do not foretell */
-    real before = zero, left_before = zero; /* new slopes of a fixed step may help once, not again */
+    mask renewed = nowhere; /* lanes that got more nodes: earlier changes predict nothing */
+    /* with fixed steps the larger of two ratios counts: new slopes may help once, not again */
+    real before = zero, left_before = zero;
     MODEL(gaps)(m, h, going);
     MODEL(prepare)(m, h, going);
     for (int iteration = 0; iteration < m->most && any(going); ++iteration) {
@@ -1027,7 +1037,7 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
         const mask near = smaller & (worst < NEAR);
         const real left = worst / (before + NO_SIZE);
         mask good = (worst <= 4.0) | (near & (worst * largest_of(left, left_before) <= 4.0));
-        if (iteration > 1) { /* noise of what rates are made of, or no root */
+        if (iteration > 1) { /* stagnation: round-off, or no root */
             const mask stays = (worst > m->stays * before) & none_of(good);
             good |= stays & (worst < (m->late == SOON || iteration > NOISY ? MOST_NOISE : 100.0));
             if (iteration > m->late)
@@ -1053,28 +1063,33 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
 }
 
 /*
- * How many nodes the means over a step ask for, and a step solved with as many.  Behind newton.c.
+ * The number of nodes that means over a step need, and a step solved with as many. Comes after
+ * newton.c.
  */
 
-/* How far aside of a state its co-states are looked at, in parts; what of their noise is more than that. */
+/*
+ * States are scaled by 1 + ASIDE to estimate the round-off of their co-states; what exceeds it by
+ * the factor MUCH_NOISE is no round-off.
+ */
 #define ASIDE 1e-3
 #define MUCH_NOISE 100.0
-/* A part of what is not zero, but no less than its noise: terms are sums over nodes. */
+/* A relative bound, but not below the round-off of sums over nodes. */
 #define ABOVE_NOISE(part) ((part) > MUCH_NOISE * NOISE ? (part) : MUCH_NOISE * NOISE)
 
-/* What is asked of a function whose mean is taken: how many nodes that are, and their tables. */
+/* A quadrature rule, and how it tells that an integrand needs more nodes. */
 typedef struct {
     long nodes;
-    const double *last, *other; /* what gives the last term of Legendre's, and that before */
-    double part;                /* what the last may be, in parts of the function's size */
+    const double *last, *other; /* weights for the last two Legendre coefficients */
+    double part;                /* how large these may be, relative to the integrand */
 } MODEL(rule);
 
 static const MODEL(rule) MODEL(few) = {NODES, node_last[0], node_last[1], ABOVE_NOISE(COARSE)};
 static const MODEL(rule) MODEL(many) = {FINE, fine_last[0], fine_last[1], ABOVE_NOISE(TOO_COARSE)};
 
 /*
- * The lanes where functions whose means are taken, at the nodes at hand, ask for more nodes: where the
- * last two terms are not small, for of an even or odd function every other is zero. Noise may be.
+ * The lanes in which an integrand needs more nodes: the last two coefficients of its Legendre
+ * series are not small. Two of them, for every other one of an even or odd function is zero.
+ * Coefficients within `noise` of an integrand do not count.
  */
 static mask MODEL(rough)(const MODEL(block) *m, const MODEL(rule) *rule, const real *noise)
 {
@@ -1096,7 +1111,7 @@ static mask MODEL(rough)(const MODEL(block) *m, const MODEL(rule) *rule, const r
     return found;
 }
 
-/* The same, of whole steps and of the pieces of those that are split. */
+/* The same for whole steps, and for each piece of those that are split. */
 static mask MODEL(rough_parts)(const MODEL(block) *m, real h, const MODEL(rule) *rule, const real *noise)
 {
     MODEL(integrate)(m, h, rule->nodes == FINE ? FINE_REACH : NODE_REACH, rule->nodes);
@@ -1109,23 +1124,23 @@ static mask MODEL(coarse_by_now)(MODEL(block) *m, real h)
     return m->means ? MODEL(rough_parts)(m, h, &MODEL(few), NULL) : nowhere;
 }
 
-/* The lanes whose co-states ask for more nodes than NODES, for balances that are exact to round-off. */
+/* The lanes that need more than NODES nodes for balances exact to round-off. */
 static mask MODEL(coarse)(const MODEL(block) *m, real h)
 {
-    mask other = m->fine; /* lanes whose last gaps have left other nodes than NODES of the whole */
+    mask other = m->fine; /* lanes where `node` is not at the NODES of a whole step */
     if (m->means && any(other))
         return MODEL(rough_parts)(m, h, &MODEL(few), NULL);
     return MODEL(rough)(m, &MODEL(few), NULL);
 }
 
 /*
- * The lanes whose co-states ask for more nodes than FINE: the step is too long. A difference that goes
- * to zero, such as that of a length and a rest, is all noise at last: what rounding leaves of its
- * terms, which its slope along the state itself tells.
+ * The lanes in which FINE nodes are too few: the step is too long. An integrand that tends to zero
+ * as a difference of larger terms, such as a length and a rest length, ends as their round-off; how
+ * large they are shows when the states are scaled.
  */
 static mask MODEL(too_coarse)(const MODEL(block) *m, real h)
 {
-    real *const noise = m->gap; /* of Newton's method, which is done */
+    real *const noise = m->gap; /* no longer needed by Newton's method */
     MODEL(integrands)(m->x, &m->p, noise);
     for (long k = 0; k < m->n; ++k)
         m->reached[k] = m->x[k] * (1.0 + ASIDE);
@@ -1135,7 +1150,10 @@ static mask MODEL(too_coarse)(const MODEL(block) *m, real h)
     return m->fine & MODEL(rough_parts)(m, h, &MODEL(many), noise);
 }
 
-/* The rates in some lanes, with means at as many nodes as they ask for; returns who has them. */
+/*
+ * Solve for the rates in some lanes, with as many nodes as they need; returns the lanes that
+ * succeed.
+ */
 static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
 {
     m->fine &= none_of(where);

@@ -1,6 +1,7 @@
 /*
- * The stages of one run's step, or nodes of its means, in the lanes of vectors.  A unit of its own,
- * behind real.h and a generated <model>_step.c: `real` is a vector here, in the engine a number.
+ * The stages of one run's step, or nodes of its means, in the lanes of vectors. A translation unit
+ * of its own, after real.h and a generated <model>_step.c: `real` is a vector here, but a number in
+ * the engine.
  */
 
 /* Parameters, the same in all lanes. */

@@ -1,4 +1,6 @@
-/* What a run computes for all stages at once, or for as many nodes: numbers lie lane by lane. */
+/*
+ * What is computed for all stages of a run at once, or for as many nodes: numbers lie lane by lane.
+ */
 #include <stddef.h>
 #if defined(__GNUC__) && !defined(_WIN32)
 #pragma GCC visibility push(hidden)

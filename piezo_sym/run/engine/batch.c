@@ -1,5 +1,5 @@
 /*
- * Batches of runs: a lane that has finished one run takes the next.  Behind dispatch.c.
+ * Batches of runs: a lane that has finished one run takes the next.  Comes after dispatch.c.
  *
  * A survey by rough midpoint steps first finds the largest magnitude of each state, by which errors
  * are measured.

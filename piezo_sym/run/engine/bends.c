@@ -1,10 +1,11 @@
 /*
- * Parts of a step: rates and the state there; and means over a step whose integrands have kinks within
- * it.  Behind gauss.c.
+ * Rates and states at a part of a step, and means over a step whose integrands have kinks. Comes
+ * after gauss.c.
  *
- * Gauss's rule is exact to round-off only where integrands are smooth. So the step is split where a
- * function that decides a kink, a bend, changes its sign on X(tau), and each piece has nodes of its
- * own. Lanes have places of their own; each is searched by itself, so company changes no number.
+ * Gauss quadrature is exact to round-off only where integrands are smooth. A bend function is one
+ * whose sign decides on which side of an energy's kink a state is. Where one changes its sign on
+ * X(tau), the step is split, and each piece has nodes of its own. Each lane is searched by itself
+ * and has its own pieces, so that its numbers do not depend on other lanes.
  */
 
 /* Weights of the stages' rates for the rate at a part of the step. */
@@ -18,7 +19,7 @@ static inline void MODEL(rate_weights)(real at, real *weight)
     }
 }
 
-/* The same for the way of the state from the begin of the step, in parts of its length. */
+/* The same for the change of the state from the begin of the step, per length of the step. */
 static inline void MODEL(state_weights)(real at, real *weight)
 {
     for (long j = 0; j < STAGES; ++j) {
@@ -28,7 +29,7 @@ static inline void MODEL(state_weights)(real at, real *weight)
     }
 }
 
-/* All states at a part of the step, along some rates at its stages. */
+/* All states at a part of the step, by the rates at its stages. */
 static void MODEL(reach_part)(const MODEL(block) *m, real h, const real *rates, real at)
 {
     real weight[STAGES];
@@ -42,10 +43,10 @@ static void MODEL(reach_part)(const MODEL(block) *m, real h, const real *rates, 
 }
 
 #if defined(BENDS)
-/* How often it is tried to come nearer to a place: enough, for means feel the square of what is left. */
+/* Most iterations of a search; a mean is off by the square of what a place is off. */
 enum { MOST_TRIES = 60, DIPS = 6 };
 
-/* A bend of one lane at a part of the step. */
+/* Bend function k of one lane at a part of the step. */
 static double MODEL(bend_at)(const MODEL(block) *m, real h, long k, int lane, double at)
 {
     MODEL(reach_part)(m, h, m->rates, wide(at));
@@ -54,8 +55,9 @@ static double MODEL(bend_at)(const MODEL(block) *m, real h, long k, int lane, do
 }
 
 /*
- * Look between three places where a bend is of one sign, nearest to zero in the middle, for one where
- * it has the other sign: at the vertices of parabolas. The middle becomes the nearest that is found.
+ * A bend function has one sign at three points, and is nearest to zero in the middle: search
+ * between them for the other sign, at the vertices of parabolas. The middle point becomes the
+ * nearest to zero that is found.
  */
 static void MODEL(dip)(const MODEL(block) *m, real h, long k, int lane, double *place, double *value)
 {
@@ -85,7 +87,7 @@ static void MODEL(dip)(const MODEL(block) *m, real h, long k, int lane, double *
     }
 }
 
-/* Where a bend of a lane changes its sign between two places. */
+/* Where a bend function of a lane changes its sign between two points. */
 static double MODEL(turning)(const MODEL(block) *m, real h, long k, int lane, const double *place,
                              const double *value)
 {
@@ -97,7 +99,7 @@ static double MODEL(turning)(const MODEL(block) *m, real h, long k, int lane, co
         const double there = MODEL(bend_at)(m, h, k, lane, part);
         if (there == 0.0 || fabs(part - last) <= 1e-14)
             break;
-        if ((there > 0.0) == on) { /* Illinois: who stays twice counts half */
+        if ((there > 0.0) == on) { /* Illinois method: halve the value at an end that stays twice */
             low = part, at_low = there;
             at_high *= before < 0 ? 0.5 : 1.0;
             before = -1;
@@ -110,11 +112,14 @@ static double MODEL(turning)(const MODEL(block) *m, real h, long k, int lane, co
     return part;
 }
 
-/* Keep a place of a lane in order; places that are equal count once, and 1 stands behind the last. */
+/*
+ * Insert a place where a lane's step is split, in order. Equal ones count once; 1 is behind the
+ * last.
+ */
 static void MODEL(keep_place)(const MODEL(block) *m, int lane, double at)
 {
     long j = 0;
-    if (!(at > 0.0 && at < 1.0)) /* outside of the step, where it is looked, too */
+    if (!(at > 0.0 && at < 1.0)) /* outside of the step, where bend functions are sampled, too */
         return;
     while (LANE(m->cut, j, lane) < at)
         ++j;
@@ -125,13 +130,13 @@ static void MODEL(keep_place)(const MODEL(block) *m, int lane, double at)
     }
 }
 
-/* Where bends are looked at: also a little outside of the step, for those that turn back near its ends. */
+/* Sampled parts of the step, one beyond each end: for functions that turn back near there. */
 static double MODEL(look_at)(long i)
 {
     return (double)(i - 1) / (BEND_LOOKS - 3);
 }
 
-/* Find where a bend of a lane changes its sign on the way. */
+/* Find where a bend function of a lane changes its sign along the step. */
 static void MODEL(find)(const MODEL(block) *m, real h, long k, int lane)
 {
     double place[BEND_LOOKS], value[BEND_LOOKS];
@@ -150,7 +155,7 @@ static void MODEL(find)(const MODEL(block) *m, real h, long k, int lane)
             MODEL(keep_place)(m, lane, MODEL(turning)(m, h, k, lane, place + i - 1, value + i - 1));
 }
 
-/* Find where the step of each lane is split; returns the lanes where it is. */
+/* Find where the step of each lane is split; returns the lanes with splits. */
 static mask MODEL(split)(const MODEL(block) *m, real h)
 {
     for (long i = 0; i < BEND_LOOKS; ++i) {
@@ -165,7 +170,7 @@ static mask MODEL(split)(const MODEL(block) *m, real h)
             low = least(m->look[i * m->bends + k], low);
             high = largest_of(m->look[i * m->bends + k], high);
         }
-        /* else it is far from zero all the way */
+        /* else it is too far from zero */
         const real near = chosen((low <= high - low) & (-high <= high - low), wide(1.0), zero);
         for (int lane = 0; lane < REAL_WIDTH; ++lane)
             if (LANE(&near, 0, lane) > 0.0)
@@ -174,7 +179,7 @@ static mask MODEL(split)(const MODEL(block) *m, real h)
     return m->cut[0] < 1.0;
 }
 
-/* The functions of which stages are given means, at nodes of the piece from `low` on. */
+/* The integrands of the means, at nodes of the piece that begins at `low`. */
 static void MODEL(integrate_piece)(const MODEL(block) *m, real h, real low, real length,
                                    const double *at, long nodes)
 {
@@ -184,7 +189,7 @@ static void MODEL(integrate_piece)(const MODEL(block) *m, real h, real low, real
     }
 }
 
-/* Means in some lanes whose steps are split, with so many nodes a piece. */
+/* Means over split steps in some lanes, with so many nodes per piece. */
 static void MODEL(average_by)(const MODEL(block) *m, real h, mask where, const double *at,
                               const double *weight, long nodes)
 {
@@ -208,7 +213,7 @@ static void MODEL(average_by)(const MODEL(block) *m, real h, mask where, const d
     }
 }
 
-/* Means in the lanes where integrands have kinks on the way; returns these. */
+/* Means in the lanes whose integrands have kinks within the step; returns these lanes. */
 static mask MODEL(average_split)(const MODEL(block) *m, real h)
 {
     if (LOSSY) /* a dissipative step has no means */
@@ -222,10 +227,10 @@ static mask MODEL(average_split)(const MODEL(block) *m, real h)
 }
 
 /*
- * By how much slopes until a part of the step count. With slopes U'' that differ along the step the
- * derivative of mean i by rate j is h int (l_i/b_i) U'' A_j dtau, A_j = int_0^tau l_j; Newton's method
- * has h a_ij for that, times one slope: so slopes count by the trace of l_i A_j/b_i, of which this is
- * the integral. For one stage nothing is lost.
+ * The weight of slopes up to a part of the step. With slopes U'' that differ along the step, the
+ * derivative of mean i by rate j is h int (l_i/b_i) U'' A_j dtau, A_j = int_0^tau l_j; Newton's
+ * method has h a_ij times one slope in its place. So slopes are averaged with the trace of l_i
+ * A_j/b_i as weight, and this is its integral. With one stage the derivative is exact.
  */
 static real MODEL(until_part)(real at)
 {
@@ -236,7 +241,7 @@ static real MODEL(until_part)(real at)
     return sum;
 }
 
-/* Slopes for steps that are split: those in the middle of each piece, on a stage's branches. */
+/* Slopes for split steps: those in the middle of each piece, averaged, on a stage's branches. */
 static void MODEL(slopes_split)(const MODEL(block) *m, real h, long stage)
 {
     const mask where = m->cut[0] < 1.0;

@@ -1,5 +1,5 @@
 /*
- * A module's functions for many states at once.  Behind <model>.c.
+ * A module's functions for many states at once.  Comes after <model>.c.
  *
  * States, inputs and results are columns, n, m and rows numbers apart; m is 0 where all share inputs.
  */

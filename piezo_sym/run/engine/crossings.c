@@ -1,18 +1,23 @@
 /*
- * Switches within a step: whether there are any, which is first, and where.  Behind trajectory.c.
+ * Sign changes of switching functions within a step: whether there are any, the first one, and
+ * where it is. Comes after trajectory.c.
  */
 
-/* A switching function that changes its sign: between which parts of the step, and its values there. */
+/*
+ * A sign change of a switching function: parts of the step that enclose it, and the values there.
+ */
 typedef struct {
     long which;
     double low, high, at_low, at_high;
-    int guessed; /* whether the value at `high` is no more than interpolated */
+    int guessed; /* whether the value at `high` is only interpolated */
 } MODEL(crossing);
 
-/* A switching function where a step looks for changes: at its begin, stages and end, and between. */
+/* Points at which a switching function is compared: begin, stages, end, and some between. */
 enum { LOOKS = 1 + PARTS * (STAGES + 1) };
 
-/* Its values there, positive while its branch holds; returns the lanes where the sign may change. */
+/*
+ * Its values there, positive while the branch holds; returns the lanes where the sign may change.
+ */
 static mask MODEL(looks)(const MODEL(batch) *b, long k, real *value)
 {
     real low = wide(HUGE_VAL), high = wide(-HUGE_VAL);
@@ -27,7 +32,7 @@ static mask MODEL(looks)(const MODEL(batch) *b, long k, real *value)
         low = least(value[i * PARTS], low);
         high = largest_of(value[i * PARTS], high);
     }
-    const mask near = low < high - low; /* else it is far from zero all the way */
+    const mask near = low < high - low; /* else it is too far from zero */
     if (!any(near))
         return near;
     for (long i = 0; i <= STAGES; ++i)
@@ -41,7 +46,7 @@ static mask MODEL(looks)(const MODEL(batch) *b, long k, real *value)
     return near;
 }
 
-/* The lanes in which some switching function has changed its sign within a step. */
+/* The lanes in which a switching function changes its sign within the step. */
 static mask MODEL(crossed)(const MODEL(batch) *b, mask where)
 {
     mask found = nowhere;
@@ -55,7 +60,7 @@ static mask MODEL(crossed)(const MODEL(batch) *b, mask where)
     return found & where;
 }
 
-/* The switch of a lane that changes first. */
+/* The first sign change in a lane's step; `which` is -1 if there is none. */
 static MODEL(crossing) MODEL(first_switch)(const MODEL(batch) *b, int lane)
 {
     MODEL(crossing) found = {-1, 0.0, 1.0, 0.0, 0.0, 0};
@@ -87,8 +92,9 @@ static MODEL(crossing) MODEL(first_switch)(const MODEL(batch) *b, int lane)
 
 #if defined(BENDS)
 /*
- * What part of a step is tried next whose error is too large, `part` by its size. No branch keeps an
- * energy's kink out of a step: if one is on the way it may be why, and a step up to there will do.
+ * The part of a step to try next where its error is too large; `part` is what the error suggests.
+ * Steps may go across kinks of energies, which have no branches. One within the step may be the
+ * cause; then a step that ends just behind it will do.
  */
 static double MODEL(to_kink)(const MODEL(batch) *b, int lane, double part)
 {
@@ -99,7 +105,7 @@ static double MODEL(to_kink)(const MODEL(batch) *b, int lane, double part)
 }
 #endif
 
-/* Where on the known polynomials some lanes' switching functions are zero, as parts of the steps. */
+/* Locate the sign changes of some lanes on the known polynomials, as parts of the steps. */
 static void MODEL(locate)(MODEL(batch) *b, mask where, real h, MODEL(crossing) *crossing, double *part)
 {
     MODEL(block) *m = &b->m;
@@ -137,7 +143,7 @@ static void MODEL(locate)(MODEL(batch) *b, mask where, real h, MODEL(crossing) *
                 SET(where, lane, 0);
                 continue;
             }
-            if (value > 0.0) { /* Illinois method: the value at an end that stays twice is halved */
+            if (value > 0.0) { /* Illinois method: halve the value at an end that stays twice */
                 c->low = part[lane], c->at_low = value;
                 c->at_high *= before[lane] < 0 ? 0.5 : 1.0;
                 before[lane] = -1;
@@ -152,7 +158,10 @@ static void MODEL(locate)(MODEL(batch) *b, mask where, real h, MODEL(crossing) *
     }
 }
 
-/* Change the branch of a switch, and of all that have come to it at the end of a lane's step. */
+/*
+ * Change the branch of switch `which` in a lane; with `others`, of all switches that the step has
+ * reached at its end.
+ */
 static void MODEL(turn)(MODEL(batch) *b, int lane, long which, int others)
 {
     MODEL(block) *m = &b->m;

@@ -1,6 +1,6 @@
 /*
  * The equations of a step, G_i = f(X(c_i), means, u_i) - K_i = 0, along a direction of all that they
- * depend on: the numbers of arguments and results have slopes.  Behind dual.h, a generated
+ * depend on: the numbers of arguments and results have slopes.  Comes after dual.h, a generated
  * <model>_step.c and the tables of a number of stages.  Branches are kept.
  */
 

@@ -1,6 +1,6 @@
 /*
  * One step in every lane that has a run: planned, solved, judged by its error and its switches, and
- * booked.  Behind outcome.c.
+ * booked.  Comes after outcome.c.
  */
 
 /* The current step of all lanes: lengths, which lanes they concern, and their outcomes. */

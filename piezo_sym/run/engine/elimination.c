@@ -1,10 +1,10 @@
 /*
- * (1 - gamma J) d = r, solved: lanes of banks first, each by itself, then the shared unknowns in the
- * order of the model's tables.  Included twice: NUMBER is `real`, or a complex number of reals, and
- * NAMED(name) tells the two apart.
+ * Solution of (1 - gamma J) d = r: the states of each bank, lane by lane, are eliminated first,
+ * then the shared unknowns in the order of the model's tables. Included twice: NUMBER is `real`, or
+ * a complex number of reals, and NAMED(name) tells the two apart.
  */
 
-/* How many numbers a factorisation holds, and where a bank's part of it begins. */
+/* How many numbers a factorisation has. */
 static long NAMED(factor_size)(const MODEL(block) *m)
 {
     long size = MODEL(slots) + MODEL(unknowns);
@@ -16,7 +16,7 @@ static long NAMED(factor_size)(const MODEL(block) *m)
     return size;
 }
 
-/* Invert the blocks of lanes in place: entry (a, b) of each lane at m[(a*states + b)*lanes + j]. */
+/* Invert the block of each lane in place: its entry (a, b) is m[(a*states + b)*lanes + j]. */
 static void NAMED(invert)(NUMBER *restrict m, long states, long lanes)
 {
     for (long k = 0; k < states; ++k)
@@ -72,7 +72,7 @@ static void NAMED(factorise)(const MODEL(block) *m, NUMBER gamma, const real *sl
         NAMED(invert)(part, states, lanes);
         for (long a = 0; a < states; ++a)
             for (long c = 0; c < columns; ++c) {
-                const NUMBER factor = column[c] < MODEL(shared) ? gamma : ONE; /* or a border */
+                const NUMBER factor = column[c] < MODEL(shared) ? gamma : ONE; /* borders: 1 */
                 for (long j = 0; j < lanes; ++j) {
                     NUMBER sum = NONE;
                     for (long b = 0; b < states; ++b)
@@ -106,7 +106,7 @@ static void NAMED(factorise)(const MODEL(block) *m, NUMBER gamma, const real *sl
     }
 }
 
-/* Put the solution for the right-hand side r (n) in its place. */
+/* Replace the right-hand side r (n) by the solution. */
 static void NAMED(solve)(const MODEL(block) *m, NUMBER gamma, const real *slopes,
                          const NUMBER *restrict f, NUMBER *restrict r)
 {

@@ -1,14 +1,15 @@
 /*
- * The errors of steps, as they are estimated.  Behind trajectory.c.
+ * Error estimates of steps. Comes after trajectory.c.
  *
- * The misfit of a step is how far the polynomial of rates is from the rate at either end, or what
- * comes next after its last term, if that is more.  Seen through the equations of the step it is an
- * error of order s + 1.  The end is of order 2s: what a misfit leaves there is orthogonal to all
- * polynomials of less than s, so that it counts only by what is left of itself after s more terms
- * (`smooth`), and by what the equations make of it when they act on it s times (`pull`).
+ * The misfit of a step is the difference of the polynomial of its rates and the true rate at either
+ * end, or the estimated next term of the series, if that is larger. Filtered by the step's
+ * linearised equations, it is an error of order s + 1. At its end a step is of order 2s: what a
+ * misfit leaves there is orthogonal to all polynomials of degree below s. Two factors tell how much
+ * less that is: how far the series decays over s more terms (SMOOTH), and what the equations do
+ * when they are applied s times (PULL).
  */
 
-/* About what comes after the last term of a series, as a part of that, by how much smaller it is. */
+/* The ratio of the next term of a series to its last: the mean ratio of its terms so far. */
 #if STAGES == 3
 #define LIKE_THE_LAST(smooth) (smooth)
 #elif STAGES == 4
@@ -17,11 +18,11 @@
 #define LIKE_THE_LAST(smooth) sqrt_of(sqrt_of(smooth))
 #endif
 /*
- * What of an error of order s + 1 is left at the end.  SMOOTH: of a sum over time, from the misfit's
- * part of what the rate changes by.  PULL: of a state that goes round or falls by z in a step.  The
- * term of the root of a root, and the highest power, are about those of Gauss's rule and of its
- * function of stability.  The others are calibrated on test models: series that hardly fall yet get
- * no more than their last part says, and what oscillates damps no error of the steps before.
+ * The part of an error of order s + 1 that is left at the end. SMOOTH: of an integral over time, by
+ * the misfit's part of the change of the rate. PULL: of a state that oscillates or decays at the
+ * rate z/h. The fourth root and the highest power approximate the error of Gauss quadrature and of
+ * the stability function. The other constants are calibrated on test models: FALLS bounds series
+ * that hardly decay yet, and oscillations do not damp errors of earlier steps.
  */
 #define FALLS(part) ((part) * least(300.0 * (part) * (part), wide(1.0)))
 #if STAGES == 4
@@ -34,12 +35,12 @@
 #define SMOOTH(part) (part)
 #define PULL(z) (1e-2 * (z) * (z))
 #endif
-/* A state is fast if the equations reduce its misfit by more than this factor, twice. */
+/* A state is stiff if the equations reduce its misfit by more than this factor, twice in a row. */
 #define REDUCED 2.5
 /* Factor on errors of steps that contain kinks, whose errors add up over a run. */
 #define KINKS_WITHIN (STAGES > 4 ? 1.3 : 1.8)
 
-/* The one that is further from zero. */
+/* The number of larger magnitude. */
 static inline real further(real a, real b)
 {
     const mask first = size_of(a) > size_of(b);
@@ -47,8 +48,8 @@ static inline real further(real a, real b)
 }
 
 /*
- * The misfits of a step times its length and the filter, in some_rate; in some_share, as parts of
- * what the rate changes by over the step.
+ * The misfits of a step times `gamma`, in some_rate; and relative to the change of each rate over
+ * the step, in some_share.
  */
 static void MODEL(misfits)(const MODEL(batch) *b, real gamma)
 {
@@ -73,16 +74,16 @@ static void MODEL(misfits)(const MODEL(batch) *b, real gamma)
 }
 
 /*
- * The errors of steps, in tolerances of each state's scale.
+ * The error of each lane's step, in tolerances of each state's scale.
  *
- * How fast a state is, the equations tell by how much they reduce its misfit.  Once is not enough:
- * of what oscillates, one state or another has no error just now.
+ * How stiff a state is shows in how much the equations reduce its misfit. They are applied twice,
+ * for in an oscillation one state or another has no error at the moment.
  */
 static real MODEL(error)(const MODEL(batch) *b, real h)
 {
     const MODEL(block) *m = &b->m;
     const real gamma = h * filter;
-    real *const once = m->gap, *const twice = m->prior; /* of Newton's method, which is done */
+    real *const once = m->gap, *const twice = m->prior; /* no longer needed by Newton's method */
     MODEL(misfits)(b, gamma);
     memcpy(once, b->some_rate, (size_t)m->n * sizeof(real));
     MODEL(solve_real)(m, gamma, m->slope, m->real_factor, once);

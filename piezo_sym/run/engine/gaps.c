@@ -1,14 +1,17 @@
 /*
- * Means over a step, and what the rates at its stages have to be: stage by stage.  Behind gauss.c.
+ * The residuals (gaps) of a step's equations, stage by stage, and the means in them. Comes after
+ * gauss.c.
  */
 
-/* How nodes of means are reached, and from rates to the basis in which stages are solved for. */
+/*
+ * Tables: weights for the states at nodes; into the basis in which the stages decouple, and back.
+ */
 #define NODE_REACH node_reach
 #define FINE_REACH fine_reach
 #define BASIS_STAGE basis_stage
 #define STAGE_BASIS stage_basis
 
-/* The states alone that integrands read. */
+/* Of the states at a point of the step, those that integrands read. */
 static void MODEL(reach_read)(const MODEL(block) *m, real h, const double *weight)
 {
     for (long r = 0; r < MODEL(reads); ++r) {
@@ -19,7 +22,7 @@ static void MODEL(reach_read)(const MODEL(block) *m, real h, const double *weigh
     }
 }
 
-/* The functions of which stages are given means, at nodes of a step. */
+/* The integrands of the means, at nodes of a step. */
 static void MODEL(integrate)(const MODEL(block) *m, real h, const double reach[][STAGES], long nodes)
 {
     for (long q = 0; q < nodes; ++q) {
@@ -28,7 +31,7 @@ static void MODEL(integrate)(const MODEL(block) *m, real h, const double reach[]
     }
 }
 
-/* Means over the step, by the rule of each lane. */
+/* Means over the step, with as many nodes as each lane needs. */
 static void MODEL(average)(const MODEL(block) *m, real h)
 {
     MODEL(integrate)(m, h, node_reach, NODES);
@@ -55,7 +58,7 @@ static void MODEL(average)(const MODEL(block) *m, real h)
 static void MODEL(lose)(const MODEL(block) *m, real h, real *rate, real *rows);
 #endif
 
-/* What the rates at the stages have to be, less what they are; returns where branches change. */
+/* Residuals: the rates by the laws at the stages less `rates`; returns where branches change. */
 static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
 {
     const mask over = m->over & going;
@@ -91,7 +94,7 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     return changed;
 }
 
-/* The gaps of each state, times a matrix. */
+/* Multiply the residuals of each state, a vector over the stages, by a matrix. */
 static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES])
 {
     for (long k = 0; k < m->n; ++k) {

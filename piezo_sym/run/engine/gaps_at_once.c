@@ -1,10 +1,12 @@
 /*
- * Means over a step, and what the rates at its stages have to be: the stages of one run, or nodes, in
- * the lanes of vectors of LANES numbers.  Behind gauss.c; at_once.c has what is computed.  The same
- * sums in the same order as in gaps.c, so that a run has the same numbers beside others.
+ * As gaps.c, with the stages of one run, or nodes, in the lanes of vectors of LANES numbers;
+ * at_once.c computes in them. Comes after gauss.c. Sums have the same order as in gaps.c, so that a
+ * run has the same numbers in either layout.
  */
 
-/* How nodes of means are reached, and from rates to the basis in which stages are solved for. */
+/*
+ * Tables: weights for the states at nodes; into the basis in which the stages decouple, and back.
+ */
 #define NODE_REACH node_lanes
 #define FINE_REACH fine_lanes
 #define BASIS_STAGE basis_stage_lanes
@@ -17,7 +19,7 @@ static inline lanes lanes_of(const double *values)
     return *(const lanes *)values;
 }
 
-/* A state in all lanes, each reached by rates with weights of its own. */
+/* State i at the points of all lanes, each with its own weights of the stages' rates. */
 static inline lanes MODEL(reached_lanes)(const MODEL(block) *m, real h, const double weight[][LANES], long i)
 {
     lanes sum = {0.0};
@@ -26,7 +28,7 @@ static inline lanes MODEL(reached_lanes)(const MODEL(block) *m, real h, const do
     return m->x[i] + h * sum;
 }
 
-/* The functions of which stages are given means, at nodes of a step. */
+/* The integrands of the means, at nodes of a step. */
 static void MODEL(integrate)(const MODEL(block) *m, real h, const double weight[][LANES], long nodes)
 {
     for (long q = 0; q < nodes; q += LANES) {
@@ -44,7 +46,7 @@ static void MODEL(integrate)(const MODEL(block) *m, real h, const double weight[
     }
 }
 
-/* Means over the step, by the rule that the run asks for. */
+/* Means over the step, with as many nodes as the run needs. */
 static void MODEL(average)(const MODEL(block) *m, real h)
 {
     const long nodes = m->fine ? FINE : NODES;
@@ -58,7 +60,7 @@ static void MODEL(average)(const MODEL(block) *m, real h)
     }
 }
 
-/* Put numbers of stages one behind the other into lanes, or back. */
+/* Copy arrays of the stages, which lie one after another, into lanes. */
 static inline void MODEL(into_lanes)(const real *from, long size, real *to)
 {
     for (long k = 0; k < size; ++k)
@@ -67,7 +69,7 @@ static inline void MODEL(into_lanes)(const real *from, long size, real *to)
 }
 
 #if defined(BENDS) || defined(PATHS)
-/* Put some of what stages are given into lanes. */
+/* Copy some of the values given to stages into lanes. */
 static void MODEL(means_into_lanes)(const MODEL(block) *m, long first, long end)
 {
     for (long k = first; k < end; ++k)
@@ -83,7 +85,7 @@ static inline void MODEL(from_lanes)(const real *from, long size, real *to)
             to[i * size + k] = from[k * LANES + i];
 }
 
-/* What the rates at the stages have to be, less what they are; returns where branches change. */
+/* Residuals: the rates by the laws at the stages less `rates`; returns whether branches change. */
 static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
 {
     const mask over = m->over & going;
@@ -122,7 +124,7 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     return changed;
 }
 
-/* The gaps of each state, times a matrix. */
+/* Multiply the residuals of each state, a vector over the stages, by a matrix. */
 static void MODEL(transform)(const MODEL(block) *m, const double column[][LANES])
 {
     for (long k = 0; k < m->n; ++k) {

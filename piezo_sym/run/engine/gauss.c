@@ -1,19 +1,20 @@
 /*
- * Steps of Gauss collocation that keep both balances: the rates that stages have to have, for the runs
- * of all lanes at once; newton.c finds them.
+ * Steps of Gauss collocation that keep both balances: their work space, and states within them.
+ * newton.c solves for the rates at the stages, in all lanes at once.
  *
- * Behind real.h, a generated <model>_step.c and the tables of a number of stages.  With rates K_j
- * the state goes along X(tau) = x + h sum_j K_j int_0^tau l_j; stage i has the co-states' means
- * int_0^1 (l_i/b_i) dU/dx(X) dtau, taken at NODES nodes of Gauss's rule, or at FINE of them where the
- * co-states ask for more, and piece by piece where energies have kinks.  A root counts only if it solves
- * the equations, these nodes do, all is finite, each stage lies in the domain and no process takes entropy.
+ * Comes after real.h, a generated <model>_step.c and the tables for a number of stages. With rates
+ * K_j at the stages, the state follows X(tau) = x + h sum_j K_j int_0^tau l_j. Stage i uses means
+ * of the co-states, int_0^1 (l_i/b_i) dU/dx(X) dtau, by Gauss quadrature with NODES nodes, or with
+ * FINE where these are too few, and piece by piece where energies have kinks. A root is accepted
+ * only if it solves the equations, the quadrature is accurate, all numbers are finite, each stage
+ * lies in the domain and no process consumes entropy.
  */
 
 #include <stddef.h>
 
 /*
- * What rounding leaves of a change, in parts of a state's size; how much of that may be left where
- * rates are made of much larger numbers; and the least size.
+ * NOISE is the round-off of a change, relative to the size of a state; up to MOST_NOISE times as
+ * much is accepted where rates are sums of much larger numbers. NO_SIZE keeps divisors above 0.
  */
 #define NOISE (sizeof(real) < sizeof(double) ? 1e-7 : 1e-16)
 #define MOST_NOISE (sizeof(real) < sizeof(double) ? 1e5 : 1e4)
@@ -23,7 +24,10 @@
 #if PAIRS > 2
 #error "more pairs need another vector"
 #endif
-/* Numbers for pairs of eigenvalues: those of one run are solved with side by side. */
+/*
+ * Numbers for pairs of complex eigenvalues: those of one run share a vector, so that their
+ * equations are solved side by side.
+ */
 #if REAL_WIDTH == 1 && PAIRS > 1 && !defined(PLAIN)
 #define TOGETHER PAIRS
 typedef double pairs __attribute__((vector_size(8 * PAIRS), aligned(8), may_alias));
@@ -42,25 +46,28 @@ typedef struct {
 #endif /* PAIRS */
 
 #if defined(PATHS)
-/* Of a path functional: its bank or -1, the state that is its coordinate, whether each lane has its
- * own, its inner state; what a stage is given; what it takes. */
+/*
+ * Columns of a path functional's row: its bank (-1: none), the state that is its coordinate,
+ * whether each lane of the bank has a coordinate of its own, its inner state. Then what it gives to
+ * a stage, and what its parameters are.
+ */
 enum { BANK, COORDINATE, OWN, INNER };
 enum { EFFORT, RATE, HEAT, SHARE, GIVEN };
 enum { STIFFNESS, LIMIT, PARAMETERS };
 #endif /* PATHS */
 
-/* The runs of all lanes, as they take a step: sizes, and the numbers that it works on. */
+/* The work space of a step in all lanes: sizes, states, and intermediate results. */
 typedef struct {
     MODEL(reals) p;
-    const MODEL(parameters) *own; /* those of p, in the last lane that has taken some */
+    const MODEL(parameters) *own; /* the parameters that were loaded last into a lane of p */
     long n, inputs, means, branches, booked, slopes, processes;
-    long given; /* to a stage: means, and what path functionals give */
-    const long *lanes, *first; /* of each bank; of each state, its first row */
-    real *x, *end;             /* n: where the step begins, and where it ends */
+    long given; /* values given to a stage: means, and those of path functionals */
+    const long *lanes, *first; /* lanes of each bank; first row of each state */
+    real *x, *end;             /* n: states at the begin and the end of the step */
     real *rates;               /* STAGES*n */
     real *branch;              /* STAGES*branches */
     real *u;                   /* STAGES*inputs */
-    real *largest;             /* n: the largest magnitude of each state, by which errors count */
+    real *largest;             /* n: largest magnitude of each state, the scale of its errors */
     real *reached, *gap, *prior, *node, *mean, *side, *margin, *rows, *slope, *fresh, *real_factor;
     real *path, *yield;        /* parameters of path functionals; where one first yields in a step */
 #if defined(BENDS)
@@ -68,12 +75,12 @@ typedef struct {
     real *bend, *look, *cut, *piece_slope; /* see bends.c */
 #endif /* BENDS */
     mask fine;                 /* lanes whose means are taken at FINE nodes */
-    mask over;                 /* lanes whose stages choose their branches: they step over kinks */
-    mask sketch, sketched;     /* lanes whose steps may be cut at a switch; those found to have one */
-    double enough;             /* what changes, in units of noise, have to be below to tell that */
+    mask over;                 /* lanes that step over kinks: each stage chooses its branches */
+    mask sketch, sketched;     /* lanes that may stop early, beyond a switch; lanes that did */
+    double enough;             /* in units of noise: they stop when a change is below this */
     real iterations;           /* of Newton's method */
-    int most, late;            /* of them in a step; after which it may be given up */
-    double stays;              /* a change that is more than this part of the one before is noise */
+    int most, late;            /* of them in a step; after so many it may be given up */
+    double stays;              /* changes that shrink by no more than this factor stagnate */
 #if PAIRS
     MODEL(complex) *factor, *right;
 #endif /* PAIRS */
@@ -137,16 +144,16 @@ static inline MODEL(complex) MODEL(less)(MODEL(complex) a, MODEL(complex) b)
 #include "elimination.c"
 #endif /* PAIRS */
 
-/* The numbers that a block says of itself: sizes, lanes of banks, first rows of states, bends. */
+/* Entries of `sizes`: counts, lanes of banks, first rows of states, and bend functions. */
 enum { SIZES = 7 + MODEL(banks) + MODEL(records) };
 #if defined(BENDS)
-/* Places where bends are looked at; between them each is about a parabola. */
+/* Points at which bend functions are sampled; three neighbours make a parabola, see bends.c. */
 enum { BEND_LOOKS = 4 * STAGES + 3 };
 #endif /* BENDS */
 
 /*
- * Make a block for runs of the sizes of p, `more` rows for the ledger behind the model's own.  Its
- * numbers lie from `at` on; returns how many these are.
+ * Set up the work space of runs with the sizes of p, in the memory from `at` on; returns how many
+ * numbers it takes. Ledgers have `more` rows behind the model's own.
  */
 static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, long *sizes, real *at)
 {
@@ -215,7 +222,7 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     return at - begin;
 }
 
-/* A state at a place of the step, reached by rates with these weights. */
+/* State i at a point of the step, which weights of the stages' rates say. */
 static inline real MODEL(reached_row)(const MODEL(block) *m, real h, const double *weight, long i)
 {
     real sum = zero;
@@ -224,14 +231,17 @@ static inline real MODEL(reached_row)(const MODEL(block) *m, real h, const doubl
     return m->x[i] + h * sum;
 }
 
-/* All states at a place of the step. */
+/* All states at a point of the step. */
 static void MODEL(reach)(const MODEL(block) *m, real h, const double *weight, real *restrict out)
 {
     for (long i = 0; i < m->n; ++i)
         out[i] = MODEL(reached_row)(m, h, weight, i);
 }
 
-/* Choose branches by their switching functions in some lanes; returns those where any changes. */
+/*
+ * Set branches by the signs of their switching functions, in some lanes; returns the lanes with
+ * changes.
+ */
 static mask MODEL(choose)(long branches, const real *side, real *branch, mask where)
 {
     mask changed = nowhere;

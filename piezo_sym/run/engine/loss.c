@@ -1,5 +1,5 @@
 /*
- * The loss of a dissipative step, behind gauss.c: one stage, whose rates are those at the step's end.
+ * The loss of a dissipative step (comes after gauss.c): one stage, whose rates are those at the step's end.
  *
  * Stores then lose N = h y^T u - (U_1 - U_0) >= 0 beside all processes, if energies are convex. The
  * first body takes it as heat, since nobody else says which one: its entropy grows by N/T_1 more.  So

@@ -1,8 +1,9 @@
-/* Newton's method for the rates at the stages of a step.  Behind gauss.c. */
+/* Newton's method for the rates at the stages of a step. Comes after gauss.c. */
 
 /*
- * A stage at a point, with co-states and efforts as they are there.  At an end of a step rates of paths
- * follow from those of its stages by weights: they may jump within the step, which has their means.
+ * The rates at a single point, with its own co-states in place of means. Path functionals may jump
+ * within a step, which knows only their means: at an end of it (`weight`), their rates are
+ * extrapolated from those of its stages.
  */
 static void MODEL(at_point)(const MODEL(block) *m, const real *x, const real *branch, const real *u,
                             const double *weight, real *rate, real *rows, real *side, real *margin)
@@ -19,26 +20,27 @@ static void MODEL(at_point)(const MODEL(block) *m, const real *x, const real *br
     MODEL(stage)(x, m->node, branch, u, &m->p, rate, rows, side, margin);
 }
 
-/* Iterations, and after how many a step is given up whose changes do not become smaller. */
+/* Most iterations of a step, and after how many it is given up if changes stagnate. */
 enum { MOST_ITERATIONS = 12, SOON = 1 };
 /*
- * A fixed step may begin far from its root: from beyond the bend of an exponential law Newton's method
- * comes back by its width each time, however short the step.
+ * The same for a fixed step, which may start far from its root: on the steep side of an exponential
+ * law an iteration moves by one width of it, however short the step. After NOISY iterations,
+ * changes that stagnate may be as large as MOST_NOISE.
  */
 enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
-/* Where a change is more than so much of the one before, slopes are taken anew. */
+/* Slopes are computed anew where a change is more than this part of the one before. */
 #define SLOW 0.1
-/* Where changes are smaller, in units of what is noise, the next is as much smaller as this one was. */
+/* Below this change, in units of noise, the next one is expected to shrink by the same factor. */
 #define NEAR 1e8
-/* What equations may leave, in parts of states: as much as changes below noise of what is very fast. */
+/* Largest residual of a root, relative to the state: round-off of a stiff state leaves as much. */
 #define LEFT 0.01
-/* Where the second change is more, in units of noise, it pays to look already then for more nodes. */
+/* If the second change is more than this, in units of noise, more nodes are considered at once. */
 #define FAR 1e9
-/* Changes go to and fro where so much of one is left, with the other sign. */
+/* Changes oscillate where at least this part of one comes back with the other sign. */
 #define TO_AND_FRO 0.5
 
 #if PAIRS
-/* The eigenvalues of pairs from `first` on, times the step. */
+/* The step times the eigenvalues of the pairs from `first` on. */
 static inline MODEL(complex) MODEL(gamma)(real h, long first)
 {
     MODEL(complex) gamma;
@@ -51,7 +53,7 @@ static inline MODEL(complex) MODEL(gamma)(real h, long first)
 }
 #endif /* PAIRS */
 
-/* Newton's change of the rates, from the gaps; gaps become it. */
+/* Newton's change of the rates, which replaces the residuals in `gap`. */
 static void MODEL(change)(const MODEL(block) *m, real h)
 {
     MODEL(transform)(m, BASIS_STAGE);
@@ -79,8 +81,8 @@ static void MODEL(change)(const MODEL(block) *m, real h)
 }
 
 /*
- * Slopes in the middle of the step, on the branches of its middle stage, and what solves with them;
- * lanes that are not in `where` keep theirs.
+ * Slopes in the middle of the step, on the branches of its middle stage, and their factorisations;
+ * lanes that are not in `where` keep their slopes.
  */
 static void MODEL(prepare)(const MODEL(block) *m, real h, mask where)
 {
@@ -102,7 +104,7 @@ static void MODEL(prepare)(const MODEL(block) *m, real h, mask where)
 #endif /* PAIRS */
 }
 
-/* The lanes whose margins are those of a state in the domain. */
+/* The lanes in which all conditions of the domain hold. */
 static mask MODEL(within)(const real *margin)
 {
     mask good = none_of(nowhere);
@@ -113,7 +115,7 @@ static mask MODEL(within)(const real *margin)
     return good;
 }
 
-/* The lanes whose stages all lie in the domain, and whose processes take no entropy. */
+/* The lanes whose stages all lie in the domain, and in which no process consumes entropy. */
 static mask MODEL(accepted)(const MODEL(block) *m)
 {
     const long processes = m->processes, ports = MODEL(output_count);
@@ -137,9 +139,9 @@ static mask MODEL(accepted)(const MODEL(block) *m)
 }
 
 /*
- * How much of a change to take where changes go to and fro: slopes are those at one place of a step,
- * with co-states there for means, and a long step has others.  What the change before has left says
- * by how much it went too far.
+ * The part of a change to take where changes oscillate. Slopes are those at one point of a step,
+ * and differ along a long one, so that changes overshoot. The component of the new change along the
+ * last one says by how much.
  */
 static real MODEL(damping)(const MODEL(block) *m)
 {
@@ -158,8 +160,8 @@ static real MODEL(damping)(const MODEL(block) *m)
 }
 
 /*
- * The lanes whose rates solve the equations, not only change no more: a change is small, too, where
- * slopes are out of all proportion.
+ * The lanes whose rates solve the equations. A small change does not show that: changes are small,
+ * too, where slopes are far too large.
  */
 static mask MODEL(solves)(const MODEL(block) *m, real h)
 {
@@ -175,12 +177,12 @@ static mask MODEL(solves)(const MODEL(block) *m, real h)
     return good;
 }
 
-/* The lanes whose co-states ask for more nodes than they have, as the rates are now; see nodes.c. */
+/* The lanes whose means need more nodes, by the rates at hand; see nodes.c. */
 static mask MODEL(coarse_by_now)(MODEL(block) *m, real h);
 
 /*
- * The lanes whose stages, as their rates are now, lie beyond a switch: the step will be cut there, and
- * where that is needs no rates that are solved to round-off.
+ * The lanes in which a stage lies beyond a switch, by the rates at hand. Their steps will be cut
+ * there, and to locate that place rates need not be exact to round-off.
  */
 static mask MODEL(strayed)(const MODEL(block) *m)
 {
@@ -192,7 +194,7 @@ static mask MODEL(strayed)(const MODEL(block) *m)
     return found;
 }
 
-/* Take part of a change; returns the largest one in any state, in units of what is noise. */
+/* Add part of the change to the rates; returns the largest change of a state, in units of noise. */
 static real MODEL(changed)(const MODEL(block) *m, real h, real part, mask where)
 {
     real worst = zero;
@@ -213,14 +215,15 @@ static real MODEL(changed)(const MODEL(block) *m, real h, real part, mask where)
 }
 
 /*
- * Newton's method for the rates in some lanes, begun where they are; returns those that found them.
- * A lane that has found them stays as it is, however long the others take.
+ * Newton's method for the rates in some lanes, from those at hand; returns the lanes that converge.
+ * A lane that has converged does not change while others go on.
  */
 static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
 {
     mask going = where, found = nowhere;
-    mask renewed = nowhere; /* who has new equations, whose changes earlier ones do not foretell */
-    real before = zero, left_before = zero; /* new slopes of a fixed step may help once, not again */
+    mask renewed = nowhere; /* lanes that got more nodes: earlier changes predict nothing */
+    /* with fixed steps the larger of two ratios counts: new slopes may help once, not again */
+    real before = zero, left_before = zero;
 #if defined(PATHS)
     MODEL(path_parameters)(m->x, &m->p, m->path);
 #endif /* PATHS */
@@ -241,7 +244,7 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
         const mask near = smaller & (worst < NEAR);
         const real left = worst / (before + NO_SIZE);
         mask good = (worst <= 4.0) | (near & (worst * largest_of(left, left_before) <= 4.0));
-        if (iteration > 1) { /* noise of what rates are made of, or no root */
+        if (iteration > 1) { /* stagnation: round-off, or no root */
             const mask stays = (worst > m->stays * before) & none_of(good);
             good |= stays & (worst < (m->late == SOON || iteration > NOISY ? MOST_NOISE : 100.0));
             if (iteration > m->late)
@@ -263,7 +266,7 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
         before = worst;
         left_before = iteration && m->late > SOON ? left : (real)zero;
     }
-#if LOSSY /* what rounding leaves of the loss, a difference of energies, is booked as it is taken */
+#if LOSSY /* the ledger books the loss as it is rounded, so the rate has to contain the same */
     m->rates[m->first[MODEL(heated)]] += m->gap[m->first[MODEL(heated)]];
 #endif
     return found;

@@ -1,26 +1,31 @@
 /*
- * How many nodes the means over a step ask for, and a step solved with as many.  Behind newton.c.
+ * The number of nodes that means over a step need, and a step solved with as many. Comes after
+ * newton.c.
  */
 
-/* How far aside of a state its co-states are looked at, in parts; what of their noise is more than that. */
+/*
+ * States are scaled by 1 + ASIDE to estimate the round-off of their co-states; what exceeds it by
+ * the factor MUCH_NOISE is no round-off.
+ */
 #define ASIDE 1e-3
 #define MUCH_NOISE 100.0
-/* A part of what is not zero, but no less than its noise: terms are sums over nodes. */
+/* A relative bound, but not below the round-off of sums over nodes. */
 #define ABOVE_NOISE(part) ((part) > MUCH_NOISE * NOISE ? (part) : MUCH_NOISE * NOISE)
 
-/* What is asked of a function whose mean is taken: how many nodes that are, and their tables. */
+/* A quadrature rule, and how it tells that an integrand needs more nodes. */
 typedef struct {
     long nodes;
-    const double *last, *other; /* what gives the last term of Legendre's, and that before */
-    double part;                /* what the last may be, in parts of the function's size */
+    const double *last, *other; /* weights for the last two Legendre coefficients */
+    double part;                /* how large these may be, relative to the integrand */
 } MODEL(rule);
 
 static const MODEL(rule) MODEL(few) = {NODES, node_last[0], node_last[1], ABOVE_NOISE(COARSE)};
 static const MODEL(rule) MODEL(many) = {FINE, fine_last[0], fine_last[1], ABOVE_NOISE(TOO_COARSE)};
 
 /*
- * The lanes where functions whose means are taken, at the nodes at hand, ask for more nodes: where the
- * last two terms are not small, for of an even or odd function every other is zero. Noise may be.
+ * The lanes in which an integrand needs more nodes: the last two coefficients of its Legendre
+ * series are not small. Two of them, for every other one of an even or odd function is zero.
+ * Coefficients within `noise` of an integrand do not count.
  */
 static mask MODEL(rough)(const MODEL(block) *m, const MODEL(rule) *rule, const real *noise)
 {
@@ -42,7 +47,7 @@ static mask MODEL(rough)(const MODEL(block) *m, const MODEL(rule) *rule, const r
     return found;
 }
 
-/* The same, of whole steps and of the pieces of those that are split. */
+/* The same for whole steps, and for each piece of those that are split. */
 static mask MODEL(rough_parts)(const MODEL(block) *m, real h, const MODEL(rule) *rule, const real *noise)
 {
     MODEL(integrate)(m, h, rule->nodes == FINE ? FINE_REACH : NODE_REACH, rule->nodes);
@@ -66,10 +71,10 @@ static mask MODEL(coarse_by_now)(MODEL(block) *m, real h)
     return m->means ? MODEL(rough_parts)(m, h, &MODEL(few), NULL) : nowhere;
 }
 
-/* The lanes whose co-states ask for more nodes than NODES, for balances that are exact to round-off. */
+/* The lanes that need more than NODES nodes for balances exact to round-off. */
 static mask MODEL(coarse)(const MODEL(block) *m, real h)
 {
-    mask other = m->fine; /* lanes whose last gaps have left other nodes than NODES of the whole */
+    mask other = m->fine; /* lanes where `node` is not at the NODES of a whole step */
 #if defined(BENDS)
     other |= m->cut[0] < 1.0;
 #endif /* BENDS */
@@ -79,13 +84,13 @@ static mask MODEL(coarse)(const MODEL(block) *m, real h)
 }
 
 /*
- * The lanes whose co-states ask for more nodes than FINE: the step is too long. A difference that goes
- * to zero, such as that of a length and a rest, is all noise at last: what rounding leaves of its
- * terms, which its slope along the state itself tells.
+ * The lanes in which FINE nodes are too few: the step is too long. An integrand that tends to zero
+ * as a difference of larger terms, such as a length and a rest length, ends as their round-off; how
+ * large they are shows when the states are scaled.
  */
 static mask MODEL(too_coarse)(const MODEL(block) *m, real h)
 {
-    real *const noise = m->gap; /* of Newton's method, which is done */
+    real *const noise = m->gap; /* no longer needed by Newton's method */
     MODEL(integrands)(m->x, &m->p, noise);
     for (long k = 0; k < m->n; ++k)
         m->reached[k] = m->x[k] * (1.0 + ASIDE);
@@ -95,7 +100,10 @@ static mask MODEL(too_coarse)(const MODEL(block) *m, real h)
     return m->fine & MODEL(rough_parts)(m, h, &MODEL(many), noise);
 }
 
-/* The rates in some lanes, with means at as many nodes as they ask for; returns who has them. */
+/*
+ * Solve for the rates in some lanes, with as many nodes as they need; returns the lanes that
+ * succeed.
+ */
 static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
 {
     m->fine &= none_of(where);

@@ -1,6 +1,6 @@
 /*
  * The outcome of a lane's step: it is refused, accepted, cut at a switch, or booked; and the lane's next
- * step.  Behind samples.c.
+ * step.  Comes after samples.c.
  */
 
 /* End a run, `failed` if no step succeeds. */

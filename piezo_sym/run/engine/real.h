@@ -1,7 +1,8 @@
 /*
- * Numbers of one run, or vectors of numbers of REAL_WIDTH runs that are computed side by side, and
- * the functions that a step calls on them.  All texts behind this file hold for every width, and
- * give a run the same numbers at each: rounding does not depend on the company.
+ * The number type `real`: a double for one run, or a vector of REAL_WIDTH doubles with one lane for
+ * each of as many runs; and the functions that a step calls on it. The files included after this
+ * one compile for every width, and give a run the same numbers to the bit, whichever runs share its
+ * vectors.
  */
 #include <math.h>
 #include <stdint.h>
@@ -54,7 +55,7 @@ typedef signed char few __attribute__((vector_size(REAL_WIDTH)));
 static const real zero = {0.0};
 static const mask nowhere = {0};
 
-/* A number or a vector as a vector, unchanged: x - 0 is x, also for -0. */
+/* A scalar or a vector as a vector. Subtracting zero changes nothing, not even -0. */
 #define wide(value) ((real)((value) - zero))
 
 static inline real chosen(mask where, real then, real other)
@@ -83,7 +84,7 @@ static inline real size_of(real a)
 #define is_at_least(a, b) ((a) >= (b))
 #define none_of(where) ((mask)((where) == nowhere))
 
-/* The number, or the mask, of one lane. */
+/* One lane of a vector, of an array of vectors, and of a mask. */
 #define OF(value, lane) (((double *)&(value))[lane])
 #define LANE(array, i, lane) (((double *)(array))[(i) * REAL_WIDTH + (lane)])
 #if REAL_WIDTH == 1
@@ -94,14 +95,14 @@ static inline real size_of(real a)
 #define IN(where, lane) ((where)[lane] != 0)
 #endif
 
-/* 2^k for whole k from -1022 to 1023, given as k + 0x1.8p52. */
+/* 2^k for an integer k from -1022 to 1023, given as k + 0x1.8p52: its low bits are those of k. */
 static inline real power_of_two(real k)
 {
     const pattern exponent = bits_of(k) - bits_of(wide(0x1.8p52)) + 1023;
     return real_of(exponent << 52);
 }
 
-/* exp(r) - 1 for |r| <= log(2)/2, by its series; in pairs of terms, so that few wait for others. */
+/* exp(r) - 1 for |r| <= log(2)/2: Taylor series, in groups that do not wait for one another. */
 static inline real small_expm1(real r)
 {
     const real r2 = r * r, r4 = r2 * r2, r8 = r4 * r4;
@@ -112,7 +113,7 @@ static inline real small_expm1(real r)
     return r + r2 * (0.5 + r * (from_3 + r4 * from_7 + r8 * from_11));
 }
 
-/* exp(d) = 2^k (1 + e); returns e, and 2^k in scale; d from -708 to 709. */
+/* exp(d) = 2^k (1 + e) for d from -708 to 709; returns e, and 2^k in `scale`. */
 static inline real reduced(real d, real *scale)
 {
     const real shifted = d * 0x1.71547652b82fep0 + 0x1.8p52;
@@ -162,7 +163,7 @@ static inline real pow_of(real a, real b)
     return found;
 }
 
-/* The smaller, or the larger, of two numbers; none if a is none. */
+/* The smaller and the larger of two numbers; nan if one is nan. */
 static inline real least(real a, real b)
 {
     const mask first = (a < b) | (a != a);

@@ -1,7 +1,7 @@
 /*
  * Steps that can be taken again: from where one begins, its length and the branches of its stages, the
  * same numbers to the bit, whatever was solved before.  A run on tape is made of such steps, and the
- * tape keeps what they begin with.  For one run; behind crossings.c.
+ * tape keeps what they begin with.  For one run.  Comes after crossings.c.
  */
 #if REAL_WIDTH == 1
 

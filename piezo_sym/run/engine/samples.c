@@ -1,16 +1,16 @@
 /*
- * Samples of runs.  Behind replay.c.
+ * Samples of runs. Comes after replay.c.
  *
- * A sample within a step is the end of a step of its own, which begins where the run's step begins, so
- * that its balances close, too.  The run itself does not depend on samples.
+ * A sample within a step is the end of a step of its own from where that step begins, so that its
+ * balances close, too. The run goes on from its own step: it does not depend on samples.
  *
- * Each of these steps has an error of its own: where little is produced between two samples, the later
- * one might show less heat or entropy than the one before.  Then its step is repeated from the sample
- * before (RESUME); and so are the following ones, from sample to sample, until the run itself has
- * produced as much.  A sample whose step finds no rates is repeated in the same way.
+ * Each step for a sample has an error of its own. Where little is produced between two samples, the
+ * later one might show less heat or entropy produced than the one before. Then its step is repeated
+ * from the sample before (RESUME), and so are the steps of the samples that follow, until the run
+ * itself has produced as much. The same is done for a sample whose step has no solution.
  */
 
-/* Exchange the states of runs and of their last samples. */
+/* Exchange the states of runs with those of their last samples. */
 static void MODEL(swap_begins)(MODEL(batch) *b, mask where)
 {
     for (long k = 0; k < b->m.n; ++k) {
@@ -21,8 +21,8 @@ static void MODEL(swap_begins)(MODEL(batch) *b, mask where)
 }
 
 /*
- * Let some lanes' steps begin at their last samples. Their stages choose branches: the run's step may end
- * a little beyond a switch, and where it has no stage these may have one.
+ * Let the steps of some lanes begin at their last samples. Their stages choose branches: the run's
+ * step may end a little beyond a switch without a stage there, but these steps may have one.
  */
 static void MODEL(begin_at_samples)(MODEL(batch) *b, mask where)
 {
@@ -31,7 +31,7 @@ static void MODEL(begin_at_samples)(MODEL(batch) *b, mask where)
     b->m.over |= where;
 }
 
-/* Undo begin_at_samples; `over`: the lanes that step over kinks. */
+/* Undo begin_at_samples; `over`: the lanes whose runs step over kinks. */
 static void MODEL(begin_at_runs)(MODEL(batch) *b, mask where, mask over)
 {
     MODEL(swap_begins)(b, where);
@@ -39,13 +39,16 @@ static void MODEL(begin_at_runs)(MODEL(batch) *b, mask where, mask over)
     b->m.over = over;
 }
 
-/* An entry of a lane's ledger, after a step if `more` is given. */
+/* An entry of a lane's ledger; with `more`, what it is after a step that adds that. */
 static double MODEL(total)(const real *sums, const real *lost, const real *more, long k, int lane)
 {
     return LANE(sums, k, lane) + (more ? LANE(more, k, lane) - LANE(lost, k, lane) : 0.0);
 }
 
-/* Whether a lane's sums, with what a step adds, have less heat or entropy produced than its last sample. */
+/*
+ * Whether a lane's ledger, with what a step adds, has less heat or entropy produced than its last
+ * sample.
+ */
 static int MODEL(production_falls)(const MODEL(batch) *b, int lane, const real *more)
 {
     const long first = MODEL(output_count), last = first + 2 * b->m.processes;
@@ -57,7 +60,7 @@ static int MODEL(production_falls)(const MODEL(batch) *b, int lane, const real *
     return 0;
 }
 
-/* Write a row of samples: the state, and sums with what a step adds to them. */
+/* Write a sample: the state, and the ledger with what a step adds. */
 static void MODEL(write_sample)(const MODEL(batch) *b, int lane, const real *x, const real *sums,
                                 const real *lost, const real *more)
 {
@@ -69,7 +72,7 @@ static void MODEL(write_sample)(const MODEL(batch) *b, int lane, const real *x, 
         run->sums[run->sample * booked + k] = MODEL(total)(sums, lost, more, k, lane);
 }
 
-/* Keep the state and ledger of a sample, where the next sample's step may begin. */
+/* Keep the state and the ledger of a sample: the next sample's step may begin there. */
 static void MODEL(keep_sample)(MODEL(batch) *b, int lane, const real *sums, const real *lost)
 {
     for (long k = 0; k < b->m.n; ++k)
@@ -82,7 +85,9 @@ static void MODEL(keep_sample)(MODEL(batch) *b, int lane, const real *sums, cons
     }
 }
 
-/* Whether a failed step for a sample can be left out: the sample is written, or there is none. */
+/*
+ * Whether a failed step for a sample does no harm: the sample is already written, or none is due.
+ */
 static int MODEL(sample_stands)(const MODEL(batch) *b, int lane)
 {
     const MODEL(lane) *l = b->lane + lane;
@@ -90,9 +95,9 @@ static int MODEL(sample_stands)(const MODEL(batch) *b, int lane)
 }
 
 /*
- * A step for a sample has no rates, or leaves the domain: stages may lie beyond a switch.  It is taken
- * again, with branches that stages choose, from the last sample or from where the run is.  Returns
- * whether there is that way.
+ * A step for a sample has no solution or leaves the domain: stages may lie beyond a switch. It is
+ * repeated, with branches that stages choose, from the last sample or from where the run is.
+ * Returns whether that is still to be tried.
  */
 static int MODEL(retake_sample)(MODEL(batch) *b, int lane)
 {
@@ -114,8 +119,8 @@ static int MODEL(retake_sample)(MODEL(batch) *b, int lane)
 }
 
 /*
- * A step for a sample is solved (`good`: as it has to be, which it may not be if it begins at the last
- * one): write the sample.  Returns whether it stays so, or is to be taken again.
+ * A step for a sample is solved: write the sample. `good`: the step is acceptable, which one from
+ * the last sample may not be. Returns whether the sample stays, or its step is to be repeated.
  */
 static int MODEL(take_sample)(MODEL(batch) *b, int lane, int good)
 {
@@ -141,8 +146,8 @@ static int MODEL(take_sample)(MODEL(batch) *b, int lane, int good)
 }
 
 /*
- * Whether an accepted step has no sample left to take: none lies within, and its end, where a lane keeps a
- * sample ahead of its run, has one, too.
+ * Whether an accepted step needs no more steps for samples: none is due within it, and its ledger
+ * is not behind that of the last sample.
  */
 static int MODEL(all_sampled)(MODEL(batch) *b, int lane)
 {
@@ -156,7 +161,7 @@ static int MODEL(all_sampled)(MODEL(batch) *b, int lane)
     return 0;
 }
 
-/* Write the samples of where a lane is. */
+/* Write the samples that are due at the time of a lane's run. */
 static void MODEL(sample_here)(MODEL(batch) *b, int lane)
 {
     MODEL(lane) *l = b->lane + lane;

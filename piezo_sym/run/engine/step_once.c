@@ -1,4 +1,4 @@
-/* One step at a time, for closed loops: a batch of one run.  Behind batch.c. */
+/* One step at a time, for closed loops: a batch of one run.  Comes after batch.c. */
 
 /* All that a call needs, in one place; the caller decides the inputs. */
 typedef struct {

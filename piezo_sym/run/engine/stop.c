@@ -1,21 +1,21 @@
 /*
- * Path functionals: what an element with an inner state does while its coordinate C goes along the
- * polynomial of a step, number by number.  Behind gauss.c, for models that have PATHS.
+ * Path functionals: what an element with an inner state z does while its coordinate C follows the
+ * polynomial of a step; computed lane by lane. Comes after gauss.c, for models that have PATHS.
  *
- * Stage i is given int_0^1 (l_i/b_i) ... dtau of the effort F, of the inner state's rate and of the
- * heat.  So h sum_i b_i F_i K_i is the work int F dC, and the inner state ends where its path does,
- * wherever the path has bends.
+ * Stage i is given the means int_0^1 (l_i/b_i) ... dtau of the effort F, of dz/dt and of the heat.
+ * So h sum_i b_i F_i K_i is the work int F dC, and z ends where its path ends, wherever it begins
+ * or ceases to yield.
  */
 
-/* Parts of a limit: so near to it an inner state has reached it, at points that are no part of a step. */
+/* At a single point, an inner state so near to its limit, relative to it, has reached it. */
 #define AT_LIMIT 1e-9
-/* Parts of a step: a bend before is at its begin. */
+/* Parts of a step: what happens before this is at its begin. */
 #define BEGUN 1e-6
 
 /*
- * How a coordinate goes along a step: C(tau) - C(0) and dC/dtau by their coefficients, from 1 on;
- * where it is at the stages, and how fast; no further than `most` from where it began.  It does not
- * turn between turn[k] and turn[k + 1].  `yields` is the first place where z begins, or ends, to yield.
+ * The path of a coordinate in a step: the coefficients of C(tau) - C(0) and of dC/dtau; its change
+ * up to each stage and its rate there; a bound on |C(tau) - C(0)|. C is monotonic between turn[k]
+ * and turn[k + 1]. `yields` is the first part of the step where z begins, or ceases, to yield.
  */
 typedef struct {
     double gone[STAGES + 1], speed[STAGES], at_stage[STAGES], rate[STAGES], turn[STAGES + 1];
@@ -23,7 +23,7 @@ typedef struct {
     long pieces;
 } MODEL(way);
 
-/* What stages are given, but the last. */
+/* Means for the stages: effort, rate and heat. */
 typedef double MODEL(means)[SHARE][STAGES];
 
 static double MODEL(polynomial)(const double *a, long degree, double at)
@@ -34,7 +34,10 @@ static double MODEL(polynomial)(const double *a, long degree, double at)
     return sum;
 }
 
-/* Where a polynomial that does not turn between two places has a value: Newton's method, or halves. */
+/*
+ * Where a polynomial that is monotonic between two points has a value: Newton's method and
+ * bisection.
+ */
 static double MODEL(meets)(const double *a, long degree, double value, double low, double high)
 {
     const int rises = MODEL(polynomial)(a, degree, low) < MODEL(polynomial)(a, degree, high);
@@ -59,7 +62,7 @@ static double MODEL(meets)(const double *a, long degree, double value, double lo
     return at;
 }
 
-/* Find where a coordinate turns: roots of its speed lie between those of the speed's derivative. */
+/* Find where a coordinate turns: zeros of its speed lie between those of the speed's derivative. */
 static void MODEL(find_turns)(MODEL(way) *w)
 {
     w->turn[0] = 0.0, w->turn[1] = 1.0, w->pieces = 1;
@@ -84,18 +87,18 @@ static void MODEL(find_turns)(MODEL(way) *w)
     }
 }
 
-/* The way of a coordinate, which is state i, in one lane's step. */
+/* The path of a coordinate, which is state i, in one lane's step. */
 static void MODEL(find_way)(const MODEL(block) *m, double h, long i, int lane, MODEL(way) *w)
 {
     double square = 0.0;
-    (void)lane; /* where there is one */
+    (void)lane; /* a number has no lanes */
     w->h = h;
     w->gone[0] = 0.0;
     for (long j = 0; j < STAGES; ++j) {
         w->rate[j] = LANE(m->rates, j * m->n + i, lane);
         square += stage_weight[j] * w->rate[j] * w->rate[j];
     }
-    w->most = h * sqrt(square); /* the mean speed is not above the root of its square's mean */
+    w->most = h * sqrt(square); /* the mean of |dC/dt| is at most its root mean square */
     for (long n = 0; n < STAGES; ++n) {
         double sum = 0.0, at_stage = 0.0;
         for (long j = 0; j < STAGES; ++j) {
@@ -106,14 +109,17 @@ static void MODEL(find_way)(const MODEL(block) *m, double h, long i, int lane, M
         w->speed[n] = (double)(n + 1) * h * sum;
         w->at_stage[n] = h * at_stage;
     }
-    w->pieces = 0; /* not yet asked for */
+    w->pieces = 0; /* found when needed */
 }
 
-/* Add what a piece of a step brings, in which F = at_begin + k (C - C(0)): z moves, or it yields. */
+/*
+ * Add the means over a piece of a step in which F = at_begin + k (C - C(0)): z follows C, or
+ * yields.
+ */
 static void MODEL(add_piece)(const MODEL(way) *w, double low, double high, double at_begin, double k,
                              int yields, MODEL(means) mean)
 {
-    for (long q = 0; q < STAGES; ++q) { /* exact: of F l_i and F dC l_i no degree is above 2s - 1 */
+    for (long q = 0; q < STAGES; ++q) { /* exact: all integrands are of degree < 2s */
         const double at = low + (high - low) * stage_at[q];
         const double effort = at_begin + k * MODEL(polynomial)(w->gone, STAGES, at);
         const double rate = MODEL(polynomial)(w->speed, STAGES - 1, at) / w->h;
@@ -128,12 +134,12 @@ static void MODEL(add_piece)(const MODEL(way) *w, double low, double high, doubl
 }
 
 /*
- * A stop: F = k z, and z goes with C, but stays at -r or r while C goes on.  Returns which part of
- * the step z goes with C for.
+ * A stop element: F = k z; z follows C, but stays at -r or r while C goes further. Returns the part
+ * of the step in which z follows C.
  */
 static double MODEL(stop)(MODEL(way) *w, double z, double k, double r, MODEL(means) mean)
 {
-    const double begin = fmin(fmax(z, -r), r); /* r may be less than it was */
+    const double begin = fmin(fmax(z, -r), r); /* r may have become less */
     double now = begin, heat = 0.5 * k * (z - begin) * (z + begin), moving = 0.0;
     double yielded = 0.0, moved = 0.0;
     int yielding = 0;
@@ -168,7 +174,9 @@ static double MODEL(stop)(MODEL(way) *w, double z, double k, double r, MODEL(mea
             heat += k * r * (fabs(more) - fabs(room));
         }
     }
-    /* means of the heat may be negative at a stage: the others then make up for it */
+    /*
+     * a stage's mean of the heat may be negative: it becomes 0, the others are scaled to the total
+     */
     for (long i = 0; i < STAGES; ++i) {
         mean[HEAT][i] = fmax(mean[HEAT][i], 0.0);
         yielded += stage_weight[i] * mean[HEAT][i];
@@ -178,13 +186,13 @@ static double MODEL(stop)(MODEL(way) *w, double z, double k, double r, MODEL(mea
         mean[HEAT][i] = heat / w->h * (yielded > 0.0 ? mean[HEAT][i] / yielded : 1.0);
         mean[RATE][i] += (now - z) / w->h - moved;
 #if LOSSY
-        mean[EFFORT][i] = k * now; /* as all co-states, at the step's end */
+        mean[EFFORT][i] = k * now; /* as all co-states of a dissipative step, at its end */
 #endif
     }
     return moving;
 }
 
-/* What stages are given by path functionals. */
+/* What path functionals give to the stages. */
 static void MODEL(along_paths)(const MODEL(block) *m, real h)
 {
     const real *parameter = m->path;
@@ -217,8 +225,9 @@ static void MODEL(along_paths)(const MODEL(block) *m, real h)
 }
 
 /*
- * What a point is given: where it is an end of a step, by weights of the stages' means; else from
- * the rates of coordinates there, if they are known.
+ * What path functionals give at a point. At an end of a step, rates and heat are extrapolated from
+ * the stages' means by `weight`; elsewhere they follow from the rates of coordinates there, if
+ * known.
  */
 static void MODEL(standing)(const MODEL(block) *m, const real *x, const double *weight,
                             const real *rates)

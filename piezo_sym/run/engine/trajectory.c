@@ -1,5 +1,5 @@
 /*
- * Runs of collocation steps, one run in each lane of a vector.  Behind gauss.c; batch.c assigns runs
+ * Runs of collocation steps, one run in each lane of a vector.  Comes after gauss.c; batch.c assigns runs
  * to lanes.
  *
  * A step keeps the branches that hold at its beginning.  If a switching function changes its sign
