@@ -54,7 +54,6 @@ def forget():
     from piezo_sym.run.engine import batch, engine, library
 
     for function in (
-        method._tried,
         method._warn,
         library._warn,
         engine._engine,

@@ -24,9 +24,9 @@ from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run import simulate
 from piezo_sym.run.checks import known_keys
 from piezo_sym.run.collocation import FixedStep, fixed
-from piezo_sym.run.engine import compiled
 from piezo_sym.run.guard import check_inputs, check_start
 from piezo_sym.run.inputs import read_inputs
+from piezo_sym.run.method import choose_method
 from piezo_sym.run.module import checked, rows
 from piezo_sym.run.parameters import read_initial, read_parameters
 from piezo_sym.run.runs import METHOD
@@ -151,7 +151,7 @@ class Stroboscope:
     @cached_property
     def engine(self) -> Engine | None:
         """The module in C; None without a compiler: LSODA then runs each period, slowly."""
-        return compiled(self.module)
+        return choose_method(self.module, None, None).engine
 
     @cached_property
     def values(self) -> Any:

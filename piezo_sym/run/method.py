@@ -13,7 +13,6 @@ import os
 import warnings
 from dataclasses import dataclass
 from functools import lru_cache
-from pathlib import Path
 from types import ModuleType
 from typing import final
 
@@ -21,7 +20,7 @@ from piezo_sym.errors import EngineError, UsageError, listing, one_line, quote
 from piezo_sym.files import path_text
 from piezo_sym.run.engine import Engine, EngineWarning
 from piezo_sym.run.engine.engine import engine_of
-from piezo_sym.run.engine.library import CACHE, cache_folder, read_source
+from piezo_sym.run.engine.library import cache_folder, read_source, source_path
 from piezo_sym.run.integrate import METHODS
 from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.runs import METHOD
@@ -81,7 +80,14 @@ def _found(module: GeneratedModule) -> Engine | EngineError:
     if not _loaded(module):
         what = "is no module loaded from a file, so no C source is its own"
         return EngineError(what, f"model '{module.NAME}'")
-    return _tried(module, _inputs_of_compilation(module))  # type: ignore[arg-type]  # a module can be a key
+    if not os.path.isfile(_own(module)):
+        remedy = f"check that {path_text(cache_folder())} can be written"
+        return EngineError("its C source was not kept", remedy=remedy)
+    try:
+        read_source(module, "_step.c")
+        return engine_of(module)
+    except EngineError as error:
+        return error
 
 
 def _compiler(engine: Engine) -> str:
@@ -92,46 +98,20 @@ def _compiler(engine: Engine) -> str:
 
 def _loaded(module: object) -> bool:
     """Return whether it is a module of a file, so that C beside that file may be its own."""
-    return isinstance(module, ModuleType) and bool(getattr(module, "__file__", None))
+    return isinstance(module, ModuleType) and bool(_own(module))
 
 
-def _source(module: GeneratedModule, ending: str) -> Path:
-    return Path(str(getattr(module, "__file__", ""))).with_name(f"{module.NAME}{ending}")
+def _own(module: object) -> str:
+    """Return the file that a module was loaded from, or nothing."""
+    return getattr(module, "__file__", None) or ""
 
 
 def _has_source(module: GeneratedModule) -> bool:
     """Return whether a module came with C: there is some, or not even its own file is left."""
     if not _loaded(module):
         return False
-    own = Path(str(getattr(module, "__file__", "")))
-    beside = (_source(module, ending) for ending in (".h", ".c"))
-    return not os.path.isfile(own) or any(os.path.isfile(path) for path in beside)
-
-
-def _inputs_of_compilation(module: GeneratedModule) -> tuple[object, ...]:
-    """Return what an attempt to compile depends on: it is not made twice for the same."""
-    stamps: list[int] = []
-    for ending in (".h", ".c", "_step.c"):
-        try:
-            stamps.append(_source(module, ending).stat().st_mtime_ns)
-        except OSError:
-            stamps.append(-1)
-    return (*stamps, *map(os.environ.get, ("CC", "PATH", CACHE, "HOME")))
-
-
-@lru_cache(maxsize=64)
-def _tried(module: GeneratedModule, surroundings: tuple[object, ...]) -> Engine | EngineError:
-    """Return a module's engine, or why there is none, kept: compilers that fail may take long."""
-    del surroundings  # they tell one attempt from another
-    own = Path(str(getattr(module, "__file__", "")))
-    if not os.path.isfile(own):
-        remedy = f"check that {path_text(cache_folder())} can be written"
-        return EngineError("its C source was not kept", remedy=remedy)
-    try:
-        read_source(module, "_step.c")
-        return engine_of(module)
-    except EngineError as error:
-        return EngineError(error.what, error.where, error.expected, error.remedy)
+    beside = (source_path(module, ending) for ending in (".h", ".c"))
+    return not os.path.isfile(_own(module)) or any(os.path.isfile(path) for path in beside)
 
 
 @lru_cache(maxsize=256)

@@ -7,7 +7,7 @@ of its own.  A call releases the interpreter's lock.
 from __future__ import annotations
 
 import ctypes
-import warnings
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from piezo_sym.errors import EngineError
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.engine.library import EngineWarning, Sources, read_source, shared_library
+from piezo_sym.run.engine.library import CACHE, Sources, read_source, shared_library
 from piezo_sym.run.engine.records import INT, LONG, POINTER, ParameterRecords, at
 from piezo_sym.run.module import GeneratedModule, row_count
 
@@ -29,22 +29,8 @@ OFFERED = (
 )
 
 
-def compiled(module: GeneratedModule) -> Engine | None:
-    """Return the compiled engine of a module; without one, warn in one line and return None.
-
-    Parameters
-    ----------
-    module : a generated module, loaded from a file with its .c and .h beside it.
-    """
-    try:
-        return engine_of(module)
-    except EngineError as error:
-        warnings.warn(f"{error}; running in NumPy", EngineWarning, stacklevel=2)
-        return None
-
-
 def engine_of(module: GeneratedModule) -> Engine:
-    """Return the compiled engine of a module.
+    """Return the compiled engine of a module, loaded from a file with its .c and .h beside it.
 
     Raises
     ------
@@ -53,12 +39,23 @@ def engine_of(module: GeneratedModule) -> Engine:
         cannot be written.
     """
     sources = Sources(module.NAME, read_source(module, ".h"), read_source(module, ".c"))
-    return _engine(module, sources)  # type: ignore[arg-type]  # a module can be a key
+    environment = tuple(map(os.environ.get, ("CC", "PATH", CACHE, "HOME")))
+    found = _engine(module, sources, environment)  # type: ignore[arg-type]  # a module can be a key
+    if isinstance(found, EngineError):
+        raise found.with_traceback(None)
+    return found
 
 
 @lru_cache(maxsize=64)
-def _engine(module: GeneratedModule, sources: Sources) -> Engine:
-    return Engine(module, shared_library(sources), ParameterRecords(module), sources)
+def _engine(
+    module: GeneratedModule, sources: Sources, environment: tuple[str | None, ...]
+) -> Engine | EngineError:
+    """Return a module's engine, or why there is none, kept: compilers that fail may take long."""
+    del environment  # it tells one attempt from another
+    try:
+        return Engine(module, shared_library(sources), ParameterRecords(module), sources)
+    except EngineError as error:
+        return EngineError(error.what, error.where, error.expected, error.remedy)
 
 
 @final

@@ -85,13 +85,18 @@ def read_source(module: GeneratedModule, ending: str) -> str:
     EngineError
         If it is missing, or of another spec.
     """
-    path = Path(getattr(module, "__file__", None) or f"{module.NAME}.py")
-    file = path.with_name(f"{module.NAME}{ending}")
+    file = source_path(module, ending)
     text = _text(file)
     if text is None or f"spec sha256 {module.SPEC_SHA256}" not in text:
         what = "is missing" if text is None else "is of another spec than the module"
         raise EngineError(what, path_text(file), remedy="run `piezo-sym generate`")
     return text
+
+
+def source_path(module: GeneratedModule, ending: str) -> Path:
+    """Return where the text beside a module is."""
+    own = Path(getattr(module, "__file__", None) or f"{module.NAME}.py")
+    return own.with_name(f"{module.NAME}{ending}")
 
 
 def _text(file: Path) -> str | None:
