@@ -12,7 +12,6 @@ from piezo_sym.errors import UsageError, listing, nearest, quote
 from piezo_sym.files import path_text
 
 CALL = re.compile(r"(?P<name>[a-z]+)\((?P<numbers>[^()]*)\)")
-SIGNALS = ("sine", "step", "ramp", "triangle", "chirp")
 
 
 def pairs(
@@ -41,14 +40,14 @@ def signal(text: str, where: str) -> Any:
     call = CALL.fullmatch(text)
     if call is None:
         return _number(text, where)
+    from piezo_sym.run.signals import SIGNALS
+
     if call["name"] not in SIGNALS:
         what = f"{quote(call['name'])} is no signal"
         raise UsageError(what, where, remedy=nearest(call["name"], SIGNALS))
-    from piezo_sym import run
-
     given = [_number(part, where) for part in call["numbers"].split(",")]
     try:
-        return getattr(run, call["name"])(*given)
+        return SIGNALS[call["name"]](*given)
     except TypeError as error:
         what = f"{call['name']} does not take {len(given)} numbers"
         raise UsageError(what, where, remedy="see `piezo-sym simulate --help`") from error

@@ -4,20 +4,12 @@ Input: a generated module and what a user says about a run.  Output: states, out
 and the ledger of energy and entropy over time.  Neither SymPy nor a spec is needed to run.
 """
 
+from piezo_sym.run import signals
 from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.samples import samples, samples_from_csv
-from piezo_sym.run.signals import Signal, chirp, ramp, sine, step, triangle
+from piezo_sym.run.signals import *  # noqa: F403
+from piezo_sym.run.signals import Signal
 from piezo_sym.run.simulate import simulate
 
-__all__ = [
-    "GeneratedModule",
-    "Signal",
-    "chirp",
-    "ramp",
-    "samples",
-    "samples_from_csv",
-    "simulate",
-    "sine",
-    "step",
-    "triangle",
-]
+__all__ = ["GeneratedModule", "Signal", "samples", "samples_from_csv", "simulate"]
+__all__ += signals.__all__

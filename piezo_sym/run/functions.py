@@ -6,7 +6,7 @@ jumps, to the last digit.  A pulse shorter than an interval of the search is fou
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from math import nextafter
@@ -44,13 +44,12 @@ class Function(Signal):
     function: Callable[[float], object]
     where: str
 
-    def __call__(self, t: FloatArray | float) -> FloatArray:
-        """Return the values at the times t; shape of t."""
+    def _values(self, t: FloatArray | float) -> FloatArray:
         times = np.asarray(t, dtype=float)
         values = self._at_once(times) if times.size > MANY else None
         if values is None:
             values = self._one_by_one(times.ravel().tolist())
-        return values.reshape(times.shape)[()]
+        return values.reshape(times.shape)
 
     def _one_by_one(self, times: list[float]) -> FloatArray:
         """Return the values; `value` raises the error of one that is no finite number."""
@@ -95,7 +94,7 @@ class Function(Signal):
     def _known(self) -> dict[float, tuple[float, ...]]:
         return {}
 
-    def breaks(self, duration: float) -> tuple[float, ...]:
+    def _corners(self, duration: float) -> Iterable[float]:
         """Return the times of its jumps."""
         if duration not in self._known:
             self._known[duration] = jumps(self, duration)

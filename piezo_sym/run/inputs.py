@@ -20,7 +20,7 @@ from piezo_sym.run.checks import FloatArray, is_number, known_keys, number
 from piezo_sym.run.functions import Function
 from piezo_sym.run.module import GeneratedModule, others
 from piezo_sym.run.samples import Samples, read_samples
-from piezo_sym.run.signals import Constant, Signal, inside
+from piezo_sym.run.signals import Constant, Signal
 
 InputValue: TypeAlias = float | Signal | tuple[ArrayLike, ArrayLike] | Callable[[float], float]
 
@@ -71,7 +71,7 @@ class Inputs:
         """Segments between breaks, in order; breaks that round to one another are one."""
         groups = [[0.0]]
         end = self.duration
-        times = {t for signal in self.signals for t in inside(signal.breaks(end), end)}
+        times = {t for signal in self.signals for t in signal.breaks(end)}
         for t in (*sorted(times), end):
             if t - groups[-1][0] > CLOSE * end:
                 groups.append([])

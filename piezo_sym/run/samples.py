@@ -4,7 +4,7 @@ Input: times [s] and values, or a delimited text file with a header.  Output: a 
 """
 
 import csv
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import inf
 from os import PathLike
@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from piezo_sym.errors import FileError, UsageError, listing, nearest, quote
 from piezo_sym.run.checks import FloatArray, increasing, vector
-from piezo_sym.run.signals import MOST_CORNERS, Signal, inside
+from piezo_sym.run.signals import MOST_CORNERS, Signal
 
 DELIMITERS = ",;\t"
 SLACK = 1e-9  # of the duration: a last sample may fall short by rounding
@@ -30,18 +30,17 @@ class Samples(Signal):
     times: FloatArray
     values: FloatArray
 
-    def __call__(self, t: FloatArray | float) -> FloatArray:
-        """Return the values at the times t; shape of t."""
-        return np.asarray(np.interp(t, self.times, self.values))[()]
+    def _values(self, t: FloatArray | float) -> FloatArray:
+        return np.asarray(np.interp(t, self.times, self.values))
 
     def knots(self, duration: float) -> FloatArray:
         """Return the times of the samples in (0, duration)."""
         return self.times[(self.times > 0) & (self.times < duration)]
 
-    def breaks(self, duration: float) -> tuple[float, ...]:
+    def _corners(self, duration: float) -> Iterable[float]:
         """Return the times of the samples when they are few, otherwise none."""
         knots = self.knots(duration)
-        return inside(knots, duration) if knots.size <= MOST_CORNERS else ()
+        return knots if knots.size <= MOST_CORNERS else ()
 
     def max_step(self, duration: float) -> float:
         """Return the median distance of the samples when they are many, otherwise infinity."""

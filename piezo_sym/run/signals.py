@@ -4,51 +4,65 @@ Input: a waveform's numbers (SI; frequencies in Hz).  Output: a frozen `Signal`,
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from math import inf, pi
-from typing import final
+from typing import ClassVar, final
 
 import numpy as np
 
 from piezo_sym.errors import UsageError
 from piezo_sym.run.checks import FloatArray, number, positive
 
+#: The functions that make signals: `piezo_sym.run` and the command line offer all of them.
+__all__ = ["chirp", "ramp", "sine", "step", "triangle"]
+
 MOST_CORNERS = 1000
 STEPS_PER_PERIOD = 8
 
 
 class Signal(ABC):
-    """An input as a function of time, continuous from the right.
+    """An input as a function of time, continuous from the right; called, it gives its values.
 
     A solver restarts at `breaks`, where the signal or its slope jumps, and takes no step longer
-    than `max_step`, so that it misses no period and no pulse.
+    than `max_step`, so that it misses no period and no pulse. A new kind of signal is a class
+    below, and a function in `__all__` that makes it from checked numbers.
     """
 
-    @abstractmethod
+    #: Whether there are no corners but breaks: steps with several stages may then be longer.
+    _smooth: ClassVar[bool] = False
+
     def __call__(self, t: FloatArray | float) -> FloatArray:
         """Return the values at the times t [s]; shape of t."""
+        return np.asarray(self._values(t))[()]
 
-    def breaks(self, duration: float) -> tuple[float, ...]:  # noqa: ARG002
-        """Return the times in (0, duration) [s] where the signal or its slope jumps: here none.
+    @abstractmethod
+    def _values(self, t: FloatArray | float) -> FloatArray: ...
+
+    def _corners(self, duration: float) -> Iterable[float]:  # noqa: ARG002
+        """Return at least the breaks in (0, duration), in order: here none."""
+        return ()
+
+    @property
+    def _period(self) -> float:
+        """The shortest period [s]; infinity for what is not periodic."""
+        return inf
+
+    def breaks(self, duration: float) -> tuple[float, ...]:
+        """Return the times in (0, duration) [s] where the signal or its slope jumps.
 
         Corners without a jump are left out when there are more than 1000 of them; `max_step`
         resolves the signal then.
         """
-        return ()
-
-    @property
-    def period(self) -> float:
-        """The shortest period [s]; infinity for what is not periodic."""
-        return inf
+        return tuple(float(t) for t in self._corners(duration) if 0 < t < duration)
 
     def max_step(self, duration: float) -> float:  # noqa: ARG002
         """Return the longest step [s] that resolves the signal between its breaks."""
-        return self.period / STEPS_PER_PERIOD
+        return self._period / STEPS_PER_PERIOD
 
     def longest_step(self, duration: float) -> float:
         """Return the same for steps that evaluate the signal at several stages each."""
-        return self.max_step(duration)
+        return 0.5 * self._period if self._smooth else self.max_step(duration)
 
 
 @final
@@ -58,9 +72,8 @@ class Constant(Signal):
 
     value: float
 
-    def __call__(self, t: FloatArray | float) -> FloatArray:
-        """Return the values at the times t; shape of t."""
-        return np.full(np.shape(t), self.value)[()]
+    def _values(self, t: FloatArray | float) -> FloatArray:
+        return np.full(np.shape(t), self.value)
 
 
 @final
@@ -72,20 +85,15 @@ class Sine(Signal):
     frequency: float
     offset: float
     phase: float
+    _smooth = True
 
-    def __call__(self, t: FloatArray | float) -> FloatArray:
-        """Return the values at the times t; shape of t."""
+    def _values(self, t: FloatArray | float) -> FloatArray:
         angle = 2 * pi * self.frequency * t + self.phase
-        return np.asarray(self.amplitude * np.sin(angle) + self.offset)[()]
+        return np.asarray(self.amplitude * np.sin(angle) + self.offset)
 
     @property
-    def period(self) -> float:
-        """The shortest period [s]."""
+    def _period(self) -> float:
         return 1 / self.frequency
-
-    def longest_step(self, duration: float) -> float:  # noqa: ARG002
-        """Return half of the shortest period."""
-        return 0.5 * self.period
 
 
 @final
@@ -97,13 +105,11 @@ class Step(Signal):
     before: float
     after: float
 
-    def __call__(self, t: FloatArray | float) -> FloatArray:
-        """Return the values at the times t; shape of t."""
-        return np.where(np.asarray(t) < self.time, self.before, self.after)[()]
+    def _values(self, t: FloatArray | float) -> FloatArray:
+        return np.where(np.less(t, self.time), self.before, self.after)
 
-    def breaks(self, duration: float) -> tuple[float, ...]:
-        """Return the time of the jump."""
-        return inside((self.time,), duration)
+    def _corners(self, duration: float) -> Iterable[float]:  # noqa: ARG002
+        return (self.time,)
 
 
 @final
@@ -116,14 +122,11 @@ class Ramp(Signal):
     before: float
     after: float
 
-    def __call__(self, t: FloatArray | float) -> FloatArray:
-        """Return the values at the times t; shape of t."""
-        value = np.interp(t, (self.start, self.stop), (self.before, self.after))
-        return np.asarray(value)[()]
+    def _values(self, t: FloatArray | float) -> FloatArray:
+        return np.asarray(np.interp(t, (self.start, self.stop), (self.before, self.after)))
 
-    def breaks(self, duration: float) -> tuple[float, ...]:
-        """Return the times of the two corners."""
-        return inside((self.start, self.stop), duration)
+    def _corners(self, duration: float) -> Iterable[float]:  # noqa: ARG002
+        return self.start, self.stop
 
 
 @final
@@ -135,22 +138,20 @@ class Triangle(Signal):
     frequency: float
     offset: float
 
-    def __call__(self, t: FloatArray | float) -> FloatArray:
-        """Return the values at the times t; shape of t."""
+    def _values(self, t: FloatArray | float) -> FloatArray:
         turns = self.frequency * np.asarray(t) + 0.25
         wave = 1 - 4 * np.abs(turns - np.floor(turns) - 0.5)
-        return np.asarray(self.amplitude * wave + self.offset)[()]
+        return np.asarray(self.amplitude * wave + self.offset)
 
-    def breaks(self, duration: float) -> tuple[float, ...]:
-        """Return the times of the corners, a quarter period after each zero crossing."""
+    def _corners(self, duration: float) -> Iterable[float]:
+        """Return the corners, a quarter period after each zero crossing."""
         if 2 * self.frequency * duration > MOST_CORNERS:
             return ()
         count = int(2 * self.frequency * duration) + 1
-        return inside((np.arange(count) + 0.5) / (2 * self.frequency), duration)
+        return (np.arange(count) + 0.5) / (2 * self.frequency)
 
     @property
-    def period(self) -> float:
-        """The period [s]."""
+    def _period(self) -> float:
         return 1 / self.frequency
 
 
@@ -164,31 +165,20 @@ class Chirp(Signal):
     f_stop: float
     duration: float
     offset: float
+    _smooth = True
 
-    def __call__(self, t: FloatArray | float) -> FloatArray:
-        """Return the values at the times t; shape of t."""
+    def _values(self, t: FloatArray | float) -> FloatArray:
         sweep = np.minimum(t, self.duration)
         rate = (self.f_stop - self.f_start) / self.duration
         turns = (self.f_start + rate * sweep / 2) * sweep + self.f_stop * (t - sweep)
-        return np.asarray(self.amplitude * np.sin(2 * pi * turns) + self.offset)[()]
+        return np.asarray(self.amplitude * np.sin(2 * pi * turns) + self.offset)
 
-    def breaks(self, duration: float) -> tuple[float, ...]:
-        """Return the time at which the frequency stops moving."""
-        return inside((self.duration,), duration)
+    def _corners(self, duration: float) -> Iterable[float]:  # noqa: ARG002
+        return (self.duration,)
 
     @property
-    def period(self) -> float:
-        """The shortest period [s]."""
+    def _period(self) -> float:
         return 1 / max(self.f_start, self.f_stop)
-
-    def longest_step(self, duration: float) -> float:  # noqa: ARG002
-        """Return half of the shortest period."""
-        return 0.5 * self.period
-
-
-def inside(times: Iterable[float], duration: float) -> tuple[float, ...]:
-    """Return those of the times that lie in (0, duration)."""
-    return tuple(float(t) for t in times if 0 < t < duration)
 
 
 def sine(amplitude: float, frequency: float, offset: float = 0.0, phase: float = 0.0) -> Sine:
@@ -276,3 +266,6 @@ def _checked(signal: str, given: dict[str, float], *above_zero: str) -> dict[str
         name: (positive if name in above_zero else number)(value, f"{signal}.{name}")
         for name, value in given.items()
     }
+
+
+SIGNALS: dict[str, Callable[..., Signal]] = {name: globals()[name] for name in __all__}
