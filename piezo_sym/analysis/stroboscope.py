@@ -23,7 +23,7 @@ from piezo_sym.analysis.repeating import Driven, refuse_unperiodic, steps_needed
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run import simulate
 from piezo_sym.run.checks import known_keys
-from piezo_sym.run.collocation import FixedStep, fixed
+from piezo_sym.run.collocation import FixedStep, collocate
 from piezo_sym.run.guard import check_inputs, check_start
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.method import choose_method
@@ -107,7 +107,7 @@ class Stroboscope:
         system, step = self._system, FixedStep(self.duration / self.steps)
         check_start(system, x)
         times = np.linspace(0.0, self.duration, SAMPLES + 1)
-        return fixed([system], self.engine, x[None], times, step).trajectory(0).states
+        return collocate([system], self.engine, x[None], times, step).trajectory(0).states
 
     @cached_property
     def inputs(self) -> Inputs:

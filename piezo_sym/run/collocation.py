@@ -18,7 +18,7 @@ from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.engine import Engine
 from piezo_sym.run.engine.batch import Batch, Stepping
 from piezo_sym.run.engine.library import Layout
-from piezo_sym.run.inputs import Segment
+from piezo_sym.run.inputs import Inputs, Segment
 from piezo_sym.run.runs import Runs, Watch, stuck
 from piezo_sym.run.scales import shared
 from piezo_sym.run.system import System, Systems
@@ -51,26 +51,30 @@ class FixedStep:
     order: int = 2
 
 
-def with_tolerance(
+def collocate(
     systems: Sequence[System],
     engine: Engine,
     x: FloatArray,
     times: FloatArray,
-    rtol: float,
+    accuracy: float | FixedStep,
     watch: Watch | None = None,
     *,
     stages: int | None = None,
+    starts: bool = False,
     side_by_side: bool = True,
 ) -> Runs:
     """Return runs from their states x (runs, n) at t = 0 through the sample times (nt,).
 
-    A rough run shows how large each state becomes; errors are measured by that.
+    With a tolerance, a rough run first shows how large each state becomes; errors are measured by
+    that. Fixed steps end at samples and at breaks of inputs.
 
     Parameters
     ----------
     systems : with equal inputs and sizes.
+    accuracy : the relative tolerance, or the step.
     watch : told the time reached, now and then.
-    stages : of a step; when left out, those that are cheapest for the tolerance.
+    stages : of a step with a tolerance; when left out, those that are cheapest for it.
+    starts : whether the first fixed step after a jump of the inputs is dissipative.
     side_by_side : whether runs of few states lie in the lanes of vectors.
 
     Raises
@@ -79,57 +83,36 @@ def with_tolerance(
     """
     known = Systems.of(systems)
     first = known[0]
+    how = stepping(first, accuracy, stages)
     batch = Batch(
         engine,
         known.parameters,
         x,
         first.inputs,
         times,
-        stepping(first, rtol, stages),
+        how,
         layout_of(x, side_by_side=side_by_side),
+        extra=2 if starts else 0,
     )
-    batch.survey(min(first.inputs.max_step, SURVEYED * first.inputs.duration))
-    batch.largest[:] = shared(first, batch.largest)
+    if starts:
+        go_dissipatively(batch, how, first.inputs, times, watch)
+    elif not how.fixed:
+        batch.survey(min(first.inputs.max_step, SURVEYED * first.inputs.duration))
+        batch.largest[:] = shared(first, batch.largest)
     through(batch, watch)
     return results(batch, known, x, times)
 
 
-def fixed(
-    systems: Sequence[System],
-    engine: Engine,
-    x: FloatArray,
-    times: FloatArray,
-    step: FixedStep,
-    watch: Watch | None = None,
-    *,
-    starts: bool = False,
-    side_by_side: bool = True,
-) -> Runs:
-    """Return runs with a fixed step; steps end at samples and at breaks of inputs.
-
-    Parameters
-    ----------
-    systems : with equal inputs and sizes.
-    x : their states (systems, n) at t = 0.
-    watch : told the time reached, now and then.
-    starts : whether the first step after a jump of the inputs is dissipative.
-    side_by_side : whether runs of few states lie in the lanes of vectors.
-    """
-    known = Systems.of(systems)
-    inputs = known[0].inputs
-    length = step.length
-    plain = Stepping(step.order // 2, 0.0, length, length, fixed=length)
-    layout = layout_of(x, side_by_side=side_by_side)
-    given = engine, known.parameters, x, inputs, times, plain, layout
-    batch = Batch(*given, extra=2 if starts else 0)
-    for segment in inputs.segments if starts else ():
+def go_dissipatively(
+    batch: Batch, how: Stepping, inputs: Inputs, times: FloatArray, watch: Watch | None
+) -> None:
+    """Take runs up to the last jump of the inputs, and begin a dissipative step after each jump."""
+    for segment in inputs.segments:
         if segment.start in inputs.jumps:
-            batch.go_on(plain, segment.start)
+            batch.go_on(how, segment.start)
             through(batch, watch)
-            start(batch, plain, *first_step(segment, times, length))
-    batch.go_on(plain, inputs.duration)
-    through(batch, watch)
-    return results(batch, known, x, times)
+            start(batch, how, *first_step(segment, times, how.fixed))
+    batch.go_on(how, inputs.duration)
 
 
 def through(batch: Batch, watch: Watch | None = None) -> None:
@@ -152,21 +135,24 @@ def results(batch: Batch, systems: Systems, x: FloatArray, times: FloatArray) ->
     return Runs(systems, x, times, *arrays, tuple(errors), numerical=batch.extra > 0)
 
 
-def stepping(system: System, rtol: float, stages: int | None) -> Stepping:
-    """Return how a run with a tolerance steps."""
+def stepping(system: System, accuracy: float | FixedStep, stages: int | None) -> Stepping:
+    """Return how a run steps, with a tolerance or with a fixed step."""
+    if isinstance(accuracy, FixedStep):
+        h = accuracy.length
+        return Stepping(accuracy.order // 2, 0.0, h, h, fixed=h)
     inputs = system.inputs
     if not inputs.duration / inputs.max_step <= MOST_STEPS:
         step = f"steps of {inputs.max_step:g} s, over 10^12 of them"
         what = f"a run of {inputs.duration:g} s would take {step}"
         remedy = "a shorter run, or slower inputs"
         raise RunError(what, f"model '{system.module.NAME}'", remedy=remedy)
-    best, caution = choice(rtol)
+    best, caution = choice(accuracy)
     return Stepping(
         stages=stages or best,
-        tolerance=caution * rtol,
+        tolerance=caution * accuracy,
         first=FIRST * inputs.duration,
         longest=min(inputs.longest_step, LONGEST * inputs.duration),
-        kinks="either" if rtol >= LEAST_OVER else "end",
+        kinks="either" if accuracy >= LEAST_OVER else "end",
     )
 
 

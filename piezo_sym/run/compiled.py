@@ -11,7 +11,7 @@ import numpy as np
 
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.collocation import FixedStep, choice, fixed, with_tolerance
+from piezo_sym.run.collocation import FixedStep, choice, collocate
 from piezo_sym.run.engine import Engine
 from piezo_sym.run.engine.batch import is_lossy
 from piezo_sym.run.guard import check_inputs
@@ -66,11 +66,10 @@ def compiled_run(
     try:
         if step is None:
             accuracy = {"rtol": rtol, "order": 2 * choice(rtol)[0]}
-            runs = with_tolerance([system], engine, x[None], samples, rtol, watch)
         else:
             shortest = shortest_step(system, samples, step.length)
             accuracy = {"step": step.length, "order": step.order, "shortest_step": shortest}
-            runs = fixed([system], engine, x[None], samples, step, watch, starts=starts)
+        runs = collocate([system], engine, x[None], samples, step or rtol, watch, starts=starts)
         trajectory = runs.trajectory(0)
     except RunError as stopped:
         raise cause(system, x, samples, stopped) from stopped

@@ -14,7 +14,7 @@ import numpy as np
 import xarray
 
 from piezo_sym.errors import PiezoError, RunError
-from piezo_sym.run.collocation import fixed, with_tolerance
+from piezo_sym.run.collocation import collocate
 from piezo_sym.run.compiled import cause
 from piezo_sym.run.dataset import coordinates, spread
 from piezo_sym.run.engine.engine import engine_of
@@ -205,10 +205,8 @@ def input_error(system: System, x: FloatArray, samples: FloatArray) -> RunError 
 
 def stepped(plan: Plan, systems: Systems, engine: Engine, x: FloatArray, watch: Watch) -> Runs:
     """Return runs in C, with the plan's step or tolerance."""
-    given, side_by_side = (systems, engine, x, plan.samples), plan.side_by_side
-    if plan.step is None:
-        return with_tolerance(*given, plan.rtol, watch, side_by_side=side_by_side)
-    return fixed(*given, plan.step, watch, side_by_side=side_by_side)
+    given = systems, engine, x, plan.samples, plan.step or plan.rtol, watch
+    return collocate(*given, side_by_side=plan.side_by_side)
 
 
 def one_by_one(plan: Plan, group: Group, watch: Watch) -> dict[str, NDArray[Any]]:

@@ -14,7 +14,7 @@ import sympy as sp
 
 from piezo_sym.bench.problem import explicit
 from piezo_sym.errors import RunError
-from piezo_sym.run.collocation import with_tolerance
+from piezo_sym.run.collocation import collocate
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.module import lanes
 from piezo_sym.run.parameters import own_initial, read_parameters
@@ -123,7 +123,7 @@ def tight(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the states (members, n) at the end, and the scale of errors (n,)."""
     times = np.array([problem.duration])
-    runs = with_tolerance(systems, engine_of(problem.module), starts, times, TIGHT)
+    runs = collocate(systems, engine_of(problem.module), starts, times, TIGHT)
     for error in runs.errors:
         if error:
             raise error

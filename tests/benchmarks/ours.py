@@ -13,7 +13,7 @@ import numpy as np
 
 from piezo_sym.bench.problem import INSTANT
 from piezo_sym.run import simulate
-from piezo_sym.run.collocation import with_tolerance
+from piezo_sym.run.collocation import collocate
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.runs import METHOD
@@ -42,7 +42,7 @@ def run_in_c(problem: Problem) -> Solver:
     times = np.array([problem.duration])
 
     def solve(rtol: float) -> FloatArray:
-        runs = with_tolerance([system], engine, problem.start[None], times, rtol)
+        runs = collocate([system], engine, problem.start[None], times, rtol)
         return runs.trajectory(0).states[:, -1]
 
     return solve

@@ -14,7 +14,7 @@ import numpy as np
 
 from piezo_sym.bench.contest import Contestant, Pair, compared
 from piezo_sym.errors import EngineError, RunError
-from piezo_sym.run.collocation import with_tolerance
+from piezo_sym.run.collocation import collocate
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.runs import METHOD
 from piezo_sym.sweeps.plan import Plan
@@ -119,7 +119,7 @@ def single_runs(family: Family) -> Solver:
 
     def solve(rtol: float) -> FloatArray:
         runs = (
-            with_tolerance([system], engine, start[None], times, rtol)
+            collocate([system], engine, start[None], times, rtol)
             for system, start in zip(systems, family.starts, strict=True)
         )
         return np.array([run.trajectory(0).states[:, -1] for run in runs])

@@ -7,7 +7,7 @@ import pytest
 
 from piezo_sym import Stepper, simulate, sine
 from piezo_sym.modules import module_of
-from piezo_sym.run.collocation import FixedStep, fixed
+from piezo_sym.run.collocation import FixedStep, collocate
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.parameters import read_initial, read_parameters
@@ -39,7 +39,7 @@ def time_of_a_step(count, steps, repetitions=5):
     best = np.inf
     for _ in range(repetitions):
         start = perf_counter()
-        fixed(
+        collocate(
             [system], engine_of(module), x, np.array([0.0, duration]), FixedStep(STEP)
         ).trajectory(0)
         best = min(best, perf_counter() - start)

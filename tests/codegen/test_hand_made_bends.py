@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 
 from piezo_sym.expressions.calculus import div
 from piezo_sym.expressions.tree import LaneSum, Sym
-from piezo_sym.run.collocation import FixedStep, fixed, with_tolerance
+from piezo_sym.run.collocation import FixedStep, collocate
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.parameters import read_initial, read_parameters
@@ -179,9 +179,7 @@ def test_a_bank_of_contacts(tmp_path, way, count):
     assert np.abs(run.entropy_residual).max() <= 1e-13 * s.max()
 
 
-@pytest.mark.parametrize(
-    "how", tiers([{"rtol": 1e-6}, {"length": 2e-2}, {"length": 2e-2, "order": 6}], 0)
-)
+@pytest.mark.parametrize("how", tiers([1e-6, FixedStep(2e-2), FixedStep(2e-2, order=6)], 0))
 def test_members_side_by_side_have_the_numbers_of_each_alone(bounce, how):
     """One never touches; the others do so at different times, and within the same steps."""
     known, times = read_inputs(bounce, None, 1.0), np.linspace(0.0, 1.0, 11)
@@ -189,12 +187,7 @@ def test_members_side_by_side_have_the_numbers_of_each_alone(bounce, how):
     systems = [System(bounce, p, known) for p in values]
     x = np.array([read_initial(bounce, p, known.segments[0].at(0.0), None) for p in values])
     given = systems, engine_of(bounce), x, times
-    runs = [
-        fixed(*given, FixedStep(**how), side_by_side=on)
-        if "length" in how
-        else with_tolerance(*given, **how, side_by_side=on)
-        for on in (False, True)
-    ]
+    runs = [collocate(*given, how, side_by_side=on) for on in (False, True)]
     assert np.all(np.isfinite(runs[0].states))
     for name in ("states", "sums"):
         assert np.array_equal(getattr(runs[0], name), getattr(runs[1], name))

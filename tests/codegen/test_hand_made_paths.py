@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from piezo_sym import sine
-from piezo_sym.run.collocation import FixedStep, fixed, with_tolerance
+from piezo_sym.run.collocation import FixedStep, collocate
 from piezo_sym.run.engine.batch import Batch, Stepping
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.inputs import read_inputs
@@ -174,15 +174,13 @@ def batch(module, count):
 
 
 @pytest.mark.parametrize("count", tiers([8, 40], 0))
-@pytest.mark.parametrize("how", tiers(["rtol", "step"], 0))
+@pytest.mark.parametrize("how", tiers([1e-5, FixedStep(2e-3, 4)], 0))
 def test_runs_beside_others_have_the_numbers_that_they_have_alone(made, count, how):
     """In vectors of runs, and, where banks are large, of lanes."""
     given = batch(made["maxwell"], count)
 
     def runs(together):
-        if how == "rtol":
-            return with_tolerance(*given, 1e-5, side_by_side=together)
-        return fixed(*given, FixedStep(2e-3, 4), side_by_side=together)
+        return collocate(*given, how, side_by_side=together)
 
     alone, together = runs(False), runs(True)
     assert alone.errors == together.errors == (None,) * 5

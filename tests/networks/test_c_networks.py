@@ -19,7 +19,7 @@ from test_specs import points
 from piezo_sym import derive, load
 from piezo_sym.codegen import collocation_of, lower, printed
 from piezo_sym.modules import load_module, module_of
-from piezo_sym.run.collocation import FixedStep, fixed
+from piezo_sym.run.collocation import FixedStep, collocate
 from piezo_sym.run.engine.batch import is_lossy
 from piezo_sym.run.engine.engine import OFFERED, engine_of
 from piezo_sym.run.inputs import read_inputs
@@ -86,7 +86,7 @@ def check_start(module, compiled, place):
     inputs = dict(zip((record.name for record in module.INPUTS), map(float, u), strict=True))
     system = System(module, p, read_inputs(module, inputs, 3 * h))
     times = np.array([0.0, h, 3 * h])
-    runs = fixed([system], compiled.engine, x[None], times, FixedStep(h), starts=True)
+    runs = collocate([system], compiled.engine, x[None], times, FixedStep(h), starts=True)
     if runs.errors[0]:
         return
     sums, states, ports = runs.sums[0], runs.states[0].T, len(module.OUTPUTS)

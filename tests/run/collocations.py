@@ -9,7 +9,7 @@ import numpy as np
 
 from piezo_sym import load
 from piezo_sym.modules import module_of
-from piezo_sym.run.collocation import with_tolerance
+from piezo_sym.run.collocation import collocate
 from piezo_sym.run.engine.batch import Batch, Stepping
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.inputs import read_inputs
@@ -68,7 +68,7 @@ def through(spec, duration, times=2, *, rtol=1e-6, stages=3, **options):
     """Return a system, and its run."""
     system, x = prepared(spec, duration, **options)
     at = np.linspace(0.0, duration, times)
-    runs = with_tolerance([system], engine_of(system.module), x[None], at, rtol, stages=stages)
+    runs = collocate([system], engine_of(system.module), x[None], at, rtol, stages=stages)
     return system, runs.trajectory(0)
 
 

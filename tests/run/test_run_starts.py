@@ -8,7 +8,7 @@ import pytest
 from piezo_sym import load, simulate, sine, step, sweep
 from piezo_sym.errors import UsageError
 from piezo_sym.modules import module_of
-from piezo_sym.run.collocation import FixedStep, fixed
+from piezo_sym.run.collocation import FixedStep, collocate
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.system import System
@@ -108,7 +108,7 @@ def ledger(model, h, duration, **inputs):
     system = System(module, p, read_inputs(module, inputs, duration))
     x = module.initial_state(system.inputs.segments[0].at(0.0), p)
     times = np.linspace(0.0, duration, 5)
-    runs = fixed([system], engine_of(module), x[None], times, FixedStep(h), starts=True)
+    runs = collocate([system], engine_of(module), x[None], times, FixedStep(h), starts=True)
     assert runs.errors == (None,)
     sums, states = runs.sums[0], runs.states[0]
     ports = len(module.OUTPUTS)
@@ -134,9 +134,9 @@ def test_members_of_a_batch_start_as_they_do_alone():
     x = module.initial_state(inputs.segments[0].at(0.0), systems[0].parameters)
     times = np.linspace(0.0, 2e-3, 5)
     engine = engine_of(module)
-    together = fixed(systems, engine, np.tile(x, (3, 1)), times, FixedStep(1e-4), starts=True)
+    together = collocate(systems, engine, np.tile(x, (3, 1)), times, FixedStep(1e-4), starts=True)
     for k, system in enumerate(systems):
-        alone = fixed([system], engine, x[None], times, FixedStep(1e-4), starts=True)
+        alone = collocate([system], engine, x[None], times, FixedStep(1e-4), starts=True)
         one, other = together.trajectory(k), alone.trajectory(0)
         assert np.array_equal(one.states, other.states)
         assert np.all(np.diff(one.numerical, axis=1)[:, 1:] >= 0)

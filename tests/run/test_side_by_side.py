@@ -9,7 +9,7 @@ import pytest
 
 from piezo_sym import load, sine, sweep
 from piezo_sym.modules import module_of
-from piezo_sym.run.collocation import FixedStep, fixed, with_tolerance
+from piezo_sym.run.collocation import FixedStep, collocate
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.engine.library import Sources, library, read_source
 from piezo_sym.run.inputs import read_inputs
@@ -44,11 +44,10 @@ class Members:
         u = self.inputs.segments[0].at(0.0)
         self.x = np.array([read_initial(self.module, s.parameters, u, None) for s in self.systems])
 
-    def run(self, *, together=True, **how):
-        given = self.systems, self.engine, self.x, self.times
-        if "length" in how:
-            return fixed(*given, FixedStep(**how), side_by_side=together)
-        return with_tolerance(*given, **how, side_by_side=together)
+    def run(self, *, together=True, rtol=None, stages=None, **step):
+        accuracy = rtol or FixedStep(**step)
+        given = self.systems, self.engine, self.x, self.times, accuracy
+        return collocate(*given, stages=stages, side_by_side=together)
 
 
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
