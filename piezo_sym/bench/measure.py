@@ -26,7 +26,6 @@ from piezo_sym.errors import EngineError, PiezoError, RunError, UsageError, near
 from piezo_sym.run import simulate
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.runs import METHOD
-from piezo_sym.run.scales import shared
 
 if TYPE_CHECKING:
     from piezo_sym.run.checks import FloatArray
@@ -180,7 +179,7 @@ def reference_of(problem: Problem) -> tuple[Problem, FloatArray, str]:
     except RunError:
         how = SCIPY
         path = _path(problem, how[0], 201)
-    scaled = replace(problem, scale=shared(problem.system, np.max(np.abs(path), axis=1)))
+    scaled = replace(problem, scale=problem.system.scale(np.max(np.abs(path), axis=1)))
     good = scaled.error(_path(problem, how[1], [problem.duration])[:, -1], path[:, -1])
     (method, rtol), (other, looser) = how
     line = f"at the end, against {method} at rtol {rtol:g}, "

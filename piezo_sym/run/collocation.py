@@ -20,7 +20,6 @@ from piezo_sym.run.engine.batch import Batch, Stepping
 from piezo_sym.run.engine.library import Layout
 from piezo_sym.run.inputs import Inputs, Segment
 from piezo_sym.run.runs import Runs, Watch, stuck
-from piezo_sym.run.scales import shared
 from piezo_sym.run.system import System, Systems
 
 #: The first step, the longest, and the longest of the survey of scales, in parts of the run.
@@ -98,7 +97,7 @@ def collocate(
         go_dissipatively(batch, how, first.inputs, times, watch)
     elif not how.fixed:
         batch.survey(min(first.inputs.max_step, SURVEYED * first.inputs.duration))
-        batch.largest[:] = shared(first, batch.largest)
+        batch.largest[:] = first.scale(batch.largest)
     through(batch, watch)
     return results(batch, known, x, times)
 

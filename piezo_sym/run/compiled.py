@@ -5,8 +5,6 @@ step.  Output: a `Trajectory` whose samples lie in the domain, and the attribute
 `RunError` that says which condition of the domain the state leaves, when, and with which values.
 """
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from piezo_sym.errors import RunError, UsageError
@@ -15,15 +13,11 @@ from piezo_sym.run.collocation import FixedStep, choice, collocate
 from piezo_sym.run.engine import Engine
 from piezo_sym.run.engine.batch import is_lossy
 from piezo_sym.run.guard import check_inputs
-from piezo_sym.run.integrate import Batch, Tolerance, batches
-from piezo_sym.run.ledger import Trajectory, record
+from piezo_sym.run.ledger import Trajectory
 from piezo_sym.run.runs import METHOD, Watch
-from piezo_sym.run.scales import magnitudes
+from piezo_sym.run.scipy_runs import cause
 from piezo_sym.run.system import System
 
-#: How a run that stopped is looked at again: to find the cause, not to take its place.
-LOOK_RTOL, LOOK_ATOL = 1e-8, 1e-11
-MOST_STEPS = 20_000
 #: Of a step: one that is shorter by less is rounded, not cut.
 SAME = 1e-6
 #: No better accuracy is asked for: round-off is all that would be left.
@@ -93,31 +87,3 @@ def shortest_step(system: System, samples: FloatArray, step: float) -> float:
     rounding = 4 * np.finfo(float).eps * edges[-1] / step
     taken = float(np.min(widths / np.maximum(1, np.ceil(widths / step - rounding))))
     return step if taken > step * (1 - SAME) else taken
-
-
-def cause(system: System, x: FloatArray, samples: FloatArray, stopped: RunError) -> RunError:
-    """Return why a run stopped: the condition that the state leaves, or else what it said itself.
-
-    Steps shrink towards the edge of the domain and do not reach it.  LSODA goes over the edge, and
-    so finds time and condition; where it finds none in its first steps, the run's own error stands.
-    """
-    scale, _ = magnitudes(system, x, MOST_STEPS)
-    tolerance = Tolerance("LSODA", LOOK_RTOL, LOOK_ATOL * scale)
-    try:
-        record(system, x, going(batches(system, x, samples, tolerance)), samples)
-    except RunError as found:
-        return found
-    return stopped
-
-
-def going(parts: Iterator[Batch]) -> Iterator[Batch]:
-    """Yield batches for as long as a solver goes on, and not too long."""
-    steps = 0
-    try:
-        for part in parts:
-            yield part
-            steps += part.steps
-            if steps > MOST_STEPS:
-                return
-    except RunError:
-        return

@@ -18,32 +18,25 @@ from piezo_sym.run.compiled import compiled_run
 from piezo_sym.run.dataset import to_dataset
 from piezo_sym.run.guard import check_start
 from piezo_sym.run.inputs import read_inputs
-from piezo_sym.run.integrate import Tolerance, batches
-from piezo_sym.run.ledger import record
 from piezo_sym.run.method import checked_method, choose_method
 from piezo_sym.run.module import checked
 from piezo_sym.run.parameters import read_initial, read_parameters, sample_times
 from piezo_sym.run.runs import METHOD
-from piezo_sym.run.scales import magnitudes
+from piezo_sym.run.scipy_runs import by_scipy
 from piezo_sym.run.system import System
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
+    from collections.abc import Callable, Mapping
 
     import xarray
     from numpy.typing import ArrayLike
 
-    from piezo_sym.run.checks import FloatArray
     from piezo_sym.run.inputs import InputValue
-    from piezo_sym.run.integrate import Batch
-    from piezo_sym.run.ledger import Trajectory
     from piezo_sym.run.module import GeneratedModule
     from piezo_sym.run.parameters import LaneValue
-    from piezo_sym.run.runs import Watch
 
 RTOL = 1e-5
 RTOL_LEAST, RTOL_MOST = 1e-13, 0.1
-ATOL_FACTOR = 1e-3
 
 
 def simulate(
@@ -166,37 +159,6 @@ def simulate(
     else:
         trajectory, work = by_scipy(system, x, samples, chosen.method, tolerance, progress)
     return to_dataset(system, samples, trajectory, {**work, "engine": chosen.note})
-
-
-def by_scipy(
-    system: System,
-    x: FloatArray,
-    samples: FloatArray,
-    method: str,
-    rtol: float,
-    watch: Watch | None = None,
-) -> tuple[Trajectory, dict[str, object]]:
-    """Return a run of one of SciPy's methods, and what it took; `watch` is told the time."""
-    scale, spent = magnitudes(system, x)
-    tolerance = Tolerance(method, rtol, rtol * ATOL_FACTOR * scale)
-    found = watched(batches(system, x, samples, tolerance), watch)
-    trajectory = record(system, x, found, samples)
-    work = {
-        "method": method,
-        "rtol": rtol,
-        "accepted_steps": trajectory.steps,
-        "rhs_evaluations": trajectory.evaluations,
-        "scale_evaluations": spent,
-    }
-    return trajectory, work
-
-
-def watched(found: Iterable[Batch], watch: Watch | None) -> Iterator[Batch]:
-    """Yield batches, and tell the time that each begins from."""
-    for batch in found:
-        if watch and batch.stretches:
-            watch(batch.stretches[0].start)
-        yield batch
 
 
 def read_rtol(rtol: object) -> float:

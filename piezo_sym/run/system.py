@@ -16,6 +16,8 @@ from piezo_sym.run.inputs import Inputs, Segment
 from piezo_sym.run.module import GeneratedModule, Record, exchanges, rows
 from piezo_sym.run.parameter_table import ParameterTable
 
+FLOOR = 1e-15  # so that no tolerance is 0
+
 
 @final
 @dataclass(frozen=True)
@@ -29,6 +31,13 @@ class System:
     def rows(self, records: Sequence[Record]) -> tuple[slice, ...]:
         """Return the rows of each record in an array that spreads banks."""
         return rows(records, self.parameters)
+
+    def scale(self, x: FloatArray) -> FloatArray:
+        """Return the magnitudes of x (*batch, n), lanes of a bank at their maximum, none at 0."""
+        scale = np.maximum(np.abs(x), FLOOR)
+        for part in self.rows(self.module.STATES):
+            scale[..., part] = np.max(scale[..., part], axis=-1, keepdims=True)
+        return scale
 
     def field(self, segment: Segment) -> Callable[[float, FloatArray], FloatArray]:
         """Return dx/dt (n,) as a function of t and x in one segment."""

@@ -15,12 +15,11 @@ import xarray
 
 from piezo_sym.errors import PiezoError, RunError
 from piezo_sym.run.collocation import collocate
-from piezo_sym.run.compiled import cause
 from piezo_sym.run.dataset import coordinates, spread
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.guard import check_inputs, inputs_move
 from piezo_sym.run.runs import METHOD, Runs
-from piezo_sym.run.simulate import by_scipy
+from piezo_sym.run.scipy_runs import by_scipy, cause
 from piezo_sym.sweeps.group import Group, group_at
 from piezo_sym.sweeps.quantities import layout, of_runs, of_trajectory
 from piezo_sym.sweeps.reduce import (

@@ -18,7 +18,6 @@ from piezo_sym.run.collocation import collocate
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.module import lanes
 from piezo_sym.run.parameters import own_initial, read_parameters
-from piezo_sym.run.scales import shared
 from piezo_sym.run.system import System
 from tests.benchmarks.case_p import SWEPT, case_p
 from tests.benchmarks.ours import states, whole
@@ -131,7 +130,7 @@ def tight(
     if case_p(problem.model.sha256, problem.inputs):
         return ends, problem.scale
     path = states(problem, whole(problem, 1e-6, 201))
-    return ends, shared(problem.system, np.max(np.abs(path), axis=1))
+    return ends, problem.system.scale(np.max(np.abs(path), axis=1))
 
 
 def _rates(problem: Problem, name: str) -> tuple[sp.Expr, ...]:

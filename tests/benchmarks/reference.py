@@ -14,7 +14,6 @@ import numpy as np
 
 from piezo_sym.errors import RunError
 from piezo_sym.run.runs import METHOD
-from piezo_sym.run.scales import shared
 from tests.benchmarks.case_p import case_p
 from tests.benchmarks.ours import states, whole
 
@@ -66,7 +65,7 @@ def reference_of(problem: Problem, independent: bool) -> Reference:
         path, others = _ran(problem, SCIPY), [SCIPY_LOOSER]
         source = f"LSODA at rtol {SCIPY[1]:g}"
     if not case:
-        problem = replace(problem, scale=shared(problem.system, np.max(np.abs(path), axis=1)))
+        problem = replace(problem, scale=problem.system.scale(np.max(np.abs(path), axis=1)))
     ends = [_ran(problem, other)[:, -1] for other in others]
     good = max(problem.error(end, path[:, -1]) for end in ends)
     return Reference(problem, path[:, -1], good, source)

@@ -10,7 +10,7 @@ from piezo_sym import chirp, ramp, samples, sine, step, triangle
 from piezo_sym.run import simulate
 from piezo_sym.run.inputs import as_signal, read_inputs
 from piezo_sym.run.integrate import Stretch
-from piezo_sym.run.scales import magnitudes
+from piezo_sym.run.scipy_runs import magnitudes
 from piezo_sym.run.system import System
 
 CASE_P = {  # at t = 0.1 s, and the scale of its error
