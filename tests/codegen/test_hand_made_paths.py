@@ -197,7 +197,7 @@ def test_what_a_step_keeps_grows_with_the_lanes(made):
         parameters = [system.parameters for system in systems]
         inputs = systems[0].inputs
         one = Batch(engine, parameters, x, inputs, times, stepping, "one")
-        sizes.append(one._room.size)
+        sizes.append(one._space.size)
     assert sizes[2] - sizes[1] == sizes[1] - sizes[0] > 0
 
 
