@@ -1,7 +1,7 @@
 """Sums over the lanes of a bank whose size stays a symbol.
 
-Input: expressions in lane symbols such as ``phi_j``.  Output: `LaneSum`, a sum kept as a sum, in a
-normal form in which equal sums are equal expressions.
+Input: expressions in lane symbols such as ``phi_j``.  Output: `SymbolicLaneSum`, a sum kept as a
+sum, in a normal form in which equal sums are equal expressions.
 """
 
 from __future__ import annotations
@@ -37,16 +37,18 @@ class LaneSymbol(sp.Symbol):  # type: ignore[misc]
         return (self.quantity, self.bank, *super()._hashable_content())
 
 
-class LaneSum(sp.Expr):  # type: ignore[misc]
+class SymbolicLaneSum(sp.Expr):  # type: ignore[misc]
     """The sum of its first argument over the lanes j = 1..r of the bank named by its second."""
 
     is_commutative = True
     is_real = True
     is_Function = True  # so that SymPy's LaTeX hands the power of a sum to `_latex`
 
-    def __new__(cls, arg: sp.Expr, bank: str | Str) -> LaneSum:
+    def __new__(cls, arg: sp.Expr, bank: str | Str) -> SymbolicLaneSum:
         """Return the sum of `arg` over the lanes of `bank`, as it stands."""
-        made: LaneSum = sp.Expr.__new__(cls, arg, bank if isinstance(bank, Str) else Str(bank))
+        made: SymbolicLaneSum = sp.Expr.__new__(
+            cls, arg, bank if isinstance(bank, Str) else Str(bank)
+        )
         return made
 
     def _latex(self, printer: Any, exp: Any = None) -> str:
@@ -60,7 +62,7 @@ class LaneSum(sp.Expr):  # type: ignore[misc]
 
 def outside_sums(expr: sp.Basic) -> frozenset[sp.Symbol]:
     """Return the symbols of `expr` that do not stand inside a sum over lanes."""
-    if isinstance(expr, LaneSum):
+    if isinstance(expr, SymbolicLaneSum):
         return frozenset()
     if isinstance(expr, sp.Symbol):
         return frozenset({expr})
@@ -84,7 +86,7 @@ class Lanes:
         total = sp.S.Zero
         for term in sp.Add.make_args(sp.expand(expr)):
             free, lane = self._split(term, bank)
-            total += free * (self.counts[bank] if lane == 1 else LaneSum(lane, bank))
+            total += free * (self.counts[bank] if lane == 1 else SymbolicLaneSum(lane, bank))
         return total
 
     def _split(self, term: sp.Expr, bank: str) -> tuple[sp.Expr, sp.Expr]:
@@ -112,7 +114,7 @@ class Lanes:
             return sp.Add(*(self.at(arg, bank.name, lane) for lane in lanes))
 
         sizes = {symbol: sp.Integer(counts[bank]) for bank, symbol in self.counts.items()}
-        return expr.replace(LaneSum, written).xreplace(sizes)
+        return expr.replace(SymbolicLaneSum, written).xreplace(sizes)
 
 
 def _numbered(symbol: LaneSymbol, lane: int) -> sp.Symbol:

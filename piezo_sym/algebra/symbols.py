@@ -14,7 +14,7 @@ from typing import Any, final
 
 import sympy as sp
 
-from piezo_sym.algebra.sums import LaneSum, LaneSymbol
+from piezo_sym.algebra.sums import LaneSymbol, SymbolicLaneSum
 from piezo_sym.errors import SpecError, quote
 from piezo_sym.expressions.calculus import choices
 from piezo_sym.expressions.functions import RECORDS
@@ -37,7 +37,7 @@ from piezo_sym.expressions.tree import (
     names,
 )
 from piezo_sym.spec.circuit import Circuit
-from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, Port, Resistor, Storage
+from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, DissipativePort, Port, Storage
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import banks, conditions, greater, lane_parameters, states
 
@@ -111,7 +111,7 @@ def _quantities(port: Port) -> tuple[str, ...]:
             return (port.output,)
         case Storage():
             return (port.costate,)
-        case Resistor():
+        case DissipativePort():
             return (port.output, port.effort)
         case Coupling():
             return (port.name,)
@@ -202,7 +202,7 @@ def _choices(expr: sp.Basic) -> Iterator[sp.Piecewise]:
     """Yield the choices in an expression, outermost first, but for those inside sums over lanes."""
     if isinstance(expr, sp.Piecewise):
         yield expr
-    elif not isinstance(expr, LaneSum):
+    elif not isinstance(expr, SymbolicLaneSum):
         for arg in expr.args:
             yield from _choices(arg)
 

@@ -18,7 +18,7 @@ from typing import final
 import numpy as np
 
 from piezo_sym.analysis.balance import grid, scan, temperature_range, zeros
-from piezo_sym.analysis.curves import Curve, Point, folds, traced, with_folds
+from piezo_sym.analysis.curves import Curve, CurvePoint, folds, traced, with_folds
 from piezo_sym.analysis.newton import settled
 from piezo_sym.analysis.repeating import Driven, refuse_not_following
 from piezo_sym.analysis.stroboscope import Stroboscope, stroboscope
@@ -59,7 +59,7 @@ class Branches:
 
     Attributes
     ----------
-    curves : each a tuple of `Point` in order: `.frequency` [Hz], `.stable`, `.state`.
+    curves : each a tuple of `CurvePoint` in order: `.frequency` [Hz], `.stable`, `.state`.
     jumps : a `Jump` where a stable part ends: `.frequency` [Hz], `.upward`, `.temperature` and
         `.lands` [K].
     """
@@ -136,7 +136,7 @@ def steady_branches(
     strobe = stroboscope(module, inputs, low, parameters, initial, STEPS)
     span = np.log([[low, high], temperature_range(strobe, temperatures)])
     curves: list[Curve] = []
-    ends: list[tuple[int, Point, bool]] = []
+    ends: list[tuple[int, CurvePoint, bool]] = []
     for curve in _curves(strobe, span):
         found = tuple(folds(strobe, curve))
         ends += found
@@ -163,7 +163,7 @@ def _curves(strobe: Stroboscope, span: FloatArray) -> Iterator[Curve]:
             yield curve
 
 
-def _jump(strobe: Stroboscope, curves: tuple[Curve, ...], fold: Point, upward: bool) -> Jump:
+def _jump(strobe: Stroboscope, curves: tuple[Curve, ...], fold: CurvePoint, upward: bool) -> Jump:
     """Return the jump at a fold: the sign of the drift just past it gives the direction."""
     beyond = fold.frequency * (1.01 if upward else 0.99)
     heats = settled(strobe.at(beyond), fold.state.temperature, fold.state.x).drift > 0

@@ -32,7 +32,7 @@ MOST_SECANTS = 20
 
 @final
 @dataclass(frozen=True, eq=False)
-class Point:
+class CurvePoint:
     """A periodic steady state on a curve."""
 
     frequency: float
@@ -52,12 +52,12 @@ class Point:
         return self.frequency, T.mean, T.coldest, T.hottest, float(self.stable)
 
 
-Curve: TypeAlias = tuple[Point, ...]
+Curve: TypeAlias = tuple[CurvePoint, ...]
 
 
 def traced(
     strobe: Stroboscope, place: FloatArray, zero: Settled, way: float, span: FloatArray
-) -> Iterator[Point]:
+) -> Iterator[CurvePoint]:
     """Yield the points of the curve from a zero on, to where it leaves the ranges.
 
     Parameters
@@ -94,8 +94,8 @@ def traced(
 
 
 def _next(
-    strobe: Stroboscope, point: Point, tangent: FloatArray, length: float, span: FloatArray
-) -> Point | None:
+    strobe: Stroboscope, point: CurvePoint, tangent: FloatArray, length: float, span: FloatArray
+) -> CurvePoint | None:
     """Return the next point, about `length` on or where f leaves its range; None: none is found."""
     guess = point.place + length * tangent
     across, hint = np.array([-tangent[1], tangent[0]]), point.steepness
@@ -118,7 +118,7 @@ def _corrected(
     across: FloatArray,
     near: Settled,
     steepness: float = 0.0,
-) -> Point:
+) -> CurvePoint:
     """Return the zero of the drift on the line through `guess` along `across`, by secants.
 
     Parameters
@@ -146,15 +146,15 @@ def _corrected(
     raise RunError(what, strobe.where)
 
 
-def _point(strobe: Stroboscope, state: Settled, place: FloatArray, steepness: float) -> Point:
+def _point(strobe: Stroboscope, state: Settled, place: FloatArray, steepness: float) -> CurvePoint:
     """Return a zero of the drift as a point, with the derivative of the drift by temperature."""
     T = state.temperature * (1 + DIFFERENCE)
     beside = settled(strobe, T, state.x, state.slope)
     rising = (beside.drift - state.drift) * strobe.frequency / DIFFERENCE
-    return Point(strobe.frequency, state, rising, steepness, place)
+    return CurvePoint(strobe.frequency, state, rising, steepness, place)
 
 
-def folds(strobe: Stroboscope, curve: Curve) -> Iterator[tuple[int, Point, bool]]:
+def folds(strobe: Stroboscope, curve: Curve) -> Iterator[tuple[int, CurvePoint, bool]]:
     """Yield the index of the point nearest to a fold, the fold, and whether f is highest there."""
     for n in range(1, len(curve) - 1):
         a, b, c = curve[n - 1 : n + 2]
@@ -162,13 +162,13 @@ def folds(strobe: Stroboscope, curve: Curve) -> Iterator[tuple[int, Point, bool]
             yield n, _fold(strobe, a, b, c), bool(b.place[0] > a.place[0])
 
 
-def with_folds(curve: Curve, folds: tuple[tuple[int, Point, bool], ...]) -> Curve:
+def with_folds(curve: Curve, folds: tuple[tuple[int, CurvePoint, bool], ...]) -> Curve:
     """Return a curve with its folds in place of the points nearest to them."""
     at = {n: point for n, point, _ in folds}
     return tuple(at.get(n, point) for n, point in enumerate(curve))
 
 
-def _fold(strobe: Stroboscope, a: Point, b: Point, c: Point) -> Point:
+def _fold(strobe: Stroboscope, a: CurvePoint, b: CurvePoint, c: CurvePoint) -> CurvePoint:
     """Return the point of extreme frequency between three, by parabolas of log f over log T."""
     for _ in range(3):
         x = np.array([p.place[1] - b.place[1] for p in (a, b, c)])

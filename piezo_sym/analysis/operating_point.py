@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, final
 import numpy as np
 from scipy.optimize import brentq
 
-from piezo_sym.analysis.rest import ROUND_OFF, Search
+from piezo_sym.analysis.rest import ROUND_OFF, RestSearch
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.checks import known_keys, number, positive
 from piezo_sym.run.module import checked, row_name, rows
@@ -107,7 +107,7 @@ def operating_point(
     start = read_initial(module, p, u, initial)
     held = _held(module, p, start, temperatures)
     free = np.setdiff1d(np.arange(start.size), list(held.values()))
-    search = Search(module, p, u, free)
+    search = RestSearch(module, p, u, free)
     x, size = search.settled(start)
     x = search.at_rest(x, size)
     undetermined = search.undetermined(x, size)
@@ -188,7 +188,7 @@ def _refuse_open_bodies(
 
 
 def _described(
-    search: Search,
+    search: RestSearch,
     x: FloatArray,
     parameters: Mapping[str, LaneValue],
     held: list[str],

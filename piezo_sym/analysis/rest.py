@@ -30,7 +30,7 @@ SINGULAR = 1e-10  # of the greatest singular value, after rows and columns are m
 
 @final
 @dataclass(frozen=True)
-class Search:
+class RestSearch:
     """A module at constant inputs, whose states in the rows `free` are to come to rest."""
 
     module: GeneratedModule

@@ -30,7 +30,7 @@ from piezo_sym.run.method import choose_method
 from piezo_sym.run.module import checked, rows
 from piezo_sym.run.parameters import read_initial, read_parameters
 from piezo_sym.run.runs import METHOD
-from piezo_sym.run.system import System
+from piezo_sym.run.system import DrivenModule
 
 if TYPE_CHECKING:
     import xarray
@@ -115,9 +115,9 @@ class Stroboscope:
         return read_inputs(self.module, self.inputs_at(self.frequency), self.duration)
 
     @cached_property
-    def _system(self) -> System:
+    def _system(self) -> DrivenModule:
         """The module with its parameters and inputs, checked."""
-        system = System(self.module, self.values, self.inputs)
+        system = DrivenModule(self.module, self.values, self.inputs)
         check_inputs(system, self.start, np.array([0.0, self.duration]))
         return system
 

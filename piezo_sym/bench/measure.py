@@ -1,6 +1,6 @@
 """The groups of `piezo-sym bench`: rates of one state and of many, and whole runs at equal error.
 
-Input: a `Model` and its inputs.  Output: a `Report`.  The error of a rate is its distance from
+Input: a `Model` and its inputs.  Output: a `BenchReport`.  The error of a rate is its distance from
 SymPy in 30 digits, over the largest value of its row.  That of a run is its distance at the end
 from a run with a tight tolerance, which a second solver confirms, over the largest magnitude of
 each state.  All calls are timed in one process, in turns, so that the ratios hold on a busy
@@ -42,7 +42,7 @@ MEASURE = "of a rate, against 30 digits, in units of the row's largest"
 
 @final
 @dataclass(frozen=True)
-class Report:
+class BenchReport:
     """The rows, and the reason for each comparison that was left out."""
 
     model: str
@@ -65,7 +65,7 @@ def bench(
     only: Sequence[str] = (),
     rounds: int = 5,
     say: Callable[[str], None] = lambda _: None,
-) -> Report:
+) -> BenchReport:
     """Measure a model, and return the report.
 
     Parameters
@@ -95,7 +95,7 @@ def bench(
             rows += GROUPS[name](problem, rounds, left_out)
         except (EngineError, RunError) as error:
             left_out.append(f"{name}: {error}")
-    return Report(model.name, tuple(rows), tuple(left_out))
+    return BenchReport(model.name, tuple(rows), tuple(left_out))
 
 
 def _rhs(problem: Problem, rounds: int, left_out: list[str]) -> tuple[Comparison, ...]:

@@ -25,7 +25,7 @@ from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.module import lanes
 from piezo_sym.run.parameters import read_initial, read_parameters
 from piezo_sym.run.signals import Constant, Signal, Sine
-from piezo_sym.run.system import System
+from piezo_sym.run.system import DrivenModule
 from piezo_sym.spec.load import load
 
 if TYPE_CHECKING:
@@ -65,10 +65,12 @@ class Problem:
     scale: FloatArray
 
     @cached_property
-    def system(self) -> System:
+    def system(self) -> DrivenModule:
         """The module with its parameters and inputs, as a run takes it."""
         values = read_parameters(self.module, self.counts)
-        return System(self.module, values, read_inputs(self.module, self.inputs, self.duration))
+        return DrivenModule(
+            self.module, values, read_inputs(self.module, self.inputs, self.duration)
+        )
 
     @cached_property
     def at_instant(self) -> tuple[sp.Expr, ...]:

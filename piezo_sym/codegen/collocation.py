@@ -21,7 +21,7 @@ from piezo_sym.codegen.differences import sharp_quantity
 from piezo_sym.codegen.functions import exchanges_of, heats_of, productions_of, rates_of, supply_of
 from piezo_sym.codegen.jacobian import jacobian_of
 from piezo_sym.codegen.paths import Path
-from piezo_sym.codegen.program import Entry, Limit, Names, Quantity, Row, needed
+from piezo_sym.codegen.program import Entry, Limit, Names, OutputRow, Quantity, needed
 from piezo_sym.codegen.quantities import COSTATES, Quantities, quantities_of
 from piezo_sym.codegen.switches import Switch, compared, switched
 from piezo_sym.expressions.calculus import is_affine
@@ -48,12 +48,12 @@ class Stage:
     """
 
     quantities: tuple[Quantity, ...]
-    rates: tuple[Row, ...]
-    booked: tuple[Row, ...]
+    rates: tuple[OutputRow, ...]
+    booked: tuple[OutputRow, ...]
     switches: tuple[Switch, ...]
     limits: tuple[Limit, ...]
     taken: frozenset[str]
-    bends: tuple[Row, ...] = ()
+    bends: tuple[OutputRow, ...] = ()
 
 
 @final

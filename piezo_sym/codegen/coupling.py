@@ -1,9 +1,10 @@
 """How the equations of a step hang together: lanes of banks, shared states, sums between lanes.
 
-Input: a program and the slopes of its rates.  Output: a `Coupling`: where each slope stands in one
-array, and tables from which `run/engine` solves ``(1 - gamma J) d = r``.  The lanes of a bank are
-eliminated first, each by itself, and what is left are equations of the shared states.  Where lanes
-act on each other through a sum, that sum is a shared unknown more: a border.  A step costs O(r).
+Input: a program and the slopes of its rates.  Output: a `StepCoupling`: where each slope stands in
+one array, and tables from which `run/engine` solves ``(1 - gamma J) d = r``.  The lanes of a bank
+are eliminated first, each by itself, and what is left are equations of the shared states.  Where
+lanes act on each other through a sum, that sum is a shared unknown more: a border.  A step costs
+O(r).
 """
 
 from __future__ import annotations
@@ -52,7 +53,7 @@ class Bank:
 
 @final
 @dataclass(frozen=True)
-class Coupling:
+class StepCoupling:
     """The structure of a step's equations.
 
     Attributes
@@ -105,7 +106,7 @@ class Coupling:
         yield from table(f"{name}_meet", meets)
 
 
-def coupling_of(program: Program, slopes: Slopes) -> Coupling:
+def coupling_of(program: Program, slopes: Slopes) -> StepCoupling:
     """Return the structure of the equations of a step."""
     return _Builder(program, slopes.entries).made()
 
@@ -125,7 +126,7 @@ class _Builder:
                 key = (entry.col, outer.right)
                 self.borders.setdefault(key, len(self.states) + len(self.borders))
 
-    def made(self) -> Coupling:
+    def made(self) -> StepCoupling:
         """Return the structure."""
         shared = [e for e in self.entries if e.row in self.index and e.col in self.index]
         pairs = [(self.index[e.row], self.index[e.col]) for e in shared]
@@ -141,7 +142,7 @@ class _Builder:
         size = len(self.states) + len(self.borders)
         meets = [(r, c) for bank in banks for r in bank.rows for c in bank.columns]
         solved = elimination(size, [*pairs, *meets])
-        return Coupling(
+        return StepCoupling(
             tuple(found),
             len(shared),
             sizes,

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from piezo_sym.codegen.program import Entry, Outer, Program, Quantity, Row
+from piezo_sym.codegen.program import Entry, Outer, OutputRow, Program, Quantity
 from piezo_sym.expressions.calculus import add, choices, div, mul, neg
 from piezo_sym.expressions.tree import ONE, Add, Call, Div, Expr, Mul, Neg, Sym, knots, rebuild
 
@@ -52,7 +52,7 @@ def sharp_quantity(quantity: Quantity) -> Quantity:
     return replace(quantity, value=sharp(quantity.value))
 
 
-def _row(row: Row) -> Row:
+def _row(row: OutputRow) -> OutputRow:
     return replace(row, value=sharp(row.value), listed=tuple(map(sharp, row.listed)))
 
 

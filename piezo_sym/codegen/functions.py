@@ -1,7 +1,7 @@
 """The functions of a module: rates, outputs, supply, energy, entropy, heat, production.
 
-Input: the quantities of a system.  Output: `Function` records, rows in the order of states, ports
-and processes.
+Input: the quantities of a system.  Output: `ModuleFunction` records, rows in the order of states,
+ports and processes.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 from fractions import Fraction
 
 from piezo_sym.algebra.lanes import Slot
-from piezo_sym.codegen.program import Function, Row, bank_of
+from piezo_sym.codegen.program import ModuleFunction, OutputRow, bank_of
 from piezo_sym.codegen.quantities import Quantities
 from piezo_sym.expressions.calculus import add, div, mul, neg
 from piezo_sym.expressions.parse import parse_law
@@ -40,7 +40,7 @@ FUNCTIONS = {
 }
 
 
-def functions_of(q: Quantities) -> tuple[Function, ...]:
+def functions_of(q: Quantities) -> tuple[ModuleFunction, ...]:
     """Return every function of the module but the Jacobian and the margins."""
     temperatures = (Sym(port.temperature) for port in q.bodies.values())
     S = add(*(Sym(port.state) for port in q.bodies.values()))
@@ -51,17 +51,19 @@ def functions_of(q: Quantities) -> tuple[Function, ...]:
         ("rhs", rates_of(q)),
         ("outputs", _outputs(q)),
         ("supply", supply_of(q)),
-        ("energy", (Row(Slot("U"), U),)),
-        ("entropy", (Row(Slot("S"), S),)),
+        ("energy", (OutputRow(Slot("U"), U),)),
+        ("entropy", (OutputRow(Slot("S"), S),)),
         ("temperatures", _rows(map(Slot, q.bodies), temperatures)),
         ("heat", heats_of(q)),
         ("entropy_production", productions_of(q)),
     ]
     scalars = ("energy", "entropy")
-    return tuple(Function(name, *FUNCTIONS[name], rows, name in scalars) for name, rows in made)
+    return tuple(
+        ModuleFunction(name, *FUNCTIONS[name], rows, name in scalars) for name, rows in made
+    )
 
 
-def rates_of(q: Quantities) -> tuple[Row, ...]:
+def rates_of(q: Quantities) -> tuple[OutputRow, ...]:
     """Return dx/dt row by row: structure, then processes, then inputs."""
     rows = []
     for n, slot in enumerate(q.iphs.system.states):
@@ -72,7 +74,7 @@ def rates_of(q: Quantities) -> tuple[Row, ...]:
             terms += [neg(term) for term in q.product(q.iphs.system.B, n, q.outputs)]
             terms += [*q.product(q.iphs.system.G, n, q.inputs)]
             value = add(*_arranged(terms, q))
-        rows.append(Row(slot, value))
+        rows.append(OutputRow(slot, value))
     return tuple(rows)
 
 
@@ -98,17 +100,17 @@ def _entropy_rate(n: int, q: Quantities) -> Expr:
     return add(*terms, *(row.value for row in exchanges_of(q) if row.slot.label == body))
 
 
-def exchanges_of(q: Quantities) -> Iterator[Row]:
+def exchanges_of(q: Quantities) -> Iterator[OutputRow]:
     """Yield the entropy rate that each heat exchange brings, with the body that gets it."""
     for entry in q.ports:
         if isinstance(entry.port, Exchange):
             temperature = Sym(q.bodies[entry.port.body].temperature)
             drive = add(div(Sym(entry.port.input), temperature), neg(ONE))
-            yield Row(Slot(entry.port.body), mul(entry.port.conductance, drive))
+            yield OutputRow(Slot(entry.port.body), mul(entry.port.conductance, drive))
 
 
-def _outputs(q: Quantities) -> tuple[Row, ...]:
-    return tuple(Row(Slot(placed.element), _output(n, q)) for n, placed in enumerate(q.ports))
+def _outputs(q: Quantities) -> tuple[OutputRow, ...]:
+    return tuple(OutputRow(Slot(placed.element), _output(n, q)) for n, placed in enumerate(q.ports))
 
 
 def _output(n: int, q: Quantities) -> Expr:
@@ -122,40 +124,40 @@ def _output(n: int, q: Quantities) -> Expr:
     )
 
 
-def supply_of(q: Quantities) -> tuple[Row, ...]:
+def supply_of(q: Quantities) -> tuple[OutputRow, ...]:
     """Return the power put in, a row per port."""
     rows = []
     for y, placed, u in zip(_outputs(q), q.ports, q.inputs, strict=True):
         power = mul(y.value, u)
         if isinstance(placed.port, Exchange):
             power = mul(placed.port.conductance, add(u, neg(y.value)))
-        rows.append(Row(y.slot, power))
+        rows.append(OutputRow(y.slot, power))
     return tuple(rows)
 
 
-def heats_of(q: Quantities) -> tuple[Row, ...]:
+def heats_of(q: Quantities) -> tuple[OutputRow, ...]:
     """Return the power that each process turns into heat."""
     return _rows(q.iphs.system.processes, q.heats)
 
 
-def productions_of(q: Quantities) -> tuple[Row, ...]:
+def productions_of(q: Quantities) -> tuple[OutputRow, ...]:
     """Return the entropy that each process produces."""
     parts = zip(q.outputs, q.forces, q.iphs.system.heats, strict=True)
     produced = (div(mul(output, force), q.costates[n]) for output, force, n in parts)
     return _rows(q.iphs.system.processes, produced)
 
 
-def _rows(slots: Iterable[Slot], values: Iterable[Expr]) -> tuple[Row, ...]:
-    return tuple(Row(slot, value) for slot, value in zip(slots, values, strict=True))
+def _rows(slots: Iterable[Slot], values: Iterable[Expr]) -> tuple[OutputRow, ...]:
+    return tuple(OutputRow(slot, value) for slot, value in zip(slots, values, strict=True))
 
 
-def _starts(iphs: IPHS) -> Iterator[Row]:
+def _starts(iphs: IPHS) -> Iterator[OutputRow]:
     model = iphs.model
     for slot in iphs.system.states:
         start = model.initial.get(slot.label, 0.0)
         parts = start if isinstance(start, tuple) else (start,)
         trees = tuple(_start(part) for part in parts)
-        yield Row(slot, trees[0], trees if len(trees) > 1 else ())
+        yield OutputRow(slot, trees[0], trees if len(trees) > 1 else ())
 
 
 def _start(part: str | float) -> Expr:

@@ -15,7 +15,16 @@ from dataclasses import dataclass
 from operator import attrgetter
 from typing import final
 
-from piezo_sym.codegen.program import Entry, Field, Names, Outer, Quantity, Row, bank_of, needed
+from piezo_sym.codegen.program import (
+    Described,
+    Entry,
+    Names,
+    Outer,
+    OutputRow,
+    Quantity,
+    bank_of,
+    needed,
+)
 from piezo_sym.expressions.calculus import add, derivative, mul
 from piezo_sym.expressions.tree import ONE, ZERO, Expr, LaneSum, Sym, names, rebuild
 
@@ -40,8 +49,8 @@ class Given:
 
 
 def jacobian_of(
-    rates: tuple[Row, ...],
-    states: tuple[Field, ...],
+    rates: tuple[OutputRow, ...],
+    states: tuple[Described, ...],
     quantities: tuple[Quantity, ...],
     lanes: Mapping[str, str],
     new: Names,
@@ -116,7 +125,7 @@ class _Named:
 class _Chain:
     """The chain rule for one state, quantity after quantity."""
 
-    def __init__(self, state: Field, made: _Named) -> None:
+    def __init__(self, state: Described, made: _Named) -> None:
         self.state, self.made = state, made
         self.named: dict[Expr, Sym] = {}
         self.word = ""  # what a sum over lanes in a derivative is called by

@@ -12,7 +12,7 @@ from dataclasses import replace
 from piezo_sym.codegen.differences import sharp_program
 from piezo_sym.codegen.functions import functions_of
 from piezo_sym.codegen.jacobian import jacobian_of
-from piezo_sym.codegen.program import Field, Function, Names, Program
+from piezo_sym.codegen.program import Described, ModuleFunction, Names, Program
 from piezo_sym.codegen.quantities import Quantities, quantities_of
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.circuit import Placed
@@ -45,7 +45,7 @@ def lower(iphs: IPHS, verdict: str) -> Program:
     return sharp_program(found)
 
 
-def program_of(q: Quantities, functions: tuple[Function, ...]) -> Program:
+def program_of(q: Quantities, functions: tuple[ModuleFunction, ...]) -> Program:
     """Return a program of some functions of a system's quantities."""
     model = q.iphs.model
     return Program(
@@ -55,11 +55,11 @@ def program_of(q: Quantities, functions: tuple[Function, ...]) -> Program:
         sha256=model.sha256,
         verdict="",
         parameters=tuple(_parameters(model)),
-        inputs=tuple(Field(n, i.dimension.si, i.doc) for n, i in model.inputs.items()),
+        inputs=tuple(Described(n, i.dimension.si, i.doc) for n, i in model.inputs.items()),
         states=q.states,
         outputs=tuple(_output(placed) for placed in q.ports),
         processes=tuple(_processes(q.iphs)),
-        bodies=tuple(Field(n, "K", f"temperature of thermal_mass '{n}'") for n in q.bodies),
+        bodies=tuple(Described(n, "K", f"temperature of thermal_mass '{n}'") for n in q.bodies),
         defaults={
             **{name: entry.si for name, entry in model.parameters.items()},
             **{name: entry.si for name, entry in model.inputs.items()},
@@ -73,23 +73,23 @@ def program_of(q: Quantities, functions: tuple[Function, ...]) -> Program:
     )
 
 
-def _parameters(model: Model) -> Iterator[Field]:
+def _parameters(model: Model) -> Iterator[Described]:
     owners = lane_parameters(model)
     for name, entry in model.parameters.items():
-        yield Field(name, entry.dimension.si, entry.doc, owners.get(name))
+        yield Described(name, entry.dimension.si, entry.doc, owners.get(name))
 
 
-def _output(placed: Placed) -> Field:
+def _output(placed: Placed) -> Described:
     match placed.port:
         case Source() as port:
-            return Field(placed.element, port.units[1], port.doc)
+            return Described(placed.element, port.units[1], port.doc)
         case Exchange() as port:
-            return Field(placed.element, "K", f"temperature of thermal_mass '{port.body}'")
+            return Described(placed.element, "K", f"temperature of thermal_mass '{port.body}'")
     msg = f"{placed.element} is no port of an input"
     raise TypeError(msg)
 
 
-def _processes(iphs: IPHS) -> Iterator[Field]:
+def _processes(iphs: IPHS) -> Iterator[Described]:
     for process in iphs.system.processes:
         kind = iphs.model.elements[process.label].kind
-        yield Field(process.label, "W/K", f"{kind} '{process.label}'", process.bank)
+        yield Described(process.label, "W/K", f"{kind} '{process.label}'", process.bank)

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import final
 
 from piezo_sym.codegen.jacobian import Given
-from piezo_sym.codegen.program import Field
+from piezo_sym.codegen.program import Described
 from piezo_sym.expressions.calculus import add, mul, neg
 from piezo_sym.expressions.tree import ONE, Expr, Sym
 
@@ -44,10 +44,10 @@ class Path:
     heat: str
     share: str
 
-    def given(self) -> Iterator[Field]:
+    def given(self) -> Iterator[Described]:
         """Yield what stages are given, in the order of the engine."""
         for name in (self.effort, self.rate, self.heat, self.share):
-            yield Field(name, "", "", self.bank)
+            yield Described(name, "", "", self.bank)
 
 
 def slopes_of(paths: Sequence[Path]) -> Iterator[Given]:

@@ -44,7 +44,7 @@ class Quantity:
 
 @final
 @dataclass(frozen=True)
-class Field:
+class Described:
     """A parameter, state, input, output, process or body, as generated modules describe it."""
 
     name: str
@@ -60,7 +60,7 @@ class Field:
 
 @final
 @dataclass(frozen=True)
-class Row:
+class OutputRow:
     """One row of a result.
 
     Attributes
@@ -104,13 +104,13 @@ class Entry:
 
 @final
 @dataclass(frozen=True)
-class Function:
+class ModuleFunction:
     """A function of a module: a vector with one row a slot (`scalar`: its one row alone)."""
 
     name: str
     doc: str
     arguments: tuple[str, ...]
-    rows: tuple[Row, ...]
+    rows: tuple[OutputRow, ...]
     scalar: bool = False
 
 
@@ -146,16 +146,16 @@ class Program:
     source: str
     sha256: str
     verdict: str
-    parameters: tuple[Field, ...]
-    inputs: tuple[Field, ...]
-    states: tuple[Field, ...]
-    outputs: tuple[Field, ...]
-    processes: tuple[Field, ...]
-    bodies: tuple[Field, ...]
+    parameters: tuple[Described, ...]
+    inputs: tuple[Described, ...]
+    states: tuple[Described, ...]
+    outputs: tuple[Described, ...]
+    processes: tuple[Described, ...]
+    bodies: tuple[Described, ...]
     defaults: Mapping[str, float | tuple[float, ...]]
     counts: Mapping[str, int]
     quantities: tuple[Quantity, ...]
-    functions: tuple[Function, ...]
+    functions: tuple[ModuleFunction, ...]
     jacobian: tuple[Entry, ...]
     limits: tuple[Limit, ...]
     taken: frozenset[str]

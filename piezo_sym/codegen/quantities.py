@@ -14,7 +14,7 @@ from typing import final
 from piezo_sym.algebra.coefficients import coefficient
 from piezo_sym.algebra.lanes import LaneMatrix
 from piezo_sym.codegen.differences import with_excess
-from piezo_sym.codegen.program import Field, Limit, Names, Quantity
+from piezo_sym.codegen.program import Described, Limit, Names, Quantity
 from piezo_sym.expressions.calculus import add, div, mul, neg
 from piezo_sym.expressions.tree import Call, Expr, LaneSum, Mul, Sym, names, rename, replace
 from piezo_sym.iphs import IPHS
@@ -25,8 +25,8 @@ from piezo_sym.spec.elements.ports import (
     Body,
     Conductor,
     Coupling,
+    DissipativePort,
     Exchange,
-    Resistor,
     Source,
     Storage,
 )
@@ -68,10 +68,12 @@ class Quantities:
         return tuple(self.iphs.circuit.of(Storage, Body))
 
     @property
-    def states(self) -> tuple[Field, ...]:
+    def states(self) -> tuple[Described, ...]:
         """The states, as generated modules describe them."""
         return tuple(
-            Field(port.state, "J/K" if isinstance(port, Body) else port.units[0], port.doc, p.bank)
+            Described(
+                port.state, "J/K" if isinstance(port, Body) else port.units[0], port.doc, p.bank
+            )
             for p, port in self.stores
         )
 
@@ -116,7 +118,7 @@ def quantities_of(iphs: IPHS) -> Quantities:
     circuit, system = iphs.circuit, iphs.system
     new = Names({*circuit.names, *(str(s.name) for s, _ in (*iphs.slopes, *iphs.shares))})
     costates = tuple(Sym(costate_name(port)) for _, port in circuit.of(Storage, Body))
-    outputs = tuple(Sym(port.output) for _, port in circuit.of(Resistor, Conductor))
+    outputs = tuple(Sym(port.output) for _, port in circuit.of(DissipativePort, Conductor))
     inputs = tuple(Sym(_input(placed)) for placed in port_order(circuit))
     excesses = _excesses(iphs, new)
     laws = _laws(iphs, excesses)
@@ -186,11 +188,11 @@ def _excesses(iphs: IPHS, new: Names) -> dict[tuple[Sym, Sym], Quantity]:
 def _laws(iphs: IPHS, excesses: Excesses) -> dict[str, Expr]:
     """Return ratios, slopes of laws in a loop, and laws of processes by their names."""
     circuit = iphs.circuit
-    processes = tuple(circuit.of(Resistor, Conductor))
+    processes = tuple(circuit.of(DissipativePort, Conductor))
     found = [(port.name, port.ratio, port.body) for _, port in circuit.of(Coupling)]
     for slope in iphs.junction.slopes:
         found.append((str(slope.symbol.name), slope.law, heated(processes[slope.process][1])))
-    found += [(port.output, port.law, port.heats) for _, port in circuit.of(Resistor)]
+    found += [(port.output, port.law, port.heats) for _, port in circuit.of(DissipativePort)]
     T = {placed.element: body.temperature for placed, body in circuit.of(Body)}
     return {
         name: with_excess(rename(law, {"T": T[body]}), excesses) if body else law
@@ -243,7 +245,7 @@ def _processes(
     """Yield what each process defines, its driving force and its heat."""
     states, driven = iphs.system.B.T, iphs.system.D.T
     T = {placed.element: Sym(body.temperature) for placed, body in iphs.circuit.of(Body)}
-    for k, (placed, port) in enumerate(iphs.circuit.of(Resistor, Conductor)):
+    for k, (placed, port) in enumerate(iphs.circuit.of(DissipativePort, Conductor)):
         terms = [*_product(states, k, costates, sums), *_product(driven, k, inputs, sums)]
         z, defined = add(*terms), list[Quantity]()
         if isinstance(port, Conductor):

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
-from piezo_sym.codegen.program import Names, Quantity, Row, bank_of
+from piezo_sym.codegen.program import Names, OutputRow, Quantity, bank_of
 from piezo_sym.expressions.calculus import add, choices, kinks, neg
 from piezo_sym.expressions.tree import ZERO, Cmp, Expr, If, Sym, rebuild
 
@@ -52,15 +52,15 @@ class Switched:
     """
 
     quantities: tuple[Quantity, ...]
-    rows: tuple[Row, ...]
+    rows: tuple[OutputRow, ...]
     switches: tuple[Switch, ...]
-    bends: tuple[Row, ...]
+    bends: tuple[OutputRow, ...]
     lanes: Mapping[str, str]
 
 
 def switched(
     quantities: Iterable[Quantity],
-    rows: Iterable[Row],
+    rows: Iterable[OutputRow],
     lanes: Mapping[str, str],
     new: Names,
     *,
@@ -119,7 +119,7 @@ class _Switches:
                 return If(then, self._branch(condition), other)
         return inner
 
-    def bends(self, means: Iterable[Quantity]) -> Iterator[Row]:
+    def bends(self, means: Iterable[Quantity]) -> Iterator[OutputRow]:
         """Yield what changes its sign where means have kinks, once each."""
         met = set[Expr]()
         for condition in (kink for mean in means for kink in kinks(compared(mean.value))):
@@ -129,7 +129,7 @@ class _Switches:
             met.add(value)
             bank = bank_of(value, self.lanes)
             self._branch(Cmp(">", self.chosen(value, bank), ZERO))
-            yield Row(Slot(f"bend_{len(met)}", bank), value)
+            yield OutputRow(Slot(f"bend_{len(met)}", bank), value)
 
     def _named(self, value: Expr, quantity: Quantity) -> Expr:
         """Return a value whose choices are quantities of their own."""

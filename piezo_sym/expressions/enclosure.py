@@ -17,7 +17,7 @@ from itertools import product
 from typing import TypeAlias, final
 
 from piezo_sym.expressions.calculus import choices, increasing, rule
-from piezo_sym.expressions.functions import RECORDS, Function
+from piezo_sym.expressions.functions import RECORDS, LawFunction
 from piezo_sym.expressions.tree import (
     Add,
     Call,
@@ -130,7 +130,7 @@ def _call(function: str, args: tuple[Expr, ...], values: Mapping[str, Interval])
     return _library(record, lows[0], highs[0])
 
 
-def _library(record: Function, low: Fraction, high: Fraction) -> Interval:
+def _library(record: LawFunction, low: Fraction, high: Fraction) -> Interval:
     """Return the interval of a function of the C library."""
     if record.known and low == high == record.known[0]:
         return Fraction(record.known[1]), Fraction(record.known[1])

@@ -13,7 +13,7 @@ from typing import Any, Protocol, final
 
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.circuit import Circuit
-from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, Port, Resistor, Source
+from piezo_sym.spec.elements.ports import Body, Conductor, DissipativePort, Exchange, Port, Source
 
 #: A balance below zero by less than this part of its scale is rounding.
 TOLERANCE = 1e-9
@@ -68,7 +68,7 @@ class Claim:
         """Yield (name, value, scale, strict) of what must not be negative."""
         match self.id:
             case "passive" | "conductance":
-                what = "heat" if isinstance(self.port, Resistor) else "conductance"
+                what = "heat" if isinstance(self.port, DissipativePort) else "conductance"
                 yield from ((what, *pair, False) for pair in view.get(what, self.element))
             case "temperature":
                 for what in ("temperature", "slope"):
@@ -142,7 +142,7 @@ def claim_of(iphs: IPHS, id_: str, element: str) -> Claim | None:
     ports = [placed.port for placed in iphs.circuit.ports if placed.element == element]
     claim = Claim(id_, element, ports[-1] if ports else None, iphs.circuit)
     match id_, claim.port:
-        case (("passive" | "conductance"), (Resistor() | Conductor() | Exchange())):
+        case (("passive" | "conductance"), (DissipativePort() | Conductor() | Exchange())):
             return claim
         case (("temperature" | "invariant"), Body()):
             return claim

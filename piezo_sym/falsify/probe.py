@@ -21,7 +21,7 @@ from piezo_sym.algebra.lanes import Slot
 from piezo_sym.codegen import numpy_module
 from piezo_sym.codegen.differences import sharp_program
 from piezo_sym.codegen.lower import program_of
-from piezo_sym.codegen.program import Function, Row, bank_of
+from piezo_sym.codegen.program import ModuleFunction, OutputRow, bank_of
 from piezo_sym.codegen.quantities import Quantities, quantities_of
 from piezo_sym.expressions.calculus import add, choices, derivative, increasing, kinks, mul, neg
 from piezo_sym.expressions.functions import RECORDS
@@ -52,26 +52,26 @@ from piezo_sym.spec.elements.ports import (
     Body,
     Conductor,
     Coupling,
-    Domain,
-    Resistor,
+    DissipativePort,
+    PhysicalDomain,
+    PowerVariable,
     Source,
     Storage,
-    Variable,
 )
 from piezo_sym.spec.units import parse_unit
 
 UNITS = {
-    (Domain.ELECTRICAL, Variable.ACROSS): "V",
-    (Domain.ELECTRICAL, Variable.THROUGH): "A",
-    (Domain.MECHANICAL, Variable.ACROSS): "m/s",
-    (Domain.MECHANICAL, Variable.THROUGH): "N",
+    (PhysicalDomain.ELECTRICAL, PowerVariable.ACROSS): "V",
+    (PhysicalDomain.ELECTRICAL, PowerVariable.THROUGH): "A",
+    (PhysicalDomain.MECHANICAL, PowerVariable.ACROSS): "m/s",
+    (PhysicalDomain.MECHANICAL, PowerVariable.THROUGH): "N",
 }
 MOST_EDGES = 400
 
 
 @final
 @dataclass(frozen=True)
-class Edge:
+class ZeroSet:
     """An expression whose zeros are searched for; at those of a `kink` a law changes branches."""
 
     tree: Expr
@@ -130,7 +130,9 @@ def probe_of(iphs: IPHS) -> Probe:
     trees = named + [limit.margin for limit in q.limits]
     trees += [tree for (_, what), tree in laws.items() if what != "hole"]
     found = [edge for tree in trees for edge in _edges(tree)]
-    found += [Edge(limit.margin) for limit in q.limits] + [Edge(tree) for tree in _equal(iphs, q)]
+    found += [ZeroSet(limit.margin) for limit in q.limits] + [
+        ZeroSet(tree) for tree in _equal(iphs, q)
+    ]
     edges = tuple(dict.fromkeys(e for e in found if not isinstance(e.tree, Num)))[:MOST_EDGES]
     values = [(tree, bank_of(tree, q.lanes)) for tree in laws.values()]
     turns = [(edge.tree, bank_of(edge.tree, q.lanes)) for edge in edges]
@@ -149,9 +151,9 @@ def probe_of(iphs: IPHS) -> Probe:
     return Probe(iphs, module, banks, kinks)
 
 
-def _function(name: str, rows: list[tuple[Expr, str | None]]) -> Function:
-    made = tuple(Row(Slot("", bank), tree) for tree, bank in rows)
-    return Function(name, name, ("x", "u", "p"), made)
+def _function(name: str, rows: list[tuple[Expr, str | None]]) -> ModuleFunction:
+    made = tuple(OutputRow(Slot("", bank), tree) for tree, bank in rows)
+    return ModuleFunction(name, name, ("x", "u", "p"), made)
 
 
 def _own(tree: Expr, known: dict[str, Expr]) -> Expr:
@@ -174,7 +176,7 @@ def _laws(q: Quantities) -> Iterator[tuple[str, str, Expr]]:
                 yield element, "law", Sym(port.name)
             case Source():
                 continue
-            case Resistor():
+            case DissipativePort():
                 force, output = next(forces)
                 yield from ((element, "output", output), (element, "effort", force))
             case _:
@@ -248,22 +250,22 @@ def _any(parts: list[Expr]) -> Expr:
     return reduce(lambda one, other: Call("max", (one, other)), kept) if kept else ZERO
 
 
-def _edges(tree: Node) -> Iterator[Edge]:
+def _edges(tree: Node) -> Iterator[ZeroSet]:
     """Yield the edges of a law, outermost first."""
     for node in walk(tree):
         match node:
             case LaneSum() | Num() | Sym():
                 continue
             case Cmp(_, left, right):
-                yield Edge(add(left, neg(right)), kink=True)
+                yield ZeroSet(add(left, neg(right)), kink=True)
             case Call(function) if not RECORDS[function].smooth:
-                yield from (Edge(add(c.left, neg(c.right)), kink=True) for c in kinks(node))
+                yield from (ZeroSet(add(c.left, neg(c.right)), kink=True) for c in kinks(node))
             case Call(function, (z,)) if RECORDS[function].units == "pure":
-                yield from (Edge(z), Edge(add(z, neg(ONE))), Edge(add(z, ONE)))
+                yield from (ZeroSet(z), ZeroSet(add(z, neg(ONE))), ZeroSet(add(z, ONE)))
             case Call(_, (z,)) | Pow(z, _) | Div(_, z):
-                yield Edge(z)
+                yield ZeroSet(z)
             case Add():
-                yield Edge(node)
+                yield ZeroSet(node)
 
 
 def _equal(iphs: IPHS, q: Quantities) -> Iterator[Expr]:
@@ -274,8 +276,10 @@ def _equal(iphs: IPHS, q: Quantities) -> Iterator[Expr]:
     for _, store in q.stores:
         unit = "K" if isinstance(store, Body) else store.units[1]
         quantities.append((Sym(costate_name(store)), unit))
-    for force, (_, process) in zip(q.forces, iphs.circuit.of(Resistor, Conductor), strict=True):
-        if isinstance(process, Resistor):
+    for force, (_, process) in zip(
+        q.forces, iphs.circuit.of(DissipativePort, Conductor), strict=True
+    ):
+        if isinstance(process, DissipativePort):
             quantities.append((force, UNITS[process.domain, process.imposes.other]))
     for tree, unit in dict.fromkeys(quantities):
         for name, dimension in units:

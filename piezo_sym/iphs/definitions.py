@@ -23,8 +23,8 @@ from piezo_sym.spec.elements.ports import (
     Body,
     Conductor,
     Coupling,
+    DissipativePort,
     Exchange,
-    Resistor,
     Source,
     Storage,
 )
@@ -35,13 +35,13 @@ def costate_name(port: Storage | Body) -> str:
     return port.temperature if isinstance(port, Body) else port.costate
 
 
-def heated(port: Resistor | Conductor) -> str:
+def heated(port: DissipativePort | Conductor) -> str:
     """Return the element of the body that a process heats; for conduction, the second."""
-    return port.heats if isinstance(port, Resistor) else port.second
+    return port.heats if isinstance(port, DissipativePort) else port.second
 
 
 def law_of(
-    circuit: Circuit, port: Storage | Body | Resistor | Coupling | Exchange | Conductor
+    circuit: Circuit, port: Storage | Body | DissipativePort | Coupling | Exchange | Conductor
 ) -> Expr:
     """Return the law of a port in the words of the domain: states and temperatures by name.
 
@@ -50,7 +50,7 @@ def law_of(
     match port:
         case Storage() | Body():
             return rename(port.law, {port.letter: port.state})
-        case Resistor():
+        case DissipativePort():
             return rename(port.law, {"T": circuit.body(port.heats).temperature})
         case Coupling():
             return (
@@ -64,7 +64,7 @@ def law_of(
 
 def slope_law(circuit: Circuit, slope: Slope) -> Expr:
     """Return the slope of a law in a resistive loop, a function of its body's temperature."""
-    _, port = tuple(circuit.of(Resistor, Conductor))[slope.process]
+    _, port = tuple(circuit.of(DissipativePort, Conductor))[slope.process]
     return rename(slope.law, {"T": circuit.body(heated(port)).temperature})
 
 
@@ -73,7 +73,7 @@ def system_of(circuit: Circuit, symbols: SymbolTable, junction: Junction) -> Sys
     lanes = junction.J0.lanes
     stores = tuple(circuit.of(Storage, Body))
     rows = {placed.element: n for n, (placed, port) in enumerate(stores) if isinstance(port, Body)}
-    processes = [port for _, port in circuit.of(Resistor, Conductor)]
+    processes = [port for _, port in circuit.of(DissipativePort, Conductor)]
     costates = {n: symbols[costate_name(port)] for n, (_, port) in enumerate(stores)}
     inputs = {
         n: _input(placed.port, circuit, symbols) for n, placed in enumerate(port_order(circuit))
@@ -130,9 +130,9 @@ Definitions = Iterator[tuple[sp.Symbol, sp.Expr]]
 
 def laws_of(circuit: Circuit, symbols: SymbolTable, system: System) -> Definitions:
     """Yield each law output W and its law in z and T."""
-    for (_, port), z in zip(circuit.of(Resistor, Conductor), system.z, strict=True):
+    for (_, port), z in zip(circuit.of(DissipativePort, Conductor), system.z, strict=True):
         heat = symbols[circuit.body(heated(port)).temperature]
-        if isinstance(port, Resistor):
+        if isinstance(port, DissipativePort):
             yield symbols[port.output], symbols.law(port.law, {port.letter: z, "T": heat})
         else:
             first = symbols[circuit.body(port.first).temperature]

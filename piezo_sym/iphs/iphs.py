@@ -31,7 +31,7 @@ from piezo_sym.iphs.reading import Pairs, Reading, document, equations_latex
 from piezo_sym.iphs.system import System
 from piezo_sym.network import Junction, junction_of
 from piezo_sym.spec.circuit import Circuit, circuit_of
-from piezo_sym.spec.elements.ports import Body, Conductor, Resistor, Storage
+from piezo_sym.spec.elements.ports import Body, Conductor, DissipativePort, Storage
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import banks
 from piezo_sym.spec.unroll import unroll
@@ -232,7 +232,7 @@ class IPHS:
     def _spelled(self, shown: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, str]:
         """Return each dissipative law as the spec spells it, and what its letter is."""
         found = {}
-        processes = self.circuit.of(Resistor, Conductor)
+        processes = self.circuit.of(DissipativePort, Conductor)
         for (_, port), z in zip(processes, self.system.z, strict=True):
             if isinstance(port, Conductor):
                 continue

@@ -15,7 +15,7 @@ from piezo_sym.network.inverse import turn
 from piezo_sym.network.kirchhoff import Laws
 from piezo_sym.network.refusals import refusal
 from piezo_sym.spec.circuit import Circuit, Placed
-from piezo_sym.spec.elements.ports import Resistor
+from piezo_sym.spec.elements.ports import DissipativePort
 
 #: Laws turned round, times branches of the network: about half a minute.
 MOST_WORK = 1_000_000
@@ -55,14 +55,14 @@ def causal(circuit: Circuit, symbols: SymbolTable) -> Laws:
 
 def _to_turn(
     laws: Laws, singular: SingularError, turned: set[str]
-) -> tuple[Placed, Resistor] | None:
+) -> tuple[Placed, DissipativePort] | None:
     """Return a resistor in a contradiction, turned round; one not yet turned, with a linear law."""
     for relation in singular.relations:
         for label in relation:
             kind, number = label[1] if label[0] == "sum" else label
             if kind == "W":
                 placed, port = laws.processes[number]
-                other = turn(port) if isinstance(port, Resistor) else None
+                other = turn(port) if isinstance(port, DissipativePort) else None
                 if placed.element not in turned and other is not None:
                     return placed, other
     return None

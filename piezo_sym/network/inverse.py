@@ -1,7 +1,7 @@
 """A resistor's law turned round: from what it gives to what it is given.
 
-Input: a `Resistor`, whose law is a function of one letter.  Output: the same resistor in its other
-causality, ``voltage = "R*i"`` as ``current = "v/R"``, if its law is linear in the letter.
+Input: a `DissipativePort`, whose law is a function of one letter.  Output: the same resistor in its
+other causality, ``voltage = "R*i"`` as ``current = "v/R"``, if its law is linear in the letter.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from piezo_sym.algebra.symbols import to_sympy
 from piezo_sym.expressions.calculus import derivative, div, mul
 from piezo_sym.expressions.tree import ONE, ZERO, Call, Cmp, Div, Expr, Sym, names, walk
 from piezo_sym.expressions.tree import replace as substitute
-from piezo_sym.spec.elements.ports import Resistor
+from piezo_sym.spec.elements.ports import DissipativePort
 
 
-def turn(port: Resistor) -> Resistor | None:
+def turn(port: DissipativePort) -> DissipativePort | None:
     """Return the resistor in its other causality if its law is linear in its letter, else None."""
     slope = slope_of(port)
     if slope is None or _vanishes(slope):
@@ -34,7 +34,7 @@ def turn(port: Resistor) -> Resistor | None:
     )
 
 
-def slope_of(port: Resistor) -> Expr | None:
+def slope_of(port: DissipativePort) -> Expr | None:
     """Return the slope of a law that is linear in its letter, else None."""
     if any(port.letter in names(node) for node in walk(port.law) if isinstance(node, Call | Cmp)):
         return None  # a function or a branch of the letter: its slope would not show a jump
@@ -43,7 +43,7 @@ def slope_of(port: Resistor) -> Expr | None:
     return slope if port.letter not in names(slope) and _vanishes(at_zero) else None
 
 
-def inverse_field(port: Resistor) -> tuple[str, str]:
+def inverse_field(port: DissipativePort) -> tuple[str, str]:
     """Return the field and the letter of a resistor's law in its other causality."""
     given, asked = port.domain.variable(port.imposes), port.domain.variable(port.imposes.other)
     return asked.name, given.letter

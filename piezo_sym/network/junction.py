@@ -28,7 +28,7 @@ from piezo_sym.network.kirchhoff import Answer, Laws
 from piezo_sym.network.loops import Definition, Slope, loops_of
 from piezo_sym.network.nodes import check_nodes
 from piezo_sym.spec.circuit import Circuit
-from piezo_sym.spec.elements.ports import Conductor, Exchange, Source, Variable
+from piezo_sym.spec.elements.ports import Conductor, Exchange, PowerVariable, Source
 
 
 @final
@@ -143,7 +143,7 @@ class _Blocks:
     def _supply_sign(self, n: int) -> int:
         """Return -1 for an across source: the current through it flows out at its first node."""
         port = self.laws.ports[n].port
-        return -1 if isinstance(port, Source) and port.imposes is Variable.ACROSS else 1
+        return -1 if isinstance(port, Source) and port.imposes is PowerVariable.ACROSS else 1
 
     def _entries(self, row: int, col: str, form: Form, sign: int) -> dict[tuple[int, int], sp.Expr]:
         found = {}

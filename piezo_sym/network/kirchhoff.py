@@ -34,11 +34,11 @@ from piezo_sym.spec.elements.ports import (
     Branch,
     Conductor,
     Coupling,
+    DissipativePort,
     Exchange,
-    Resistor,
+    PowerVariable,
     Source,
     Storage,
-    Variable,
 )
 
 #: Coefficients to combine in a solution times the ratios in each: about half a minute.
@@ -58,7 +58,7 @@ class Edge:
 
     placed: Placed
     branch: Branch
-    imposes: Variable
+    imposes: PowerVariable
     key: tuple[str, int]
     sign: int
 
@@ -93,7 +93,7 @@ class Laws:
             letter: symbols[port.name] for port, letter in zip(couplings, letters, strict=True)
         }
         self.states = tuple(circuit.of(Storage, Body))
-        self.processes = tuple(circuit.of(Resistor, Conductor))
+        self.processes = tuple(circuit.of(DissipativePort, Conductor))
         self.ports = port_order(circuit)
         self.edges = tuple(self._edges())
         self.divisors: list[Any] = []
@@ -103,11 +103,11 @@ class Laws:
             if isinstance(port, Storage):
                 yield Edge(placed, port.branch, port.imposes, ("E", n), 1)
         for n, (placed, process) in enumerate(self.processes):
-            if isinstance(process, Resistor):
+            if isinstance(process, DissipativePort):
                 yield Edge(placed, process.branch, process.imposes, ("W", n), 1)
         for n, placed in enumerate(self.ports):
             if isinstance(placed.port, Source):
-                sign = 1 if placed.port.imposes is Variable.ACROSS else -1  # it pushes into a
+                sign = 1 if placed.port.imposes is PowerVariable.ACROSS else -1  # it pushes into a
                 yield Edge(placed, placed.port.branch, placed.port.imposes, ("u", n), sign)
 
     @cached_property
@@ -141,7 +141,7 @@ class Laws:
 
     def _through(self, edge: Edge) -> Equation:
         """Return a branch's through variable as (unknowns, givens)."""
-        if edge.imposes is Variable.ACROSS:
+        if edge.imposes is PowerVariable.ACROSS:
             return Equation({edge.unknown: self.field.one}, {})
         return Equation({}, {edge.key: edge.sign * self.field.one})
 
@@ -166,7 +166,7 @@ class Laws:
 
     def _constraints(self, bank: str | None) -> Iterator[Equation]:
         for edge in self.edges:
-            if edge.placed.bank == bank and edge.imposes is Variable.ACROSS:
+            if edge.placed.bank == bank and edge.imposes is PowerVariable.ACROSS:
                 given = {edge.key: edge.sign * self.field.one}
                 yield Equation(_across(edge.branch, self.field.one), given)
         for port, ratio in self.ratio.items():
@@ -183,7 +183,9 @@ class Laws:
         equations += list(self._constraints(bank))
         unknowns = [("e", node) for node in inner]
         unknowns += [
-            e.unknown for e in self.edges if e.placed.bank == bank and e.imposes is Variable.ACROSS
+            e.unknown
+            for e in self.edges
+            if e.placed.bank == bank and e.imposes is PowerVariable.ACROSS
         ]
         for equation in equations:  # shared nodes are given, for a lane
             for label in [label for label in equation.left if label not in unknowns]:
@@ -202,7 +204,9 @@ class Laws:
         equations += list(self._constraints(None))
         unknowns: list[Any] = [("e", node) for node in balances]
         unknowns += [
-            e.unknown for e in self.edges if e.placed.bank is None and e.imposes is Variable.ACROSS
+            e.unknown
+            for e in self.edges
+            if e.placed.bank is None and e.imposes is PowerVariable.ACROSS
         ]
         unknowns += [("t", port.name) for port in self.ratio if not port.gyrates]
         return self._solved(equations, unknowns)
@@ -235,7 +239,7 @@ class Laws:
         self, edge: Edge, lanes: dict[str, dict[Any, Form]], shared: dict[Any, Form]
     ) -> tuple[Form, Form]:
         """Return a branch's answer, the variable it does not impose: (every lane, own lane)."""
-        across = edge.imposes is Variable.THROUGH
+        across = edge.imposes is PowerVariable.THROUGH
         asked = _across(edge.branch, self.field.one) if across else {edge.unknown: self.field.one}
         own = lanes[edge.placed.bank] if edge.placed.bank else {}
         mine: Form = {}

@@ -26,7 +26,7 @@ from piezo_sym.errors import NetworkError, listing, quote
 from piezo_sym.expressions.tree import Expr
 from piezo_sym.network.inverse import slope_of
 from piezo_sym.network.kirchhoff import Laws
-from piezo_sym.spec.elements.ports import Domain, Resistor
+from piezo_sym.spec.elements.ports import DissipativePort, PhysicalDomain
 from piezo_sym.spec.names import fresh
 
 #: More than these would write out solutions of thousands of terms.
@@ -134,13 +134,15 @@ def _slopes(laws: Laws, group: tuple[int, ...], taken: set[str]) -> Iterator[Slo
     members = [laws.processes[k] for k in group]
     names = listing(quote(placed.element) for placed, _ in members)
     what = f"{names} determine each other's flow"
-    mechanical = any(isinstance(p, Resistor) and p.domain is Domain.MECHANICAL for _, p in members)
+    mechanical = any(
+        isinstance(p, DissipativePort) and p.domain is PhysicalDomain.MECHANICAL for _, p in members
+    )
     between = f"put {'a mass' if mechanical else 'a capacitor'} at the node between them"
     if len(group) > MOST:
         remedy = f"join those in series or in parallel, or {between}"
         raise NetworkError(what, "network", f"at most {MOST} that do", remedy)
     for k, (placed, port) in zip(group, members, strict=True):
-        law = slope_of(port) if isinstance(port, Resistor) and not placed.bank else None
+        law = slope_of(port) if isinstance(port, DissipativePort) and not placed.bank else None
         if law is None:
             remedy = f"{between}, or make the law linear"
             raise NetworkError(what, f"elements.{placed.element}", "linear laws", remedy)

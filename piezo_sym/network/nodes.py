@@ -9,9 +9,16 @@ from collections.abc import Iterator
 
 from piezo_sym.errors import NetworkError, listing, nearest
 from piezo_sym.spec.circuit import Circuit
-from piezo_sym.spec.elements.ports import Branch, Coupling, Domain, Resistor, Source, Storage
+from piezo_sym.spec.elements.ports import (
+    Branch,
+    Coupling,
+    DissipativePort,
+    PhysicalDomain,
+    Source,
+    Storage,
+)
 
-REFERENCES = {domain.reference: domain for domain in Domain}
+REFERENCES = {domain.reference: domain for domain in PhysicalDomain}
 
 
 def is_reference(node: str) -> bool:
@@ -19,14 +26,14 @@ def is_reference(node: str) -> bool:
     return node in REFERENCES
 
 
-def branches(circuit: Circuit) -> Iterator[tuple[str, Branch, Domain]]:
+def branches(circuit: Circuit) -> Iterator[tuple[str, Branch, PhysicalDomain]]:
     """Yield (element, branch, domain) of every branch of a circuit."""
     for placed in circuit.ports:
         match placed.port:
             case Coupling() as port:
                 yield placed.element, port.first, port.first_domain
                 yield placed.element, port.second, port.second_domain
-            case Storage() | Resistor() | Source() as port:
+            case Storage() | DissipativePort() | Source() as port:
                 yield placed.element, port.branch, port.domain
 
 
@@ -43,7 +50,7 @@ def check_nodes(circuit: Circuit) -> None:
     NetworkError
         Naming the node, and what meets there.
     """
-    domains: dict[str, tuple[Domain, str]] = {}
+    domains: dict[str, tuple[PhysicalDomain, str]] = {}
     users: dict[str, list[str]] = {}
     for element, branch, domain in branches(circuit):
         where = f"elements.{element}"
@@ -59,7 +66,7 @@ def check_nodes(circuit: Circuit) -> None:
 
 
 def _check_domain(
-    node: str, domain: Domain, where: str, domains: dict[str, tuple[Domain, str]]
+    node: str, domain: PhysicalDomain, where: str, domains: dict[str, tuple[PhysicalDomain, str]]
 ) -> None:
     if is_reference(node):
         if REFERENCES[node] is not domain:
@@ -74,8 +81,8 @@ def _check_domain(
         raise NetworkError(what, where, "a node of one domain", "rename one of the two nodes")
 
 
-def _an(domain: Domain) -> str:
-    return f"{'an' if domain is Domain.ELECTRICAL else 'a'} {domain.value}"
+def _an(domain: PhysicalDomain) -> str:
+    return f"{'an' if domain is PhysicalDomain.ELECTRICAL else 'a'} {domain.value}"
 
 
 def _short(circuit: Circuit, element: str, node: str) -> NetworkError:
@@ -88,7 +95,9 @@ def _short(circuit: Circuit, element: str, node: str) -> NetworkError:
     return NetworkError(what, where, "two different nodes", "rename one of them")
 
 
-def _dangling(node: str, element: str, found: list[tuple[str, Branch, Domain]]) -> NetworkError:
+def _dangling(
+    node: str, element: str, found: list[tuple[str, Branch, PhysicalDomain]]
+) -> NetworkError:
     """Return an element that ends where nothing else does, with the nodes it may have meant."""
     domain = next(own for _, branch, own in found if node in branch)
     mine = {other for name, branch, _ in found if name == element for other in branch}

@@ -13,7 +13,7 @@ from piezo_sym.network.kirchhoff import Edge, Laws
 from piezo_sym.network.nodes import branches, is_inner, is_reference
 from piezo_sym.spec.elements.ports import (
     Coupling,
-    Resistor,
+    DissipativePort,
     Source,
     Storage,
 )
@@ -70,19 +70,19 @@ def _listed(names: list[str]) -> str:
 
 def _word(edge: Edge) -> str:
     match edge.placed.port:
-        case Storage() | Resistor() | Source() as port:
+        case Storage() | DissipativePort() | Source() as port:
             return port.domain.variable(port.imposes).name
     return MIXED
 
 
-def _fixed(edges: list[Edge]) -> list[tuple[str, Resistor]]:
+def _fixed(edges: list[Edge]) -> list[tuple[str, DissipativePort]]:
     """Return the resistors among branches whose laws cannot be turned round."""
     found = [(edge.placed.element, edge.placed.port) for edge in edges]
-    resistors = [(name, port) for name, port in found if isinstance(port, Resistor)]
+    resistors = [(name, port) for name, port in found if isinstance(port, DissipativePort)]
     return [(name, port) for name, port in resistors if turn(port) is None]
 
 
-def _inverse(element: str, port: Resistor) -> tuple[str, str]:
+def _inverse(element: str, port: DissipativePort) -> tuple[str, str]:
     """Return what is expected of a law that gives what is given already, and the law to write."""
     field, letter = inverse_field(port)
     expected = f"the law of '{element}' as a function of {letter}, which is given"

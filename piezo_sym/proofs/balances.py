@@ -18,7 +18,14 @@ from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.assumptions import Assumptions
 from piezo_sym.proofs.laws import valued
 from piezo_sym.proofs.obligations import Obligation, Question, Residual
-from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, Resistor, Source, Storage
+from piezo_sym.spec.elements.ports import (
+    Body,
+    Conductor,
+    DissipativePort,
+    Exchange,
+    Source,
+    Storage,
+)
 
 
 def skew(iphs: IPHS) -> Obligation:
@@ -75,7 +82,9 @@ def sigma(iphs: IPHS) -> Obligation:
 def premises(iphs: IPHS) -> tuple[tuple[str, str], ...]:
     """Return the obligations that the second law rests on."""
     bodies = [("temperature", placed.element) for placed, _ in iphs.circuit.of(Body)]
-    laws = [("passive", placed.element) for placed, _ in iphs.circuit.of(Resistor, Conductor)]
+    laws = [
+        ("passive", placed.element) for placed, _ in iphs.circuit.of(DissipativePort, Conductor)
+    ]
     return (*bodies, *laws)
 
 

@@ -17,7 +17,7 @@ from piezo_sym.iphs.definitions import law_of
 from piezo_sym.proofs.assumptions import Assumptions
 from piezo_sym.proofs.laws import on_branches, valued
 from piezo_sym.proofs.obligations import Obligation, Question
-from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, Resistor
+from piezo_sym.spec.elements.ports import Body, Conductor, DissipativePort, Exchange
 from piezo_sym.spec.names import fresh
 from piezo_sym.spec.tables import conditions, greater
 
@@ -56,7 +56,9 @@ def invariant(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
     """
     above = [greater(condition.tree) for condition in conditions(iphs.model)]
     floors = {c.left.name: c.right for c in above if c.op == ">" and isinstance(c.left, Sym)}
-    laws = [("passive", placed.element) for placed, _ in iphs.circuit.of(Resistor, Conductor)]
+    laws = [
+        ("passive", placed.element) for placed, _ in iphs.circuit.of(DissipativePort, Conductor)
+    ]
     warm = [("temperature", placed.element) for placed, _ in iphs.circuit.of(Body)]
     for placed, port in iphs.circuit.of(Body):
         exchanges = [p for _, p in iphs.circuit.of(Exchange) if p.body == placed.element]

@@ -14,7 +14,7 @@ from typing import Any, final
 from flint import arb, ctx, fmpq
 
 from piezo_sym.expressions.calculus import choices, increasing
-from piezo_sym.expressions.functions import RECORDS, Function
+from piezo_sym.expressions.functions import RECORDS, LawFunction
 from piezo_sym.expressions.parse import parse_rule
 from piezo_sym.expressions.tree import (
     Add,
@@ -181,7 +181,7 @@ def _call(function: str, args: list[Value]) -> Value:
     return getattr(arb(z), function)()
 
 
-def _bounded_far_out(record: Function, z: Value) -> bool:
+def _bounded_far_out(record: LawFunction, z: Value) -> bool:
     """Return whether a function's values at large arguments of the sign of z are bounded."""
     low, high = (isinstance(bound, Fraction) for bound in record.bounds)
     return (low or (record.monotone and z > 0)) and (high or (record.monotone and z < 0))

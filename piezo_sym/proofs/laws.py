@@ -25,8 +25,8 @@ from piezo_sym.spec.elements.ports import (
     Body,
     Conductor,
     Coupling,
+    DissipativePort,
     Exchange,
-    Resistor,
     Source,
     Storage,
 )
@@ -48,7 +48,7 @@ def _law(iphs: IPHS, placed: Placed) -> Law | None:
     match port:
         case Storage() | Body():
             return Law(element, costate_name(port), law_of(circuit, port))
-        case Resistor():
+        case DissipativePort():
             jumps = bool(getattr(iphs.model.elements[element], "discontinuous", False))
             heat = {"T": circuit.body(port.heats).temperature}
             written = rename(port.written, heat) if port.written else None

@@ -13,7 +13,7 @@ from fractions import Fraction
 
 import sympy as sp
 
-from piezo_sym.algebra.sums import LaneSum as SymbolicSum
+from piezo_sym.algebra.sums import SymbolicLaneSum
 from piezo_sym.expressions.calculus import add, div, mul, power
 from piezo_sym.expressions.functions import FUNCTIONS as WRITTEN
 from piezo_sym.expressions.text import ATOM, SPEC, write
@@ -31,7 +31,7 @@ from piezo_sym.expressions.tree import (
 )
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name, law_of, slope_law
-from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, Resistor, Storage
+from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, DissipativePort, Storage
 
 #: The law language, and sums over the lanes of a bank.
 STYLE = changed(SPEC, lane_sum=lambda arg, bank: (f"sum({bank}, {arg[0]})", ATOM))
@@ -80,7 +80,7 @@ def _names(iphs: IPHS, tree: _Trees) -> Iterator[tuple[str, dict[str, str | None
         yield entry(costate_name(store), placed.element, role, law_of(circuit, store))
     for placed, port in circuit.of(Coupling):
         yield entry(port.name, placed.element, "ratio", law_of(circuit, port))
-    processes = tuple(circuit.of(Resistor, Conductor))
+    processes = tuple(circuit.of(DissipativePort, Conductor))
     for slope in iphs.junction.slopes:
         element = processes[slope.process][0].element
         yield entry(slope.symbol.name, element, "slope", slope_law(circuit, slope))
@@ -112,7 +112,7 @@ class _Trees:
             case sp.Symbol():
                 bank = self.sizes.get(expr)
                 return LaneSum(ONE, bank) if bank else Sym(self.names.get(expr, str(expr.name)))
-            case SymbolicSum():
+            case SymbolicLaneSum():
                 return LaneSum(self(expr.args[0]), str(expr.args[1]))
             case sp.Add():
                 return add(*self._ordered(expr.args))

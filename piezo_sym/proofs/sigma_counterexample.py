@@ -21,7 +21,14 @@ from piezo_sym.proofs.exact_eval import all_hold
 from piezo_sym.proofs.obligations import NEVER, Question
 from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.proofs.solvers import Asks
-from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, Resistor, Source, Storage
+from piezo_sym.spec.elements.ports import (
+    Body,
+    Conductor,
+    DissipativePort,
+    Exchange,
+    Source,
+    Storage,
+)
 from piezo_sym.spec.tables import banks, states
 
 Values = Mapping[str, Fraction]
@@ -53,7 +60,9 @@ def _in_lane(name: str, iphs: IPHS) -> str:
 
 def _driven(iphs: IPHS, element: str, given: Values, solver: Asks) -> Found | None:
     """Return numbers at which sigma < 0 while all that drives the system drives one element."""
-    processes = [(placed.element, port) for placed, port in iphs.circuit.of(Resistor, Conductor)]
+    processes = [
+        (placed.element, port) for placed, port in iphs.circuit.of(DissipativePort, Conductor)
+    ]
     k = [name for name, _ in processes].index(element)
     port = processes[k][1]
     known = _point(iphs, port, given, solver)
@@ -87,7 +96,9 @@ def _named(iphs: IPHS, expr: sp.Expr) -> sp.Expr:
     return expr
 
 
-def _point(iphs: IPHS, port: Resistor | Conductor, given: Values, solver: Asks) -> Values | None:
+def _point(
+    iphs: IPHS, port: DissipativePort | Conductor, given: Values, solver: Asks
+) -> Values | None:
     """Return simple numbers of the domain, with those given, for parameters and temperatures."""
     assumptions, letter = assumptions_of(iphs), getattr(port, "letter", "")
     where = [*assumptions.where]

@@ -14,7 +14,7 @@ from piezo_sym.expressions.calculus import derivative
 from piezo_sym.expressions.tree import Cmp, Expr, Sym, names, replace
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import law_of
-from piezo_sym.spec.elements.ports import Conductor, Coupling, Resistor, Source, Storage
+from piezo_sym.spec.elements.ports import Conductor, Coupling, DissipativePort, Source, Storage
 from piezo_sym.spec.tables import conditions
 
 
@@ -24,11 +24,11 @@ def ties(iphs: IPHS) -> Mapping[str, Cmp | None]:
     if not bounded:
         return {}
     words = dict(_words(iphs))
-    processes = iphs.circuit.of(Resistor, Conductor)
+    processes = iphs.circuit.of(DissipativePort, Conductor)
     return {
         placed.element: None if tree is None else Cmp("=", Sym(port.letter), tree)
         for (placed, port), drive in zip(processes, iphs.system.drive, strict=True)
-        if isinstance(port, Resistor) and not bounded.isdisjoint(_symbols(iphs, drive))
+        if isinstance(port, DissipativePort) and not bounded.isdisjoint(_symbols(iphs, drive))
         for tree in (_tree(drive, words),)
     }
 

@@ -20,7 +20,7 @@ from piezo_sym.run.engine.batch import Batch, Stepping
 from piezo_sym.run.engine.library import Layout
 from piezo_sym.run.inputs import Inputs, Segment
 from piezo_sym.run.runs import Runs, Watch, stuck
-from piezo_sym.run.system import System, Systems
+from piezo_sym.run.system import DrivenModule, DrivenModules
 
 #: The first step, the longest, and the longest of the survey of scales, in parts of the run.
 FIRST, LONGEST, SURVEYED = 1e-5, 0.25, 1 / 64
@@ -51,7 +51,7 @@ class FixedStep:
 
 
 def collocate(
-    systems: Sequence[System],
+    systems: Sequence[DrivenModule],
     engine: Engine,
     x: FloatArray,
     times: FloatArray,
@@ -80,7 +80,7 @@ def collocate(
     ------
     RunError : inputs are so fast that no number of steps would do.
     """
-    known = Systems.of(systems)
+    known = DrivenModules.of(systems)
     first = known[0]
     how = stepping(first, accuracy, stages)
     batch = Batch(
@@ -123,7 +123,7 @@ def through(batch: Batch, watch: Watch | None = None) -> None:
             watch(float(np.mean(batch.records["t"])))
 
 
-def results(batch: Batch, systems: Systems, x: FloatArray, times: FloatArray) -> Runs:
+def results(batch: Batch, systems: DrivenModules, x: FloatArray, times: FloatArray) -> Runs:
     """Return the results of runs that began at x (runs, n)."""
     records = batch.records
     work = np.stack([records[n] for n in ("steps", "iterations", "rejected")], axis=1)
@@ -134,7 +134,7 @@ def results(batch: Batch, systems: Systems, x: FloatArray, times: FloatArray) ->
     return Runs(systems, x, times, *arrays, tuple(errors), numerical=batch.extra > 0)
 
 
-def stepping(system: System, accuracy: float | FixedStep, stages: int | None) -> Stepping:
+def stepping(system: DrivenModule, accuracy: float | FixedStep, stages: int | None) -> Stepping:
     """Return how a run steps, with a tolerance or with a fixed step."""
     if isinstance(accuracy, FixedStep):
         h = accuracy.length

@@ -1,7 +1,7 @@
 """Runs of the discrete gradient as `simulate` gives them: what they took, and why one stopped.
 
-Input: a `System`, its engine, the state x (n,) at t = 0, the sample times, and a tolerance or a
-step.  Output: a `Trajectory` whose samples lie in the domain, and the attributes of the run; or a
+Input: a `DrivenModule`, its engine, the state x (n,) at t = 0, the sample times, and a tolerance or
+a step.  Output: a `Trajectory` whose samples lie in the domain, and the attributes of the run; or a
 `RunError` that says which condition of the domain the state leaves, when, and with which values.
 """
 
@@ -16,7 +16,7 @@ from piezo_sym.run.guard import check_inputs
 from piezo_sym.run.ledger import Trajectory
 from piezo_sym.run.runs import METHOD, Watch
 from piezo_sym.run.scipy_runs import cause
-from piezo_sym.run.system import System
+from piezo_sym.run.system import DrivenModule
 
 #: Of a step: one that is shorter by less is rounded, not cut.
 SAME = 1e-6
@@ -25,7 +25,7 @@ LEAST_RTOL = 1e-12
 
 
 def compiled_run(
-    system: System,
+    system: DrivenModule,
     engine: Engine,
     x: FloatArray,
     samples: FloatArray,
@@ -75,7 +75,7 @@ def compiled_run(
     return trajectory, {"method": METHOD, **accuracy, **work}
 
 
-def shortest_step(system: System, samples: FloatArray, step: float) -> float:
+def shortest_step(system: DrivenModule, samples: FloatArray, step: float) -> float:
     """Return the shortest step [s] of a run with a fixed one, but for halvings.
 
     Steps end at samples and at breaks of inputs; those between two of them are equal.

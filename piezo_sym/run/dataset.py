@@ -1,6 +1,6 @@
 """The Dataset of a run: every quantity by name, with units, ready for netCDF.
 
-Input: a `System`, the sample times (nt,), a `Trajectory`.  Output: an `xarray.Dataset` with
+Input: a `DrivenModule`, the sample times (nt,), a `Trajectory`.  Output: an `xarray.Dataset` with
 coordinate `time` [s] and, for each bank, its lanes 1..r under the element's name.
 """
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from piezo_sym.run.checks import FloatArray
     from piezo_sym.run.ledger import Trajectory
     from piezo_sym.run.module import Record
-    from piezo_sym.run.system import System
+    from piezo_sym.run.system import DrivenModule
 
 Variable: TypeAlias = tuple[tuple[str, ...], "NDArray[Any] | pandas.Index[Any]", dict[str, Any]]
 Named: TypeAlias = tuple[str, Variable]
@@ -33,7 +33,7 @@ ENTROPY_LEFT = "S - S(0) - entropy produced - entropy exchanged"
 
 
 def to_dataset(
-    system: System, times: FloatArray, trajectory: Trajectory, attrs: Mapping[str, Any]
+    system: DrivenModule, times: FloatArray, trajectory: Trajectory, attrs: Mapping[str, Any]
 ) -> xarray.Dataset:
     """Return a run as a Dataset; `attrs` are added to its own attributes.
 
@@ -53,7 +53,7 @@ def to_dataset(
     return xarray.Dataset(data, coords, model_attrs(system) | dict(attrs))
 
 
-def model_attrs(system: System) -> dict[str, Any]:
+def model_attrs(system: DrivenModule) -> dict[str, Any]:
     """Return the attributes that say what was run: the model and the parameters used."""
     used = vars(system.parameters).items()
     parameters = {f"parameter_{name}": np.asarray(value)[()] for name, value in used}
@@ -62,7 +62,7 @@ def model_attrs(system: System) -> dict[str, Any]:
     return {**told, **parameters}
 
 
-def coordinates(system: System, times: FloatArray) -> Iterator[Named]:
+def coordinates(system: DrivenModule, times: FloatArray) -> Iterator[Named]:
     """Yield the time and the lanes of each bank.
 
     As pandas indexes: xarray makes them of arrays only after trying to import pint.
@@ -75,7 +75,7 @@ def coordinates(system: System, times: FloatArray) -> Iterator[Named]:
         yield bank, ((bank,), numbers, described("1", f"lane of bank '{bank}'"))
 
 
-def variables(system: System, trajectory: Trajectory) -> Iterator[Named]:
+def variables(system: DrivenModule, trajectory: Trajectory) -> Iterator[Named]:
     """Yield every variable of the Dataset, in order."""
     module, p = system.module, system.parameters
     x, u = trajectory.states, trajectory.inputs
@@ -89,7 +89,7 @@ def variables(system: System, trajectory: Trajectory) -> Iterator[Named]:
     yield from ledger(system, trajectory)
 
 
-def ledger(system: System, trajectory: Trajectory) -> Iterator[Named]:
+def ledger(system: DrivenModule, trajectory: Trajectory) -> Iterator[Named]:
     """Yield what the ports and processes did since t = 0, and what the two balances leave over."""
     module, p, start = system.module, system.parameters, trajectory.start
     x = trajectory.states
@@ -113,7 +113,7 @@ def ledger(system: System, trajectory: Trajectory) -> Iterator[Named]:
     yield "entropy_residual", (("time",), entropy, described("J/K", f"{ENTROPY_LEFT}"))
 
 
-def integrals(system: System, trajectory: Trajectory) -> list[FloatArray]:
+def integrals(system: DrivenModule, trajectory: Trajectory) -> list[FloatArray]:
     """Return what was supplied, released as heat, produced and exchanged, rows (., nt) each."""
     module = system.module
     processes = system.rows(module.PROCESSES)
@@ -130,7 +130,7 @@ def numerical(rows: FloatArray) -> Iterator[Named]:
 
 
 def spread(
-    system: System,
+    system: DrivenModule,
     records: Sequence[Record],
     values: FloatArray,
     prefix: str = "",

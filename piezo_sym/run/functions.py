@@ -1,7 +1,8 @@
 """A user's function of time as a signal, and the search for its jumps.
 
-Input: a function of one time [s].  Output: a `Function`, whose breaks are the first times after the
-jumps, to the last digit.  A pulse shorter than an interval of the search is found only by chance.
+Input: a function of one time [s].  Output: an `InputFunction`, whose breaks are the first times
+after the jumps, to the last digit.  A pulse shorter than an interval of the search is found only by
+chance.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ STEEP = 1e-6
 
 @final
 @dataclass(frozen=True)
-class Function(Signal):
+class InputFunction(Signal):
     """A user's function of one time, given arrays of times where it takes them."""
 
     function: Callable[[float], object]

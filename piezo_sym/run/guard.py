@@ -14,7 +14,7 @@ from piezo_sym.errors import RunError, listing
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.inputs import Segment
 from piezo_sym.run.module import row_name
-from piezo_sym.run.system import System
+from piezo_sym.run.system import DrivenModule
 
 NAME = re.compile(r"[A-Za-z_]\w*")
 MOST_VALUES = 4
@@ -24,7 +24,7 @@ CHECKS, MOST_NUMBERS = 4, 5_000_000
 Value = tuple[str, str, "float | FloatArray"]  # label, unit, value
 
 
-def check_start(system: System, x: FloatArray) -> None:
+def check_start(system: DrivenModule, x: FloatArray) -> None:
     """Raise `RunError` if the run cannot start from the state x (n,) at t = 0."""
     segment = system.inputs.segments[0]
     u = segment.at(segment.start)
@@ -35,7 +35,7 @@ def check_start(system: System, x: FloatArray) -> None:
         raise RunError(what, place(system), remedy="check the parameters") from cause
 
 
-def check_point(system: System, t: float, x: FloatArray, u: FloatArray) -> None:
+def check_point(system: DrivenModule, t: float, x: FloatArray, u: FloatArray) -> None:
     """Raise `RunError` if the state x (n,) with inputs u (m,) is outside the domain."""
     if np.any(system.violated(x, u)):
         raise domain_error(system, t, x, u)
@@ -44,7 +44,7 @@ def check_point(system: System, t: float, x: FloatArray, u: FloatArray) -> None:
 
 
 def crossing(
-    system: System,
+    system: DrivenModule,
     left: float,
     right: float,
     path: Callable[[float], tuple[FloatArray, FloatArray]],
@@ -61,7 +61,7 @@ def crossing(
     return right
 
 
-def check_inputs(system: System, x: FloatArray, samples: FloatArray) -> None:
+def check_inputs(system: DrivenModule, x: FloatArray, samples: FloatArray) -> None:
     """Raise `RunError` if inputs leave the domain; steps look at conditions on the state alone.
 
     Conditions on inputs do not depend on the state: that at t = 0, x (n,), stands for all.
@@ -77,7 +77,7 @@ def check_inputs(system: System, x: FloatArray, samples: FloatArray) -> None:
             raise _left(system, segment, x, times[: np.argmax(failed) + 1])
 
 
-def input_conditions(system: System) -> tuple[list[int], set[int]]:
+def input_conditions(system: DrivenModule) -> tuple[list[int], set[int]]:
     """Return which conditions are on inputs, and the rows of the inputs that they name."""
     known = {record.name for record in system.module.INPUTS}
     conditions = enumerate(condition.text for condition in system.module.DOMAIN)
@@ -86,14 +86,14 @@ def input_conditions(system: System) -> tuple[list[int], set[int]]:
     return limits, {n for n, record in enumerate(system.module.INPUTS) if record.name in said}
 
 
-def inputs_move(system: System) -> bool:
+def inputs_move(system: DrivenModule) -> bool:
     """Return whether inputs that conditions name may change: if not, t = 0 tells all of them."""
     _, rows = input_conditions(system)
     first, *others = system.inputs.segments
     return bool(rows) and bool(others or rows & {row for row, _ in first.varying})
 
 
-def _left(system: System, segment: Segment, x: FloatArray, times: FloatArray) -> RunError:
+def _left(system: DrivenModule, segment: Segment, x: FloatArray, times: FloatArray) -> RunError:
     """Return the error of inputs that leave the domain at the last of `times`, or just before."""
     t = float(times[-1])
     if times.size > 1:
@@ -102,7 +102,7 @@ def _left(system: System, segment: Segment, x: FloatArray, times: FloatArray) ->
 
 
 def _checked_times(
-    system: System, segment: Segment, samples: FloatArray, most: float
+    system: DrivenModule, segment: Segment, samples: FloatArray, most: float
 ) -> FloatArray:
     """Return the times of a segment at which its inputs are checked, samples among them."""
     part = (segment.stop - segment.start) / system.inputs.duration
@@ -112,7 +112,7 @@ def _checked_times(
     return np.union1d(even, inner)
 
 
-def domain_error(system: System, t: float, x: FloatArray, u: FloatArray) -> RunError:
+def domain_error(system: DrivenModule, t: float, x: FloatArray, u: FloatArray) -> RunError:
     """Return the error for a state outside the domain: the condition nearest to the cause."""
     failed = np.flatnonzero(system.violated(x, u)).tolist()
     row = min(failed, key=lambda k: depth(system, system.module.DOMAIN[k].text))
@@ -129,7 +129,7 @@ def domain_error(system: System, t: float, x: FloatArray, u: FloatArray) -> RunE
     return RunError(what, place(system), expected, remedy)
 
 
-def rate_error(system: System, t: float, x: FloatArray, u: FloatArray) -> RunError:
+def rate_error(system: DrivenModule, t: float, x: FloatArray, u: FloatArray) -> RunError:
     """Return the error for a state in the domain whose rate of change is no number."""
     row = int(np.argmin(system.finite(x, u)))
     name = row_name(system.module.STATES, system.parameters, row)
@@ -139,12 +139,12 @@ def rate_error(system: System, t: float, x: FloatArray, u: FloatArray) -> RunErr
     return RunError(f"{what} ({values})" if values else what, place(system), "a number", remedy)
 
 
-def place(system: System) -> str:
+def place(system: DrivenModule) -> str:
     """Return where an error of this run is."""
     return f"model '{system.module.NAME}'"
 
 
-def depth(system: System, text: str) -> int:
+def depth(system: DrivenModule, text: str) -> int:
     """Return how far a condition is from what a user sets: 0 parameters, 1 inputs, 2 states."""
     names = set(NAME.findall(text))
     inputs = {record.name for record in system.module.INPUTS}
@@ -154,7 +154,7 @@ def depth(system: System, text: str) -> int:
     return 1 if names <= parameters | inputs else 2
 
 
-def remedies(system: System, text: str) -> list[str]:
+def remedies(system: DrivenModule, text: str) -> list[str]:
     """Return what a user can change to meet a condition."""
     module, level = system.module, depth(system, text)
     names = set(NAME.findall(text))
@@ -163,7 +163,7 @@ def remedies(system: System, text: str) -> list[str]:
     return [parameters, inputs, ["the inputs", "the parameters", "the initial state"]][level]
 
 
-def values_in(system: System, text: str, x: FloatArray, u: FloatArray) -> Iterator[Value]:
+def values_in(system: DrivenModule, text: str, x: FloatArray, u: FloatArray) -> Iterator[Value]:
     """Yield the value of every symbol in a condition's text, or the temperatures if none."""
     known = {value[0]: value for value in symbols(system, x, u)}
     bodies = body_values(system, x)
@@ -173,7 +173,7 @@ def values_in(system: System, text: str, x: FloatArray, u: FloatArray) -> Iterat
     yield from found or bodies
 
 
-def symbols(system: System, x: FloatArray, u: FloatArray) -> Iterator[Value]:
+def symbols(system: DrivenModule, x: FloatArray, u: FloatArray) -> Iterator[Value]:
     """Yield every symbol that a condition can use."""
     module = system.module
     for record, part in zip(module.STATES, system.rows(module.STATES), strict=True):
@@ -185,7 +185,7 @@ def symbols(system: System, x: FloatArray, u: FloatArray) -> Iterator[Value]:
     yield from body_values(system, x)
 
 
-def body_values(system: System, x: FloatArray) -> list[Value]:
+def body_values(system: DrivenModule, x: FloatArray) -> list[Value]:
     """Return the temperature of each body."""
     with np.errstate(all="ignore"):
         values = system.module.temperatures(x, system.parameters)

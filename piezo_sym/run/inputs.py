@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.run.checks import FloatArray, is_number, known_keys, number
-from piezo_sym.run.functions import Function
+from piezo_sym.run.functions import InputFunction
 from piezo_sym.run.module import GeneratedModule, others
 from piezo_sym.run.samples import Samples, read_samples
 from piezo_sym.run.signals import Constant, Signal
@@ -160,7 +160,7 @@ def as_signal(value: object, where: str) -> Signal:
     if isinstance(value, tuple | list) and len(value) == 2:
         return read_samples(value[0], value[1], where)
     if callable(value) and not isinstance(value, type):
-        return Function(value, where)
+        return InputFunction(value, where)
     expected = "a number, (t, values), a function of t or a signal"
     what = f"{quote(value)} is no input"
     raise UsageError(what, where, expected)

@@ -1,7 +1,7 @@
 """Integration of dx/dt = rhs(x, u(t)) by SciPy's solvers, step by step, restarted at input breaks.
 
-Input: a `System`, the state x (n,) at t = 0, the sample times and a `Tolerance`.  Output: batches
-of accepted steps, each with its interpolant, the samples that lie in it, and its end.
+Input: a `DrivenModule`, the state x (n,) at t = 0, the sample times and a `Tolerance`.  Output:
+batches of accepted steps, each with its interpolant, the samples that lie in it, and its end.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from piezo_sym.run.checks import FloatArray
     from piezo_sym.run.inputs import Segment
-    from piezo_sym.run.system import System
+    from piezo_sym.run.system import DrivenModule
 
 METHODS = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
 IMPLICIT = ("Radau", "BDF", "LSODA")
@@ -67,7 +67,7 @@ class Stretch:
 
 @final
 @dataclass(frozen=True)
-class Batch:
+class Stretches:
     """Consecutive stretches of one segment, and the work they took."""
 
     segment: Segment
@@ -77,8 +77,8 @@ class Batch:
 
 
 def batches(
-    system: System, x: FloatArray, times: FloatArray, tolerance: Tolerance
-) -> Iterator[Batch]:
+    system: DrivenModule, x: FloatArray, times: FloatArray, tolerance: Tolerance
+) -> Iterator[Stretches]:
     """Yield the run from the state x (n,) at t = 0, batch by batch.
 
     The start of each segment is a batch of its own, so that its state and inputs are looked at
@@ -89,13 +89,13 @@ def batches(
     RunError : the solver cannot go on; what it had accepted is yielded before.
     """
     for segment in system.inputs.segments:
-        yield Batch(segment, (start_stretch(segment, x, times),), 0, 0)
+        yield Stretches(segment, (start_stretch(segment, x, times),), 0, 0)
         x = yield from segment_batches(system, segment, x, times, tolerance)
 
 
 def segment_batches(
-    system: System, segment: Segment, x: FloatArray, times: FloatArray, tolerance: Tolerance
-) -> Generator[Batch, None, FloatArray]:
+    system: DrivenModule, segment: Segment, x: FloatArray, times: FloatArray, tolerance: Tolerance
+) -> Generator[Stretches, None, FloatArray]:
     """Yield the accepted steps of one segment in batches; return the state at its end."""
     most = max(1, min(MOST_STOPS, BATCH_NUMBERS // x.size))
     pending: list[Stretch] = []
@@ -107,12 +107,12 @@ def segment_batches(
                 pending.append(stretch)
                 held += stretch.stops.size
                 if held >= most:
-                    yield Batch(segment, tuple(pending), steps, spent - counted)
+                    yield Stretches(segment, tuple(pending), steps, spent - counted)
                     pending, held, steps, counted = [], 0, 0, spent
     except PiezoError:
-        yield Batch(segment, tuple(pending), steps, spent - counted)
+        yield Stretches(segment, tuple(pending), steps, spent - counted)
         raise
-    yield Batch(segment, tuple(pending), steps, spent - counted)
+    yield Stretches(segment, tuple(pending), steps, spent - counted)
     return x
 
 
@@ -139,7 +139,7 @@ def step_stretch(segment: Segment, solver: OdeSolver, times: FloatArray) -> Stre
 
 
 def accepted(
-    system: System, segment: Segment, x: FloatArray, tolerance: Tolerance
+    system: DrivenModule, segment: Segment, x: FloatArray, tolerance: Tolerance
 ) -> Iterator[OdeSolver]:
     """Yield the solver of one segment after each step it accepts; `nfev` counts on over restarts.
 
@@ -179,7 +179,7 @@ def advanced(solver: OdeSolver) -> OdeSolver:
 
 
 def new_solver(
-    system: System,
+    system: DrivenModule,
     segment: Segment,
     x: FloatArray,
     tolerance: Tolerance,
@@ -209,7 +209,7 @@ def new_solver(
     return solver
 
 
-def stopped(system: System, tolerance: Tolerance, t: float, reason: str) -> RunError:
+def stopped(system: DrivenModule, tolerance: Tolerance, t: float, reason: str) -> RunError:
     """Return the error of a solver that cannot go on."""
     what = f"solver {tolerance.method} cannot go on from t = {t:.6g} s: {reason.rstrip('.')}"
     remedy = "look at the inputs and the state there, try another method or rtol"

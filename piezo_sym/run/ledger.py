@@ -19,9 +19,9 @@ import numpy as np
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.guard import crossing, domain_error, rate_error
 from piezo_sym.run.inputs import Segment
-from piezo_sym.run.integrate import Batch, Stretch
+from piezo_sym.run.integrate import Stretch, Stretches
 from piezo_sym.run.module import exchanges, row_count
-from piezo_sym.run.system import System
+from piezo_sym.run.system import DrivenModule
 
 NODES = 4  # exact to degree 7: above every interpolant's own order
 
@@ -43,7 +43,7 @@ class Trajectory:
 
 
 def record(
-    system: System, start: FloatArray, batches: Iterable[Batch], times: FloatArray
+    system: DrivenModule, start: FloatArray, batches: Iterable[Stretches], times: FloatArray
 ) -> Trajectory:
     """Return the trajectory at `times` (nt,) of a run from `start` (n,) that comes in batches.
 
@@ -67,14 +67,14 @@ def record(
     return Trajectory(start, states, inputs, integrals, steps, evaluations)
 
 
-def row_counts(system: System) -> tuple[int, int, int]:
+def row_counts(system: DrivenModule) -> tuple[int, int, int]:
     """Return the numbers of states, inputs and integrals."""
     module, p = system.module, system.parameters
     integrals = len(module.OUTPUTS) + 2 * row_count(module.PROCESSES, p) + len(exchanges(module))
     return row_count(module.STATES, p), len(module.INPUTS), integrals
 
 
-def looked_at(system: System, batch: Batch) -> tuple[FloatArray, FloatArray]:
+def looked_at(system: DrivenModule, batch: Stretches) -> tuple[FloatArray, FloatArray]:
     """Return states (n, k) and inputs (m, k) at a batch's stops, all inside the domain."""
     x = np.concatenate([stretch.path(stretch.stops) for stretch in batch.stretches], axis=1)
     stops = np.concatenate([stretch.stops for stretch in batch.stretches])
@@ -89,7 +89,7 @@ def looked_at(system: System, batch: Batch) -> tuple[FloatArray, FloatArray]:
     return x, u
 
 
-def leaving(system: System, batch: Batch, stop: int) -> Exception:
+def leaving(system: DrivenModule, batch: Stretches, stop: int) -> Exception:
     """Return the error of a batch whose stop number `stop` is the first outside the domain."""
     for stretch in batch.stretches:
         if stop < stretch.stops.size:
@@ -106,7 +106,7 @@ def point(stretch: Stretch, segment: Segment, t: float) -> tuple[FloatArray, Flo
     return stretch.path(np.array([t]))[:, 0], segment.at(t)
 
 
-def increments(system: System, batch: Batch) -> FloatArray:
+def increments(system: DrivenModule, batch: Stretches) -> FloatArray:
     """Return the integrals between one stop and the next, (integrals, k)."""
     nodes, weights = np.polynomial.legendre.leggauss(NODES)
     states, times, lengths = [], [], []

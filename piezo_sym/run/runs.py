@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from piezo_sym.errors import RunError
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.ledger import Trajectory
-from piezo_sym.run.system import System, Systems
+from piezo_sym.run.system import DrivenModule, DrivenModules
 
 METHOD = "discrete_gradient"
 #: Told the time that runs have reached, now and then; what it raises ends them.
@@ -38,7 +38,7 @@ class Runs:
     errors : of each run, its error, or None.
     """
 
-    systems: Systems
+    systems: DrivenModules
     start: FloatArray
     times: FloatArray
     states: FloatArray
@@ -65,7 +65,7 @@ class Runs:
         )
 
 
-def stuck(system: System, t: float, x: FloatArray) -> RunError:
+def stuck(system: DrivenModule, t: float, x: FloatArray) -> RunError:
     """Return the error of a run that cannot go on: it says when and where."""
     why = "no step stays in the domain, or a law that jumps holds the state there"
     remedy = "look at inputs and state; allow more room in [domain]; tanh(v/w) for sign(v)"

@@ -1,6 +1,6 @@
 """Runs by SciPy's solvers: as `simulate` gives them, coarse ones for scales, and to find causes.
 
-Input: a `System` and the state x (n,) at t = 0.  Output: a `Trajectory` and what it took; the
+Input: a `DrivenModule` and the state x (n,) at t = 0.  Output: a `Trajectory` and what it took; the
 largest magnitude of each state, so that absolute tolerances fit its unit; or the error that says
 why a run in C stopped.
 """
@@ -15,10 +15,10 @@ import numpy as np
 from piezo_sym.errors import PiezoError, RunError
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.inputs import Segment
-from piezo_sym.run.integrate import Batch, Tolerance, accepted, batches
+from piezo_sym.run.integrate import Stretches, Tolerance, accepted, batches
 from piezo_sym.run.ledger import Trajectory, record
 from piezo_sym.run.runs import Watch
-from piezo_sym.run.system import System
+from piezo_sym.run.system import DrivenModule
 
 #: Absolute tolerances: this part of rtol times the scale of each state.
 ATOL_FACTOR = 1e-3
@@ -34,7 +34,7 @@ MOST_LOOKED = 20_000
 
 
 def by_scipy(
-    system: System,
+    system: DrivenModule,
     x: FloatArray,
     samples: FloatArray,
     method: str,
@@ -56,7 +56,7 @@ def by_scipy(
     return trajectory, work
 
 
-def watched(found: Iterable[Batch], watch: Watch | None) -> Iterator[Batch]:
+def watched(found: Iterable[Stretches], watch: Watch | None) -> Iterator[Stretches]:
     """Yield batches, and tell the time that each begins from."""
     for batch in found:
         if watch and batch.stretches:
@@ -64,7 +64,9 @@ def watched(found: Iterable[Batch], watch: Watch | None) -> Iterator[Batch]:
         yield batch
 
 
-def magnitudes(system: System, x: FloatArray, most: int = MOST_STEPS) -> tuple[FloatArray, int]:
+def magnitudes(
+    system: DrivenModule, x: FloatArray, most: int = MOST_STEPS
+) -> tuple[FloatArray, int]:
     """Return the scale of each state (n,), lanes of a bank sharing theirs, and the evaluations.
 
     The coarse run takes at most `most` steps. Where it stops early, its last states may be on
@@ -82,7 +84,7 @@ def magnitudes(system: System, x: FloatArray, most: int = MOST_STEPS) -> tuple[F
     return scale, evaluations
 
 
-def coarse_run(system: System, x: FloatArray) -> Iterator[tuple[float, FloatArray, int]]:
+def coarse_run(system: DrivenModule, x: FloatArray) -> Iterator[tuple[float, FloatArray, int]]:
     """Yield time, scale met so far (n,) and cost of each step of a coarse run in the domain.
 
     Nothing is known about the scales at first, so LSODA starts again where a state has outgrown
@@ -110,7 +112,7 @@ def coarse_run(system: System, x: FloatArray) -> Iterator[tuple[float, FloatArra
                     break
 
 
-def cause(system: System, x: FloatArray, samples: FloatArray, stopped: RunError) -> RunError:
+def cause(system: DrivenModule, x: FloatArray, samples: FloatArray, stopped: RunError) -> RunError:
     """Return why a run stopped: the condition that the state leaves, or else what it said itself.
 
     Steps shrink towards the edge of the domain and do not reach it.  LSODA goes over the edge, and
@@ -125,7 +127,7 @@ def cause(system: System, x: FloatArray, samples: FloatArray, stopped: RunError)
     return stopped
 
 
-def going(parts: Iterator[Batch]) -> Iterator[Batch]:
+def going(parts: Iterator[Stretches]) -> Iterator[Stretches]:
     """Yield batches for as long as a solver goes on, and not too long."""
     steps = 0
     try:

@@ -23,7 +23,7 @@ from piezo_sym.run.module import checked
 from piezo_sym.run.parameters import read_initial, read_parameters, sample_times
 from piezo_sym.run.runs import METHOD
 from piezo_sym.run.scipy_runs import by_scipy
-from piezo_sym.run.system import System
+from piezo_sym.run.system import DrivenModule
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -148,7 +148,7 @@ def simulate(
     refuse_progress(progress)
     samples = sample_times(times, every, step, end)
     values = read_parameters(module, parameters)
-    system = System(module, values, read_inputs(module, inputs, end))
+    system = DrivenModule(module, values, read_inputs(module, inputs, end))
     x = read_initial(module, values, system.inputs.segments[0].at(0.0), initial)
     check_start(system, x)
     chosen = choose_method(module, named, step)

@@ -27,14 +27,14 @@ from piezo_sym.run.ledger import Trajectory
 from piezo_sym.run.module import GeneratedModule, checked, row_names
 from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
 from piezo_sym.run.signals import Constant
-from piezo_sym.run.system import System
+from piezo_sym.run.system import DrivenModule
 
 
 @final
 class Limits:
     """The conditions of the domain on inputs alone, which C looks at before each step."""
 
-    def __init__(self, system: System) -> None:
+    def __init__(self, system: DrivenModule) -> None:
         conditions, _ = input_conditions(system)
         domain = system.module.DOMAIN
         self.conditions = np.array(conditions, dtype="l")
@@ -109,7 +109,7 @@ class Stepper:
         values = read_parameters(module, parameters)
         known = read_inputs(module, inputs, self._h)
         refuse_signals(module, known)
-        system = self._system = System(module, values, known)
+        system = self._system = DrivenModule(module, values, known)
         x = read_initial(module, values, system.inputs.segments[0].at(0.0), initial)
         check_start(system, x)
         self.states = tuple(row_names(module.STATES, values))

@@ -1,6 +1,7 @@
 """A run's fixed parts: the module, its parameters and inputs, and its functions of x and u alone.
 
-Input: a generated module, `Parameters`, `Inputs`.  Output: `System`; of many runs `Systems`.
+Input: a generated module, `Parameters`, `Inputs`.  Output: `DrivenModule`; of many runs
+`DrivenModules`.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ FLOOR = 1e-15  # so that no tolerance is 0
 
 @final
 @dataclass(frozen=True)
-class System:
+class DrivenModule:
     """A module with parameters and inputs; x is (n, *batch), u is (m, *batch)."""
 
     module: GeneratedModule
@@ -81,7 +82,7 @@ class System:
 
 @final
 @dataclass(frozen=True, eq=False)
-class Systems(Sequence[System]):
+class DrivenModules(Sequence[DrivenModule]):
     """Systems of one module with equal inputs, each made when asked for.
 
     Attributes
@@ -95,12 +96,12 @@ class Systems(Sequence[System]):
     inputs: Inputs
 
     @staticmethod
-    def of(systems: Sequence[System]) -> Systems:
+    def of(systems: Sequence[DrivenModule]) -> DrivenModules:
         """Return systems with equal inputs as one value."""
-        if isinstance(systems, Systems):
+        if isinstance(systems, DrivenModules):
             return systems
         first = systems[0]
-        return Systems(
+        return DrivenModules(
             first.module, ParameterTable.of([one.parameters for one in systems]), first.inputs
         )
 
@@ -109,15 +110,15 @@ class Systems(Sequence[System]):
         return len(self.parameters)
 
     @overload
-    def __getitem__(self, k: int) -> System: ...
+    def __getitem__(self, k: int) -> DrivenModule: ...
     @overload
-    def __getitem__(self, k: slice) -> Systems: ...
-    def __getitem__(self, k: int | slice) -> System | Systems:
+    def __getitem__(self, k: slice) -> DrivenModules: ...
+    def __getitem__(self, k: int | slice) -> DrivenModule | DrivenModules:
         """Return one system, or some."""
         if isinstance(k, slice):
-            return Systems(self.module, self.parameters[k], self.inputs)
-        return System(self.module, self.parameters[k], self.inputs)
+            return DrivenModules(self.module, self.parameters[k], self.inputs)
+        return DrivenModule(self.module, self.parameters[k], self.inputs)
 
-    def some(self, runs: Sequence[int]) -> Systems:
+    def some(self, runs: Sequence[int]) -> DrivenModules:
         """Return some of the systems."""
-        return Systems(self.module, self.parameters.some(runs), self.inputs)
+        return DrivenModules(self.module, self.parameters.some(runs), self.inputs)

@@ -15,9 +15,9 @@ from piezo_sym.spec.elements.ports import (
     Body,
     Conductor,
     Coupling,
+    DissipativePort,
     Exchange,
     Port,
-    Resistor,
     Source,
     Storage,
 )
@@ -110,7 +110,7 @@ def _named(entry: Placed, taken: set[str], heat: dict[str, str]) -> Port:
     match entry.port:
         case Storage() as port:
             return replace(port, costate=new(port.costate))
-        case Resistor() as port:
+        case DissipativePort() as port:
             return replace(port, output=new(port.output), effort=new(port.effort))
         case Conductor() as port:
             return replace(port, output=new(port.output))

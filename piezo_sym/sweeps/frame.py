@@ -14,7 +14,7 @@ import xarray
 from piezo_sym.errors import UsageError
 from piezo_sym.run.dataset import coordinates, described, model_attrs, spread
 from piezo_sym.run.parameters import read_parameters
-from piezo_sym.run.system import System
+from piezo_sym.run.system import DrivenModule
 from piezo_sym.sweeps.group import inputs_at_point
 from piezo_sym.sweeps.quantities import layout
 from piezo_sym.sweeps.reduce import weights
@@ -56,11 +56,11 @@ def frame_of(plan: Plan, module: GeneratedModule) -> xarray.Dataset:
     return xarray.Dataset({} if own else inputs, needed, attrs_of(plan, system))
 
 
-def widest(plan: Plan, module: GeneratedModule) -> System:
+def widest(plan: Plan, module: GeneratedModule) -> DrivenModule:
     """Return a system whose banks have the most lanes that the sweep gives them."""
     sizes = {f"{bank}_count": size for bank, size in plan.largest_banks.items()}
     base = read_parameters(module, {**plan.parameters, **sizes})
-    return System(module, base, inputs_at_point(plan, module, origin(plan)))
+    return DrivenModule(module, base, inputs_at_point(plan, module, origin(plan)))
 
 
 def origin(plan: Plan) -> NDArray[np.intp]:
@@ -69,7 +69,7 @@ def origin(plan: Plan) -> NDArray[np.intp]:
 
 
 def inputs_of(
-    plan: Plan, module: GeneratedModule, system: System
+    plan: Plan, module: GeneratedModule, system: DrivenModule
 ) -> Iterator[tuple[str, xarray.Variable]]:
     """Yield each input over time, or its last or mean value; swept ones are named `u_<input>`."""
     swept = {target.name: n for n, target in plan.swept() if target.kind == "inputs"}
@@ -96,7 +96,7 @@ def reduced(plan: Plan, wave: xarray.Variable) -> xarray.Variable:
     return xarray.Variable(wave.dims[:-1], mean, wave.attrs)
 
 
-def attrs_of(plan: Plan, system: System) -> dict[str, Any]:
+def attrs_of(plan: Plan, system: DrivenModule) -> dict[str, Any]:
     """Return the attributes of the Dataset: model, parameters that are not swept, method."""
     swept = {f"parameter_{t.name}" for _, t in plan.swept() if t.kind == "parameters"}
     attrs = {name: value for name, value in model_attrs(system).items() if name not in swept}

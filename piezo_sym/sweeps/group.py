@@ -20,7 +20,7 @@ from piezo_sym.run.module import GeneratedModule, rows
 from piezo_sym.run.parameter_table import Column, ParameterTable
 from piezo_sym.run.parameters import own_initial, read_parameters
 from piezo_sym.run.signals import Constant, Signal
-from piezo_sym.run.system import Systems
+from piezo_sym.run.system import DrivenModules
 from piezo_sym.sweeps.plan import Plan
 from piezo_sym.sweeps.targets import Target
 
@@ -37,7 +37,7 @@ class Group:
     errors : of each run, why it cannot start, or "".
     """
 
-    systems: Systems
+    systems: DrivenModules
     start: FloatArray
     errors: list[str]
 
@@ -53,7 +53,7 @@ def group_at(
         for n, target in plan.swept()
         if target.kind == "parameters" and not target.is_size
     }
-    systems = Systems(module, ParameterTable(base, len(points), columns), inputs)
+    systems = DrivenModules(module, ParameterTable(base, len(points), columns), inputs)
     start, errors = starts(plan, systems, points)
     check_starts(systems, engine, start, errors)
     return Group(systems, start, errors)
@@ -97,7 +97,9 @@ def base_at_point(plan: Plan, module: GeneratedModule, point: NDArray[np.intp]) 
     return read_parameters(module, {**plan.parameters, **sizes})
 
 
-def starts(plan: Plan, systems: Systems, points: NDArray[np.intp]) -> tuple[FloatArray, list[str]]:
+def starts(
+    plan: Plan, systems: DrivenModules, points: NDArray[np.intp]
+) -> tuple[FloatArray, list[str]]:
     """Return the states (runs, n) at t = 0, nan where there is none, and the errors.
 
     If the initial state reads no swept parameter, it is computed once for all runs.
@@ -130,7 +132,7 @@ def started(module: GeneratedModule, parameters: Any, u: FloatArray) -> FloatArr
 
 
 def check_starts(
-    systems: Systems, engine: Engine | None, start: FloatArray, errors: list[str]
+    systems: DrivenModules, engine: Engine | None, start: FloatArray, errors: list[str]
 ) -> None:
     """Fill in the errors of runs whose start is outside the domain; C finds them."""
     fine = inside(systems, engine, start) if engine else np.zeros(len(systems), dtype=bool)
@@ -142,7 +144,7 @@ def check_starts(
                 errors[k] = str(error)
 
 
-def inside(systems: Systems, engine: Engine, start: FloatArray) -> NDArray[np.bool_]:
+def inside(systems: DrivenModules, engine: Engine, start: FloatArray) -> NDArray[np.bool_]:
     """Return whether each run starts inside the domain with a finite rate."""
     first = systems.inputs.segments[0]
     u = np.ascontiguousarray(first.at(first.start)[None])

@@ -18,10 +18,10 @@ from piezo_sym.run.engine.engine import Members
 from piezo_sym.run.ledger import Trajectory, row_counts
 from piezo_sym.run.module import Record, exchanges
 from piezo_sym.run.runs import Runs
-from piezo_sym.run.system import System
+from piezo_sym.run.system import DrivenModule
 
 
-def layout(system: System) -> dict[str, xarray.Variable]:
+def layout(system: DrivenModule) -> dict[str, xarray.Variable]:
     """Return every quantity of a run but its inputs, in order, at one sample and without values."""
     n, m, k = row_counts(system)
     states, inputs, integrals = (np.full((size, 1), np.nan) for size in (n, m, k))
@@ -31,7 +31,7 @@ def layout(system: System) -> dict[str, xarray.Variable]:
         )
 
 
-def of_trajectory(system: System, trajectory: Trajectory) -> dict[str, xarray.Variable]:
+def of_trajectory(system: DrivenModule, trajectory: Trajectory) -> dict[str, xarray.Variable]:
     """Return every quantity of one run (time, [lanes]), inputs left out."""
     inputs = {record.name for record in system.module.INPUTS}
     found = variables(system, trajectory)
@@ -81,7 +81,7 @@ def quantities(
 
 
 def by_record(
-    system: System, records: Sequence[Record], values: FloatArray, prefix: str = ""
+    system: DrivenModule, records: Sequence[Record], values: FloatArray, prefix: str = ""
 ) -> Iterator[tuple[str, FloatArray]]:
     """Yield the columns of values (runs, time, rows) by record."""
     for record, part in zip(records, system.rows(records), strict=True):

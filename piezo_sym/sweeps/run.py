@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from piezo_sym.run.checks import FloatArray
     from piezo_sym.run.engine import Engine
     from piezo_sym.run.module import GeneratedModule
-    from piezo_sym.run.system import System, Systems
+    from piezo_sym.run.system import DrivenModule, DrivenModules
     from piezo_sym.sweeps.plan import Plan
 
 Watch: TypeAlias = Callable[[float], object]
@@ -186,14 +186,16 @@ def in_c(
     return found if all(through) else {name: values[through] for name, values in found.items()}
 
 
-def input_errors(systems: Systems, x: FloatArray, samples: FloatArray) -> list[RunError | None]:
+def input_errors(
+    systems: DrivenModules, x: FloatArray, samples: FloatArray
+) -> list[RunError | None]:
     """Return the errors of inputs that leave the domain after t = 0, where starts are checked."""
     if not inputs_move(systems[0]):
         return [None] * len(systems)
     return [input_error(*one, samples) for one in zip(systems, x, strict=True)]
 
 
-def input_error(system: System, x: FloatArray, samples: FloatArray) -> RunError | None:
+def input_error(system: DrivenModule, x: FloatArray, samples: FloatArray) -> RunError | None:
     """Return the error of inputs that leave the domain, or None."""
     try:
         check_inputs(system, x, samples)
@@ -202,7 +204,9 @@ def input_error(system: System, x: FloatArray, samples: FloatArray) -> RunError 
     return None
 
 
-def stepped(plan: Plan, systems: Systems, engine: Engine, x: FloatArray, watch: Watch) -> Runs:
+def stepped(
+    plan: Plan, systems: DrivenModules, engine: Engine, x: FloatArray, watch: Watch
+) -> Runs:
     """Return runs in C, with the plan's step or tolerance."""
     given = systems, engine, x, plan.samples, plan.step or plan.rtol, watch
     return collocate(*given, side_by_side=plan.side_by_side)

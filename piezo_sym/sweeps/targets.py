@@ -16,7 +16,7 @@ import numpy as np
 
 from piezo_sym.errors import UsageError, nearest, quote
 from piezo_sym.run.checks import FloatArray, is_number, number, whole
-from piezo_sym.run.functions import Function
+from piezo_sym.run.functions import InputFunction
 from piezo_sym.run.inputs import read_signal
 from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.parameters import lane_value
@@ -147,7 +147,7 @@ def label(value: Value) -> str:
     """Return one value as a text for a coordinate."""
     if isinstance(value, Samples):
         text = f"samples({value.times.size})"
-    elif isinstance(value, Function):
+    elif isinstance(value, InputFunction):
         text = str(getattr(value.function, "__name__", type(value.function).__name__))
     elif is_dataclass(value):
         numbers = ", ".join(f"{getattr(value, field.name):g}" for field in fields(value))

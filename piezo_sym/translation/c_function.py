@@ -19,7 +19,7 @@ from typing import final
 
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.translation.c_file import File
-from piezo_sym.translation.c_scope import Branch, Deferred, Scope, Variable, helper_is
+from piezo_sym.translation.c_scope import Branch, CVariable, Deferred, Scope, helper_is
 from piezo_sym.translation.c_text import Tokens
 from piezo_sym.translation.expressions import WHOLE, refused
 from piezo_sym.translation.field import NotShownError, Value
@@ -33,7 +33,7 @@ NOT_COMPARED = ""
 
 
 @final
-class Function:
+class CFunction:
     """A function, read statement by statement; its values are read where `rows` asks for them.
 
     Parameters
@@ -58,7 +58,7 @@ class Function:
         self.rows_of = {role: Rows(self.known, name) for role, name in named.items()}
         self.constants = list[Deferred]()
         self.written = list[tuple[str, Key, Deferred, bool]]()
-        self.loops, self.summed, self.least = 0, dict[str, Variable | None](), set[Key]()
+        self.loops, self.summed, self.least = 0, dict[str, CVariable | None](), set[Key]()
         self.returned = "out" in roles.values()
         self._block(self.scope)
         if not self.returned or self.least - {key for _, key, _, _ in self.written}:
@@ -147,7 +147,7 @@ class Function:
         elif fixed or (not constant and (kind == "long" or pointer)):
             raise NotShownError(f"the declaration of {name}")
         elif not constant and tokens.peek() == ";":
-            scope.declare(name, Variable(None, scope.lanes))
+            scope.declare(name, CVariable(None, scope.lanes))
         else:
             tokens.take("=")
             node = tokens.expression()
@@ -159,7 +159,7 @@ class Function:
                 scope.declare(name, branch)
             else:
                 part = self._kept(node)
-                scope.declare(name, part if constant else Variable(part, scope.lanes))
+                scope.declare(name, part if constant else CVariable(part, scope.lanes))
         tokens.take(";")
 
     def _list(self) -> list[Deferred]:
@@ -219,7 +219,7 @@ class Function:
             self._switch(self.scope.read.whole(place), node)
         elif place is not None and role in self.rows_of:
             self._write(role, place, node, added=added)
-        elif place is not None or not isinstance(found, Variable):
+        elif place is not None or not isinstance(found, CVariable):
             raise NotShownError(f"{name} is changed")
         elif added:
             self._add(name, found, node)
@@ -233,7 +233,7 @@ class Function:
         self.constants.append(self.scope.defer(node))
         return self.constants[-1]
 
-    def _add(self, name: str, found: Variable, node: ast.expr) -> None:
+    def _add(self, name: str, found: CVariable, node: ast.expr) -> None:
         """Read what a loop adds to a sum over lanes."""
         part, banks = self._kept(node), self.scope.banks
         if len(banks) != 1 or found.lanes or found.is_read or found.start is None:

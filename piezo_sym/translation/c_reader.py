@@ -13,7 +13,7 @@ import re
 from collections import ChainMap
 
 from piezo_sym.translation.c_file import CALLS, File, Helper
-from piezo_sym.translation.c_function import Function
+from piezo_sym.translation.c_function import CFunction
 from piezo_sym.translation.c_scope import Meaning, Scope
 from piezo_sym.translation.c_text import Tokens
 from piezo_sym.translation.expressions import PLAIN
@@ -43,7 +43,7 @@ def read_c(text: str, known: Proved) -> dict[Key, Value]:
         if tokens.taken("static"):
             add_helper(tokens, file, _HELPERS)
             continue
-        function = Function(tokens, file)
+        function = CFunction(tokens, file)
         if function.name in seen:
             raise NotShownError(f"{function.name} is defined twice")
         seen.add(function.name)

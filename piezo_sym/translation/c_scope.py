@@ -55,7 +55,7 @@ class Deferred:
 
 @final
 @dataclass(eq=False)
-class Variable:
+class CVariable:
     """A variable: what it is set to, and what loops over the lanes of a bank add to it.
 
     It is not read in a loop that adds to it (`is_open`), and not changed when it has been read.
@@ -79,7 +79,7 @@ class Variable:
 
 @final
 @dataclass(frozen=True)
-class Branches:
+class BranchReference:
     """A branch, or a pointer to one per lane of the bank in whose loop it is read."""
 
     place: Value
@@ -89,7 +89,7 @@ class Branches:
 #: The place of a branch, of the first lane where it has some, and the bank of these.
 Branch = tuple[Value, str | None]
 #: A `Value` is a pointer to the numbers of lanes, as that of lane 0; a list is an array.
-Meaning = Read | Deferred | Variable | Value | list[Deferred] | Branches
+Meaning = Read | Deferred | CVariable | Value | list[Deferred] | BranchReference
 
 
 @final
@@ -152,7 +152,7 @@ class Scope:
                 found = self.names.get(part.id)
                 if found is None and part.id not in {*self.roles, "NAN"}:
                     raise refused(part, "a name")
-                if isinstance(found, Variable):
+                if isinstance(found, CVariable):
                     if found.is_open or found.start is None:
                         raise refused(part, "a variable that is read too early")
                     found.is_read = True
@@ -160,7 +160,7 @@ class Scope:
 
     # Meanings
 
-    def pointer(self, node: ast.expr) -> Value | Branches:
+    def pointer(self, node: ast.expr) -> Value | BranchReference:
         """Return what a pointer to the lanes of a parameter or a part of an array points to."""
         known = self.file.known
         match node:
@@ -174,7 +174,7 @@ class Scope:
                     left = left.left
                 role = self.roles.get(left.id, "") if isinstance(left, ast.Name) else ""
                 if role == "b":
-                    return Branches(self.read.whole(right), shared=False)
+                    return BranchReference(self.read.whole(right), shared=False)
                 if role in {"x", "g"}:
                     return known.part(role, self.read.whole(right), bank=True)
         raise refused(node, "a pointer")
@@ -210,7 +210,7 @@ class Scope:
             case Deferred():
                 value, shape = found.read()
                 return value if found.kind else self.file.known.field.letter(value), shape
-            case Variable():
+            case CVariable():
                 return found.value, PLAIN
             case tuple():
                 return found
@@ -226,11 +226,11 @@ class Scope:
 
     # Branches
 
-    def shared_branch(self, node: ast.expr) -> Branches | None:
+    def shared_branch(self, node: ast.expr) -> BranchReference | None:
         """Return the branch that ``b[place]`` is, if an expression is that."""
         match node:
             case ast.Subscript(ast.Name(b), place) if self.roles.get(b) == "b":
-                return Branches(self.read.whole(place), shared=True)
+                return BranchReference(self.read.whole(place), shared=True)
         return None
 
     def branch(self, place: Value) -> Branch:
@@ -250,7 +250,7 @@ class Scope:
             ) if [j] == [loop for loop, _ in self.lanes]:
                 name, bank = array, self.banks[0]
         found = self.names.get(name)
-        if not isinstance(found, Branches) or found.shared != (bank is None):
+        if not isinstance(found, BranchReference) or found.shared != (bank is None):
             raise refused(condition, "a choice by something else than a branch")
         branch = found.place, bank
         switch = switches.pop(branch, None)  # while it is read, it is nobody's branch

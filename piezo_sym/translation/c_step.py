@@ -33,7 +33,7 @@ from piezo_sym.translation.c_data import (
     take_table,
 )
 from piezo_sym.translation.c_file import CALLS, File, Helper
-from piezo_sym.translation.c_function import NOT_COMPARED, Function
+from piezo_sym.translation.c_function import NOT_COMPARED, CFunction
 from piezo_sym.translation.c_reader import add_helper
 from piezo_sym.translation.c_scope import Branch, Scope, helper_is
 from piezo_sym.translation.c_text import Tokens
@@ -143,8 +143,8 @@ class _Step:
 
     # Functions
 
-    def _function(self, name: str, *, by_branches: bool = False) -> Function:
-        made = Function(self.tokens, self.file, by_branches=by_branches)
+    def _function(self, name: str, *, by_branches: bool = False) -> CFunction:
+        made = CFunction(self.tokens, self.file, by_branches=by_branches)
         if made.name != name:
             raise NotShownError(f"the step has {made.name} where {name} should be")
         return made

@@ -11,7 +11,7 @@ from fractions import Fraction
 
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.translation.expressions import PLAIN, Expressions, Read
-from piezo_sym.translation.field import Field, Generator, NotShownError, Value
+from piezo_sym.translation.field import Generator, GeneratorField, NotShownError, Value
 from piezo_sym.translation.functions import call, power
 from piezo_sym.translation.signs import compare, on_path, sign_of
 
@@ -36,7 +36,7 @@ def put(value: Value, new: Mapping[int, Value]) -> Value:
         return field.total(parts)
 
 
-def _put(field: Field, g: int, new: Mapping[int, Value]) -> Value:
+def _put(field: GeneratorField, g: int, new: Mapping[int, Value]) -> Value:
     gen = field.gens[g]
     if g in new or gen.arg is None:
         return new[g]
@@ -118,7 +118,7 @@ def _chain(value: Value, state: int, own: Value, of_sum: Inner) -> Value:
     return field.total(parts)
 
 
-def _slope(field: Field, g: int, state: int, own: Value, of_sum: Inner) -> Value:
+def _slope(field: GeneratorField, g: int, state: int, own: Value, of_sum: Inner) -> Value:
     """Return the derivative of a generator."""
     gen, same = field.gens[g], field.raised(g, 1)
     if gen.arg is None:

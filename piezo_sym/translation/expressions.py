@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
-from piezo_sym.translation.field import Field, NotShownError, Value
+from piezo_sym.translation.field import GeneratorField, NotShownError, Value
 from piezo_sym.translation.functions import call, power, size_of
 from piezo_sym.translation.signs import choose, compare, on_path, side_of
 
@@ -71,7 +71,7 @@ class Expressions:
     whole_division : whether a quotient of integers is an integer, as in C.
     """
 
-    field: Field
+    field: GeneratorField
     numbers: Mapping[float, Fraction]
     real: Callable[[Value], Value]
     leaf: Leaf

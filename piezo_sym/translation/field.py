@@ -1,11 +1,11 @@
 """Normal forms: sums of products of independent generators, with exact coefficients.
 
-Input: values of one `Field`.  Output: values of which equal ones have equal terms, as a rule.
-Generators are names (of one lane, if they belong to a bank), smooth functions of values, powers of
-sums with exponents other than positive integers, sums over the lanes of a bank, letters and signs.
-A letter abbreviates one long value; it is written out only if a comparison fails without.
-``sign(d, s)`` is 1 where d has the sign s, else 0; for each d exactly one of the three is 1, and
-the square of a sign is the sign itself.
+Input: values of one `GeneratorField`.  Output: values of which equal ones have equal terms, as a
+rule. Generators are names (of one lane, if they belong to a bank), smooth functions of values,
+powers of sums with exponents other than positive integers, sums over the lanes of a bank, letters
+and signs. A letter abbreviates one long value; it is written out only if a comparison fails
+without. ``sign(d, s)`` is 1 where d has the sign s, else 0; for each d exactly one of the three is
+1, and the square of a sign is the sign itself.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class Generator:
 class Value:
     """A sum of products of powers of generators."""
 
-    def __init__(self, field: Field, terms: Mapping[Mono, Exponent]) -> None:
+    def __init__(self, field: GeneratorField, terms: Mapping[Mono, Exponent]) -> None:
         self.field = field
         self.terms = {mono: c for mono, c in terms.items() if c}
 
@@ -130,7 +130,7 @@ class Need:
 
 
 @final
-class Field:
+class GeneratorField:
     """The generators of one system, and what is known of their signs.
 
     Attributes

@@ -14,7 +14,7 @@ from functools import partial
 from sympy import factorint
 
 from piezo_sym.expressions.functions import RECORDS
-from piezo_sym.translation.field import Exponent, Field, Need, NotShownError, Value
+from piezo_sym.translation.field import Exponent, GeneratorField, Need, NotShownError, Value
 from piezo_sym.translation.signs import factors, lifted, primitive, side_of, sign, sign_of
 
 MOST_FACTOR = 10**12
@@ -50,7 +50,7 @@ def _power(q: Exponent, base: Value) -> Value:
     return made
 
 
-def divisors(field: Field, g: int) -> Iterator[Value]:
+def divisors(field: GeneratorField, g: int) -> Iterator[Value]:
     """Yield what must not be zero where a generator divides: for a letter what it stands for."""
     gen = field.gens[g]
     if gen.kind != "letter" or gen.arg is None:
@@ -68,7 +68,7 @@ def _generated(arg: Value, q: Exponent) -> Value:
     return arg.field.raised(mono[0][0], q) * arg.field.one
 
 
-def _root(field: Field, size: Fraction, q: Exponent) -> Value:
+def _root(field: GeneratorField, size: Fraction, q: Exponent) -> Value:
     """Return a power of a number, positive if the exponent is a fraction."""
     if q.denominator == 1:
         return field.number(size**q.numerator)
@@ -99,7 +99,7 @@ def _needs(kind: str, value: Value) -> None:
         field.needs[Need(kind, value, field.path, field.derived)] = None
 
 
-def _undefined(field: Field, kind: str) -> Value:
+def _undefined(field: GeneratorField, kind: str) -> Value:
     """Return 1/0 or log(0): a name of which nothing is known; where it is chosen, it is missed."""
     if field.path is not None:
         field.needs[Need(kind, field.zero, field.path, field.derived)] = None

@@ -14,7 +14,7 @@ from typing import final
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.iphs import IPHS
 from piezo_sym.translation.change import put
-from piezo_sym.translation.field import Field, Need, NotShownError, Value
+from piezo_sym.translation.field import GeneratorField, Need, NotShownError, Value
 from piezo_sym.translation.system_reader import rounded
 
 #: A function, its row, and for an entry its column and whether it is of equal lanes.
@@ -67,7 +67,7 @@ class Proved:
     """
 
     iphs: IPHS
-    field: Field
+    field: GeneratorField
     names: Mapping[str, Value]
     banks: Mapping[str, str]
     slots: Mapping[str, tuple[Slot, ...]]

@@ -8,11 +8,11 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
 from piezo_sym.expressions.calculus import add, mul, power
-from piezo_sym.expressions.functions import RECORDS, Function
+from piezo_sym.expressions.functions import RECORDS, LawFunction
 from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Expr, Num, Sym
 from piezo_sym.proofs.query import query
 from piezo_sym.proofs.solvers import solver
-from piezo_sym.translation.field import Exponent, Field, Value
+from piezo_sym.translation.field import Exponent, GeneratorField, Value
 from piezo_sym.translation.signs import sign_of
 
 MOST_ASKED = 60
@@ -50,7 +50,7 @@ def _impossible(sides: Mapping[Value, int]) -> bool:
     return result == "unsat"
 
 
-def _of_generator(field: Field, part: tuple[int, Exponent]) -> Iterator[Cmp]:
+def _of_generator(field: GeneratorField, part: tuple[int, Exponent]) -> Iterator[Cmp]:
     """Yield what is known of a generator's power: its sign, and what functions do with signs."""
     sign, gen, symbol = sign_of(field, part[0]), field.gens[part[0]], _symbol(part)
     if sign:
@@ -65,7 +65,7 @@ def _of_generator(field: Field, part: tuple[int, Exponent]) -> Iterator[Cmp]:
         yield from _of_function(RECORDS[gen.kind], arg, symbol)
 
 
-def _of_function(record: Function, arg: Expr, value: Expr) -> Iterator[Cmp]:
+def _of_function(record: LawFunction, arg: Expr, value: Expr) -> Iterator[Cmp]:
     """Yield between which numbers a function lies, and where it is above a value that it has."""
     low, high = record.bounds
     if isinstance(low, Fraction) and isinstance(high, Fraction):

@@ -16,14 +16,14 @@ from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyRing
 
 from piezo_sym.expressions.functions import RECORDS
-from piezo_sym.translation.field import Exponent, Field, Generator, Mono, Value
+from piezo_sym.translation.field import Exponent, Generator, GeneratorField, Mono, Value
 
 MOST_FACTORED = 40
 SIDES = {"<": (-1,), "<=": (-1, 0), ">": (1,), ">=": (1, 0), "==": (0,), "!=": (1, -1)}
 _POSSIBLE = {2: {1}, 1: {1, 0}, 0: {1, 0, -1}}
 
 
-def sign_of(field: Field, g: int) -> int:
+def sign_of(field: GeneratorField, g: int) -> int:
     """Return 2 if a generator is positive wherever it is defined, 1 if it is >= 0, else 0."""
     if g not in field.signed:
         gen = field.gens[g]
@@ -62,7 +62,7 @@ def _sign(value: Value) -> int:
     return value.field.assumed.get(rest, 0)
 
 
-def _sign_of_term(field: Field, mono: Mono, c: Exponent) -> int:
+def _sign_of_term(field: GeneratorField, mono: Mono, c: Exponent) -> int:
     known = 2 if c > 0 else 0
     for g, e in mono:
         even = e % 2 == 0 or Fraction(e).denominator != 1
@@ -71,7 +71,7 @@ def _sign_of_term(field: Field, mono: Mono, c: Exponent) -> int:
 
 
 @contextmanager
-def on_path(field: Field, path: Value | None) -> Iterator[None]:
+def on_path(field: GeneratorField, path: Value | None) -> Iterator[None]:
     """Set a field's path for a while."""
     before, field.path = field.path, path
     try:
@@ -81,7 +81,7 @@ def on_path(field: Field, path: Value | None) -> Iterator[None]:
 
 
 @contextmanager
-def reading(field: Field, function: str) -> Iterator[None]:
+def reading(field: GeneratorField, function: str) -> Iterator[None]:
     """Forget what the domain says of signs where a function is read that holds outside of it.
 
     Margins say where the domain is; integrands are taken at nodes where nothing asks for it.

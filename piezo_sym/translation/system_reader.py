@@ -14,14 +14,14 @@ import sympy as sp
 from sympy.logic.boolalg import Boolean
 
 from piezo_sym.algebra.lanes import LaneMatrix
-from piezo_sym.algebra.sums import LaneSum
+from piezo_sym.algebra.sums import SymbolicLaneSum
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import Cmp, Expr, Num, walk
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.elements.ports import Body
 from piezo_sym.spec.tables import conditions, lane_parameters, law_fields, states
-from piezo_sym.translation.field import Field, NotShownError, Value
+from piezo_sym.translation.field import GeneratorField, NotShownError, Value
 from piezo_sym.translation.functions import call, power, size_of
 from piezo_sym.translation.signs import assume, compare, on_path, reading
 
@@ -41,7 +41,7 @@ class SystemReader:
     """
 
     def __init__(self, iphs: IPHS) -> None:
-        self.iphs, self.field = iphs, Field()
+        self.iphs, self.field = iphs, GeneratorField()
         model, system = iphs.model, iphs.system
         owners = {n: e for n, e in states(model).items() if e in iphs.symbols.counts}
         self.banks = {**lane_parameters(model), **owners}
@@ -134,7 +134,7 @@ class SystemReader:
             return field.number(Fraction(int(expr.p), int(expr.q)))
         if isinstance(expr, sp.Piecewise):
             return self._chosen(expr)
-        if isinstance(expr, LaneSum):
+        if isinstance(expr, SymbolicLaneSum):
             return field.lane_sum(self(expr.args[0]), expr.args[1].name)
         if expr is sp.E:
             return call("exp", field.one)

@@ -61,13 +61,13 @@ def witness(printed: Value, wanted: Value, known: Proved) -> Witness | None:
     return None
 
 
-def _inside(margin: Value, point: Point, strict: bool) -> bool:
+def _inside(margin: Value, point: WitnessPoint, strict: bool) -> bool:
     lanes = [{}] if not margin.lanes else [{bank: n} for bank, _ in margin.lanes for n in (0, 1)]
     found = (point.value(margin, lane) for lane in lanes)
     return all(value > 0 if strict else value >= 0 for value in found)
 
 
-def _points(known: Proved) -> Iterator[Point]:
+def _points(known: Proved) -> Iterator[WitnessPoint]:
     """Yield points: the spec's numbers and others near, states of every size."""
     model, chance = known.iphs.model, random.Random(0)
     given = {n: e.si for table in (model.parameters, model.inputs) for n, e in table.items()}
@@ -79,13 +79,15 @@ def _points(known: Proved) -> Iterator[Point]:
             lanes = range(max(2, len(listed)) if name in known.banks else 1)
             numbers[name] = tuple(_number(listed[j % len(listed)], n, chance) for j in lanes)
         try:
-            yield Point(known, numbers | _means(Point(known, numbers), known, n, chance))
+            yield WitnessPoint(
+                known, numbers | _means(WitnessPoint(known, numbers), known, n, chance)
+            )
         except UndecidedError:
             continue
 
 
 def _means(
-    point: Point, known: Proved, n: int, chance: random.Random
+    point: WitnessPoint, known: Proved, n: int, chance: random.Random
 ) -> dict[str, tuple[Fraction, ...]]:
     """Return numbers for means: their co-states at a point, or near them."""
     found = {}
@@ -109,7 +111,7 @@ def _number(value: float | None, n: int, chance: random.Random) -> Fraction:
 
 
 @final
-class Point:
+class WitnessPoint:
     """Numbers for names, one per lane where they have lanes; values at them, as balls."""
 
     def __init__(self, known: Proved, numbers: Mapping[str, Sequence[Fraction]]) -> None:

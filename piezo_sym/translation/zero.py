@@ -12,7 +12,7 @@ from itertools import product
 from math import ceil
 
 from piezo_sym.translation.change import put
-from piezo_sym.translation.field import Field, NotShownError, Value
+from piezo_sym.translation.field import GeneratorField, NotShownError, Value
 from piezo_sym.translation.functions import power
 from piezo_sym.translation.possible import impossible
 from piezo_sym.translation.signs import has_sign, on_path, sides_of, sign, sign_of
@@ -118,7 +118,7 @@ def _apart(value: Value) -> list[Value]:
     return [field.total(rest), *map(field.total, sums.values())]
 
 
-def _is_sum(field: Field, g: int) -> bool:
+def _is_sum(field: GeneratorField, g: int) -> bool:
     return field.gens[g].kind == "sum"
 
 

@@ -18,7 +18,7 @@ from piezo_sym.run.collocation import collocate
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.module import lanes
 from piezo_sym.run.parameters import own_initial, read_parameters
-from piezo_sym.run.system import System
+from piezo_sym.run.system import DrivenModule
 from tests.benchmarks.case_p import SWEPT, case_p
 from tests.benchmarks.ours import states, whole
 
@@ -60,7 +60,7 @@ class Family:
         return self.problem.error(x, self.ends)
 
     @property
-    def systems(self) -> list[System]:
+    def systems(self) -> list[DrivenModule]:
         """Each member's module, parameters and inputs."""
         return systems_of(self.problem, self.name, self.values)
 
@@ -110,15 +110,15 @@ def varied(problem: Problem) -> str:
     return usual or next((n for n in positive if not n.endswith("_count")), "")
 
 
-def systems_of(problem: Problem, name: str, values: FloatArray) -> list[System]:
+def systems_of(problem: Problem, name: str, values: FloatArray) -> list[DrivenModule]:
     """Return the problem's system with each value of a parameter."""
     module, inputs = problem.module, problem.system.inputs
     changes = ({**problem.counts, name: value} for value in values.tolist())
-    return [System(module, read_parameters(module, change), inputs) for change in changes]
+    return [DrivenModule(module, read_parameters(module, change), inputs) for change in changes]
 
 
 def tight(
-    problem: Problem, systems: Sequence[System], starts: FloatArray
+    problem: Problem, systems: Sequence[DrivenModule], starts: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return the states (members, n) at the end, and the scale of errors (n,)."""
     times = np.array([problem.duration])

@@ -11,7 +11,7 @@ from piezo_sym.run.collocation import FixedStep, collocate
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.parameters import read_initial, read_parameters
-from piezo_sym.run.system import System
+from piezo_sym.run.system import DrivenModule
 
 STEP = 1e-6
 MOST = 85  # times as long with 64 times the hysterons; measured 50 to 60
@@ -34,7 +34,7 @@ def time_of_a_step(count, steps, repetitions=5):
     module = module_of("piezo_stack")
     duration = steps * STEP
     inputs = read_inputs(module, {"V_in": sine(100, 1000)}, duration)
-    system = System(module, read_parameters(module, distributed(count)), inputs)
+    system = DrivenModule(module, read_parameters(module, distributed(count)), inputs)
     x = read_initial(module, system.parameters, inputs.segments[0].at(0.0), None)[None]
     best = np.inf
     for _ in range(repetitions):

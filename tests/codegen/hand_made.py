@@ -16,7 +16,15 @@ from piezo_sym.codegen.differences import sharp_program, sharp_quantity
 from piezo_sym.codegen.jacobian import jacobian_of
 from piezo_sym.codegen.paths import Path as Stop
 from piezo_sym.codegen.paths import in_motion, slopes_of
-from piezo_sym.codegen.program import Field, Function, Limit, Names, Program, Quantity, Row
+from piezo_sym.codegen.program import (
+    Described,
+    Limit,
+    ModuleFunction,
+    Names,
+    OutputRow,
+    Program,
+    Quantity,
+)
 from piezo_sym.codegen.switches import compared, switched
 from piezo_sym.expressions.calculus import add, derivative, div, is_affine, mul, neg
 from piezo_sym.expressions.parse import parse_rule
@@ -79,20 +87,22 @@ class HandMade:
         ]
         entries, derivatives = self._jacobian(rates, q.defined, q.lanes(), q.new)
         entropies = dict.fromkeys(body for _, body in self.heats.values())
-        produced = [Row(r.slot, div(r.value, Sym(f"E_{s}"))) for r, s in heated]
-        ports = tuple(Row(Slot(name), read(text)) for name, text in self.supply.items())
-        starts = tuple(Row(Slot(s, b), _number(v)) for s, (v, b) in self.states.items())
-        temperatures = tuple(Row(Slot(s), Sym(f"E_{s}")) for s in entropies)
+        produced = [OutputRow(r.slot, div(r.value, Sym(f"E_{s}"))) for r, s in heated]
+        ports = tuple(OutputRow(Slot(name), read(text)) for name, text in self.supply.items())
+        starts = tuple(OutputRow(Slot(s, b), _number(v)) for s, (v, b) in self.states.items())
+        temperatures = tuple(OutputRow(Slot(s), Sym(f"E_{s}")) for s in entropies)
         functions = (
-            Function("initial_state", "State at t = 0", ("u", "p"), starts),
-            Function("rhs", "Rates", DRIVEN, rates),
-            Function("outputs", "Power put in", DRIVEN, ports),
-            Function("supply", "Power put in [W], one per port", DRIVEN, ports),
-            Function("energy", "Hamiltonian U [J]", STATE, (Row(Slot("U"), add(*total)),), True),
-            Function("entropy", "Entropy", STATE, (_sum("S", entropies),), True),
-            Function("temperatures", "Temperatures [K]", STATE, temperatures),
-            Function("heat", "Heat [W]", DRIVEN, tuple(row for row, _ in heated)),
-            Function("entropy_production", "Production [W/K]", DRIVEN, tuple(produced)),
+            ModuleFunction("initial_state", "State at t = 0", ("u", "p"), starts),
+            ModuleFunction("rhs", "Rates", DRIVEN, rates),
+            ModuleFunction("outputs", "Power put in", DRIVEN, ports),
+            ModuleFunction("supply", "Power put in [W], one per port", DRIVEN, ports),
+            ModuleFunction(
+                "energy", "Hamiltonian U [J]", STATE, (OutputRow(Slot("U"), add(*total)),), True
+            ),
+            ModuleFunction("entropy", "Entropy", STATE, (_sum("S", entropies),), True),
+            ModuleFunction("temperatures", "Temperatures [K]", STATE, temperatures),
+            ModuleFunction("heat", "Heat [W]", DRIVEN, tuple(row for row, _ in heated)),
+            ModuleFunction("entropy_production", "Production [W/K]", DRIVEN, tuple(produced)),
         )
         counts = {f"{name}_count": count for name, count in self.counts.items()}
         return Program(
@@ -101,12 +111,12 @@ class HandMade:
             source="",
             sha256="0" * 64,
             verdict="",
-            parameters=tuple(Field(n, "1", "", b) for n, (_, b) in self._parameters()),
-            inputs=tuple(Field(name, "1", "") for name in self.inputs),
+            parameters=tuple(Described(n, "1", "", b) for n, (_, b) in self._parameters()),
+            inputs=tuple(Described(name, "1", "") for name in self.inputs),
             states=self.fields(),
-            outputs=tuple(Field(name, "W", "") for name in self.supply),
-            processes=tuple(Field(r.slot.label, "W/K", "", r.slot.bank) for r, _ in heated),
-            bodies=tuple(Field(name, "K", "") for name in entropies),
+            outputs=tuple(Described(name, "W", "") for name in self.supply),
+            processes=tuple(Described(r.slot.label, "W/K", "", r.slot.bank) for r, _ in heated),
+            bodies=tuple(Described(name, "K", "") for name in entropies),
             defaults={**{n: v for n, (v, _) in self._parameters()}, **self.inputs, **counts},
             counts=self.counts,
             quantities=(*q.defined, *derivatives),
@@ -122,8 +132,8 @@ class HandMade:
         q = _Quantities(self, [c for c in self.costates() if self._affine(c)])
         q.new.taken |= {mean.name for mean in means}
         rates, heats = self._rows(self.rates, q), self._heated(q)
-        produced = (Row(row.slot, div(row.value, Sym(f"E_{s}"))) for row, s in heats)
-        ports = (Row(Slot(name), read(text)) for name, text in self.supply.items())
+        produced = (OutputRow(row.slot, div(row.value, Sym(f"E_{s}"))) for row, s in heats)
+        ports = (OutputRow(Slot(name), read(text)) for name, text in self.supply.items())
         rows = (*rates, *ports, *(row for row, _ in heats), *produced)
         lanes = q.lanes() | {mean.name: mean.bank for mean in means if mean.bank}
         found = switched(q.defined, rows, lanes, q.new, means=means)
@@ -171,7 +181,7 @@ class HandMade:
 
     def fields(self):
         """Return the states."""
-        return tuple(Field(name, "1", "", bank) for name, (_, bank) in self.states.items())
+        return tuple(Described(name, "1", "", bank) for name, (_, bank) in self.states.items())
 
     def lanes(self):
         """Return the bank of each name that has a value per lane."""
@@ -208,13 +218,15 @@ class HandMade:
             yield name, value if isinstance(value, tuple) else (value, None)
 
     def _rows(self, given, q):
-        return tuple(Row(Slot(n, self.states[n][1]), q.settled(read(t))) for n, t in given.items())
+        return tuple(
+            OutputRow(Slot(n, self.states[n][1]), q.settled(read(t))) for n, t in given.items()
+        )
 
     def _heated(self, q):
         found = []
         for name, (text, body) in self.heats.items():
             text, bank = _with_bank(text)
-            found.append((Row(Slot(name, bank), q.settled(read(text))), body))
+            found.append((OutputRow(Slot(name, bank), q.settled(read(text))), body))
         return found
 
     def _limits(self):
@@ -267,4 +279,4 @@ def _number(value):
 
 
 def _sum(name, states):
-    return Row(Slot(name), add(*map(Sym, states)))
+    return OutputRow(Slot(name), add(*map(Sym, states)))

@@ -14,7 +14,7 @@ from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.parameters import read_initial, read_parameters
 from piezo_sym.run.simulate import simulate
-from piezo_sym.run.system import System
+from piezo_sym.run.system import DrivenModule
 
 from .c_compilers import COMPILERS
 from .hand_made import HandMade, read
@@ -184,7 +184,7 @@ def test_members_side_by_side_have_the_numbers_of_each_alone(bounce, how):
     """One never touches; the others do so at different times, and within the same steps."""
     known, times = read_inputs(bounce, None, 1.0), np.linspace(0.0, 1.0, 11)
     values = [read_parameters(bounce, {"d": d}) for d in (0.01, 0.02, 5.0, *np.linspace(0.1, 1, 8))]
-    systems = [System(bounce, p, known) for p in values]
+    systems = [DrivenModule(bounce, p, known) for p in values]
     x = np.array([read_initial(bounce, p, known.segments[0].at(0.0), None) for p in values])
     given = systems, engine_of(bounce), x, times
     runs = [collocate(*given, how, side_by_side=on) for on in (False, True)]

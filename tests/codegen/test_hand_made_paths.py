@@ -11,7 +11,7 @@ from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.parameters import read_parameters
 from piezo_sym.run.simulate import simulate
-from piezo_sym.run.system import System
+from piezo_sym.run.system import DrivenModule
 
 from .c_compilers import COMPILERS
 from .hand_made_stops import LED, LIMIT, MASS, MAXWELL, RATIOS, RUBBING, SLIPS, STIFF
@@ -168,7 +168,7 @@ def batch(module, count):
     for factor in np.linspace(0.8, 1.2, 5):
         given = {"slip_count": count, "r": limits.tolist(), "k_s": (3200 * factor / count)}
         inputs = read_inputs(module, {"F": sine(15.0, 6.0)}, 0.2)
-        systems.append(System(module, read_parameters(module, given), inputs))
+        systems.append(DrivenModule(module, read_parameters(module, given), inputs))
     x = np.array([[0.0, 0.0, *[0.0] * count, 0.01]] * 5)
     return systems, engine_of(module), x, np.linspace(0.0, 0.2, 5)
 

@@ -110,8 +110,8 @@ shares are transposed
   + return K @ self.H
   = coil loop
 a loop's slope is that of its first resistor
-  - law = slope_of(port) if isinstance(port, Resistor) and not placed.bank else None
-  + law = slope_of(members[0][1]) if isinstance(port, Resistor) and not placed.bank else None
+  - law = slope_of(port) if isinstance(port, DissipativePort) and not placed.bank else None
+  + law = slope_of(members[0][1]) if isinstance(port, DissipativePort) and not placed.bank else None
   = loop
 what a loop divides by is forgotten
   - divisors.append(divisor)

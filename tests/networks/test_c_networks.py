@@ -23,7 +23,7 @@ from piezo_sym.run.collocation import FixedStep, collocate
 from piezo_sym.run.engine.batch import is_lossy
 from piezo_sym.run.engine.engine import OFFERED, engine_of
 from piezo_sym.run.inputs import read_inputs
-from piezo_sym.run.system import System
+from piezo_sym.run.system import DrivenModule
 from piezo_sym.spec.tables import banks
 
 SPECS = sorted(Path(__file__).with_name("specs").glob("*.toml"))
@@ -84,7 +84,7 @@ def check_start(module, compiled, place):
     (x, u), h = place, 0.01
     p = module.Parameters()
     inputs = dict(zip((record.name for record in module.INPUTS), map(float, u), strict=True))
-    system = System(module, p, read_inputs(module, inputs, 3 * h))
+    system = DrivenModule(module, p, read_inputs(module, inputs, 3 * h))
     times = np.array([0.0, h, 3 * h])
     runs = collocate([system], compiled.engine, x[None], times, FixedStep(h), starts=True)
     if runs.errors[0]:

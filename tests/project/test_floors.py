@@ -6,7 +6,7 @@ The floors, two towers on one ground:
         < {proofs, codegen} < {translation, falsify} < verification < build < modules
         < {sweeps, api} < bench < cli
     checker < falsify; the checker imports nothing of the package
-    errors < {run, progress} < {sweeps, analysis, build} < modules < api < bench < cli
+    errors < expressions < {run, progress} < {sweeps, analysis, build} < modules < api < bench < cli
 """
 
 from graphlib import CycleError, TopologicalSorter
@@ -40,6 +40,7 @@ PROVING = (
 )
 RUNNING = (
     GROUND,
+    {"expressions"},
     {"run", "progress"},
     {"sweeps", "analysis", "build"},
     {"modules"},

@@ -14,7 +14,7 @@ from piezo_sym.run.engine.batch import Batch, Stepping
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.parameters import read_initial, read_parameters
-from piezo_sym.run.system import System
+from piezo_sym.run.system import DrivenModule
 
 
 @cache
@@ -28,7 +28,7 @@ def prepared(spec, duration=1.0, *, parameters=None, inputs=None, initial=None):
     values = read_parameters(found, parameters)
     known = read_inputs(found, inputs, duration)
     x = read_initial(found, values, known.segments[0].at(0.0), initial)
-    return System(found, values, known), x
+    return DrivenModule(found, values, known), x
 
 
 class Steps:

@@ -13,7 +13,7 @@ from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.module import lanes
 from piezo_sym.run.parameter_table import ParameterTable
-from piezo_sym.run.system import Systems
+from piezo_sym.run.system import DrivenModules
 
 NUMBERS = st.floats(1e-6, 1e6)
 
@@ -88,11 +88,11 @@ def values(module, structure, p):
 def test_systems_are_those_of_their_parameters(module):
     inputs = read_inputs(module, {"V_in": 50.0}, 0.1)
     table = ParameterTable(module.Parameters(), 3, {"M": np.array([1.0, 2.0, 3.0])})
-    systems = Systems(module, table, inputs)
+    systems = DrivenModules(module, table, inputs)
     assert [system.parameters.M for system in systems] == [1.0, 2.0, 3.0]
     assert all(system.inputs is inputs and system.module is module for system in systems)
-    assert Systems.of(systems) is systems
-    again = Systems.of(list(systems))
+    assert DrivenModules.of(systems) is systems
+    again = DrivenModules.of(list(systems))
     assert list(again) == list(systems)
     assert list(systems.some([2, 0])) == [systems[2], systems[0]] == [systems[-1], systems[-3]]
     assert list(systems[1:]) == [systems[1], systems[2]]

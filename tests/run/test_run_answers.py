@@ -11,7 +11,7 @@ from piezo_sym.run import simulate
 from piezo_sym.run.inputs import as_signal, read_inputs
 from piezo_sym.run.integrate import Stretch
 from piezo_sym.run.scipy_runs import magnitudes
-from piezo_sym.run.system import System
+from piezo_sym.run.system import DrivenModule
 
 CASE_P = {  # at t = 0.1 s, and the scale of its error
     "q": (-9.523507638450e-04, 2e-3),
@@ -174,7 +174,7 @@ def test_scale_of_a_state_that_starts_at_rest(store):
 
 def test_lanes_share_their_scale(piezo):
     p = piezo.Parameters()
-    system = System(piezo, p, read_inputs(piezo, {"V_in": 0.0}, 1e-4))
+    system = DrivenModule(piezo, p, read_inputs(piezo, {"V_in": 0.0}, 1e-4))
     x = piezo.initial_state((0, 0, 298.15), p)
     x[3] = 2e-3
     scale, evaluations = magnitudes(system, x)

@@ -11,7 +11,7 @@ from piezo_sym.modules import module_of
 from piezo_sym.run.collocation import FixedStep, collocate
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.inputs import read_inputs
-from piezo_sym.run.system import System
+from piezo_sym.run.system import DrivenModule
 from piezo_sym.spec.load import parse
 
 SPECS = sorted((Path(__file__).parents[1] / "networks" / "specs").glob("*.toml"))
@@ -105,7 +105,7 @@ def ledger(model, h, duration, **inputs):
     """
     module = module_of(model)
     p = module.Parameters()
-    system = System(module, p, read_inputs(module, inputs, duration))
+    system = DrivenModule(module, p, read_inputs(module, inputs, duration))
     x = module.initial_state(system.inputs.segments[0].at(0.0), p)
     times = np.linspace(0.0, duration, 5)
     runs = collocate([system], engine_of(module), x[None], times, FixedStep(h), starts=True)
@@ -130,7 +130,7 @@ def ledger(model, h, duration, **inputs):
 def test_members_of_a_batch_start_as_they_do_alone():
     module = module_of("piezo_stack")
     inputs = read_inputs(module, {"V_in": step(3e-4, 0.0, 100.0)}, 2e-3)
-    systems = [System(module, module.Parameters(L=L), inputs) for L in (1e-3, 5e-4, 2e-3)]
+    systems = [DrivenModule(module, module.Parameters(L=L), inputs) for L in (1e-3, 5e-4, 2e-3)]
     x = module.initial_state(inputs.segments[0].at(0.0), systems[0].parameters)
     times = np.linspace(0.0, 2e-3, 5)
     engine = engine_of(module)

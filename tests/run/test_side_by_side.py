@@ -14,7 +14,7 @@ from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.engine.library import Sources, library, read_source
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.parameters import read_initial, read_parameters
-from piezo_sym.run.system import System
+from piezo_sym.run.system import DrivenModule
 from tests.conftest import write_script
 
 SPECS = sorted((Path(__file__).parents[1] / "networks" / "specs").glob("*.toml"))
@@ -39,8 +39,8 @@ class Members:
             value = np.asarray(getattr(usual, name)) * factor
             changed = {name: value.tolist() if value.ndim else float(value)}
             parameters = read_parameters(self.module, changed)
-            self.systems.append(System(self.module, parameters, self.inputs))
-        self.systems = self.systems or [System(self.module, usual, self.inputs)] * size
+            self.systems.append(DrivenModule(self.module, parameters, self.inputs))
+        self.systems = self.systems or [DrivenModule(self.module, usual, self.inputs)] * size
         u = self.inputs.segments[0].at(0.0)
         self.x = np.array([read_initial(self.module, s.parameters, u, None) for s in self.systems])
 

@@ -6,7 +6,7 @@ from spec_tools import MINIMAL, edited, refusal
 from piezo_sym import derive, load
 from piezo_sym.errors import UsageError
 from piezo_sym.spec.circuit import circuit_of
-from piezo_sym.spec.elements.ports import Resistor, Storage
+from piezo_sym.spec.elements.ports import DissipativePort, Storage
 from piezo_sym.spec.load import parse
 from piezo_sym.spec.tables import banks, condition_text, conditions, states
 from piezo_sym.spec.unroll import unroll
@@ -197,7 +197,7 @@ def test_a_circuit_has_the_quantities_of_each_lane(lanes):
 
 def test_a_circuit_names_a_banks_quantities_once():
     circuit = circuit_of(load("piezo_stack"))
-    assert [(p.bank, r.output) for p, r in circuit.of(Resistor)] == [
+    assert [(p.bank, r.output) for p, r in circuit.of(DissipativePort)] == [
         ("hysteron", "V_hysteron"),
         (None, "F_damper"),
     ]

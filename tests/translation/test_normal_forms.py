@@ -10,8 +10,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from piezo_sym.translation.expressions import PLAIN, Expressions
-from piezo_sym.translation.field import Field, NotShownError
-from piezo_sym.translation.witness import Point, UndecidedError
+from piezo_sym.translation.field import GeneratorField, NotShownError
+from piezo_sym.translation.witness import UndecidedError, WitnessPoint
 
 SMOOTH = ("exp", "log", "sqrt", "sin", "cos", "tanh", "expm1", "atan", "sinh", "cosh", "erf")
 CALLS = (*SMOOTH, "abs", "sign")
@@ -38,7 +38,7 @@ FUNCTIONS["sign"] = lambda z: float((z > 0) - (z < 0))
 
 
 def reader():
-    field = Field()
+    field = GeneratorField()
     names = {name: field.name(name, sign=sign) for name, sign in NAMES.items()}
     calls = {name: name for name in (*CALLS, *TWO)} | {"where": "choice"}
     leaf = lambda node: (names[node.id], PLAIN)  # noqa: E731
@@ -81,7 +81,7 @@ def test_a_normal_form_has_the_value_of_its_text(text, point):
     field, read = reader()
     try:
         numbers = {name: (Fraction(value),) for name, value in at.items()}
-        found = Point(SimpleNamespace(field=field), numbers).value(read(node)[0], {})
+        found = WitnessPoint(SimpleNamespace(field=field), numbers).value(read(node)[0], {})
     except (UndecidedError, NotShownError):  # such as a power whose exponent is a root
         assume(False)
     assert float(found) == pytest.approx(wanted, rel=1e-6, abs=1e-6)
@@ -96,5 +96,5 @@ def test_factors_of_a_sum_lose_no_number(text, point):
     numbers = {name: (value,) for name, value in at.items()}
     for whole in (f"1/{text}", f"where({text} > 0, 1.0, 2.0)"):
         node = ast.parse(whole, mode="eval").body
-        found = Point(SimpleNamespace(field=field), numbers).value(read(node)[0], {})
+        found = WitnessPoint(SimpleNamespace(field=field), numbers).value(read(node)[0], {})
         assert float(found) == pytest.approx(number(node, at))

@@ -15,7 +15,7 @@ from piezo_sym.codegen.c.head import comment, declaration
 from piezo_sym.codegen.c.lines import Words, indented, stage_lines, used_only, write_lines
 from piezo_sym.codegen.c.order import Write, stages
 from piezo_sym.codegen.layout import Places, places
-from piezo_sym.codegen.program import Field, Program, Quantity, Row, needed
+from piezo_sym.codegen.program import Described, OutputRow, Program, Quantity, needed
 from piezo_sym.expressions.tree import Expr
 
 Definition = tuple[str, str]  # a name, and the line that defines it
@@ -34,7 +34,7 @@ class FunctionFrame:
     """
 
     program: Program
-    arrays: Mapping[str, Sequence[Field]]
+    arrays: Mapping[str, Sequence[Described]]
     words: Mapping[str, str]
     lines: Words
     taken: Collection[str]
@@ -94,7 +94,7 @@ class FunctionFrame:
         """Return where the rows of an array stand."""
         return places(slots, f"end_{word}", self.taken)
 
-    def writes(self, word: str, rows: Sequence[Row]) -> tuple[list[Write], list[Definition]]:
+    def writes(self, word: str, rows: Sequence[OutputRow]) -> tuple[list[Write], list[Definition]]:
         """Return what writes rows to an array, and the ends of banks that it uses."""
         at = self.layout(word, [row.slot for row in rows])
         found = [

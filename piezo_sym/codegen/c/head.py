@@ -11,7 +11,7 @@ from textwrap import wrap
 
 from piezo_sym.codegen.c.names import added, c_names
 from piezo_sym.codegen.numpy.head import MARK
-from piezo_sym.codegen.program import Field, Program
+from piezo_sym.codegen.program import Described, Program
 from piezo_sym.errors import one_line
 from piezo_sym.version import VERSION
 
@@ -173,7 +173,7 @@ def _given(
         "jacobian": ("n*n", ()),
         "margins": (f"{program.name}_limit_count", ()),
     }
-    layouts: dict[str, tuple[str, Sequence[Field]]] = {
+    layouts: dict[str, tuple[str, Sequence[Described]]] = {
         "x": ("n", program.states),
         "u": (f"{program.name}_input_count", program.inputs),
         "out": results.get(name, ("", ())),

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import final
 
 from piezo_sym.codegen.branches import with_branches
-from piezo_sym.codegen.c.order import LaneLoop, Stage, Write
+from piezo_sym.codegen.c.order import LaneLoop, LoopStage, Write
 from piezo_sym.codegen.c.style import c_piece, c_style, is_constant, real_style, widened
 from piezo_sym.codegen.layout import terms
 from piezo_sym.codegen.program import Quantity
@@ -100,7 +100,7 @@ def noted(quantities: Iterable[Quantity], words: Words) -> Iterator[str]:
         yield from define(quantity, words)
 
 
-def stage_lines(stage: Stage, words: Words) -> Iterator[str]:
+def stage_lines(stage: LoopStage, words: Words) -> Iterator[str]:
     """Yield the lines of one stage."""
     yield from noted(stage.shared, words)
     for loop in stage.loops:

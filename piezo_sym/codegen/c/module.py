@@ -16,7 +16,14 @@ from piezo_sym.codegen.c.lines import Words, define, indented, statement
 from piezo_sym.codegen.c.names import added, c_names
 from piezo_sym.codegen.c.order import Write, lane_quantities, least_over_lanes
 from piezo_sym.codegen.c.style import helpers
-from piezo_sym.codegen.program import Entry, Function, Outer, Program, Row, jacobian_roots
+from piezo_sym.codegen.program import (
+    Entry,
+    ModuleFunction,
+    Outer,
+    OutputRow,
+    Program,
+    jacobian_roots,
+)
 from piezo_sym.expressions.tree import ZERO, Expr, Neg, Num
 
 
@@ -59,7 +66,7 @@ class _Printer:
             body = [f"return {at.size};"]
             yield self.frame.function(name, ("p",), FUNCTIONS[name], body, local=[*ends(at)])
 
-    def function(self, function: Function) -> str:
+    def function(self, function: ModuleFunction) -> str:
         """Return one function with a row a slot."""
         arguments, frame = function.arguments, self.frame
         if function.scalar:
@@ -96,7 +103,7 @@ class _Printer:
         doc = FUNCTIONS["margins"]
         return self.frame.function("margins", ("x", "u", "p", "out"), doc, body)
 
-    def _listed(self, place: str, row: Row) -> Iterator[str]:
+    def _listed(self, place: str, row: OutputRow) -> Iterator[str]:
         """Yield the lines that write values listed a lane; lanes beyond the list are NAN."""
         name, size = f"{self.lines.names[row.slot.label]}_listed_", len(row.listed)
         fixed = all(isinstance(v.arg if isinstance(v, Neg) else v, Num) for v in row.listed)

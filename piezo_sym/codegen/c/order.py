@@ -1,9 +1,9 @@
 """The order in which scalar code computes a function: stages of shared values and loops over lanes.
 
-Input: quantities and what is to be written.  Output: `Stage` records.  A value that needs no sum
-over lanes is of stage 0, one that needs such a sum of a later one.  A bank has one loop a stage: it
-computes each lane's quantities, adds up the sums and writes the lane's rows, so that nothing has to
-be stored a lane; a quantity that a later loop needs again is computed again.
+Input: quantities and what is to be written.  Output: `LoopStage` records.  A value that needs no
+sum over lanes is of stage 0, one that needs such a sum of a later one.  A bank has one loop a
+stage: it computes each lane's quantities, adds up the sums and writes the lane's rows, so that
+nothing has to be stored a lane; a quantity that a later loop needs again is computed again.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class LaneLoop:
 
 @final
 @dataclass(frozen=True)
-class Stage:
+class LoopStage:
     """Values that all lanes share, then the loops that need no later ones."""
 
     shared: tuple[Quantity, ...]
@@ -61,7 +61,7 @@ class Stage:
 
 def stages(
     quantities: Sequence[Quantity], writes: Sequence[Write], banks: Iterable[str]
-) -> tuple[Stage, ...]:
+) -> tuple[LoopStage, ...]:
     """Return the stages that compute all that a function writes, rows of banks included."""
     level = _levels(quantities)
     last = max([0, *(_level(w.value, level) for w in writes), *level.values()])
@@ -94,7 +94,7 @@ def _stage(
     writes: Sequence[Write],
     banks: tuple[str, ...],
     level: Mapping[str, int],
-) -> Stage:
+) -> LoopStage:
     shared = [
         q
         for q in quantities
@@ -102,7 +102,7 @@ def _stage(
     ]
     sums = [q for q in quantities if isinstance(q.value, LaneSum) and level[q.name] == n + 1]
     rows = [w for w in writes if w.bank and _level(w.value, level) == n]
-    return Stage(tuple(shared), tuple(_loops(quantities, sums, rows, banks)))
+    return LoopStage(tuple(shared), tuple(_loops(quantities, sums, rows, banks)))
 
 
 def _loops(

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.codegen.paths import Path
-from piezo_sym.codegen.program import Program, Row
+from piezo_sym.codegen.program import OutputRow, Program
 
 
 def path_table(program: Program, paths: Sequence[Path]) -> str:
@@ -24,7 +24,7 @@ def path_table(program: Program, paths: Sequence[Path]) -> str:
     return "\n".join([*lines, "};"])
 
 
-def path_rows(paths: Sequence[Path]) -> list[Row]:
+def path_rows(paths: Sequence[Path]) -> list[OutputRow]:
     """Return what each path functional takes."""
     values = [(path, value) for path in paths for value in (path.stiffness, path.limit)]
-    return [Row(Slot(path.inner, path.bank), value) for path, value in values]
+    return [OutputRow(Slot(path.inner, path.bank), value) for path, value in values]

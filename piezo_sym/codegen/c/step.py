@@ -24,7 +24,7 @@ from piezo_sym.codegen.c.style import powers
 from piezo_sym.codegen.collocation import Collocation
 from piezo_sym.codegen.coupling import coupling_of, table
 from piezo_sym.codegen.layout import places
-from piezo_sym.codegen.program import Field, Program, Row
+from piezo_sym.codegen.program import Described, OutputRow, Program
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.tree import names
 
@@ -82,9 +82,9 @@ class _Printer:
     def __init__(self, program: Program, made: Collocation) -> None:
         self.program, self.made, self.name = program, made, program.name
         stage, slopes = made.stage, made.slopes
-        self.means = [Field(mean.name, "", "", mean.bank) for mean in made.means]
+        self.means = [Described(mean.name, "", "", mean.bank) for mean in made.means]
         self.given = [*self.means, *(field for path in made.paths for field in path.given())]
-        self.branches = [Field(s.branch, "", "", s.bank) for s in stage.switches]
+        self.branches = [Described(s.branch, "", "", s.bank) for s in stage.switches]
         both = {q.name: q for q in (*stage.quantities, *slopes.quantities)}
         whole = replace(
             program,
@@ -105,7 +105,7 @@ class _Printer:
 
     def integrands(self) -> str:
         """Return what co-states that are given to a stage are means of."""
-        rows = [Row(Slot(mean.name, mean.bank), mean.value) for mean in self.made.means]
+        rows = [OutputRow(Slot(mean.name, mean.bank), mean.value) for mean in self.made.means]
         doc = "Functions of the state whose weighted means over a step are the means g of a stage"
         return self._of_state("integrands", doc, rows)
 
@@ -122,7 +122,7 @@ class _Printer:
             doc = "Stiffness and limit of each path functional"
             yield self._of_state("path_parameters", doc, path_rows(self.made.paths))
 
-    def _of_state(self, name: str, doc: str, rows: Sequence[Row]) -> str:
+    def _of_state(self, name: str, doc: str, rows: Sequence[OutputRow]) -> str:
         writes, local = self.frame.writes("out", rows)
         body = self.frame.computed((), writes)
         return self.frame.function(name, ("x", "p", "out"), doc, body, local=local)
@@ -130,7 +130,7 @@ class _Printer:
     def stage(self) -> str:
         """Return the function of a stage: rates, what the ledger books, switching functions."""
         stage = self.made.stage
-        switches = [Row(Slot(s.branch, s.bank), s.value) for s in stage.switches]
+        switches = [OutputRow(Slot(s.branch, s.bank), s.value) for s in stage.switches]
         rows = {"s": switches, "out": stage.rates, "rows": stage.booked}
         made = [self.frame.writes(word, found) for word, found in rows.items()]
         lanes = {**{q.name: q.bank for q in stage.quantities if q.bank}, **self.banks}

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from piezo_sym.codegen.program import Field, Program
+from piezo_sym.codegen.program import Described, Program
 from piezo_sym.expressions import functions
 from piezo_sym.version import VERSION
 
@@ -164,7 +164,7 @@ def _tuple(items: list[str]) -> str:
     return f"({items[0]},)" if len(items) == 1 else f"({', '.join(items)})"
 
 
-def _records(name: str, fields: tuple[Field, ...]) -> Iterable[str]:
+def _records(name: str, fields: tuple[Described, ...]) -> Iterable[str]:
     if not fields:
         yield f"{name} = ()"
         return

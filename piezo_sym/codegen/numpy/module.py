@@ -16,10 +16,10 @@ from piezo_sym.codegen.numpy.head import RATES, head
 from piezo_sym.codegen.numpy.style import NUMPY, numpy_text
 from piezo_sym.codegen.program import (
     Entry,
-    Function,
+    ModuleFunction,
+    OutputRow,
     Program,
     Quantity,
-    Row,
     bank_of,
     jacobian_roots,
     needed,
@@ -55,7 +55,7 @@ class _Printer:
 
     # Functions
 
-    def function(self, function: Function) -> str:
+    def function(self, function: ModuleFunction) -> str:
         """Return one function with a row a slot."""
         if function.name == "rhs":
             return f"{RATES}\n\n\n{self._rates(function)}"
@@ -76,7 +76,7 @@ class _Printer:
             lines += self._assign(f"{self.out}[{rows.index(n)}]", _row_text(row), row.value)
         return _body([*lines, f"return {self.out}"])
 
-    def _rates(self, function: Function) -> str:
+    def _rates(self, function: ModuleFunction) -> str:
         """Return the function that writes the rates of a state, or of a part of a batch."""
         doc = "Write the rates dx/dt into `out`"
         roots = [row.value for row in function.rows]
@@ -122,7 +122,7 @@ class _Printer:
         name: str,
         arguments: Sequence[str],
         doc: str,
-        function: Function | None,
+        function: ModuleFunction | None,
         roots: Iterable[Node],
     ) -> list[str]:
         """Return a function's first lines: its name, what it unpacks, the quantities it needs."""
@@ -186,13 +186,13 @@ class _Printer:
             ")",
         ]
 
-    def _rows(self, function: Function) -> Places:
+    def _rows(self, function: ModuleFunction) -> Places:
         """Return the places of a function's rows."""
         slots = [row.slot for row in function.rows]
         same = slots == self.states.slots
         return self.states if same else places(slots, "row", self.program.taken)
 
-    def _array(self, function: Function, rows: Places) -> str:
+    def _array(self, function: ModuleFunction, rows: Places) -> str:
         if function.name == "initial_state":
             return f"np.zeros({rows.size})"
         return f"np.empty(({rows.size}, *{self.x}.shape[1:]))"
@@ -235,7 +235,7 @@ def _certain(program: Program) -> dict[str, str]:
     return found
 
 
-def _row_text(row: Row) -> str:
+def _row_text(row: OutputRow) -> str:
     if row.listed:
         return f"({', '.join(numpy_text(value) for value in row.listed)})"
     return numpy_text(row.value)
@@ -245,7 +245,7 @@ def _body(lines: list[str]) -> str:
     return "\n".join([lines[0], *(f"    {line}" for line in lines[1:])])
 
 
-def _shape(function: Function) -> str:
+def _shape(function: ModuleFunction) -> str:
     """Return the shape of a result, for its docstring."""
     if function.scalar:
         return "(*batch)"

@@ -7,12 +7,14 @@ Input: nothing.  Output: the records, by name.  To add a function, add its recor
 from collections.abc import Mapping
 
 from piezo_sym.expressions.functions.kinked import KINKED
-from piezo_sym.expressions.functions.record import INF, Function
+from piezo_sym.expressions.functions.record import INF, LawFunction
 from piezo_sym.expressions.functions.smooth import SMOOTH
 
-__all__ = ["FUNCTIONS", "INF", "RECORDS", "Function"]
+__all__ = ["FUNCTIONS", "INF", "RECORDS", "LawFunction"]
 
 #: Every function, those that only lowering makes among them.
-RECORDS: Mapping[str, Function] = {record.name: record for record in (*SMOOTH, *KINKED)}
+RECORDS: Mapping[str, LawFunction] = {record.name: record for record in (*SMOOTH, *KINKED)}
 #: The functions of the law language.
-FUNCTIONS: Mapping[str, Function] = {n: record for n, record in RECORDS.items() if record.written}
+FUNCTIONS: Mapping[str, LawFunction] = {
+    n: record for n, record in RECORDS.items() if record.written
+}

@@ -6,7 +6,7 @@ Input: nothing.  Output: `KINKED`, a record each; see `record` for what it says,
 from bisect import bisect
 from itertools import pairwise
 
-from piezo_sym.expressions.functions.record import Function
+from piezo_sym.expressions.functions.record import LawFunction
 
 _NAN = "not a number stays so"
 
@@ -33,7 +33,7 @@ def _table(z: float, *knots: float) -> float:
 
 
 KINKED = (
-    Function(
+    LawFunction(
         "abs",
         abs,
         ("sign(x)",),
@@ -46,7 +46,7 @@ KINKED = (
         numpy="np.abs",
         c="fabs",
     ),
-    Function(
+    LawFunction(
         "sign",
         _sign,
         ("0",),
@@ -58,7 +58,7 @@ KINKED = (
         numpy="np.sign",
         c_helper=("double z", "z > 0.0 ? 1.0 : z < 0.0 ? -1.0 : z"),
     ),
-    Function(
+    LawFunction(
         "min",
         min,
         ("1 if x <= w else 0", "0 if x <= w else 1"),
@@ -68,7 +68,7 @@ KINKED = (
         numpy="np.minimum",
         c_helper=("double a, double b", f"a < b || a != a ? a : b; /* {_NAN} */"),
     ),
-    Function(
+    LawFunction(
         "max",
         max,
         ("1 if x >= w else 0", "0 if x >= w else 1"),
@@ -78,7 +78,7 @@ KINKED = (
         numpy="np.maximum",
         c_helper=("double a, double b", f"a > b || a != a ? a : b; /* {_NAN} */"),
     ),
-    Function(
+    LawFunction(
         "saturate",
         _saturate,
         ("0 if abs(x) > w else 1", "sign(x) if abs(x) > w else 0"),
@@ -91,7 +91,7 @@ KINKED = (
         numpy="np.clip({x}, -{w:atom}, {w})",
         c_helper=("double z, double w", "z > w ? w : z < -w ? -w : z"),
     ),
-    Function(
+    LawFunction(
         "deadzone",
         _deadzone,
         ("1 if abs(x) > w else 0", "-sign(x) if abs(x) > w else 0"),
@@ -105,5 +105,5 @@ KINKED = (
         binds="sum",
         c_helper=("double z, double w", "z > w ? z - w : z < -w ? z + w : z - z"),
     ),
-    Function("table", _table, (), units="equal", knots=True),
+    LawFunction("table", _table, (), units="equal", knots=True),
 )

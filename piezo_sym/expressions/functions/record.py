@@ -1,9 +1,9 @@
 """What a record of a law function says.
 
-Input: nothing.  Output: the type `Function`.  Rules are texts of the law language, in which x and w
-are the arguments and y the value; `calculus` makes trees of them.  A fact is true for all real
-numbers: a clause of comparisons, with ``|`` between them, of which one holds; what is known on the
-function's domain alone has as first comparison that the argument is outside it.
+Input: nothing.  Output: the type `LawFunction`.  Rules are texts of the law language, in which x
+and w are the arguments and y the value; `calculus` makes trees of them.  A fact is true for all
+real numbers: a clause of comparisons, with ``|`` between them, of which one holds; what is known on
+the function's domain alone has as first comparison that the argument is outside it.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ INF = math.inf
 
 @final
 @dataclass(frozen=True)
-class Function:
+class LawFunction:
     """One function of laws.
 
     Attributes

@@ -6,12 +6,12 @@ Input: nothing.  Output: `SMOOTH`, a record each; see `record` for what it says,
 import math
 from fractions import Fraction
 
-from piezo_sym.expressions.functions.record import INF, Function
+from piezo_sym.expressions.functions.record import INF, LawFunction
 
 _ONE = (Fraction(-1), Fraction(1))
 
 SMOOTH = (
-    Function(
+    LawFunction(
         "exp",
         math.exp,
         ("y",),
@@ -30,7 +30,7 @@ SMOOTH = (
         ),
         numpy="np.exp",
     ),
-    Function(  # lowering makes it, for exp(x) - 1 without cancellation
+    LawFunction(  # lowering makes it, for exp(x) - 1 without cancellation
         "expm1",
         math.expm1,
         ("exp(x)",),
@@ -39,7 +39,7 @@ SMOOTH = (
         numpy="np.expm1",
         written=False,
     ),
-    Function(
+    LawFunction(
         "log",
         math.log,
         ("1/x",),
@@ -49,7 +49,7 @@ SMOOTH = (
         facts=("x <= 0 | y <= x - 1", "x <= 0 | y*x >= x - 1"),  # tangent at 1; log(x) = -log(1/x)
         numpy="np.log",
     ),
-    Function(
+    LawFunction(
         "sqrt",
         math.sqrt,
         ("0.5/y",),
@@ -60,7 +60,7 @@ SMOOTH = (
         known=(0, 0),
         numpy="np.sqrt",
     ),
-    Function(
+    LawFunction(
         "sin",
         math.sin,
         ("cos(x)",),
@@ -79,7 +79,7 @@ SMOOTH = (
         ),
         numpy="np.sin",
     ),
-    Function(
+    LawFunction(
         "cos",
         math.cos,
         ("-sin(x)",),
@@ -89,7 +89,7 @@ SMOOTH = (
         facts=("y <= 1", "y >= -1", "y >= 1 - 0.5*x**2"),
         numpy="np.cos",
     ),
-    Function(
+    LawFunction(
         "tanh",
         math.tanh,
         ("1 - y**2",),
@@ -107,7 +107,7 @@ SMOOTH = (
         ),
         numpy="np.tanh",
     ),
-    Function(
+    LawFunction(
         "atan",
         math.atan,
         ("1/(1 + x**2)",),
@@ -125,7 +125,7 @@ SMOOTH = (
         ),
         numpy="np.arctan",
     ),
-    Function(
+    LawFunction(
         "sinh",
         math.sinh,
         ("cosh(x)",),
@@ -144,7 +144,7 @@ SMOOTH = (
         ),
         numpy="np.sinh",
     ),
-    Function(
+    LawFunction(
         "cosh",
         math.cosh,
         ("sinh(x)",),
@@ -162,7 +162,7 @@ SMOOTH = (
         ),
         numpy="np.cosh",
     ),
-    Function(
+    LawFunction(
         "erf",
         math.erf,
         ("exp(-x**2)/sqrt(atan(1))",),  # atan(1) = pi/4

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, final
 
-from piezo_sym.expressions.functions import RECORDS, Function
+from piezo_sym.expressions.functions import RECORDS, LawFunction
 
 INF = math.inf
 #: Exact values are kept as long as they have no more bits than this.
@@ -193,7 +193,7 @@ def of(function: str, a: Interval) -> Interval | None:
     return interval(*_rising(a, record), record.sign == ">" or zero_at_zero)
 
 
-def _rising(a: Interval, record: Function) -> tuple[float, float]:
+def _rising(a: Interval, record: LawFunction) -> tuple[float, float]:
     """Return bounds on an increasing function, from its values at the ends."""
     (low, high), most = map(float, record.bounds), record.largest
     if a.lo != (0.0 if record.domain else -INF) and a.lo >= -most:
@@ -203,7 +203,7 @@ def _rising(a: Interval, record: Function) -> tuple[float, float]:
     return low, high
 
 
-def _wave(a: Interval, record: Function) -> Interval:
+def _wave(a: Interval, record: LawFunction) -> Interval:
     """Return sine or cosine: 1 at the phases `crest` + k turns, -1 half a turn later.
 
     Between two ends with no crest inside, the wave is at most the larger end; likewise below.
@@ -216,7 +216,7 @@ def _wave(a: Interval, record: Function) -> Interval:
     return interval(low, 1.0 if _meets(a, crest) else min(1.0, max(map(_up, ends))))
 
 
-def _at(x: float, record: Function) -> Any:
+def _at(x: float, record: LawFunction) -> Any:
     return getattr(_ball(x), record.name)()
 
 

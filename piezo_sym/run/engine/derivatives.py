@@ -26,7 +26,7 @@ TINY = 2.0**-400
 
 @final
 @dataclass(frozen=True)
-class Slopes:
+class DirectionalSlopes:
     """The slopes of a step along a direction.
 
     Attributes
@@ -68,7 +68,7 @@ class Derivatives:
         u: ArrayLike = 0.0,
         h: float = 0.0,
         parameters: Mapping[str, Any] | None = None,
-    ) -> Slopes:
+    ) -> DirectionalSlopes:
         """Return the slopes of the equations, where the rates (stages, n) are a direction, too."""
         step, solved = self._step, self._solved
         moved = self._structure(parameters or {})
@@ -84,7 +84,7 @@ class Derivatives:
         arrays = (at(array) for array in (*given, *out, self._space))
         both = (ctypes.addressof(p.value) for p in (self._p, moved))
         self._along(ctypes.byref(c_record("direction")(*both, *arrays)))
-        return Slopes(*(array.imag / TINY for array in out))
+        return DirectionalSlopes(*(array.imag / TINY for array in out))
 
     @cached_property
     def places(self) -> FloatArray:
@@ -110,7 +110,7 @@ class Derivatives:
         """Return what the transpose of the matrix takes to `right` (stages*n,)."""
         return self._solved_by(right, 1)
 
-    def tangent(self, **direction: Any) -> Slopes:
+    def tangent(self, **direction: Any) -> DirectionalSlopes:
         """Return how the step moves along a direction: its rates (as `gap`), end, and switches."""
         moved = self.equations(**direction)
         rates = -self.solve(moved.gap.ravel()).reshape(moved.gap.shape)

@@ -15,7 +15,7 @@ from piezo_sym.spec.elements.base import (
     StateName,
 )
 from piezo_sym.spec.elements.forms import Dissipation, Imposed, PairCoupling, Store
-from piezo_sym.spec.elements.ports import Domain, Variable
+from piezo_sym.spec.elements.ports import PhysicalDomain, PowerVariable
 
 
 @final
@@ -26,7 +26,7 @@ class Capacitor(Element):
     V = Q/capacitance [V]; energy the integral of V, Q**2/(2*capacitance).
     """
 
-    forms: ClassVar = (Store(Domain.ELECTRICAL, Variable.ACROSS, "capacitance"),)
+    forms: ClassVar = (Store(PhysicalDomain.ELECTRICAL, PowerVariable.ACROSS, "capacitance"),)
     letter: ClassVar[str] = "Q"
 
     kind: Literal["capacitor"] = "capacitor"
@@ -43,7 +43,7 @@ class Inductor(Element):
     node to its second; energy the integral of i, phi**2/(2*inductance).
     """
 
-    forms: ClassVar = (Store(Domain.ELECTRICAL, Variable.THROUGH, "inductance"),)
+    forms: ClassVar = (Store(PhysicalDomain.ELECTRICAL, PowerVariable.THROUGH, "inductance"),)
     letter: ClassVar[str] = "phi"
 
     kind: Literal["inductor"] = "inductor"
@@ -61,7 +61,7 @@ class Resistor(Element):
     relative to its second; voltage times current heats a body.
     """
 
-    forms: ClassVar = (Dissipation(Domain.ELECTRICAL),)
+    forms: ClassVar = (Dissipation(PhysicalDomain.ELECTRICAL),)
     one_of: ClassVar[tuple[str, ...]] = ("voltage", "current")
 
     kind: Literal["resistor"] = "resistor"
@@ -82,8 +82,8 @@ class Hysteron(Element):
     """
 
     forms: ClassVar = (
-        Store(Domain.ELECTRICAL, Variable.THROUGH, "inductance"),
-        Dissipation(Domain.ELECTRICAL),
+        Store(PhysicalDomain.ELECTRICAL, PowerVariable.THROUGH, "inductance"),
+        Dissipation(PhysicalDomain.ELECTRICAL),
     )
     letter: ClassVar[str] = "phi"
 
@@ -101,7 +101,9 @@ class Hysteron(Element):
 class Transformer(Element):
     """An ideal transformer: v_1 = ratio*v_2 and i_2 = -ratio*i_1 between two pairs of nodes."""
 
-    forms: ClassVar = (PairCoupling(("first", Domain.ELECTRICAL), ("second", Domain.ELECTRICAL)),)
+    forms: ClassVar = (
+        PairCoupling(("first", PhysicalDomain.ELECTRICAL), ("second", PhysicalDomain.ELECTRICAL)),
+    )
 
     kind: Literal["transformer"] = "transformer"
     first: Pair
@@ -119,7 +121,9 @@ class Transducer(Element):
 
     forms: ClassVar = (
         PairCoupling(
-            ("electrical", Domain.ELECTRICAL), ("mechanical", Domain.MECHANICAL), gyrates=True
+            ("electrical", PhysicalDomain.ELECTRICAL),
+            ("mechanical", PhysicalDomain.MECHANICAL),
+            gyrates=True,
         ),
     )
 
@@ -134,7 +138,7 @@ class Transducer(Element):
 class VoltageSource(Element):
     """A voltage between two nodes, V_in of eq. (12); the conjugate output is its current."""
 
-    forms: ClassVar = (Imposed(Domain.ELECTRICAL, Variable.ACROSS),)
+    forms: ClassVar = (Imposed(PhysicalDomain.ELECTRICAL, PowerVariable.ACROSS),)
 
     kind: Literal["voltage_source"] = "voltage_source"
     between: Pair
@@ -145,7 +149,7 @@ class VoltageSource(Element):
 class CurrentSource(Element):
     """A current pushed into the first node; the conjugate output is the voltage between them."""
 
-    forms: ClassVar = (Imposed(Domain.ELECTRICAL, Variable.THROUGH),)
+    forms: ClassVar = (Imposed(PhysicalDomain.ELECTRICAL, PowerVariable.THROUGH),)
 
     kind: Literal["current_source"] = "current_source"
     between: Pair

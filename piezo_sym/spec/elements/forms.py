@@ -12,11 +12,11 @@ from piezo_sym.spec.elements.base import Form, positive, state_symbol
 from piezo_sym.spec.elements.ports import (
     Branch,
     Coupling,
-    Domain,
-    Resistor,
+    DissipativePort,
+    PhysicalDomain,
+    PowerVariable,
     Source,
     Storage,
-    Variable,
 )
 
 
@@ -25,8 +25,8 @@ from piezo_sym.spec.elements.ports import (
 class Store(Form):
     """An energy store that imposes its co-state; `field` is its stiffness, capacitance, mass ..."""
 
-    domain: Domain
-    imposes: Variable
+    domain: PhysicalDomain
+    imposes: PowerVariable
     field: str
 
     def port(self, element: Any, name: str, branch: Branch) -> Storage:
@@ -61,13 +61,15 @@ class Store(Form):
 class Dissipation(Form):
     """A law for one variable of a branch, given the other; their product heats a body."""
 
-    domain: Domain
+    domain: PhysicalDomain
 
-    def port(self, element: Any, name: str, branch: Branch) -> Resistor:
+    def port(self, element: Any, name: str, branch: Branch) -> DissipativePort:
         """Return the process, in the causality in which the law is given."""
-        imposes = next(v for v in Variable if getattr(element, self.domain.variable(v).name, None))
+        imposes = next(
+            v for v in PowerVariable if getattr(element, self.domain.variable(v).name, None)
+        )
         output, effort = self.domain.variable(imposes), self.domain.variable(imposes.other)
-        return Resistor(
+        return DissipativePort(
             letter=effort.letter,
             law=element.law(output.name),
             field=output.name,
@@ -85,8 +87,8 @@ class Dissipation(Form):
 class PairCoupling(Form):
     """A coupling of two pairs of nodes, each a field of the element with its domain."""
 
-    first: tuple[str, Domain]
-    second: tuple[str, Domain]
+    first: tuple[str, PhysicalDomain]
+    second: tuple[str, PhysicalDomain]
     gyrates: bool = False
 
     def port(self, element: Any, name: str, branch: Branch) -> Coupling:
@@ -109,14 +111,14 @@ class PairCoupling(Form):
 class Imposed(Form):
     """A variable of a branch that an input gives."""
 
-    domain: Domain
-    imposes: Variable
+    domain: PhysicalDomain
+    imposes: PowerVariable
 
     def port(self, element: Any, name: str, branch: Branch) -> Source:
         """Return the port; its output is the conjugate variable."""
         given = self.domain.variable(self.imposes)
         output = self.domain.variable(self.imposes.other)
-        verb = "given by" if self.imposes is Variable.ACROSS else "at"
+        verb = "given by" if self.imposes is PowerVariable.ACROSS else "at"
         return Source(
             input=element.input,
             branch=_placed(element, branch, self.domain),
@@ -127,6 +129,6 @@ class Imposed(Form):
         )
 
 
-def _placed(element: Any, branch: Branch, domain: Domain) -> Branch:
+def _placed(element: Any, branch: Branch, domain: PhysicalDomain) -> Branch:
     """Return the branch, which for an element at one node ends at the reference."""
     return (element.at, domain.reference) if hasattr(element, "at") else branch

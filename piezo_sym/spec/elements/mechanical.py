@@ -14,7 +14,7 @@ from piezo_sym.spec.elements.base import (
     StateName,
 )
 from piezo_sym.spec.elements.forms import Dissipation, Imposed, PairCoupling, Store
-from piezo_sym.spec.elements.ports import Domain, Variable
+from piezo_sym.spec.elements.ports import PhysicalDomain, PowerVariable
 
 
 @final
@@ -25,7 +25,7 @@ class Spring(Element):
     F = stiffness*(q - rest) [N] with which it pulls its first node back; energy the integral of F.
     """
 
-    forms: ClassVar = (Store(Domain.MECHANICAL, Variable.THROUGH, "stiffness"),)
+    forms: ClassVar = (Store(PhysicalDomain.MECHANICAL, PowerVariable.THROUGH, "stiffness"),)
     letter: ClassVar[str] = "q"
 
     kind: Literal["spring"] = "spring"
@@ -43,7 +43,7 @@ class Mass(Element):
     integral of v, p**2/(2*mass).
     """
 
-    forms: ClassVar = (Store(Domain.MECHANICAL, Variable.ACROSS, "mass"),)
+    forms: ClassVar = (Store(PhysicalDomain.MECHANICAL, PowerVariable.ACROSS, "mass"),)
     letter: ClassVar[str] = "p"
 
     kind: Literal["mass"] = "mass"
@@ -61,7 +61,7 @@ class Damper(Element):
     it; force times velocity heats a body.
     """
 
-    forms: ClassVar = (Dissipation(Domain.MECHANICAL),)
+    forms: ClassVar = (Dissipation(PhysicalDomain.MECHANICAL),)
     one_of: ClassVar[tuple[str, ...]] = ("force", "velocity")
 
     kind: Literal["damper"] = "damper"
@@ -76,7 +76,9 @@ class Damper(Element):
 class Lever(Element):
     """An ideal lever: v_1 = ratio*v_2 and F_2 = -ratio*F_1 between two pairs of nodes."""
 
-    forms: ClassVar = (PairCoupling(("first", Domain.MECHANICAL), ("second", Domain.MECHANICAL)),)
+    forms: ClassVar = (
+        PairCoupling(("first", PhysicalDomain.MECHANICAL), ("second", PhysicalDomain.MECHANICAL)),
+    )
 
     kind: Literal["lever"] = "lever"
     first: Pair
@@ -88,7 +90,7 @@ class Lever(Element):
 class ForceSource(Element):
     """A force on a node, F_ext of eq. (10); the conjugate output is the node's velocity."""
 
-    forms: ClassVar = (Imposed(Domain.MECHANICAL, Variable.THROUGH),)
+    forms: ClassVar = (Imposed(PhysicalDomain.MECHANICAL, PowerVariable.THROUGH),)
 
     kind: Literal["force_source"] = "force_source"
     at: Node
@@ -99,7 +101,7 @@ class ForceSource(Element):
 class VelocitySource(Element):
     """A velocity given to a node; the conjugate output is the force that it takes."""
 
-    forms: ClassVar = (Imposed(Domain.MECHANICAL, Variable.ACROSS),)
+    forms: ClassVar = (Imposed(PhysicalDomain.MECHANICAL, PowerVariable.ACROSS),)
 
     kind: Literal["velocity_source"] = "velocity_source"
     at: Node

@@ -19,20 +19,20 @@ Branch = tuple[str, str]
 
 
 @final
-class Variable(Enum):
+class PowerVariable(Enum):
     """The two variables of a branch."""
 
     ACROSS = "across"
     THROUGH = "through"
 
     @property
-    def other(self) -> Variable:
+    def other(self) -> PowerVariable:
         """The conjugate variable."""
-        return Variable.THROUGH if self is Variable.ACROSS else Variable.ACROSS
+        return PowerVariable.THROUGH if self is PowerVariable.ACROSS else PowerVariable.ACROSS
 
 
 @final
-class Domain(Enum):
+class PhysicalDomain(Enum):
     """A physical domain; its two variables stand in `VARIABLES`."""
 
     ELECTRICAL = "electrical"
@@ -41,9 +41,9 @@ class Domain(Enum):
     @property
     def reference(self) -> str:
         """The node at which the across variable is zero."""
-        return "gnd" if self is Domain.ELECTRICAL else "wall"
+        return "gnd" if self is PhysicalDomain.ELECTRICAL else "wall"
 
-    def variable(self, which: Variable) -> PhysicalVariable:
+    def variable(self, which: PowerVariable) -> PhysicalVariable:
         """Return what the across or through variable is in this domain."""
         return VARIABLES[self, which]
 
@@ -69,15 +69,17 @@ class PhysicalVariable:
     state_unit: str
 
 
-VARIABLES: Mapping[tuple[Domain, Variable], PhysicalVariable] = {
-    (Domain.ELECTRICAL, Variable.ACROSS): PhysicalVariable("voltage", "V", "v", "V", "charge", "C"),
-    (Domain.ELECTRICAL, Variable.THROUGH): PhysicalVariable(
+VARIABLES: Mapping[tuple[PhysicalDomain, PowerVariable], PhysicalVariable] = {
+    (PhysicalDomain.ELECTRICAL, PowerVariable.ACROSS): PhysicalVariable(
+        "voltage", "V", "v", "V", "charge", "C"
+    ),
+    (PhysicalDomain.ELECTRICAL, PowerVariable.THROUGH): PhysicalVariable(
         "current", "A", "i", "i", "flux linkage", "Wb"
     ),
-    (Domain.MECHANICAL, Variable.ACROSS): PhysicalVariable(
+    (PhysicalDomain.MECHANICAL, PowerVariable.ACROSS): PhysicalVariable(
         "velocity", "m/s", "v", "v", "momentum", "kg*m/s"
     ),
-    (Domain.MECHANICAL, Variable.THROUGH): PhysicalVariable(
+    (PhysicalDomain.MECHANICAL, PowerVariable.THROUGH): PhysicalVariable(
         "force", "N", "f", "F", "extension", "m"
     ),
 }
@@ -104,15 +106,15 @@ class Storage:
     law: Expr
     costate: str
     branch: Branch
-    domain: Domain
-    imposes: Variable
+    domain: PhysicalDomain
+    imposes: PowerVariable
     units: tuple[str, str]
     doc: str
 
 
 @final
 @dataclass(frozen=True)
-class Resistor:
+class DissipativePort:
     """An irreversible process: output W = law(z, T), power W*z turned into heat of a body.
 
     Attributes
@@ -132,8 +134,8 @@ class Resistor:
     output: str
     effort: str
     branch: Branch
-    domain: Domain
-    imposes: Variable
+    domain: PhysicalDomain
+    imposes: PowerVariable
     heats: str
     written: Expr | None = None
 
@@ -149,9 +151,9 @@ class Coupling:
     """
 
     first: Branch
-    first_domain: Domain
+    first_domain: PhysicalDomain
     second: Branch
-    second_domain: Domain
+    second_domain: PhysicalDomain
     ratio: Expr
     name: str
     body: str | None
@@ -168,8 +170,8 @@ class Source:
 
     input: str
     branch: Branch
-    domain: Domain
-    imposes: Variable
+    domain: PhysicalDomain
+    imposes: PowerVariable
     units: tuple[str, str]
     doc: str
 
@@ -213,4 +215,4 @@ class Conductor:
     output: str
 
 
-Port = Storage | Resistor | Coupling | Source | Body | Exchange | Conductor
+Port = Storage | DissipativePort | Coupling | Source | Body | Exchange | Conductor
