@@ -128,8 +128,8 @@ a branch may have one node
   = shorted
 ## iphs/definitions
 conduction heats the first body
-  - return port.heats if isinstance(port, Resistor) else port.second
-  + return port.heats if isinstance(port, Resistor) else port.first
+  - return port.heats if isinstance(port, DissipativePort) else port.second
+  + return port.heats if isinstance(port, DissipativePort) else port.first
   = two airs
 heat flows to the warmer side of an exchange
   - return symbols.law(port.conductance, {}) * (ratio - 1)
@@ -166,8 +166,8 @@ ratios have twice the temperature
   +         yield symbols[port.name], symbols.law(law_of(circuit, port), twice)
   = transducer_between_moving_nodes
 slopes have another body's temperature
-  - tuple(circuit.of(Resistor, Conductor))[slope.process]
-  + tuple(circuit.of(Resistor, Conductor))[0]
+  - tuple(circuit.of(DissipativePort, Conductor))[slope.process]
+  + tuple(circuit.of(DissipativePort, Conductor))[0]
   = coil loop
 co-states are of minus their state
   - symbols[costate_name(port)], symbols.law(law_of(circuit, port), {})
