@@ -30,6 +30,7 @@ if TYPE_CHECKING:  # "as" makes them public for type checkers
     from piezo_sym.build import generate as generate
     from piezo_sym.derivation import derive as derive
     from piezo_sym.errors import PiezoError as PiezoError
+    from piezo_sym.linearization import linearize as linearize
     from piezo_sym.run import chirp as chirp
     from piezo_sym.run import ramp as ramp
     from piezo_sym.run import samples as samples
@@ -49,6 +50,7 @@ _HOME = {
     "chirp": "run",
     "derive": "derivation",
     "generate": "build",
+    "linearize": "linearization",
     "load": "spec.load",
     "operating_point": "api",
     "periodic_steady_state": "api",

@@ -115,19 +115,19 @@ def operating_point(
     return _described(search, x, parameters or {}, list(held), undetermined)
 
 
-def read_constants(module: GeneratedModule, given: Mapping[str, float] | None) -> FloatArray:
-    """Return constant inputs u (m,): those given, and defaults.
+def read_constants(
+    module: GeneratedModule, given: Mapping[str, float] | None, where: str = f"{WHERE}.inputs"
+) -> FloatArray:
+    """Return constant inputs u (m,): those given, and defaults; `where` is for messages.
 
     Raises
     ------
     UsageError : a name is unknown, or a value is no number.
     """
     names = [record.name for record in module.INPUTS]
-    values = known_keys(given, names, f"{WHERE}.inputs")
+    values = known_keys(given, names, where)
     default = dict(zip(names, module.INPUT_DEFAULTS, strict=True))
-    return np.array(
-        [number(values.get(name, default[name]), f"{WHERE}.inputs.{name}") for name in names]
-    )
+    return np.array([number(values.get(name, default[name]), f"{where}.{name}") for name in names])
 
 
 def _held(

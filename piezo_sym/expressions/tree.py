@@ -14,7 +14,7 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Any, TypeVar, cast, dataclass_transform, final
 
-from piezo_sym.expressions.functions import FUNCTIONS
+from piezo_sym.expressions.functions import FUNCTIONS, RECORDS
 
 Kind = TypeVar("Kind")
 
@@ -266,7 +266,7 @@ def _evaluate(node: Expr, values: Mapping[str, float]) -> float:
         case Pow(base, exponent):
             return _power(_evaluate(base, values), exponent)
         case Call(function, args):
-            return float(FUNCTIONS[function].value(*(_evaluate(arg, values) for arg in args)))
+            return float(RECORDS[function].value(*(_evaluate(arg, values) for arg in args)))
         case If(then, condition, other):
             return _evaluate(then if holds(condition, values) else other, values)
         case LaneSum():

@@ -4,9 +4,10 @@ The floors, two towers on one ground:
 
     errors < expressions < spec < algebra < network < iphs < derivation
         < {proofs, codegen} < {translation, falsify} < verification < build < modules
-        < {sweeps, api} < bench < cli
+        < {sweeps, linearization} < api < bench < cli
     checker < falsify; the checker imports nothing of the package
-    errors < expressions < {run, progress} < {sweeps, analysis, build} < modules < api < bench < cli
+    errors < expressions < {run, progress} < {sweeps, analysis, build} < modules
+        < {linearization, api} < bench < cli
 """
 
 from graphlib import CycleError, TopologicalSorter
@@ -34,7 +35,8 @@ PROVING = (
     {"verification"},
     {"build"},
     {"modules"},
-    {"sweeps", "api"},
+    {"sweeps", "linearization"},
+    {"api"},
     {"bench"},
     *TOP,
 )
@@ -44,7 +46,7 @@ RUNNING = (
     {"run", "progress"},
     {"sweeps", "analysis", "build"},
     {"modules"},
-    {"api"},
+    {"linearization", "api"},
     {"bench"},
     *TOP,
 )

@@ -1,0 +1,104 @@
+"""Linear models: entries by hand, the generated Jacobian, differences of rates and outputs."""
+
+import numpy as np
+import pytest
+from scipy.signal import StateSpace
+
+from piezo_sym import linearize, load, operating_point
+from piezo_sym.errors import RunError, UsageError
+from piezo_sym.modules import module_of
+from tests.networks.test_acceptance import SPECS
+
+ALL = ["piezo_stack", *(str(path) for path in sorted(SPECS.glob("*.toml")))]
+
+
+def test_the_actuator_by_hand() -> None:
+    """Equation (13): dp/dt = alpha V_C - k q - d p/M + F, y = (p/M, sum of phi_j/L, T)."""
+    linear = linearize("piezo_stack", inputs={"V_in": 100.0})
+    at = {name: n for n, name in enumerate((*linear.states, *linear.inputs))}
+    T = 298.15
+    A, B, C, D = linear
+    assert A[at["p"], at["q"]] == -5e5
+    assert A[at["p"], at["p"]] == pytest.approx(-4e2 / 3.5e-3, rel=1e-14)
+    assert A[at["p"], at["S"]] == pytest.approx(10 / 296.15 * (T / 5.0) * 100.0, rel=1e-12)
+    assert A[at["phi_2"], at["Q_C"]] == pytest.approx(-1 / 5e-6, rel=1e-14)
+    assert A[at["S"], at["S"]] == pytest.approx(-2.0 * T / T**2 * T / 5.0, rel=1e-12)
+    by_hand = [[0, 0, 0], [1, 0, 0], [0, 0, 0], [0, 1, 0], [0, 1, 0], [0, 0, 2.0 / T]]
+    assert pytest.approx(np.array(by_hand), rel=1e-14) == B
+    assert C[1].tolist() == [0, 0, 0, 1 / 1e-3, 1 / 1e-3, 0]
+    assert not np.any(D)
+    assert linear.units["phi_2"] == "Wb"
+    assert linear.units["y_supply"] == "A"
+    assert np.abs(linear.rates).max() < 1e-9
+    assert StateSpace(*linear).inputs == 3
+
+
+@pytest.mark.parametrize("spec", ALL)
+def test_every_network_against_its_module_and_differences(spec: str) -> None:
+    """A is the generated Jacobian; B, C and D are what differences of a moved point show."""
+    model = load(spec)
+    module = module_of(model)
+    p = module.Parameters()
+    draw = np.random.default_rng(7)
+    u = np.array(module.INPUT_DEFAULTS) + draw.uniform(0.3, 0.4, len(module.INPUTS))
+    x = module.initial_state(u, p)
+    x = x + draw.uniform(0.01, 0.02, x.size) * np.maximum(np.abs(x), 1e-3)
+    linear = linearize(
+        model, at=_named(module, p, x), inputs=dict(zip(_words(module.INPUTS), u, strict=True))
+    )
+    assert pytest.approx(module.jacobian(x, u, p), rel=1e-13, abs=1e-300) == linear.A
+    step = 1e-4 * np.maximum(np.abs(u), 1e-3)
+    moved = [u[:, None] + sign * np.diag(step) for sign in (1, -1)]
+    held = np.repeat(x[:, None], u.size, axis=1)
+    for matrix, function in ((linear.B, module.rhs), (linear.D, module.outputs)):
+        ahead, behind = (function(held, v, p) for v in moved)
+        size = np.abs(ahead).max(initial=1.0)
+        assert matrix == pytest.approx((ahead - behind) / (2 * step), rel=1e-6, abs=1e-9 * size)
+    step = 1e-5 * np.maximum(np.abs(x), 1e-5)
+    held = np.repeat(u[:, None], x.size, axis=1)
+    ahead, behind = (module.outputs(x[:, None] + sign * np.diag(step), held, p) for sign in (1, -1))
+    size = np.abs(linear.C).max(initial=1.0)
+    assert pytest.approx((ahead - behind) / (2 * step), rel=1e-5, abs=1e-5 * size) == linear.C
+
+
+def test_lanes_that_differ_stand_row_by_row() -> None:
+    given = {"hysteron_count": 3, "L": [1e-3, 2e-3, 4e-3]}
+    linear = linearize("piezo_stack", parameters=given, at={"phi": [1e-3, 2e-2, 3e-2]})
+    assert linear.states[3:6] == ("phi_1", "phi_2", "phi_3")
+    assert linear.C[1, 3:6].tolist() == [1 / 1e-3, 1 / 2e-3, 1 / 4e-3]
+    module = module_of(load("piezo_stack"))
+    p = module.Parameters(hysteron_count=3, L=(1e-3, 2e-3, 4e-3))
+    assert pytest.approx(module.jacobian(linear.x, linear.u, p), rel=1e-13) == linear.A
+
+
+def test_an_operating_point_brings_its_inputs_and_parameters() -> None:
+    rest = operating_point("piezo_stack", inputs={"V_in": 50.0}, parameters={"d": 200.0})
+    linear = linearize("piezo_stack", at=rest)
+    assert linear.u.tolist() == [0.0, 50.0, 298.15]
+    assert linear.A[1, 1] == pytest.approx(-200.0 / 3.5e-3)
+    assert np.sort(np.linalg.eigvals(linear.A).real) == pytest.approx(
+        np.sort(rest.eigenvalues.real), rel=1e-9, abs=1e-6
+    )
+    assert linearize("piezo_stack", at=rest, inputs={"V_in": 60.0}).u[1] == 60.0
+
+
+def test_what_has_no_linear_model_says_so() -> None:
+    with pytest.raises(UsageError, match="is no state"):
+        linearize("piezo_stack", at=3)  # type: ignore[arg-type]
+    with pytest.raises(UsageError, match="V_im"):
+        linearize("piezo_stack", inputs={"V_im": 3.0})
+    with pytest.raises(RunError, match="no derivative there"):
+        linearize("piezo_stack", at={"S": 0.0})
+
+
+def _words(records: tuple) -> list[str]:  # type: ignore[type-arg]
+    return [record.name for record in records]
+
+
+def _named(module, p, x: np.ndarray) -> dict[str, object]:  # type: ignore[no-untyped-def, type-arg]
+    found, start = {}, 0
+    for record in module.STATES:
+        size = getattr(p, f"{record.bank}_count") if record.bank else 1
+        found[record.name] = x[start : start + size] if record.bank else float(x[start])
+        start += size
+    return found
