@@ -12,6 +12,7 @@ import typer
 from piezo_sym.cli.bench import bench
 from piezo_sym.cli.generate import generate
 from piezo_sym.cli.new import new
+from piezo_sym.cli.reference import functions, kinds, units
 from piezo_sym.cli.reproduce import reproduce
 from piezo_sym.cli.schema import schema
 from piezo_sym.cli.show import show
@@ -32,7 +33,10 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-for command in (new, verify, generate, show, simulate, reproduce, schema, bench):
+for command in (
+    *(new, verify, generate, show, simulate, reproduce, bench),
+    *(kinds, functions, units, schema),
+):
     app.command()(command)
 
 

@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from piezo_sym.cli.output import about
+from piezo_sym.cli.output import about, console, row, table
 
 if TYPE_CHECKING:
     from piezo_sym.algebra.lanes import LaneMatrix
     from piezo_sym.iphs import IPHS
+    from piezo_sym.spec.elements.base import Element
+    from piezo_sym.spec.model import Model
 
 
 def show(
     spec: Annotated[str, typer.Argument(metavar="SPEC", help="Path or shipped name.")],
     latex: Annotated[bool, typer.Option("--latex", help="Print LaTeX.")] = False,
 ) -> None:
-    """Show the irreversible port-Hamiltonian system of a spec: U, rates, domain, J0, processes."""
+    """Show a spec's elements and its irreversible port-Hamiltonian system: U, rates, domain, J0."""
     from piezo_sym.derivation import derive
     from piezo_sym.spec.load import load
 
@@ -27,21 +30,83 @@ def show(
     if latex:
         typer.echo(iphs.latex())
         return
-    for line in _lines(iphs):
+    for line in _head(iphs.model):
+        typer.echo(line)
+    _elements(iphs.model)
+    for line in _equations(iphs):
         typer.echo(line)
 
 
-def _lines(iphs: IPHS) -> Iterator[str]:
-    from piezo_sym.algebra.notation import slot_text
-    from piezo_sym.iphs.reading import equations_text
+def _head(model: Model) -> Iterator[str]:
     from piezo_sym.spec.tables import banks
 
-    system, header = iphs.system, iphs.model.model
+    header = model.model
     yield f"{header.name}: {header.title}" if header.title else header.name
     yield from ([f"source: {header.source}"] if header.source else [])
-    for bank, count in banks(iphs.model).items():
+    for bank, count in banks(model).items():
         yield f"bank '{bank}': lanes j = 1..r for any r = {bank}_count; {count} in the spec"
-    yield "\nEquations"
+    yield ""
+
+
+def _elements(model: Model) -> None:
+    """Print the elements with their values in SI, and what inputs and states are if not given."""
+    made = table("Elements", "name", "kind", "where", "laws and values (SI)", "state at t = 0")
+    for name, element in model.elements.items():
+        laws = "\n".join(_laws(model, name, element))
+        row(made, name, element.kind, _where(element), laws, _start(model, name, element))
+    console().print(made)
+    made = table("Inputs", "name", "unit", "if not given", "what it is")
+    for name, entry in model.inputs.items():
+        row(made, name, entry.dimension.si, f"{entry.si:g}", entry.doc)
+    if model.inputs:
+        console().print(made)
+
+
+def _where(element: Element) -> str:
+    """Return the nodes of an element, and what else it names."""
+    from piezo_sym.spec.tables import references
+
+    nodes = [(field, " - ".join(value)) for field, value in element if isinstance(value, tuple)]
+    found = [text if field == "between" else f"{field} {text}" for field, text in nodes]
+    found += [getattr(element, "at", "")] if hasattr(element, "at") else []
+    named = ((field, name) for field, _, name in references(element) if field != "between")
+    return ", ".join((*found, *(f"{field} {name}" for field, name in named)))
+
+
+def _laws(model: Model, name: str, element: Element) -> Iterator[str]:
+    """Yield each law, and its value where parameters alone decide it."""
+    from piezo_sym.expressions.tree import Num, evaluate, names
+    from piezo_sym.spec.tables import law_fields
+
+    numbers = {word: entry.si for word, entry in model.parameters.items()}
+    for law in law_fields(name, element):
+        used = {word: numbers.get(word) for word in names(law.tree)}
+        text = f"{law.where.rpartition('.')[2]} = {law.text}"
+        plain = {word: value for word, value in used.items() if isinstance(value, float)}
+        if len(plain) == len(used) and not isinstance(law.tree, Num):
+            with suppress(ArithmeticError, ValueError):  # no value: the proofs say so
+                text += f" = {evaluate(law.tree, plain):g} {law.mark.unit}"
+        yield text
+
+
+def _start(model: Model, name: str, element: Element) -> str:
+    from piezo_sym.spec.elements.base import state_symbol
+
+    if not element.letter:
+        return ""
+    symbol = state_symbol(element, name)
+    if symbol not in model.initial:
+        return f"{symbol} = 0 (not said)"
+    start = model.initial[symbol]
+    return f"{symbol} = {start}"
+
+
+def _equations(iphs: IPHS) -> Iterator[str]:
+    from piezo_sym.algebra.notation import slot_text
+    from piezo_sym.iphs.reading import equations_text
+
+    system = iphs.system
+    yield "Equations"
     pairs = equations_text(iphs.reading)
     width = max(len(left) for left, _ in pairs)
     yield from (f"  {left.ljust(width)} = {right}" for left, right in pairs)

@@ -6,6 +6,7 @@ The grammar knows names, ``*``, ``/``, parentheses and powers up to 9, whole (``
 """
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, lru_cache
@@ -22,8 +23,8 @@ COMMON = ("m", "kg", "s", "A", "K", "N", "J", "W", "V", "C", "F", "H", "Wb", "oh
 #: The units known, by pint's long names; SI prefixes go with each.
 _UNITS = """meter gram second ampere kelvin mole candela hertz newton pascal joule watt coulomb volt
     farad ohm siemens weber tesla henry radian degree turn revolutions_per_minute minute hour day
-    liter bar tonne inch foot pound electron_volt degree_Celsius degree_Fahrenheit decibel neper
-    count percent"""
+    liter bar metric_ton inch foot pound electron_volt degree_Celsius degree_Fahrenheit decibel
+    neper count percent"""
 UNITS = frozenset(_UNITS.split())
 DIMENSIONS = dict(
     zip(
@@ -229,3 +230,16 @@ def _bare(name: str, factor: Fraction, dimension: tuple[Fraction, ...]) -> str:
 def to_si(value: float, unit: Unit) -> float:
     """Return `value` given in `unit` in coherent SI, rounded once."""
     return value if unit.factor == 1 else float(Fraction(repr(value)) * unit.factor)
+
+
+def known_units() -> Iterator[tuple[str, str, str]]:
+    """Yield the symbol, the name and the value in coherent SI of each unit that specs may use."""
+    for name in _UNITS.split():
+        try:
+            unit = _named(name, "", None)
+        except SpecError:  # an offset, a logarithm, a count
+            continue
+        short = str(_registry().get_symbol(name))
+        factor = f"{float(unit.factor):.12g} " if unit.factor != 1 else ""
+        symbol = short if re.fullmatch(ATOM, short) else name
+        yield symbol, name.replace("_", " "), f"{factor}{base_units(unit.dimension)}"

@@ -45,6 +45,8 @@ KINKED = (
         sign=">=",
         numpy="np.abs",
         c="fabs",
+        about="the magnitude of x",
+        example="d*v*abs(v)",
     ),
     LawFunction(
         "sign",
@@ -57,6 +59,8 @@ KINKED = (
         parity="odd",
         numpy="np.sign",
         c_helper=("double z", "z > 0.0 ? 1.0 : z < 0.0 ? -1.0 : z"),
+        about="the sign of x; a law that jumps says `discontinuous = true`",
+        example="F_c*sign(v)",
     ),
     LawFunction(
         "min",
@@ -67,6 +71,8 @@ KINKED = (
         degree=1,
         numpy="np.minimum",
         c_helper=("double a, double b", f"a < b || a != a ? a : b; /* {_NAN} */"),
+        about="the smaller of two",
+        example="min(d_1*v, d_2*v)",
     ),
     LawFunction(
         "max",
@@ -77,6 +83,8 @@ KINKED = (
         degree=1,
         numpy="np.maximum",
         c_helper=("double a, double b", f"a > b || a != a ? a : b; /* {_NAN} */"),
+        about="the larger of two",
+        example="max(d_1*v, d_2*v)",
     ),
     LawFunction(
         "saturate",
@@ -90,6 +98,8 @@ KINKED = (
         parity="odd",
         numpy="np.clip({x}, -{w:atom}, {w})",
         c_helper=("double z, double w", "z > w ? w : z < -w ? -w : z"),
+        about="x between -w and w, the half width w >= 0",
+        example="saturate(d*v, F_c)",
     ),
     LawFunction(
         "deadzone",
@@ -104,6 +114,16 @@ KINKED = (
         numpy="{x:sum} - np.clip({x}, -{w:atom}, {w})",
         binds="sum",
         c_helper=("double z, double w", "z > w ? z - w : z < -w ? z + w : z - z"),
+        about="what x is beyond -w or w, the half width w >= 0",
+        example="R*deadzone(i, i_0)",
     ),
-    LawFunction("table", _table, (), units="equal", knots=True),
+    LawFunction(
+        "table",
+        _table,
+        (),
+        units="equal",
+        knots=True,
+        about="straight lines through 2 to 64 knots x_1, y_1, ..., and on beyond",
+        example="table(v, v_1, F_1, v_2, F_2, v_3, F_3)",
+    ),
 )

@@ -52,6 +52,7 @@ class LawFunction:
     numpy_helper : an import and a definition that a NumPy module needs to spell it so.
     c_helper : parameters and value in C, where <math.h> lacks it.
     written : whether a spec may write it; others are made by lowering.
+    about, example : one line on it, and a law with it, for users.
     """
 
     name: str
@@ -80,6 +81,8 @@ class LawFunction:
     c: str = ""
     c_helper: tuple[str, str] | None = None
     written: bool = True
+    about: str = ""
+    example: str = ""
 
     @property
     def smooth(self) -> bool:

@@ -29,6 +29,8 @@ SMOOTH = (
             "x >= 1 | y*(1 - x) <= 1",
         ),
         numpy="np.exp",
+        about="e to the power of x",
+        example="I_s*(exp(v/v_T) - 1)",
     ),
     LawFunction(  # lowering makes it, for exp(x) - 1 without cancellation
         "expm1",
@@ -48,6 +50,8 @@ SMOOTH = (
         known=(1, 0),
         facts=("x <= 0 | y <= x - 1", "x <= 0 | y*x >= x - 1"),  # tangent at 1; log(x) = -log(1/x)
         numpy="np.log",
+        about="the natural logarithm of x",
+        example="T_0*(1 + log(1 + S/c_0))",
     ),
     LawFunction(
         "sqrt",
@@ -59,6 +63,8 @@ SMOOTH = (
         sign=">=",
         known=(0, 0),
         numpy="np.sqrt",
+        about="the square root of x; also x**(1/2)",
+        example="c*sqrt(v**2 + w**2)",
     ),
     LawFunction(
         "sin",
@@ -78,6 +84,8 @@ SMOOTH = (
             "x > 0 | x < -3 | y <= 0",
         ),
         numpy="np.sin",
+        about="the sine of x [rad]",
+        example="k*sin(q/q_0)",
     ),
     LawFunction(
         "cos",
@@ -88,6 +96,8 @@ SMOOTH = (
         bounds=_ONE,
         facts=("y <= 1", "y >= -1", "y >= 1 - 0.5*x**2"),
         numpy="np.cos",
+        about="the cosine of x [rad]",
+        example="R*(2 - cos(i/i_0))",
     ),
     LawFunction(
         "tanh",
@@ -106,6 +116,8 @@ SMOOTH = (
             "x > 0 | y*(1 - x) <= x",
         ),
         numpy="np.tanh",
+        about="the hyperbolic tangent of x",
+        example="F_c*tanh(v/v_c)",
     ),
     LawFunction(
         "atan",
@@ -124,6 +136,8 @@ SMOOTH = (
             "x > 0 | y*(1 - x) <= x",
         ),
         numpy="np.arctan",
+        about="the inverse tangent of x [rad]",
+        example="F_c*atan(v/v_c)",
     ),
     LawFunction(
         "sinh",
@@ -143,6 +157,8 @@ SMOOTH = (
             "x > 0 | y*(1 - x**2/6) >= x",
         ),
         numpy="np.sinh",
+        about="the hyperbolic sine of x",
+        example="I_0*sinh(v/v_0)",
     ),
     LawFunction(
         "cosh",
@@ -161,6 +177,8 @@ SMOOTH = (
             "y*(1 - 0.5*x**2) <= 1",
         ),
         numpy="np.cosh",
+        about="the hyperbolic cosine of x",
+        example="R*cosh(i/i_0)",
     ),
     LawFunction(
         "erf",
@@ -181,5 +199,7 @@ SMOOTH = (
         ),
         numpy="_erf",
         numpy_helper=("from math import erf", "_erf = np.vectorize(erf, otypes=[float])"),
+        about="the error function of x",
+        example="F_c*erf(v/v_c)",
     ),
 )

@@ -24,6 +24,8 @@ class Capacitor(Element):
 
     State Q [C], the charge that has flowed in at its first node; co-state the voltage
     V = Q/capacitance [V]; energy the integral of V, Q**2/(2*capacitance).
+
+    Example: cap = { kind = "capacitor", between = ["cap", "gnd"], capacitance = "C", state = "Q" }
     """
 
     forms: ClassVar = (Store(PhysicalDomain.ELECTRICAL, PowerVariable.ACROSS, "capacitance"),)
@@ -41,6 +43,8 @@ class Inductor(Element):
 
     State phi [Wb], the flux linkage; co-state the current i = phi/inductance [A] from its first
     node to its second; energy the integral of i, phi**2/(2*inductance).
+
+    Example: coil = { kind = "inductor", between = ["in", "coil"], inductance = "L" }
     """
 
     forms: ClassVar = (Store(PhysicalDomain.ELECTRICAL, PowerVariable.THROUGH, "inductance"),)
@@ -59,6 +63,8 @@ class Resistor(Element):
     Either its voltage = voltage(i, T) [V] drops along the current i [A] from its first node to
     its second, or its current = current(v, T) [A] flows under the voltage v [V] of its first node
     relative to its second; voltage times current heats a body.
+
+    Example: wire = { kind = "resistor", between = ["in", "cap"], voltage = "R*i", heats = "body" }
     """
 
     forms: ClassVar = (Dissipation(PhysicalDomain.ELECTRICAL),)
@@ -79,6 +85,9 @@ class Hysteron(Element):
     State phi [Wb], the flux linkage of its inductor; co-state the current i = phi/inductance [A];
     energy phi**2/(2*inductance).  Its resistor drops V = voltage(i, T) [V] along the current, and
     V*i heats a body.  With `count` it is a bank of lanes j = 1..count in parallel.
+
+    Example: hysteron = { kind = "hysteron", between = ["in", "cap"], count = 2, inductance = "L",
+    voltage = "rho/(T - T_0)*deadzone(i, i_0)", heats = "body", state = "phi" }
     """
 
     forms: ClassVar = (
@@ -99,7 +108,11 @@ class Hysteron(Element):
 
 @final
 class Transformer(Element):
-    """An ideal transformer: v_1 = ratio*v_2 and i_2 = -ratio*i_1 between two pairs of nodes."""
+    """An ideal transformer: v_1 = ratio*v_2 and i_2 = -ratio*i_1 between two pairs of nodes.
+
+    Example: step_up = { kind = "transformer", first = ["in", "gnd"], second = ["out", "gnd"],
+    ratio = "n" }
+    """
 
     forms: ClassVar = (
         PairCoupling(("first", PhysicalDomain.ELECTRICAL), ("second", PhysicalDomain.ELECTRICAL)),
@@ -117,6 +130,9 @@ class Transducer(Element):
 
     It draws ratio*v from its first electrical node and pushes its first mechanical node with
     ratio*V.  The ratio [C/m = N/V] may depend on the temperature T of the body it names.
+
+    Example: piezo = { kind = "transducer", electrical = ["cap", "gnd"],
+    mechanical = ["tip", "wall"], ratio = "a*T/T_0", temperature = "body" }
     """
 
     forms: ClassVar = (
@@ -136,7 +152,10 @@ class Transducer(Element):
 
 @final
 class VoltageSource(Element):
-    """A voltage between two nodes, V_in of eq. (12); the conjugate output is its current."""
+    """A voltage between two nodes, V_in of eq. (12); the conjugate output is its current.
+
+    Example: supply = { kind = "voltage_source", between = ["in", "gnd"], input = "V_in" }
+    """
 
     forms: ClassVar = (Imposed(PhysicalDomain.ELECTRICAL, PowerVariable.ACROSS),)
 
@@ -147,7 +166,10 @@ class VoltageSource(Element):
 
 @final
 class CurrentSource(Element):
-    """A current pushed into the first node; the conjugate output is the voltage between them."""
+    """A current pushed into the first node; the conjugate output is the voltage between them.
+
+    Example: drive = { kind = "current_source", between = ["cap", "gnd"], input = "i_in" }
+    """
 
     forms: ClassVar = (Imposed(PhysicalDomain.ELECTRICAL, PowerVariable.THROUGH),)
 

@@ -23,6 +23,8 @@ class Spring(Element):
 
     State q [m], the extension of its first node relative to its second; co-state the force
     F = stiffness*(q - rest) [N] with which it pulls its first node back; energy the integral of F.
+
+    Example: stack = { kind = "spring", between = ["tip", "wall"], stiffness = "k", rest = "q_l" }
     """
 
     forms: ClassVar = (Store(PhysicalDomain.MECHANICAL, PowerVariable.THROUGH, "stiffness"),)
@@ -41,6 +43,8 @@ class Mass(Element):
 
     State p [kg*m/s], the momentum; co-state the velocity v = p/mass [m/s] of its node; energy the
     integral of v, p**2/(2*mass).
+
+    Example: tip = { kind = "mass", at = "tip", mass = "M", state = "p" }
     """
 
     forms: ClassVar = (Store(PhysicalDomain.MECHANICAL, PowerVariable.ACROSS, "mass"),)
@@ -59,6 +63,8 @@ class Damper(Element):
     Either its force = force(v, T) [N] opposes v = v_a - v_b [m/s], the velocity of its first node
     relative to its second, or its velocity = velocity(f, T) [m/s] follows the force f [N] through
     it; force times velocity heats a body.
+
+    Example: drag = { kind = "damper", between = ["tip", "wall"], force = "d*v", heats = "body" }
     """
 
     forms: ClassVar = (Dissipation(PhysicalDomain.MECHANICAL),)
@@ -74,7 +80,11 @@ class Damper(Element):
 
 @final
 class Lever(Element):
-    """An ideal lever: v_1 = ratio*v_2 and F_2 = -ratio*F_1 between two pairs of nodes."""
+    """An ideal lever: v_1 = ratio*v_2 and F_2 = -ratio*F_1 between two pairs of nodes.
+
+    Example: arm = { kind = "lever", first = ["stack", "wall"], second = ["tip", "wall"],
+    ratio = "n" }
+    """
 
     forms: ClassVar = (
         PairCoupling(("first", PhysicalDomain.MECHANICAL), ("second", PhysicalDomain.MECHANICAL)),
@@ -88,7 +98,10 @@ class Lever(Element):
 
 @final
 class ForceSource(Element):
-    """A force on a node, F_ext of eq. (10); the conjugate output is the node's velocity."""
+    """A force on a node, F_ext of eq. (10); the conjugate output is the node's velocity.
+
+    Example: load = { kind = "force_source", at = "tip", input = "F_ext" }
+    """
 
     forms: ClassVar = (Imposed(PhysicalDomain.MECHANICAL, PowerVariable.THROUGH),)
 
@@ -99,7 +112,10 @@ class ForceSource(Element):
 
 @final
 class VelocitySource(Element):
-    """A velocity given to a node; the conjugate output is the force that it takes."""
+    """A velocity given to a node; the conjugate output is the force that it takes.
+
+    Example: stage = { kind = "velocity_source", at = "base", input = "v_base" }
+    """
 
     forms: ClassVar = (Imposed(PhysicalDomain.MECHANICAL, PowerVariable.ACROSS),)
 

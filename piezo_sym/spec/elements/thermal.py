@@ -22,6 +22,8 @@ class ThermalMass(Element):
 
     State S [J/K], its entropy; co-state its temperature T = temperature(S) [K]; energy the integral
     of T, the f_h(S) that the paper leaves to be deduced.
+
+    Example: body = { kind = "thermal_mass", temperature = "T_0*exp(S/c_0)", state = "S" }
     """
 
     letter: ClassVar[str] = "S"
@@ -55,6 +57,8 @@ class Conduction(Element):
 
     The heat flow q = conductance*(T_1 - T_2) [W] runs from the first body to the second; J couples
     their entropies, the driving force is T_1 - T_2 and gamma = conductance/(T_1 T_2).
+
+    Example: contact = { kind = "conduction", between = ["stack", "mount"], conductance = "lam" }
     """
 
     kind: Literal["conduction"] = "conduction"
@@ -79,6 +83,8 @@ class Ambient(Element):
 
     The input T_e [K] is the environment's temperature; the conjugate output is y = T, so that the
     power put in is lam*(T_e - T) [W].
+
+    Example: air = { kind = "ambient", body = "body", conductance = "lam", input = "T_e" }
     """
 
     kind: Literal["ambient"] = "ambient"

@@ -1,0 +1,77 @@
+"""``piezo-sym kinds``, ``functions``, ``units``: what a spec may say, with examples."""
+
+from __future__ import annotations
+
+from textwrap import wrap
+from typing import Annotated, Any
+
+import typer
+
+from piezo_sym.cli.output import console, row, table
+
+WIDTH = 100
+OPERATORS = (
+    ("+ - * /", "as usual", "R*(1 + al*(T - T_0))"),
+    ("**", "a power, by a whole number or a small fraction", "d*v**3"),
+    ("if", "one comparison (< <= > >=) chooses", "k_1*q if q < g else k_2*q"),
+)
+
+
+def kinds(
+    kind: Annotated[str | None, typer.Argument(metavar="[KIND]", help="One kind, whole.")] = None,
+) -> None:
+    """List the kinds of elements, or show one: its fields, units, signs, an example."""
+    from piezo_sym.errors import UsageError, nearest, quote
+    from piezo_sym.spec.elements import KINDS
+    from piezo_sym.spec.schema import schema
+
+    if kind is not None and kind not in KINDS:
+        raise UsageError(f"{quote(kind)} is no kind", "KIND", remedy=nearest(kind, KINDS))
+    known = schema()["$defs"]
+    if kind is not None:
+        _show(kind, known[KINDS[kind].__name__])
+        return
+    made = table("Kinds of elements; more on one: piezo-sym kinds KIND", "kind", "what it is")
+    for name, element in KINDS.items():
+        row(made, name, known[element.__name__]["description"].partition("\n")[0])
+    console().print(made)
+
+
+def _show(kind: str, known: dict[str, Any]) -> None:
+    """Print a kind's description, its fields and its example."""
+    *about, example = known["description"].split("\n\n")
+    for part in about:
+        typer.echo("\n".join(wrap(part, WIDTH)) + "\n")
+    made = table(f"Fields of {kind}", "field", "needed", "what it is")
+    either = {field for choice in known.get("oneOf", ()) for field in choice["required"]}
+    for name, field in known["properties"].items():
+        needed = "yes" if name in known["required"] else "one of" if name in either else ""
+        default = f"default: {field['default']!r}" if field.get("default") is not None else ""
+        row(made, name, needed or default, field.get("description", ""))
+    console().print(made)
+    typer.echo(f"[elements]\n{example.removeprefix('Example: ')}")
+
+
+def functions() -> None:
+    """List what laws are made of: operators and functions, with an example each."""
+    from piezo_sym.expressions.functions import FUNCTIONS
+
+    units = {"pure": "none", "none": "any; value none", "equal": "all equal", "power": "its power"}
+    made = table("Laws", "", "what it is", "units", "domain", "example")
+    for sign, about, example in OPERATORS:
+        row(made, sign, about, "", "", example)
+    for name, record in FUNCTIONS.items():
+        row(made, name, record.about, units[record.units], record.domain, record.example)
+    console().print(made)
+
+
+def units() -> None:
+    """List the units of values and inputs; each takes SI prefixes: uF, mm, kV."""
+    from piezo_sym.spec.units import known_units
+
+    made = table("Units, each with SI prefixes: uF, mm, kV", "unit", "name", "in SI")
+    for symbol, name, si in known_units():
+        row(made, symbol, name, si)
+    console().print(made)
+    typer.echo("Joined by * and /, with powers: N*s/m, m**2, kg/m**3, N/(m/s)**(1/2), 1 (none).")
+    typer.echo("No offsets: a temperature is given in K.")

@@ -1,0 +1,62 @@
+"""``piezo-sym kinds``, ``functions``, ``units``, and the tables of ``show``."""
+
+import re
+import tomllib
+
+import pytest
+
+from piezo_sym.expressions.functions import FUNCTIONS
+from piezo_sym.expressions.parse import parse_law
+from piezo_sym.expressions.tree import Call, walk
+from piezo_sym.spec.elements import KINDS
+from piezo_sym.spec.units import parse_unit
+
+
+def test_every_kind_is_listed(call):
+    answer = call("kinds")
+    assert (answer.code, answer.err) == (0, "")
+    assert [line.split()[0] for line in answer.out.splitlines()[4:-1]] == list(KINDS)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_example_of_a_kind_is_an_element_of_it(kind, call):
+    out = call("kinds", kind).out
+    (element,) = tomllib.loads(out[out.index("[elements]") :])["elements"].values()
+    assert KINDS[kind](**element).kind == kind
+    for field in KINDS[kind].model_fields:
+        assert field in out
+
+
+def test_a_kind_that_is_none_is_refused(call):
+    answer = call("kinds", "sprin")
+    assert (answer.code, answer.out) == (2, "")
+    assert answer.err == "piezo-sym: KIND: 'sprin' is no kind; did you mean 'spring'?\n"
+
+
+def test_every_function_has_an_example_with_it(call):
+    out = call("functions").out
+    for name, record in FUNCTIONS.items():
+        calls = {n.function for n in walk(parse_law(record.example, name)) if isinstance(n, Call)}
+        assert name in calls
+        assert record.about
+        assert f"\n  {name} " in out
+
+
+def test_every_unit_that_is_listed_may_be_written(call):
+    lines = call("units").out.splitlines()
+    cells = [re.split(" {2,}", line.strip()) for line in lines]
+    listed = [cell for cell in cells if len(cell) == 3][1:]
+    assert {"m", "s", "A", "K", "N", "V", "ohm", "t", "rpm"} <= {symbol for symbol, *_ in listed}
+    for symbol, _, value in listed:
+        factor, _, base = value.rpartition(" ")
+        unit = parse_unit(symbol)
+        assert float(unit.factor) == pytest.approx(float(factor or 1))
+        assert parse_unit(base).dimension == unit.dimension
+
+
+def test_show_lists_elements_with_values_states_and_what_was_assumed(call):
+    out = call("show", "piezo_stack").out
+    lines = [" ".join(line.split()) for line in out.splitlines()]
+    assert "spring spring tip - wall stiffness = k = 500000 N/m q = 0 (not said)" in lines
+    assert "ambient ambient body body, input T_e conductance = lam = 2 W/K" in lines
+    assert "T_e K 298.15 temperature of the environment" in lines
