@@ -8,7 +8,7 @@ Input: the four parts.  Output: an exception whose ``str`` is one printable line
 from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
-from typing import ClassVar, final
+from typing import Any, ClassVar, final
 
 MAX_QUOTE = 60
 MAX_PLACE = 200
@@ -66,7 +66,13 @@ class FileError(PiezoError):
 
 @final
 class RunError(PiezoError):
-    """A simulation that left its domain or could not go on; says when and why."""
+    """A simulation that left its domain or could not go on; says when and why.
+
+    `partial` is the Dataset so far, where `simulate` had begun to step.
+    """
+
+    partial: Any = None
+    reached: Any = None  # times and `Trajectory` that `partial` is made of
 
 
 @final

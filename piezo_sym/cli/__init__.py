@@ -4,6 +4,7 @@ Input: the words of a command line.  Output: text, files, and an exit code: 0 su
 property is not proved or a generated file is out of date, 2 the spec or the command is wrong.
 """
 
+import os
 import sys
 from typing import Annotated, Any
 
@@ -25,6 +26,8 @@ CommandError: Any = typer.BadParameter.__mro__[2]
 
 #: Exit code of a command that the user stopped (Ctrl-C), as shells have it.
 STOPPED = 130
+#: Exit code of a command whose reader has closed the pipe; typer's and rich's own.
+CLOSED = 1
 
 app = typer.Typer(
     name="piezo-sym",
@@ -69,11 +72,17 @@ def run(words: list[str]) -> int:
     """Run a command line, and return its exit code; an error is one line on stderr."""
     try:
         code = app(args=words, prog_name="piezo-sym", standalone_mode=False)
+        sys.stdout.flush()
     except PiezoError as error:
         return _failed(str(error), error.exit_code)
     except CommandError as error:
         message = one_line(error.format_message()).rstrip(".")
         return _failed(f"{message}; see `piezo-sym --help`", 2)
+    except BrokenPipeError:  # who reads has seen enough; what is written lies on the disk
+        sys.stdout = open(os.devnull, "w")  # noqa: SIM115 - so that the exit has no more to say
+        return CLOSED
+    except OSError as error:
+        return _failed(f"cannot print: {error.strerror}; free some space, or print elsewhere", 2)
     except MemoryError:
         return _failed("out of memory; use smaller banks or fewer --times", 2)
     except (KeyboardInterrupt, typer.Abort):

@@ -67,7 +67,7 @@ def functions() -> None:
 
 def units() -> None:
     """List the units of values and inputs; each takes SI prefixes: uF, mm, kV."""
-    from piezo_sym.spec.units import known_units
+    from piezo_sym.expressions.units import known_units
 
     made = table("Units, each with SI prefixes: uF, mm, kV", "unit", "name", "in SI")
     for symbol, name, si in known_units():

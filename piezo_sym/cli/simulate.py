@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
@@ -9,7 +11,7 @@ import typer
 
 from piezo_sym.cli.output import about, console, row, table, warnings_as_lines
 from piezo_sym.cli.words import numbers, pairs, signal
-from piezo_sym.errors import NetworkError, ProofError, SpecError, UsageError, listing
+from piezo_sym.errors import NetworkError, ProofError, RunError, SpecError, UsageError, listing
 from piezo_sym.files import path_text, write_bytes
 
 if TYPE_CHECKING:
@@ -82,14 +84,14 @@ def simulate(
     from piezo_sym.api import simulate as run
     from piezo_sym.progress import time_bar
 
-    if out is not None and out.suffix not in ENDINGS:
-        raise UsageError(f"{path_text(out)} has no known ending", "--out", listing(ENDINGS))
+    _check_ending(out)
     of_spec = about(spec, SpecError, NetworkError, ProofError)
-    with warnings_as_lines(), time_bar(duration) as told, of_spec:
+    given = dict(pairs(inputs or (), "--input", signal))
+    with warnings_as_lines(), keeping(out), time_bar(duration) as told, of_spec:
         result = run(
             spec,
             duration=duration,
-            inputs=dict(pairs(inputs or (), "--input", signal)),
+            inputs=given,
             parameters=dict(pairs(parameters or (), "--set", numbers)),
             initial=dict(pairs(initial or (), "--initial", numbers)),
             rtol=rtol,
@@ -101,9 +103,45 @@ def simulate(
             progress=told,
             dissipative_start=dissipative_start,
         )
-    _print(result)
+    _report(result, given, out)
+
+
+def _report(result: xarray.Dataset, inputs: Mapping[str, Any], out: Path | None) -> None:
+    """Write a result, and then print it: a closed pipe is no reason to lose it."""
     if out is not None:
         _write(result, out)
+    _print(result)
+    _print_assumed(inputs)
+    if out is not None:
+        typer.echo(f"{out}")
+
+
+def _check_ending(out: Path | None) -> None:
+    if out is not None and out.suffix not in ENDINGS:
+        raise UsageError(f"{path_text(out)} has no known ending", "--out", listing(ENDINGS))
+
+
+def _print_assumed(inputs: Mapping[str, Any]) -> None:
+    for name, value in inputs.items():
+        if assumed := getattr(value, "assumed", ""):
+            typer.echo(f"{name}: its file names no units; read {assumed}")
+
+
+@contextmanager
+def keeping(out: Path | None) -> Iterator[None]:
+    """Write what a run has reached that stops from within, and say so."""
+    try:
+        yield
+    except (RunError, KeyboardInterrupt) as stopped:
+        partial = getattr(stopped, "partial", None)
+        if out is not None and partial is not None:
+            _write(partial, out)
+            until = f"{path_text(out)} holds the run until t = {float(partial.time[-1]):.6g} s"
+            if isinstance(stopped, RunError):
+                stopped.remedy = f"{stopped.remedy}; {until}" if stopped.remedy else until
+            else:
+                typer.echo(until, err=True)
+        raise
 
 
 def _print(result: xarray.Dataset) -> None:
@@ -125,7 +163,6 @@ def _write(result: xarray.Dataset, path: Path) -> None:
         write_bytes(path, bytes(result.to_netcdf(engine="scipy")))
     else:
         write_bytes(path, columns(result).to_csv(index=False).encode())
-    typer.echo(f"{path}")
 
 
 def columns(result: xarray.Dataset) -> Any:

@@ -58,12 +58,12 @@ def signal(text: str, where: str) -> Any:
 
 def from_file(path: str, where: str) -> Any:
     """Return the samples in a delimited text file: its one column, or that named like the input."""
-    from piezo_sym.run.samples import column_names, samples_from_csv
+    from piezo_sym.run.samples import column_headers, samples_from_csv
 
     if not path:
         raise UsageError("'@' names no file", where, "@FILE.csv")
     name = where.rpartition(" ")[2]
-    columns = column_names(path)
+    columns = [column for column, _ in column_headers(path)]
     if len(columns) > 2 and name not in columns[1:]:
         what = f"{path_text(Path(path))} has no column {quote(name)} beside its times"
         raise UsageError(what, where, remedy=f"columns: {listing(columns)}")

@@ -46,6 +46,7 @@ from piezo_sym.expressions.tree import (
     rename,
     walk,
 )
+from piezo_sym.expressions.units import parse_unit
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name
 from piezo_sym.spec.elements.ports import (
@@ -58,7 +59,6 @@ from piezo_sym.spec.elements.ports import (
     Source,
     Storage,
 )
-from piezo_sym.spec.units import parse_unit
 
 UNITS = {
     (PhysicalDomain.ELECTRICAL, PowerVariable.ACROSS): "V",

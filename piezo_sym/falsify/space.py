@@ -17,9 +17,9 @@ import numpy as np
 import numpy.typing as npt
 
 from piezo_sym.expressions.tree import Cmp, Num, Sym
+from piezo_sym.expressions.units import parse_unit
 from piezo_sym.falsify.probe import Probe
 from piezo_sym.spec.tables import conditions, greater
-from piezo_sym.spec.units import parse_unit
 
 Array = npt.NDArray[np.float64]
 Index = npt.NDArray[np.int64]

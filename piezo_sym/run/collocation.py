@@ -79,6 +79,7 @@ def collocate(
     Raises
     ------
     RunError : inputs are so fast that no number of steps would do.
+    KeyboardInterrupt : it holds what the first of the runs has reached.
     """
     known = DrivenModules.of(systems)
     first = known[0]
@@ -93,12 +94,16 @@ def collocate(
         layout_of(x, side_by_side=side_by_side),
         extra=2 if starts else 0,
     )
-    if starts:
-        go_dissipatively(batch, how, first.inputs, times, watch)
-    elif not how.fixed:
-        batch.survey(min(first.inputs.max_step, SURVEYED * first.inputs.duration))
-        batch.largest[:] = first.scale(batch.largest)
-    through(batch, watch)
+    try:
+        if starts:
+            go_dissipatively(batch, how, first.inputs, times, watch)
+        elif not how.fixed:
+            batch.survey(min(first.inputs.max_step, SURVEYED * first.inputs.duration))
+            batch.largest[:] = first.scale(batch.largest)
+        through(batch, watch)
+    except KeyboardInterrupt as stopped:
+        vars(stopped)["reached"] = results(batch, known, x, times).so_far(0).until(times)
+        raise
     return results(batch, known, x, times)
 
 

@@ -66,7 +66,9 @@ def compiled_run(
         runs = collocate([system], engine, x[None], samples, step or rtol, watch, starts=starts)
         trajectory = runs.trajectory(0)
     except RunError as stopped:
-        raise cause(system, x, samples, stopped) from stopped
+        found = cause(system, x, samples, stopped)
+        found.reached = stopped.reached
+        raise found from stopped
     work = {
         "accepted_steps": trajectory.steps,
         "newton_iterations": trajectory.evaluations,

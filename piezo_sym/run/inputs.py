@@ -138,13 +138,21 @@ def read_inputs(
     names = [record.name for record in module.INPUTS]
     defaults = dict(zip(names, module.INPUT_DEFAULTS, strict=True))
     values = defaults | known_keys(given, names, "simulate.inputs", others(module, "inputs"))
-    signals = [read_signal(values[name], f"simulate.inputs.{name}", duration) for name in names]
+    signals = []
+    for record in module.INPUTS:
+        where = f"simulate.inputs.{record.name}"
+        signals.append(read_signal(values[record.name], where, duration, record.unit))
     return Inputs(tuple(signals), duration)
 
 
-def read_signal(value: object, where: str, duration: float) -> Signal:
-    """Return what a user wrote for one input as a signal."""
+def read_signal(value: object, where: str, duration: float, unit: str) -> Signal:
+    """Return what a user wrote for one input, which is in `unit`, as a signal."""
     signal = as_signal(value, where)
+    if isinstance(signal, Samples) and signal.unit not in ("", unit):
+        from piezo_sym.expressions.units import parse_unit
+
+        if parse_unit(signal.unit).dimension != parse_unit(unit).dimension:
+            raise UsageError(f"the samples are in {signal.unit}", where, f"samples in {unit}")
     if isinstance(signal, Samples) and not signal.covers(duration):
         what = f"samples span {signal.times[0]:g} s to {signal.times[-1]:g} s"
         raise UsageError(what, where, f"samples that cover 0 s to {duration:g} s")

@@ -10,12 +10,15 @@ at the sample times, by Gauss-Legendre quadrature on the interpolants between an
 Batches pass through one at a time, so memory grows with the samples, not with the steps.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import final
 
 import numpy as np
 
+from piezo_sym.errors import RunError
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.guard import crossing, domain_error, rate_error
 from piezo_sym.run.inputs import Segment
@@ -41,6 +44,19 @@ class Trajectory:
     halvings: int = 0
     numerical: FloatArray | None = None  # (2, nt): heat and entropy that dissipative starts produce
 
+    def until(self, times: FloatArray) -> tuple[FloatArray, Trajectory]:
+        """Return the times and samples of a run that has no more states."""
+        missing = np.isnan(self.states).any(axis=0)
+        count = int(np.argmax(missing)) if missing.any() else missing.size
+        cut = replace(
+            self,
+            states=self.states[:, :count],
+            inputs=self.inputs[:, :count],
+            integrals=self.integrals[:, :count],
+            numerical=None if self.numerical is None else self.numerical[:, :count],
+        )
+        return times[:count], cut
+
 
 def record(
     system: DrivenModule, start: FloatArray, batches: Iterable[Stretches], times: FloatArray
@@ -49,21 +65,30 @@ def record(
 
     Raises
     ------
-    RunError : a stop (sample or end of an accepted step) is outside the domain.
+    RunError : a stop (sample or end of an accepted step) is outside the domain.  It, and a
+        `KeyboardInterrupt`, hold what was reached.
     """
     n, m, k = row_counts(system)
     states, inputs, integrals = (np.full((size, times.size), np.nan) for size in (n, m, k))
     total, steps, evaluations = np.zeros(k), 0, 0
-    for batch in batches:
-        steps, evaluations = steps + batch.steps, evaluations + batch.evaluations
-        if not batch.stretches:
-            continue
-        x, u = looked_at(system, batch)
-        run = total[:, None] + np.cumsum(increments(system, batch), axis=1)
-        total = run[:, -1]
-        places = np.concatenate([stretch.samples for stretch in batch.stretches])
-        kept, at = places >= 0, places[places >= 0]
-        states[:, at], inputs[:, at], integrals[:, at] = x[:, kept], u[:, kept], run[:, kept]
+    try:
+        for batch in batches:
+            steps, evaluations = steps + batch.steps, evaluations + batch.evaluations
+            if not batch.stretches:
+                continue
+            x, u, error = looked_at(system, batch)
+            run = total[:, None] + np.cumsum(increments(system, batch), axis=1)
+            total = run[:, -1]
+            places = np.concatenate([stretch.samples for stretch in batch.stretches])[: x.shape[1]]
+            kept, at = places >= 0, places[places >= 0]
+            states[:, at], inputs[:, at] = x[:, kept], u[:, kept]
+            integrals[:, at] = run[:, : x.shape[1]][:, kept]
+            if error:
+                raise error
+    except (RunError, KeyboardInterrupt) as stopped:
+        found = Trajectory(start, states, inputs, integrals, steps, evaluations)
+        vars(stopped)["reached"] = found.until(times)
+        raise
     return Trajectory(start, states, inputs, integrals, steps, evaluations)
 
 
@@ -74,8 +99,10 @@ def row_counts(system: DrivenModule) -> tuple[int, int, int]:
     return row_count(module.STATES, p), len(module.INPUTS), integrals
 
 
-def looked_at(system: DrivenModule, batch: Stretches) -> tuple[FloatArray, FloatArray]:
-    """Return states (n, k) and inputs (m, k) at a batch's stops, all inside the domain."""
+def looked_at(
+    system: DrivenModule, batch: Stretches
+) -> tuple[FloatArray, FloatArray, RunError | None]:
+    """Return states (n, k) and inputs (m, k) at a batch's stops in the domain, and why no more."""
     x = np.concatenate([stretch.path(stretch.stops) for stretch in batch.stretches], axis=1)
     stops = np.concatenate([stretch.stops for stretch in batch.stretches])
     u = batch.segment.over(stops)
@@ -84,12 +111,14 @@ def looked_at(system: DrivenModule, batch: Stretches) -> tuple[FloatArray, Float
     if np.any(left | lost):
         first = int(np.argmax(left | lost))
         if left[first]:
-            raise leaving(system, batch, first)
-        raise rate_error(system, float(stops[first]), x[:, first], u[:, first])
-    return x, u
+            error = leaving(system, batch, first)
+        else:
+            error = rate_error(system, float(stops[first]), x[:, first], u[:, first])
+        return x[:, :first], u[:, :first], error
+    return x, u, None
 
 
-def leaving(system: DrivenModule, batch: Stretches, stop: int) -> Exception:
+def leaving(system: DrivenModule, batch: Stretches, stop: int) -> RunError:
     """Return the error of a batch whose stop number `stop` is the first outside the domain."""
     for stretch in batch.stretches:
         if stop < stretch.stops.size:

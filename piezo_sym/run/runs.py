@@ -48,9 +48,14 @@ class Runs:
     numerical: bool = False
 
     def trajectory(self, k: int) -> Trajectory:
-        """Return run k; raise its error if it stopped."""
+        """Return run k; raise its error, which holds what was reached, if it stopped."""
         if error := self.errors[k]:
+            error.reached = self.so_far(k).until(self.times)
             raise error
+        return self.so_far(k)
+
+    def so_far(self, k: int) -> Trajectory:
+        """Return run k, whose samples are nan beyond what it reached."""
         sums = self.sums[k].T
         steps, evaluations, halvings = (int(number) for number in self.work[k])
         return Trajectory(

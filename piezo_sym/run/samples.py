@@ -1,11 +1,15 @@
 """Signals from samples: straight lines between (t, values), from arrays or a text file.
 
-Input: times [s] and values, or a delimited text file with a header.  Output: a frozen `Samples`.
+Input: times [s] and values, or a delimited text file whose header may name units, ``t [ms]``.
+Output: a frozen `Samples`, in SI.
 """
 
 import csv
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+import re
+import warnings
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
 from math import inf
 from os import PathLike
 from pathlib import Path
@@ -14,21 +18,28 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from piezo_sym.errors import FileError, UsageError, listing, nearest, quote
+from piezo_sym.errors import FileError, PiezoError, UsageError, listing, nearest, quote
 from piezo_sym.run.checks import FloatArray, increasing, vector
 from piezo_sym.run.signals import MOST_CORNERS, Signal
 
 DELIMITERS = ",;\t"
+HEADER = re.compile(r"(?P<name>.*?)\s*\[(?P<unit>[^\[\]]*)\]")  # a name and its unit, t [ms]
 SLACK = 1e-9  # of the duration: a last sample may fall short by rounding
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class Samples(Signal):
-    """Straight lines between samples; see `samples`."""
+    """Straight lines between samples; see `samples`.
+
+    Of those from a file, `unit` is the SI unit that its header says of the values, and `assumed`
+    what was taken because it says nothing: "t in s and V in the input's SI unit".
+    """
 
     times: FloatArray
     values: FloatArray
+    unit: str = ""
+    assumed: str = ""
 
     def _values(self, t: FloatArray | float) -> FloatArray:
         return np.asarray(np.interp(t, self.times, self.values))
@@ -83,58 +94,121 @@ def samples_from_csv(
 ) -> Samples:
     """Return the samples in a delimited text file (comma, semicolon or tab) with a header.
 
+    A header such as ``t [ms],V_in [V]`` says the units: times and values are converted to SI, and
+    a run refuses values whose unit is not of its input's dimension. Without units, times are in s,
+    and values in the SI unit of the input.
+
     Parameters
     ----------
     path : the file, UTF-8.
-    column : header of the values; may be left out when the file has two columns.
-    time_column : header of the times [s]; the first column when left out.
+    column : header of the values, with or without its unit; may be left out when the file has two
+        columns.
+    time_column : header of the times; the first column when left out.
 
     Raises
     ------
     FileError : the file cannot be read, or a cell is not a finite number.
-    UsageError : no column has that header, or the times do not increase.
+    UsageError : no column has that header, a unit is not known or not of a time, or the times do
+        not increase.
     """
-    names, body = table(path)
-    t = position(names, names[0] if time_column is None else time_column, f"{path}.time_column")
-    x = position(names, other_column(names, t, path) if column is None else column, str(path))
-    cells = [(line, row) for line, row in enumerate(body, start=2) if row]
-    times = [cell(row, t, f"{path}, line {line}") for line, row in cells]
-    values = [cell(row, x, f"{path}, line {line}") for line, row in cells]
-    return read_samples(times, values, str(path))
+    headers = column_headers(path)
+    t = 0 if time_column is None else _position(headers, time_column, f"{path}.time_column")
+    x = _other_column(headers, t, path) if column is None else _position(headers, column, str(path))
+    times, values = _columns(Path(path), t, x)
+    seconds, _ = _factor(headers[t], f"{path}, header", "s")
+    factor, unit = _factor(headers[x], f"{path}, header")
+    (time, time_unit), (name, value_unit) = headers[t], headers[x]
+    taken = [f"{time} in s"] if not time_unit else []
+    taken += [f"{name} in the input's SI unit"] if not value_unit else []
+    found = read_samples(times * seconds, values * factor, str(path))
+    return replace(found, unit=unit, assumed=" and ".join(taken))
 
 
-def column_names(path: str | PathLike[str]) -> list[str]:
-    """Return the headers of a delimited text file; raise `FileError` if it cannot be read."""
-    names, _ = table(path)
-    return names
+def column_headers(path: str | PathLike[str]) -> list[tuple[str, str]]:
+    """Return the names and units in the header of a delimited text file, "" where none is said.
+
+    Raises
+    ------
+    FileError : the file cannot be read, or is empty.
+    """
+    with _opened(Path(path)) as (header, _, _):
+        return header
 
 
-def table(path: str | PathLike[str]) -> tuple[list[str], list[list[str]]]:
-    """Return the headers of a delimited text file and its rows; raise `FileError` otherwise."""
-    lines = text_lines(Path(path))
-    delimiter = max(DELIMITERS, key=lines[0].count)
-    header, *body = csv.reader(lines, delimiter=delimiter, skipinitialspace=True)
-    return [name.strip() for name in header], body
-
-
-def text_lines(path: Path) -> list[str]:
-    """Return the lines of a text file, at least one; raise `FileError` otherwise."""
+@contextmanager
+def _opened(path: Path) -> Iterator[tuple[list[tuple[str, str]], str, Iterator[list[str]]]]:
+    """Give header, delimiter and rows of a delimited text file; raise `FileError` otherwise."""
     try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
+        with path.open(encoding="utf-8-sig", newline="") as file:
+            first = file.readline()
+            if not first:
+                raise FileError("is empty", str(path), "a header line, then numbers")
+            delimiter = max(DELIMITERS, key=first.count)
+            (names,) = csv.reader([first], delimiter=delimiter, skipinitialspace=True)
+            found = [HEADER.fullmatch(name.strip()) for name in names]
+            header = [
+                (match["name"], match["unit"].strip()) if match else (name.strip(), "")
+                for name, match in zip(names, found, strict=True)
+            ]
+            rows = csv.reader(file, delimiter=delimiter, skipinitialspace=True)
+            yield header, delimiter, rows
     except OSError as cause:
-        what = f"cannot be read: {cause.strerror}"
-        raise FileError(what, str(path)) from cause
+        raise FileError(f"cannot be read: {cause.strerror}", str(path)) from cause
     except UnicodeDecodeError as cause:
-        what = "is not text in UTF-8"
-        raise FileError(what, str(path), remedy="save it as UTF-8") from cause
-    if not lines:
-        what = "is empty"
-        raise FileError(what, str(path), "a header line, then numbers")
-    return lines
+        raise FileError("is not text in UTF-8", str(path), remedy="save it as UTF-8") from cause
 
 
-def position(names: Sequence[str], wanted: str, where: str) -> int:
-    """Return the position of the one column named `wanted`."""
+def _columns(path: Path, t: int, x: int) -> tuple[FloatArray, FloatArray]:
+    """Return two columns as numbers; raise `FileError` at the first cell that is none."""
+    import pandas
+
+    with _opened(path) as (_, delimiter, rows), warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with suppress(ValueError, Warning):  # pandas does not say where; the rows one by one do
+            table = pandas.read_csv(
+                path,
+                sep=delimiter,
+                usecols=[t, x],
+                index_col=False,
+                dtype=float,
+                na_filter=False,
+                skipinitialspace=True,
+                encoding="utf-8-sig",
+            )
+            both = table.to_numpy()[:, [0, 1] if t < x else [1, 0]]
+            if np.isfinite(both).all():
+                return both[:, 0], both[:, 1]
+        pairs = [
+            [_cell(row, n, f"{path}, line {line}") for n in (t, x)]
+            for line, row in enumerate(rows, start=2)
+            if row
+        ]
+        both = np.array(pairs, dtype=float).reshape(-1, 2)
+        return both[:, 0], both[:, 1]
+
+
+def _factor(header: tuple[str, str], where: str, expected: str = "") -> tuple[float, str]:
+    """Return what turns a column into SI, and its SI unit; it has to be like `expected`."""
+    from piezo_sym.expressions.units import parse_unit
+
+    name, text = header
+    if not text:
+        return 1.0, ""
+    try:
+        unit = parse_unit(text, where)
+    except PiezoError as error:
+        raise UsageError(error.what, where, error.expected, error.remedy) from error
+    if expected and unit.dimension != parse_unit(expected).dimension:
+        what = f"{quote(name)} is in {text}"
+        raise UsageError(what, where, f"a time, such as in {expected}")
+    return float(unit.factor), unit.si
+
+
+def _position(headers: Sequence[tuple[str, str]], wanted: str, where: str) -> int:
+    """Return the position of the one column named `wanted`, with or without its unit."""
+    match = HEADER.fullmatch(wanted.strip())
+    names = [f"{name} [{unit}]" if match and unit else name for name, unit in headers]
+    wanted = f"{match['name']} [{match['unit'].strip()}]" if match else wanted
     if names.count(wanted) == 1:
         return names.index(wanted)
     if wanted in names:
@@ -144,16 +218,17 @@ def position(names: Sequence[str], wanted: str, where: str) -> int:
     raise UsageError(what, where, remedy=nearest(str(wanted), names))
 
 
-def other_column(names: Sequence[str], t: int, path: object) -> str:
-    """Return the only column beside the times."""
-    others = [name for i, name in enumerate(names) if i != t]
+def _other_column(headers: Sequence[tuple[str, str]], t: int, path: object) -> int:
+    """Return the position of the only column beside the times."""
+    others = [n for n in range(len(headers)) if n != t]
     if len(others) != 1:
-        what = f"{len(others)} columns beside the times: {listing(others)}"
+        named = listing([headers[n][0] for n in others])
+        what = f"{len(others)} columns beside the times: {named}"
         raise UsageError(what, str(path), "one", "say column=...")
     return others[0]
 
 
-def cell(row: Sequence[str], at: int, where: str) -> float:
+def _cell(row: Sequence[str], at: int, where: str) -> float:
     """Return one cell as a finite float; raise `FileError` otherwise."""
     text = row[at].strip() if at < len(row) else ""
     try:

@@ -11,14 +11,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from piezo_sym.errors import UsageError, quote
+from piezo_sym.errors import RunError, UsageError, quote
 from piezo_sym.run.checks import number, positive
 from piezo_sym.run.collocation import FixedStep, read_order
 from piezo_sym.run.compiled import compiled_run
 from piezo_sym.run.dataset import to_dataset
 from piezo_sym.run.guard import check_start
 from piezo_sym.run.inputs import read_inputs
-from piezo_sym.run.method import checked_method, choose_method
+from piezo_sym.run.method import ChosenMethod, checked_method, choose_method
 from piezo_sym.run.module import checked
 from piezo_sym.run.parameters import read_initial, read_parameters, sample_times
 from piezo_sym.run.runs import METHOD
@@ -138,7 +138,8 @@ def simulate(
     UsageError : an argument is unknown, of the wrong kind, or not finite.
     EngineError : `step` or method='discrete_gradient' was asked for, and there is no engine.
     RunError : the state leaves the domain, at t = 0, a sample or an accepted step; or the solver
-        cannot go on. The message says when, and with which values.
+        cannot go on. The message says when, and with which values; its `partial` is the Dataset up
+        to the last sample before, and so is that of a `KeyboardInterrupt`.
     """
     checked(module)
     named, tolerance = checked_method(method), read_rtol(rtol)
@@ -152,13 +153,25 @@ def simulate(
     x = read_initial(module, values, system.inputs.segments[0].at(0.0), initial)
     check_start(system, x)
     chosen = choose_method(module, named, step)
-    if chosen.engine:
-        trajectory, work = compiled_run(
-            system, chosen.engine, x, samples, tolerance, fixed, progress, starts=dissipative_start
-        )
-    else:
-        trajectory, work = by_scipy(system, x, samples, chosen.method, tolerance, progress)
+    try:
+        if chosen.engine:
+            given = system, chosen.engine, x, samples, tolerance, fixed, progress
+            trajectory, work = compiled_run(*given, starts=dissipative_start)
+        else:
+            trajectory, work = by_scipy(system, x, samples, chosen.method, tolerance, progress)
+    except (RunError, KeyboardInterrupt) as stopped:
+        keep_partial(system, stopped, chosen)
+        raise
     return to_dataset(system, samples, trajectory, {**work, "engine": chosen.note})
+
+
+def keep_partial(system: DrivenModule, stopped: BaseException, chosen: ChosenMethod) -> None:
+    """Give the error of a run that stopped the Dataset so far, if it has a sample."""
+    times, trajectory = getattr(stopped, "reached", None) or (None, None)
+    if times is not None and trajectory is not None and times.size:
+        why = str(stopped) or "stopped by the user"
+        attrs = {"method": chosen.method, "engine": chosen.note, "stopped": why}
+        vars(stopped)["partial"] = to_dataset(system, times, trajectory, attrs)
 
 
 def read_rtol(rtol: object) -> float:

@@ -16,10 +16,10 @@ from pydantic import (
     WithJsonSchema,
 )
 
+from piezo_sym.expressions.units import Unit, parse_unit, to_si
 from piezo_sym.spec.elements import KINDS
 from piezo_sym.spec.elements.base import Frozen
 from piezo_sym.spec.table import Table
-from piezo_sym.spec.units import Unit, parse_unit, to_si
 
 MAX_TEXT = 400
 MAX_SIZE = 1e300

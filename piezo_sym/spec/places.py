@@ -11,11 +11,11 @@ from typing import final
 from piezo_sym.expressions.dimensions import Dimension, Match, matches
 from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.tree import Cmp, Expr, Node, Sym
+from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.elements.base import state_symbol
 from piezo_sym.spec.elements.ports import Exchange, Source
 from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.tables import law_fields, temperatures
-from piezo_sym.spec.units import parse_unit
 
 
 @final

@@ -10,7 +10,7 @@ from functools import cache
 from itertools import combinations, product
 
 from piezo_sym.expressions.dimensions import BASES, NONE, Dimension
-from piezo_sym.spec.units import base_units, parse_unit, raised
+from piezo_sym.expressions.units import base_units, parse_unit, raised
 
 #: What is spelled like this although a text of fewer units exists.
 USUAL = ("N*s/m", "N/m", "kg*m/s", "C/m")

@@ -8,8 +8,8 @@ import pytest
 from piezo_sym.expressions.functions import FUNCTIONS
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import Call, walk
+from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.elements import KINDS
-from piezo_sym.spec.units import parse_unit
 
 
 def test_every_kind_is_listed(call):

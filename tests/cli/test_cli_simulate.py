@@ -2,6 +2,7 @@
 
 import csv
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -301,3 +302,47 @@ def test_a_dissipative_start_is_asked_for_in_a_word(call):
     assert refused.code == 2
     assert "method BDF has no dissipative start" in refused.err
     assert len(refused.err.splitlines()) == 1
+
+
+def test_a_run_that_stops_leaves_a_file_and_says_so(refused, spec_file, tmp_path):
+    warm = spec_file("[inputs]", 'T_m = { value = 300.0, unit = "K" }\n[inputs]')
+    text = warm.read_text(encoding="utf-8").replace("assume = [", 'assume = ["T < T_m", ', 1)
+    warm.write_text(text, encoding="utf-8")
+    out = tmp_path / "warm.nc"
+    options = ("--duration", "0.2", "-i", "V_in=sine(100,100)", "--out", out)
+    assert refused("simulate", warm, *options).endswith(f"'{out}' holds the run until t = 0.0304 s")
+    with xarray.open_dataset(out) as partial:
+        assert float(partial.time[-1]) == pytest.approx(0.0304)
+
+
+@pytest.mark.parametrize("reader", ["head -3", "true"])
+def test_a_closed_pipe_loses_no_result(reader, tmp_path):
+    command = f"{sys.executable} -m piezo_sym simulate piezo_stack --duration 1e-3 --out y.csv"
+    done = subprocess.run(
+        f"{command} | {reader}", shell=True, cwd=tmp_path, capture_output=True, text=True
+    )
+    assert done.stderr == ""
+    assert len((tmp_path / "y.csv").read_text().splitlines()) == 1002
+
+
+@pytest.mark.parametrize("words", ["kinds", "simulate piezo_stack --duration 1e-3", "schema"])
+def test_a_full_output_is_one_line(words):
+    command = f"{sys.executable} -m piezo_sym {words} > /dev/full"
+    done = subprocess.run(command, shell=True, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert done.stderr.startswith("piezo-sym: cannot print: No space left on device")
+    assert done.stderr.count("\n") == 1
+
+
+def test_units_of_a_file_are_read_or_said_to_be_assumed(call, refused, tmp_path):
+    words = ("simulate", "piezo_stack", "--duration", "0.01", "-i")
+    path = tmp_path / "d.csv"
+    path.write_text("t [ms],V_in [kV]\n0,0\n10,0.1\n")
+    answer = call(*words, f"V_in=@{path}")
+    assert "names no units" not in answer.out
+    assert re.search(r"\n  V_in +100 ", answer.out)
+    path.write_text("t,V_in\n0,0\n0.01,100\n")
+    said = "V_in: its file names no units; read t in s and V_in in the input's SI unit\n"
+    assert call(*words, f"V_in=@{path}").out.endswith(said)
+    path.write_text("t [ms],V_in [A]\n0,0\n10,0.1\n")
+    assert "the samples are in A; expected samples in V" in refused(*words, f"V_in=@{path}")

@@ -7,12 +7,12 @@ import pytest
 
 from piezo_sym import PiezoError, derive, load
 from piezo_sym.expressions.dimensions import BASES
+from piezo_sym.expressions.units import parse_unit
 from piezo_sym.modules import module_of
 from piezo_sym.proofs import Verdict, decide
 from piezo_sym.spec.load import parse
 from piezo_sym.spec.places import places, state_dimensions
 from piezo_sym.spec.source import shipped
-from piezo_sym.spec.units import parse_unit
 
 SHIPPED = (Path(__file__).parents[2] / "piezo_sym/models/piezo_stack.toml").read_text("utf-8")
 STATEMENT = "every term of every equation has its row's unit"

@@ -5,11 +5,11 @@ import pytest
 
 from piezo_sym import derive, load
 from piezo_sym.expressions.dimensions import BASES
+from piezo_sym.expressions.units import parse_unit
 from piezo_sym.modules import module_of
 from piezo_sym.proofs import Verdict, decide
 from piezo_sym.spec.load import parse
 from piezo_sym.spec.places import state_dimensions
-from piezo_sym.spec.units import parse_unit
 
 BODIES = """
 [model]

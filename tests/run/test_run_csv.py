@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from piezo_sym import samples_from_csv
+from piezo_sym import samples_from_csv, simulate, sweep
 from piezo_sym.errors import FileError, UsageError
 
 
@@ -46,6 +48,9 @@ def test_columns_by_name(write):
         ("t,V,W\n0,1,2\n", {}, UsageError, "2 columns beside the times: V, W; expected one"),
         ("t,V\n0,1\n", {}, UsageError, "1 times and 1 values"),
         ("t,V\n1,1\n0,1\n", {}, UsageError, "time 0 at entry 1 follows 1"),
+        ("t [mm],V\n0,1\n1,1\n", {}, UsageError, "'t' is in mm; expected a time, such as in s"),
+        ("t [ms],V [vlot]\n0,1\n1,1\n", {}, UsageError, "header: unknown unit 'vlot'"),
+        ("t,V [V],V [A]\n0,1,2\n", {"column": "V"}, UsageError, "two columns are named 'V'"),
     ],
 )
 def test_faults(write, text, more, kind, words):
@@ -59,3 +64,47 @@ def test_faults(write, text, more, kind, words):
 def test_missing_file(tmp_path):
     with pytest.raises(FileError, match=r"none.csv: cannot be read: No such file"):
         samples_from_csv(tmp_path / "none.csv")
+
+
+def test_units_of_the_header_are_converted(write):
+    path = write("t [ms],V_in [kV], F_ext [N]\n0,0,1\n10,0.1,2\n")
+    for column in ("V_in", "V_in [kV]"):
+        signal = samples_from_csv(path, column)
+        assert signal.times.tolist() == [0.0, 0.01]
+        assert signal.values.tolist() == [0.0, 100.0]
+        assert (signal.unit, signal.assumed) == ("V", "")
+    assert samples_from_csv(path, "V_in", "t [ms]").times[1] == 0.01
+
+
+def test_a_header_without_units_says_what_was_assumed(write):
+    both = samples_from_csv(write("t,V_in\n0,0\n1,1\n"))
+    assert both.assumed == "t in s and V_in in the input's SI unit"
+    assert samples_from_csv(write("t [s],V_in\n0,0\n1,1\n")).assumed.startswith("V_in in")
+
+
+def test_a_run_refuses_samples_of_another_dimension(write):
+    drive = samples_from_csv(write("t [ms],V_in [mA]\n0,0\n10,1\n"))
+    with pytest.raises(UsageError, match=r"V_in: the samples are in A; expected samples in V"):
+        simulate("piezo_stack", inputs={"V_in": drive}, duration=0.01)
+    drive = samples_from_csv(write("t [ms],V_in [N*m/C]\n0,0\n10,1\n"))
+    run = simulate("piezo_stack", inputs={"V_in": drive}, duration=0.01)
+    assert float(run.V_in[-1]) == pytest.approx(1.0, rel=1e-12)
+    wrong = samples_from_csv(write("t [ms],V_in [K]\n0,0\n10,1\n"))
+    with pytest.raises(UsageError, match="expected samples in V"):
+        sweep("piezo_stack", over={"V_in": [wrong]}, duration=0.01)
+
+
+def test_rows_that_pandas_does_not_take_are_read_all_the_same(write):
+    long_row = samples_from_csv(write('t,V\n0,1,\n"1",2,more\n'), "V")
+    assert long_row.values.tolist() == [1.0, 2.0]
+
+
+@given(
+    numbers=st.lists(
+        st.floats(allow_nan=False, allow_infinity=False, width=64), min_size=2, max_size=20
+    )
+)
+def test_numbers_are_read_to_round_off(numbers, tmp_path_factory):
+    path = tmp_path_factory.mktemp("csv") / "drive.csv"
+    path.write_text("t,V\n" + "".join(f"{n},{x!r}\n" for n, x in enumerate(numbers)))
+    assert samples_from_csv(path).values.tolist() == pytest.approx(numbers, rel=1e-15)

@@ -12,8 +12,8 @@ from fuzz_texts import law_texts, spec_texts
 from piezo_sym import Model, PiezoError, derive
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import Expr
+from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.load import parse
-from piezo_sym.spec.units import parse_unit
 
 SLOW = 1.0
 EVERY = 40  # an accepted spec in so many is derived

@@ -28,8 +28,8 @@ from piezo_sym.expressions.tree import (
     Sym,
     names,
 )
+from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.unit_text import unit_text
-from piezo_sym.spec.units import parse_unit
 
 UNITS = {"v": "m/s", "w": "m/s", "i": "A", "T": "K", "T_0": "K", "n": "1", "d": "N*s/m", "q": "m"}
 WORDS = {name: parse_unit(unit).dimension for name, unit in UNITS.items()}

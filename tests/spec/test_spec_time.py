@@ -10,8 +10,8 @@ from test_spec_parse import HOSTILE
 from piezo_sym import PiezoError, derive, load, verify
 from piezo_sym.build import render
 from piezo_sym.expressions import parse as parse_module
+from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.load import parse
-from piezo_sym.spec.units import parse_unit
 from piezo_sym.verification import process
 
 QUICK = 0.1

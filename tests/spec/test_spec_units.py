@@ -10,7 +10,7 @@ from spec_laws import steady
 from spec_tools import edited, refusal, refused_edit
 
 from piezo_sym.errors import SpecError
-from piezo_sym.spec.units import base_units, parse_unit, to_si
+from piezo_sym.expressions.units import base_units, parse_unit, to_si
 
 
 @pytest.mark.parametrize(

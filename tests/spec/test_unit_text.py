@@ -11,10 +11,10 @@ from spec_laws import steady
 
 import piezo_sym.spec.elements as kinds
 from piezo_sym.expressions.dimensions import NONE, times
+from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.elements import KINDS
 from piezo_sym.spec.elements.base import Letters
 from piezo_sym.spec.unit_text import PARTS, QUANTITIES, quantity, unit_text
-from piezo_sym.spec.units import parse_unit
 
 
 @steady

@@ -6,11 +6,11 @@ from fractions import Fraction
 from keyword import iskeyword
 
 from piezo_sym.errors import SpecError, quote
+from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.elements.base import state_symbol
 from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.names import check_name, check_symbol
 from piezo_sym.spec.tables import banks, bodies, states
-from piezo_sym.spec.units import parse_unit
 
 #: Variables that every result has; see `run`.
 RESULTS = frozenset({"time", "energy", "entropy", "energy_residual", "entropy_residual"})

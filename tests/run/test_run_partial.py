@@ -1,0 +1,57 @@
+"""What a run that stops has reached is not lost: `error.partial`, and the command's file."""
+
+import numpy as np
+import pytest
+
+from piezo_sym import load, simulate, sine
+from piezo_sym.errors import RunError
+from piezo_sym.spec.source import find
+
+DRIVE = {"V_in": sine(100, 100)}
+
+
+@pytest.fixture(scope="module")
+def short_of_300_kelvin(tmp_path_factory):
+    """The actuator with a domain that its own heat leaves after 0.0306 s."""
+    text = find("piezo_stack").read_text().replace('name   = "piezo_stack"', 'name = "warm"')
+    text = text.replace("[inputs]", 'T_m = { value = 300.0, unit = "K" }\n[inputs]', 1)
+    path = tmp_path_factory.mktemp("warm") / "warm.toml"
+    path.write_text(text.replace("assume = [", 'assume = ["T < T_m", ', 1))
+    return path
+
+
+@pytest.mark.parametrize("method", [None, "LSODA"])
+def test_the_error_of_a_run_carries_the_dataset_so_far(short_of_300_kelvin, method):
+    model = load(short_of_300_kelvin)
+    with pytest.raises(RunError, match=r"leaves the domain at t = 0\.03059") as stopped:
+        simulate(model, inputs=DRIVE, duration=0.2, method=method, times=1001)
+    partial = stopped.value.partial
+    assert partial.time.values[-1] == pytest.approx(0.0304, rel=1e-12)  # the last sample before
+    assert np.all(partial.T_body < 300)
+    assert partial.attrs["stopped"] == str(stopped.value)
+    whole = simulate(model, inputs=DRIVE, duration=0.0304, method=method, times=partial.time.values)
+    for name in [name for name in partial.data_vars if "residual" not in str(name)]:
+        values = partial[name]
+        size = float(np.abs(whole[name]).max()) + 1e-12
+        assert np.abs(values - whole[name]).max() < 1e-4 * size, name
+    if method is None:
+        assert np.abs(partial.energy_residual).max() < 1e-12 * float(partial.energy[0])
+
+
+def test_a_run_that_fails_at_its_start_has_none():
+    with pytest.raises(RunError, match="start is outside") as stopped:
+        simulate("piezo_stack", inputs={"T_e": 200.0}, duration=0.1)
+    assert stopped.value.partial is None
+
+
+@pytest.mark.parametrize("method", [None, "LSODA"])
+def test_a_run_that_is_interrupted_keeps_what_it_has(method):
+    def interrupt(t):
+        if t > 0.05:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt) as stopped:
+        simulate("piezo_stack", inputs=DRIVE, duration=10, progress=interrupt, method=method)
+    partial = stopped.value.partial
+    assert 0.05 <= partial.time[-1] < 9
+    assert partial.attrs["stopped"] == "stopped by the user"
