@@ -12,20 +12,15 @@ from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeAlias, TypeVar
 
-from numpy.typing import ArrayLike
-
 from piezo_sym.analysis import branches, steady
 from piezo_sym.analysis import operating_point as rest
 from piezo_sym.modules import module_of
 from piezo_sym.progress import watch_of
 from piezo_sym.run import simulate as run
-from piezo_sym.run.inputs import InputValue
 from piezo_sym.run.parameters import LaneValue
 from piezo_sym.run.stepper import Stepper as Steps
 
 if TYPE_CHECKING:
-    import xarray
-
     from piezo_sym.spec.model import Model
 
 Spec: TypeAlias = "str | Path | Model"
@@ -52,71 +47,20 @@ periodic_steady_states = of_spec(steady.periodic_steady_states)
 steady_branches = of_spec(branches.steady_branches)
 
 
-def simulate(
-    model: Spec,
-    *,
-    inputs: Mapping[str, InputValue] | None = None,
-    duration: float,
-    rtol: float | None = None,
-    step: float | None = None,
-    order: int | None = None,
-    parameters: Mapping[str, LaneValue] | None = None,
-    initial: Mapping[str, LaneValue] | None = None,
-    method: str | None = None,
-    times: int | ArrayLike | None = None,
-    every: int | None = None,
-    dissipative_start: bool = False,
-    progress: bool | Callable[[float], object] | None = None,
-) -> xarray.Dataset:
-    """Run a model and return all its quantities over time.
+def _with_bar(run: Callable[P, R]) -> Callable[P, R]:
+    """Return `simulate` with a bar where `progress` is True, and none where it is False."""
 
-    Parameters
-    ----------
-    model : the name of a shipped spec, the path of a spec file, or a `Model`.
-    inputs : name -> number, (t, values), function of t [s], or signal; SI units.
-    duration : length of the run [s].
-    rtol : about the largest error of a state, in its largest magnitude; 1e-5 when left out.
-    step, order : a fixed step [s] instead of rtol, of order 2 (when left out), 4, 6, 8 or 10.
-    parameters, initial : name -> number, or for a bank a list of one number per lane; SI units.
-    method : discrete_gradient when left out, or one of SciPy's.
-    times : the samples: a number of even ones, or increasing times [s].
-    every : with `step`, instead of `times`: a sample every so many steps, and at the end.
-    dissipative_start : whether the first step after each jump of an input is damped, which reduces
-        the states' error after it where steps are long.
-    progress : True for a bar; or a function, told the time [s] reached.
+    def call(*args: P.args, **given: P.kwargs) -> R:
+        options: dict[str, Any] = given
+        last = getattr(options.get("initial"), "time", None)
+        start = options.get("t0") or (0.0 if last is None else float(last[-1]))
+        with watch_of(options.get("progress"), options.get("duration"), start) as watch:
+            return run(*args, **{**options, "progress": watch})
 
-        More on each: `help(piezo_sym.run.simulate)`.
+    return update_wrapper(call, run)
 
-    Returns
-    -------
-    xarray.Dataset
-        Over ``time``: states, inputs, outputs, temperatures, energy, entropy and the ledger, in SI.
 
-    Raises
-    ------
-    UsageError
-        If an option is wrong; names it.
-    RunError
-        If a state leaves the domain or the solver cannot go on; says when and why.
-    DriftError
-        If the generated module is not of this spec.
-    """
-    with watch_of(progress, duration) as watch:
-        return run(
-            module_of(model),
-            inputs=inputs,
-            duration=duration,
-            rtol=rtol,
-            step=step,
-            order=order,
-            parameters=parameters,
-            initial=initial,
-            method=method,
-            times=times,
-            every=every,
-            dissipative_start=dissipative_start,
-            progress=watch,
-        )
+simulate = of_spec(_with_bar(run))
 
 
 def Stepper(

@@ -48,13 +48,13 @@ def progress_of(wanted: object, total: int) -> Iterator[Tell]:
 
 
 @contextmanager
-def watch_of(wanted: object, duration: float) -> Iterator[Tell | None]:
+def watch_of(wanted: object, duration: object, start: float = 0.0) -> Iterator[Tell | None]:
     """Give what a run is to tell the time that it has reached [s], or None.
 
     Parameters
     ----------
     wanted : True for a bar; False or None for nothing; or a function of the time.
-    duration : the length of the run [s].
+    duration, start : the length of the run, and when it starts [s].
 
     Raises
     ------
@@ -65,8 +65,9 @@ def watch_of(wanted: object, duration: float) -> Iterator[Tell | None]:
     elif wanted is None or wanted is False:
         yield None
     elif wanted is True:
-        with time_bar(duration, shown=True) as tell:
-            yield tell
+        length = duration if isinstance(duration, int | float) else 0.0  # the run refuses others
+        with time_bar(length, shown=True) as tell:
+            yield lambda t: tell(t - start)
     else:
         expected = "True, False, None or a function of the time in s"
         raise UsageError(f"{quote(wanted)} shows no progress", "simulate.progress", expected)

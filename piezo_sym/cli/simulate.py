@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,7 +12,15 @@ import typer
 
 from piezo_sym.cli.output import about, console, row, table, warnings_as_lines
 from piezo_sym.cli.words import numbers, pairs, signal
-from piezo_sym.errors import NetworkError, ProofError, RunError, SpecError, UsageError, listing
+from piezo_sym.errors import (
+    FileError,
+    NetworkError,
+    ProofError,
+    RunError,
+    SpecError,
+    UsageError,
+    listing,
+)
 from piezo_sym.files import path_text, write_bytes
 
 if TYPE_CHECKING:
@@ -36,6 +45,19 @@ Parameters: TypeAlias = Annotated[
 ]
 Initial: TypeAlias = Annotated[
     list[str] | None, typer.Option("--initial", help="STATE=NUMBER at t = 0; SI; repeat.")
+]
+Continue: TypeAlias = Annotated[
+    Path | None, typer.Option("--continue", help="Go on from the end of this run (.nc).")
+]
+T0: TypeAlias = Annotated[
+    float | None, typer.Option("--t0", help="When the run starts [s]; 0, or where it goes on.")
+]
+Events: TypeAlias = Annotated[
+    list[str] | None,
+    typer.Option("--event", help="NAME=EXPRESSION, located where its sign changes; repeat."),
+]
+Stop: TypeAlias = Annotated[
+    str | None, typer.Option(help="A comparison, such as 'T_body > 350', that ends the run.")
 ]
 Rtol: TypeAlias = Annotated[
     float | None, typer.Option(help="Relative tolerance; 1e-5 if left out.")
@@ -65,12 +87,16 @@ def simulate(
     inputs: Inputs = None,
     parameters: Parameters = None,
     initial: Initial = None,
+    continued: Continue = None,
+    t0: T0 = None,
     rtol: Rtol = None,
     step: Step = None,
     order: Order = None,
     method: Method = None,
     times: Times = None,
     every: Every = None,
+    events: Events = None,
+    stop: Stop = None,
     dissipative_start: Start = False,
     out: Out = None,
 ) -> None:
@@ -81,29 +107,30 @@ def simulate(
     a table with a header, times [s] in its first column, joined by straight lines: of several
     columns the one named like the input counts.
     """
-    from piezo_sym.api import simulate as run
-    from piezo_sym.progress import time_bar
-
     _check_ending(out)
+    signals = dict(pairs(inputs or (), "--input", signal))
+    when = {"duration": duration, "t0": t0, "times": times, "every": every, "stop": stop}
+    how = {"rtol": rtol, "step": step, "order": order, "method": method}
+    result = _run(
+        spec,
+        out,
+        inputs=signals,
+        parameters=dict(pairs(parameters or (), "--set", numbers)),
+        initial=_start(continued, dict(pairs(initial or (), "--initial", numbers))),
+        events=dict(pairs(events or (), "--event", lambda text, _: text)),
+        dissipative_start=dissipative_start,
+        **when,
+        **how,
+    )
+    _report(result, signals, out)
+
+
+def _run(spec: str, out: Path | None, **options: Any) -> xarray.Dataset:
+    from piezo_sym.api import simulate as run
+
     of_spec = about(spec, SpecError, NetworkError, ProofError)
-    given = dict(pairs(inputs or (), "--input", signal))
-    with warnings_as_lines(), keeping(out), time_bar(duration) as told, of_spec:
-        result = run(
-            spec,
-            duration=duration,
-            inputs=given,
-            parameters=dict(pairs(parameters or (), "--set", numbers)),
-            initial=dict(pairs(initial or (), "--initial", numbers)),
-            rtol=rtol,
-            step=step,
-            order=order,
-            method=method,
-            times=times,
-            every=every,
-            progress=told,
-            dissipative_start=dissipative_start,
-        )
-    _report(result, given, out)
+    with warnings_as_lines(), keeping(out), of_spec:
+        return run(spec, **options, progress=sys.stderr.isatty())
 
 
 def _report(result: xarray.Dataset, inputs: Mapping[str, Any], out: Path | None) -> None:
@@ -114,6 +141,21 @@ def _report(result: xarray.Dataset, inputs: Mapping[str, Any], out: Path | None)
     _print_assumed(inputs)
     if out is not None:
         typer.echo(f"{out}")
+
+
+def _start(path: Path | None, initial: Mapping[str, Any]) -> Any:
+    """Return where a run begins: states by name, or the run that it goes on from."""
+    import xarray
+
+    if path is None:
+        return initial
+    if initial:
+        raise UsageError("--initial is given too", "--continue", "one of them")
+    try:
+        return xarray.load_dataset(path, engine="scipy")
+    except (OSError, ValueError, TypeError) as cause:
+        remedy = "give what --out wrote as .nc"
+        raise FileError("is no run that can go on", path_text(path), remedy=remedy) from cause
 
 
 def _check_ending(out: Path | None) -> None:

@@ -116,7 +116,7 @@ def go_dissipatively(
             batch.go_on(how, segment.start)
             through(batch, watch)
             start(batch, how, *first_step(segment, times, how.fixed))
-    batch.go_on(how, inputs.duration)
+    batch.go_on(how, inputs.end)
 
 
 def through(batch: Batch, watch: Watch | None = None) -> None:

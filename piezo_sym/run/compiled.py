@@ -83,7 +83,7 @@ def shortest_step(system: DrivenModule, samples: FloatArray, step: float) -> flo
     Steps end at samples and at breaks of inputs; those between two of them are equal.
     """
     segments = system.inputs.segments
-    inner = samples[(samples > 0) & (samples < segments[-1].stop)]
+    inner = samples[(samples > segments[0].start) & (samples < segments[-1].stop)]
     edges = [segment.start for segment in segments] + [segments[-1].stop]
     widths = np.diff(np.union1d(inner, edges))
     rounding = 4 * np.finfo(float).eps * edges[-1] / step

@@ -77,16 +77,20 @@ def coordinates(system: DrivenModule, times: FloatArray) -> Iterator[Named]:
 
 def variables(system: DrivenModule, trajectory: Trajectory) -> Iterator[Named]:
     """Yield every variable of the Dataset, in order."""
+    yield from instants(system, trajectory)
+    yield from ledger(system, trajectory)
+
+
+def instants(system: DrivenModule, trajectory: Trajectory) -> Iterator[Named]:
+    """Yield what states and inputs at one time decide, over time."""
     module, p = system.module, system.parameters
     x, u = trajectory.states, trajectory.inputs
-    energy, entropy = module.energy(x, p), module.entropy(x, p)
     yield from spread(system, module.STATES, x)
     yield from spread(system, module.INPUTS, u)
     yield from spread(system, module.OUTPUTS, module.outputs(x, u, p), "y_")
     yield from spread(system, module.BODIES, module.temperatures(x, p), "T_")
-    yield "energy", (("time",), energy, described("J", "energy U"))
-    yield "entropy", (("time",), entropy, described("J/K", "entropy S"))
-    yield from ledger(system, trajectory)
+    yield "energy", (("time",), module.energy(x, p), described("J", "energy U"))
+    yield "entropy", (("time",), module.entropy(x, p), described("J/K", "entropy S"))
 
 
 def ledger(system: DrivenModule, trajectory: Trajectory) -> Iterator[Named]:
@@ -105,7 +109,7 @@ def ledger(system: DrivenModule, trajectory: Trajectory) -> Iterator[Named]:
         system, brought, exchanged, "entropy_exchanged_", ("J/K", "entropy brought by {}")
     )
     if trajectory.numerical is not None:
-        yield from numerical(trajectory.numerical)
+        yield from numerical(trajectory.numerical, system.inputs.start)
         made = made + trajectory.numerical[1]
     energy = module.energy(x, p) - module.energy(start, p) - np.sum(supplied, axis=0)
     entropy = module.entropy(x, p) - module.entropy(start, p) - made
@@ -121,9 +125,9 @@ def integrals(system: DrivenModule, trajectory: Trajectory) -> list[FloatArray]:
     return np.split(trajectory.integrals, np.cumsum([ports, size, size]))
 
 
-def numerical(rows: FloatArray) -> Iterator[Named]:
+def numerical(rows: FloatArray, start: float) -> Iterator[Named]:
     """Yield heat and entropy production of dissipative starts."""
-    about = "by dissipative starts since t = 0"
+    about = f"by dissipative starts since t = {start:g}"
     yield "heat_numerical", (("time",), rows[0], described("J", f"heat released {about}"))
     text = f"entropy produced {about}"
     yield "produced_numerical", (("time",), rows[1], described("J/K", text))
@@ -140,8 +144,8 @@ def spread(
     for record, part in zip(records, system.rows(records), strict=True):
         attrs = described(record.unit, record.doc or record.name)
         if integral:
-            unit, text = integral
-            attrs = described(unit, f"{text.format(quote(record.name))} since t = 0")
+            unit, text = integral[0], integral[1].format(quote(record.name))
+            attrs = described(unit, f"{text} since t = {system.inputs.start:g}")
         dims = ("time", record.bank) if record.bank else ("time",)
         yield (
             f"{prefix}{record.name}",

@@ -40,10 +40,11 @@ STEEP = 1e-6
 @final
 @dataclass(frozen=True)
 class InputFunction(Signal):
-    """A user's function of one time, given arrays of times where it takes them."""
+    """A user's function of one time, asked from `start` on, with arrays where it takes them."""
 
     function: Callable[[float], object]
     where: str
+    start: float = 0.0
 
     def _values(self, t: FloatArray | float) -> FloatArray:
         times = np.asarray(t, dtype=float)
@@ -98,17 +99,17 @@ class InputFunction(Signal):
     def _corners(self, duration: float) -> Iterable[float]:
         """Return the times of its jumps."""
         if duration not in self._known:
-            self._known[duration] = jumps(self, duration)
+            self._known[duration] = jumps(self, self.start, duration)
         return self._known[duration]
 
     def max_step(self, duration: float) -> float:
         """Return a small part of the run."""
-        return duration / FUNCTION_STEPS
+        return (duration - self.start) / FUNCTION_STEPS
 
 
-def jumps(function: Callable[[Any], Any], duration: float) -> tuple[float, ...]:
-    """Return the times in (0, duration) from which on a function has jumped, in order."""
-    times = np.linspace(0.0, nextafter(duration, 0.0), INTERVALS + 1)
+def jumps(function: Callable[[Any], Any], start: float, end: float) -> tuple[float, ...]:
+    """Return the times in (start, end) from which on a function has jumped, in order."""
+    times = np.linspace(start, nextafter(end, start), INTERVALS + 1)
     values = function(times)
     return tuple(_jumps_between(function, times, values))
 

@@ -31,7 +31,7 @@ def check_start(system: DrivenModule, x: FloatArray) -> None:
     try:
         check_point(system, segment.start, x, u)
     except ArithmeticError as cause:
-        what = f"the state at t = 0 s cannot be evaluated: {cause}"
+        what = f"the state at t = {segment.start:g} s cannot be evaluated: {cause}"
         raise RunError(what, place(system), remedy="check the parameters") from cause
 
 
@@ -119,7 +119,7 @@ def domain_error(system: DrivenModule, t: float, x: FloatArray, u: FloatArray) -
     condition, margin = system.module.DOMAIN[row], system.margins(x, u)[row]
     values = list(values_in(system, condition.text, x, u))
     shown = ", ".join(shown_value(*value) for value in values)
-    event = "state leaves" if t > 0 else "start is outside"
+    event = "state leaves" if t > system.inputs.start else "start is outside"
     what = (
         f"{event} the domain at t = {t:.6g} s: "
         f"condition '{condition.text}' has margin {margin:.3g} ({shown})"

@@ -61,27 +61,32 @@ class Segment:
 @final
 @dataclass(frozen=True)
 class Inputs:
-    """A signal for each input of a module, over [0, duration]."""
+    """A signal for each input of a module, over [start, start + duration]."""
 
     signals: tuple[Signal, ...]
     duration: float
+    start: float = 0.0
+
+    @property
+    def end(self) -> float:
+        """When the run ends [s]."""
+        return self.start + self.duration
 
     @cached_property
     def segments(self) -> tuple[Segment, ...]:
         """Segments between breaks, in order; breaks that round to one another are one."""
-        groups = [[0.0]]
-        end = self.duration
-        times = {t for signal in self.signals for t in signal.breaks(end)}
-        for t in (*sorted(times), end):
-            if t - groups[-1][0] > CLOSE * end:
+        groups = [[self.start]]
+        times = {t for s in self.signals for t in s.breaks(self.end) if t > self.start}
+        for t in (*sorted(times), self.end):
+            if t - groups[-1][0] > CLOSE * self.end:
                 groups.append([])
             groups[-1].append(t)
         return tuple(self.segment(a, b) for a, b in pairwise(groups))
 
     def segment(self, first: Sequence[float], last: Sequence[float]) -> Segment:
         """Return the segment between two groups of breaks."""
-        stop = self.duration if self.duration in last else last[0]
-        low = nextafter(first[-1], inf) if first[-1] > 0 else 0.0
+        stop = self.end if self.end in last else last[0]
+        low = nextafter(first[-1], inf) if first[-1] > self.start else self.start
         base = np.array([s.value if isinstance(s, Constant) else 0.0 for s in self.signals])
         varying = tuple(
             (row, s) for row, s in enumerate(self.signals) if not isinstance(s, Constant)
@@ -99,19 +104,21 @@ class Inputs:
 
     @cached_property
     def jumps(self) -> frozenset[float]:
-        """Starts of the segments before which an input jumps; 0, for a run starts anywhere."""
+        """Starts of the segments before which an input jumps, and of the run."""
         pairs = pairwise(self.segments)
-        return frozenset({0.0, *(later.start for first, later in pairs if jump(first, later))})
+        return frozenset(
+            {self.start, *(later.start for first, later in pairs if jump(first, later))}
+        )
 
     @cached_property
     def max_step(self) -> float:
         """Longest step [s] that resolves every input."""
-        return min((signal.max_step(self.duration) for signal in self.signals), default=inf)
+        return min((signal.max_step(self.end) for signal in self.signals), default=inf)
 
     @cached_property
     def longest_step(self) -> float:
         """Longest step [s] that resolves every input by looking at it in several places."""
-        return min((signal.longest_step(self.duration) for signal in self.signals), default=inf)
+        return min((signal.longest_step(self.end) for signal in self.signals), default=inf)
 
 
 def jump(first: Segment, later: Segment) -> bool:
@@ -127,13 +134,16 @@ def _places(segment: Segment) -> FloatArray:
 
 
 def read_inputs(
-    module: GeneratedModule, given: Mapping[str, InputValue] | None, duration: float
+    module: GeneratedModule,
+    given: Mapping[str, InputValue] | None,
+    duration: float,
+    start: float = 0.0,
 ) -> Inputs:
     """Return the inputs of a run; those not given keep the module's defaults.
 
     Raises
     ------
-    UsageError : a name is unknown, or a value is not usable or does not cover [0, duration].
+    UsageError : a name is unknown, or a value is not usable or does not cover the run.
     """
     names = [record.name for record in module.INPUTS]
     defaults = dict(zip(names, module.INPUT_DEFAULTS, strict=True))
@@ -141,26 +151,28 @@ def read_inputs(
     signals = []
     for record in module.INPUTS:
         where = f"simulate.inputs.{record.name}"
-        signals.append(read_signal(values[record.name], where, duration, record.unit))
-    return Inputs(tuple(signals), duration)
+        signals.append(
+            read_signal(values[record.name], where, (start, start + duration), record.unit)
+        )
+    return Inputs(tuple(signals), duration, start)
 
 
-def read_signal(value: object, where: str, duration: float, unit: str) -> Signal:
-    """Return what a user wrote for one input, which is in `unit`, as a signal."""
-    signal = as_signal(value, where)
+def read_signal(value: object, where: str, span: tuple[float, float], unit: str) -> Signal:
+    """Return what a user wrote for one input, which is in `unit`, as a signal over a span [s]."""
+    signal = as_signal(value, where, span[0])
     if isinstance(signal, Samples) and signal.unit not in ("", unit):
         from piezo_sym.expressions.units import parse_unit
 
         if parse_unit(signal.unit).dimension != parse_unit(unit).dimension:
             raise UsageError(f"the samples are in {signal.unit}", where, f"samples in {unit}")
-    if isinstance(signal, Samples) and not signal.covers(duration):
+    if isinstance(signal, Samples) and not signal.covers(*span):
         what = f"samples span {signal.times[0]:g} s to {signal.times[-1]:g} s"
-        raise UsageError(what, where, f"samples that cover 0 s to {duration:g} s")
+        raise UsageError(what, where, f"samples that cover {span[0]:g} s to {span[1]:g} s")
     return signal
 
 
-def as_signal(value: object, where: str) -> Signal:
-    """Return a number, (t, values), function or signal as a signal."""
+def as_signal(value: object, where: str, start: float = 0.0) -> Signal:
+    """Return a number, (t, values), function or signal as a signal of a run from `start` [s]."""
     if isinstance(value, Signal):
         return value
     if is_number(value):
@@ -168,7 +180,7 @@ def as_signal(value: object, where: str) -> Signal:
     if isinstance(value, tuple | list) and len(value) == 2:
         return read_samples(value[0], value[1], where)
     if callable(value) and not isinstance(value, type):
-        return InputFunction(value, where)
+        return InputFunction(value, where, start)
     expected = "a number, (t, values), a function of t or a signal"
     what = f"{quote(value)} is no input"
     raise UsageError(what, where, expected)

@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 from typing import final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from piezo_sym.errors import RunError
 from piezo_sym.run.checks import FloatArray
@@ -44,18 +45,21 @@ class Trajectory:
     halvings: int = 0
     numerical: FloatArray | None = None  # (2, nt): heat and entropy that dissipative starts produce
 
+    def at(self, places: NDArray[np.intp]) -> Trajectory:
+        """Return some of the samples."""
+        return replace(
+            self,
+            states=self.states[:, places],
+            inputs=self.inputs[:, places],
+            integrals=self.integrals[:, places],
+            numerical=None if self.numerical is None else self.numerical[:, places],
+        )
+
     def until(self, times: FloatArray) -> tuple[FloatArray, Trajectory]:
         """Return the times and samples of a run that has no more states."""
         missing = np.isnan(self.states).any(axis=0)
         count = int(np.argmax(missing)) if missing.any() else missing.size
-        cut = replace(
-            self,
-            states=self.states[:, :count],
-            inputs=self.inputs[:, :count],
-            integrals=self.integrals[:, :count],
-            numerical=None if self.numerical is None else self.numerical[:, :count],
-        )
-        return times[:count], cut
+        return times[:count], self.at(np.arange(count))
 
 
 def record(

@@ -123,7 +123,9 @@ def own_initial(module: GeneratedModule, parameters: Any, u: FloatArray) -> Floa
         raise RunError(what, f"model '{module.NAME}'", remedy="check the parameters") from cause
 
 
-def sample_times(times: object, every: object, step: float | None, duration: float) -> FloatArray:
+def sample_times(
+    times: object, every: object, step: float | None, duration: float, start: float = 0.0
+) -> FloatArray:
     """Return the times (nt,) of the samples [s], from what a user said of `times` and `every`.
 
     Raises
@@ -138,37 +140,38 @@ def sample_times(times: object, every: object, step: float | None, duration: flo
         what = f"{step:g} s is longer than the run"
         raise UsageError(what, "simulate.step", f"at most {duration:g} s")
     if every is not None:
-        return read_every(every, times, step, duration)
+        return read_every(every, times, step, duration, start)
     if times is None and step is not None:
         steps = int(np.ceil(duration / step * (1 - CLOSE)))
-        return read_every(-(-steps // (SAMPLES - 1)), None, step, duration)
-    return read_times(times, duration)
+        return read_every(-(-steps // (SAMPLES - 1)), None, step, duration, start)
+    return read_times(times, duration, start)
 
 
-def read_times(given: object, duration: float) -> FloatArray:
+def read_times(given: object, duration: float, start: float = 0.0) -> FloatArray:
     """Return the times (nt,) of the samples [s]: even ones, or those a user gave.
 
     Raises
     ------
-    UsageError : neither None, a number of samples >= 2, nor increasing times in [0, duration];
-        a last one that is beyond by round-off alone is the end.
+    UsageError : neither None, a number of samples >= 2, nor increasing times in the run; a last one
+        that is beyond by round-off alone is the end.
     """
-    where = "simulate.times"
+    where, end = "simulate.times", start + duration
     if given is None:
-        return np.linspace(0.0, duration, SAMPLES)
+        return np.linspace(start, end, SAMPLES)
     if is_number(given) or isinstance(given, bool):
-        return np.linspace(0.0, duration, whole(given, where, 2))
+        return np.linspace(start, end, whole(given, where, 2))
     times = vector(given, where)
-    times = increasing(
-        np.where(times <= duration * (1 + CLOSE), np.minimum(times, duration), times), where
-    )
-    if not times.size or times[0] < 0 or times[-1] > duration:
+    late = end + CLOSE * max(abs(end), duration)
+    times = increasing(np.where(times <= late, np.minimum(times, end), times), where)
+    if not times.size or times[0] < start or times[-1] > end:
         span = f"times span {times[0]:g} s to {times[-1]:g} s" if times.size else "no times"
-        raise UsageError(span, where, f"times within 0 s to {duration:g} s")
+        raise UsageError(span, where, f"times within {start:g} s to {end:g} s")
     return times
 
 
-def read_every(every: object, times: object, step: float | None, duration: float) -> FloatArray:
+def read_every(
+    every: object, times: object, step: float | None, duration: float, start: float
+) -> FloatArray:
     """Return the times (nt,) of samples every so many steps, and the end [s].
 
     Raises
@@ -181,4 +184,4 @@ def read_every(every: object, times: object, step: float | None, duration: float
         raise UsageError(what, where, "step, and no times", "leave out every, or give step alone")
     apart = whole(every, where, 1) * step
     even = apart * np.arange(int(duration / apart * (1 - CLOSE)) + 1)
-    return np.append(even, duration)
+    return np.append(start + even, start + duration)

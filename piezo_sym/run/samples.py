@@ -49,19 +49,22 @@ class Samples(Signal):
         return self.times[(self.times > 0) & (self.times < duration)]
 
     def _corners(self, duration: float) -> Iterable[float]:
-        """Return the times of the samples when they are few, otherwise none."""
+        """Return the times of the samples when they are few, otherwise those of jumps."""
         knots = self.knots(duration)
-        return knots if knots.size <= MOST_CORNERS else ()
+        if knots.size <= MOST_CORNERS:
+            return knots
+        jumps: FloatArray = knots[1:][np.nextafter(knots[:-1], inf) == knots[1:]]
+        return jumps
 
     def max_step(self, duration: float) -> float:
         """Return the median distance of the samples when they are many, otherwise infinity."""
         knots = self.knots(duration)
         return float(np.median(np.diff(knots))) if knots.size > MOST_CORNERS else inf
 
-    def covers(self, duration: float) -> bool:
-        """Return whether the samples span [0, duration]."""
-        slack = SLACK * duration
-        return bool(self.times[0] <= slack and self.times[-1] >= duration - slack)
+    def covers(self, start: float, end: float) -> bool:
+        """Return whether the samples span [start, end]."""
+        slack = SLACK * (end - start)
+        return bool(self.times[0] <= start + slack and self.times[-1] >= end - slack)
 
 
 def samples(times: ArrayLike, values: ArrayLike) -> Samples:
@@ -69,19 +72,22 @@ def samples(times: ArrayLike, values: ArrayLike) -> Samples:
 
     Parameters
     ----------
-    times : strictly increasing [s], shape (n,), n >= 2.
+    times : increasing [s], shape (n,), n >= 2; one that stands twice is a jump.
     values : in the input's unit, shape (n,).
 
     Raises
     ------
-    UsageError : an entry is not a finite number, lengths differ, or times do not increase.
+    UsageError : an entry is not a finite number, lengths differ, times fall, or one stands thrice.
     """
     return read_samples(times, values, "samples")
 
 
 def read_samples(times: object, values: object, where: str) -> Samples:
     """Return `samples(times, values)`; its errors name `where`."""
-    t = increasing(vector(times, f"{where}.times"), f"{where}.times")
+    t = vector(times, f"{where}.times")
+    twice = np.flatnonzero(t[:-1] == t[1:])
+    t[twice] = np.nextafter(t[twice], -inf)  # a jump: from the number before this time
+    t = increasing(t, f"{where}.times")
     x = vector(values, f"{where}.values")
     if t.size != x.size or t.size < 2:
         what = f"{t.size} times and {x.size} values"

@@ -72,15 +72,17 @@ def magnitudes(
     The coarse run takes at most `most` steps. Where it stops early, its last states may be on
     their way to infinity: then only the first nine tenths of the time it reached count.
     """
-    t, scale, evaluations = 0.0, system.scale(x), 0
+    start, duration = system.inputs.start, system.inputs.duration
+    t, scale, evaluations = start, system.scale(x), 0
     known = [(t, scale)]
     with suppress(PiezoError):
         for t, met, cost in islice(coarse_run(system, x), most):
             scale, evaluations = met, evaluations + cost
             if np.any(scale > 2 * known[-1][1]):
                 known.append((t, scale))
-    if t < system.inputs.duration * (1 - NEAR):
-        scale = next(size for early, size in reversed(known) if early <= TRUSTED * t)
+    if t - start < duration * (1 - NEAR):
+        trusted = start + TRUSTED * (t - start)
+        scale = next(size for early, size in reversed(known) if early <= trusted)
     return scale, evaluations
 
 

@@ -11,18 +11,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from piezo_sym.errors import RunError, UsageError, quote
+from piezo_sym.errors import UsageError, quote
 from piezo_sym.run.checks import number, positive
 from piezo_sym.run.collocation import FixedStep, read_order
-from piezo_sym.run.compiled import compiled_run
-from piezo_sym.run.dataset import to_dataset
+from piezo_sym.run.continuing import start_of
+from piezo_sym.run.events import read_watched
 from piezo_sym.run.guard import check_start
 from piezo_sym.run.inputs import read_inputs
-from piezo_sym.run.method import ChosenMethod, checked_method, choose_method
+from piezo_sym.run.method import checked_method, choose_method
 from piezo_sym.run.module import checked
 from piezo_sym.run.parameters import read_initial, read_parameters, sample_times
+from piezo_sym.run.planned import PlannedRun
 from piezo_sym.run.runs import METHOD
-from piezo_sym.run.scipy_runs import by_scipy
 from piezo_sym.run.system import DrivenModule
 
 if TYPE_CHECKING:
@@ -48,14 +48,17 @@ def simulate(
     step: float | None = None,
     order: int | None = None,
     parameters: Mapping[str, LaneValue] | None = None,
-    initial: Mapping[str, LaneValue] | None = None,
+    initial: Mapping[str, LaneValue] | xarray.Dataset | None = None,
+    t0: float | None = None,
     method: str | None = None,
     times: int | ArrayLike | None = None,
     every: int | None = None,
+    events: Mapping[str, str] | None = None,
+    stop: str | None = None,
     dissipative_start: bool = False,
-    progress: Callable[[float], object] | None = None,
+    progress: bool | Callable[[float], object] | None = None,
 ) -> xarray.Dataset:
-    """Run a generated module from t = 0 and return all its quantities over time.
+    """Run a model from `t0` and return all its quantities over time.
 
     The method is the discrete gradient, compiled, unless another is named. Both its balances close
     to round-off at every sample, for the states given. With `rtol` it is Gauss collocation with
@@ -86,7 +89,8 @@ def simulate(
 
     Parameters
     ----------
-    module : a generated module.
+    model : the name of a shipped spec, the path of a spec file, or a `Model`; here, of
+        `piezo_sym.run`, a generated module.
     inputs : name -> number, (t, values) joined by straight lines, function of t [s], or signal;
         SI units. Those left out keep the module's defaults.
     duration : length of the run [s].
@@ -100,15 +104,25 @@ def simulate(
     parameters : name -> number, for a bank's parameter also a list of one number per lane; and
         `<bank>_count` -> number of lanes. SI units.
     initial : state -> number, for a bank's state also a list of one number per lane. SI units.
-        Those left out keep the module's initial state.
+        Those left out keep the module's initial state. Or a Dataset of this model: the run goes on
+        from its last state, with its parameters but for those given; integrals begin at 0 again.
+    t0 : the time at which the run starts [s]; when left out, 0, or the last time of a Dataset.
     method : discrete_gradient when left out, or one of SciPy's: RK23, RK45, DOP853, Radau, BDF,
         LSODA. Left out, a module without C beside it runs by LSODA; and so does one whose C cannot
         be compiled here, with one `EngineWarning`.
     times : the samples: a number of even ones, or increasing times [s]. When left out, 1001 even
         ones; with `step`, as many ends of steps, equally far apart, as 1001 allow, and the end.
     every : with `step`, instead of `times`: a sample every so many steps, and at the end.
-    progress : a function, told the time [s] reached, now and then; `piezo_sym.simulate` also takes
-        True, for a bar.
+    events : name -> expression, such as ``{"hit": "q - 1e-3"}``: the times at which it changes its
+        sign, to round-off, are the coordinate of that name, and `<quantity>_at_<name>` is what
+        states, inputs, outputs and temperatures are then. Expressions are texts in the language of
+        laws, of states (a lane as ``phi_1``), inputs, `y_<port>`, `T_<body>` and parameters, in SI.
+        Looked at are the samples, and four times per step, 1,000 to 20,000 in all: of changes that
+        come in pairs between two of them, none is seen. Not with `step`, whose steps end at every
+        time that is looked at.
+    stop : a comparison, such as ``"T_body > 350"``: the run ends when it first holds, which is its
+        last sample; the attribute `stopped` says so.
+    progress : a function, told the time [s] reached, now and then; True, for a bar.
     dissipative_start : for discrete_gradient with `step`. It reduces the error that a jump of an
         input leaves in the states where a step is much longer than the fastest time constant: they
         ring from step to step, for a long time. The first step after t = 0, and after each jump,
@@ -142,36 +156,19 @@ def simulate(
         to the last sample before, and so is that of a `KeyboardInterrupt`.
     """
     checked(module)
+    watch = read_progress(progress)
     named, tolerance = checked_method(method), read_rtol(rtol)
     fixed = read_step(step, order, named, rtol)
-    named = start_method(dissipative_start, named)
-    end = positive(duration, "simulate.duration")
-    refuse_progress(progress)
-    samples = sample_times(times, every, step, end)
-    values = read_parameters(module, parameters)
-    system = DrivenModule(module, values, read_inputs(module, inputs, end))
-    x = read_initial(module, values, system.inputs.segments[0].at(0.0), initial)
+    chosen = choose_method(module, start_method(dissipative_start, named), step)
+    length = positive(duration, "simulate.duration")
+    start, state, given = start_of(module, t0, initial, parameters)
+    samples = sample_times(times, every, step, length, start)
+    values = read_parameters(module, given)
+    system = DrivenModule(module, values, read_inputs(module, inputs, length, start))
+    x = read_initial(module, values, system.inputs.segments[0].at(start), state)
     check_start(system, x)
-    chosen = choose_method(module, named, step)
-    try:
-        if chosen.engine:
-            given = system, chosen.engine, x, samples, tolerance, fixed, progress
-            trajectory, work = compiled_run(*given, starts=dissipative_start)
-        else:
-            trajectory, work = by_scipy(system, x, samples, chosen.method, tolerance, progress)
-    except (RunError, KeyboardInterrupt) as stopped:
-        keep_partial(system, stopped, chosen)
-        raise
-    return to_dataset(system, samples, trajectory, {**work, "engine": chosen.note})
-
-
-def keep_partial(system: DrivenModule, stopped: BaseException, chosen: ChosenMethod) -> None:
-    """Give the error of a run that stopped the Dataset so far, if it has a sample."""
-    times, trajectory = getattr(stopped, "reached", None) or (None, None)
-    if times is not None and trajectory is not None and times.size:
-        why = str(stopped) or "stopped by the user"
-        attrs = {"method": chosen.method, "engine": chosen.note, "stopped": why}
-        vars(stopped)["partial"] = to_dataset(system, times, trajectory, attrs)
+    planned = PlannedRun(system, x, chosen, tolerance, fixed, dissipative_start, watch)
+    return planned.dataset(samples, read_watched(system, events, stop, step))
 
 
 def read_rtol(rtol: object) -> float:
@@ -208,11 +205,12 @@ def read_step(step: object, order: object, method: str | None, rtol: object) -> 
     return FixedStep(length, 2 if order is None else read_order(order, "simulate.order"))
 
 
-def refuse_progress(progress: object) -> None:
-    """Raise `UsageError` if nothing can be told to what a user gave as `progress`."""
+def read_progress(progress: object) -> Callable[[float], object] | None:
+    """Return what is told the time; raise `UsageError` if a user gave nothing that can be."""
     if progress is not None and not callable(progress):
         expected = "a function of the time in s, or None"
         raise UsageError(f"{quote(progress)} shows no progress", "simulate.progress", expected)
+    return progress
 
 
 def start_method(dissipative_start: object, method: str | None) -> str | None:

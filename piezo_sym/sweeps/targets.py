@@ -138,7 +138,7 @@ def read_value(target: Target, value: object, where: str, duration: float) -> Va
     if is_number(value):
         return number(value, where)
     if target.kind == "inputs":
-        return read_signal(value, where, duration, target.unit)
+        return read_signal(value, where, (0.0, duration), target.unit)
     size = len(value) if target.bank and isinstance(value, Sequence | np.ndarray) else None
     return lane_value(value, size, where)
 

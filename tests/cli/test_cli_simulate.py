@@ -346,3 +346,22 @@ def test_units_of_a_file_are_read_or_said_to_be_assumed(call, refused, tmp_path)
     assert call(*words, f"V_in=@{path}").out.endswith(said)
     path.write_text("t [ms],V_in [A]\n0,0\n10,0.1\n")
     assert "the samples are in A; expected samples in V" in refused(*words, f"V_in=@{path}")
+
+
+def test_a_run_stops_and_another_goes_on(call, refused, tmp_path):
+    first, second = tmp_path / "first.nc", tmp_path / "second.nc"
+    drive = ("simulate", "piezo_stack", "-i", "V_in=sine(100,100)")
+    found = ("--event", "hit=q - 1e-3", "--stop", "T_body > 298.4")
+    answer = call(*drive, "--duration", "0.1", *found, "--out", first)
+    assert (answer.code, answer.err) == (0, "")
+    with xarray.open_dataset(first) as run:
+        end = float(run.time[-1])
+        assert float(run.T_body[-1]) == pytest.approx(298.4, rel=1e-14)
+        assert run.q_at_hit.values == pytest.approx(1e-3, rel=1e-12)
+    answer = call(*drive, "--duration", "0.01", "--continue", first, "--out", second)
+    assert (answer.code, answer.err) == (0, "")
+    with xarray.open_dataset(second) as run:
+        assert (float(run.time[0]), float(run.T_body[0])) == (end, pytest.approx(298.4, rel=1e-14))
+    words = (*drive, "--duration", "0.01", "--continue")
+    assert "is no run that can go on" in refused(*words, tmp_path / "none.nc")
+    assert "--initial is given too" in refused(*words, first, "--initial", "q=0")

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from piezo_sym import chirp, ramp, samples, sine, step, triangle
+from piezo_sym import chirp, ramp, samples, simulate, sine, step, triangle
 from piezo_sym.errors import UsageError
 from piezo_sym.run.inputs import Inputs, as_signal
 
@@ -155,7 +155,7 @@ def test_breaks_that_round_to_one_another_are_one():
         (lambda: chirp(1, 0, 2, 1), "chirp.f_start: '0' is not positive"),
         (lambda: samples([0, 1], [1]), "samples: 2 times and 1 values; expected as many"),
         (lambda: samples([0], [1]), "samples: 1 times and 1 values"),
-        (lambda: samples([0, 1, 1], [1, 2, 3]), "time 1 at entry 2 follows 1; expected strictly"),
+        (lambda: samples([0, 1, 1, 1], [1, 2, 3, 4]), "at entry 2 follows 1; expected strictly"),
         (lambda: samples([0, nan], [1, 2]), "samples.times[1]: 'nan'"),
         (lambda: samples(np.array([0, inf]), [1, 2]), "samples.times: entry 1 is inf"),
         (lambda: samples([0, 1], [True, 2]), "samples.values[0]: 'True'"),
@@ -166,3 +166,22 @@ def test_makers_refuse(make, where):
     with pytest.raises(UsageError) as error:
         make()
     assert where in str(error.value)
+
+
+def test_a_time_that_stands_twice_is_a_jump():
+    """A ramp to 1 V, then 10 V: between any two times as by two signals side by side."""
+    signal = samples([0, 1, 1, 2], [0, 1, 10, 10])
+    assert signal(np.array([0.5, 1 - 1e-9, 1.0, 1.5])) == pytest.approx([0.5, 1, 10, 10])
+    first, second = Inputs((signal,), 2.0).segments
+    assert (first.at(first.stop)[0], second.at(second.start)[0]) == (1.0, 10.0)
+    assert Inputs((signal,), 2.0).jumps == {0.0, second.start}
+    with pytest.raises(UsageError, match="follows"):
+        samples([0, 1, 1, 1, 2], [0, 1, 2, 3, 4])
+    many = np.linspace(0, 1, 3001)
+    times, values = np.insert(many, 1500, many[1500]), np.insert(np.sin(many), 1500, 5.0)
+    (jump,) = {t for t in samples(times, values).breaks(1.0)}
+    assert jump == many[1500]
+    drive = {"V_in": ([0, 0.005, 0.005, 0.01], [0, 0, 10, 10])}
+    ours = simulate("piezo_stack", inputs=drive, duration=0.01, rtol=1e-8)
+    theirs = simulate("piezo_stack", inputs={"V_in": step(0.005, 0, 10)}, duration=0.01, rtol=1e-8)
+    assert np.abs(ours.q - theirs.q).max() < 1e-9 * float(np.abs(theirs.q).max())

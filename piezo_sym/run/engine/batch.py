@@ -118,6 +118,7 @@ class Batch:
         self._runs = (c_record("run") * count)()
         self.records: Any = np.frombuffer(memoryview(self._runs), record_dtype("run"))
         self.records["p"] = self._structures.addresses
+        self.records["t"] = inputs.start
         self._load(stepping)
         rows = self.sizes()[3] + extra
         self.states = np.full((count, times.size, n), np.nan)
@@ -126,7 +127,7 @@ class Batch:
         for name in ("x", "largest", "states", "sums"):
             self.records[name] = addresses(getattr(self, name))
         self.records["ledger"] = addresses(self.ledgers)
-        self.go_on(stepping, inputs.duration)
+        self.go_on(stepping, inputs.end)
 
     def go_on(self, stepping: Stepping, stop: float) -> None:
         """Prepare runs to go on from where they are until `stop` [s]; those that failed stay.

@@ -80,7 +80,7 @@ class Taped:
         self._x = np.empty((ROOM, x.size))
         self._branches = np.empty((ROOM, stepping.stages, branches))
         arrays = (self.scale, self._t, self._h, self._x, self._branches)
-        segments = self._batch.inputs.address(0.0)
+        segments = self._batch.inputs.address(inputs.start)
         self._record = c_record("tape")(segments, *map(at, arrays))
         self._batch.call("keep", ctypes.byref(self._record))
 

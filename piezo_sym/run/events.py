@@ -1,0 +1,262 @@
+"""Events of a run: when an expression changes sign, located to round-off; and where to stop.
+
+Input: expressions in the language of laws over states, inputs, `y_<port>`, `T_<body>` and
+parameters, and a function that gives the run at any times.  Output: the times of each event, and
+when the run stops.
+
+A sample is a step of its own from the run's last accepted state, so the run may be asked for more
+times without changing: first at all samples and four times per step, then where signs change.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from math import nextafter, prod
+from typing import Any, TypeAlias, final
+
+import numpy as np
+
+from piezo_sym.errors import PiezoError, UsageError, nearest, quote
+from piezo_sym.expressions.parse import parse_condition, parse_law
+from piezo_sym.expressions.tree import Add, Cmp, Expr, Neg, evaluate, names
+from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.dataset import described, instants
+from piezo_sym.run.ledger import Trajectory
+from piezo_sym.run.module import row_names
+from piezo_sym.run.system import DrivenModule
+
+#: Gives the samples at some times, as far as the run goes.
+Sampler: TypeAlias = Callable[[FloatArray], tuple[FloatArray, Trajectory]]
+#: Looked at: so many times per step, so many at least and at most.
+PER_STEP, LEAST, MOST = 4, 1000, 20_000
+#: Times in a bracket that one pass looks at: even ones, and a guess made from so many values, with
+#: parts of the bracket on either side of it.
+EVEN, BESIDE, NEAR = 15, (1e-9, 1e-6, 1e-3), 4
+ROUNDS = 16
+
+
+@final
+@dataclass(frozen=True)
+class Watched:
+    """What is looked for: events (name -> expression), and the condition on which a run ends.
+
+    `stop` is positive where that, in words `condition`, holds.
+    """
+
+    event: Mapping[str, Expr]
+    stop: Expr | None
+    condition: str = ""
+
+    def __bool__(self) -> bool:
+        """Return whether there is anything to look for."""
+        return bool(self.event) or self.stop is not None
+
+
+@final
+@dataclass(frozen=True)
+class Located:
+    """The times [s] of each event, and when the run ends early, if it does."""
+
+    times: Mapping[str, FloatArray]
+    end: float | None
+
+
+def read_watched(system: DrivenModule, events: object, stop: object, step: object) -> Watched:
+    """Return what a user wants to be looked for; not in a run with a fixed step.
+
+    Raises
+    ------
+    UsageError : a text is no expression (for `stop`: no comparison) of what the run knows, or a
+        name is none, or taken by a quantity of the run.
+    """
+    given = {} if events is None else events
+    if not isinstance(given, Mapping):
+        expected = 'name -> expression, such as {"hit": "q - 1e-3"}'
+        raise UsageError(f"{quote(given)} is no mapping", "simulate.events", expected)
+    if step is not None and (given or stop is not None):
+        what = "with a fixed step, events are not located"
+        raise UsageError(what, "simulate.step", "rtol", "leave out step, or events and stop")
+    known = _words(system)
+    found = {}
+    for name, text in given.items():
+        where = f"simulate.events.{name}"
+        if not isinstance(name, str) or not name.isidentifier() or name in {*known, "time"}:
+            what = f"{quote(name)} cannot name an event"
+            raise UsageError(what, "simulate.events", "a new name of letters, digits and _")
+        found[name] = _known(_read(parse_law, text, where, '"q - 1e-3"'), known, where)
+    if stop is None:
+        return Watched(found, None)
+    condition: Any = _read(parse_condition, stop, "simulate.stop", '"T_body > 350"')
+    _known(condition, known, "simulate.stop")
+    return Watched(found, _margin(condition), str(stop))
+
+
+def _read(read: Callable[[str, str], Any], text: object, where: str, such: str) -> Any:
+    if not isinstance(text, str):
+        raise UsageError(f"{quote(text)} is no text", where, f"text such as {such}")
+    try:
+        return read(text, where)
+    except PiezoError as error:
+        raise UsageError(error.what, where, error.expected, error.remedy) from error
+
+
+def _margin(condition: Cmp) -> Expr:
+    """Return what is positive where a comparison holds."""
+    left, right = condition.left, condition.right
+    more, less = (left, right) if condition.op in {">", ">="} else (right, left)
+    return Add((more, Neg(less)))
+
+
+def _known(tree: Any, words: Sequence[str], where: str) -> Any:
+    for name in names(tree):
+        if name not in words:
+            what = f"the run has no {quote(name)}"
+            raise UsageError(what, where, remedy=nearest(name, words))
+    return tree
+
+
+def _words(system: DrivenModule) -> list[str]:
+    """Return what expressions may use."""
+    module, p = system.module, system.parameters
+    return [
+        *row_names(module.STATES, p),
+        *(record.name for record in module.INPUTS),
+        *(f"y_{record.name}" for record in module.OUTPUTS),
+        *(f"T_{record.name}" for record in module.BODIES),
+        *(record.name for record in module.PARAMETERS if not record.bank),
+    ]
+
+
+def _rows(system: DrivenModule, trajectory: Trajectory) -> dict[str, list[float]]:
+    """Return the values of all words at every sample."""
+    module, p = system.module, system.parameters
+    x, u = trajectory.states, trajectory.inputs
+    fixed = [getattr(p, record.name) for record in module.PARAMETERS if not record.bank]
+    values = [*x, *u, *module.outputs(x, u, p), *module.temperatures(x, p), *fixed]
+    spread = (np.broadcast_to(value, x.shape[1]).tolist() for value in values)
+    return dict(zip(_words(system), spread, strict=True))
+
+
+def values_of(system: DrivenModule, tree: Expr, trajectory: Trajectory) -> FloatArray:
+    """Return an expression at every sample of a run, (nt,); nan where it has no value."""
+    rows = _rows(system, trajectory)
+    columns = {name: rows[name] for name in names(tree)}
+    found = np.full(trajectory.states.shape[1], np.nan)
+    for k in range(found.size):
+        with suppress(ArithmeticError, ValueError):
+            found[k] = evaluate(tree, {name: column[k] for name, column in columns.items()})
+    return found
+
+
+def look(
+    system: DrivenModule, watched: Watched, samples: FloatArray, steps: int, run: Sampler
+) -> Located:
+    """Return where events are, and where the run ends, from a run of so many steps.
+
+    Raises
+    ------
+    UsageError : `stop` holds from the beginning.
+    """
+    number = min(max(PER_STEP * steps, LEAST), MOST)
+    even = np.linspace(system.inputs.start, system.inputs.end, number)
+    times, seen = run(np.union1d(samples, even))
+    brackets: list[_Bracket] = []
+    if watched.stop:
+        margin = values_of(system, watched.stop, seen)
+        if margin[0] > 0:
+            what = f"the condition holds at t = {times[0]:g} s already"
+            raise UsageError(what, "simulate.stop", "one that does not hold at the start")
+        first = np.flatnonzero(margin > 0)[:1].tolist()
+        brackets += [_Bracket("", watched.stop, times[[k - 1, k]], ()) for k in first]
+    for name, tree in watched.event.items():
+        places = _crossings(values_of(system, tree, seen))
+        brackets += [_Bracket(name, tree, times[[k - 1, k]], ()) for k in places]
+    found = [(b.name, float(b.times[1])) for b in _narrowed(system, brackets, run)]
+    end = next((t for name, t in found if not name), None)
+    kept = [(name, t) for name, t in found if end is None or t <= end]
+    named = {name: np.array([t for n, t in kept if n == name]) for name in watched.event}
+    return Located(named, end)
+
+
+def _signs(values: FloatArray) -> FloatArray:
+    """Return the sign of each value; what is zero or nan has the one before it."""
+    signs = np.nan_to_num(np.sign(values))
+    last = np.maximum.accumulate(np.where(signs != 0, np.arange(signs.size), 0))
+    filled: FloatArray = signs[last]
+    return filled
+
+
+def _crossings(values: FloatArray) -> list[int]:
+    """Return the places at which the sign is another than before."""
+    signs = _signs(values)
+    changed = (signs[1:] != signs[:-1]) & (signs[:-1] != 0)
+    return (np.flatnonzero(changed) + 1).tolist()
+
+
+@final
+@dataclass(frozen=True)
+class _Bracket:
+    """Two times [s] between which an expression changes its sign, and its values near them."""
+
+    name: str
+    tree: Expr
+    times: FloatArray
+    near: tuple[tuple[float, float], ...]
+
+    def inner(self) -> FloatArray:
+        """Return the times between the two that are worth looking at."""
+        a, b = self.times.tolist()
+        guess, width = self._guess(), b - a
+        points = {*np.linspace(a, b, EVEN + 2).tolist()}
+        points |= {guess, nextafter(guess, a), nextafter(guess, b)}
+        points |= {guess + sign * part * width for part in BESIDE for sign in (-1, 1)}
+        return np.array(sorted(t for t in points if a < t < b))
+
+    def _guess(self) -> float:
+        """Return where a polynomial for the time over the value has the value zero."""
+        middle = 0.5 * float(self.times.sum())
+        shift = 0.0 if len({v for _, v in self.near}) == len(self.near) else np.nan
+        for t, v in self.near:
+            factors = (w / (w - v) for _, w in self.near if w != v)
+            shift += (t - middle) * prod(factors)
+        return middle + shift if np.isfinite(shift) else middle
+
+    def narrowed(self, times: FloatArray, values: FloatArray) -> _Bracket:
+        """Return the bracket between two of these times, with what is nearest to it."""
+        first, last = np.searchsorted(times, self.times)
+        times, values = times[first : last + 1], values[first : last + 1]
+        signs = _signs(values)
+        k = int(np.argmax(signs == signs[-1])) or values.size - 1
+        nearest = np.argsort(np.abs(times - times[k]), kind="stable")[:NEAR]
+        near = tuple((float(times[n]), float(values[n])) for n in nearest.tolist())
+        return replace(self, times=times[[k - 1, k]], near=near)
+
+
+def _narrowed(system: DrivenModule, brackets: list[_Bracket], run: Sampler) -> list[_Bracket]:
+    """Return brackets as narrow as two neighbouring numbers, where round-off lets them be.
+
+    All are narrowed together, by a run each time.
+    """
+    for _ in range(ROUNDS):
+        inner = [bracket.inner() for bracket in brackets]
+        if not any(times.size for times in inner):
+            break
+        asked = np.unique(np.concatenate([*inner, *(b.times for b in brackets)]))
+        times, seen = run(asked)
+        trees = dict.fromkeys(b.tree for b in brackets)
+        values = {tree: values_of(system, tree, seen) for tree in trees}
+        brackets = [b.narrowed(times, values[b.tree]) for b in brackets]
+    return brackets
+
+
+def event_variables(
+    system: DrivenModule, located: Located, times: FloatArray, seen: Trajectory
+) -> Iterator[tuple[str, Any]]:
+    """Yield for each event its times, a coordinate, and states, inputs, outputs, temperatures."""
+    for name, at in located.times.items():
+        yield name, ((name,), at, described("s", f"times of event {quote(name)}"))
+        then = seen.at(np.searchsorted(times, at))
+        for quantity, (dims, values, attrs) in instants(system, then):
+            yield f"{quantity}_at_{name}", ((name, *dims[1:]), values, attrs)

@@ -1,0 +1,140 @@
+"""Events and stops against closed forms; runs from other times, and runs that go on."""
+
+import numpy as np
+import pytest
+import xarray
+from scipy.optimize import brentq
+
+from piezo_sym import load, simulate, sine
+from piezo_sym.errors import RunError, UsageError
+from tests.networks.test_acceptance import OSCILLATOR, TWO_BODIES
+
+DRIVE = {"V_in": sine(100, 100)}
+LENGTH = 5.0
+
+
+def swing(t: float) -> float:
+    """q of the damped oscillator, m = 1, k = 4, d = 0.4, from q = 1."""
+    w = np.sqrt(4 - 0.2**2)
+    return float(np.exp(-0.2 * t) * (np.cos(w * t) + 0.2 / w * np.sin(w * t)))
+
+
+@pytest.mark.parametrize(("method", "error"), [(None, 1e-9), ("DOP853", 1e-8)])
+def test_events_of_an_oscillator(method, error):
+    run = simulate(OSCILLATOR, duration=LENGTH, rtol=1e-11, method=method, events={"rest": "q"})
+    roots = [brentq(swing, a, b, xtol=1e-15) for a, b in ((0.5, 1.2), (2, 3), (3.5, 4.5))]
+    assert run.rest.values == pytest.approx(roots, abs=error)
+    assert np.abs(run.q_at_rest.values).max() < 1e-15
+    assert run.sizes["time"] == 1001
+    plain = simulate(OSCILLATOR, duration=LENGTH, rtol=1e-11, method=method)
+    assert np.array_equal(plain.q, run.q)  # looking changes no number
+    assert run.rest.attrs["units"] == "s"
+    assert run.q_at_rest.dims == ("rest",)
+    assert run.attrs["accepted_steps"] == plain.attrs["accepted_steps"]
+
+
+def test_a_run_stops_where_a_condition_first_holds():
+    """A1: T_1 - T_2 = 60 exp(-lambda (1/c_1 + 1/c_2) t), lambda = 0.5, c = (2, 3)."""
+    stop = "20 > T_hot - T_cold"
+    model = load(TWO_BODIES)
+    run = simulate(model, duration=20, rtol=1e-11, stop=stop, events={"half": "T_hot - 330"})
+    end = float(run.time[-1])
+    assert end == pytest.approx(np.log(3) / (0.5 * (1 / 2 + 1 / 3)), rel=1e-9)
+    assert float(run.T_hot[-1] - run.T_cold[-1]) == pytest.approx(20, rel=1e-14)
+    assert run.attrs["stopped"] == f"{stop} at t = {end:.9g} s"
+    assert run.half.values[0] < end
+    assert np.all(np.diff(run.time) > 0)
+    assert np.abs(run.energy_residual).max() < 1e-12 * float(run.energy[0])
+
+
+def test_a_stop_comes_before_what_would_fail():
+    """The run would leave its domain, q < 2 mm, later."""
+    text = OSCILLATOR.read_text().replace("assume = [", 'assume = ["q > q_m", ', 1)
+    text = text.replace("[domain]", '[parameters.q_m]\nvalue = -0.5\nunit = "m"\n[domain]', 1)
+    model = load_text(text)
+    with pytest.raises(RunError, match="leaves the domain"):
+        simulate(model, duration=LENGTH)
+    run = simulate(model, duration=LENGTH, stop="q < -0.4", events={"rest": "q"})
+    assert float(run.q[-1]) == pytest.approx(-0.4, rel=1e-14)
+    assert run.sizes["rest"] == 1
+    with pytest.raises(RunError, match="leaves the domain") as stopped:
+        simulate(model, duration=LENGTH, events={"rest": "q"})
+    assert stopped.value.partial.sizes["time"] > 10
+
+
+def test_an_input_that_jumps_is_an_event():
+    drive = {"V_in": ([0, 0.005, 0.005, 0.01], [0, 0, 10, 10])}
+    run = simulate("piezo_stack", inputs=drive, duration=0.01, events={"on": "V_in - 5"})
+    assert run.on.values == pytest.approx([0.005], abs=1e-17)
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"events": {"hit": "phi - 1"}}, "simulate.events.hit: the run has no 'phi'"),
+        ({"events": {"hit": "q.real"}}, "simulate.events.hit"),
+        ({"events": {"hit": "__import__('os')"}}, "simulate.events.hit"),
+        ({"events": {"q": "p"}}, "'q' cannot name an event"),
+        ({"events": {"a b": "p"}}, "'a b' cannot name an event"),
+        ({"events": "q"}, "simulate.events: 'q' is no mapping"),
+        ({"events": {"hit": 3}}, "'3' is no text; expected text such as"),
+        ({"stop": "q"}, "simulate.stop"),
+        ({"stop": "q > 1", "step": 1e-5}, "with a fixed step, events are not located"),
+        ({"stop": "q < 1"}, "the condition holds at t = 0 s already"),
+        ({"t0": "now"}, "simulate.t0"),
+    ],
+)
+def test_what_cannot_be_looked_for_is_one_line(options, said):
+    with pytest.raises(UsageError) as error:
+        simulate("piezo_stack", duration=1e-3, **options)
+    assert said in str(error.value)
+
+
+def test_a_run_starts_at_another_time():
+    late = simulate("piezo_stack", inputs=DRIVE, duration=0.01, t0=0.0025, rtol=1e-9)
+    assert late.time.values[[0, -1]].tolist() == [0.0025, 0.0125]
+    shifted = {"V_in": lambda t: 100 * np.sin(200 * np.pi * (t + 0.0025))}
+    same = simulate("piezo_stack", inputs=shifted, duration=0.01, rtol=1e-9)
+    for name in ("q", "p", "S", "V_in", "supplied_supply"):
+        size = float(np.abs(same[name]).max())
+        assert np.abs(late[name].values - same[name].values).max() < 1e-7 * size
+
+
+@pytest.mark.parametrize("options", [{"step": 1e-5}, {"step": 1e-5, "order": 6}])
+def test_a_run_goes_on_where_another_ended(options, tmp_path):
+    given = {"inputs": DRIVE, "parameters": {"d": 300.0, "L": [1e-3, 2e-3]}, **options}
+    whole = simulate("piezo_stack", duration=0.02, **given)
+    first = simulate("piezo_stack", duration=0.01, **given)
+    first.to_netcdf(tmp_path / "first.nc", engine="scipy")
+    with xarray.open_dataset(tmp_path / "first.nc", engine="scipy") as kept:
+        second = simulate("piezo_stack", duration=0.01, inputs=DRIVE, initial=kept, **options)
+    assert second.time.values[[0, -1]].tolist() == [0.01, 0.02]
+    for name in ("q", "p", "Q_C", "phi", "S"):
+        assert np.array_equal(second[name][0], first[name][-1])  # to the bit
+        size = float(np.abs(whole[name]).max())
+        assert np.abs(whole[name][-1] - second[name][-1]).max() < 1e-14 * size
+    assert second.attrs["parameter_d"] == 300.0
+    assert second.supplied_supply[0] == 0
+    changed = simulate("piezo_stack", duration=1e-3, initial=first, parameters={"d": 1.0}, t0=0)
+    assert (changed.attrs["parameter_d"], changed.time[0]) == (1.0, 0.0)
+
+
+@pytest.mark.filterwarnings("ignore:.generated/piezo_stack. is not what")
+def test_a_run_of_another_model_is_refused():
+    other = simulate(OSCILLATOR, duration=1.0)
+    with pytest.raises(UsageError, match=r"this is a run of model 'oscillator', spec [0-9a-f]+"):
+        simulate("piezo_stack", duration=1e-3, initial=other)
+    changed = load("piezo_stack").to_toml().replace("3.5e-3", "3.6e-3").replace("0.0035", "0.0036")
+    run = simulate("piezo_stack", duration=1e-3)
+    with pytest.raises(UsageError, match="expected one of model 'piezo_stack', spec"):
+        simulate(load_text(changed), duration=1e-3, initial=run)
+    with pytest.raises(UsageError, match="no run of simulate"):
+        simulate("piezo_stack", duration=1e-3, initial=xarray.Dataset())
+
+
+def load_text(text: str):
+    import tomllib
+
+    from piezo_sym import Model
+
+    return Model(**tomllib.loads(text))
