@@ -7,7 +7,7 @@ its events if there are any.  An error, or Ctrl-C, brings the Dataset so far.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, final
+from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 
@@ -15,18 +15,65 @@ from piezo_sym.errors import RunError
 from piezo_sym.run.compiled import compiled_run
 from piezo_sym.run.dataset import to_dataset
 from piezo_sym.run.events import event_variables, look
+from piezo_sym.run.guard import check_start
+from piezo_sym.run.inputs import read_inputs
+from piezo_sym.run.parameters import read_initial
 from piezo_sym.run.scipy_runs import by_scipy
+from piezo_sym.run.system import DrivenModule
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import xarray
 
     from piezo_sym.run.checks import FloatArray
     from piezo_sym.run.collocation import FixedStep
     from piezo_sym.run.events import Watched
+    from piezo_sym.run.inputs import InputValue
     from piezo_sym.run.ledger import Trajectory
     from piezo_sym.run.method import ChosenMethod
+    from piezo_sym.run.module import GeneratedModule
+    from piezo_sym.run.parameters import LaneValue
     from piezo_sym.run.runs import Watch
-    from piezo_sym.run.system import DrivenModule
+
+
+@final
+@dataclass(frozen=True)
+class Request:
+    """What a user wants to be run, but when and from where.
+
+    Attributes
+    ----------
+    module, parameters : of the system.
+    inputs : as the user gave them.
+    chosen, rtol, step : the method, and its tolerance or step.
+    starts : whether the first step after a jump of the inputs is dissipative.
+    watch : told the time reached, now and then.
+    """
+
+    module: GeneratedModule
+    parameters: Any
+    inputs: Mapping[str, InputValue] | None
+    chosen: ChosenMethod
+    rtol: float
+    step: FixedStep | None
+    starts: bool
+    watch: Watch | None
+
+    def planned(
+        self, start: float, duration: float, state: Mapping[str, LaneValue] | None
+    ) -> PlannedRun:
+        """Return the run from a time and a state.
+
+        Raises
+        ------
+        UsageError, RunError : inputs or state are wrong, or outside the domain.
+        """
+        inputs = read_inputs(self.module, self.inputs, duration, start)
+        system = DrivenModule(self.module, self.parameters, inputs)
+        x = read_initial(self.module, self.parameters, inputs.segments[0].at(start), state)
+        check_start(system, x)
+        return PlannedRun(system, x, self.chosen, self.rtol, self.step, self.starts, self.watch)
 
 
 @final

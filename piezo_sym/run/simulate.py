@@ -16,17 +16,16 @@ from piezo_sym.run.checks import number, positive
 from piezo_sym.run.collocation import FixedStep, read_order
 from piezo_sym.run.continuing import start_of
 from piezo_sym.run.events import read_watched
-from piezo_sym.run.guard import check_start
-from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.method import checked_method, choose_method
 from piezo_sym.run.module import checked
-from piezo_sym.run.parameters import read_initial, read_parameters, sample_times
-from piezo_sym.run.planned import PlannedRun
+from piezo_sym.run.parameters import read_parameters, sample_times
+from piezo_sym.run.planned import Request
 from piezo_sym.run.runs import METHOD
-from piezo_sym.run.system import DrivenModule
+from piezo_sym.run.streaming import streamed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
+    from os import PathLike
 
     import xarray
     from numpy.typing import ArrayLike
@@ -55,6 +54,7 @@ def simulate(
     every: int | None = None,
     events: Mapping[str, str] | None = None,
     stop: str | None = None,
+    store: str | PathLike[str] | None = None,
     dissipative_start: bool = False,
     progress: bool | Callable[[float], object] | None = None,
 ) -> xarray.Dataset:
@@ -122,6 +122,9 @@ def simulate(
         time that is looked at.
     stop : a comparison, such as ``"T_body > 350"``: the run ends when it first holds, which is its
         last sample; the attribute `stopped` says so.
+    store : a path, ``"run.zarr"``: the run goes into a new Zarr store, window after window, and the
+        Dataset is read from there when it is asked for. Steps end where windows of some 100,000
+        samples do. An existing store is refused. Needs `piezo_sym[store]`.
     progress : a function, told the time [s] reached, now and then; True, for a bar.
     dissipative_start : for discrete_gradient with `step`. It reduces the error that a jump of an
         input leaves in the states where a step is much longer than the fastest time constant: they
@@ -164,11 +167,19 @@ def simulate(
     start, state, given = start_of(module, t0, initial, parameters)
     samples = sample_times(times, every, step, length, start)
     values = read_parameters(module, given)
-    system = DrivenModule(module, values, read_inputs(module, inputs, length, start))
-    x = read_initial(module, values, system.inputs.segments[0].at(start), state)
-    check_start(system, x)
-    planned = PlannedRun(system, x, chosen, tolerance, fixed, dissipative_start, watch)
-    return planned.dataset(samples, read_watched(system, events, stop, step))
+    request = Request(module, values, inputs, chosen, tolerance, fixed, dissipative_start, watch)
+    if store is not None:
+        refuse_events(events)
+        return streamed(request, start, samples, state, stop, store)
+    planned = request.planned(start, length, state)
+    return planned.dataset(samples, read_watched(planned.system, events, stop, step))
+
+
+def refuse_events(events: object) -> None:
+    """Raise `UsageError` if there are events of a run that goes into a store."""
+    if events:
+        what = "events of a run into a store are not kept"
+        raise UsageError(what, "simulate.events", "none", "leave out store, or take stop")
 
 
 def read_rtol(rtol: object) -> float:

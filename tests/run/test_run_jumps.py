@@ -177,7 +177,7 @@ def test_a_functions_own_jumps_are_as_good_as_known_ones(share):
 
 @given(st.floats(1e-3, 1.0, exclude_max=True), st.floats(-3, 3))
 def test_a_jump_is_found_to_the_last_digit(jump, before):
-    assert jumps(lambda t: before + np.sin(t) + (t >= jump), 1.0) == (jump,)
+    assert jumps(lambda t: before + np.sin(t) + (t >= jump), 0.0, 1.0) == (jump,)
 
 
 def test_many_jumps_are_found_and_what_is_smooth_has_none():
@@ -191,8 +191,8 @@ def test_many_jumps_are_found_and_what_is_smooth_has_none():
         lambda t: np.tanh((t - 0.3) / 1e-4),
         lambda t: 0.0 * t,
     ):
-        assert jumps(smooth, 1.0) == ()
-    (steep,) = jumps(lambda t: np.tanh((t - 0.3001) / 1e-12), 1.0)
+        assert jumps(smooth, 0.0, 1.0) == ()
+    (steep,) = jumps(lambda t: np.tanh((t - 0.3001) / 1e-12), 0.0, 1.0)
     assert steep == pytest.approx(0.3001, abs=1e-11)
 
 

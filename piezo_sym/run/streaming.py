@@ -1,0 +1,132 @@
+"""Long runs into a Zarr store, window after window: memory does not grow with the run.
+
+Input: a `Request`, the sample times, a path.  Output: the run's Dataset, read from the store when
+it is asked for.  A window goes on from the last state of the one before; its integrals are added to
+what they had come to.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import pairwise
+from os import PathLike, fspath
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from piezo_sym.errors import FileError, RunError, UsageError, quote
+from piezo_sym.files import path_text
+from piezo_sym.run.events import read_watched
+from piezo_sym.run.module import row_count
+from piezo_sym.run.parameters import LaneValue
+
+if TYPE_CHECKING:
+    import xarray
+
+    from piezo_sym.run.checks import FloatArray
+    from piezo_sym.run.planned import Request
+
+WHERE = "simulate.store"
+#: Numbers of a window, of which a sample has a few per state, port and process.
+WINDOW, PER_ROW = 4_000_000, 6
+#: What a run took, which windows add up.
+WORK = ("accepted_steps", "newton_iterations", "halvings", "rhs_evaluations", "scale_evaluations")
+
+
+def streamed(
+    request: Request,
+    start: float,
+    samples: FloatArray,
+    state: Mapping[str, LaneValue] | None,
+    stop: str | None,
+    store: str | PathLike[str],
+) -> xarray.Dataset:
+    """Run through all samples into a new store, and return what it holds.
+
+    Raises
+    ------
+    UsageError : the path is none of a new Zarr store, or zarr is not installed.
+    FileError : the store cannot be written.
+    RunError, KeyboardInterrupt : the run stopped; the store holds it until then, `partial` is that.
+    """
+    path = _new(store)
+    rows = row_count(request.module.STATES, request.parameters) + len(request.module.OUTPUTS)
+    most = max(2, WINDOW // (PER_ROW * rows))
+    edges = [*range(0, samples.size - 1, most), samples.size - 1]
+    before: xarray.Dataset | None = None
+    for first, last in pairwise(edges):
+        window = samples[first : last + 1]
+        begin = float(window[0]) if first else start
+        planned = request.planned(begin, float(window[-1]) - begin, state)
+        window = np.minimum(window, planned.system.inputs.end)  # by round-off
+        try:
+            found = planned.dataset(window, read_watched(planned.system, None, stop, request.step))
+        except (RunError, KeyboardInterrupt) as stopped:
+            partial = getattr(stopped, "partial", None)
+            if partial is not None:
+                _append(path, _added(partial, before), first=before is None)
+                vars(stopped)["partial"] = _opened(path)
+            raise
+        before = _added(found, before)
+        _append(path, before, first=first == 0)
+        last_state = found.isel(time=-1)
+        state = {r.name: last_state[r.name].values for r in request.module.STATES}
+        if "stopped" in found.attrs:
+            break
+    return _opened(path)
+
+
+def _new(store: object) -> Path:
+    """Return the path of a store that is not there yet."""
+    if not isinstance(store, str | PathLike):
+        raise UsageError(f"{quote(store)} is no path", WHERE, "a path such as 'run.zarr'")
+    path = Path(fspath(store))
+    if path.suffix != ".zarr":
+        remedy = "name it *.zarr; other files: to_netcdf() of a run in memory"
+        raise UsageError(f"{path_text(path)} is no Zarr store", WHERE, remedy=remedy)
+    if path.exists():
+        raise FileError(
+            "exists already", path_text(path), remedy="choose another path, or delete it"
+        )
+    try:
+        import zarr  # noqa: F401
+    except ImportError as error:
+        remedy = "run `pip install 'piezo_sym[store]'`"
+        raise UsageError("zarr is not installed", WHERE, remedy=remedy) from error
+    return path
+
+
+def _added(found: xarray.Dataset, before: xarray.Dataset | None) -> xarray.Dataset:
+    """Return a window's Dataset as one of the whole run, without the sample it begins with."""
+    if before is None:
+        return found
+    integrals = [name for name in found.data_vars if _is_integral(str(name))]
+    last = before[integrals].isel(time=-1).drop_vars("time")
+    whole = found.assign({name: found[name] + last[name] for name in integrals})
+    for name in integrals:
+        whole[name].attrs = before[name].attrs
+    work = {n: found.attrs[n] + before.attrs[n] for n in WORK if n in found.attrs}
+    return whole.isel(time=slice(1, None)).assign_attrs(work)
+
+
+def _is_integral(name: str) -> bool:
+    return name.startswith(("supplied_", "heat_", "produced_", "entropy_exchanged_")) or (
+        name.endswith("_residual")
+    )
+
+
+def _append(path: Path, part: xarray.Dataset, *, first: bool) -> None:
+    try:
+        if first:
+            part.to_zarr(path, mode="w-", zarr_format=3, consolidated=False)
+        else:
+            part.to_zarr(path, append_dim="time", consolidated=False)
+    except OSError as cause:
+        raise FileError(f"cannot be written: {cause.strerror}", path_text(path)) from cause
+
+
+def _opened(path: Path) -> xarray.Dataset:
+    import xarray
+
+    return xarray.open_dataset(path, engine="zarr", consolidated=False)

@@ -1,0 +1,92 @@
+"""Runs into a store: the same as in memory, in memory that does not grow, nothing overwritten."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import xarray
+
+from piezo_sym import simulate, sine
+from piezo_sym.errors import FileError, UsageError
+from piezo_sym.run import streaming
+
+pytest.importorskip("zarr")
+DRIVE = {"V_in": sine(100, 100)}
+
+
+@pytest.fixture
+def short_windows(monkeypatch):
+    """Windows of about 100 samples."""
+    monkeypatch.setattr(streaming, "WINDOW", 6 * 9 * 100)
+
+
+@pytest.mark.parametrize("options", [{"rtol": 1e-9}, {"step": 1e-5}])
+@pytest.mark.usefixtures("short_windows")
+def test_a_run_in_windows_is_the_run(options, tmp_path):
+    given = {"inputs": DRIVE, "duration": 0.02, "times": 501, **options}
+    whole = simulate("piezo_stack", **given)
+    kept = simulate("piezo_stack", store=tmp_path / "run.zarr", **given)
+    assert np.array_equal(kept.time, whole.time)
+    assert set(kept.data_vars) == set(whole.data_vars)
+    for name in whole.data_vars:
+        assert kept[name].attrs == whole[name].attrs, name
+        if "residual" not in str(name):
+            size = float(np.abs(whole[name]).max()) or 1.0
+            assert np.abs(kept[name] - whole[name]).max() < 1e-7 * size, name
+    supplied = sum(kept[name] for name in kept.data_vars if str(name).startswith("supplied_"))
+    energy = kept.energy - kept.energy[0] - supplied
+    assert np.abs(energy).max() < 1e-12 * float(kept.energy[0])
+    assert np.abs(energy - kept.energy_residual).max() < 1e-12 * float(kept.energy[0])
+    assert kept.attrs["accepted_steps"] >= whole.attrs["accepted_steps"]
+
+
+@pytest.mark.usefixtures("short_windows")
+def test_a_store_is_never_overwritten(tmp_path):
+    path = tmp_path / "run.zarr"
+    simulate("piezo_stack", duration=1e-3, store=path)
+    before = {part: part.read_bytes() for part in path.rglob("*") if part.is_file()}
+    with pytest.raises(FileError, match="exists already; choose another path, or delete it"):
+        simulate("piezo_stack", duration=1e-3, store=path)
+    assert before == {part: part.read_bytes() for part in path.rglob("*") if part.is_file()}
+    with pytest.raises(UsageError, match="is no Zarr store; name it"):
+        simulate("piezo_stack", duration=1e-3, store=tmp_path / "run.nc")
+    with pytest.raises(UsageError, match=r"simulate\.store: '3' is no path"):
+        simulate("piezo_stack", duration=1e-3, store=3)
+    with pytest.raises(UsageError, match="events of a run into a store"):
+        simulate("piezo_stack", duration=1e-3, store=tmp_path / "e.zarr", events={"hit": "q"})
+
+
+@pytest.mark.usefixtures("short_windows")
+def test_a_store_ends_where_the_run_stops(tmp_path):
+    given = {"inputs": DRIVE, "duration": 100.0, "times": 500_001}
+    kept = simulate("piezo_stack", stop="T_body > 299", store=tmp_path / "stop.zarr", **given)
+    assert float(kept.T_body[-1]) == pytest.approx(299, rel=1e-13)
+    assert kept.sizes["time"] < 1000
+
+    def interrupt(t):
+        if t > 0.05:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt) as stopped:
+        simulate("piezo_stack", store=tmp_path / "c.zarr", progress=interrupt, **given)
+    kept = xarray.open_dataset(tmp_path / "c.zarr", engine="zarr", consolidated=False)
+    assert 0.04 < float(kept.time[-1]) < 0.2
+    assert stopped.value.partial.sizes == kept.sizes
+
+
+def test_memory_does_not_grow(tmp_path):
+    """Twenty variables of 400,000 samples more would take 64 MB."""
+    code = """
+import resource, sys
+from piezo_sym import simulate, sine
+simulate("piezo_stack", inputs={"V_in": sine(1, 1)}, duration=1.0, store=sys.argv[1],
+         times=int(sys.argv[2]), rtol=1e-3)
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+"""
+    peaks = []
+    for count in ("100000", "500000"):
+        words = [sys.executable, "-c", code, str(tmp_path / f"{count}.zarr"), count]
+        done = subprocess.run(words, capture_output=True, text=True, check=True)
+        peaks.append(int(done.stdout) / 1e3)
+    assert peaks[1] < peaks[0] + 32
