@@ -12,6 +12,7 @@ from typing import Any, ClassVar, final
 
 MAX_QUOTE = 60
 MAX_PLACE = 200
+MOST_KNOWN = 60
 
 
 @dataclass(eq=False)
@@ -125,4 +126,4 @@ def nearest(word: str, known: Iterable[str]) -> str:
     names, short = list(known), word[:MAX_QUOTE]
     match = [name for name in names if name.lower() == short.lower()]
     match = match or get_close_matches(short, names, n=1, cutoff=0.6)
-    return f"did you mean '{match[0]}'?" if match else f"known: {listing(names)}"
+    return f"did you mean '{match[0]}'?" if match else f"known: {listing(names, MOST_KNOWN)}"

@@ -19,6 +19,11 @@ MAX_UNIT = 60
 ATOM = r"[A-Za-z]+"
 POWER = re.compile(r"(?:\*\*|\^)(?P<power>-?[1-9]|\(-?[1-9]/[2-9]\))")
 MAX_DEPTH = 2
+#: How letters beyond ASCII are written: micro (two letters that look alike), ohm (two), degrees.
+ASCII = str.maketrans(
+    {"\u00b5": "u", "\u03bc": "u", "\u03a9": "ohm", "\u2126": "ohm", "\u00b0": "deg"}
+    | {"\u00b7": "*", "\u00b2": "**2", "\u00b3": "**3"}
+)
 COMMON = ("m", "kg", "s", "A", "K", "N", "J", "W", "V", "C", "F", "H", "Wb", "ohm", "Hz", "Pa")
 #: The units known, by pint's long names; SI prefixes go with each.
 _UNITS = """meter gram second ampere kelvin mole candela hertz newton pascal joule watt coulomb volt
@@ -97,12 +102,18 @@ def _known(text: str) -> Unit:
 
 
 def _read(text: str, where: str, value: float | None) -> Unit:
+    if (plain := text.translate(ASCII)) != text and plain.isascii():
+        _read(plain, where, value)  # a unit that is refused in ASCII, too, says why
+        raise SpecError(f"{quote(text)} is not ASCII", where, "a unit", f"write {quote(plain)}")
     factor, dimension = Fraction(1), [Fraction(0)] * len(BASES)
-    terms = [(_named(name, where, value), power) for name, power in _terms(text, where)]
+    found = _terms(text, where)
+    alone = len(found) == 1 and found[0][1] == 1
+    terms = [(_named(name, where, value, alone), power) for name, power in found]
     for unit, power in terms:
         factor *= _raised(unit.factor, power, text, where)
         dimension = [d + p * power for d, p in zip(dimension, unit.dimension, strict=True)]
-    si = text if factor == 1 else _spelled([(unit.si, power) for unit, power in terms])
+    as_written = all(unit.si == unit.text for unit, _ in terms)
+    si = text if as_written else _spelled([(unit.si, power) for unit, power in terms])
     return Unit(text, si, factor, tuple(dimension))
 
 
@@ -192,8 +203,12 @@ def _registry() -> Any:
 
 
 @lru_cache(maxsize=256)
-def _named(name: str, where: str, value: float | None) -> Unit:
-    """Return one named unit; its coherent spelling drops the prefix (``uF`` gives ``F``)."""
+def _named(name: str, where: str, value: float | None, alone: bool = True) -> Unit:
+    """Return one named unit; its coherent spelling drops the prefix (``uF`` gives ``F``).
+
+    One with an offset is a temperature if it stands alone; else it is a difference of them, as in
+    W/degC.
+    """
     if name == "1":
         return Unit(name, name, Fraction(1), (Fraction(0),) * len(BASES))
     if not any(root in UNITS for _, root, _ in _registry().parse_unit_name(name)):
@@ -203,11 +218,13 @@ def _named(name: str, where: str, value: float | None) -> Unit:
         origin = _registry().Quantity(Fraction(0), name).to_base_units().magnitude
     except TypeError:  # a logarithm of an exact number: dB, Np
         raise SpecError(f"unit {quote(name)} is logarithmic", where, "a plain unit") from None
-    if origin != 0:
+    if origin != 0 and alone:
         remedy = "give the value in K (t degC is t + 273.15 K)"
         if value is not None:
             remedy = f"give it in K: {float(Fraction(repr(value)) * factor + origin)}"
         raise SpecError(f"unit {quote(name)} has an offset", where, "a plain unit", remedy)
+    if origin != 0:
+        return Unit(name, "K", Fraction(factor), _known("K").dimension)
     powers = dict(base.dimensionality)
     dimension = tuple(Fraction(powers.pop(DIMENSIONS[unit], 0)) for unit in BASES)
     if powers:

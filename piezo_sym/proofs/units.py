@@ -25,7 +25,7 @@ from piezo_sym.expressions.dimensions import (
     times,
 )
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import Cmp, Expr, Neg, Node, Num, Sym, names, walk
+from piezo_sym.expressions.tree import Cmp, Expr, Mul, Neg, Node, Num, Sym, names, walk
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.spec.model import Model
@@ -127,6 +127,8 @@ def _other_remedy(fault: Check, checks: tuple[Check, ...]) -> str:
     for part, other in ((rule.right, rule.left), (rule.left, rule.right)):
         if part is not None and not names(part):
             whole = rule.needed if other is None else dimension(other, words)
+            if whole and (factor := _factor(other)):
+                return f"make {_short(factor)} a parameter in {unit_text(times(NONE, whole, -1))}"
             return f"make {_short(part)} a parameter in {unit_text(whole or NONE)}"
     if isinstance(fault.place.tree, Sym) and fault.place.tree.name in fault.place.given:
         return _own_input(fault, fault.place.tree.name, checks)
@@ -135,6 +137,18 @@ def _other_remedy(fault: Check, checks: tuple[Check, ...]) -> str:
     part, size = rule.right or rule.left, times(NONE, fault.gap, -1)
     verb = "divide" if rule.right is None else "multiply"
     return f"{verb} {_short(part)} by {quantity(size)}{_numbers(part)}"
+
+
+def _factor(term: Expr | None) -> Num | None:
+    """Return a number by which a term is multiplied, if there is one."""
+    match term:
+        case Num():
+            return term
+        case Neg(arg):
+            return _factor(arg)
+        case Mul(left, right):
+            return _factor(left) or _factor(right)
+    return None
 
 
 def _own_input(fault: Check, name: str, checks: tuple[Check, ...]) -> str:

@@ -162,11 +162,12 @@ def simulate(
     watch = read_progress(progress)
     named, tolerance = checked_method(method), read_rtol(rtol)
     fixed = read_step(step, order, named, rtol)
-    chosen = choose_method(module, start_method(dissipative_start, named), step)
+    named = start_method(dissipative_start, named)
     length = positive(duration, "simulate.duration")
     start, state, given = start_of(module, t0, initial, parameters)
     samples = sample_times(times, every, step, length, start)
     values = read_parameters(module, given)
+    chosen = choose_method(module, named, step)
     request = Request(module, values, inputs, chosen, tolerance, fixed, dissipative_start, watch)
     if store is not None:
         refuse_events(events)

@@ -181,7 +181,7 @@ def test_a_jump_is_found_to_the_last_digit(jump, before):
 
 
 def test_many_jumps_are_found_and_what_is_smooth_has_none():
-    found = jumps(lambda t: np.where(t * 700 % 1 < 0.5, 5.0, -5.0), 0.0499)
+    found = jumps(lambda t: np.where(t * 700 % 1 < 0.5, 5.0, -5.0), 0.0, 0.0499)
     assert np.allclose(found, np.arange(1, 70) / 1400, rtol=1e-14)
     for smooth in (
         lambda t: np.sin(2000 * t),

@@ -22,7 +22,7 @@ REFUSED = [
     ({"inputs": {"V_in": int}}, "is no input"),
     ({"inputs": {"V_in": [1, 2, 3]}}, "simulate.inputs.V_in: '[1, 2, 3]' is no input"),
     ({"inputs": {"V_in": ([0, 1], [1, nan])}}, "simulate.inputs.V_in.values[1]: 'nan'"),
-    ({"inputs": {"V_in": ([0, 1, 1], [1, 2, 3])}}, "time 1 at entry 2 follows 1"),
+    ({"inputs": {"V_in": ([0, 1, 1, 1], [1, 2, 3, 4])}}, "at entry 2 follows 1"),
     ({"inputs": {"V_in": ([0, 1], [1, 2, 3])}}, "simulate.inputs.V_in: 2 times and 3 values"),
     (
         {"inputs": {"V_in": ([0, 0.05], [1, 2])}},

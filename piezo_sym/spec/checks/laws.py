@@ -9,6 +9,7 @@ from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import Node, names
 from piezo_sym.spec.elements import KINDS
 from piezo_sym.spec.elements.base import Element
+from piezo_sym.spec.elements.ports import Source
 from piezo_sym.spec.elements.thermal import Conduction
 from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.names import NAME
@@ -34,15 +35,23 @@ def check_references(spec: Tables) -> None:
     for name, element in spec.elements.items():
         for field, to, given in references(element):
             if given not in known[to]:
-                raise _unknown_reference(f"elements.{name}.{field}", to, given, tuple(known[to]))
+                where = f"elements.{name}.{field}"
+                raise _unknown_reference(where, to, given, tuple(known[to]), element)
         if isinstance(element, Conduction) and len({*element.between}) == 1:
             what = f"both ends are at body {quote(element.between[0])}"
             remedy = "name another thermal_mass"
             raise SpecError(what, f"elements.{name}.between", "two different bodies", remedy)
 
 
-def _unknown_reference(where: str, to: str, given: str, known: tuple[str, ...]) -> SpecError:
+def _unknown_reference(
+    where: str, to: str, given: str, known: tuple[str, ...], element: Element
+) -> SpecError:
     what = f"{quote(given)} is no {to} of this spec"
+    if to == "input":
+        meant = f"{nearest(given, known)} or " if known else ""
+        unit = _input_unit(element)
+        remedy = f'{meant}declare it in [inputs]: {given} = {{ unit = "{unit}" }}'
+        return SpecError(what, where, remedy=remedy)
     if known:
         return SpecError(what, where, remedy=nearest(given, known))
     if to == "thermal_mass":
@@ -50,7 +59,13 @@ def _unknown_reference(where: str, to: str, given: str, known: tuple[str, ...]) 
         body = f'{name} = {{ kind = "thermal_mass", temperature = "T_0*exp(S/c_0)" }}'
         remedy = f"add one to [elements]: {body}"
         return SpecError(what, where, "a body for the heat", remedy)
-    return SpecError(what, where, remedy=f'declare it in [inputs]: {given} = {{ unit = "V" }}')
+    return SpecError(what, where)
+
+
+def _input_unit(element: Element) -> str:
+    """Return the unit of the input that an element's kind takes."""
+    ports = element.ports("")
+    return next((port.units[0] for port in ports if isinstance(port, Source)), "K")
 
 
 def check_laws(spec: Tables) -> None:
@@ -122,6 +137,8 @@ def _check_words(
         remedy = _meant_letter(spec, word, letters, element)
         if word in {"i", "v", "f", "T", *(kind.letter for kind in KINDS.values())}:
             expected = f"the letters {listing(letters)}" if letters else "parameters"
+            if {*spec.inputs} <= {*words} and states(spec).keys() <= {*words}:
+                expected = "parameters, inputs, states and temperatures"
             if not element:
                 remedy = _states_of_letter(spec, word, words)
             raise SpecError(f"{quote(word)} has no meaning here", where, expected, remedy)
@@ -141,7 +158,9 @@ def _meant_letter(spec: Tables, word: str, letters: tuple[str, ...], element: st
 
 
 def _states_of_letter(spec: Tables, letter: str, words: Collection[str]) -> str:
-    """Return which states a letter may stand for, outside of laws, where it has no meaning."""
+    """Return which symbols a letter may stand for, outside of laws, where it has no meaning."""
+    if letter == "T" and (hot := [word for word in temperatures(spec) if word in words]):
+        return f"temperatures go by their bodies: {listing(hot)}"
     found = [s for s, name in states(spec).items() if spec.elements[name].letter == letter]
     meant = [symbol for symbol in found if symbol in words]
     return f"states go by their own symbols: {listing(meant)}" if meant else ""

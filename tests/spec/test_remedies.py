@@ -1,0 +1,121 @@
+"""Remedies are followed by a machine: what a message says to do leads to a spec that loads.
+
+Each mistake is an edit of the shipped actuator. Its message is read, its remedy done to the text,
+word by word, until the spec loads, derives, and has units.
+"""
+
+import re
+import tomllib
+
+import pytest
+
+from piezo_sym import Model, derive
+from piezo_sym.errors import PiezoError
+from piezo_sym.proofs.report import Verdict
+from piezo_sym.proofs.units import units
+from piezo_sym.spec.source import find
+
+TEXT = find("piezo_stack").read_text(encoding="utf-8")
+SECOND = (
+    '[elements.mount]\nkind = "thermal_mass"\ntemperature = "T_0*exp(S/c_0)"\n\n[elements.load]'
+)
+PART = '[elements.extra]\nkind = "{}"\n{}\n\n[elements.load]'
+
+MISTAKES = {
+    "an input that is not declared, of an ambient": ('input = "T_e"', 'input = "T_room"'),
+    "of a force": ('input = "F_ext"', 'input = "push"'),
+    "of a voltage": ('input = "V_in"', 'input = "drive"'),
+    "an input almost as declared": ('input = "V_in"', 'input = "V_inn"'),
+    "a temperature in Celsius": ('value = 296.15, unit = "K"', 'value = 23, unit = "degC"'),
+    "a temperature with its sign": ('value = 296.15, unit = "K"', 'value = 23, unit = "°C"'),
+    "micro": ('value = 5e-6,   unit = "F"', 'value = 5.0, unit = "µF"'),
+    "another micro": ('value = 5e-6,   unit = "F"', 'value = 5.0, unit = "μF"'),
+    "ohm by its sign": ('"ohm*K"', '"Ω*K"'),
+    "a square by its sign": ('unit = "N/m"', 'unit = "N*m/m²"'),
+    "a point for a product": ('unit = "N*s/m"', 'unit = "N·s/m"'),
+    "a unit in other letters": ('unit = "kg"', 'unit = "Kg"'),
+    "a function almost right": ("deadzone(i, i_0)", "deadzon(i, i_0)"),
+    "a function in capitals": ("exp(S/c_0)", "EXP(S/c_0)"),
+    "a parameter almost right": ('force = "d*v"', 'force = "D*v"'),
+    "a kind almost right": ('kind = "spring"', 'kind = "springs"'),
+    "a key almost right": ('stiffness = "k"', 'stifness = "k"'),
+    "a body almost right": ('heats = "body"', 'heats = "bodi"'),
+    "the reference in capitals": ('between = ["cap", "gnd"]', 'between = ["cap", "GND"]'),
+    "the reference in full": ('between = ["in", "gnd"]', 'between = ["in", "ground"]'),
+    "the wall in capitals": ('between = ["tip", "wall"]', 'between = ["tip", "Wall"]'),
+    "T of two bodies": ("[elements.load]", SECOND),
+    "a number that needs a unit": ('stiffness = "k"', 'stiffness = "k*(1 + 1e6*q**2)"'),
+    "another one": ('force = "d*v"', 'force = "d*v*(1 + 3*v**2)"'),
+    "a ratio of another unit": ('unit = "C/m"', 'unit = "N/A"'),
+    "a heat capacity upside down": ('unit = "J/K",   doc = "heat', 'unit = "K/J",   doc = "heat'),
+    "a conductance per area": ('unit = "W/K"', 'unit = "W/m**2/K"'),
+    "a resistance law without unit": ('unit = "ohm*K"', 'unit = "1"'),
+    "a half width in volts": ('value = 0.5,    unit = "A"', 'value = 0.5,    unit = "V"'),
+    "a state's symbol in a condition": ('"d >= 0"', '"d >= 0", "Q**2 >= 0"'),
+    "a state's symbol in its own law": (
+        'stiffness = "k"\nrest = "q_l"\nstate = "q"',
+        'stiffness = "k*(1 + (s/s_0)**2)"\nrest = "q_l"\nstate = "s"',
+    ),
+    "an initial state by its element": ('S = "c_0', 'body = "c_0'),
+    "an initial state almost right": ('S = "c_0', 's = "c_0'),
+    "a table almost right": ("[elements.spring]", "[element.spring]"),
+}
+
+
+def mend(text: str, message: str) -> str:
+    """Return the text with what a message says done to it."""
+    if found := re.search(r"declare it in \[inputs\]: (.*)$", message):
+        return text.replace("[inputs]\n", f"[inputs]\n{found[1]}\n")
+    if found := re.search(r"'([^']+)' is not ASCII; expected a unit; write '([^']+)'", message):
+        return text.replace(found[1].encode().decode("unicode_escape"), found[2])
+    if found := re.search(r"parameters\.(\w+)\.unit: .*; give it in K: ([\d.]+)", message):
+        line = rf"(?m)^{found[1]} .*?= \{{ value = [^,]+, +unit = \"[^\"]+\""
+        return re.sub(line, f'{found[1]} = {{ value = {found[2]}, unit = "K"', text)
+    if found := re.search(r"check the unit of (\w+): (\S+) would fit", message):
+        line = rf"(?m)^({found[1]} .*?unit = )\"[^\"]+\""
+        return re.sub(line, rf'\1"{found[2]}"', text)
+    if found := re.search(r"make ([\d.]+) a parameter in (\S+)$", message):
+        number = re.search(r"(?<![\w.])(1e6|3)\*", text)[1]
+        text = text.replace(f"{number}*", "made*")
+        return text.replace(
+            "[inputs]", f'made = {{ value = {number}, unit = "{found[2]}" }}\n[inputs]', 1
+        )
+    if found := re.search(r"temperatures go by their bodies: (\w+)", message):
+        return re.sub(r"\bT > T_0", f"{found[1]} > T_0", text)
+    if found := re.search(r"states go by their own symbols: (\w+)", message):
+        return text.replace("Q**2", f"{found[1]}**2")
+    if found := re.search(r"the state of element '(\w+)' is '(\w+)'", message):
+        return re.sub(rf"(?m)^{found[1]} = ", f"{found[2]} = ", text, count=1)
+    if found := re.search(r"writes the state of its element as its letter, '(\w+)'", message):
+        return text.replace("(s/s_0)", f"({found[1]}/s_0)")
+    if found := re.search(r"calls '(\w+)', .*did you mean '(\w+)'", message):
+        return text.replace(found[1], found[2])
+    if found := re.search(r"'([\w ]+)'[^;]*(?:;.*)?; did you mean '(\w+)'\?", message):
+        return re.sub(rf"\b{found[1]}\b", found[2], text)
+    msg = f"no remedy in: {message}"
+    raise AssertionError(msg)
+
+
+def fault_of(text: str) -> str:
+    """Return the message of the first fault; nothing where there is none."""
+    try:
+        iphs = derive(Model(**tomllib.loads(text)))
+    except PiezoError as error:
+        return str(error)
+    wrong = [row for row in units(iphs) if row.verdict is not Verdict.PROVED]
+    return wrong[0].reason if wrong else ""
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_the_remedy_of_a_mistake_mends_it(mistake):
+    old, new = MISTAKES[mistake]
+    assert old in TEXT
+    text = TEXT.replace(old, new, 1)
+    if "s_0)" in new:
+        text = text.replace("[inputs]", 's_0 = { value = 1.0, unit = "m" }\n[inputs]', 1)
+    said = [message := fault_of(text)]
+    assert message
+    while message and len(said) < 4:
+        text = mend(text, message)
+        said.append(message := fault_of(text))
+    assert message == "", said
