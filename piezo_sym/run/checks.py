@@ -16,6 +16,9 @@ from piezo_sym.errors import UsageError, nearest, quote
 
 FloatArray: TypeAlias = NDArray[np.float64]
 
+#: Of lanes, samples or steps between them: what is stored of more fits into no memory.
+MOST = 100_000_000
+
 
 def is_number(value: object) -> bool:
     """Return whether `value` is one real number; a bool is not."""
@@ -45,11 +48,13 @@ def positive(value: object, where: str) -> float:
     return result
 
 
-def whole(value: object, where: str, least: int) -> int:
-    """Return `value` as an int of at least `least`; raise `UsageError` otherwise."""
+def whole(value: object, where: str, least: int, most: int = MOST) -> int:
+    """Return `value` as an int from `least` to `most`; raise `UsageError` otherwise."""
     if isinstance(value, bool) or not isinstance(value, Integral) or int(value) < least:
         what = f"{quote(value)} is not allowed"
         raise UsageError(what, where, f"a whole number >= {least}")
+    if int(value) > most:
+        raise UsageError(f"{quote(value)} is too many", where, f"at most {most:,}")
     return int(value)
 
 

@@ -28,6 +28,7 @@ LaneValue: TypeAlias = float | Sequence[float] | FloatArray
 #: Of the duration: a sample nearer to the end than this is the end.
 CLOSE = 1e-12
 SAMPLES = 1001
+MOST_LANES = 10_000_000
 #: A run of more steps would take days, and they would be shorter than round-off.
 MOST_STEPS = 1e12
 
@@ -60,7 +61,9 @@ def read_sizes(module: GeneratedModule, given: Mapping[str, LaneValue] | None) -
     default, values = module.Parameters(), _known(module, given)
     names = {bank: f"{bank}_count" for bank in module.BANKS}
     return {
-        bank: whole(values.get(name, lanes(default, bank)), f"simulate.parameters.{name}", 1)
+        bank: whole(
+            values.get(name, lanes(default, bank)), f"simulate.parameters.{name}", 1, MOST_LANES
+        )
         for bank, name in names.items()
     }
 

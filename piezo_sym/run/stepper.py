@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import ctypes
 import struct
+import threading
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, final
+from typing import Any, NoReturn, final
 
 import numpy as np
 
@@ -130,6 +131,8 @@ class Stepper:
         self._once: Any = self._batch.function("step_once")
         self._forget: Any = self._batch.function("forget")
         self._forget(self._at)
+        lock = threading.Lock()
+        self._begin, self._end = lock.acquire, lock.release
 
     def _made(self, outputs: Any, margins: Any) -> Any:
         """Return what a call needs, all in one place; functions are those of ``<model>.c``."""
@@ -180,18 +183,29 @@ class Stepper:
 
         Raises
         ------
-        UsageError : there are more or fewer numbers than inputs, or one is not finite.
+        UsageError : there are more or fewer numbers than inputs, one is not finite, or another
+            thread is stepping it.
         RunError : inputs leave the domain, or no step stays in it. State, time and ledger are those
             before the step.
         """
+        if not self._begin(False):  # not to wait
+            raise _busy()
         try:
             self._put(self._buffer, 0, *u)
+            if not self._once(self._at):
+                raise self._refusal(u)
+            self._taken += 1
+            return self._copied()
         except (ValueError, TypeError, OverflowError, struct.error) as error:
             raise self._no_inputs(u) from error
-        if not self._once(self._at):
-            raise self._refusal(u)
-        self._taken += 1
-        return self._copied()
+        finally:
+            self._end()
+
+    def __reduce__(self) -> NoReturn:
+        """Refuse to be pickled or copied: its state lies in C."""
+        what = "a Stepper stays in its process"
+        remedy = "make another there, with initial=dict(zip(stepper.states, stepper.x))"
+        raise UsageError(what, "Stepper", remedy=remedy)
 
     def reset(self, x: Sequence[float] | FloatArray | None = None) -> None:
         """Go back to t = 0, with an empty ledger.
@@ -234,3 +248,9 @@ class Stepper:
             return domain_error(self._system, self.time, self._batch.x[0], self._u)
         what = f"no step stays in the domain at t = {self.time:.6g} s"
         return RunError(what, "Stepper.step", remedy="look at the inputs, or take shorter steps")
+
+
+def _busy() -> UsageError:
+    """Return the error of a Stepper that is used by two threads at once."""
+    what = "another thread is stepping this Stepper"
+    return UsageError(what, "Stepper.step", remedy="give each thread a Stepper of its own")

@@ -5,7 +5,8 @@ from math import inf, nan
 import numpy as np
 import pytest
 
-from piezo_sym import samples
+import piezo_sym
+from piezo_sym import samples, sweep
 from piezo_sym.errors import UsageError
 from piezo_sym.run import simulate
 
@@ -133,3 +134,32 @@ def test_numbers_of_numpy_are_numbers(piezo):
     assert ds.attrs["parameter_hysteron_count"] == 3
     assert np.array_equal(ds.V_in, [2, 2, 2])
     assert np.array_equal(ds.F_ext, [3, 3, 3])
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (
+            {"times": 10**9},
+            "times: '1000000000' is too many; expected at most 100,000,000",
+        ),
+        (
+            {"parameters": {"hysteron_count": 10**18}},
+            "is too many; expected at most 10,000,000",
+        ),
+        ({"parameters": {"hysteron_count": 10**8}}, "is too many; expected at most 10,000,000"),
+    ],
+)
+def test_sizes_beyond_any_memory_are_refused(options, said):
+    for run in (piezo_sym.simulate, lambda *a, **k: sweep(*a, over={"d": [1.0, 2.0]}, **k)):
+        with pytest.raises(UsageError) as error:
+            run("piezo_stack", duration=1e-3, **options)
+        assert said in str(error.value)
+
+
+def test_a_hundred_thousand_hysterons_run():
+    """More lanes than one step's vectors, in a run and in a sweep."""
+    given = {"duration": 1e-6, "times": 2, "parameters": {"hysteron_count": 100_000}}
+    run = piezo_sym.simulate("piezo_stack", **given)
+    assert run.phi.shape == (2, 100_000)
+    assert sweep("piezo_stack", over={"d": [1.0, 2.0]}, **given).sizes["hysteron"] == 100_000

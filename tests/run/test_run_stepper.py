@@ -1,6 +1,9 @@
 """Step by step: the same states as a run, inputs decided on the way, at the cost of a C call."""
 
+import copy
 import doctest
+import pickle
+import threading
 from math import inf, nan
 from pathlib import Path
 
@@ -203,3 +206,36 @@ def test_the_examples_of_its_documentation_run_as_they_say(documented):
 def test_inputs_at_the_start_are_numbers():
     with pytest.raises(UsageError, match=r"Stepper.inputs.V_in: this is no number.*step\(u\)"):
         Stepper("piezo_stack", step=H, inputs={"V_in": sine(100, 100)})
+
+
+def test_two_threads_cannot_step_one_stepper():
+    stepper, errors = Stepper("piezo_stack", step=1e-5), []
+
+    def other():
+        with pytest.raises(UsageError) as error:
+            stepper.step([0.0, 1.0, 298.15])
+        errors.append(str(error.value))
+
+    class Inputs:
+        """Inputs that are read while another thread steps."""
+
+        def __iter__(self):
+            thread = threading.Thread(target=other)
+            thread.start()
+            thread.join()
+            return iter([0.0, 1.0, 298.15])
+
+    stepper.step(Inputs())
+    said = "Stepper.step: another thread is stepping this Stepper; give each thread"
+    assert errors[0].startswith(said)
+    assert stepper.time == 1e-5
+    stepper.step([0.0, 1.0, 298.15])
+
+
+def test_a_stepper_is_not_pickled_but_another_can_be_made():
+    stepper = Stepper("piezo_stack", step=1e-5)
+    stepper.step([0.0, 1.0, 298.15])
+    with pytest.raises(UsageError, match="stays in its process; make another there"):
+        pickle.dumps(stepper)
+    with pytest.raises(UsageError, match="stays in its process"):
+        copy.deepcopy(stepper)
