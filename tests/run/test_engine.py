@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 import threading
+import time
 import weakref
 from pathlib import Path
 
@@ -41,7 +42,11 @@ def rates(engine, module):
 
 
 def found(cache):
-    return [path for path in cache.rglob("*") if path.is_file()]
+    """Return the libraries; beside each lies its digest."""
+    files = [path for path in cache.rglob("*") if path.is_file()]
+    libraries = [path for path in files if path.suffix != ".sha256"]
+    assert len(files) == 2 * len(libraries)
+    return libraries
 
 
 def refused(module):
@@ -194,6 +199,57 @@ def test_a_damaged_library_is_compiled_again(module, content):
     path.write_bytes(content)
     assert rates(engine_of(module), module).shape == STATE.shape
     ctypes.CDLL(str(path))
+
+
+RUN = """
+from piezo_sym import simulate
+print(simulate("piezo_stack", duration=1e-4, times=2, inputs={"V_in": 1.0}).q.values.tolist())
+"""
+
+
+@pytest.mark.parametrize("damage", ["cut", "flip"])
+def test_a_damaged_library_does_not_end_python(damage, tmp_path):
+    """Its digest is looked at before it is loaded: a page that is missing would end the process."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(tmp_path)}
+
+    def run():
+        words = [sys.executable, "-W", "error", "-c", RUN]
+        return subprocess.run(words, env=environment, capture_output=True, text=True)
+
+    first = run()
+    for path in (path for path in tmp_path.rglob("*.so")):
+        content = bytearray(path.read_bytes())
+        half = len(content) // 2
+        content[half:] = b"" if damage == "cut" else bytes(255 - b for b in content[half:])
+        path.write_bytes(content)
+    again = run()
+    assert (again.returncode, again.stderr, again.stdout) == (0, "", first.stdout)
+
+
+def test_what_a_killed_compilation_left_is_removed(module, cache):
+    engine_of(module)
+    (path,) = found(cache)
+    old, new = (path.parent / f".build-{name}" for name in ("old", "new"))
+    for folder in (old, new):
+        folder.mkdir()
+        (folder / "driver.c").write_text("half a file")
+    os.utime(old, (0, 0))
+    path.write_bytes(b"")
+    libraries.library(libraries.Sources("piezo_stack", *texts()))
+    assert (old.exists(), new.exists()) == (False, True)
+
+
+def test_a_compiler_that_hangs_ends_with_its_children(module, no_compiler, monkeypatch, tmp_path):
+    child = tmp_path / "child"
+    write_script(
+        no_compiler / "cc",
+        f'case "$*" in *--version*) echo cc 1; exit;; esac\n/bin/sleep 1000 & echo $! > {child}; wait',
+    )
+    monkeypatch.setattr(compiler, "MOST_SECONDS", 1.0)
+    assert "the compiler takes more than 1 s" in refused(module)
+    time.sleep(0.1)
+    with pytest.raises(ProcessLookupError):
+        os.kill(int(child.read_text()), 0)
 
 
 def texts():

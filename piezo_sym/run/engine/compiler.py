@@ -8,9 +8,11 @@ import os
 import platform
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from importlib.util import find_spec
@@ -122,20 +124,35 @@ def build(compiler: Compiler, flags: Sequence[str], sources: Sequence[Path], lib
 def _call(words: Sequence[str], seconds: float) -> subprocess.CompletedProcess[str]:
     """Run a command without input; its words are never read by a shell."""
     try:
-        return subprocess.run(
+        with subprocess.Popen(
             words,
             stdin=subprocess.DEVNULL,
-            capture_output=True,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
             text=True,
             errors="replace",
-            timeout=seconds,
-            check=False,
-        )
+            start_new_session=True,
+        ) as running:
+            try:
+                out, err = running.communicate(timeout=seconds)
+            except BaseException:  # it takes too long, or Ctrl-C: its children hold the pipes, too
+                _end(running)
+                raise
+        return subprocess.CompletedProcess(words, running.returncode, out, err)
     except subprocess.TimeoutExpired as error:
         raise EngineError(f"the compiler takes more than {seconds:g} s", words[0]) from error
     except (OSError, subprocess.SubprocessError) as error:
         why = getattr(error, "strerror", None) or type(error).__name__
         raise EngineError(f"the compiler does not run ({why})", words[0]) from error
+
+
+def _end(running: subprocess.Popen[str]) -> None:
+    """End a command and all that it has started."""
+    if sys.platform == "win32":
+        running.kill()
+    else:
+        with suppress(ProcessLookupError):
+            os.killpg(running.pid, signal.SIGKILL)
 
 
 @cache

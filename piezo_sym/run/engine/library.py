@@ -8,9 +8,12 @@ step: any number of processes may ask at once, and none ever sees half a file.
 import ctypes
 import hashlib
 import os
+import shutil
 import sys
 import tempfile
+import time
 import warnings
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from pathlib import Path
@@ -33,6 +36,9 @@ Layout = Literal["one", "many", "lanes", "slopes"]
 #: What is compiled; the other files are included there.
 UNITS = ("driver.c", "stages.c")
 ENDINGS = {"win32": ".dll", "darwin": ".dylib"}
+#: Of the file with a library's digest; of folders in which one is compiled, and their age [s] where
+#: a killed compilation has left one.
+DIGEST, BUILD, LEFT_SECONDS = ".sha256", ".build-", 3600.0
 
 
 #: Which variable says where caches are.
@@ -200,7 +206,7 @@ def _kept(sources: Sources, compiler: Compiler, flags: tuple[str, ...], *, again
     """Return a compiled library, in the cache or else in a folder of this process alone."""
     place = Path(_key(sources, compiler, flags)) / f"{sources.name}{_ending()}"
     path = cache_folder() / place
-    if os.path.isfile(path) and not again:  # a folder that cannot be read holds none
+    if not again and _whole(path):
         return path
     try:
         _build(sources, compiler, flags, path)
@@ -209,12 +215,24 @@ def _kept(sources: Sources, compiler: Compiler, flags: tuple[str, ...], *, again
         where, remedy = path_text(cache_folder()), f"set {CACHE} to a folder that can be written"
         try:
             path = temporary_folder() / place
-            if not os.path.isfile(path) or again:
+            if again or not _whole(path):
                 _build(sources, compiler, flags, path)
         except (OSError, FileError) as both:
             raise EngineError(why, where, remedy=remedy) from both
         _warn(f"{where}: {why}; what is compiled is kept for this process alone; {remedy}")
     return path
+
+
+def _whole(path: Path) -> bool:
+    """Return whether a library is there as it was compiled: a damaged one would end Python."""
+    try:
+        return _digest(path) == path.with_suffix(DIGEST).read_text(encoding="ascii")
+    except (OSError, ValueError):  # a folder that cannot be read holds none
+        return False
+
+
+def _digest(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def _build(sources: Sources, compiler: Compiler, flags: tuple[str, ...], path: Path) -> None:
@@ -227,18 +245,32 @@ def _build(sources: Sources, compiler: Compiler, flags: tuple[str, ...], path: P
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(prefix=".build-", dir=path.parent) as temporary:
+        _clean(path.parent)
+        with tempfile.TemporaryDirectory(prefix=BUILD, dir=path.parent) as temporary:
             folder = Path(temporary)
             for name, text in sources.files().items():
                 (folder / name).write_text(text, encoding="utf-8")
             built = folder / path.name
             units = [folder / name for name in UNITS if (folder / name).is_file()]
             build(compiler, flags, units, built)
-            built.replace(path)
+            mark = built.with_suffix(DIGEST)
+            mark.write_text(_digest(built), encoding="ascii")
+            for file in (built, mark):
+                with file.open("rb+") as opened:
+                    os.fsync(opened.fileno())
+                file.replace(path.with_name(file.name))
     except OSError:
         if os.path.isfile(path) and sys.platform == "win32":  # another process has it, and uses it
             return
         raise
+
+
+def _clean(folder: Path) -> None:
+    """Remove what compilations have left that were killed, an hour ago at least."""
+    for left in folder.glob(f"{BUILD}*"):
+        with suppress(OSError):
+            if time.time() - left.stat().st_mtime > LEFT_SECONDS:
+                shutil.rmtree(left, ignore_errors=True)
 
 
 @cache
