@@ -36,6 +36,23 @@ typedef struct {
     long hysteron_count; /* lanes of hysteron, at least 1; spec: 2 */
 } piezo_stack_parameters;
 
+/* An initializer for parameters: the values of the spec. */
+#define piezo_stack_DEFAULTS { \
+    .M = 0.0035, \
+    .k = 500000.0, \
+    .q_l = 0.0, \
+    .d = 400.0, \
+    .C = 5e-06, \
+    .L = (const double[]){0.001, 0.001}, \
+    .rho = (const double[]){10.0, 10.0}, \
+    .i_0 = (const double[]){0.5, 0.5}, \
+    .a = 10.0, \
+    .T_0 = 296.15, \
+    .c_0 = 5.0, \
+    .lam = 2.0, \
+    .hysteron_count = 2, \
+}
+
 /* Sizes that no bank changes: of inputs, outputs, bodies, conditions of the domain. */
 enum {
     piezo_stack_input_count = 3,

@@ -42,6 +42,31 @@ long piezo_stack_step_size(const piezo_stack_parameters *p_);
  * space[piezo_stack_step_size(p_)], read and written: set it to zero before the first step,
  *     then leave it as it is; it keeps the largest magnitude of each state, with which
  *     rounding errors are compared
+ *
+ * Example: cc -O3 -fopenmp-simd example.c piezo_stack.c piezo_stack_step.c -lm
+ *
+ *     #include <stdio.h>
+ *     #include <stdlib.h>
+ *
+ *     #include "piezo_stack_step.h"
+ *
+ *     int main(void)
+ *     {
+ *         const piezo_stack_parameters p = piezo_stack_DEFAULTS;
+ *         const double u[] = {0.0, 0.0, 298.15};
+ *         const size_t size = (size_t)piezo_stack_step_size(&p);
+ *         double x[6], booked[10], *space = calloc(size, sizeof *space);
+ *
+ *         if (!space)
+ *             return 1;
+ *         piezo_stack_initial_state(u, &p, x);
+ *         for (int step = 0; step < 1000; ++step)
+ *             if (!piezo_stack_step(x, u, 1e-6, &p, booked, space))
+ *                 return 1;
+ *         printf("U = %.17g J\n", piezo_stack_energy(x, &p));
+ *         free(space);
+ *         return 0;
+ *     }
  */
 int piezo_stack_step(double *x,
                      const double *u,

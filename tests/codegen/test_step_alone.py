@@ -1,6 +1,7 @@
 """The step that a program in C calls is the one that Python takes, and closes both balances."""
 
 import ctypes
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -82,3 +83,33 @@ def test_a_step_that_leaves_the_domain_leaves_the_state(tmp_path):
     assert np.array_equal(x, before)
     assert step(x, np.array([0.0, 1.0, 298.15]), 1e-6)
     assert not np.array_equal(x, before)
+
+
+@pytest.mark.parametrize("path", ["piezo_stack", *SPECS], ids=lambda path: Path(path).stem)
+def test_the_example_of_the_header_is_a_program(path, tmp_path):
+    """It compiles as it stands, and ends where a Stepper of the same steps does."""
+    module = module_of(load(path))
+    source = Path(module.__file__)
+    header = source.with_name(f"{module.NAME}_step.h").read_text()
+    lines = header.split("Example: cc")[1].split("*/")[0].splitlines()[1:]
+    example = tmp_path / "example.c"
+    example.write_text("\n".join(line.removeprefix(" *").removeprefix("     ") for line in lines))
+    files = [example, source.with_suffix(".c"), source.with_name(f"{module.NAME}_step.c")]
+    flags = [
+        "-std=c99",
+        "-fopenmp-simd",
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+        "-pedantic",
+        f"-I{source.parent}",
+    ]
+    program = tmp_path / "example"
+    words = [next(compilers()).command[0], *flags, *map(str, files), "-o", str(program), "-lm"]
+    subprocess.run(words, check=True)
+    said = subprocess.run([str(program)], capture_output=True, text=True, check=True).stdout
+    steps = Stepper(path, step=1e-6)
+    for _ in range(1000):
+        steps.step(module.INPUT_DEFAULTS or [])
+    energy = float(module.energy(steps.x, module.Parameters()))
+    assert float(said.removeprefix("U = ").removesuffix(" J\n")) == pytest.approx(energy, rel=1e-12)

@@ -16,6 +16,7 @@ from piezo_sym.errors import one_line
 from piezo_sym.version import VERSION
 
 WIDTH = 96
+MOST_LANES = 16  # of a bank whose values stand in the header
 #: What functions do that the program does not describe.
 FUNCTIONS = {
     "states": "Number of states n",
@@ -100,6 +101,36 @@ def _parameters(program: Program) -> Iterator[str]:
     if not program.parameters and not program.counts:
         yield "    char none; /* a model without parameters: C99 has no empty struct */"
     yield f"}} {program.name}_parameters;"
+    yield from _defaults(program, names)
+
+
+def _defaults(program: Program, names: Mapping[str, str]) -> Iterator[str]:
+    """Yield the values of the spec as an initializer; of large banks the caller makes arrays."""
+    if has_defaults(program):
+        fields = []
+        for field in program.parameters:
+            value = program.defaults[field.name]
+            text = _c_number(value) if isinstance(value, float) else ""
+            if field.bank:
+                lanes = value if isinstance(value, tuple) else [value] * program.counts[field.bank]
+                text = f"(const double[]){{{', '.join(map(_c_number, lanes))}}}"
+            fields.append(f".{names[field.name]} = {text}")
+        fields += [f".{bank}_count = {count}" for bank, count in program.counts.items()]
+        fields += [] if fields else [".none = 0"]
+        yield ""
+        yield "/* An initializer for parameters: the values of the spec. */"
+        yield f"#define {program.name}_DEFAULTS {{ \\"
+        yield from (f"    {field}, \\" for field in fields)
+        yield "}"
+
+
+def has_defaults(program: Program) -> bool:
+    """Return whether the header has the values of the spec: no bank of it is large."""
+    return all(count <= MOST_LANES for count in program.counts.values())
+
+
+def _c_number(value: float) -> str:
+    return repr(float(value))
 
 
 def _numbers(program: Program) -> Iterator[str]:

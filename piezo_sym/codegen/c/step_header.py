@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from piezo_sym.codegen.c.head import opening, wrapped
+from piezo_sym.codegen.c.head import has_defaults, opening, wrapped
 from piezo_sym.codegen.collocation import Collocation
 from piezo_sym.codegen.program import Program
 
@@ -27,7 +27,7 @@ extern "C" {{
 long {model}_step_size(const {model}_parameters *p_);
 
 /*
-{doc}
+{doc}{example}
  */
 int {model}_step(double *x,
 {indent}const double *u,
@@ -43,12 +43,52 @@ int {model}_step(double *x,
 #endif /* PIEZO_SYM_{model}_STEP_H */
 """
 
+_EXAMPLE = """Example: cc -O3 -fopenmp-simd example.c {model}.c {model}_step.c -lm
+
+    #include <stdio.h>
+    #include <stdlib.h>
+
+    #include "{model}_step.h"
+
+    int main(void)
+    {{
+        const {model}_parameters p = {model}_DEFAULTS;
+        const double u[] = {{{inputs}}};
+        const size_t size = (size_t){model}_step_size(&p);
+        double x[{n}], booked[{booked}], *space = calloc(size, sizeof *space);
+
+        if (!space)
+            return 1;
+        {model}_initial_state(u, &p, x);
+        for (int step = 0; step < 1000; ++step)
+            if (!{model}_step(x, u, 1e-6, &p, booked, space))
+                return 1;
+        printf("U = %.17g J\\n", {model}_energy(x, &p));
+        free(space);
+        return 0;
+    }}
+"""
+
 
 def c_step_header(program: Program, made: Collocation) -> str:
     """Return the text of the header of a model's step."""
     doc = "\n".join(f" * {line}".rstrip() for line in _doc(program, made))
     indent = " " * len(f"int {program.name}_step(")
-    return _TEXT.format(opening=opening(program), model=program.name, doc=doc, indent=indent)
+    example = _example(program, made) if has_defaults(program) else ""
+    words = {"opening": opening(program), "model": program.name, "doc": doc, "indent": indent}
+    return _TEXT.format(**words, example=example)
+
+
+def _example(program: Program, made: Collocation) -> str:
+    """Return a program that takes a thousand steps, as part of a comment."""
+    name, counts = program.name, program.counts
+    inputs = ", ".join(str(program.defaults[field.name]) for field in program.inputs) or "0.0"
+    sizes = {
+        "n": sum(counts[field.bank] if field.bank else 1 for field in program.states),
+        "booked": sum(counts[r.slot.bank] if r.slot.bank else 1 for r in made.stage.booked),
+    }
+    text = _EXAMPLE.format(model=name, inputs=inputs, **sizes)
+    return "\n *\n" + "\n".join(f" * {line}".rstrip() for line in text.splitlines())
 
 
 def _doc(program: Program, made: Collocation) -> Iterator[str]:
