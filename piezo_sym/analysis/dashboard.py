@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 ACROSS = 3  # panels in a row
 WIDTH, HEIGHT = 3.2, 2.1  # of a panel, inches
-MOST_NAMES = 6  # in a legend
+MOST_NAMES = 16  # in a legend; then it says how many there are more
 MOST_LANES = 8  # drawn one by one; of more, the mean and the range are drawn
 LEDGER = ("energy_residual", "entropy_residual", "energy", "entropy")
 SUMS = ("supplied_", "heat_", "produced_", "entropy_exchanged_")
@@ -60,7 +60,7 @@ def plot(run: xarray.Dataset) -> Figure:
     grid = figure.subplots(rows, ACROSS, sharex=True, squeeze=False).ravel()
     for axes, (label, draw) in zip(grid, panels, strict=False):
         dress(axes)
-        axes.ticklabel_format(axis="y", scilimits=(-2, 4), useMathText=True)
+        axes.ticklabel_format(axis="y", scilimits=(-2, 4), useMathText=True, useOffset=False)
         axes.yaxis.get_offset_text().set_fontsize(SMALL)
         draw(axes)
         axes.set_ylabel(label, fontsize=LABEL)
@@ -135,12 +135,21 @@ def _lines(axes: Axes, run: xarray.Dataset, names: list[str], prefix: str = "") 
         values = _lanes(run[name])
         if values.shape[1] <= MOST_LANES:
             lines = axes.plot(time, values, color=colour, linewidth=0.9, marker=mark)
+            lanes = values.shape[1]
+            label = f"{label}: lanes 1 to {lanes}" if lanes > 1 else label
         else:
             low, high = values.min(axis=1), values.max(axis=1)
             axes.fill_between(time, low, high, color=colour, alpha=0.3, linewidth=0)
             lines = axes.plot(time, values.mean(axis=1), color=colour, linewidth=0.9, marker=mark)
             label = f"{label}: mean and range"
-        lines[0].set_label(label if n < MOST_NAMES else "_more")
+        lines[0].set_label(_named(label, n, len(names)))
+
+
+def _named(label: str, n: int, count: int) -> str:
+    """Return what the legend says of curve n of so many; nothing of those beyond the last."""
+    if n + 1 == MOST_NAMES < count:
+        return f"{label}, and {count - MOST_NAMES} more"
+    return label if n < MOST_NAMES else "_more"
 
 
 def _lanes(variable: xarray.DataArray) -> FloatArray:
@@ -156,7 +165,7 @@ def _stack(axes: Axes, run: xarray.Dataset, names: list[str], prefix: str) -> No
     for n, name in enumerate(names):
         top = base + _lanes(run[name]).sum(axis=1)
         colour = COLOURS[n % len(COLOURS)]
-        label = name.removeprefix(prefix) if n < MOST_NAMES else "_more"
+        label = _named(name.removeprefix(prefix), n, len(names))
         if time.size == 1:
             axes.plot(time, top, ".", color=colour, label=label)
         else:
@@ -165,6 +174,7 @@ def _stack(axes: Axes, run: xarray.Dataset, names: list[str], prefix: str) -> No
 
 
 def _small_legend(axes: Axes) -> None:
-    """Add a legend where more than one variable is drawn."""
-    if len(axes.get_legend_handles_labels()[1]) > 1:
+    """Add a legend where more than one variable is drawn, or the lanes of one."""
+    labels = axes.get_legend_handles_labels()[1]
+    if len(labels) > 1 or any(":" in label for label in labels):
         axes.legend(fontsize=SMALL - 1, loc="best", framealpha=0.6, handlelength=1.5)
