@@ -151,6 +151,11 @@ class Stepper:
         return x
 
     @property
+    def initial_inputs(self) -> FloatArray:
+        """The inputs at t = 0, shape (m,)."""
+        return self._system.inputs.segments[0].at(0.0)
+
+    @property
     def time(self) -> float:
         """The time [s]."""
         return self._taken * self._h
