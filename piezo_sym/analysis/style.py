@@ -10,6 +10,7 @@ import io
 from typing import TYPE_CHECKING, Any
 
 from piezo_sym.files import write_bytes
+from piezo_sym.run.samples import header_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -87,7 +88,8 @@ def save(figure: Figure, data: xarray.Dataset, folder: Path, name: str) -> tuple
 def _content(figure: Figure, data: xarray.Dataset, ending: str) -> bytes:
     if ending == ".csv":
         frame = data.to_dataframe().reset_index().dropna(how="all", subset=list(data.data_vars))
-        frame.columns = [_with_unit(data, str(name)) for name in frame.columns]
+        units = {name: data[name].attrs.get("units", "1") for name in frame.columns}
+        frame.columns = [header_of(name, unit) for name, unit in units.items()]
         return bytes(frame.to_csv(index=False, float_format="%.10g").encode())
     from matplotlib import rc_context
 
@@ -96,9 +98,3 @@ def _content(figure: Figure, data: xarray.Dataset, ending: str) -> bytes:
     with rc_context({"svg.hashsalt": "piezo_sym"}):
         figure.savefig(stream, format=ending[1:], metadata=metadata)
     return stream.getvalue()
-
-
-def _with_unit(data: xarray.Dataset, name: str) -> str:
-    """Return the header of a column: its name, and its unit if it has one."""
-    unit = data[name].attrs.get("units", "1")
-    return name if unit == "1" else f"{name} [{unit}]"

@@ -104,10 +104,10 @@ def simulate(
 
     Signals: sine(amplitude, frequency), step(time, before, after), ramp(start, stop, before,
     after), triangle(amplitude, frequency), chirp(amplitude, f_start, f_stop, duration); or @FILE,
-    a table with a header, times [s] in its first column, joined by straight lines: of several
-    columns the one named like the input counts.
+    a table, times in its first column, joined by straight lines, whose header may say units:
+    t [ms],V_in [kV]. Of several columns the one named like the input counts.
     """
-    _check_ending(out)
+    _check_ending(out, events)
     signals = dict(pairs(inputs or (), "--input", signal))
     when = {"duration": duration, "t0": t0, "times": times, "every": every, "stop": stop}
     how = {"rtol": rtol, "step": step, "order": order, "method": method}
@@ -158,9 +158,12 @@ def _start(path: Path | None, initial: Mapping[str, Any]) -> Any:
         raise FileError("is no run that can go on", path_text(path), remedy=remedy) from cause
 
 
-def _check_ending(out: Path | None) -> None:
+def _check_ending(out: Path | None, events: list[str] | None) -> None:
     if out is not None and out.suffix not in ENDINGS:
         raise UsageError(f"{path_text(out)} has no known ending", "--out", listing(ENDINGS))
+    if out is not None and out.suffix == ".csv" and events:
+        what = f"{path_text(out)}, a table over time, has no place for events"
+        raise UsageError(what, "--out", "a file ending in .nc")
 
 
 def _print_assumed(inputs: Mapping[str, Any]) -> None:
@@ -211,8 +214,11 @@ def columns(result: xarray.Dataset) -> Any:
     """Return a result as a table: one column per quantity, for a bank one per lane."""
     import pandas as pd
 
-    parts = [
-        one.to_series() if one.ndim == 1 else one.to_pandas().add_prefix(f"{name}_")
-        for name, one in result.data_vars.items()
-    ]
-    return pd.concat(parts, axis=1).reset_index()
+    from piezo_sym.run.samples import header_of
+
+    made = {header_of("time", "s"): result.time.to_series()}
+    for name, one in result.data_vars.items():
+        frame, unit = one.to_pandas(), str(one.attrs["units"])
+        lanes = {name: frame} if one.ndim == 1 else frame.add_prefix(f"{name}_")
+        made |= {header_of(lane, unit): values for lane, values in lanes.items()}
+    return pd.DataFrame(made)

@@ -10,7 +10,7 @@ import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
-from math import inf
+from math import inf, isfinite
 from os import PathLike
 from pathlib import Path
 from typing import final
@@ -130,6 +130,11 @@ def samples_from_csv(
     return replace(found, unit=unit, assumed=" and ".join(taken))
 
 
+def header_of(name: object, unit: str) -> str:
+    """Return the header of a column as `samples_from_csv` reads it; "1" is not written."""
+    return f"{name}" if unit == "1" else f"{name} [{unit}]"
+
+
 def column_headers(path: str | PathLike[str]) -> list[tuple[str, str]]:
     """Return the names and units in the header of a delimited text file, "" where none is said.
 
@@ -184,12 +189,9 @@ def _columns(path: Path, t: int, x: int) -> tuple[FloatArray, FloatArray]:
             both = table.to_numpy()[:, [0, 1] if t < x else [1, 0]]
             if np.isfinite(both).all():
                 return both[:, 0], both[:, 1]
-        pairs = [
-            [_cell(row, n, f"{path}, line {line}") for n in (t, x)]
-            for line, row in enumerate(rows, start=2)
-            if row
-        ]
-        both = np.array(pairs, dtype=float).reshape(-1, 2)
+        filled = ((line, row) for line, row in enumerate(rows, start=2) if row)
+        cells = (_cell(row, n, path, line) for line, row in filled for n in (t, x))
+        both = np.fromiter(cells, dtype=float).reshape(-1, 2)
         return both[:, 0], both[:, 1]
 
 
@@ -234,15 +236,16 @@ def _other_column(headers: Sequence[tuple[str, str]], t: int, path: object) -> i
     return others[0]
 
 
-def _cell(row: Sequence[str], at: int, where: str) -> float:
+def _cell(row: Sequence[str], at: int, path: Path, line: int) -> float:
     """Return one cell as a finite float; raise `FileError` otherwise."""
     text = row[at].strip() if at < len(row) else ""
+    where = f"{path}, line {line}"
     try:
-        value = float(text)
+        value = float(text.replace("_", "x"))  # 1_0 is a number in Python alone
     except ValueError as cause:
         what = f"{quote(text)} is not a number"
         raise FileError(what, where, "a number like 1.5e-3") from cause
-    if not np.isfinite(value):
+    if not isfinite(value):
         what = f"{quote(text)} is not finite"
         raise FileError(what, where, "a finite number")
     return value

@@ -48,8 +48,8 @@ def test_the_supply_moves_it_as_it_stands(call, folder):
     assert call("simulate", "actuator.toml", "--duration", 0.1, "--out", "run.csv").code == 0
     names, *_, last = (folder / "here" / "run.csv").read_text(encoding="utf-8").splitlines()
     end = dict(zip(names.split(","), last.split(","), strict=True))
-    assert float(end["q"]) == pytest.approx(5.0 * 100 / 2e7, rel=1e-3)  # a*V_in = k*q at rest
-    assert float(end["Q"]) == pytest.approx(2e-6 * 100, rel=1e-3)
+    assert float(end["q [m]"]) == pytest.approx(5.0 * 100 / 2e7, rel=1e-3)  # a*V_in = k*q at rest
+    assert float(end["Q [C]"]) == pytest.approx(2e-6 * 100, rel=1e-3)
 
 
 def test_it_has_the_name_and_nothing_else_of_the_starter(call):

@@ -47,8 +47,18 @@ def test_a_csv_file_has_a_column_a_quantity_and_a_lane(call, expected, tmp_path)
     with path.open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 11
-    assert float(rows[-1]["q"]) == expected.q.values[-1]
-    assert [float(row["phi_2"]) for row in rows] == expected.phi.values[:, 1].tolist()
+    assert next(iter(rows[0])) == "time [s]"
+    assert float(rows[-1]["q [m]"]) == expected.q.values[-1]
+    assert [float(row["phi_2 [Wb]"]) for row in rows] == expected.phi.values[:, 1].tolist()
+
+
+def test_a_csv_file_drives_another_run(call, expected, tmp_path):
+    first, second = tmp_path / "first.csv", tmp_path / "second.nc"
+    assert call(*DRIVEN, "--out", first).code == 0
+    answer = call(*SHORT, "-i", f"V_in=@{first}", "--out", second)
+    assert answer.code == 0
+    assert "names no units" not in answer.out
+    assert last(second).V_in.values == pytest.approx(expected.V_in.values, rel=1e-15)
 
 
 def test_a_netcdf_file_holds_the_result(call, expected, tmp_path):
@@ -365,3 +375,5 @@ def test_a_run_stops_and_another_goes_on(call, refused, tmp_path):
     words = (*drive, "--duration", "0.01", "--continue")
     assert "is no run that can go on" in refused(*words, tmp_path / "none.nc")
     assert "--initial is given too" in refused(*words, first, "--initial", "q=0")
+    no_place = refused(*drive, "--duration", "0.1", *found, "--out", "run.csv")
+    assert "'run.csv', a table over time, has no place for events" in no_place

@@ -40,6 +40,7 @@ def test_columns_by_name(write):
         (b"t,V\n0,\xff\n", {}, FileError, "is not text in UTF-8"),
         ("t,V\n0,1\n1,x\n", {}, FileError, "line 3: 'x' is not a number"),
         ("t,V\n0,1\n\n1\n", {}, FileError, "line 4: '' is not a number"),
+        ("t,V\n0,1\n1,1_0\n", {}, FileError, "line 3: '1_0' is not a number"),
         ("t,V\n0,1\n1,nan\n", {}, FileError, "line 3: 'nan' is not finite"),
         ("t,V\n0,1\n", {"column": "W"}, UsageError, "no column 'W'; known: t, V"),
         ("t,Volt\n0,1\n", {"column": "volt"}, UsageError, "did you mean 'Volt'?"),
