@@ -53,6 +53,8 @@ def bench(
             rounds=repeat,
             say=lambda group: typer.echo(f"measuring {group} ...", err=True),
         )
+    if json is not None:
+        write_text(json, dumps(asdict(report), indent=1) + "\n")
     columns = table(f"benchmark of {report.model}", *COLUMNS)
     for one in report.rows:
         row(columns, *one.cells)
@@ -61,5 +63,4 @@ def bench(
     for line in report.notes:
         screen.print(Text(line))
     if json is not None:
-        write_text(json, dumps(asdict(report), indent=1) + "\n")
         typer.echo(f"{json}")

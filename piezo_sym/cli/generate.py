@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from piezo_sym.cli.output import about
+from piezo_sym.cli.output import about, said_at_the_end
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.files import path_text
 
@@ -46,10 +46,10 @@ def generate(
         return
     from piezo_sym.build import generate as write
 
-    for spec, model in zip(names or [model.name for model in models], models, strict=True):
-        with about(spec):
-            for path in write(model, out, allow_unproved=allow_unproved):
-                typer.echo(f"{path}")
+    with said_at_the_end() as lines:
+        for spec, model in zip(names or [model.name for model in models], models, strict=True):
+            with about(spec):
+                lines += map(str, write(model, out, allow_unproved=allow_unproved))
 
 
 def _refuse_namesakes(models: list[Model]) -> None:

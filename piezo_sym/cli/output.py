@@ -2,7 +2,7 @@
 
 import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -54,6 +54,19 @@ def warnings_as_lines() -> Iterator[None]:
         for kind in kinds:
             warnings.simplefilter("always", kind)
         yield
+
+
+@contextmanager
+def said_at_the_end() -> Iterator[list[str]]:
+    """Print lines once all is done, or once it fails: a closed pipe stops nothing half-way."""
+    lines: list[str] = []
+    try:
+        yield lines
+    except BaseException:  # which says more than that these lines cannot be printed
+        with suppress(OSError):
+            typer.echo("".join(f"{line}\n" for line in lines), nl=False)
+        raise
+    typer.echo("".join(f"{line}\n" for line in lines), nl=False)
 
 
 def console() -> Console:

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from piezo_sym.analysis.figures import PaperFigure
-from piezo_sym.cli.output import warnings_as_lines
+from piezo_sym.cli.output import said_at_the_end, warnings_as_lines
 from piezo_sym.progress import tracked
 
 
@@ -33,17 +33,17 @@ def reproduce(
 
 
 def _write(module: ModuleType, out: Path) -> None:
-    """Write each figure once its curves are computed, and print its summary."""
+    """Write each figure once its curves are computed, and print its summary at the end."""
     from piezo_sym.analysis.figures import FIGURES
     from piezo_sym.analysis.style import save
 
     jobs = [(figure, value) for figure in FIGURES for value in figure.values]
     done: dict[PaperFigure, list[Any]] = {figure: [] for figure in FIGURES}
-    for figure, value in tracked(jobs, "curves"):
-        done[figure].append(figure.curve(module, value))
-        if len(done[figure]) < len(figure.values):
-            continue
-        data = figure.joined(done[figure])
-        for path in save(figure.draw(data), data, out, figure.name):
-            typer.echo(f"{path}")
-        typer.echo(figure.summary(data))
+    with said_at_the_end() as lines:
+        for figure, value in tracked(jobs, "curves"):
+            done[figure].append(figure.curve(module, value))
+            if len(done[figure]) < len(figure.values):
+                continue
+            data = figure.joined(done[figure])
+            lines += map(str, save(figure.draw(data), data, out, figure.name))
+            lines.append(figure.summary(data))

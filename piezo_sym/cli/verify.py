@@ -41,10 +41,10 @@ def verify(
         check_installed()
     found, errors = _reports(specs)
     second = {spec: _rechecked(spec, report) for spec, report in found.items() if recheck}
-    _show(found, second, as_json=as_json)
     if junit is not None:
         pairs = [(report, second.get(spec)) for spec, report in found.items()]
         write_text(junit, junit_xml(pairs, errors))
+    _show(found, second, as_json=as_json)
     for spec, opinion in second.items():
         faults = opinion.faults(found[spec].information)
         errors += [ProofError(faults[0], found[spec].model)] if faults else []

@@ -325,14 +325,27 @@ def test_a_run_that_stops_leaves_a_file_and_says_so(refused, spec_file, tmp_path
         assert float(partial.time[-1]) == pytest.approx(0.0304)
 
 
-@pytest.mark.parametrize("reader", ["head -3", "true"])
-def test_a_closed_pipe_loses_no_result(reader, tmp_path):
-    command = f"{sys.executable} -m piezo_sym simulate piezo_stack --duration 1e-3 --out y.csv"
-    done = subprocess.run(
-        f"{command} | {reader}", shell=True, cwd=tmp_path, capture_output=True, text=True
-    )
-    assert done.stderr == ""
-    assert len((tmp_path / "y.csv").read_text().splitlines()) == 1002
+@pytest.mark.parametrize(
+    ("words", "reader", "written"),
+    [
+        ("simulate a.toml --duration 1e-3 --out y.csv", "| head -3", ("y.csv",)),
+        ("generate b.toml a.toml", "| true", ("generated/b/b.py", "generated/a/a.py")),
+        ("generate b.toml a.toml", "> /dev/full", ("generated/b/b.py", "generated/a/a.py")),
+        ("verify a.toml --junit a.xml", "| true", ("a.xml",)),
+        ("bench a.toml --only rhs --repeat 1 --json a.json", "| true", ("a.json",)),
+    ],
+    ids=["simulate", "generate", "generate, full", "verify", "bench"],
+)
+def test_a_closed_pipe_loses_no_result(words, reader, written, tmp_path):
+    spec = (ROOT / "tests/networks/specs/a2_oscillator.toml").read_text(encoding="utf-8")
+    for name in "ab":
+        (tmp_path / f"{name}.toml").write_text(spec.replace('"oscillator"', f'"{name}"'))
+    command = f"{sys.executable} -m piezo_sym {words} {reader}"
+    done = subprocess.run(command, shell=True, cwd=tmp_path, capture_output=True, text=True)
+    said = [line for line in done.stderr.splitlines() if not line.startswith("measuring")]
+    full = ["piezo-sym: cannot print: No space left on device; free some space, or print elsewhere"]
+    assert said == (full if "full" in reader else [])
+    assert [name for name in written if not (tmp_path / name).stat().st_size] == []
 
 
 @pytest.mark.parametrize("words", ["kinds", "simulate piezo_stack --duration 1e-3", "schema"])
