@@ -302,6 +302,26 @@ def test_a_long_run_stops_within_a_second_of_ctrl_c(words, tmp_path):
     assert (process.returncode, out, err.strip("\n")) == (130, "", "piezo-sym: stopped")
 
 
+def test_ctrl_c_keeps_what_the_run_has(call, monkeypatch, tmp_path):
+    def interrupt(t):
+        if t > 0.05:
+            raise KeyboardInterrupt
+
+    run = piezo_sym.simulate
+    monkeypatch.setattr(
+        "piezo_sym.api.simulate",
+        lambda spec, **options: run(spec, **{**options, "progress": interrupt}),
+    )
+    out = tmp_path / "part.nc"
+    answer = call("simulate", "piezo_stack", *LONG[2:], "--duration", "10", "--out", out)
+    with xarray.open_dataset(out) as partial:
+        end = float(partial.time[-1])
+    assert 0.05 <= end < 9
+    assert answer.code == 130
+    said = f"'{out}' holds the run until t = {end:.6g} s\npiezo-sym: stopped\n"
+    assert answer.err.lstrip("\n") == said
+
+
 def test_a_dissipative_start_is_asked_for_in_a_word(call):
     given = (*SHORT, "--input", "V_in=100", "--step", "1e-4")
     answer = call(*given, "--dissipative-start")
