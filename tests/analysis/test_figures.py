@@ -9,13 +9,13 @@ from piezo_sym.analysis.figures import FIGURES, data_of, figure_4
 QUICK = [figure for figure in FIGURES if figure.name != "figure_4"]
 
 
-def one_jump():
-    """Steady states as `figure_4.curve` returns them: a fold at 60 Hz, which leads off the axes."""
+def one_jump(fold=60.0):
+    """Steady states as `figure_4.curve` returns them: a fold [Hz], which leads off the axes."""
     import xarray
 
     columns = {
         "curve": [0, 0, 0, 1, 1],
-        "frequency": [10.0, 60, 20, 100, 1000],
+        "frequency": [10.0, fold, 20, 100, 1000],
         "temperature": [300.0, 500, 3000, 3000, 600],
         "coldest": [300.0, 500, 3000, 3000, 600],
         "hottest": [300.0, 500, 3000, 3000, 600],
@@ -115,3 +115,16 @@ def test_figure_4_draws_stable_states_solid_and_jumps(drawn):
     assert np.isfinite(solid).tolist() == [True, True, False]
     dotted = axes.lines[1].get_ydata()
     assert np.isfinite(dotted).tolist() == [False, True, True]
+
+
+def test_the_folds_of_figure_4_stand_apart():
+    figure = figure_4.FIGURE_4
+    folds = [71.44, 69.40, 67.29, 57.55]  # Hz; tests/cli/test_cli_reproduce.py finds them
+    (axes,) = figure.draw(figure.joined([one_jump(fold) for fold in folds])).axes
+    axes.figure.draw_without_rendering()
+    apart = []
+    for drawn in (axes, *axes.child_axes):
+        points = drawn.transData.transform([(fold, 500 - figure_4.T_E) for fold in folds])
+        gaps = -np.diff(points[:, 0]) * 72 / axes.figure.dpi
+        apart.append(gaps.min() if drawn.bbox.contains(*points[0]) else 0)
+    assert max(apart) > 6  # points; a mark is 3 wide

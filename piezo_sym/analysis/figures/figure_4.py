@@ -2,7 +2,7 @@
 
 Input: the generated module of ``piezo_stack``.  Output: `FIGURE_4`: 100 V, 25 degrees Celsius.
 Shown is the mean temperature of the periodic steady states: stable ones as solid lines, unstable
-ones thin and dotted, and arrows where the temperature jumps.
+ones thin and dotted, and arrows where the temperature jumps; the folds stand apart in an inset.
 
 With Table 1's numbers the damper's heat grows with alpha^2, so with T^2, but the cooling only with
 T.  Up to a fold at 58 to 71 Hz, depending on the inductance, there is a cool steady state, whose
@@ -24,7 +24,7 @@ import numpy as np
 
 from piezo_sym.analysis.branches import steady_branches
 from piezo_sym.analysis.figures.figure import AMPLITUDE, TEMPERATURES, ZERO_CELSIUS, PaperFigure
-from piezo_sym.analysis.style import COLOURS, SMALL, column_figure, legend, name_axes
+from piezo_sym.analysis.style import COLOURS, SMALL, column_figure, dress, legend, name_axes
 from piezo_sym.run import sine
 
 if TYPE_CHECKING:
@@ -41,6 +41,9 @@ HOTTEST = 1e4  # K: where curves end
 VALID = 400.0  # K: above, the laws are not valid
 LEAST, MOST = 1.0, 1e4  # of the axis [K]
 MARKS = ("o", "s", "^", "D")  # not dashes, which tell stable from unstable
+#: The folds, enlarged: where in the axes, and from and to which frequency [Hz] and rise [K].
+INSET = (0.57, 0.08, 0.41, 0.29)
+FOLDS, RISES = (55.0, 75.0), (50.0, 500.0)
 APART = 0.3  # marks on a line, as a part of the diagonal
 
 
@@ -65,9 +68,24 @@ def curve(module: GeneratedModule, millihenry: float) -> xarray.Dataset:
 
 def draw(data: xarray.Dataset) -> Figure:
     """Return Figure 4, the rise over the environment, both axes logarithmic."""
-    figure, axes = column_figure(3.1)
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    figure, axes = column_figure(3.5)
+    axes.set(xscale="log", yscale="log", xlim=FREQUENCIES, ylim=(LEAST, MOST))
+    _draw_all(axes, data)
+    text = f"over {VALID:.0f} K: outside\nthe laws' range"
+    axes.text(11, 130, text, fontsize=SMALL - 1, color="0.25", va="bottom")
+    name_axes(axes, "frequency $f$ [Hz]", "temperature rise $T - T_{\\mathrm{e}}$ [K]")
+    above = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0), "ncols": len(MARKS)}
+    legend(axes, "$L$", **above, handlelength=1.5, columnspacing=1.2)
+    folds = axes.inset_axes(INSET, xlim=FOLDS, ylim=RISES)
+    dress(folds)
+    folds.tick_params(labelsize=SMALL - 1)
+    _draw_all(folds, data)
+    axes.indicate_inset_zoom(folds, edgecolor="0.3", linewidth=0.5)
+    return figure
+
+
+def _draw_all(axes: Axes, data: xarray.Dataset) -> None:
+    """Draw the curves and jumps of all inductances."""
     axes.axhspan(VALID - T_E, MOST, color="0.9", linewidth=0, zorder=0)
     for n, (millihenry, colour) in enumerate(zip(data.L.values, COLOURS, strict=False)):
         one = data.sel(L=millihenry).dropna("point", subset=["frequency"])
@@ -79,13 +97,6 @@ def draw(data: xarray.Dataset) -> Figure:
             _draw_curve(axes, part, label, {**look, "markevery": apart})
             label = "_again"
         _draw_jumps(axes, one, look)
-    text = f"over {VALID:.0f} K: outside\nthe laws' range"
-    axes.text(11, 130, text, fontsize=SMALL - 1, color="0.25", va="bottom")
-    axes.set_xlim(*FREQUENCIES)
-    axes.set_ylim(LEAST, MOST)
-    name_axes(axes, "frequency $f$ [Hz]", "temperature rise $T - T_{\\mathrm{e}}$ [K]")
-    legend(axes, "$L$", loc="lower right")
-    return figure
 
 
 def _draw_curve(axes: Axes, curve: xarray.Dataset, label: str, look: dict[str, Any]) -> None:
@@ -102,7 +113,7 @@ def _draw_jumps(axes: Axes, one: xarray.Dataset, look: dict[str, Any]) -> None:
     """Draw an arrow from each fold to where the temperature goes."""
     for n in np.flatnonzero(~np.isnan(one.jumps_to.values)):
         f, start = float(one.frequency[n]), float(one.temperature[n]) - T_E
-        end = min(float(one.jumps_to[n]) - T_E, MOST)
+        end = min(float(one.jumps_to[n]) - T_E, axes.get_ylim()[1])
         style = {"arrowstyle": "->", "color": look["color"], "linewidth": 0.8, "linestyle": "--"}
         axes.annotate("", (f, end), (f, start), arrowprops={**style, "shrinkA": 0, "shrinkB": 0})
         axes.plot(f, start, linestyle="", **look)
