@@ -8,11 +8,11 @@ the residual of the energy balance.  Empty panels are left out.
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from piezo_sym.analysis.style import COLOURS, LABEL, SMALL, dress
+from piezo_sym.analysis.style import COLOURS, DASHES, LABEL, SMALL, dress
 from piezo_sym.errors import UsageError, listing, one_line, quote
 
 if TYPE_CHECKING:
@@ -28,7 +28,8 @@ if TYPE_CHECKING:
 
 ACROSS = 3  # panels in a row
 WIDTH, HEIGHT = 3.2, 2.1  # of a panel, inches
-MOST_NAMES = 16  # in a legend; then it says how many there are more
+MOST_NAMES = 8  # in a column of a legend
+HATCHES = ("", "///", "...", "xxx")  # of areas whose colours are used up
 MOST_LANES = 8  # drawn one by one; of more, the mean and the range are drawn
 LEDGER = ("energy_residual", "entropy_residual", "energy", "entropy")
 SUMS = ("supplied_", "heat_", "produced_", "entropy_exchanged_")
@@ -60,7 +61,9 @@ def plot(run: xarray.Dataset) -> Figure:
     grid = figure.subplots(rows, ACROSS, sharex=True, squeeze=False).ravel()
     for axes, (label, draw) in zip(grid, panels, strict=False):
         dress(axes)
-        axes.ticklabel_format(axis="y", scilimits=(-2, 4), useMathText=True, useOffset=False)
+        axes.ticklabel_format(useOffset=False)
+        axes.locator_params(axis="x", nbins=4)
+        axes.ticklabel_format(axis="y", scilimits=(-2, 4), useMathText=True)
         axes.yaxis.get_offset_text().set_fontsize(SMALL)
         draw(axes)
         axes.set_ylabel(label, fontsize=LABEL)
@@ -103,7 +106,10 @@ def _panels(run: xarray.Dataset) -> Iterator[Panel]:
         yield "entropy produced [J/K]", partial(_stack, run=run, names=produced, prefix="produced_")
     if supplied := _with_prefix(run, "supplied_"):
         yield "energy put in [J]", partial(_lines, run=run, names=supplied, prefix="supplied_")
-    yield "energy residual [J]", partial(_lines, run=run, names=["energy_residual"])
+    yield (
+        "energy residual [J]",
+        partial(_lines, run=run, names=["energy_residual"], prefix="energy_"),
+    )
 
 
 def _by_unit(run: xarray.Dataset) -> dict[str, list[str]]:
@@ -129,27 +135,20 @@ def _short(names: list[str]) -> str:
 def _lines(axes: Axes, run: xarray.Dataset, names: list[str], prefix: str = "") -> None:
     """Draw variables as lines; of a bank every lane, or mean and range if there are many."""
     time = run.time.values
-    mark = "." if time.size == 1 else ""
-    for n, name in enumerate(names):
-        colour, label = COLOURS[n % len(COLOURS)], name.removeprefix(prefix)
-        values = _lanes(run[name])
-        if values.shape[1] <= MOST_LANES:
-            lines = axes.plot(time, values, color=colour, linewidth=0.9, marker=mark)
-            lanes = values.shape[1]
-            label = f"{label}: lanes 1 to {lanes}" if lanes > 1 else label
+    look: dict[str, Any] = {"linewidth": 0.9, "marker": "." if time.size == 1 else ""}
+    axes.set_prop_cycle(linestyle=[d for d in DASHES for _ in COLOURS], color=COLOURS * len(DASHES))
+    for name in names:
+        values, label = _lanes(run[name]), name.removeprefix(prefix)
+        if run[name].ndim == 1:
+            axes.plot(time, values, label=label, **look)
+        elif values.shape[1] <= MOST_LANES:
+            (bank,) = set(run[name].dims) - {"time"}
+            lanes = [f"{label}_{lane}" for lane in run[name][bank].values]
+            axes.plot(time, values, label=lanes, **look)
         else:
-            low, high = values.min(axis=1), values.max(axis=1)
-            axes.fill_between(time, low, high, color=colour, alpha=0.3, linewidth=0)
-            lines = axes.plot(time, values.mean(axis=1), color=colour, linewidth=0.9, marker=mark)
-            label = f"{label}: mean and range"
-        lines[0].set_label(_named(label, n, len(names)))
-
-
-def _named(label: str, n: int, count: int) -> str:
-    """Return what the legend says of curve n of so many; nothing of those beyond the last."""
-    if n + 1 == MOST_NAMES < count:
-        return f"{label}, and {count - MOST_NAMES} more"
-    return label if n < MOST_NAMES else "_more"
+            (mean,) = axes.plot(time, values.mean(axis=1), label=f"{label}: mean and range", **look)
+            limits = values.min(axis=1), values.max(axis=1)
+            axes.fill_between(time, *limits, color=mean.get_color(), alpha=0.3, linewidth=0)
 
 
 def _lanes(variable: xarray.DataArray) -> FloatArray:
@@ -164,17 +163,20 @@ def _stack(axes: Axes, run: xarray.Dataset, names: list[str], prefix: str) -> No
     base = np.zeros(time.size)
     for n, name in enumerate(names):
         top = base + _lanes(run[name]).sum(axis=1)
-        colour = COLOURS[n % len(COLOURS)]
-        label = _named(name.removeprefix(prefix), n, len(names))
+        colour, label = COLOURS[n % len(COLOURS)], name.removeprefix(prefix)
+        hatch = HATCHES[n // len(COLOURS) % len(HATCHES)]
         if time.size == 1:
             axes.plot(time, top, ".", color=colour, label=label)
         else:
-            axes.fill_between(time, base, top, color=colour, alpha=0.7, linewidth=0, label=label)
+            look: dict[str, Any] = {"facecolor": colour, "edgecolor": "0.3", "hatch": hatch}
+            axes.fill_between(time, base, top, alpha=0.7, linewidth=0, label=label, **look)
         base = top
 
 
 def _small_legend(axes: Axes) -> None:
-    """Add a legend where more than one variable is drawn, or the lanes of one."""
-    labels = axes.get_legend_handles_labels()[1]
-    if len(labels) > 1 or any(":" in label for label in labels):
-        axes.legend(fontsize=SMALL - 1, loc="best", framealpha=0.6, handlelength=1.5)
+    """Add a legend that names every curve, unless there is one and the panel's label names it."""
+    names = axes.get_legend_handles_labels()[1]
+    if len(names) > 1 or names[0] not in axes.get_ylabel():
+        look: dict[str, Any] = {"framealpha": 0.6, "handlelength": 1.5, "columnspacing": 1.0}
+        columns = -(-len(names) // MOST_NAMES)
+        axes.legend(fontsize=SMALL - 1, loc="best", ncols=columns, **look)

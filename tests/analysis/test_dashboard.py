@@ -36,6 +36,10 @@ def panel(figure, start):
     return next(axes for axes in figure.axes if axes.get_ylabel().startswith(start))
 
 
+def names(axes):
+    return [text.get_text() for text in axes.get_legend().get_texts()]
+
+
 def test_every_quantity_has_its_panel():
     run = actuator()
     figure = plot(run)
@@ -94,13 +98,51 @@ def test_many_lanes_are_drawn_as_the_range_they_fill():
     assert filled.get_paths()[0].vertices[:, 1].max() == pytest.approx(float(run.phi.max()))
 
 
+@pytest.mark.parametrize(("lanes", "lines", "bands"), [(8, 8, 0), (9, 1, 1)])
+def test_a_bank_of_more_than_eight_lanes_is_a_band(lanes, lines, bands):
+    axes = panel(plot(actuator(parameters={"hysteron_count": lanes}, times=11)), "phi")
+    assert (len(axes.lines), len(axes.collections)) == (lines, bands)
+    band = ["phi: mean and range"]
+    assert names(axes) == (band if bands else [f"phi_{n + 1}" for n in range(lanes)])
+
+
+def test_every_curve_has_a_name_and_a_look_of_its_own():
+    run = actuator(times=11)
+    bodies = {f"T_{n}": run.T_body + n for n in range(20)}
+    heats = {f"heat_{n}": run.heat_damper for n in range(20)}
+    figure = plot(run.assign({**bodies, **heats}))
+    axes = panel(figure, "T_e, T_body")
+    assert names(axes) == ["T_e", "T_body", *bodies]
+    assert len({(line.get_color(), str(line._dash_pattern)) for line in axes.lines}) == 22
+    axes = panel(figure, "heat")
+    assert len(names(axes)) == 22
+    areas = {(str(area.get_facecolor()), area.get_hatch()) for area in axes.collections}
+    assert len(areas) == 22
+
+
+def test_the_only_curve_of_a_panel_is_named_once():
+    figure = plot(actuator(times=11))
+    assert panel(figure, "q").get_legend() is None
+    assert panel(figure, "energy residual").get_legend() is None
+    alone = plot(actuator(times=11).drop_vars("heat_hysteron"))
+    assert names(panel(alone, "heat released")) == ["damper"]
+
+
+def test_numbers_of_axes_have_no_offset():
+    run = actuator(times=11, t0=1000.0)
+    figure = plot(run.assign(T_body=298.15 + 1e-6 * run.time))
+    figure.draw_without_rendering()
+    for axes in figure.axes:
+        offsets = axes.xaxis.get_offset_text().get_text(), axes.yaxis.get_offset_text().get_text()
+        assert not any("+" in text for text in offsets)
+    numbers = [text.get_text() for text in figure.axes[-1].get_xticklabels()]
+    assert all(999.9 < float(number) < 1000.1 for number in numbers)
+
+
 def test_several_bodies():
     figure = plot(simulate(f"{SPECS}/a1_two_bodies.toml", duration=5))
     assert len(panel(figure, "T_hot, T_cold").lines) == 2
-    assert [text.get_text() for text in panel(figure, "T_hot").get_legend().get_texts()] == [
-        "T_hot",
-        "T_cold",
-    ]
+    assert names(panel(figure, "T_hot")) == ["T_hot", "T_cold"]
 
 
 def test_a_model_without_heat_has_no_panel_for_it(module):
