@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 from piezo_sym.errors import FileError, ProofError, UsageError, quote
 from piezo_sym.files import path_text, read_text, temporary_folder, write_together
 from piezo_sym.run.module import UNPROVED, verdict_of
+from piezo_sym.spec.names import MAX_NAME
 from piezo_sym.spec.source import data, find, read, shipped
 from piezo_sym.spec.write import spec_hash
 from piezo_sym.version import VERSION
@@ -78,7 +79,7 @@ def _identified(spec: str | Path | Model) -> tuple[str, str, Model | None]:
     content = data(read(find(spec)))
     header = content.get("model")
     name = header.get("name") if isinstance(header, dict) else None
-    known = isinstance(name, str) and name.isidentifier()
+    known = isinstance(name, str) and name.isidentifier() and len(name) <= MAX_NAME
     return (str(name) if known else ""), spec_hash_of(content), None
 
 

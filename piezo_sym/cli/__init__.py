@@ -82,6 +82,8 @@ def run(words: list[str]) -> int:
         sys.stdout = open(os.devnull, "w")  # noqa: SIM115 - so that the exit has no more to say
         return CLOSED
     except OSError as error:
+        if error.filename is not None:
+            return _failed(f"{one_line(str(error.filename))}: {error.strerror}", 2)
         return _failed(f"cannot print: {error.strerror}; free some space, or print elsewhere", 2)
     except MemoryError:
         return _failed("out of memory; use smaller banks or fewer --times", 2)

@@ -49,7 +49,7 @@ def find(spec: str | Path) -> Path:
     if text in shipped():
         return MODELS / f"{text}.toml"
     path = Path(spec)
-    if path.suffix != ".toml" and NAME.fullmatch(text) and not path.exists():
+    if path.suffix != ".toml" and NAME.fullmatch(text) and not os.path.exists(path):
         remedy = f"{nearest(text, shipped())}; or give the path of a .toml file"
         raise FileError(f"no shipped spec is called {quote(text)}", remedy=remedy)
     return path

@@ -96,3 +96,9 @@ def test_a_full_disk_is_one_line(refused, spec_file, tmp_path):
         message = refused("generate", path, "--out", tmp_path / "full")
     assert "cannot be written (File too large)" in message
     assert [name for name in files(tmp_path) if name.endswith(".py")] == []
+
+
+def test_a_name_longer_than_any_file_is_one_line(refused, spec_file):
+    assert "no shipped spec is called" in refused("simulate", "a" * 300, "--duration", "1")
+    spec = spec_file('name   = "mine"', f'name   = "{"a" * 300}"')
+    assert "model.name" in refused("simulate", spec, "--duration", "1")
