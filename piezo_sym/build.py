@@ -156,7 +156,7 @@ def _compare(path: Path, data: bytes) -> Iterator[Drift]:
     present = None if _is_odd(path) or path.is_dir() else read_bytes(path)
     if present is None:
         yield Drift(path, LINK if _is_odd(path) or path.is_dir() else MISSING)
-    elif present.replace(b"\r\n", b"\n") == data != present:
+    elif present.splitlines() == data.splitlines() and present != data:
         yield Drift(path, ENDS)
     elif present != data:
         old, new = (text.decode(errors="replace").splitlines() for text in (present, data))

@@ -122,9 +122,14 @@ def test_pythons_own_caches_and_empty_folders_are_no_drift(model, out):
     assert [d.path.name for d in drift([model], out)] == ["notes.txt"]
 
 
-@pytest.mark.parametrize("lines", [1, -1])
-def test_other_line_ends_are_found(model, file, out, lines):
-    file.write_bytes(file.read_bytes().replace(b"\n", b"\r\n", lines))
+@pytest.mark.parametrize(("ends", "lines"), [(b"\r\n", 1), (b"\r\n", -1), (b"\r", -1)])
+def test_other_line_ends_are_found(model, file, out, ends, lines):
+    file.write_bytes(file.read_bytes().replace(b"\n", ends, lines))
+    assert [(d.path, d.fault) for d in drift([model], out)] == [(file, ENDS)]
+
+
+def test_a_last_line_without_an_end_is_found(model, file, out):
+    file.write_bytes(file.read_bytes().removesuffix(b"\n"))
     assert [(d.path, d.fault) for d in drift([model], out)] == [(file, ENDS)]
 
 
