@@ -229,7 +229,8 @@ def test_control_c_stops_within_seconds_and_leaves_the_store(tmp_path, duration,
         finally:
             process.kill()
         took = time.monotonic() - begun
-    assert "KeyboardInterrupt" in errors.splitlines()[-1]
+    # zarr may still say that it never awaited what it was interrupted in
+    assert any(line.startswith("KeyboardInterrupt") for line in errors.splitlines()), errors
     assert took < 30  # seconds, on any machine; the runs of 10 s alone would take hours
     with xarray.open_zarr(path, chunks=None, consolidated=False) as found:
         done = found.error.values == ""
