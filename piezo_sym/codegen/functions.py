@@ -44,8 +44,7 @@ def functions_of(q: Quantities) -> tuple[ModuleFunction, ...]:
     """Return every function of the module but the Jacobian and the margins."""
     temperatures = (Sym(port.temperature) for port in q.bodies.values())
     S = add(*(Sym(port.state) for port in q.bodies.values()))
-    energies = zip(q.iphs.energies, q.iphs.system.states, strict=True)
-    U = add(*(q.total(value, slot.bank) if slot.bank else value for value, slot in energies))
+    U = add(*(q.total(e.law, e.bank) if e.bank else e.law for e in q.iphs.energies))
     made = [
         ("initial_state", tuple(_starts(q.iphs))),
         ("rhs", rates_of(q)),

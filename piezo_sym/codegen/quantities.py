@@ -81,7 +81,7 @@ class Quantities:
     def temperatures(self) -> dict[Expr, Sym]:
         """The name of each temperature by its law."""
         bodies = self.bodies.values()
-        return {rename(b.law, {b.letter: b.state}): Sym(b.temperature) for b in bodies}
+        return {body.law: Sym(body.temperature) for body in bodies}
 
     @cached_property
     def ports(self) -> tuple[Placed, ...]:
@@ -177,7 +177,7 @@ def _excesses(iphs: IPHS, new: Names) -> dict[tuple[Sym, Sym], Quantity]:
     """Return the difference of each temperature to a constant of which it is an exponential."""
     found = {}
     for _, body in iphs.circuit.of(Body):
-        match rename(body.law, {body.letter: body.state}):
+        match body.law:
             case Mul(Sym() as cold, Call("exp", args)):
                 name, value = f"{body.temperature}_minus_{cold.name}", Call("expm1", args)
                 excess = Quantity(new(name), mul(cold, value), None, COSTATES)
@@ -215,7 +215,7 @@ def _limits(iphs: IPHS, excesses: Excesses) -> Iterator[Limit]:
 def _costates(iphs: IPHS, excesses: Excesses) -> Iterator[Quantity]:
     known = {hot.name: (cold, excess) for (hot, cold), excess in excesses.items()}
     for placed, port in iphs.circuit.of(Storage, Body):
-        name, law = costate_name(port), rename(port.law, {port.letter: port.state})
+        name, law = costate_name(port), port.law
         if name in known:
             cold, excess = known[name]
             yield excess
@@ -269,6 +269,7 @@ def _totals(
             yield Quantity(new(f"heat_{slot.label}"), LaneSum(heat, slot.bank), None, SUMS)
         elif heat not in known:
             yield Quantity(new(f"heat_{slot.label}"), heat, None, "heats")
-    for slot, energy in zip(iphs.system.states, iphs.energies, strict=True):
-        if slot.bank:
-            yield Quantity(new(f"energy_{slot.label}"), LaneSum(energy, slot.bank), None, SUMS)
+    for energy in iphs.energies:
+        if energy.bank:
+            word = f"energy_{iphs.system.states[energy.rows[0]].label}"
+            yield Quantity(new(word), LaneSum(energy.law, energy.bank), None, SUMS)

@@ -43,7 +43,6 @@ from piezo_sym.expressions.tree import (
     Sym,
     children,
     knots,
-    rename,
     walk,
 )
 from piezo_sym.expressions.units import parse_unit
@@ -170,8 +169,7 @@ def _laws(q: Quantities) -> Iterator[tuple[str, str, Expr]]:
             case Storage() | Body():
                 yield element, "law", Sym(costate_name(port))
                 if isinstance(port, Body):
-                    law = rename(port.law, {port.letter: port.state})
-                    yield element, "slope", derivative(law, port.state)
+                    yield element, "slope", derivative(port.law, port.state)
             case Coupling():
                 yield element, "law", Sym(port.name)
             case Source():

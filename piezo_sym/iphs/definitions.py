@@ -7,6 +7,8 @@ each name the expression behind it, stated once.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import final
 
 import sympy as sp
 
@@ -49,7 +51,7 @@ def law_of(
     """
     match port:
         case Storage() | Body():
-            return rename(port.law, {port.letter: port.state})
+            return port.law
         case DissipativePort():
             return rename(port.law, {"T": circuit.body(port.heats).temperature})
         case Coupling():
@@ -109,20 +111,46 @@ def _input(port: object, circuit: Circuit, symbols: SymbolTable) -> sp.Expr:
     raise TypeError(msg)
 
 
-def energy_of(element: str, port: Storage | Body) -> Expr:
-    """Return the energy of a store: the integral of its co-state law.
+@final
+@dataclass(frozen=True)
+class Energy:
+    """The energy [J] of one store, or of stores that share one.
+
+    Attributes
+    ----------
+    law : a function of states and parameters.
+    rows : the states that it is of, by their place among all.
+    bank : whose lanes have such an energy each, or None.
+    """
+
+    law: Expr
+    rows: tuple[int, ...]
+    bank: str | None
+
+
+def energies_of(circuit: Circuit) -> tuple[Energy, ...]:
+    """Return the energies, ordered by the first state of each.
 
     Raises
     ------
     SpecError
-        If it has no closed form.
+        If a co-state law has no integral in closed form.
     """
-    energy = antiderivative(port.law, port.letter)
+    rows: dict[tuple[Expr, str | None], tuple[int, ...]] = {}
+    for n, (placed, port) in enumerate(circuit.of(Storage, Body)):
+        key = port.energy or _integral(placed.element, port), placed.bank
+        rows[key] = (*rows.get(key, ()), n)
+    return tuple(Energy(law, found, bank) for (law, bank), found in rows.items())
+
+
+def _integral(element: str, port: Storage | Body) -> Expr:
+    """Return the integral of a co-state law by its state."""
+    energy = antiderivative(port.law, port.state)
     if energy is None:
         what = f"the law {quote(spell(port.law))} has no energy in closed form"
-        expected = f"a polynomial in {port.letter}, or an exponential"
+        expected = f"a polynomial in {port.state}, or an exponential"
         raise SpecError(what, f"elements.{element}", expected)
-    return rename(energy, {port.letter: port.state})
+    return energy
 
 
 Definitions = Iterator[tuple[sp.Symbol, sp.Expr]]

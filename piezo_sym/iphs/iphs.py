@@ -18,10 +18,10 @@ from piezo_sym.algebra.lanes import LaneMatrix, vector
 from piezo_sym.algebra.notation import slot_text, text
 from piezo_sym.algebra.symbols import SymbolTable, symbol_table
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import Expr
 from piezo_sym.iphs.definitions import (
+    Energy,
     costates_of,
-    energy_of,
+    energies_of,
     laws_of,
     ratios_of,
     slopes_of,
@@ -31,7 +31,7 @@ from piezo_sym.iphs.reading import Pairs, Reading, document, equations_latex
 from piezo_sym.iphs.system import System
 from piezo_sym.network import Junction, junction_of
 from piezo_sym.spec.circuit import Circuit, circuit_of
-from piezo_sym.spec.elements.ports import Body, Conductor, DissipativePort, Storage
+from piezo_sym.spec.elements.ports import Body, Conductor, DissipativePort
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import banks
 from piezo_sym.spec.unroll import unroll
@@ -73,7 +73,7 @@ class IPHS:
     model, circuit, symbols : where it comes from, and its names.
     system : Definition 1 in named co-states.
     junction : the solved network, where the matrices of `system` come from.
-    energies : the stored energy of each state, as a law of it; U is their sum.
+    energies : what U is the sum of: of one store, or of several that share one.
     laws, shares, slopes, ratios, costates : what the names in `system` stand for, as (symbol,
         expression).
 
@@ -86,7 +86,7 @@ class IPHS:
     symbols: SymbolTable
     junction: Junction
     system: System
-    energies: tuple[Expr, ...]
+    energies: tuple[Energy, ...]
     laws: Pairs
     shares: Pairs
     slopes: Pairs
@@ -111,11 +111,11 @@ class IPHS:
 
     @cached_property
     def _stored(self) -> tuple[sp.Expr, ...]:
-        """The energy of each state, a bank's summed over its lanes."""
+        """The energies, a bank's summed over its lanes."""
         sums, terms = self.system.E.lanes.sum, []
-        for slot, energy in zip(self.system.states, self.energies, strict=True):
-            term = self.symbols.law(energy, {})
-            terms.append(sums(term, slot.bank) if slot.bank else term)
+        for energy in self.energies:
+            term = self.symbols.law(energy.law, {})
+            terms.append(sums(term, energy.bank) if energy.bank else term)
         return tuple(terms)
 
     @cached_property
@@ -261,7 +261,7 @@ def iphs_of(symbols: SymbolTable, junction: Junction) -> IPHS:
         symbols=symbols,
         junction=junction,
         system=system,
-        energies=tuple(energy_of(placed.element, p) for placed, p in circuit.of(Storage, Body)),
+        energies=energies_of(circuit),
         laws=tuple(laws_of(circuit, symbols, system)),
         shares=junction.shares,
         slopes=tuple(slopes_of(circuit, symbols, junction.slopes)),

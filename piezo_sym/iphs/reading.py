@@ -30,7 +30,7 @@ class Reading:
     Attributes
     ----------
     system : in named co-states.
-    energies : the terms of the Hamiltonian, as functions of the state, in state order.
+    energies : the terms of the Hamiltonian, as functions of the state.
     written : names replaced by what they stand for, such as p/M for the velocity.
     named : names kept, and explained after the equations.
     spelled : what a law's name stands for, in the words of the spec, for plain text.

@@ -28,7 +28,7 @@ from piezo_sym.network.kirchhoff import Answer, Laws
 from piezo_sym.network.loops import Definition, Slope, loops_of
 from piezo_sym.network.nodes import check_nodes
 from piezo_sym.spec.circuit import Circuit
-from piezo_sym.spec.elements.ports import Conductor, Exchange, PowerVariable, Source
+from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, PowerVariable, Source
 
 
 @final
@@ -89,6 +89,8 @@ class _Blocks:
             "W": tuple(Slot(placed.element, placed.bank) for placed, _ in laws.processes),
             "u": tuple(Slot(placed.element) for placed in laws.ports),
         }
+        bodies = (n for n, (_, port) in enumerate(laws.states) if isinstance(port, Body))
+        self.rows = {laws.states[n][0].element: n for n in bodies}  # each body's entropy
 
     def junction(self) -> Junction:
         """Return the junction, having checked that it preserves power."""
@@ -155,9 +157,8 @@ class _Blocks:
 
     def _with_conduction(self, B: LaneMatrix) -> LaneMatrix:
         """Return B with the conductions: each takes entropy from its first body."""
-        rows = {placed.element: n for n, (placed, _) in enumerate(self.laws.states)}
         taken = {
-            (rows[port.first], n): sp.S.One
+            (self.rows[port.first], n): sp.S.One
             for n, (_, port) in enumerate(self.laws.processes)
             if isinstance(port, Conductor)
         }
@@ -165,9 +166,8 @@ class _Blocks:
 
     def _with_heat(self, g: LaneMatrix) -> LaneMatrix:
         """Return the input map with the heat exchanges, each into its body's entropy."""
-        rows = {placed.element: n for n, (placed, _) in enumerate(self.laws.states)}
         heat = {
-            (rows[placed.port.body], n): sp.S.One
+            (self.rows[placed.port.body], n): sp.S.One
             for n, placed in enumerate(self.laws.ports)
             if isinstance(placed.port, Exchange)
         }

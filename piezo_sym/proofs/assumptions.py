@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import final
 
+from piezo_sym.expressions.calculus import derivative
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, Div, Expr, Mul, Sym, names
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import law_of
@@ -95,17 +96,25 @@ def assumptions_of(iphs: IPHS) -> Assumptions:
     ties = tuple(
         Cmp("=", Sym(port.temperature), law_of(iphs.circuit, port))
         for _, port in placed
-        if port.state in used or not _is_exponential(port.law)
+        if port.state in used or not _takes_all(port.law, port.state)
     )
     texts, fixed = tuple(map(condition_text, trees)), frozenset(iphs.model.parameters)
     return Assumptions((*trees, *warm, *ties), order, texts, rows, fixed)
 
 
-def _is_exponential(law: Expr) -> bool:
-    """Return whether a temperature takes every positive value: a constant times exp(S/c)."""
+def _takes_all(law: Expr, state: str) -> bool:
+    """Return whether a temperature takes every positive value, whatever the other states are.
+
+    It does if it is positive, rises with S (row ``temperature``), and is exp(a*S + b) times what
+    does not depend on S, as a and b do not.
+    """
     match law:
-        case Mul(Sym(), Call("exp", (Div(Sym(), _) | Sym(),))):
-            return True
+        case Mul(left, right) if state not in names(left):
+            return _takes_all(right, state)
+        case Mul(left, right) | Div(left, right) if state not in names(right):
+            return _takes_all(left, state)
+        case Call("exp", (arg,)):
+            return state not in names(derivative(arg, state))
     return False
 
 

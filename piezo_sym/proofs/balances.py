@@ -13,7 +13,7 @@ import sympy as sp
 
 from piezo_sym.algebra.lanes import LaneMatrix
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import ZERO, Cmp, Sym
+from piezo_sym.expressions.tree import ZERO, Cmp, Sym, names
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.assumptions import Assumptions
 from piezo_sym.proofs.laws import valued
@@ -24,7 +24,6 @@ from piezo_sym.spec.elements.ports import (
     DissipativePort,
     Exchange,
     Source,
-    Storage,
 )
 
 
@@ -151,14 +150,12 @@ def _cooling(iphs: IPHS, assumptions: Assumptions) -> Iterator[Question]:
 
 
 def _gradient(iphs: IPHS) -> Iterator[Residual]:
-    """Yield dU/dx minus the co-state, for each store."""
-    stores = iphs.circuit.of(Storage, Body)
-    for energy_law, (_, port), (_, costate) in zip(
-        iphs.energies, stores, iphs.costates, strict=True
-    ):
-        state = iphs.symbols[port.state]
-        difference = sp.diff(iphs.symbols.law(energy_law, {}), state) - costate
-        yield Residual(f"dU/d{port.state}", sp.expand(difference))
+    """Yield dU/dx minus the co-state, for each state."""
+    stored = [(names(e.law), iphs.symbols.law(e.law, {})) for e in iphs.energies]
+    for slot, (_, costate) in zip(iphs.system.states, iphs.costates, strict=True):
+        state = iphs.symbols[slot.label]
+        slopes = (sp.diff(law, state) for used, law in stored if slot.label in used)
+        yield Residual(f"dU/d{slot.label}", sp.expand(sp.Add(*slopes) - costate))
 
 
 def _entries(name: str, matrix: LaneMatrix) -> Iterator[Residual]:

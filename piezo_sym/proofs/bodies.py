@@ -63,14 +63,16 @@ def invariant(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
     for placed, port in iphs.circuit.of(Body):
         exchanges = [p for _, p in iphs.circuit.of(Exchange) if p.body == placed.element]
         floor = floors.get(port.temperature)
-        if floor is None or not exchanges:
+        others = {slot.label for slot in iphs.system.states} - {port.state}
+        worked = not others.isdisjoint(names(port.law))  # work changes its temperature, too
+        if floor is None or not exchanges or worked:
             continue
         contacts = tuple(_contacts(iphs, placed.element))
-        others = ", no neighbour colder" if contacts else ""
+        neighbours = ", no neighbour colder" if contacts else ""
         yield Obligation(
             "invariant",
             placed.element,
-            f"{spell(floor)} < T <= m < T_e{others}: dS/dt >= lam*(T_e/m - 1) >= 0",
+            f"{spell(floor)} < T <= m < T_e{neighbours}: dS/dt >= lam*(T_e/m - 1) >= 0",
             r"T_0 < T \le m < T_e \Rightarrow \dot S \ge \lambda (T_e/m - 1) \ge 0",
             assumptions.texts,
             questions=tuple(_gains(port, exchanges, contacts, assumptions)),

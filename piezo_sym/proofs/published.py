@@ -47,8 +47,7 @@ def published(iphs: IPHS) -> dict[str, object]:
     system = iphs.system
     slots = list(zip(system.states, iphs.circuit.of(Storage, Body), strict=True))
     tree = _Trees(iphs)
-    energies = zip(system.states, iphs.energies, strict=True)
-    stored = [LaneSum(law, slot.bank) if slot.bank else law for slot, law in energies]
+    stored = [LaneSum(e.law, e.bank) if e.bank else e.law for e in iphs.energies]
     return {
         "states": [
             {"name": slot.label, "element": placed.element, "bank": slot.bank}

@@ -11,7 +11,7 @@ import sympy as sp
 
 from piezo_sym.algebra.coefficients import coefficient
 from piezo_sym.expressions.calculus import derivative
-from piezo_sym.expressions.tree import Cmp, Expr, Sym, names, replace
+from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Div, Expr, Sym, names, replace
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import law_of
 from piezo_sym.spec.elements.ports import Conductor, Coupling, DissipativePort, Source, Storage
@@ -34,14 +34,19 @@ def ties(iphs: IPHS) -> Mapping[str, Cmp | None]:
 
 
 def _bounded(iphs: IPHS) -> Iterator[sp.Symbol]:
-    """Yield the co-states and inputs that the domain speaks of, and co-states that are no ratio.
+    """Yield the inputs that the domain speaks of, and the co-states that may not take every value.
 
-    A current phi/L takes every value, unless the domain speaks of phi; one of a softening inductor
-    may not.
+    A current phi/L takes every value if L > 0, unless the domain speaks of phi; that of a softening
+    inductor, or of one that moves, may not.
     """
-    used = {name for c in conditions(iphs.model) for name in names(c.tree)}
+    trees = [condition.tree for condition in conditions(iphs.model)]
+    used = {name for tree in trees for name in names(tree)}
+    states = {slot.label for slot in iphs.system.states}
     for _, store in iphs.circuit.of(Storage):
-        if store.state in used or store.letter in names(derivative(store.law, store.letter)):
+        slope = derivative(store.law, store.state)
+        size = slope.right if isinstance(slope, Div) and slope.left == ONE else slope
+        free = Cmp(">", size, ZERO) in trees and states.isdisjoint(names(size))
+        if store.state in used or not free:
             yield iphs.symbols[store.costate]
     for _, source in iphs.circuit.of(Source):
         if source.input in used:

@@ -14,8 +14,8 @@ that do not depend on the state.
 from collections.abc import Iterator
 
 from piezo_sym.algebra.lanes import Slot
-from piezo_sym.expressions.calculus import derivative
-from piezo_sym.expressions.tree import names, rename
+from piezo_sym.expressions.calculus import is_affine
+from piezo_sym.expressions.tree import names
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name
 from piezo_sym.network import port_order
@@ -65,24 +65,27 @@ def proved_step(iphs: IPHS) -> Proved:
 
 
 def _means(read: SystemReader) -> Iterator[tuple[str, tuple[Slot, Value]]]:
-    """Yield co-states that are not affine in their state, slots of their means, their values."""
+    """Yield co-states that are not affine in the states, slots of their means, their values."""
     iphs, known = read.iphs, dict(read.iphs.costates)
+    states = [slot.label for slot in iphs.system.states]
     for slot, (_, port) in zip(iphs.system.states, iphs.circuit.of(Storage, Body), strict=True):
-        costate, law = costate_name(port), rename(port.law, {port.letter: port.state})
-        if iphs.symbols.law(law, {}) != known[iphs.symbols[costate]]:
+        costate = costate_name(port)
+        if iphs.symbols.law(port.law, {}) != known[iphs.symbols[costate]]:
             raise NotShownError(f"{costate} of the system is not its law")
-        value = spelled(read.law(law))
-        if port.state in names(derivative(law, port.state)):
+        value = spelled(read.law(port.law))
+        if not is_affine(port.law, states):
             yield costate, (Slot(f"mean of {costate}", slot.bank), value)
-        elif not _is_affine(value, *read.names[slot.label].parts):
-            raise NotShownError(f"{costate} is not shown to be affine in {slot.label}")
+        elif not _shown_affine(value, read.field.states):
+            raise NotShownError(f"{costate} is not shown to be affine in the states")
 
 
-def _is_affine(value: Value, state: int) -> bool:
-    """Return whether each term has the state as a simple factor, or does not depend on it."""
+def _shown_affine(value: Value, states: frozenset[int]) -> bool:
+    """Return whether each term has one state as a simple factor, or does not depend on states."""
     gens = value.field.gens
     return all(
-        state not in gens[g].parts or (g, e) == (state, 1) for mono in value.terms for g, e in mono
+        found in ([], [1])
+        for mono in value.terms
+        for found in ([e if g in states else 0 for g, e in mono if gens[g].parts & states],)
     )
 
 

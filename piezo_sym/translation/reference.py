@@ -105,14 +105,19 @@ def _start(read: SystemReader, part: str | float) -> Value:
 def _energy(read: SystemReader) -> Value:
     """Return the energy, its gradient checked to be the co-states."""
     iphs, system, parts = read.iphs, read.iphs.system, list[Value]()
-    stored = [iphs.symbols.law(law, {}) for law in iphs.energies]
-    _tie(iphs, "U", zip(stored, system.states, strict=True), iphs.U)
-    for slot, law, costate in zip(system.states, stored, system.E, strict=True):
+    stored = [iphs.symbols.law(energy.law, {}) for energy in iphs.energies]
+    slots = [Slot("", energy.bank) for energy in iphs.energies]
+    _tie(iphs, "U", zip(stored, slots, strict=True), iphs.U)
+    if sorted(n for energy in iphs.energies for n in energy.rows) != [*range(len(system.states))]:
+        raise NotShownError("a state has no energy, or more than one")
+    for law, energy in zip(stored, iphs.energies, strict=True):
         term = read(law)
-        (state,) = read.names[slot.label].parts
-        if not is_zero(derivative(term, state) - read(costate)):
-            raise NotShownError(f"dU/d{slot.label} is not shown to be the co-state")
-        parts.append(read.field.lane_sum(term, slot.bank) if slot.bank else term)
+        for n in energy.rows:
+            label = system.states[n].label
+            (state,) = read.names[label].parts
+            if not is_zero(derivative(term, state) - read(system.E[n, 0])):
+                raise NotShownError(f"dU/d{label} is not shown to be the co-state")
+        parts.append(read.field.lane_sum(term, energy.bank) if energy.bank else term)
     return read.field.total(parts)
 
 

@@ -195,7 +195,7 @@ def rounded(iphs: IPHS) -> Iterator[tuple[float, Fraction]]:
     """Yield the numbers of a spec that no short decimal is, with the nearest machine number."""
     model = iphs.model
     trees = [law.tree for name, e in model.elements.items() for law in law_fields(name, e)]
-    trees += iphs.energies
+    trees += [energy.law for energy in iphs.energies]
     trees += [side for c in conditions(model) for side in (c.tree.left, c.tree.right)]
     starts = (s if isinstance(s, tuple) else (s,) for s in model.initial.values())
     trees += [parse_law(part, "initial") for s in starts for part in s if isinstance(part, str)]

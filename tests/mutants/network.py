@@ -32,12 +32,12 @@ a coupling is left out
   = transducer_between_moving_nodes
 ## network/junction
 conduction leaves the second body
-  - (rows[port.first], n): sp.S.One
-  + (rows[port.second], n): sp.S.One
+  - (self.rows[port.first], n): sp.S.One
+  + (self.rows[port.second], n): sp.S.One
   = two airs
 heat comes to another body
-  - (rows[placed.port.body], n): sp.S.One
-  + (min(rows[p.element] for p, _ in self.laws.states if p.element in ("body", "hot")), n): sp.S.One
+  - (self.rows[placed.port.body], n): sp.S.One
+  + (min(self.rows[p.element] for p, _ in self.laws.states if p.element in ("body", "hot")), n): sp.S.One
   = two airs
 resistors in a loop push the other way
   - J0=J0 - loops.between(B, B),
@@ -254,8 +254,8 @@ each process heats the next state
   = two_sources_on_one_input
 ## iphs/iphs
 energies are another state's
-  - placed, p in circuit.of(Storage, Body)),
-  + placed, p in [*circuit.of(Storage, Body)][:1] * len(system.states)),
+  - energies=energies_of(circuit),
+  + energies=energies_of(circuit)[:1] * len(system.states),
   = two_sources_on_one_input
 the last energy is not counted
   - return sp.Add(*self._stored)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, final
 
 from piezo_sym.expressions.calculus import add, neg
-from piezo_sym.expressions.tree import Cmp, Div, Expr, Mul, Sym
+from piezo_sym.expressions.tree import Cmp, Div, Expr, Mul, Sym, rename
 from piezo_sym.spec.elements.base import Form, positive, state_symbol
 from piezo_sym.spec.elements.ports import (
     Branch,
@@ -31,11 +31,10 @@ class Store(Form):
 
     def port(self, element: Any, name: str, branch: Branch) -> Storage:
         """Return the store, whose state is the integral of the conjugate variable."""
-        costate = self.domain.variable(self.imposes)
+        costate, state = self.domain.variable(self.imposes), state_symbol(element, name)
         return Storage(
-            state=state_symbol(element, name),
-            letter=element.letter,
-            law=self._costate(element),
+            state=state,
+            law=rename(self._costate(element), {element.letter: state}),
             costate=f"{costate.prefix}_{name}",
             branch=_placed(element, branch, self.domain),
             domain=self.domain,

@@ -93,16 +93,16 @@ class Storage:
     Attributes
     ----------
     state : symbol of the state.
-    letter : the letter of the state in `law`.
-    law : the co-state dU/dx as a function of the letter and parameters.
+    law : the co-state dU/dx as a function of states and parameters.
     costate : name of the co-state, such as ``v_mass``.
     imposes : which variable the co-state is; the state's rate is the other one.
     units : of the state and of the co-state.
     doc : one line on the state.
+    energy : U as a function of states, the same for all stores that share it; without it, it is the
+        integral of `law` by the state.
     """
 
     state: str
-    letter: str
     law: Expr
     costate: str
     branch: Branch
@@ -110,6 +110,7 @@ class Storage:
     imposes: PowerVariable
     units: tuple[str, str]
     doc: str
+    energy: Expr | None = None
 
 
 @final
@@ -179,13 +180,13 @@ class Source:
 @final
 @dataclass(frozen=True)
 class Body:
-    """A thermal mass: entropy S as its state, and its temperature dU/dS = law(S)."""
+    """A body: entropy S as its state, its temperature dU/dS = law; `energy` as of `Storage`."""
 
     state: str
-    letter: str
     law: Expr
     temperature: str
     doc: str
+    energy: Expr | None = None
 
 
 @final

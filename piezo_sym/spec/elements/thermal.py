@@ -2,7 +2,7 @@
 
 from typing import Annotated, ClassVar, Literal, final
 
-from piezo_sym.expressions.tree import Cmp, Sym, names
+from piezo_sym.expressions.tree import Cmp, Sym, names, rename
 from piezo_sym.spec.elements.base import (
     BodyName,
     Element,
@@ -34,11 +34,11 @@ class ThermalMass(Element):
 
     def ports(self, name: str) -> tuple[Port, ...]:
         """Return the body."""
+        state = state_symbol(self, name)
         return (
             Body(
-                state=state_symbol(self, name),
-                letter="S",
-                law=self.law("temperature"),
+                state=state,
+                law=rename(self.law("temperature"), {"S": state}),
                 temperature=f"T_{name}",
                 doc=f"entropy of thermal_mass '{name}'",
             ),
