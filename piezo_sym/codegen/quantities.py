@@ -16,9 +16,9 @@ from piezo_sym.algebra.lanes import LaneMatrix
 from piezo_sym.codegen.differences import with_excess
 from piezo_sym.codegen.program import Described, Limit, Names, Quantity
 from piezo_sym.expressions.calculus import add, div, mul, neg
-from piezo_sym.expressions.tree import Call, Expr, LaneSum, Mul, Sym, names, rename, replace
+from piezo_sym.expressions.tree import Call, Expr, LaneSum, Mul, Sym, names, replace
 from piezo_sym.iphs import IPHS
-from piezo_sym.iphs.definitions import costate_name, heated
+from piezo_sym.iphs.definitions import costate_name
 from piezo_sym.network import port_order
 from piezo_sym.spec.circuit import Placed
 from piezo_sym.spec.elements.ports import (
@@ -187,17 +187,10 @@ def _excesses(iphs: IPHS, new: Names) -> dict[tuple[Sym, Sym], Quantity]:
 
 def _laws(iphs: IPHS, excesses: Excesses) -> dict[str, Expr]:
     """Return ratios, slopes of laws in a loop, and laws of processes by their names."""
-    circuit = iphs.circuit
-    processes = tuple(circuit.of(DissipativePort, Conductor))
-    found = [(port.name, port.ratio, port.body) for _, port in circuit.of(Coupling)]
-    for slope in iphs.junction.slopes:
-        found.append((str(slope.symbol.name), slope.law, heated(processes[slope.process][1])))
-    found += [(port.output, port.law, port.heats) for _, port in circuit.of(DissipativePort)]
-    T = {placed.element: body.temperature for placed, body in circuit.of(Body)}
-    return {
-        name: with_excess(rename(law, {"T": T[body]}), excesses) if body else law
-        for name, law, body in found
-    }
+    found = {port.name: port.ratio for _, port in iphs.circuit.of(Coupling)}
+    found |= {str(slope.symbol.name): slope.law for slope in iphs.junction.slopes}
+    found |= {port.output: port.law for _, port in iphs.circuit.of(DissipativePort)}
+    return {name: with_excess(law, excesses) for name, law in found.items()}
 
 
 def _limits(iphs: IPHS, excesses: Excesses) -> Iterator[Limit]:

@@ -17,7 +17,7 @@ from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import SpecError, quote
 from piezo_sym.expressions.integrals import antiderivative
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import Expr, rename
+from piezo_sym.expressions.tree import Expr
 from piezo_sym.iphs.system import System
 from piezo_sym.network import Junction, Slope, port_order
 from piezo_sym.spec.circuit import Circuit
@@ -40,34 +40,6 @@ def costate_name(port: Storage | Body) -> str:
 def heated(port: DissipativePort | Conductor) -> str:
     """Return the element of the body that a process heats; for conduction, the second."""
     return port.heats if isinstance(port, DissipativePort) else port.second
-
-
-def law_of(
-    circuit: Circuit, port: Storage | Body | DissipativePort | Coupling | Exchange | Conductor
-) -> Expr:
-    """Return the law of a port in the words of the domain: states and temperatures by name.
-
-    The letter of a dissipative law stays as it is.
-    """
-    match port:
-        case Storage() | Body():
-            return port.law
-        case DissipativePort():
-            return rename(port.law, {"T": circuit.body(port.heats).temperature})
-        case Coupling():
-            return (
-                rename(port.ratio, {"T": circuit.body(port.body).temperature})
-                if port.body
-                else port.ratio
-            )
-        case Exchange() | Conductor():
-            return port.conductance
-
-
-def slope_law(circuit: Circuit, slope: Slope) -> Expr:
-    """Return the slope of a law in a resistive loop, a function of its body's temperature."""
-    _, port = tuple(circuit.of(DissipativePort, Conductor))[slope.process]
-    return rename(slope.law, {"T": circuit.body(heated(port)).temperature})
 
 
 def system_of(circuit: Circuit, symbols: SymbolTable, junction: Junction) -> System:
@@ -157,29 +129,28 @@ Definitions = Iterator[tuple[sp.Symbol, sp.Expr]]
 
 
 def laws_of(circuit: Circuit, symbols: SymbolTable, system: System) -> Definitions:
-    """Yield each law output W and its law in z and T."""
+    """Yield each law output W and its law in z, temperatures and states."""
     for (_, port), z in zip(circuit.of(DissipativePort, Conductor), system.z, strict=True):
-        heat = symbols[circuit.body(heated(port)).temperature]
         if isinstance(port, DissipativePort):
-            yield symbols[port.output], symbols.law(port.law, {port.letter: z, "T": heat})
+            yield symbols[port.output], symbols.law(port.law, {port.letter: z})
         else:
             first = symbols[circuit.body(port.first).temperature]
             yield symbols[port.output], symbols.law(port.conductance, {}) * z / first
 
 
 def ratios_of(circuit: Circuit, symbols: SymbolTable) -> Definitions:
-    """Yield each transducer ratio and its law in T."""
+    """Yield each ratio and its law in temperatures and states."""
     for _, port in circuit.of(Coupling):
-        yield symbols[port.name], symbols.law(law_of(circuit, port), {})
+        yield symbols[port.name], symbols.law(port.ratio, {})
 
 
-def slopes_of(circuit: Circuit, symbols: SymbolTable, slopes: tuple[Slope, ...]) -> Definitions:
-    """Yield the slope of each law in a resistive loop, a function of T."""
+def slopes_of(symbols: SymbolTable, slopes: tuple[Slope, ...]) -> Definitions:
+    """Yield the slope of each law in a resistive loop, a function of temperatures and states."""
     for slope in slopes:
-        yield slope.symbol, symbols.law(slope_law(circuit, slope), {})
+        yield slope.symbol, symbols.law(slope.law, {})
 
 
 def costates_of(circuit: Circuit, symbols: SymbolTable) -> Definitions:
     """Yield each co-state and its law in the state."""
     for _, port in circuit.of(Storage, Body):
-        yield symbols[costate_name(port)], symbols.law(law_of(circuit, port), {})
+        yield symbols[costate_name(port)], symbols.law(port.law, {})

@@ -264,7 +264,7 @@ def iphs_of(symbols: SymbolTable, junction: Junction) -> IPHS:
         energies=energies_of(circuit),
         laws=tuple(laws_of(circuit, symbols, system)),
         shares=junction.shares,
-        slopes=tuple(slopes_of(circuit, symbols, junction.slopes)),
+        slopes=tuple(slopes_of(symbols, junction.slopes)),
         ratios=tuple(ratios_of(circuit, symbols)),
         costates=tuple(costates_of(circuit, symbols)),
     )

@@ -62,7 +62,8 @@ def _to_turn(
             kind, number = label[1] if label[0] == "sum" else label
             if kind == "W":
                 placed, port = laws.processes[number]
-                other = turn(port) if isinstance(port, DissipativePort) else None
+                taken = laws.circuit.names
+                other = turn(port, taken) if isinstance(port, DissipativePort) else None
                 if placed.element not in turned and other is not None:
                     return placed, other
     return None

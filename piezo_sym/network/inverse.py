@@ -6,6 +6,7 @@ other causality, ``voltage = "R*i"`` as ``current = "v/R"``, if its law is linea
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import replace
 
 import sympy as sp
@@ -15,14 +16,18 @@ from piezo_sym.expressions.calculus import derivative, div, mul
 from piezo_sym.expressions.tree import ONE, ZERO, Call, Cmp, Div, Expr, Sym, names, walk
 from piezo_sym.expressions.tree import replace as substitute
 from piezo_sym.spec.elements.ports import DissipativePort
+from piezo_sym.spec.names import fresh
 
 
-def turn(port: DissipativePort) -> DissipativePort | None:
-    """Return the resistor in its other causality if its law is linear in its letter, else None."""
+def turn(port: DissipativePort, taken: Collection[str]) -> DissipativePort | None:
+    """Return the resistor in its other causality if its law is linear in its letter, else None.
+
+    `taken` are the names in use, none of which its new letter is.
+    """
     slope = slope_of(port)
     if slope is None or _vanishes(slope):
         return None
-    letter = port.domain.variable(port.imposes).letter
+    letter = fresh(port.domain.variable(port.imposes).letter, taken)
     return replace(
         port,
         letter=letter,

@@ -55,7 +55,7 @@ def _contradiction(laws: Laws, relation: Form, edges: list[Edge]) -> NetworkErro
         what = f"the {word} of {_listed(names)} is forced to be zero{place}"
         return NetworkError(what, "network", f"a free {word}", "connect it to other nodes")
     what = f"elements {_listed(names)} fix each other's {word}{place}"
-    fixed = _fixed(edges)
+    fixed = _fixed(laws, edges)
     if fixed:
         expected, remedy = _inverse(*fixed[0])
         remedy = f"{remedy}; or {REMEDIES[word]}" if len(fixed) > 1 else remedy
@@ -75,11 +75,12 @@ def _word(edge: Edge) -> str:
     return MIXED
 
 
-def _fixed(edges: list[Edge]) -> list[tuple[str, DissipativePort]]:
+def _fixed(laws: Laws, edges: list[Edge]) -> list[tuple[str, DissipativePort]]:
     """Return the resistors among branches whose laws cannot be turned round."""
     found = [(edge.placed.element, edge.placed.port) for edge in edges]
     resistors = [(name, port) for name, port in found if isinstance(port, DissipativePort)]
-    return [(name, port) for name, port in resistors if turn(port) is None]
+    taken = laws.circuit.names
+    return [(name, port) for name, port in resistors if turn(port, taken) is None]
 
 
 def _inverse(element: str, port: DissipativePort) -> tuple[str, str]:

@@ -11,7 +11,6 @@ from typing import final
 from piezo_sym.expressions.calculus import derivative
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, Div, Expr, Mul, Sym, names
 from piezo_sym.iphs import IPHS
-from piezo_sym.iphs.definitions import law_of
 from piezo_sym.proofs.obligations import Obligation, Question
 from piezo_sym.spec.elements.ports import Body, Storage
 from piezo_sym.spec.tables import condition_text, conditions
@@ -94,7 +93,7 @@ def assumptions_of(iphs: IPHS) -> Assumptions:
     rows = tuple((port.temperature, ("temperature", body.element)) for body, port in placed)
     used = {name for tree in trees for name in names(tree)}
     ties = tuple(
-        Cmp("=", Sym(port.temperature), law_of(iphs.circuit, port))
+        Cmp("=", Sym(port.temperature), port.law)
         for _, port in placed
         if port.state in used or not _takes_all(port.law, port.state)
     )

@@ -13,7 +13,6 @@ from piezo_sym.expressions.calculus import add, derivative, div, mul, neg
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Expr, Sym, names
 from piezo_sym.iphs import IPHS
-from piezo_sym.iphs.definitions import law_of
 from piezo_sym.proofs.assumptions import Assumptions
 from piezo_sym.proofs.laws import on_branches, valued
 from piezo_sym.proofs.obligations import Obligation, Question
@@ -27,12 +26,11 @@ def temperature(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
     domain = tuple(condition.tree for condition in conditions(iphs.model))
     spoken_of = {name for tree in domain for name in names(tree)}
     for placed, port in iphs.circuit.of(Body):
-        law = law_of(iphs.circuit, port)
-        here = (Cmp("=", Sym(port.temperature), law),) if port.temperature in spoken_of else ()
+        here = (Cmp("=", Sym(port.temperature), port.law),) if port.temperature in spoken_of else ()
         within = replace(assumptions, where=(*domain, *here))
         statement, latex = "T > 0 and dT/dS > 0", r"T > 0,\quad \partial T/\partial S > 0"
         made = Obligation("temperature", placed.element, statement, latex, assumptions.texts)
-        yield made.asking(partial(_warm, law, port.state, within), "the law")
+        yield made.asking(partial(_warm, port.law, port.state, within), "the law")
 
 
 def _warm(law: Expr, state: str, assumptions: Assumptions) -> Iterator[Question]:

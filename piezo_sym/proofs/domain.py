@@ -18,7 +18,6 @@ from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ZERO, Cmp, Expr, Neg, names
 from piezo_sym.expressions.tree import replace as put
 from piezo_sym.iphs import IPHS
-from piezo_sym.iphs.definitions import law_of, slope_law
 from piezo_sym.proofs.assumptions import Assumptions
 from piezo_sym.proofs.exact_eval import Value, all_hold, value_of
 from piezo_sym.proofs.laws import on_branches, valued
@@ -58,9 +57,9 @@ def divisors(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
 
     These are ratios of levers, and what resistive loops bring.
     """
-    words = {port.name: law_of(iphs.circuit, port) for _, port in iphs.circuit.of(Coupling)}
+    words = {port.name: port.ratio for _, port in iphs.circuit.of(Coupling)}
     slopes = iphs.junction.slopes
-    words |= {str(slope.symbol.name): slope_law(iphs.circuit, slope) for slope in slopes}
+    words |= {str(slope.symbol.name): slope.law for slope in slopes}
     for divisor in iphs.junction.divisors:
         yield _divisor(divisor, words, assumptions)
 
@@ -132,6 +131,5 @@ def _start(iphs: IPHS, state: str, lane: int, values: Mapping[str, Value]) -> Va
 
 def _temperatures(iphs: IPHS, values: Mapping[str, Value]) -> Iterator[tuple[str, Value]]:
     for _, port in iphs.circuit.of(Body):
-        law = law_of(iphs.circuit, port)
-        if values.keys() >= {*names(law)}:
-            yield port.temperature, value_of(law, values)
+        if values.keys() >= {*names(port.law)}:
+            yield port.temperature, value_of(port.law, values)

@@ -1,7 +1,7 @@
 """What has to be shown of each law: welldef, passive, odd (and continuous, in `continuity`).
 
 Input: an `IPHS`.  Output: obligations, their questions asked branch by branch.  Laws stand in the
-words of the domain: states and temperatures by their names (`law_of`).
+words of the domain: states and temperatures by their names.
 """
 
 from __future__ import annotations
@@ -11,10 +11,10 @@ from dataclasses import replace
 
 from piezo_sym.expressions.calculus import add, increasing, mul, neg
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import ZERO, Call, Cmp, Expr, Node, Sym, names, rename
+from piezo_sym.expressions.tree import ZERO, Call, Cmp, Expr, Node, Sym, names
 from piezo_sym.expressions.tree import replace as substituted
 from piezo_sym.iphs import IPHS
-from piezo_sym.iphs.definitions import costate_name, law_of
+from piezo_sym.iphs.definitions import costate_name
 from piezo_sym.proofs.assumptions import Assumptions, Law
 from piezo_sym.proofs.branches import TooManyBranchesError, branches, partial
 from piezo_sym.proofs.obligations import Obligation, Question, SignOf
@@ -44,20 +44,17 @@ def laws_of(iphs: IPHS) -> tuple[Law, ...]:
 
 
 def _law(iphs: IPHS, placed: Placed) -> Law | None:
-    element, port, circuit = placed.element, placed.port, iphs.circuit
+    element, port = placed.element, placed.port
     match port:
         case Storage() | Body():
-            return Law(element, costate_name(port), law_of(circuit, port))
+            return Law(element, costate_name(port), port.law)
         case DissipativePort():
             jumps = bool(getattr(iphs.model.elements[element], "discontinuous", False))
-            heat = {"T": circuit.body(port.heats).temperature}
-            written = rename(port.written, heat) if port.written else None
-            law = law_of(circuit, port)
-            return Law(element, port.output, law, port.letter, jumps, written=written)
+            return Law(element, port.output, port.law, port.letter, jumps, written=port.written)
         case Coupling():
-            return Law(element, port.name, law_of(circuit, port))
+            return Law(element, port.name, port.ratio)
         case Exchange() | Conductor():
-            return Law(element, "conductance", law_of(circuit, port))
+            return Law(element, "conductance", port.conductance)
         case Source():
             return None
 

@@ -30,7 +30,7 @@ from piezo_sym.expressions.tree import (
     replace,
 )
 from piezo_sym.iphs import IPHS
-from piezo_sym.iphs.definitions import costate_name, law_of, slope_law
+from piezo_sym.iphs.definitions import costate_name
 from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, DissipativePort, Storage
 
 #: The law language, and sums over the lanes of a bank.
@@ -76,19 +76,21 @@ def _names(iphs: IPHS, tree: _Trees) -> Iterator[tuple[str, dict[str, str | None
     circuit = iphs.circuit
     for placed, store in circuit.of(Storage, Body):
         role = "temperature" if isinstance(store, Body) else "costate"
-        yield entry(costate_name(store), placed.element, role, law_of(circuit, store))
+        yield entry(costate_name(store), placed.element, role, store.law)
     for placed, port in circuit.of(Coupling):
-        yield entry(port.name, placed.element, "ratio", law_of(circuit, port))
+        yield entry(port.name, placed.element, "ratio", port.ratio)
     processes = tuple(circuit.of(DissipativePort, Conductor))
     for slope in iphs.junction.slopes:
         element = processes[slope.process][0].element
-        yield entry(slope.symbol.name, element, "slope", slope_law(circuit, slope))
+        yield entry(slope.symbol.name, element, "slope", slope.law)
     for share, value in iphs.junction.shares:
         yield entry(share.name, "", "share", tree(value))
     for (placed, process), z in zip(processes, iphs.system.z, strict=True):
-        law = replace(law_of(circuit, process), {getattr(process, "letter", ""): tree(z)})
         if isinstance(process, Conductor):
-            law = div(mul(law, tree(z)), Sym(circuit.body(process.first).temperature))
+            first = Sym(circuit.body(process.first).temperature)
+            law = div(mul(process.conductance, tree(z)), first)
+        else:
+            law = replace(process.law, {process.letter: tree(z)})
         yield entry(process.output, placed.element, "output", law)
 
 

@@ -13,7 +13,6 @@ from piezo_sym.algebra.coefficients import coefficient
 from piezo_sym.expressions.calculus import derivative
 from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Div, Expr, Sym, names, replace
 from piezo_sym.iphs import IPHS
-from piezo_sym.iphs.definitions import law_of
 from piezo_sym.spec.elements.ports import Conductor, Coupling, DissipativePort, Source, Storage
 from piezo_sym.spec.tables import conditions
 
@@ -68,11 +67,11 @@ def _symbols(iphs: IPHS, drive: sp.Expr) -> set[sp.Symbol]:
 def _words(iphs: IPHS) -> Iterator[tuple[sp.Symbol, Expr]]:
     """Yield what co-states, inputs and ratios are in the words of the domain."""
     for _, store in iphs.circuit.of(Storage):
-        yield iphs.symbols[store.costate], law_of(iphs.circuit, store)
+        yield iphs.symbols[store.costate], store.law
     for _, source in iphs.circuit.of(Source):
         yield iphs.symbols[source.input], Sym(source.input)
     for _, coupling in iphs.circuit.of(Coupling):
-        yield iphs.symbols[coupling.name], law_of(iphs.circuit, coupling)
+        yield iphs.symbols[coupling.name], coupling.ratio
 
 
 def _tree(drive: sp.Expr, words: Mapping[sp.Symbol, Expr]) -> Expr | None:

@@ -6,11 +6,12 @@ co-state, law output, ratio and temperature has the one name it keeps in mathema
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, TypeVar, final, overload
 
+from piezo_sym.expressions.tree import Expr, rename
 from piezo_sym.spec.elements.ports import (
     Body,
     Conductor,
@@ -23,7 +24,7 @@ from piezo_sym.spec.elements.ports import (
 )
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.names import fresh
-from piezo_sym.spec.tables import banks, temperatures
+from piezo_sym.spec.tables import banks, in_words, law_fields, temperatures
 
 A = TypeVar("A", bound=Port)
 B = TypeVar("B", bound=Port)
@@ -84,6 +85,7 @@ class Circuit:
 def circuit_of(model: Model) -> Circuit:
     """Return the circuit of a model, its quantities named apart from every name of the spec."""
     heat = {body: word for word, body in temperatures(model).items()}
+    laws = {name: dict(_laws(model, name, heat)) for name in model.elements}
     taken = {*heat.values(), *model.parameters, *model.inputs, *model.elements}
     taken |= {f"{bank}_count" for bank in banks(model)}
     placed = [
@@ -94,13 +96,21 @@ def circuit_of(model: Model) -> Circuit:
     taken |= {p.port.state for p in placed if isinstance(p.port, Storage | Body)}
     named = []
     for entry in placed:
-        port = _named(entry, taken, heat)
+        port = _named(entry, taken, heat, laws[entry.element])
         named.append(replace(entry, port=port))
     return Circuit(model, tuple(named), frozenset(taken))
 
 
-def _named(entry: Placed, taken: set[str], heat: dict[str, str]) -> Port:
-    """Return the port with names that nothing else has."""
+def _laws(model: Model, name: str, heat: Mapping[str, str]) -> Iterator[tuple[str, Expr]]:
+    """Yield the laws of an element by field, in the words of [domain]."""
+    for law in law_fields(name, model.elements[name]):
+        yield law.field, in_words(model, name, law, heat)
+
+
+def _named(
+    entry: Placed, taken: set[str], heat: Mapping[str, str], laws: Mapping[str, Expr]
+) -> Port:
+    """Return the port with names that nothing else has, its laws in the words of [domain]."""
 
     def new(base: str) -> str:
         name = fresh(base, taken)
@@ -111,12 +121,17 @@ def _named(entry: Placed, taken: set[str], heat: dict[str, str]) -> Port:
         case Storage() as port:
             return replace(port, costate=new(port.costate))
         case DissipativePort() as port:
-            return replace(port, output=new(port.output), effort=new(port.effort))
+            letter = fresh(port.letter, taken)
+            law = rename(laws[port.field], {port.letter: letter})
+            output, effort = new(port.output), new(port.effort)
+            return replace(port, letter=letter, law=law, output=output, effort=effort)
         case Conductor() as port:
-            return replace(port, output=new(port.output))
+            return replace(port, output=new(port.output), conductance=laws["conductance"])
         case Coupling() as port:
-            return replace(port, name=new(port.name))
+            return replace(port, name=new(port.name), ratio=laws["ratio"])
         case Body() as port:
             return replace(port, temperature=heat[entry.element])
-        case Source() | Exchange() as port:
+        case Exchange() as port:
+            return replace(port, conductance=laws["conductance"])
+        case Source() as port:
             return port

@@ -37,6 +37,11 @@ class LawField:
         """The parsed law."""
         return parse_law(self.text, self.where)
 
+    @property
+    def field(self) -> str:
+        """The field that it stands in."""
+        return self.where.rpartition(".")[2]
+
 
 @final
 @dataclass(frozen=True)
@@ -89,6 +94,30 @@ def temperatures(spec: Tables) -> dict[str, str]:
     return {"T": found[0]} if len(found) == 1 else {f"T_{name}": name for name in found}
 
 
+def in_words(spec: Tables, name: str, law: LawField, hot: Mapping[str, str]) -> Expr:
+    """Return a law of an element in the words of [domain]; a dissipative law keeps its letter.
+
+    Parameters
+    ----------
+    name : of the element.
+    hot : the temperature symbol of each body.
+    """
+    return rename(law.tree, meanings(spec, name, law, hot))
+
+
+def meanings(spec: Tables, name: str, law: LawField, hot: Mapping[str, str]) -> dict[str, str]:
+    """Return what the letters of a law that are no letters of [domain] are called there."""
+    element = spec.elements[name]
+    named = [hot[given] for _, to, given in references(element) if to == "thermal_mass"]
+    named = named or list(hot.values())[: len(hot) == 1]
+    found = dict(zip(("T_1", "T_2"), named, strict=False)) | dict(zip("T", named, strict=False))
+    if element.letter:
+        found[element.letter] = state_symbol(element, name)
+    if hasattr(element, "input"):
+        found["T_e"] = element.input
+    return {letter: word for letter, word in found.items() if letter in law.letters}
+
+
 def conditions(spec: Tables) -> tuple[Condition, ...]:
     """Return the domain: what the spec assumes, then what its kinds and half widths need."""
     assumed = [
@@ -97,17 +126,17 @@ def conditions(spec: Tables) -> tuple[Condition, ...]:
     ]
     hot = {body: word for word, body in temperatures(spec).items()}
     found: dict[Cmp, Condition] = {}
-    for condition in [*assumed, *_needed(spec, hot), *_not_negative(spec, hot, assumed)]:
+    for condition in [*assumed, *_needed(spec), *_not_negative(spec, hot, assumed)]:
         found.setdefault(condition.tree, condition)
     return tuple(found.values())
 
 
-def _needed(spec: Tables, hot: Mapping[str, str]) -> Iterator[Condition]:
-    """Yield what the kinds of the elements need; `hot`: the temperature symbol of each body."""
+def _needed(spec: Tables) -> Iterator[Condition]:
+    """Yield what the kinds of the elements need."""
     for name, element in spec.elements.items():
         for condition in element.requires():
-            tree = _in_domain_words(condition, element, name, hot, (element.letter,))
-            yield Condition(f"elements.{name}", tree)
+            words = {element.letter: state_symbol(element, name)}
+            yield Condition(f"elements.{name}", _renamed(condition, words))
 
 
 def _not_negative(
@@ -116,9 +145,8 @@ def _not_negative(
     """Yield that each half width is >= 0, in laws, assumptions and initial values."""
     for name, element in spec.elements.items():
         for law in law_fields(name, element):
-            for width in _widths(law.tree):
-                tree = _in_domain_words(width, element, name, hot, law.letters)
-                yield Condition(law.where, tree)
+            for width in _widths(in_words(spec, name, law, hot)):
+                yield Condition(law.where, width)
     for where, node in [*((c.where, c.tree) for c in assumed), *_starts(spec)]:
         yield from (Condition(where, width) for width in _widths(node))
 
@@ -140,14 +168,8 @@ def orders(spec: Tables) -> Iterator[Condition]:
     yield from dict.fromkeys(found)
 
 
-def _in_domain_words(
-    condition: Cmp, element: Element, name: str, hot: Mapping[str, str], letters: tuple[str, ...]
-) -> Cmp:
-    """Return a condition of a law in the words of [domain]: its state's symbol, its body's T."""
-    body = next((given for _, to, given in references(element) if to == "thermal_mass"), "")
-    words = {"T": hot.get(body, "T"), element.letter: state_symbol(element, name)}
-    own = {letter: words[letter] for letter in letters if letter in words}
-    return Cmp(condition.op, rename(condition.left, own), rename(condition.right, own))
+def _renamed(condition: Cmp, words: Mapping[str, str]) -> Cmp:
+    return Cmp(condition.op, rename(condition.left, words), rename(condition.right, words))
 
 
 def greater(condition: Cmp) -> Cmp:

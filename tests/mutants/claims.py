@@ -77,8 +77,10 @@ every law is odd
   + total = ZERO
   = d*v + d*v**2/v_1 if v > 0 else d*v | d > 0; v_1 > 0
 every law has the first body's temperature
-  - law = law_of(circuit, port)
-  + law = rename(port.law, {"T": next(iter(circuit.of(Body)))[1].temperature})
+  - return Law(element, port.output, port.law, port.letter
+  + hot = [Sym(body.temperature) for _, body in iphs.circuit.of(Body)]
+  +             law = substituted(port.law, {T.name: hot[0] for T in hot})
+  +             return Law(element, port.output, law, port.letter
   = two bodies
 ## proofs/ties
 an element turned round has its state's sign

@@ -146,32 +146,39 @@ an exchange has another body's temperature
   +             ratio
   = two airs
 laws are of minus their letter
-  - yield symbols[port.output], symbols.law(port.law, {port.letter: z, "T": heat})
-  + yield symbols[port.output], symbols.law(port.law, {port.letter: -z, "T": heat})
+  - symbols.law(port.law, {port.letter: z})
+  + symbols.law(port.law, {port.letter: -z})
   = output_resistance
 laws have another body's temperature
-  - heat = symbols[circuit.body(heated(port)).temperature]
-  -         if
-  + heat = symbols[next(iter(circuit.of(Body)))[1].temperature]
-  +         if
+  - symbols.law(port.law, {port.letter: z})
+  + symbols.law(
+  +                 port.law,
+  +                 {
+  +                     port.letter: z,
+  +                     **{
+  +                         body.temperature: symbols[next(iter(circuit.of(Body)))[1].temperature]
+  +                         for _, body in circuit.of(Body)
+  +                     },
+  +                 },
+  +             )
   = across
 conduction is not over the first temperature
   - yield symbols[port.output], symbols.law(port.conductance, {}) * z / first
   + yield symbols[port.output], symbols.law(port.conductance, {}) * z
   = two airs
 ratios have twice the temperature
-  - yield symbols[port.name], symbols.law(law_of(circuit, port), {})
+  - yield symbols[port.name], symbols.law(port.ratio, {})
   + heat = [p.temperature for _, p in circuit.of(Body)]
   +         twice = {name: 2 * symbols[name] for name in heat}
-  +         yield symbols[port.name], symbols.law(law_of(circuit, port), twice)
+  +         yield symbols[port.name], symbols.law(port.ratio, twice)
   = transducer_between_moving_nodes
-slopes have another body's temperature
-  - tuple(circuit.of(DissipativePort, Conductor))[slope.process]
-  + tuple(circuit.of(DissipativePort, Conductor))[0]
+slopes are those of one law
+  - yield slope.symbol, symbols.law(slope.law, {})
+  + yield slope.symbol, symbols.law(slopes[0].law, {})
   = coil loop
 co-states are of minus their state
-  - symbols[costate_name(port)], symbols.law(law_of(circuit, port), {})
-  + symbols[costate_name(port)], symbols.law(port.law, {port.letter: -symbols[port.state]})
+  - symbols[costate_name(port)], symbols.law(port.law, {})
+  + symbols[costate_name(port)], symbols.law(port.law, {port.state: -symbols[port.state]})
   = current
 co-states are merged
   - costates = {n: symbols[costate_name(port)] for n, (_, port) in enumerate(stores)}

@@ -34,7 +34,7 @@ class Store(Form):
         costate, state = self.domain.variable(self.imposes), state_symbol(element, name)
         return Storage(
             state=state,
-            law=rename(self._costate(element), {element.letter: state}),
+            law=self._costate(element, state),
             costate=f"{costate.prefix}_{name}",
             branch=_placed(element, branch, self.domain),
             domain=self.domain,
@@ -43,12 +43,12 @@ class Store(Form):
             doc=f"{costate.state} of {element.kind} '{name}'",
         )
 
-    def _costate(self, element: Any) -> Expr:
+    def _costate(self, element: Any, state: str) -> Expr:
         """Return the co-state: stiffness times extension beyond rest, or state over capacitance."""
-        state, size = Sym(element.letter), element.law(self.field)
+        size = rename(element.law(self.field), {element.letter: state})
         if self.field != "stiffness":
-            return Div(state, size)
-        return Mul(size, add(state, neg(element.law("rest"))))
+            return Div(Sym(state), size)
+        return Mul(size, add(Sym(state), neg(element.law("rest"))))
 
     def requires(self, element: Any) -> tuple[Cmp, ...]:
         """Return that `field` is positive."""
