@@ -24,7 +24,7 @@ from piezo_sym.proofs.branches import (
     parts,
     settled,
 )
-from piezo_sym.proofs.query import Query, connected, query
+from piezo_sym.proofs.query import Query, binding, query
 from piezo_sym.proofs.rational import cleared, implied, parts_of
 
 #: A claim that holds nowhere: it follows only where nothing is.
@@ -67,7 +67,7 @@ class Question:
     meeting : for a question on the border of two branches, these; a witness must show a jump.
     law : for a question whether a law has a value, that law; at a witness it must have none.
     whole : whether all that is assumed goes into the query, as a counterexample needs; a proof
-        needs what is connected to the claim by names.
+        needs what binds the names of the claim.
     split : whether the claim is asked on each of its branches.
     witness : whether numbers that break the claim are wanted, as those of a counterexample are.
     """
@@ -87,7 +87,7 @@ class Question:
     @cached_property
     def kept(self) -> tuple[Cmp, ...]:
         """What of `where` goes into the query."""
-        return self.where if self.whole else connected(self.where, self._about())
+        return self.where if self.whole else binding(self.where, tuple(self._about()))
 
     @cached_property
     def words(self) -> frozenset[str]:

@@ -59,6 +59,40 @@ def connected(conditions: Iterable[Cmp], words: Iterable[str]) -> tuple[Cmp, ...
     return tuple(condition for condition, own in found if own & near or not own)
 
 
+def binding(conditions: Iterable[Cmp], words: Iterable[str]) -> tuple[Cmp, ...]:
+    """Return the connected conditions, without those that some value of a name keeps in any case.
+
+    So it is where all conditions on a name, which is none of `words`, bound it from the same side:
+    the temperatures of other bodies, say, of which is said that they are above a common one.
+    """
+    kept, about = dict.fromkeys(connected(conditions, words)), {*words}
+    users: dict[str, set[Cmp]] = {}
+    for condition in kept:
+        for name in {*names(condition)} - about:
+            users.setdefault(name, set()).add(condition)
+    waiting = list(users)
+    while waiting:
+        bounded = users[name := waiting.pop()]
+        if len(sides := {_side(name, condition) for condition in bounded}) == 1 and all(sides):
+            for condition in tuple(bounded):
+                del kept[condition]
+                for other in {*names(condition)} - about:
+                    users[other].remove(condition)
+                    waiting.append(other)
+    return tuple(kept)
+
+
+def _side(name: str, condition: Cmp) -> str:
+    """Return from which side a comparison bounds a name, which stands alone; else nothing."""
+    sides = {"<": "below", ">": "above"}.get(condition.op[0], "")
+    match condition.left, condition.right:
+        case Sym(own), other if own == name and name not in names(other):
+            return sides
+        case other, Sym(own) if own == name and name not in names(other):
+            return {"below": "above", "above": "below"}.get(sides, "")
+    return ""
+
+
 def query(
     label: str,
     order: Iterable[str],
