@@ -121,6 +121,11 @@ def listing(names: Iterable[str], most: int = 12) -> str:
     return f"{cut}, and {len(known) - most} more" if len(known) > most else cut
 
 
+def with_article(noun: str) -> str:
+    """Return a noun with "a" or "an"."""
+    return f"{'an' if noun[0] in 'aeiou' else 'a'} {noun}"
+
+
 def nearest(word: str, known: Iterable[str]) -> str:
     """Return "did you mean 'x'?" for the known name nearest to `word`, or the known names."""
     names, short = list(known), word[:MAX_QUOTE]

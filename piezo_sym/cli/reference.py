@@ -43,7 +43,8 @@ def _show(kind: str, known: dict[str, Any]) -> None:
     for part in about:
         typer.echo("\n".join(wrap(part, WIDTH)) + "\n")
     made = table(f"Fields of {kind}", "field", "needed", "what it is")
-    either = {field for choice in known.get("oneOf", ()) for field in choice["required"]}
+    groups = known.get("allOf", ())
+    either = {f for group in groups for choice in group["oneOf"] for f in choice["required"]}
     for name, field in known["properties"].items():
         needed = "yes" if name in known["required"] else "one of" if name in either else ""
         default = f"default: {field['default']!r}" if field.get("default") is not None else ""

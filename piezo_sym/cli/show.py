@@ -64,12 +64,10 @@ def _elements(model: Model) -> None:
 
 def _where(element: Element) -> str:
     """Return the nodes of an element, and what else it names."""
-    from piezo_sym.spec.tables import references
-
     nodes = [(field, " - ".join(value)) for field, value in element if isinstance(value, tuple)]
     found = [text if field == "between" else f"{field} {text}" for field, text in nodes]
     found += [getattr(element, "at", "")] if hasattr(element, "at") else []
-    named = ((field, name) for field, _, name in references(element) if field != "between")
+    named = ((field, name) for field, _, name in element.references() if field != "between")
     return ", ".join((*found, *(f"{field} {name}" for field, name in named)))
 
 

@@ -53,18 +53,10 @@ from piezo_sym.spec.elements.ports import (
     Conductor,
     Coupling,
     DissipativePort,
-    PhysicalDomain,
-    PowerVariable,
     Source,
     Storage,
 )
 
-UNITS = {
-    (PhysicalDomain.ELECTRICAL, PowerVariable.ACROSS): "V",
-    (PhysicalDomain.ELECTRICAL, PowerVariable.THROUGH): "A",
-    (PhysicalDomain.MECHANICAL, PowerVariable.ACROSS): "m/s",
-    (PhysicalDomain.MECHANICAL, PowerVariable.THROUGH): "N",
-}
 MOST_EDGES = 400
 
 
@@ -278,7 +270,7 @@ def _equal(iphs: IPHS, q: Quantities) -> Iterator[Expr]:
         q.forces, iphs.circuit.of(DissipativePort, Conductor), strict=True
     ):
         if isinstance(process, DissipativePort):
-            quantities.append((force, UNITS[process.domain, process.imposes.other]))
+            quantities.append((force, process.domain.variable(process.imposes.other).unit))
     for tree, unit in dict.fromkeys(quantities):
         for name, dimension in units:
             if parse_unit(unit).dimension == dimension:

@@ -28,7 +28,8 @@ from piezo_sym.network.kirchhoff import Answer, Laws
 from piezo_sym.network.loops import Definition, Slope, loops_of
 from piezo_sym.network.nodes import check_nodes
 from piezo_sym.spec.circuit import Circuit
-from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, PowerVariable, Source
+from piezo_sym.spec.elements.domains import PowerVariable
+from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, Source
 
 
 @final

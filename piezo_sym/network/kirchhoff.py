@@ -29,6 +29,7 @@ from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import NetworkError
 from piezo_sym.network.nodes import is_inner, is_reference
 from piezo_sym.spec.circuit import Circuit, Placed
+from piezo_sym.spec.elements.domains import PowerVariable
 from piezo_sym.spec.elements.ports import (
     Body,
     Branch,
@@ -36,7 +37,6 @@ from piezo_sym.spec.elements.ports import (
     Coupling,
     DissipativePort,
     Exchange,
-    PowerVariable,
     Source,
     Storage,
 )

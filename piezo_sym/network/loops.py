@@ -22,11 +22,14 @@ import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
 from piezo_sym.algebra.lanes import LaneMatrix
-from piezo_sym.errors import NetworkError, listing, quote
+from piezo_sym.errors import NetworkError, listing, quote, with_article
 from piezo_sym.expressions.tree import Expr
 from piezo_sym.network.inverse import slope_of
 from piezo_sym.network.kirchhoff import Laws
-from piezo_sym.spec.elements.ports import DissipativePort, PhysicalDomain
+from piezo_sym.spec.elements import kind_of
+from piezo_sym.spec.elements.domains import PowerVariable
+from piezo_sym.spec.elements.forms import Store
+from piezo_sym.spec.elements.ports import DissipativePort
 from piezo_sym.spec.names import fresh
 
 #: More than these would write out solutions of thousands of terms.
@@ -134,10 +137,9 @@ def _slopes(laws: Laws, group: tuple[int, ...], taken: set[str]) -> Iterator[Slo
     members = [laws.processes[k] for k in group]
     names = listing(quote(placed.element) for placed, _ in members)
     what = f"{names} determine each other's flow"
-    mechanical = any(
-        isinstance(p, DissipativePort) and p.domain is PhysicalDomain.MECHANICAL for _, p in members
-    )
-    between = f"put {'a mass' if mechanical else 'a capacitor'} at the node between them"
+    domain = next(p.domain for _, p in members if isinstance(p, DissipativePort))
+    store = kind_of(Store, domain, PowerVariable.ACROSS).name
+    between = f"put {with_article(store)} at the node between them"
     if len(group) > MOST:
         remedy = f"join those in series or in parallel, or {between}"
         raise NetworkError(what, "network", f"at most {MOST} that do", remedy)

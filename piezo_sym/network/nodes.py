@@ -7,18 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from piezo_sym.errors import NetworkError, listing, nearest
+from piezo_sym.errors import NetworkError, listing, nearest, with_article
 from piezo_sym.spec.circuit import Circuit
-from piezo_sym.spec.elements.ports import (
-    Branch,
-    Coupling,
-    DissipativePort,
-    PhysicalDomain,
-    Source,
-    Storage,
-)
+from piezo_sym.spec.elements.domains import DOMAINS, PhysicalDomain
+from piezo_sym.spec.elements.ports import Branch, Coupling, DissipativePort, Source, Storage
 
-REFERENCES = {domain.reference: domain for domain in PhysicalDomain}
+REFERENCES = {domain.reference: domain for domain in DOMAINS}
 
 
 def is_reference(node: str) -> bool:
@@ -69,20 +63,17 @@ def _check_domain(
     node: str, domain: PhysicalDomain, where: str, domains: dict[str, tuple[PhysicalDomain, str]]
 ) -> None:
     if is_reference(node):
-        if REFERENCES[node] is not domain:
-            what = f"'{node}' is the {REFERENCES[node].value} reference"
-            expected = f"'{domain.reference}' in this {domain.value} branch"
-            remedy = f"write '{domain.reference}' there, or use {_an(REFERENCES[node])} element"
+        other = REFERENCES[node]
+        if other != domain:
+            what = f"'{node}' is the {other.name} reference"
+            expected = f"'{domain.reference}' in this {domain.name} branch"
+            remedy = f"write '{domain.reference}' there, or use {with_article(other.name)} element"
             raise NetworkError(what, where, expected, remedy)
         return
-    first, other = domains.setdefault(node, (domain, where))
-    if first is not domain:
-        what = f"node '{node}' is {domain.value} here and {first.value} in {other}"
+    first, there = domains.setdefault(node, (domain, where))
+    if first != domain:
+        what = f"node '{node}' is in domain {domain.name} here, {first.name} in {there}"
         raise NetworkError(what, where, "a node of one domain", "rename one of the two nodes")
-
-
-def _an(domain: PhysicalDomain) -> str:
-    return f"{'an' if domain is PhysicalDomain.ELECTRICAL else 'a'} {domain.value}"
 
 
 def _short(circuit: Circuit, element: str, node: str) -> NetworkError:
@@ -105,10 +96,10 @@ def _dangling(
         other
         for _, branch, own in found
         for other in branch
-        if own is domain and other not in mine and not is_inner(other)
+        if own == domain and other not in mine and not is_inner(other)
     )
     what = f"connects to '{node}', which no other element uses"
-    remedy = f"{nearest(node, known)}; or add {_an(domain)} element there"
+    remedy = f"{nearest(node, known)}; or add {with_article(domain.name)} element there"
     return NetworkError(what, f"elements.{element}", "two elements at a node", remedy)
 
 
@@ -123,7 +114,7 @@ def _check_ground(circuit: Circuit) -> None:
         if node not in tied:
             near = sorted(n for n in _reached([node], beside) if not is_inner(n))
             what = f"nothing connects node '{node}' to '{domain.reference}'"
-            expected = f"a path to '{domain.reference}', the {domain.value} reference"
+            expected = f"a path to '{domain.reference}', the {domain.name} reference"
             remedy = f"call one of these nodes '{domain.reference}': {listing(near)}"
             raise NetworkError(what, f"elements.{element}", expected, remedy)
 

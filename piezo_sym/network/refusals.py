@@ -6,26 +6,21 @@ the elements at fault, where they meet, and what to put there.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from piezo_sym.algebra.linear import Form, SingularError
-from piezo_sym.errors import NetworkError
+from piezo_sym.errors import NetworkError, with_article
 from piezo_sym.network.inverse import inverse_field, turn
 from piezo_sym.network.kirchhoff import Edge, Laws
 from piezo_sym.network.nodes import branches, is_inner, is_reference
-from piezo_sym.spec.elements.ports import (
-    Coupling,
-    DissipativePort,
-    Source,
-    Storage,
-)
+from piezo_sym.spec.elements import kind_of
+from piezo_sym.spec.elements.domains import PhysicalDomain, PowerVariable
+from piezo_sym.spec.elements.forms import Dissipation, Store
+from piezo_sym.spec.elements.ports import Coupling, DissipativePort, Source, Storage
+
+ACROSS, THROUGH = PowerVariable.ACROSS, PowerVariable.THROUGH
 
 MIXED = "variables"
-REMEDIES = {
-    "voltage": "merge those in parallel into one, or put a resistor in series with one of them",
-    "current": "merge those in series into one, or put a capacitor between their node and 'gnd'",
-    "velocity": "merge them into one, or put a spring or damper between them",
-    "force": "merge those in series into one, or put a mass at the node between them",
-    MIXED: "put a resistor, spring or damper between two of them, or a capacitor or mass at a node",
-}
 
 
 def refusal(laws: Laws, singular: SingularError) -> NetworkError:
@@ -34,7 +29,7 @@ def refusal(laws: Laws, singular: SingularError) -> NetworkError:
         edges = _edges(laws, relation)
         if edges:
             return _contradiction(laws, relation, edges)
-    return _undetermined(singular)
+    return _undetermined(laws, singular)
 
 
 def _edges(laws: Laws, relation: Form) -> list[Edge]:
@@ -47,8 +42,9 @@ def _edges(laws: Laws, relation: Form) -> list[Edge]:
 
 def _contradiction(laws: Laws, relation: Form, edges: list[Edge]) -> NetworkError:
     names = list(dict.fromkeys(edge.placed.element for edge in edges))
-    words = list(dict.fromkeys(map(_word, edges)))
-    word = words[0] if len(words) == 1 else MIXED
+    ports = list(map(_port, edges))
+    words = list(dict.fromkeys(p.domain.variable(p.imposes).name for p in ports))
+    word = words[0].replace("_", " ") if len(words) == 1 else MIXED
     couplings = _couplings(laws, relation)
     place = f" through {_listed(couplings)}" if couplings else _place(laws, names)
     if len(names) == 1:
@@ -58,9 +54,9 @@ def _contradiction(laws: Laws, relation: Form, edges: list[Edge]) -> NetworkErro
     fixed = _fixed(laws, edges)
     if fixed:
         expected, remedy = _inverse(*fixed[0])
-        remedy = f"{remedy}; or {REMEDIES[word]}" if len(fixed) > 1 else remedy
+        remedy = f"{remedy}; or {_apart(ports, word == MIXED)}" if len(fixed) > 1 else remedy
         return NetworkError(what, "network", expected, remedy)
-    remedy = REMEDIES[MIXED if couplings else word]
+    remedy = _apart(ports, word == MIXED or bool(couplings))
     return NetworkError(what, "network", "independent storage and sources", remedy)
 
 
@@ -68,11 +64,40 @@ def _listed(names: list[str]) -> str:
     return ", ".join(f"'{name}'" for name in names)
 
 
-def _word(edge: Edge) -> str:
+def _port(edge: Edge) -> Storage | DissipativePort | Source:
     match edge.placed.port:
         case Storage() | DissipativePort() | Source() as port:
-            return port.domain.variable(port.imposes).name
-    return MIXED
+            return port
+    msg = f"{edge.placed.element} has no branch of its own"
+    raise TypeError(msg)
+
+
+def _apart(ports: list[Storage | DissipativePort | Source], mixed: bool) -> str:
+    """Return what to put between givens of one variable of a domain, or of several."""
+    domains = list(dict.fromkeys(port.domain for port in ports))
+    if mixed:
+        loose, stores = _kinds(Dissipation, domains), _kinds(Store, domains, ACROSS)
+        return f"put {loose} between two of them, or {stores} at a node"
+    (domain,) = domains
+    inertia, spring = (kind_of(Store, domain, which) for which in (ACROSS, THROUGH))
+    loose, at = kind_of(Dissipation, domain).name, "at" in inertia.fields
+    if ports[0].imposes is ACROSS:
+        if at:
+            return f"merge them into one, or put a {spring.name} or {loose} between them"
+        loose = with_article(loose)
+        return f"merge those in parallel into one, or put {loose} in series with one of them"
+    place = "at the node between them"
+    place = place if at else f"between their node and '{domain.reference}'"
+    return f"merge those in series into one, or put {with_article(inertia.name)} {place}"
+
+
+def _kinds(
+    form: type[Store | Dissipation],
+    domains: Iterable[PhysicalDomain],
+    imposes: PowerVariable | None = None,
+) -> str:
+    """Return the kinds of a form in some domains, as "a mass or capacitor"."""
+    return with_article(" or ".join(kind_of(form, domain, imposes).name for domain in domains))
 
 
 def _fixed(laws: Laws, edges: list[Edge]) -> list[tuple[str, DissipativePort]]:
@@ -114,8 +139,13 @@ def _place(laws: Laws, names: list[str]) -> str:
     return f" at node '{common[0]}'" if len(common) == 1 and not is_inner(common[0]) else ""
 
 
-def _undetermined(singular: SingularError) -> NetworkError:
+def _undetermined(laws: Laws, singular: SingularError) -> NetworkError:
     loose = [label[1] for label in singular.undetermined if label[0] == "e"]
     at = f"node '{loose[0]}'" if loose else "the network"
-    remedy = "connect a capacitor, mass, source or voltage-law resistor there"
+    known = list(branches(laws.circuit))
+    own = [domain for _, branch, domain in known if not loose or loose[0] in branch]
+    domain = own[0]
+    store, resistor = _kinds(Store, (domain,), ACROSS), kind_of(Dissipation, domain).name
+    law = domain.across.name
+    remedy = f"connect {store}, a source, or a {resistor} with a law for its {law} there"
     return NetworkError(f"nothing determines {at}", "network", remedy=remedy)

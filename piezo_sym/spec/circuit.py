@@ -128,7 +128,7 @@ def _named(
         case Conductor() as port:
             return replace(port, output=new(port.output), conductance=laws["conductance"])
         case Coupling() as port:
-            return replace(port, name=new(port.name), ratio=laws["ratio"])
+            return replace(port, name=new(port.name), ratio=laws[port.field])
         case Body() as port:
             return replace(port, temperature=heat[entry.element])
         case Exchange() as port:

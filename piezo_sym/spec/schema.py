@@ -45,11 +45,12 @@ def schema() -> Schema:
 
 
 def _element(kind: str, element: type[Element], made: Schema) -> Schema:
-    """Return a kind's schema, in which `kind` is required, and one of a law and its inverse."""
+    """Return a kind's schema, in which `kind` is required, and one field of each group."""
     made["properties"]["kind"] = {"const": kind, "description": "The kind of this element."}
     made["required"] = ["kind", *made.get("required", ())]
-    if element.one_of:
-        made["oneOf"] = [{"required": [field]} for field in element.one_of]
+    groups = element.row.one_of
+    if groups:
+        made["allOf"] = [{"oneOf": [{"required": [f]} for f in group]} for group in groups]
     return made
 
 

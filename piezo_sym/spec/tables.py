@@ -13,8 +13,8 @@ from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.text import SPEC, write_comparison
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, Expr, Node, Num, names, rename, walk
-from piezo_sym.spec.elements.base import Element, Letters, Refers, state_symbol
-from piezo_sym.spec.elements.thermal import Conduction, ThermalMass
+from piezo_sym.spec.elements.base import Element, state_symbol
+from piezo_sym.spec.elements.marks import Letters
 from piezo_sym.spec.fields import Tables
 
 
@@ -54,22 +54,8 @@ class Condition:
 
 def law_fields(name: str, element: Element) -> Iterator[LawField]:
     """Yield the laws of one element."""
-    for field, info in type(element).model_fields.items():
-        text = getattr(element, field)
-        for mark in info.metadata:
-            if isinstance(mark, Letters) and text is not None:
-                yield LawField(f"elements.{name}.{field}", text, mark)
-
-
-def references(element: Element) -> Iterator[tuple[str, str, str]]:
-    """Yield (field, what it refers to, the name given) of one element."""
-    for field, info in type(element).model_fields.items():
-        for mark in info.metadata:
-            if isinstance(mark, Refers) and getattr(element, field) is not None:
-                yield field, mark.to, getattr(element, field)
-    between = getattr(element, "between", ())
-    if isinstance(element, Conduction):
-        yield from (("between", "thermal_mass", body) for body in between)
+    for field, text, mark in element.laws():
+        yield LawField(f"elements.{name}.{field}", text, mark)
 
 
 def states(spec: Tables) -> dict[str, str]:
@@ -78,8 +64,8 @@ def states(spec: Tables) -> dict[str, str]:
 
 
 def bodies(spec: Tables) -> tuple[str, ...]:
-    """Return the names of the thermal masses."""
-    return tuple(name for name, e in spec.elements.items() if isinstance(e, ThermalMass))
+    """Return the names of the elements that have an entropy."""
+    return tuple(name for name, e in spec.elements.items() if e.is_body)
 
 
 def banks(spec: Tables) -> dict[str, int]:
@@ -108,7 +94,7 @@ def in_words(spec: Tables, name: str, law: LawField, hot: Mapping[str, str]) -> 
 def meanings(spec: Tables, name: str, law: LawField, hot: Mapping[str, str]) -> dict[str, str]:
     """Return what the letters of a law that are no letters of [domain] are called there."""
     element = spec.elements[name]
-    named = [hot[given] for _, to, given in references(element) if to == "thermal_mass"]
+    named = [hot[given] for _, to, given in element.references() if to == "thermal_mass"]
     named = named or list(hot.values())[: len(hot) == 1]
     found = dict(zip(("T_1", "T_2"), named, strict=False)) | dict(zip("T", named, strict=False))
     if element.letter:

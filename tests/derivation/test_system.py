@@ -86,11 +86,15 @@ def test_expand_refuses_what_is_no_bank(iphs):
     ("old", "new", "culprit"),
     [
         ('at = "tip"\nmass', 'at = "top"\nmass', "'top', which no other element uses"),
-        ('between = ["cap", "gnd"]\ncap', 'between = ["cap", "wall"]\ncap', "mechanical reference"),
+        (
+            'between = ["cap", "gnd"]\ncap',
+            'between = ["cap", "wall"]\ncap',
+            "translation reference",
+        ),
         (
             'between = ["cap", "gnd"]\ncap',
             'between = ["cap", "tip"]\ncap',
-            "mechanical in elements",
+            "translation in elements",
         ),
         ('between = ["cap", "gnd"]\ncap', 'between = ["in", "gnd"]\ncap', "fix each other"),
         ('between = ["cap", "gnd"]\ncap', 'between = ["cap", "cap"]\ncap', "both ends"),

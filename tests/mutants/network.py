@@ -119,7 +119,7 @@ what a loop divides by is forgotten
   = loop of any sign
 ## network/nodes
 a node may be of two domains
-  - if first is not domain:
+  - if first != domain:
   + if domain is None:
   = two domains
 a branch may have one node

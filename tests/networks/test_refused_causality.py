@@ -94,14 +94,14 @@ CONFLICTS = {
     "two masses on a lever": (
         mass("m1", "x") + mass("m2", "y") + coupling("lev", "lever", ("x", "wall"), ("y", "wall")),
         "elements 'm1', 'm2' fix each other's velocity through 'lev'",
-        "put a resistor, spring or damper between two of them",
+        "put a damper between two of them, or a mass at a node",
     ),
     "two inductors on a transformer": (
         inductor("L1", "x", "gnd")
         + inductor("L2", "y", "gnd")
         + coupling("tr", "transformer", ("x", "gnd"), ("y", "gnd")),
         "elements 'L1', 'L2' fix each other's current through 'tr'",
-        "put a resistor, spring or damper between two of them",
+        "put a resistor between two of them, or a capacitor at a node",
     ),
     "an inductor and a mass on a transducer": (
         inductor("L1", "a", "gnd") + mass("m1", "x") + transducer("t", ("a", "gnd"), ("x", "wall")),

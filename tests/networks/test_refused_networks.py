@@ -43,43 +43,43 @@ NODES = {
     "a mass on nothing": (
         mass("m1", "a"),
         "elements.m1: connects to 'a', which no other element uses",
-        "or add a mechanical element there",
+        "or add a translation element there",
     ),
     "a transducer that moves nothing": (
         LC + transducer("t", ("a", "gnd"), ("x", "wall")),
         "elements.t: connects to 'x', which no other element uses",
-        "or add a mechanical element there",
+        "or add a translation element there",
     ),
     "a node in two domains": (
         capacitor("C1", "a", "gnd") + mass("m1", "a"),
-        "elements.m1: node 'a' is mechanical here and electrical in elements.C1",
+        "elements.m1: node 'a' is in domain translation here, electrical in elements.C1",
         "rename one of the two nodes",
     ),
     "one node on both sides of a transducer": (
         capacitor("C1", "a", "gnd") + transducer("t", ("a", "gnd"), ("a", "wall")),
-        "elements.t: node 'a' is mechanical here and electrical in elements.C1",
+        "elements.t: node 'a' is in domain translation here, electrical in elements.C1",
         "rename one of the two nodes",
     ),
     "a transducer the wrong way round": (
         capacitor("C1", "a", "gnd")
         + mass("m1", "x")
         + transducer("t", ("x", "wall"), ("a", "gnd")),
-        "elements.t: node 'x' is electrical here and mechanical in elements.m1",
+        "elements.t: node 'x' is in domain electrical here, translation in elements.m1",
         "rename one of the two nodes",
     ),
     "a lever in a circuit": (
         LC + coupling("lev", "lever", ("a", "gnd"), ("b", "gnd")),
-        "elements.lev: node 'a' is mechanical here and electrical in elements.C1",
+        "elements.lev: node 'a' is in domain translation here, electrical in elements.C1",
         "rename one of the two nodes",
     ),
     "the wall in an electrical branch": (
         capacitor("C1", "a", "wall") + inductor("L1", "a", "gnd"),
-        "elements.C1: 'wall' is the mechanical reference; expected 'gnd' in this electrical branch",
+        "elements.C1: 'wall' is the translation reference; expected 'gnd' in this electrical",
         "write 'gnd' there",
     ),
-    "the ground in a mechanical branch": (
+    "the ground in a translation branch": (
         mass("m1", "a") + spring("s1", "a", "gnd"),
-        "elements.s1: 'gnd' is the electrical reference; expected 'wall' in this mechanical branch",
+        "elements.s1: 'gnd' is the electrical reference; expected 'wall' in this translation",
         "write 'wall' there",
     ),
     "a mass at the wall": (

@@ -8,8 +8,7 @@ from spec_tools import MINIMAL, SHIPPED, edited, refusal, refused_edit
 
 from piezo_sym import Model, load
 from piezo_sym.errors import SpecError
-from piezo_sym.spec.elements.electrical import Capacitor
-from piezo_sym.spec.elements.mechanical import Mass
+from piezo_sym.spec.elements import KINDS
 from piezo_sym.spec.fields import Header, Input, Parameter
 from piezo_sym.spec.load import parse
 from piezo_sym.spec.table import Table
@@ -166,7 +165,7 @@ def test_a_model_from_typed_parts_equals_one_from_data():
     typed = Model(
         model=Header(name="slider"),
         parameters={"m": Parameter(value=2.0, unit="kg")},
-        elements={"body": Mass(at="tip", mass="m")},
+        elements={"body": KINDS["mass"](at="tip", mass="m")},
     )
     assert typed == parse(MINIMAL)
 
@@ -250,7 +249,9 @@ def test_any_unknown_top_key_is_refused(key):
 
 
 def test_a_typed_element_is_checked_like_data():
-    parts = dict(PAPER["elements"]) | {"other": Capacitor(between=("a", "gnd"), capacitance="CC")}
+    parts = dict(PAPER["elements"]) | {
+        "other": KINDS["capacitor"](between=("a", "gnd"), capacitance="CC")
+    }
     with pytest.raises(SpecError, match=r"elements\.other\.capacitance: unknown name 'CC'"):
         Model(**(PAPER | {"elements": parts}))
 

@@ -13,7 +13,7 @@ from test_spec_toml import VARIANTS
 
 from piezo_sym.errors import SpecError
 from piezo_sym.spec.elements import KINDS
-from piezo_sym.spec.elements.base import Letters, Refers
+from piezo_sym.spec.elements.marks import Letters, Refers
 from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.load import STARTER, parse
 from piezo_sym.spec.schema import schema
@@ -54,7 +54,7 @@ def sample(kind):
     fields = {"kind": kind}
     for name, info in KINDS[kind].model_fields.items():
         pair = "tuple" in str(info.annotation)
-        if info.is_required() or name in KINDS[kind].one_of[:1]:
+        if info.is_required() or name in {group[0] for group in KINDS[kind].row.one_of}:
             fields[name] = ["a", "b"] if pair else "body"
     return fields
 

@@ -10,7 +10,6 @@ from piezo_sym.expressions.tree import Node, names
 from piezo_sym.spec.elements import KINDS
 from piezo_sym.spec.elements.base import Element
 from piezo_sym.spec.elements.ports import Source
-from piezo_sym.spec.elements.thermal import Conduction
 from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.names import NAME
 from piezo_sym.spec.tables import (
@@ -21,7 +20,6 @@ from piezo_sym.spec.tables import (
     conditions,
     law_fields,
     orders,
-    references,
     states,
     temperatures,
 )
@@ -33,14 +31,13 @@ def check_references(spec: Tables) -> None:
         raise SpecError("has no elements", "elements", "at least one", f"kinds: {listing(KINDS)}")
     known = {"thermal_mass": dict.fromkeys(bodies(spec)), "input": spec.inputs}
     for name, element in spec.elements.items():
-        for field, to, given in references(element):
+        for field, to, given in element.references():
+            where = f"elements.{name}.{field}"
             if given not in known[to]:
-                where = f"elements.{name}.{field}"
                 raise _unknown_reference(where, to, given, tuple(known[to]), element)
-        if isinstance(element, Conduction) and len({*element.between}) == 1:
-            what = f"both ends are at body {quote(element.between[0])}"
-            remedy = "name another thermal_mass"
-            raise SpecError(what, f"elements.{name}.between", "two different bodies", remedy)
+            if getattr(element, field) == (given, given):
+                what, remedy = f"both ends are at body {quote(given)}", "name another thermal_mass"
+                raise SpecError(what, where, "two different bodies", remedy)
 
 
 def _unknown_reference(
@@ -89,7 +86,7 @@ def check_laws(spec: Tables) -> None:
 
 def _check_body(element: Element, law: LawField) -> None:
     """Refuse a temperature in a law of an element that names no body."""
-    if all(to != "thermal_mass" for _, to, _ in references(element)):
+    if all(to != "thermal_mass" for _, to, _ in element.references()):
         remedy = "add to the element: temperature = '<name of a thermal_mass>'"
         raise SpecError("'T' is the temperature of no body", law.where, "a body named", remedy)
 
@@ -135,7 +132,7 @@ def _check_words(
         if word in letters or word in words:
             continue
         remedy = _meant_letter(spec, word, letters, element)
-        if word in {"i", "v", "f", "T", *(kind.letter for kind in KINDS.values())}:
+        if word in {"i", "v", "f", "T", *(kind.row.letter for kind in KINDS.values())}:
             expected = f"the letters {listing(letters)}" if letters else "parameters"
             if {*spec.inputs} <= {*words} and states(spec).keys() <= {*words}:
                 expected = "parameters, inputs, states and temperatures"

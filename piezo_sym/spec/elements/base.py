@@ -1,94 +1,24 @@
 """What every kind of element is: a frozen record of spec fields that states its ports.
 
-Input: the fields of one ``[elements.<name>]`` table.  Output: `Port` records.  A kind is a final
-class: its fields, and the `Form` of its parts.
+Input: a row of the table of kinds.  Output: a pydantic type whose values state `Port` records.  A
+kind is made of `Form`s, which say its fields, its docstring and its ports; see `forms`.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Annotated, Any, ClassVar, Self, final
+from typing import Any, ClassVar, Literal, Self, cast, final
 
-from pydantic import (
-    BaseModel,
-    ConfigDict,
-    Field,
-    GetJsonSchemaHandler,
-    StrictBool,
-    StrictInt,
-    StrictStr,
-    StringConstraints,
-    model_validator,
-)
-from pydantic_core import CoreSchema
+from pydantic import BaseModel, ConfigDict, create_model, model_validator
 
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import ZERO, Cmp, Expr
+from piezo_sym.spec.elements.marks import Count, Fields, Letters, Refers, StateName
 from piezo_sym.spec.elements.ports import Branch, Port
 
-MAX_COUNT = 1_000_000
-
-
-@final
-@dataclass(frozen=True)
-class Letters:
-    """Marks a field as a law: the letters it may use besides parameters, and the units of all.
-
-    Attributes
-    ----------
-    units : the unit of each letter, such as ``{"i": "A", "T": "K"}``.
-    unit : the unit of the law itself.
-    """
-
-    units: Mapping[str, str]
-    unit: str
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """The letters."""
-        return tuple(self.units)
-
-    def __get_pydantic_json_schema__(
-        self, schema: CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
-        """Return the field's JSON Schema with these letters in its description."""
-        letters = ", ".join(f"{name} [{unit}]" for name, unit in self.units.items())
-        also = f" and the letters {letters}" if letters else ""
-        text = f"A law in {self.unit}, as text, of parameters{also}."
-        return {**handler(schema), "description": text}
-
-
-@final
-@dataclass(frozen=True)
-class Refers:
-    """Marks a field as the name of something else in the spec: an 'input' or a 'thermal_mass'."""
-
-    to: str
-
-
-Node = Annotated[
-    StrictStr,
-    StringConstraints(pattern=r"^[A-Za-z0-9_.+-]{1,40}$"),
-    Field(description="A node, any label; 'wall' (mechanical) and 'gnd' (electrical) are at rest."),
-]
-Pair = Annotated[tuple[Node, Node], Field(description="Two nodes, [first, second].")]
-Law = StrictStr  # each field adds its `Letters`
-InputName = Annotated[
-    StrictStr, Refers("input"), Field(description="Name of an input, a key of [inputs].")
-]
-BodyName = Annotated[
-    StrictStr, Refers("thermal_mass"), Field(description="Name of an element of kind thermal_mass.")
-]
-StateName = Annotated[
-    StrictStr | None,
-    Field(description="Symbol of the state; if not given, the kind's letter, '_' and the name."),
-]
-Count = Annotated[
-    StrictInt,
-    Field(ge=1, le=MAX_COUNT, description="Size of the bank; without it there is one hysteron."),
-]
-Jumps = Annotated[StrictBool, Field(description="Whether the law jumps on purpose.")]
+#: Where types of elements are found by their names, when they are unpickled.
+MODULE = "piezo_sym.spec.elements"
 
 
 class Frozen(BaseModel):
@@ -98,7 +28,32 @@ class Frozen(BaseModel):
 
 
 class Form(ABC):
-    """A part of an element: a store, a dissipation, a coupling or a source; see `forms`."""
+    """A part of a kind: a store, a dissipation, a coupling, a source, a body ...; see `forms`."""
+
+    @property
+    def one_of(self) -> tuple[str, ...]:
+        """Fields of which exactly one is to be given, such as a law and its inverse."""
+        return ()
+
+    @property
+    def letter(self) -> str:
+        """The letter of its state; empty for those without one."""
+        return ""
+
+    @property
+    def is_body(self) -> bool:
+        """Whether it has an entropy, and others may heat it."""
+        return False
+
+    @property
+    @abstractmethod
+    def fields(self) -> Fields:
+        """What a spec says of it; nodes first."""
+
+    @property
+    @abstractmethod
+    def doc(self) -> str:
+        """Its law, state and signs, in words."""
 
     @abstractmethod
     def port(self, element: Any, name: str, branch: Branch) -> Port:
@@ -110,48 +65,134 @@ class Form(ABC):
         return ()
 
 
-class Element(Frozen):
-    """An element of a network; every kind derives from it directly and is final."""
+@final
+@dataclass(frozen=True)
+class Kind:
+    """A row of the table of kinds.
 
-    #: The parts of the kind; two are in series.
-    forms: ClassVar[tuple[Form, ...]] = ()
-    #: The letter of the kind's state; empty for kinds without one.
-    letter: ClassVar[str] = ""
-    #: Fields of which exactly one is to be given: a law and its inverse.
-    one_of: ClassVar[tuple[str, ...]] = ()
+    Attributes
+    ----------
+    name : as a spec gives it.
+    about : what it is, on one line.
+    forms : its parts; two are in series.
+    bank : whether it takes `count`, and then stands for lanes in parallel.
+    """
+
+    name: str
+    about: str
+    forms: tuple[Form, ...]
+    bank: bool = False
+
+    @property
+    def letter(self) -> str:
+        """The letter of its state; empty for kinds without one."""
+        return next((form.letter for form in self.forms if form.letter), "")
+
+    @property
+    def one_of(self) -> tuple[tuple[str, ...], ...]:
+        """Groups of fields, of each of which exactly one is to be given."""
+        return tuple(form.one_of for form in self.forms if form.one_of)
+
+    @property
+    def fields(self) -> Fields:
+        """The fields of its elements."""
+        found = {name: field for form in self.forms for name, field in form.fields.items()}
+        first: Fields = {name: found.pop(name) for name in ("between", "at") if name in found}
+        count: Fields = {"count": (Count | None, None, None)} if self.bank else {}
+        state: Fields = {"state": (StateName, None, None)} if self.letter else {}
+        return {**first, **count, **found, **state}
+
+    @property
+    def doc(self) -> str:
+        """The text of `piezo-sym kinds`, of the schema and of the type of its elements."""
+        lanes = ("With `count` it is a bank of lanes j = 1..count in parallel.",) * self.bank
+        parts = (self.about, *(form.doc for form in self.forms), *lanes)
+        return "\n\n".join((*parts, f"Example: {self.example}"))
+
+    @property
+    def example(self) -> str:
+        """An element of this kind, as a line of [elements]."""
+        given = {name: sample for name, (*_, sample) in self.fields.items() if sample}
+        pairs = {"kind": self.name, **given}.items()
+        return f"{self.name} = {{ {', '.join(f'{key} = {_toml(v)}' for key, v in pairs)} }}"
+
+    def made(self) -> "type[Element]":
+        """Return the type of its elements."""
+        title = "".join(word.capitalize() for word in self.name.split("_"))
+        fields: Any = {name: field[:2] for name, field in self.fields.items()}
+        fields["kind"] = (Literal[self.name], self.name)
+        fields |= {"__base__": Element, "__module__": MODULE, "__doc__": self.doc}
+        made = cast("type[Element]", create_model(title, **fields))
+        made.row = self
+        return made
+
+
+class Element(Frozen):
+    """An element of a network; the type of each kind derives from it directly."""
+
+    row: ClassVar[Kind]
 
     kind: str
 
     @model_validator(mode="after")
-    def _one_law(self) -> Self:
-        given = [field for field in self.one_of if getattr(self, field) is not None]
-        if self.one_of and len(given) != 1:
-            said = f"both {' and '.join(given)}" if given else "neither"
-            message = f"exactly one of {' and '.join(self.one_of)}; {said} given"
-            raise ValueError(message)
+    def _one_of_each(self) -> Self:
+        for group in self.row.one_of:
+            given = [field for field in group if getattr(self, field) is not None]
+            if len(given) != 1:
+                said = f"both {' and '.join(given)}" if given else "neither"
+                message = f"exactly one of {' and '.join(group)}; {said} given"
+                raise ValueError(message)
         return self
 
     def ports(self, name: str) -> tuple[Port, ...]:
         """Return the ports of this element, called `name` in its spec."""
         first, last = getattr(self, "between", ("", ""))
-        nodes = (first, *(f"{name}:inner" for _ in self.forms[1:]), last)
+        forms = self.row.forms
+        nodes = (first, *(f"{name}:inner" for _ in forms[1:]), last)
         return tuple(
             form.port(self, name, branch)
-            for form, branch in zip(self.forms, pairwise(nodes), strict=True)
+            for form, branch in zip(forms, pairwise(nodes), strict=True)
         )
 
     def requires(self) -> tuple[Cmp, ...]:
         """Return the conditions that this element adds to the domain."""
-        return tuple(condition for form in self.forms for condition in form.requires(self))
+        return tuple(condition for form in self.row.forms for condition in form.requires(self))
 
     @property
     def is_bank(self) -> bool:
         """Whether the element is a bank of parallel lanes: `count` is given, be it 1."""
         return getattr(self, "count", None) is not None
 
+    @property
+    def is_body(self) -> bool:
+        """Whether it has an entropy, and others may heat it."""
+        return any(form.is_body for form in self.row.forms)
+
+    @property
+    def letter(self) -> str:
+        """The letter of its state; empty for those without one."""
+        return self.row.letter
+
     def law(self, field: str) -> Expr:
         """Return the tree of a law field."""
         return parse_law(getattr(self, field), field)
+
+    def laws(self) -> Iterator[tuple[str, str, Letters]]:
+        """Yield (field, text, letters and units) of each law that is given."""
+        for field, info in type(self).model_fields.items():
+            text = getattr(self, field)
+            for mark in info.metadata:
+                if isinstance(mark, Letters) and text is not None:
+                    yield field, text, mark.of(self)
+
+    def references(self) -> Iterator[tuple[str, str, str]]:
+        """Yield (field, what it refers to, the name given)."""
+        for field, info in type(self).model_fields.items():
+            for mark in info.metadata:
+                given = getattr(self, field)
+                if isinstance(mark, Refers) and given is not None:
+                    names = given if isinstance(given, tuple) else (given,)
+                    yield from ((field, mark.to, name) for name in names)
 
 
 def positive(law: Expr) -> Cmp:
@@ -162,3 +203,10 @@ def positive(law: Expr) -> Cmp:
 def state_symbol(element: Element, name: str) -> str:
     """Return the symbol of an element's state: as given, else its kind's letter and its name."""
     return getattr(element, "state", None) or f"{element.letter}_{name}"
+
+
+def _toml(value: Any) -> str:
+    """Return a text, or a list of texts, as TOML."""
+    if isinstance(value, str):
+        return f'"{value}"'
+    return f"[{', '.join(map(_toml, value))}]"

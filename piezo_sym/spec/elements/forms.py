@@ -1,6 +1,6 @@
-"""The forms of elements: store, dissipation, coupling and source, each for any domain.
+"""The forms of elements with a branch: store, dissipation and source, each for any domain.
 
-Input: an element, its name in the spec and the branch on which it stands.  Output: a `Port`.
+A form says once, for all domains, its fields, its docstring and its port.
 """
 
 from dataclasses import dataclass
@@ -9,32 +9,77 @@ from typing import Any, final
 from piezo_sym.expressions.calculus import add, neg
 from piezo_sym.expressions.tree import Cmp, Div, Expr, Mul, Sym, rename
 from piezo_sym.spec.elements.base import Form, positive, state_symbol
-from piezo_sym.spec.elements.ports import (
-    Branch,
-    Coupling,
-    DissipativePort,
-    PhysicalDomain,
-    PowerVariable,
-    Source,
-    Storage,
+from piezo_sym.spec.elements.domains import PhysicalDomain, PhysicalVariable, PowerVariable
+from piezo_sym.spec.elements.marks import (
+    BodyName,
+    Fields,
+    InputName,
+    Jumps,
+    Node,
+    Pair,
+    law_field,
 )
+from piezo_sym.spec.elements.ports import Branch, DissipativePort, Source, Storage
 
 
 @final
 @dataclass(frozen=True)
 class Store(Form):
-    """An energy store that imposes its co-state; `field` is its stiffness, capacitance, mass ..."""
+    """An energy store that imposes its co-state.
+
+    Attributes
+    ----------
+    size, unit : the field that is its stiffness, capacitance, mass ...
+    symbol : a parameter for it, in the example.
+    stiff : whether the co-state is the size times the extension beyond `rest`, not state over size.
+    at : whether it stands at one node; the other is the reference.
+    """
 
     domain: PhysicalDomain
     imposes: PowerVariable
-    field: str
+    size: str
+    unit: str
+    symbol: str
+    stiff: bool = False
+    at: bool = False
+
+    @property
+    def costate(self) -> PhysicalVariable:
+        """The variable that it imposes."""
+        return self.domain.variable(self.imposes)
+
+    @property
+    def letter(self) -> str:
+        """The letter of its state."""
+        return self.costate.state_letter
+
+    @property
+    def fields(self) -> Fields:
+        """Its nodes, size and rest."""
+        state, unit = self.letter, self.costate.state_unit
+        size = {self.size: law_field(self.unit, {state: unit}, self.symbol)}
+        rest = {"rest": law_field(unit, {}, default="0")} if self.stiff else {}
+        return {**_places(self.domain, self.at), **size, **rest}
+
+    @property
+    def doc(self) -> str:
+        """State, co-state, energy."""
+        out, driven = self.costate, self.domain.variable(self.imposes.other)
+        law = f"{self.letter}/{self.size}"
+        law = f"{self.size}*({self.letter} - rest)" if self.stiff else law
+        return (
+            f"State {self.letter} [{out.state_unit}], the {out.state}, is the integral of the "
+            f"{_said(driven, self.at)}; co-state the {_said(out, self.at)}, "
+            f"{out.prefix} = {law} [{out.unit}]; energy the integral of {out.prefix} "
+            f"over {self.letter}."
+        )
 
     def port(self, element: Any, name: str, branch: Branch) -> Storage:
         """Return the store, whose state is the integral of the conjugate variable."""
-        costate, state = self.domain.variable(self.imposes), state_symbol(element, name)
+        costate, state = self.costate, state_symbol(element, name)
         return Storage(
             state=state,
-            law=self._costate(element, state),
+            law=self._law(element, state),
             costate=f"{costate.prefix}_{name}",
             branch=_placed(element, branch, self.domain),
             domain=self.domain,
@@ -43,30 +88,69 @@ class Store(Form):
             doc=f"{costate.state} of {element.kind} '{name}'",
         )
 
-    def _costate(self, element: Any, state: str) -> Expr:
-        """Return the co-state: stiffness times extension beyond rest, or state over capacitance."""
-        size = rename(element.law(self.field), {element.letter: state})
-        if self.field != "stiffness":
+    def _law(self, element: Any, state: str) -> Expr:
+        size = rename(element.law(self.size), {self.letter: state})
+        if not self.stiff:
             return Div(Sym(state), size)
         return Mul(size, add(Sym(state), neg(element.law("rest"))))
 
     def requires(self, element: Any) -> tuple[Cmp, ...]:
-        """Return that `field` is positive."""
-        return (positive(element.law(self.field)),)
+        """Return that its size is positive."""
+        return (positive(element.law(self.size)),)
 
 
 @final
 @dataclass(frozen=True)
 class Dissipation(Form):
-    """A law for one variable of a branch, given the other; their product heats a body."""
+    """A law for one variable of a branch, given the other; their product heats a body.
+
+    `gives` is what a law may give; `symbol` a law for the first of these, in the example.
+    """
 
     domain: PhysicalDomain
+    gives: tuple[PowerVariable, ...]
+    symbol: str
+
+    @property
+    def one_of(self) -> tuple[str, ...]:
+        """A law and its inverse."""
+        names = tuple(self.domain.variable(v).name for v in self.gives)
+        return names if len(names) > 1 else ()
+
+    @property
+    def fields(self) -> Fields:
+        """Its nodes, laws, and the body it heats."""
+        default = None if self.one_of else ...
+        laws: Fields = {}
+        for v in self.gives:
+            out, given = self.domain.variable(v), self.domain.variable(v.other)
+            sample = "" if laws else self.symbol
+            letters = {given.letter: given.unit, "T": "K"}
+            laws[out.name] = law_field(out.unit, letters, sample, default)
+        heats = {"heats": (BodyName, ..., "body"), "discontinuous": (Jumps, False, None)}
+        return {**_places(self.domain), **laws, **heats}
+
+    @property
+    def doc(self) -> str:
+        """Its law or laws, and the heat."""
+        found = [(self.domain.variable(v), self.domain.variable(v.other)) for v in self.gives]
+        laws = ", or ".join(
+            f"its {_word(out)} [{out.unit}] is a law of {given.letter}, the {_said(given)} "
+            f"[{given.unit}]"
+            for out, given in found
+        )
+        out, given = found[0]
+        return (
+            f"{laws[0].upper()}{laws[1:]}; T [K] is the temperature of the body that it `heats` "
+            f"with {_word(out)} times {_word(given)}."
+        )
 
     def port(self, element: Any, name: str, branch: Branch) -> DissipativePort:
         """Return the process, in the causality in which the law is given."""
-        imposes = next(
-            v for v in PowerVariable if getattr(element, self.domain.variable(v).name, None)
+        given = (
+            v for v in self.gives if getattr(element, self.domain.variable(v).name) is not None
         )
+        imposes = next(given)
         output, effort = self.domain.variable(imposes), self.domain.variable(imposes.other)
         return DissipativePort(
             letter=effort.letter,
@@ -83,35 +167,31 @@ class Dissipation(Form):
 
 @final
 @dataclass(frozen=True)
-class PairCoupling(Form):
-    """A coupling of two pairs of nodes, each a field of the element with its domain."""
-
-    first: tuple[str, PhysicalDomain]
-    second: tuple[str, PhysicalDomain]
-    gyrates: bool = False
-
-    def port(self, element: Any, name: str, branch: Branch) -> Coupling:
-        """Return the coupling; it has two branches of its own."""
-        del branch
-        return Coupling(
-            first=getattr(element, self.first[0]),
-            first_domain=self.first[1],
-            second=getattr(element, self.second[0]),
-            second_domain=self.second[1],
-            ratio=element.law("ratio"),
-            name=f"{'alpha' if self.gyrates else 'n'}_{name}",
-            body=getattr(element, "temperature", None),
-            gyrates=self.gyrates,
-        )
-
-
-@final
-@dataclass(frozen=True)
 class Imposed(Form):
     """A variable of a branch that an input gives."""
 
     domain: PhysicalDomain
     imposes: PowerVariable
+    symbol: str
+    at: bool = False
+
+    @property
+    def fields(self) -> Fields:
+        """Its nodes and its input."""
+        return {**_places(self.domain, self.at), "input": (InputName, ..., self.symbol)}
+
+    @property
+    def doc(self) -> str:
+        """What the input is, and its conjugate output."""
+        given, output = (self.domain.variable(v) for v in (self.imposes, self.imposes.other))
+        node = "its node" if self.at else "its first node"
+        verb = f"is given into {node}"
+        if self.imposes is PowerVariable.ACROSS:
+            verb = f"is that of {node}{'' if self.at else ' relative to its second'}"
+        return (
+            f"Its input, a {_word(given)} [{given.unit}], {verb}; output is the {_word(output)} "
+            f"[{output.unit}], so that output times input is the power put in."
+        )
 
     def port(self, element: Any, name: str, branch: Branch) -> Source:
         """Return the port; its output is the conjugate variable."""
@@ -124,8 +204,23 @@ class Imposed(Form):
             domain=self.domain,
             imposes=self.imposes,
             units=(given.unit, output.unit),
-            doc=f"{output.name} {verb} {element.kind} '{name}'",
+            doc=f"{_word(output)} {verb} {element.kind} '{name}'",
         )
+
+
+def _word(variable: PhysicalVariable) -> str:
+    return variable.name.replace("_", " ")
+
+
+def _said(variable: PhysicalVariable, at: bool = False) -> str:
+    """Return a variable and how it counts; at one node, of that node."""
+    return f"{_word(variable)} {'at its node' if at else variable.sense}"
+
+
+def _places(domain: PhysicalDomain, at: bool = False) -> Fields:
+    if at:
+        return {"at": (Node, ..., domain.node)}
+    return {"between": (Pair, ..., [domain.node, domain.reference])}
 
 
 def _placed(element: Any, branch: Branch, domain: PhysicalDomain) -> Branch:

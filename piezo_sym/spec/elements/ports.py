@@ -1,88 +1,18 @@
 """What elements are made of: the ports between an element and its network.
 
 Input: nothing; these are the types.  Output: frozen records that `network` connects and `iphs`
-reads.  An element states here, once, its law; it knows nothing of matrices.  Across/through:
-voltage and velocity are across, current and force are through; a branch (a, b) has across e_a -
-e_b, and its through variable flows from a to b.
+reads.  An element states here, once, its law; it knows nothing of matrices.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from enum import Enum
 from typing import final
 
 from piezo_sym.expressions.tree import Expr
+from piezo_sym.spec.elements.domains import PhysicalDomain, PowerVariable
 
 Branch = tuple[str, str]
-
-
-@final
-class PowerVariable(Enum):
-    """The two variables of a branch."""
-
-    ACROSS = "across"
-    THROUGH = "through"
-
-    @property
-    def other(self) -> PowerVariable:
-        """The conjugate variable."""
-        return PowerVariable.THROUGH if self is PowerVariable.ACROSS else PowerVariable.ACROSS
-
-
-@final
-class PhysicalDomain(Enum):
-    """A physical domain; its two variables stand in `VARIABLES`."""
-
-    ELECTRICAL = "electrical"
-    MECHANICAL = "mechanical"
-
-    @property
-    def reference(self) -> str:
-        """The node at which the across variable is zero."""
-        return "gnd" if self is PhysicalDomain.ELECTRICAL else "wall"
-
-    def variable(self, which: PowerVariable) -> PhysicalVariable:
-        """Return what the across or through variable is in this domain."""
-        return VARIABLES[self, which]
-
-
-@final
-@dataclass(frozen=True)
-class PhysicalVariable:
-    """The across or through variable of a domain.
-
-    Attributes
-    ----------
-    name : also the field of a dissipative law that gives it.
-    unit, letter : its unit, and its letter in laws.
-    prefix : what names of quantities of this kind begin with, such as ``F`` of ``F_spring``.
-    state, state_unit : the state of a store that imposes it.
-    """
-
-    name: str
-    unit: str
-    letter: str
-    prefix: str
-    state: str
-    state_unit: str
-
-
-VARIABLES: Mapping[tuple[PhysicalDomain, PowerVariable], PhysicalVariable] = {
-    (PhysicalDomain.ELECTRICAL, PowerVariable.ACROSS): PhysicalVariable(
-        "voltage", "V", "v", "V", "charge", "C"
-    ),
-    (PhysicalDomain.ELECTRICAL, PowerVariable.THROUGH): PhysicalVariable(
-        "current", "A", "i", "i", "flux linkage", "Wb"
-    ),
-    (PhysicalDomain.MECHANICAL, PowerVariable.ACROSS): PhysicalVariable(
-        "velocity", "m/s", "v", "v", "momentum", "kg*m/s"
-    ),
-    (PhysicalDomain.MECHANICAL, PowerVariable.THROUGH): PhysicalVariable(
-        "force", "N", "f", "F", "extension", "m"
-    ),
-}
 
 
 @final
@@ -156,6 +86,7 @@ class Coupling:
     second: Branch
     second_domain: PhysicalDomain
     ratio: Expr
+    field: str
     name: str
     body: str | None
     gyrates: bool

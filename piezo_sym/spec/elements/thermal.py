@@ -1,101 +1,100 @@
-"""The thermal kinds: a body, conduction between two, and exchange with the environment."""
+"""The thermal forms: a body, conduction between two, and exchange with the environment."""
 
-from typing import Annotated, ClassVar, Literal, final
+from dataclasses import dataclass
+from typing import Any, ClassVar, final
 
 from piezo_sym.expressions.tree import Cmp, Sym, names, rename
-from piezo_sym.spec.elements.base import (
-    BodyName,
-    Element,
-    InputName,
-    Law,
-    Letters,
-    StateName,
-    positive,
-    state_symbol,
-)
-from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, Port
+from piezo_sym.spec.elements.base import Form, positive, state_symbol
+from piezo_sym.spec.elements.marks import BodyName, BodyPair, Fields, InputName, law_field
+from piezo_sym.spec.elements.ports import Body, Branch, Conductor, Exchange
 
 
 @final
-class ThermalMass(Element):
-    """A body, eqs. (8), (13) and f_h(S) of (6).
-
-    State S [J/K], its entropy; co-state its temperature T = temperature(S) [K]; energy the integral
-    of T, the f_h(S) that the paper leaves to be deduced.
-
-    Example: body = { kind = "thermal_mass", temperature = "T_0*exp(S/c_0)", state = "S" }
-    """
+@dataclass(frozen=True)
+class ThermalMass(Form):
+    """A body with a temperature, eqs. (8), (13) and f_h(S) of (6)."""
 
     letter: ClassVar[str] = "S"
+    is_body: ClassVar[bool] = True
 
-    kind: Literal["thermal_mass"] = "thermal_mass"
-    temperature: Annotated[Law, Letters({"S": "J/K"}, unit="K")]
-    state: StateName = None
+    @property
+    def fields(self) -> Fields:
+        """Its law."""
+        return {"temperature": law_field("K", {"S": "J/K"}, "T_0*exp(S/c_0)")}
 
-    def ports(self, name: str) -> tuple[Port, ...]:
+    @property
+    def doc(self) -> str:
+        """State, co-state, energy."""
+        return (
+            "State S [J/K], its entropy; co-state its temperature T = temperature(S) [K]; energy "
+            "the integral of T, the f_h(S) that the paper leaves to be deduced."
+        )
+
+    def port(self, element: Any, name: str, branch: Branch) -> Body:
         """Return the body."""
-        state = state_symbol(self, name)
-        return (
-            Body(
-                state=state,
-                law=rename(self.law("temperature"), {"S": state}),
-                temperature=f"T_{name}",
-                doc=f"entropy of thermal_mass '{name}'",
-            ),
+        del branch
+        state = state_symbol(element, name)
+        return Body(
+            state=state,
+            law=rename(element.law("temperature"), {self.letter: state}),
+            temperature=f"T_{name}",
+            doc=f"entropy of {element.kind} '{name}'",
         )
 
-    def requires(self) -> tuple[Cmp, ...]:
+    def requires(self, element: Any) -> tuple[Cmp, ...]:
         """Every parameter of the temperature law is positive."""
-        return tuple(
-            positive(Sym(word)) for word in names(self.law("temperature")) if word != self.letter
-        )
+        words = names(element.law("temperature"))
+        return tuple(positive(Sym(word)) for word in words if word != self.letter)
 
 
 @final
-class Conduction(Element):
-    """Heat conduction between two bodies, the irreversible process of a heat exchanger.
+@dataclass(frozen=True)
+class Conduction(Form):
+    """Heat conduction between two bodies, the irreversible process of a heat exchanger."""
 
-    The heat flow q = conductance*(T_1 - T_2) [W] runs from the first body to the second; J couples
-    their entropies, the driving force is T_1 - T_2 and gamma = conductance/(T_1 T_2).
+    @property
+    def fields(self) -> Fields:
+        """Its bodies and its conductance."""
+        bodies = (BodyPair, ..., ["stack", "mount"])
+        return {"between": bodies, "conductance": law_field("W/K", {}, "lam")}
 
-    Example: contact = { kind = "conduction", between = ["stack", "mount"], conductance = "lam" }
-    """
-
-    kind: Literal["conduction"] = "conduction"
-    between: tuple[BodyName, BodyName]
-    conductance: Annotated[Law, Letters({}, unit="W/K")]
-
-    def ports(self, name: str) -> tuple[Port, ...]:
-        """Return the process."""
+    @property
+    def doc(self) -> str:
+        """The process of Definition 1."""
         return (
-            Conductor(
-                first=self.between[0],
-                second=self.between[1],
-                conductance=self.law("conductance"),
-                output=f"s_{name}",
-            ),
+            "The heat flow q = conductance*(T_1 - T_2) [W] runs from the first body to the second; "
+            "J couples their entropies, the driving force is T_1 - T_2 and "
+            "gamma = conductance/(T_1 T_2)."
         )
+
+    def port(self, element: Any, name: str, branch: Branch) -> Conductor:
+        """Return the process."""
+        del branch
+        first, second = element.between
+        return Conductor(first, second, element.law("conductance"), f"s_{name}")
 
 
 @final
-class Ambient(Element):
-    """The paper's third input, eq. (8): lam*(T_e/T - 1) into the body's entropy.
+@dataclass(frozen=True)
+class Ambient(Form):
+    """The paper's third input, eq. (8): lam*(T_e/T - 1) into a body's entropy."""
 
-    The input T_e [K] is the environment's temperature; the conjugate output is y = T, so that the
-    power put in is lam*(T_e - T) [W].
+    @property
+    def fields(self) -> Fields:
+        """Its body, conductance and input."""
+        body, conductance = (BodyName, ..., "body"), law_field("W/K", {}, "lam")
+        return {"body": body, "conductance": conductance, "input": (InputName, ..., "T_e")}
 
-    Example: air = { kind = "ambient", body = "body", conductance = "lam", input = "T_e" }
-    """
+    @property
+    def doc(self) -> str:
+        """Its flow and its output."""
+        return (
+            "The input T_e [K] is the environment's temperature, conductance*(T_e/T - 1) [W/K] the "
+            "entropy that flows into the body; the conjugate output is y = T, so that the power "
+            "put in is conductance*(T_e - T) [W]."
+        )
 
-    kind: Literal["ambient"] = "ambient"
-    body: BodyName
-    conductance: Annotated[Law, Letters({}, unit="W/K")]
-    input: InputName
-
-    def ports(self, name: str) -> tuple[Port, ...]:
+    def port(self, element: Any, name: str, branch: Branch) -> Exchange:
         """Return the exchange."""
-        del name
-        return (Exchange(self.body, self.law("conductance"), self.input),)
-
-
-THERMAL = (ThermalMass, Conduction, Ambient)
+        del name, branch
+        return Exchange(element.body, element.law("conductance"), element.input)

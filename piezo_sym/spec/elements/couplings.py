@@ -1,0 +1,93 @@
+"""The form of couplings: two pairs of nodes, each in a domain, and a ratio."""
+
+from dataclasses import dataclass
+from typing import Any, final
+
+from piezo_sym.spec.elements.base import Form
+from piezo_sym.spec.elements.domains import PhysicalDomain
+from piezo_sym.spec.elements.marks import Fields, OptionalBody, Pair, law_field
+from piezo_sym.spec.elements.ports import Branch, Coupling
+
+
+@final
+@dataclass(frozen=True)
+class PairCoupling(Form):
+    """A coupling of two pairs of nodes.
+
+    Attributes
+    ----------
+    first, second : the fields of the pairs, with their domains; of several, one is to be given.
+    ratio, units : the field of its ratio, and its unit with each field of the second pair.
+    symbol : the ratio in the example.
+    gyrates : whether through_1 = ratio*across_2, not across_1 = ratio*across_2.
+    warm : whether the ratio may depend on the temperature of a body.
+    """
+
+    first: tuple[str, PhysicalDomain]
+    second: tuple[tuple[str, PhysicalDomain], ...]
+    ratio: str
+    units: tuple[str, ...]
+    symbol: str
+    gyrates: bool = False
+    warm: bool = False
+
+    @property
+    def one_of(self) -> tuple[str, ...]:
+        """The fields of the second pair, if there are several."""
+        return tuple(field for field, _ in self.second) if len(self.second) > 1 else ()
+
+    @property
+    def fields(self) -> Fields:
+        """Its pairs and its ratio."""
+        others = zip(self.second[1:], self.units[1:], strict=True)
+        instead = {field: unit for (field, _), unit in others if unit != self.units[0]}
+        letters = {"T": "K"} if self.warm else {}
+        ratio = law_field(self.units[0], letters, self.symbol, **instead)
+        body = {"temperature": (OptionalBody, None, "body")} if self.warm else {}
+        return {**self._pairs(), self.ratio: ratio, **body}
+
+    def _pairs(self) -> Fields:
+        """Return the pairs; in the example there are the first two of them."""
+        found: Fields = {}
+        for field, domain in (self.first, *self.second):
+            sample = [f"{domain.node}_{len(found) + 1}", domain.reference] * (len(found) < 2)
+            chosen = field in self.one_of
+            found[field] = (Pair | None if chosen else Pair, None if chosen else ..., sample)
+        return found
+
+    @property
+    def doc(self) -> str:
+        """Its two equations, for each choice of pairs."""
+        return "\n\n".join(
+            self._equations(*self.second[n])
+            for n, (_, domain) in enumerate(self.second)
+            if domain not in [known for _, known in self.second[:n]]
+        )
+
+    def _equations(self, field: str, domain: PhysicalDomain) -> str:
+        one, two = self.first[1], domain
+        given, taken = (one.through, one.across) if self.gyrates else (one.across, one.through)
+        return (
+            f"With the pairs `{self.first[0]}` (1) and `{field}` (2): "
+            f"{given.prefix}_1 = {self.ratio}*{two.across.prefix}_2 and "
+            f"{two.through.prefix}_2 = -{self.ratio}*{taken.prefix}_1. {one.through.prefix}_1 and "
+            f"{two.through.prefix}_2 run from the first to the second node of their pair inside "
+            f"the element, so it gives {self.ratio}*{taken.prefix}_1 to the first node of pair 2."
+        )
+
+    def port(self, element: Any, name: str, branch: Branch) -> Coupling:
+        """Return the coupling; it has two branches of its own."""
+        del branch
+        pairs = ((getattr(element, field), domain) for field, domain in self.second)
+        second, domain = next(pair for pair in pairs if pair[0] is not None)
+        return Coupling(
+            first=getattr(element, self.first[0]),
+            first_domain=self.first[1],
+            second=second,
+            second_domain=domain,
+            ratio=element.law(self.ratio),
+            field=self.ratio,
+            name=f"{'alpha' if self.gyrates else 'n'}_{name}",
+            body=getattr(element, "temperature", None),
+            gyrates=self.gyrates,
+        )

@@ -1,0 +1,114 @@
+"""The physical domains: a row each, with its two variables and the states of its stores.
+
+Input: nothing; this is data.  Output: `DOMAINS`.  Across/through: a branch (a, b) has across e_a -
+e_b, and its through variable flows from a to b inside the element.  All else that is said of a
+domain (messages, units, names of quantities) is read from its row.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import final
+
+
+@final
+class PowerVariable(Enum):
+    """The two variables of a branch."""
+
+    ACROSS = "across"
+    THROUGH = "through"
+
+    @property
+    def other(self) -> PowerVariable:
+        """The conjugate variable."""
+        return PowerVariable.THROUGH if self is PowerVariable.ACROSS else PowerVariable.ACROSS
+
+
+@final
+@dataclass(frozen=True)
+class PhysicalVariable:
+    """The across or through variable of a domain.
+
+    Attributes
+    ----------
+    name : also the field of a dissipative law that gives it.
+    unit, letter : its unit, and its letter in laws.
+    prefix : what names of quantities of this kind begin with, such as ``F`` of ``F_spring``.
+    sense : which way it counts along a branch, in words.
+    state, state_unit, state_letter : the state of a store that imposes it.
+    """
+
+    name: str
+    unit: str
+    letter: str
+    prefix: str
+    sense: str
+    state: str
+    state_unit: str
+    state_letter: str
+
+
+@final
+@dataclass(frozen=True)
+class PhysicalDomain:
+    """A physical domain.
+
+    Attributes
+    ----------
+    name : as couplings call their pairs of nodes, and messages the domain.
+    reference : the node at which the across variable is zero.
+    node : another node, for examples.
+    across, through : its two variables.
+    """
+
+    name: str
+    reference: str
+    node: str
+    across: PhysicalVariable
+    through: PhysicalVariable
+
+    def variable(self, which: PowerVariable) -> PhysicalVariable:
+        """Return what the across or through variable is in this domain."""
+        return self.across if which is PowerVariable.ACROSS else self.through
+
+
+_RELATIVE = "of its first node relative to its second"
+_FLOWS = "from its first node to its second"
+
+ELECTRICAL = PhysicalDomain(
+    "electrical",
+    "gnd",
+    "in",
+    PhysicalVariable("voltage", "V", "v", "V", _RELATIVE, "charge", "C", "Q"),
+    PhysicalVariable("current", "A", "i", "i", _FLOWS, "flux linkage", "Wb", "phi"),
+)
+TRANSLATION = PhysicalDomain(
+    "translation",
+    "wall",
+    "tip",
+    PhysicalVariable("velocity", "m/s", "v", "v", _RELATIVE, "momentum", "kg*m/s", "p"),
+    PhysicalVariable(
+        "force", "N", "f", "F", "that pulls its first node back", "extension", "m", "q"
+    ),
+)
+ROTATION = PhysicalDomain(
+    "rotation",
+    "frame",
+    "shaft",
+    PhysicalVariable(
+        "angular_velocity", "rad/s", "omega", "omega", _RELATIVE, "angular momentum", "N*m*s", "L"
+    ),
+    PhysicalVariable(
+        "torque", "N*m", "tau", "tau", "that turns its first node back", "twist", "rad", "theta"
+    ),
+)
+HYDRAULIC = PhysicalDomain(
+    "hydraulic",
+    "tank",
+    "line",
+    PhysicalVariable("pressure", "Pa", "dp", "dp", _RELATIVE, "volume", "m**3", "V"),
+    PhysicalVariable("flow", "m**3/s", "flow", "flow", _FLOWS, "pressure impulse", "Pa*s", "G"),
+)
+
+DOMAINS = (TRANSLATION, ELECTRICAL, ROTATION, HYDRAULIC)

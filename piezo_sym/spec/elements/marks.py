@@ -1,0 +1,108 @@
+"""The fields of kinds: types that say what a field refers to, or which law it is.
+
+Input: nothing; these are the types.  Output: annotations for `base.Kind`.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, final
+
+from pydantic import (
+    Field,
+    GetJsonSchemaHandler,
+    StrictBool,
+    StrictInt,
+    StrictStr,
+    StringConstraints,
+)
+from pydantic_core import CoreSchema
+
+from piezo_sym.spec.elements.domains import DOMAINS
+
+MAX_COUNT = 1_000_000
+#: The fields of a kind: type with what it refers to, value if not given, value in an example.
+Fields = dict[str, tuple[Any, Any, Any]]
+
+
+@final
+@dataclass(frozen=True)
+class Letters:
+    """Marks a field as a law: the letters it may use besides parameters, and the units of all.
+
+    Attributes
+    ----------
+    units : the unit of each letter, such as ``{"i": "A", "T": "K"}``.
+    unit : the unit of the law itself.
+    instead : the unit of the law where some other field is given, by that field.
+    """
+
+    units: Mapping[str, str]
+    unit: str
+    instead: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The letters."""
+        return tuple(self.units)
+
+    def of(self, element: object) -> "Letters":
+        """Return the letters and units of a law in one element."""
+        given = (unit for field, unit in self.instead if getattr(element, field) is not None)
+        return Letters(self.units, next(given, self.unit))
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """Return the field's JSON Schema with these letters in its description."""
+        letters = ", ".join(f"{name} [{unit}]" for name, unit in self.units.items())
+        also = f" and the letters {letters}" if letters else ""
+        others = "".join(f" ({unit} with {field})" for field, unit in self.instead)
+        text = f"A law in {self.unit}{others}, as text, of parameters{also}."
+        return {**handler(schema), "description": text}
+
+
+@final
+@dataclass(frozen=True)
+class Refers:
+    """Marks a field as the name of something else in the spec: an 'input' or a 'thermal_mass'."""
+
+    to: str
+
+
+_AT_REST = ", ".join(f"'{domain.reference}' ({domain.name})" for domain in DOMAINS)
+Node = Annotated[
+    StrictStr,
+    StringConstraints(pattern=r"^[A-Za-z0-9_.+-]{1,40}$"),
+    Field(description=f"A node, any label; references: {_AT_REST}."),
+]
+Pair = Annotated[tuple[Node, Node], Field(description="Two nodes, [first, second].")]
+Law = StrictStr  # each field adds its `Letters`
+InputName = Annotated[
+    StrictStr, Refers("input"), Field(description="Name of an input, a key of [inputs].")
+]
+BodyName = Annotated[
+    StrictStr, Refers("thermal_mass"), Field(description="Name of an element of kind thermal_mass.")
+]
+OptionalBody = Annotated[BodyName | None, Refers("thermal_mass")]
+BodyPair = Annotated[
+    tuple[StrictStr, StrictStr],
+    Refers("thermal_mass"),
+    Field(description="Names of two elements of kind thermal_mass, [first, second]."),
+]
+StateName = Annotated[
+    StrictStr | None,
+    Field(description="Symbol of the state; if not given, the kind's letter, '_' and the name."),
+]
+Count = Annotated[
+    StrictInt,
+    Field(ge=1, le=MAX_COUNT, description="Size of the bank; without it there is one lane."),
+]
+Jumps = Annotated[StrictBool, Field(description="Whether the law jumps on purpose.")]
+
+
+def law_field(
+    unit: str, letters: Mapping[str, str], sample: str = "", default: Any = ..., **instead: str
+) -> tuple[Any, Any, Any]:
+    """Return a field that is a law; with None as its default it is one of several to choose."""
+    mark = Letters(letters, unit, tuple(instead.items()))
+    return (Annotated[Law | None if default is None else Law, mark], default, sample)
