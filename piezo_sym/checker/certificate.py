@@ -33,7 +33,8 @@ class _Certificate:
     def __init__(self, spec: Spec, element: Element, prover: Prover) -> None:
         self.law, self.prover, self.left = element.law or num(0), prover, MOST_WINDOWS
         self.real, self.letter = Prover(()), ("z", element.name)
-        meanings = {**spec.words, element.letter: self.letter}
+        # the letter has a _ where something of the spec is called so
+        meanings = {element.letter: self.letter, **spec.words, f"{element.letter}_": self.letter}
         self.words = {word: sym(meaning) for word, meaning in meanings.items()}
 
     def read(self, text: str) -> Node:

@@ -29,8 +29,8 @@ current_source | source     | E  | between               | - |                  
 velocity_source | source    | M  | at                    | + |                            | input |
 force_source   | source     | M  | at                    | - |                            | input |
 thermal_mass   | body       |    |                       | + | temperature K S            | state? | temperature
-conduction     | conduction |    |                       | + | conductance W/K            | between |
-ambient        | ambient    |    |                       | + | conductance W/K            | body input |
+conduction     | conduction |    |                       | + | conductance W/K T_1 T_2    | between |
+ambient        | ambient    |    |                       | + | conductance W/K T T_e      | body input |
 """  # noqa: E501
 
 

@@ -103,8 +103,7 @@ class _Query:
         """Assert what is known of a smooth function, alone and of two values of one."""
         if (name, x.op) in (("log", "exp"), ("exp", "log")):  # log(exp(a)) = a; a > 0 for the other
             self.add(compare(y, "=", x.args[0]), *[compare(x.args[0], ">")] * (name == "exp"))
-        others = self.calls.setdefault(name, [])
-        known = SMOOTH[name]
+        others, known = self.calls.setdefault(name, []), SMOOTH[name]
         pairs = [(known.pairs, {"a": a, "b": b}) for a, b in others[:MOST_PAIRS]]
         for texts, words in [(known.facts, dict[str, Node]()), *pairs]:
             for text in texts.split(";"):

@@ -86,6 +86,7 @@ class _Reader:
         self.kinds = {name: KINDS[entry["kind"]] for name, entry in tables["elements"].items()}
         need(bool(self.kinds), "no elements")
         self.bodies = [name for name, kind in self.kinds.items() if kind.form == "body"]
+        self.lanes = {("x", n) for n, own in tables["elements"].items() if "count" in own}
         self.words = self._words()
         self.states = {word: owner for word, (role, owner) in self.words.items() if role == "x"}
         self.elements = {name: self._element(name) for name in self.kinds}
@@ -118,9 +119,9 @@ class _Reader:
                 word = self.tables["elements"][name].get("state", f"{letter}_{name}")
                 found.append((word, ("x", name)))
                 self.units["x", name] = unit(LETTERS[letter])[1]
-        for name in self.bodies:
-            found.append(("T" if len(self.bodies) == 1 else f"T_{name}", ("T", name)))
-            self.units["T", name] = unit("K")[1]
+        self.units |= {("T", name): unit("K")[1] for name in self.bodies}
+        found += [(f"T_{name}", ("T", name)) for name in self.bodies]
+        found += [("T", found[-1][1])] * (len(self.bodies) == 1 and "T" not in dict(found))
         need(len(dict(found)) == len(found), "a name has two meanings")
         return dict(found)
 
@@ -161,16 +162,18 @@ class _Reader:
         return Element(name, kind, own, state, costate, law, letter, *given)
 
     def _law(self, name: str, field: str, bodies: tuple[str, ...]) -> Node:
-        words: dict[str, Symbol] = {p: ("p", p) for p in self.parameters}
-        needed, letters = self.kinds[name].laws[field]
-        owner = bodies or (self.bodies if len(self.bodies) == 1 else ())
+        entry, (needed, letters) = self.tables["elements"][name], self.kinds[name].laws[field]
+        lanes = self.lanes - {("x", name)}
+        roles = "p" if field == "rest" or {*letters} & {*STATES} else "pxT"
+        words = {w: s for w, s in self.words.items() if s[0] in roles and s not in lanes}
+        warm = zip(bodies or self.bodies[: len(self.bodies) == 1], ("T T_1", "T_2"), strict=False)
+        words |= {w: ("T", body) for body, own in warm for w in own.split() if w in letters}
+        words |= {"T_e": ("u", entry["input"])} if "T_e" in letters else {}
         across = GIVES.get((self.kinds[name].domains, True), "1")
-        if "T" in letters and owner:
-            words["T"] = "T", owner[0]
-        for letter in (letter for letter in letters if letter != "T"):
+        for letter in (letter for letter in letters if letter[0] != "T"):
             words[letter] = ("x" if letter in STATES else "z", name)
             self.units[words[letter]] = unit(LETTERS.get(letter, across))[1]
-        law = self._resolved(self.tables["elements"][name][field], words)
+        law = self._resolved(entry[field], words)
         self.faults += faults(law, self.units, unit(needed)[1], f"elements.{name}")
         return law
 
@@ -212,8 +215,7 @@ class _Reader:
             if isinstance(self.tables["parameters"][name]["value"], list):
                 own = [(e, law) for e in self.elements.values() for law in e.laws.values()]
                 users = {e.name: e.lanes for e, law in own if ("p", name) in symbols(law)}
-                good = [*users.values()] == [len(values)]
-                need(good, f"parameters.{name}: a list, but no bank of its length")
+                need([*users.values()] == [len(values)], f"parameters.{name} fits no bank")
                 lists[name] = banks["p", name] = next(iter(users))
         for tree in conditions:
             owners = {banks[symbol] for symbol in symbols(tree) if symbol in banks}

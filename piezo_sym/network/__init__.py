@@ -1,7 +1,8 @@
 """Networks: who is connected to whom, solved exactly; a circuit to its junction structure."""
 
+from piezo_sym.network.inverse import slope_of
 from piezo_sym.network.junction import Junction, junction_of
 from piezo_sym.network.kirchhoff import port_order
 from piezo_sym.network.loops import Slope
 
-__all__ = ["Junction", "Slope", "junction_of", "port_order"]
+__all__ = ["Junction", "Slope", "junction_of", "port_order", "slope_of"]

@@ -24,7 +24,7 @@ def turn(port: DissipativePort, taken: Collection[str]) -> DissipativePort | Non
 
     `taken` are the names in use, none of which its new letter is.
     """
-    slope = slope_of(port)
+    slope = slope_of(port.law, port.letter)
     if slope is None or _vanishes(slope):
         return None
     letter = fresh(port.domain.variable(port.imposes).letter, taken)
@@ -39,13 +39,12 @@ def turn(port: DissipativePort, taken: Collection[str]) -> DissipativePort | Non
     )
 
 
-def slope_of(port: DissipativePort) -> Expr | None:
+def slope_of(law: Expr, letter: str) -> Expr | None:
     """Return the slope of a law that is linear in its letter, else None."""
-    if any(port.letter in names(node) for node in walk(port.law) if isinstance(node, Call | Cmp)):
+    if any(letter in names(node) for node in walk(law) if isinstance(node, Call | Cmp)):
         return None  # a function or a branch of the letter: its slope would not show a jump
-    slope = derivative(port.law, port.letter)
-    at_zero = substitute(port.law, {port.letter: ZERO})
-    return slope if port.letter not in names(slope) and _vanishes(at_zero) else None
+    slope, at_zero = derivative(law, letter), substitute(law, {letter: ZERO})
+    return slope if letter not in names(slope) and _vanishes(at_zero) else None
 
 
 def inverse_field(port: DissipativePort) -> tuple[str, str]:

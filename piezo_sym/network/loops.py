@@ -144,7 +144,9 @@ def _slopes(laws: Laws, group: tuple[int, ...], taken: set[str]) -> Iterator[Slo
         remedy = f"join those in series or in parallel, or {between}"
         raise NetworkError(what, "network", f"at most {MOST} that do", remedy)
     for k, (placed, port) in zip(group, members, strict=True):
-        law = slope_of(port) if isinstance(port, DissipativePort) and not placed.bank else None
+        law = None
+        if isinstance(port, DissipativePort) and not placed.bank:
+            law = slope_of(port.law, port.letter)
         if law is None:
             remedy = f"{between}, or make the law linear"
             raise NetworkError(what, f"elements.{placed.element}", "linear laws", remedy)

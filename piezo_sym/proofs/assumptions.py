@@ -12,7 +12,14 @@ from piezo_sym.expressions.calculus import derivative
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, Div, Expr, Mul, Sym, names
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.obligations import Obligation, Question
-from piezo_sym.spec.elements.ports import Body, Storage
+from piezo_sym.spec.elements.ports import (
+    Body,
+    Conductor,
+    Coupling,
+    DissipativePort,
+    Exchange,
+    Storage,
+)
 from piezo_sym.spec.tables import condition_text, conditions
 
 
@@ -91,7 +98,10 @@ def assumptions_of(iphs: IPHS) -> Assumptions:
     states = [port.state for _, port in iphs.circuit.of(Storage, Body)]
     order = (*iphs.model.parameters, *words, *iphs.model.inputs, *states)
     rows = tuple((port.temperature, ("temperature", body.element)) for body, port in placed)
-    used = {name for tree in trees for name in names(tree)}
+    laws = [port.law for _, port in iphs.circuit.of(DissipativePort)]
+    laws += [port.ratio for _, port in iphs.circuit.of(Coupling)]
+    laws += [port.conductance for _, port in iphs.circuit.of(Exchange, Conductor)]
+    used = {name for tree in (*trees, *laws) for name in names(tree)}
     ties = tuple(
         Cmp("=", Sym(port.temperature), port.law)
         for _, port in placed

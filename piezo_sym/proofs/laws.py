@@ -169,7 +169,10 @@ def conducts(law: Law, assumptions: Assumptions) -> Obligation:
     claim = f"{spell(law.tree)} >= 0"
     question = assumptions.question(claim, Cmp(">=", law.tree, ZERO))
     statement = f"{claim}: heat flows from warm to cold"
-    made = Obligation("passive", law.element, statement, r"\lambda \ge 0", assumptions.texts)
+    sign = SignOf(law.tree, "", assumptions.where)
+    made = Obligation(
+        "passive", law.element, statement, r"\lambda \ge 0", assumptions.texts, sign=sign
+    )
     return made.asking(
         lambda: (*valued(law.tree, assumptions), *on_branches(law.tree, question)), law.of_element
     )

@@ -186,6 +186,7 @@ class SignOf:
 
     Attributes
     ----------
+    letter : empty for a conductance, which must not be negative itself.
     where : what is assumed at every point: the domain, and what ties names; no branch's conditions.
     """
 

@@ -13,12 +13,15 @@ from fractions import Fraction
 
 import sympy as sp
 
+from piezo_sym.expressions.calculus import mul
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import Cmp, Expr
+from piezo_sym.expressions.tree import ZERO, Cmp, Expr, Sym
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.asked import Asked, tried
 from piezo_sym.proofs.continuity import jumps, needed
 from piezo_sym.proofs.exact_eval import TooCloseError, all_hold, value_of
+from piezo_sym.proofs.laws import on_branches
+from piezo_sym.proofs.mending import mending
 from piezo_sym.proofs.obligations import Obligation, Question, Residual, SignOf
 from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.proofs.sigma_counterexample import negative_total
@@ -60,6 +63,8 @@ def prove(
     if verdict is Verdict.REFUTED and obligation.id == "continuous":  # beside the edge, too
         values = {(row.id, row.element) for row in known} & {("welldef", obligation.element)}
         verdict, witness, reason = _not_proved(values, known) or (verdict, witness, reason)
+    if verdict is Verdict.REFUTED and obligation.sign:
+        reason += _mended(obligation.sign, obligation.questions[0], asked)
     return Row(
         obligation.id,
         obligation.element,
@@ -83,7 +88,7 @@ def _decide(obligation: Obligation, iphs: IPHS, before: tuple[Row, ...], solver:
             return *failed, "algebra", ()
     method, certificate = "branches" if obligation.questions else "algebra", tuple[Case, ...]()
     failed = _asked(obligation.questions, solver)
-    if failed and failed[0] is Verdict.OPEN and obligation.sign:
+    if failed and failed[0] is Verdict.OPEN and obligation.sign and obligation.sign.letter:
         method = "intervals"
         failed, certificate = _as_a_whole(obligation, obligation.sign, failed, solver)
     if failed and failed[0] is Verdict.OPEN and obligation.letter:
@@ -231,6 +236,18 @@ def _broken(question: Question, values: Mapping[str, Fraction]) -> Found:
         reason = f"{question.label} is false: {_value(left, values)} and {_value(right, values)}"
         reason += "; a law that jumps on purpose says discontinuous = true" * bool(question.meeting)
     return Verdict.REFUTED, {name: str(value) for name, value in values.items()}, reason
+
+
+def _mended(sign: SignOf, question: Question, solver: Asks) -> str:
+    """Return the condition that mends a refuted law, as the end of a reason."""
+
+    def shown(law: Expr, letter: str) -> bool:
+        claim = Cmp(">=", mul(law, Sym(letter)) if letter else law, ZERO)
+        asked = Question("", question.order, sign.where, claim, claim)
+        return _asked(on_branches(law, asked, letter), solver) is None
+
+    condition = mending(sign.law, sign.letter, shown)
+    return f"; the condition '{condition}' in [domain] mends it" * bool(condition)
 
 
 def _value(law: Expr, values: Mapping[str, Fraction]) -> str:

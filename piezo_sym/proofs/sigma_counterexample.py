@@ -105,8 +105,8 @@ def _point(
     where += [Cmp("=", Sym(n), Num(v)) for n, v in given.items() if n != letter]
     if isinstance(port, Conductor):
         hot, cold = (iphs.circuit.body(b).temperature for b in (port.first, port.second))
-        where.append(Cmp(">", Sym(hot), Sym(cold)))
-    wanted = tuple(n for n in assumptions.order if n not in states(iphs.model))
+        where.append(Cmp("!=", Sym(hot), Sym(cold)))
+    wanted = tuple(n for n in assumptions.order if n in given or n not in states(iphs.model))
     about = tuple(Cmp("=", Sym(n), Sym(n)) for n in wanted)
     made = Question("", assumptions.order, tuple(where), NEVER, NEVER, about, witness=True)
     answer = solver.ask(made.query)
@@ -136,10 +136,16 @@ def _one_drive(
 
 
 def _allowed(iphs: IPHS, sigma: sp.Expr, values: Mapping[sp.Symbol, sp.Expr]) -> bool:
-    """Return whether numbers lie in the domain, and every co-state in sigma can have its value."""
+    """Return whether numbers lie in the domain, and every co-state in sigma can have its value.
+
+    That of a state which a law in sigma reads is the co-state at this state.
+    """
+    moving = {iphs.symbols[name] for name in states(iphs.model)}
     exact = {s.name: Fraction(int(v.p), int(v.q)) for s, v in values.items()}
     return bool(all_hold(assumptions_of(iphs).where, exact)) and all(
         _takes_every_value(iphs, symbol, law)
+        if sigma.free_symbols.isdisjoint(law.free_symbols & moving)
+        else _value(law, values) == values[symbol]
         for symbol, law in iphs.costates
         if symbol in sigma.free_symbols
     )

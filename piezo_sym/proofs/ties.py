@@ -1,8 +1,8 @@
 """What the letter of a dissipative law is: its drive, as a function of states and inputs.
 
 Input: an `IPHS`.  Output: by element, a comparison letter = drive, where not every value of the
-letter is taken in the domain; None where the drive is no such function, though the domain may bound
-it: a refutation then says nothing.
+letter is taken in the domain, or not at every value of a state that the law reads; None where the
+drive is no such function: a refutation then says nothing.
 """
 
 from collections.abc import Iterator, Mapping
@@ -18,16 +18,19 @@ from piezo_sym.spec.tables import conditions
 
 
 def ties(iphs: IPHS) -> Mapping[str, Cmp | None]:
-    """Return what ties the letter of each dissipative law that the domain may bound."""
-    bounded = frozenset(_bounded(iphs))
-    if not bounded:
-        return {}
-    words = dict(_words(iphs))
+    """Return what ties the letter of each dissipative law that domain or law may bound."""
+    bounded, words = frozenset(_bounded(iphs)), dict(_words(iphs))
+    states = {slot.label for slot in iphs.system.states}
     processes = iphs.circuit.of(DissipativePort, Conductor)
     return {
         placed.element: None if tree is None else Cmp("=", Sym(port.letter), tree)
         for (placed, port), drive in zip(processes, iphs.system.drive, strict=True)
-        if isinstance(port, DissipativePort) and not bounded.isdisjoint(_symbols(iphs, drive))
+        if isinstance(port, DissipativePort)
+        for read in (states & {*names(port.law)},)
+        if any(
+            symbol in bounded or not read.isdisjoint(names(words.get(symbol, ZERO)))
+            for symbol in _symbols(iphs, drive)
+        )
         for tree in (_tree(drive, words),)
     }
 

@@ -15,8 +15,8 @@ from piezo_sym.expressions.functions import FUNCTIONS
 
 MAX_NAME = 40
 NAME = re.compile(r"[A-Za-z](?:[A-Za-z0-9_]*[A-Za-z0-9])?")
-#: Letters that laws use for their own variables, and the generated module's one import.
-LETTERS = frozenset({"i", "v", "f", "T", "np"})
+#: The generated module's one import.
+IMPORT = "np"
 
 _C = """auto break case char const continue default do double else enum extern float for goto if
 inline int long register restrict return short signed sizeof static struct switch typedef union
@@ -65,15 +65,15 @@ def check_symbol(word: str, where: str) -> str:
     Raises
     ------
     SpecError
-        If it is no identifier, a keyword, a law's letter or a function of the law language.
+        If it is no identifier, a keyword, an import or a function of the law language.
     """
     check_name(word, where)
     if word in KEYWORDS:
         remedy = f"call it '{OFFERS.get(word, word + '_0')}'"
         what = f"{quote(word)} is a keyword of Python, C, MATLAB or Modelica"
         raise SpecError(what, where, remedy=remedy)
-    if word in LETTERS or word in FUNCTIONS:
-        use = "a function of laws" if word in FUNCTIONS else "kept for laws and modules"
+    if word == IMPORT or word in FUNCTIONS:
+        use = "a function of laws" if word in FUNCTIONS else "kept for modules"
         raise SpecError(f"{quote(word)} is {use}", where, remedy=f"call it '{word}_0'")
     return word
 

@@ -15,7 +15,7 @@ from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.elements.base import state_symbol
 from piezo_sym.spec.elements.ports import Exchange, Source
 from piezo_sym.spec.fields import Tables
-from piezo_sym.spec.tables import law_fields, temperatures
+from piezo_sym.spec.tables import bodies, law_fields, temperatures
 
 
 @final
@@ -57,17 +57,21 @@ def places(spec: Tables) -> Iterator[Place]:
     """Yield every place of a spec that has a unit, elements first."""
     parameters = {name: p.dimension.dimension for name, p in spec.parameters.items()}
     given = parameters | {name: u.dimension.dimension for name, u in spec.inputs.items()}
+    seen = state_dimensions(spec) | _temperatures(spec)
     for name in spec.elements:
-        yield from _laws(spec, name, parameters)
+        yield from _laws(spec, name, parameters, seen)
         yield from _inputs(spec, name, given)
     yield from _conditions(spec, given)
     yield from _starts(spec, given)
 
 
-def _laws(spec: Tables, name: str, given: Mapping[str, Dimension]) -> Iterator[Place]:
+def _laws(
+    spec: Tables, name: str, given: Mapping[str, Dimension], seen: Mapping[str, Dimension]
+) -> Iterator[Place]:
     for law in law_fields(name, spec.elements[name]):
         letters = {letter: _dimension(unit) for letter, unit in law.mark.units.items()}
-        yield Place(law.where, name, law.tree, given, letters, _dimension(law.mark.unit))
+        fixed = {**(seen if law.mark.sees else {}), **letters}
+        yield Place(law.where, name, law.tree, given, fixed, _dimension(law.mark.unit))
 
 
 def _inputs(spec: Tables, name: str, given: Mapping[str, Dimension]) -> Iterator[Place]:
@@ -79,7 +83,7 @@ def _inputs(spec: Tables, name: str, given: Mapping[str, Dimension]) -> Iterator
 
 def _conditions(spec: Tables, given: Mapping[str, Dimension]) -> Iterator[Place]:
     """Yield what the spec assumes; what kinds add compares a law with 0, which fits any unit."""
-    fixed = state_dimensions(spec) | dict.fromkeys(temperatures(spec), _dimension("K"))
+    fixed = state_dimensions(spec) | _temperatures(spec)
     for n, text in enumerate(spec.domain.assume):
         where = f"domain.assume[{n}]"
         yield Place(where, "", parse_condition(text, where), given, fixed, None)
@@ -104,6 +108,12 @@ def state_dimensions(spec: Tables) -> dict[str, Dimension]:
         for law in law_fields(name, element)
         if element.letter and element.letter in law.mark.units
     }
+
+
+def _temperatures(spec: Tables) -> dict[str, Dimension]:
+    """Return the dimension of each name of a temperature: ``T`` of the only one, ``T_<body>``."""
+    words = (*temperatures(spec), *(f"T_{body}" for body in bodies(spec)))
+    return dict.fromkeys(words, _dimension("K"))
 
 
 def _dimension(unit: str) -> Dimension:

@@ -75,9 +75,23 @@ def banks(spec: Tables) -> dict[str, int]:
 
 
 def temperatures(spec: Tables) -> dict[str, str]:
-    """Return the body of each temperature symbol: ``T`` of the only one, else ``T_<element>``."""
+    """Return the body of each temperature symbol: ``T`` of the only one, else ``T_<element>``.
+
+    Where something else of the spec is called T, it is ``T_<element>``, too.
+    """
     found = bodies(spec)
-    return {"T": found[0]} if len(found) == 1 else {f"T_{name}": name for name in found}
+    single = len(found) == 1 and "T" not in {*spec.parameters, *spec.inputs, *states(spec)}
+    return {"T": found[0]} if single else {f"T_{name}": name for name in found}
+
+
+def seen(spec: Tables, name: str) -> Iterator[str]:
+    """Yield the names that a law of an element may use that sees more than its own state.
+
+    These are states, of banks only those of the element's own lane, and ``T_<element>``.
+    """
+    sizes = banks(spec)
+    yield from (s for s, owner in states(spec).items() if owner == name or owner not in sizes)
+    yield from (f"T_{body}" for body in bodies(spec))
 
 
 def in_words(spec: Tables, name: str, law: LawField, hot: Mapping[str, str]) -> Expr:
@@ -92,7 +106,7 @@ def in_words(spec: Tables, name: str, law: LawField, hot: Mapping[str, str]) -> 
 
 
 def meanings(spec: Tables, name: str, law: LawField, hot: Mapping[str, str]) -> dict[str, str]:
-    """Return what the letters of a law that are no letters of [domain] are called there."""
+    """Return what names in a law are called in [domain], if they are called differently there."""
     element = spec.elements[name]
     named = [hot[given] for _, to, given in element.references() if to == "thermal_mass"]
     named = named or list(hot.values())[: len(hot) == 1]
@@ -101,16 +115,24 @@ def meanings(spec: Tables, name: str, law: LawField, hot: Mapping[str, str]) -> 
         found[element.letter] = state_symbol(element, name)
     if hasattr(element, "input"):
         found["T_e"] = element.input
-    return {letter: word for letter, word in found.items() if letter in law.letters}
+    found = {letter: word for letter, word in found.items() if letter in law.letters}
+    return (_by_body(law.tree, hot) if law.mark.sees else {}) | found
+
+
+def _by_body(node: Node, hot: Mapping[str, str]) -> dict[str, str]:
+    """Return what [domain] calls the temperatures in a tree that go by their bodies."""
+    return {n: hot[n[2:]] for n in names(node) if n.startswith("T_") and n[2:] in hot}
 
 
 def conditions(spec: Tables) -> tuple[Condition, ...]:
     """Return the domain: what the spec assumes, then what its kinds and half widths need."""
-    assumed = [
-        Condition(f"domain.assume[{n}]", parse_condition(text, f"domain.assume[{n}]"))
-        for n, text in enumerate(spec.domain.assume)
-    ]
     hot = {body: word for word, body in temperatures(spec).items()}
+    trees = {f"domain.assume[{n}]": text for n, text in enumerate(spec.domain.assume)}
+    assumed = [
+        Condition(where, _renamed(tree, _by_body(tree, hot)))
+        for where, text in trees.items()
+        for tree in (parse_condition(text, where),)
+    ]
     found: dict[Cmp, Condition] = {}
     for condition in [*assumed, *_needed(spec), *_not_negative(spec, hot, assumed)]:
         found.setdefault(condition.tree, condition)

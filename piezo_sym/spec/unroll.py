@@ -86,13 +86,13 @@ def _elements(model: Model, sizes: Mapping[str, int], split: Mapping[str, int]) 
 
 
 def _lane(name: str, element: Element, lane: int, split: Mapping[str, int]) -> Element:
+    symbol = state_symbol(element, name)
     laws = {
         law.where.rpartition(".")[2]: spell(rename(law.tree, words))
         for law in law_fields(name, element)
-        if (words := _words(lane, split.keys() - law.letters)).keys() & set(names(law.tree))
+        if (words := _words(lane, {*split, symbol} - {*law.letters})).keys() & set(names(law.tree))
     }
-    state = f"{state_symbol(element, name)}_{lane}"
-    return element.model_copy(update={**laws, "count": None, "state": state})
+    return element.model_copy(update={**laws, "count": None, "state": f"{symbol}_{lane}"})
 
 
 def _words(lane: int, split: Iterable[str]) -> dict[str, str]:

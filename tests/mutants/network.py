@@ -89,12 +89,12 @@ a law of one over R turned round divides
   + return div(top, right)
   = output_resistance_of_a_bank
 a law with a jump is linear
-  - if any(port.letter in names(node) for node in walk(port.law) if isinstance(node, Call | Cmp)):
+  - if any(letter in names(node) for node in walk(law) if isinstance(node, Call | Cmp)):
   + if False:
   = friction
 a law that is not zero at zero is linear
-  - return slope if port.letter not in names(slope) and _vanishes(at_zero) else None
-  + return slope if port.letter not in names(slope) else None
+  - return slope if letter not in names(slope) and _vanishes(at_zero) else None
+  + return slope if letter not in names(slope) else None
   = affine
 ## network/loops
 a loop is solved with the other sign
@@ -110,8 +110,8 @@ shares are transposed
   + return K @ self.H
   = coil loop
 a loop's slope is that of its first resistor
-  - law = slope_of(port) if isinstance(port, DissipativePort) and not placed.bank else None
-  + law = slope_of(members[0][1]) if isinstance(port, DissipativePort) and not placed.bank else None
+  - law = slope_of(port.law, port.letter)
+  + law = slope_of(members[0][1].law, members[0][1].letter)
   = loop
 what a loop divides by is forgotten
   - divisors.append(divisor)

@@ -19,7 +19,9 @@ from piezo_sym.spec.tables import (
     bodies,
     conditions,
     law_fields,
+    meanings,
     orders,
+    seen,
     states,
     temperatures,
 )
@@ -68,15 +70,20 @@ def _input_unit(element: Element) -> str:
 def check_laws(spec: Tables) -> None:
     """Parse every law, initial value and condition, and check the names in them."""
     one_body = len(bodies(spec)) == 1
+    hot = {body: word for word, body in temperatures(spec).items()}
     for name, element in spec.elements.items():
+        every = dict.fromkeys((*spec.parameters, *seen(spec, name)))
         for law in law_fields(name, element):
-            _check_words(spec, law.tree, law.where, law.letters, spec.parameters, name)
-            if "T" in names(law.tree) and not one_body:
+            words = every if law.mark.sees else spec.parameters
+            _check_words(spec, law.tree, law.where, law.letters, words, name)
+            if {"T"} & {*law.letters} & {*names(law.tree)} and not one_body:
                 _check_body(element, law)
+            _check_letters(law, words, meanings(spec, name, law, hot))
     _check_initial(spec)
     for order in orders(spec):
         _check_words(spec, order.tree, f"a knot of a table in {order.where}", (), spec.parameters)
-    words = dict.fromkeys([*spec.parameters, *spec.inputs, *states(spec), *temperatures(spec)])
+    hot_names = (*temperatures(spec), *(f"T_{body}" for body in bodies(spec)))
+    words = dict.fromkeys([*spec.parameters, *spec.inputs, *states(spec), *hot_names])
     sizes = banks(spec)
     lanes = {symbol: name for symbol, name in states(spec).items() if name in sizes}
     for condition in conditions(spec):
@@ -89,6 +96,15 @@ def _check_body(element: Element, law: LawField) -> None:
     if all(to != "thermal_mass" for _, to, _ in element.references()):
         remedy = "add to the element: temperature = '<name of a thermal_mass>'"
         raise SpecError("'T' is the temperature of no body", law.where, "a body named", remedy)
+
+
+def _check_letters(law: LawField, words: Collection[str], meant: Mapping[str, str]) -> None:
+    """Refuse a letter that is also another quantity's name, and could mean either."""
+    for word in names(law.tree):
+        if word in law.letters and word in words and meant.get(word) != word:
+            what = f"{quote(word)} is a letter of this law, and a name of this spec"
+            remedy = "rename the parameter or state"
+            raise SpecError(what, law.where, "one meaning", remedy)
 
 
 def _check_banks(condition: Condition, lanes: Mapping[str, str]) -> None:
@@ -151,7 +167,9 @@ def _meant_letter(spec: Tables, word: str, letters: tuple[str, ...], element: st
     letter = spec.elements[owner].letter
     if owner == element and letter in letters:
         return f"a law writes the state of its element as its letter, {quote(letter)}"
-    return f"it is the state of {quote(owner)}, which other laws cannot use" * (owner != element)
+    if owner in banks(spec):
+        return f"it is a state of bank {quote(owner)}, whose own laws alone have its lane"
+    return f"it is the state of {quote(owner)}, which the law of a store cannot use"
 
 
 def _states_of_letter(spec: Tables, letter: str, words: Collection[str]) -> str:

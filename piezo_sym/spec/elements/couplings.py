@@ -42,7 +42,7 @@ class PairCoupling(Form):
         others = zip(self.second[1:], self.units[1:], strict=True)
         instead = {field: unit for (field, _), unit in others if unit != self.units[0]}
         letters = {"T": "K"} if self.warm else {}
-        ratio = law_field(self.units[0], letters, self.symbol, **instead)
+        ratio = law_field(self.units[0], letters, self.symbol, sees=True, **instead)
         body = {"temperature": (OptionalBody, None, "body")} if self.warm else {}
         return {**self._pairs(), self.ratio: ratio, **body}
 
@@ -88,6 +88,5 @@ class PairCoupling(Form):
             ratio=element.law(self.ratio),
             field=self.ratio,
             name=f"{'alpha' if self.gyrates else 'n'}_{name}",
-            body=getattr(element, "temperature", None),
             gyrates=self.gyrates,
         )

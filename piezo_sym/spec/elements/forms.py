@@ -126,7 +126,7 @@ class Dissipation(Form):
             out, given = self.domain.variable(v), self.domain.variable(v.other)
             sample = "" if laws else self.symbol
             letters = {given.letter: given.unit, "T": "K"}
-            laws[out.name] = law_field(out.unit, letters, sample, default)
+            laws[out.name] = law_field(out.unit, letters, sample, default, sees=True)
         heats = {"heats": (BodyName, ..., "body"), "discontinuous": (Jumps, False, None)}
         return {**_places(self.domain), **laws, **heats}
 

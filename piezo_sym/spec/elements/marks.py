@@ -4,7 +4,7 @@ Input: nothing; these are the types.  Output: annotations for `base.Kind`.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Any, final
 
 from pydantic import (
@@ -34,11 +34,13 @@ class Letters:
     units : the unit of each letter, such as ``{"i": "A", "T": "K"}``.
     unit : the unit of the law itself.
     instead : the unit of the law where some other field is given, by that field.
+    sees : whether it may use states and temperatures of other elements, by their names.
     """
 
     units: Mapping[str, str]
     unit: str
     instead: tuple[tuple[str, str], ...] = ()
+    sees: bool = False
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -48,7 +50,7 @@ class Letters:
     def of(self, element: object) -> "Letters":
         """Return the letters and units of a law in one element."""
         given = (unit for field, unit in self.instead if getattr(element, field) is not None)
-        return Letters(self.units, next(given, self.unit))
+        return replace(self, unit=next(given, self.unit), instead=())
 
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
@@ -57,7 +59,8 @@ class Letters:
         letters = ", ".join(f"{name} [{unit}]" for name, unit in self.units.items())
         also = f" and the letters {letters}" if letters else ""
         others = "".join(f" ({unit} with {field})" for field, unit in self.instead)
-        text = f"A law in {self.unit}{others}, as text, of parameters{also}."
+        more = ", states and temperatures T_<body>" if self.sees else ""
+        text = f"A law in {self.unit}{others}, as text, of parameters{more}{also}."
         return {**handler(schema), "description": text}
 
 
@@ -101,8 +104,14 @@ Jumps = Annotated[StrictBool, Field(description="Whether the law jumps on purpos
 
 
 def law_field(
-    unit: str, letters: Mapping[str, str], sample: str = "", default: Any = ..., **instead: str
+    unit: str,
+    letters: Mapping[str, str],
+    sample: str = "",
+    default: Any = ...,
+    *,
+    sees: bool = False,
+    **instead: str,
 ) -> tuple[Any, Any, Any]:
     """Return a field that is a law; with None as its default it is one of several to choose."""
-    mark = Letters(letters, unit, tuple(instead.items()))
+    mark = Letters(letters, unit, tuple(instead.items()), sees)
     return (Annotated[Law | None if default is None else Law, mark], default, sample)

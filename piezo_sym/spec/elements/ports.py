@@ -78,7 +78,7 @@ class Coupling:
 
     If it `gyrates`, through_1 = ratio*across_2 and through_2 = -ratio*across_1; else it is a
     transformer, across_1 = ratio*across_2 and through_2 = -ratio*through_1.  The ratio may depend
-    on the temperature T of a body.
+    on states and temperatures.
     """
 
     first: Branch
@@ -88,7 +88,6 @@ class Coupling:
     ratio: Expr
     field: str
     name: str
-    body: str | None
     gyrates: bool
 
 

@@ -56,7 +56,8 @@ class Conduction(Form):
     def fields(self) -> Fields:
         """Its bodies and its conductance."""
         bodies = (BodyPair, ..., ["stack", "mount"])
-        return {"between": bodies, "conductance": law_field("W/K", {}, "lam")}
+        conductance = law_field("W/K", {"T_1": "K", "T_2": "K"}, "lam", sees=True)
+        return {"between": bodies, "conductance": conductance}
 
     @property
     def doc(self) -> str:
@@ -82,8 +83,9 @@ class Ambient(Form):
     @property
     def fields(self) -> Fields:
         """Its body, conductance and input."""
-        body, conductance = (BodyName, ..., "body"), law_field("W/K", {}, "lam")
-        return {"body": body, "conductance": conductance, "input": (InputName, ..., "T_e")}
+        conductance = law_field("W/K", {"T": "K", "T_e": "K"}, "lam", sees=True)
+        body, outside = (BodyName, ..., "body"), (InputName, ..., "T_e")
+        return {"body": body, "conductance": conductance, "input": outside}
 
     @property
     def doc(self) -> str:

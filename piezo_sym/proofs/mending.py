@@ -1,0 +1,49 @@
+"""The condition of [domain] under which a law that is refuted takes power in.
+
+Input: the law of a refuted row.  Output: the condition as text, or nothing.  A law that is c times
+what takes power in does so where c >= 0; of c, factors that the domain keeps from being negative
+are left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import reduce
+
+from piezo_sym.expressions.calculus import mul
+from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Div, Expr, Mul, Neg, Num, names
+from piezo_sym.network import slope_of
+from piezo_sym.spec.tables import condition_text
+
+#: Whether an expression times another, or alone where that is 1, is shown not to be negative.
+Shown = Callable[[Expr, str], bool]
+
+
+def mending(law: Expr, letter: str, shown: Shown) -> str:
+    """Return the condition that makes a law have the sign of its letter; without one, be >= 0.
+
+    Parameters
+    ----------
+    law, letter : of a dissipative law; of a conductance the letter is empty.
+    shown : whether the domain has a law times a letter, or alone, be not negative.
+    """
+    slope = slope_of(law, letter) if letter else None
+    factors = list(_factors(law if slope is None else slope))
+    rest = [f for f in factors if letter and letter in names(f)]
+    if rest and not shown(reduce(mul, rest), letter):
+        return ""
+    kept = [f for f in factors if f not in rest and not shown(f, "")]
+    if not kept or all(isinstance(f, Num) for f in kept):
+        return ""
+    return condition_text(Cmp(">=", reduce(mul, kept), ZERO))
+
+
+def _factors(law: Expr) -> Iterator[Expr]:
+    """Yield factors whose product has the sign of a law."""
+    match law:
+        case Mul(left, right) | Div(left, right):
+            yield from (*_factors(left), *_factors(right))
+        case Neg(arg):
+            yield from (Neg(ONE), *_factors(arg))
+        case _:
+            yield law
