@@ -4,12 +4,12 @@ Input: an `IPHS`, its generated NumPy module, the rows.  Output: an `Attack` per
 arithmetic finds a row false at a point, `ContradictionError` is raised.
 
 stage    from -> to                              in
-probe    IPHS -> laws and edges, printed         probe
-space    module, probe -> columns of points      space
+probe    IPHS -> laws and edges, as trees        probe
+space    module, probe -> columns of points      space, floats
 points   Space -> points inside the domain       points
 claims   row -> numbers, negative where false    claims
 hunt     points -> the worst ones of each row    hunt
-exact    a point -> the row's exact value        exact, point, numbers
+exact    a point -> the row's exact value        exact
 jumps    kinks -> a law's jump, exactly          jumps
 """
 
@@ -49,6 +49,6 @@ def falsify(
     Raises
     ------
     ContradictionError
-        If a row is false at a point, confirmed by exact arithmetic in the spec's own laws.
+        If a row is false at a point, confirmed by exact arithmetic.
     """
     return Hunt(iphs, module, tuple(claims), points).attacks()

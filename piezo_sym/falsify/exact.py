@@ -1,59 +1,57 @@
-"""A suspicious point evaluated again, exactly, by the checker's reader.
+"""A suspicious point evaluated again, exactly: rationals where all is, else enclosures that decide.
 
-Input: the spec as text, a `Claim` and a point (floats are rationals).  Output: the exact value that
-breaks the row, as text, or None.
+Input: a `Probe`, and numbers for parameters, inputs and states (floats are rationals).  Output: a
+`Point`, whose quantities are nan where 8192 bits do not tell them; what breaks a row there, as text
+(`Exact`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import cached_property
 from typing import Any, final
 
-from flint import ctx
+from flint import arb, ctx, fmpq
 
-from piezo_sym.checker import InputError, read_spec
-from piezo_sym.checker.network import SingularError
+from piezo_sym.expressions.exact_eval import TooCloseError, evaluated, exact, holds
+from piezo_sym.expressions.tree import Cmp, Expr, LaneSum, names
 from piezo_sym.falsify.claims import Claim
-from piezo_sym.falsify.numbers import text
-from piezo_sym.falsify.point import Point, evaluate
+from piezo_sym.falsify.probe import Probe
 from piezo_sym.falsify.space import Array, Space
-from piezo_sym.iphs import IPHS
+from piezo_sym.spec.tables import conditions
 
-BITS = 1024
+BITS, PRECISIONS = 1024, (128, 512, 2048, 8192)
+#: A point of more lanes is not computed; two at a time are attacked as well.
+MOST_LANES = 64
+#: Rationals of more bits become enclosures.
+MOST_BITS = 40_000
+NAN = arb("nan")
 
 
 @final
 class Exact:
-    """Evaluates rows of one spec."""
+    """Evaluates rows of one system."""
 
-    def __init__(self, iphs: IPHS) -> None:
-        """Read the spec; raises the checker's `InputError` if it cannot be read."""
-        self.spec = read_spec(iphs.model.to_toml())
+    def __init__(self, probe: Probe) -> None:
+        self.probe = probe
+        self.conditions = [condition.tree for condition in conditions(probe.iphs.model)]
         self.points: dict[tuple[Any, ...], Point] = {}
 
     def at(self, space: Space, values: Sequence[float | Fraction]) -> Point:
-        """Return what the spec says at a point, computed once for all claims."""
+        """Return what the system is at a point, computed once for all claims."""
         key = (*space.counts.items(), *values)
         if key not in self.points:
-            numbers = {name: values[columns] for name, columns in space.columns_of.items()}
-            try:
-                self.points[key] = evaluate(self.spec, numbers, space.counts)
-            except InputError:  # too many lanes; two at a time are attacked as well
-                self.points[key] = Point({}, inside=None, undefined=())
+            self.points[key] = Point(self, space, values)
         return self.points[key]
 
     def broken(self, claim: Claim, space: Space, point: Array) -> str | None:
         """Return what breaks a row at a point of the domain, or None."""
-        try:
-            at = self.at(space, point.tolist())
-        except SingularError:
-            return "the junction laws have no solution" if claim.id == "welldef" else None
+        at = self.at(space, point.tolist())
         if not at.inside:
             return None
         if claim.id == "welldef":
-            lost = claim.element in at.undefined if claim.element else at.undefined
-            return "a law has no value" if lost else None
+            return "a law has no value" if at.undefined(claim.element) else None
         with ctx.workprec(BITS):
             if claim.says(at):
                 for name, value, _, strict in claim.at(at):
@@ -64,4 +62,114 @@ class Exact:
     def has_value(self, claim: Claim, space: Space, point: Array) -> bool:
         """Return whether a law that is nan in floating point has a value at a point inside."""
         at = self.at(space, point.tolist())
-        return bool(at.inside) and claim.element not in at.undefined
+        return bool(at.inside) and not at.undefined(claim.element)
+
+
+@final
+class Point:
+    """What a system is at a point."""
+
+    def __init__(self, system: Exact, space: Space, values: Sequence[float | Fraction]) -> None:
+        numbers = [exact(value) for value in values]
+        self.system, self.probe, self.counts = system, system.probe, space.counts
+        self.numbers = {name: numbers[columns] for name, columns in space.columns_of.items()}
+        self.banks = {field.name: field.bank for field in space.fields}
+        self._lanes: dict[int, list[_Lane]] = {}
+
+    def lanes(self, bank: str | None, bits: int) -> list[_Lane]:
+        """Return the lanes of a bank at a precision; without a bank, the first."""
+        if bits not in self._lanes:
+            most = max(self.counts.values(), default=1)
+            self._lanes[bits] = [_Lane(self, n, bits) for n in range(most)]
+        return self._lanes[bits][: self.counts[bank] if bank else 1]
+
+    def get(self, what: str, name: str) -> list[tuple[Any, Any]]:
+        """Return the values of a quantity, each with the size 0, for nothing is rounded."""
+        rows = self.probe.of(what, name)
+        found: list[Any] = []
+        for bits in PRECISIONS:
+            with ctx.workprec(bits):
+                found = [lane.told(tree) for tree, bank in rows for lane in self.lanes(bank, bits)]
+            if all(isinstance(value, fmpq) or value.is_finite() for value in found):
+                break
+        return [(value, 0) for value in found or [NAN]]
+
+    @cached_property
+    def inside(self) -> bool | None:
+        """Whether the point is in the domain; None if it cannot be told."""
+        if max(self.counts.values(), default=0) > MOST_LANES:
+            return None
+        told = {self._holds(condition) for condition in self.system.conditions}
+        return False if False in told else None if None in told else True
+
+    def _holds(self, condition: Cmp) -> bool | None:
+        """Return whether a condition holds, in every lane; None if it cannot be told."""
+        bank = next(filter(None, map(self.bank, names(condition))), None)
+        for bits in PRECISIONS:
+            try:
+                return all(holds(condition, lane, bits) for lane in self.lanes(bank, bits))
+            except TooCloseError:
+                continue
+            except (ArithmeticError, ValueError):
+                return False
+        return None
+
+    def bank(self, name: str) -> str | None:
+        """Return the bank of a name that has a value per lane."""
+        return self.banks[name] if name in self.banks else self.probe.defined[name][1]
+
+    def undefined(self, element: str) -> bool:
+        """Return whether a law of an element has no value; without a name, one of the junction."""
+        laws = self.probe.of_element(element)
+        return any(lane.lost(tree) for tree, bank in laws for lane in self.lanes(bank, BITS))
+
+
+@final
+class _Lane(dict[Any, Any]):
+    """What a name, or a sum over lanes, is worth in one lane; computed when it is asked for."""
+
+    def __init__(self, point: Point, number: int, bits: int) -> None:
+        super().__init__()
+        self.point, self.number, self.bits = point, number, bits
+
+    def __missing__(self, key: str | LaneSum) -> Any:
+        """Return a value, which is kept."""
+        self[key] = self._made(key)
+        return self[key]
+
+    def _made(self, key: str | LaneSum) -> Any:
+        point = self.point
+        if isinstance(key, LaneSum):
+            lanes = point.lanes(key.bank, self.bits)
+            return sum((lane.told(key.arg) for lane in lanes), start=fmpq(0))
+        if key in point.numbers:
+            return point.numbers[key][self.number % len(point.numbers[key])]
+        if self.number and point.bank(key) is None:
+            return point.lanes(None, self.bits)[0][key]
+        return self.told(point.probe.defined[key][0])
+
+    def told(self, tree: Expr) -> Any:
+        """Return the value of a tree; nan if it has none or it cannot be told."""
+        try:
+            found = evaluated(tree, self, self.bits)
+        except (ArithmeticError, ValueError):
+            return NAN
+        return arb(found) if isinstance(found, fmpq) and found.height_bits() > MOST_BITS else found
+
+    def lost(self, tree: Expr) -> bool:
+        """Return whether a tree has certainly no value."""
+        try:
+            evaluated(tree, self, self.bits)
+        except TooCloseError:
+            return False
+        except (ArithmeticError, ValueError):
+            return True
+        return False
+
+
+def text(number: Any) -> str:
+    """Return an exact value as text: a short fraction, or 17 digits."""
+    short = str(number)
+    if isinstance(number, arb) or len(short) > 40:
+        return str(arb(exact(number)).mid().str(17, radius=False))
+    return short

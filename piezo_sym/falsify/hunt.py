@@ -14,7 +14,6 @@ from typing import final
 
 import numpy as np
 
-from piezo_sym.checker import InputError
 from piezo_sym.errors import ContradictionError
 from piezo_sym.expressions.tree import names
 from piezo_sym.falsify.claims import TOLERANCE, Claim, claim_of
@@ -109,7 +108,7 @@ class Track:
     def _lose(self, seen: Seen, lost: Mask) -> None:
         """Keep a point where a law is nan though nothing overflowed."""
         if self.claim.climbs and self.lost is None and lost.any():
-            place = np.flatnonzero(lost & ~seen.out_of_range & ~np.isinf(seen.laws).any(axis=0))
+            place = np.flatnonzero(lost & ~seen.out_of_range & ~seen.infinite)
             self.lost = (seen.space, seen.points[:, place[0]]) if len(place) else None
 
 
@@ -148,10 +147,7 @@ class Hunt:
         for kind, space, points in self._blocks():
             for n in range(0, points.shape[1], space.block):
                 self._see(kind, space, points[:, n : n + space.block])
-        try:
-            exact = Exact(self.iphs)
-        except InputError:  # nothing could be confirmed, so that nothing was attacked
-            return tuple(Attack(t.claim.id, t.claim.element, 0) for t in self.tracks)
+        exact = Exact(self.space.probe)
         return tuple(self._judged(track, exact) for track in self.tracks)
 
     def _see(self, kind: str, space: Space, points: Array) -> None:

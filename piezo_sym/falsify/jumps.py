@@ -14,9 +14,7 @@ import numpy as np
 from flint import ctx, fmpq
 
 from piezo_sym.falsify.claims import Claim
-from piezo_sym.falsify.exact import BITS, Exact
-from piezo_sym.falsify.numbers import text
-from piezo_sym.falsify.point import Point
+from piezo_sym.falsify.exact import BITS, Exact, Point, text
 from piezo_sym.falsify.points import Roots
 from piezo_sym.falsify.space import EXTREME, LARGEST, LEAST, Array, Seen, Space
 
@@ -52,9 +50,9 @@ def _suspects(claim: Claim, space: Space, roots: Roots) -> Iterator[tuple[Array,
     beyond = roots.high + (roots.high - roots.low)  # on an edge itself either branch may be
     ends = [space.at(roots.at(value)) for value in (roots.low, beyond)]
     near &= ends[0].inside & ends[1].inside & ~space.at(roots.base).extreme
-    for what in ("law", "output"):
-        row = space.law_rows.get((claim.element, what), slice(0))
-        leap, size = _leap(space, row, roots, ends)
+    laws = space.probe.laws
+    for what in (w for w, name in laws if name == claim.element and w not in {"effort", "slope"}):
+        leap, size = _leap((what, claim.element), roots, ends)
         big = np.where(near, leap / size, 0)
         for n in np.argsort(-big, kind="stable")[:2]:
             if big[n] > JUMP:
@@ -62,17 +60,17 @@ def _suspects(claim: Claim, space: Space, roots: Roots) -> Iterator[tuple[Array,
                 yield ends[0].points[:, n], ends[1].points[:, n], change
 
 
-def _leap(space: Space, row: slice, roots: Roots, ends: list[Seen]) -> tuple[Array, Array]:
+def _leap(law: tuple[str, str], roots: Roots, ends: list[Seen]) -> tuple[Array, Array]:
     """Return by how much a law changes, 0 if farther off it changes more, and its size."""
-    low, high = (end.laws[row] for end in ends)
+    low, high = (end.law(*law) for end in ends)
     with np.errstate(all="ignore"):
-        leap = np.nan_to_num(np.abs(high - low), nan=0, posinf=LARGEST)
-        size = np.minimum(ends[0].sizes[row] + ends[1].sizes[row], LARGEST)
+        leap = np.nan_to_num(np.abs(high.value - low.value), nan=0, posinf=LARGEST)
+        size = np.minimum(low.size + high.size, LARGEST)
         for off in OFF_A_JUMP:
             step = off * (roots.high - roots.low)
             for value, other in ((roots.low - step, high), (roots.high + step, low)):
-                there = space.at(roots.at(value)).laws[row]
-                far = np.nan_to_num(np.abs(there - other), nan=LARGEST, posinf=LARGEST)
+                there = ends[0].space.at(roots.at(value)).law(*law).value
+                far = np.nan_to_num(np.abs(there - other.value), nan=LARGEST, posinf=LARGEST)
                 leap = np.where(far > 1.25 * leap, 0, leap)
     most = leap.max(axis=0, initial=0)
     return most, np.where(leap == most, size, 0).max(axis=0, initial=LEAST)
@@ -128,10 +126,9 @@ def _narrowed(
 
 def _watched(claim: Claim, at: Point) -> list[Any]:
     """Return what jumps if a law does: its values, or all rates where the law is a store's."""
-    for what in ("output", "temperature", "conductance"):
-        if (what, claim.element) in at.values:
-            return at.values[what, claim.element]
-    return [value for (what, _), own in at.values.items() if what == "rate" for value in own]
+    kinds = ("output", "temperature", "conductance")
+    own = next((what for what in kinds if at.probe.of(what, claim.element)), "rate")
+    return [value for value, _ in at.get(own, claim.element if own != "rate" else "")]
 
 
 def _gap(one: Values, other: Values) -> Fraction:

@@ -1,10 +1,9 @@
-"""Functions that an attack evaluates besides those of the module: single laws, and edges.
+"""What an attack evaluates besides the functions of the module: single laws, and edges.
 
-Input: an `IPHS`.  Output: a `Probe`, whose module is printed like any other.  Its functions are
-`laws`, `sizes` (laws with the terms of every sum replaced by their absolute values, so that
-value/size tells cancellation from a change of sign) and `edges`.  An edge is an expression near
-whose zeros a law may be wrong: the difference of the sides of a comparison, a bound of the domain,
-a divisor, the argument of a root, a sum, the difference of quantities of equal dimension.
+Input: an `IPHS`.  Output: a `Probe`: trees in the named quantities of its program.  An edge is an
+expression near whose zeros a law may be wrong: the difference of the sides of a comparison, a bound
+of the domain, a divisor, the argument of a root, a sum, the difference of quantities of equal
+dimension.
 """
 
 from __future__ import annotations
@@ -13,39 +12,30 @@ import importlib.abc
 import importlib.util
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import reduce
 from types import ModuleType
 from typing import final
 
-from piezo_sym.algebra.lanes import Slot
-from piezo_sym.codegen import numpy_module
-from piezo_sym.codegen.differences import sharp_program
-from piezo_sym.codegen.lower import program_of
-from piezo_sym.codegen.program import ModuleFunction, OutputRow, bank_of
+from piezo_sym.codegen.functions import functions_of
+from piezo_sym.codegen.program import bank_of
 from piezo_sym.codegen.quantities import Quantities, quantities_of
-from piezo_sym.expressions.calculus import add, choices, derivative, increasing, kinks, mul, neg
+from piezo_sym.expressions.calculus import add, derivative, kinks, neg
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.tree import (
     ONE,
-    ZERO,
     Add,
     Call,
     Cmp,
     Div,
     Expr,
-    If,
     LaneSum,
-    Mul,
-    Neg,
     Node,
     Num,
     Pow,
     Sym,
-    children,
-    knots,
     walk,
 )
 from piezo_sym.expressions.units import parse_unit
+from piezo_sym.falsify.floats import Row
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name
 from piezo_sym.spec.elements.ports import (
@@ -62,31 +52,49 @@ MOST_EDGES = 400
 
 @final
 @dataclass(frozen=True)
-class ZeroSet:
+class Edge:
     """An expression whose zeros are searched for; at those of a `kink` a law changes branches."""
 
     tree: Expr
     kink: bool = False
+    bank: str | None = None
 
 
 @final
 @dataclass(frozen=True)
 class Probe:
-    """The printed functions of a system, and what their rows are.
+    """The trees of a system.
 
     Attributes
     ----------
     iphs : the system.
-    module : with functions `laws`, `sizes` and `edges`.
-    laws : the bank of each row of `laws`, by element and quantity: law, effort, output, slope or
-        hole (positive where the element's laws have no value).
-    edges : for each row of `edges` whether a law changes branches there, and its bank.
+    defined : what each name stands for.
+    laws : by what they are and whose: output and effort of a process, conductance, temperature and
+        slope of a body, costate, ratio; of the element "" what the junction divides by.
+    rows : by what they are and whose: heat, production, rate, temperature, input.
+    edges : where laws may be wrong.
     """
 
     iphs: IPHS
-    module: ModuleType
-    laws: Mapping[tuple[str, str], str | None]
-    edges: tuple[tuple[bool, str | None], ...]
+    defined: Mapping[str, Row]
+    laws: Mapping[tuple[str, str], Row]
+    rows: Mapping[tuple[str, str], Row]
+    edges: tuple[Edge, ...]
+
+    def of(self, what: str, name: str) -> list[Row]:
+        """Return the rows of a quantity; without a name, those of all that have it."""
+        table = {**self.laws, **self.rows}
+        return [row for key, row in table.items() if key == (what, name or key[1])]
+
+    def of_element(self, element: str) -> list[Row]:
+        """Return the laws of an element, written out: what a name stands for, not the name."""
+        rows = (row for (what, n), row in self.laws.items() if n == element and what != "effort")
+        return list(map(self.written, rows))
+
+    def written(self, row: Row) -> Row:
+        """Return what a name stands for; others as they are."""
+        tree, _ = row
+        return self.defined.get(tree.name, row) if isinstance(tree, Sym) else row
 
 
 @final
@@ -115,147 +123,73 @@ def module_from(text: str, name: str = "attacked") -> ModuleType:
 def probe_of(iphs: IPHS) -> Probe:
     """Return the probe of a system."""
     q = quantities_of(iphs)
-    known = {quantity.name: quantity.value for quantity in q.defined}
-    laws = {(name, what): tree for name, what, tree in (*_laws(q), *_holes(iphs, q, known))}
-    named = [item.value for item in q.defined if not isinstance(item.value, LaneSum)]
-    trees = named + [limit.margin for limit in q.limits]
-    trees += [tree for (_, what), tree in laws.items() if what != "hole"]
+    defined = {item.name: (item.value, item.bank) for item in q.defined}
+    laws = {key: (tree, bank_of(tree, q.lanes)) for key, tree in _laws(q)}
+    shares = [str(symbol.name) for symbol, _ in (*iphs.slopes, *iphs.shares)]
+    trees: list[Expr] = [i.value for i in q.defined if not isinstance(i.value, LaneSum)]
+    trees += [limit.margin for limit in q.limits]
+    trees += [tree for tree, _ in laws.values()]
+    laws |= {(name, ""): defined[name] for name in shares}
     found = [edge for tree in trees for edge in _edges(tree)]
-    found += [ZeroSet(limit.margin) for limit in q.limits] + [
-        ZeroSet(tree) for tree in _equal(iphs, q)
-    ]
+    found += [Edge(limit.margin) for limit in q.limits] + [Edge(tree) for tree in _equal(iphs, q)]
     edges = tuple(dict.fromkeys(e for e in found if not isinstance(e.tree, Num)))[:MOST_EDGES]
-    values = [(tree, bank_of(tree, q.lanes)) for tree in laws.values()]
-    turns = [(edge.tree, bank_of(edge.tree, q.lanes)) for edge in edges]
-    sizes = [
-        (ONE if what in {"effort", "hole"} else _size(_own(tree, known)), bank)
-        for (_, what), (tree, bank) in zip(laws, values, strict=True)
-    ]
-    functions = (
-        _function("laws", values),
-        _function("sizes", sizes),
-        _function("edges", turns),
-    )
-    module = module_from(numpy_module(sharp_program(program_of(q, functions))))
-    banks = dict(zip(laws, (bank for _, bank in values), strict=True))
-    kinks = tuple((edge.kink, bank) for edge, (_, bank) in zip(edges, turns, strict=True))
-    return Probe(iphs, module, banks, kinks)
+    edges = tuple(Edge(e.tree, e.kink, bank_of(e.tree, q.lanes)) for e in edges)
+    return Probe(iphs, defined, laws, dict(_rows(q)), edges)
 
 
-def _function(name: str, rows: list[tuple[Expr, str | None]]) -> ModuleFunction:
-    made = tuple(OutputRow(Slot("", bank), tree) for tree, bank in rows)
-    return ModuleFunction(name, name, ("x", "u", "p"), made)
+#: What the rows of a function of the module are.
+ROWS = {"heat": "heat", "entropy_production": "production", "rhs": "rate"}
 
 
-def _own(tree: Expr, known: dict[str, Expr]) -> Expr:
-    """Return the expression that a name stands for."""
-    return known.get(tree.name, tree) if isinstance(tree, Sym) else tree
+def _rows(q: Quantities) -> Iterator[tuple[tuple[str, str], Row]]:
+    """Yield the rows of the module's functions, and inputs."""
+    for function in functions_of(q):
+        for row in function.rows if function.name in ROWS else ():
+            yield (ROWS[function.name], row.slot.label), (row.value, row.slot.bank)
+    for name in q.iphs.model.inputs:
+        yield ("input", name), (Sym(name), None)
 
 
-def _laws(q: Quantities) -> Iterator[tuple[str, str, Expr]]:
-    """Yield (element, quantity, expression) of every law, effort of a resistor, slope of a body."""
+def _laws(q: Quantities) -> Iterator[tuple[tuple[str, str], Expr]]:
+    """Yield every law, the effort of a resistor and the slope of a body."""
     forces = iter(zip(q.forces, q.outputs, strict=True))
     for placed in q.iphs.circuit.ports:
         element, port = placed.element, placed.port
         match port:
-            case Storage() | Body():
-                yield element, "law", Sym(costate_name(port))
-                if isinstance(port, Body):
-                    yield element, "slope", derivative(port.law, port.state)
+            case Body():
+                yield ("temperature", element), Sym(port.temperature)
+                yield ("slope", element), derivative(port.law, port.state)
+            case Storage():
+                yield ("costate", element), Sym(costate_name(port))
             case Coupling():
-                yield element, "law", Sym(port.name)
-            case Source():
-                continue
+                yield ("ratio", element), Sym(port.name)
             case DissipativePort():
                 force, output = next(forces)
-                yield from ((element, "output", output), (element, "effort", force))
+                yield from ((("output", element), output), (("effort", element), force))
+            case Source():
+                continue
             case _:
-                if not hasattr(port, "input"):
+                if isinstance(port, Conductor):
                     next(forces)
-                yield element, "law", port.conductance
+                yield ("conductance", element), port.conductance
 
 
-def _size(node: Expr) -> Expr:
-    """Return an expression with the terms of each sum replaced by their absolute values."""
-    match node:
-        case Add(terms):
-            return add(*map(_size, terms))
-        case Neg(arg):
-            return _size(arg)
-        case Mul(left, right):
-            return mul(_size(left), _size(right))
-        case Div(left, right):
-            return Div(_size(left), _absolute(right))
-        case Pow(base, exponent) if exponent > 0 and exponent.denominator == 1:
-            return Pow(_size(base), exponent)
-        case If(then, condition, other):
-            return If(_size(then), condition, _size(other))
-        case Call() if knots(node):
-            return _size(choices(node))
-    return _absolute(node)
-
-
-def _absolute(node: Expr) -> Expr:
-    return Num(abs(node.value)) if isinstance(node, Num) else Call("abs", (node,))
-
-
-def _holes(iphs: IPHS, q: Quantities, known: dict[str, Expr]) -> Iterator[tuple[str, str, Expr]]:
-    """Yield expressions, positive where an element's laws or the junction have no value."""
-    found: dict[str, list[Expr]] = {}
-    for element, what, tree in _laws(q):
-        if what != "effort":
-            found.setdefault(element, []).append(_hole(_own(tree, known)))
-    junction = [known[str(symbol.name)] for symbol, _ in (*iphs.slopes, *iphs.shares)]
-    for element, parts in {**found, "": [_hole(tree) for tree in junction]}.items():
-        yield element, "hole", _any(parts)
-
-
-def _hole(node: Node) -> Expr:
-    """Return an expression that is positive where a law has no value on the branch taken."""
-    match node:
-        case If(then, condition, other):
-            inside = If(_hole(then), condition, _hole(other))
-            return _any(
-                [_hole(condition), inside if {inside.then, inside.other} != {ZERO} else ZERO]
-            )
-        case Call() if knots(node):
-            out = [If(ZERO, order, ONE) for order in increasing(node)]
-            return _any([*out, _hole(choices(node))])
-        case Div(_, bottom) if not isinstance(bottom, Num):
-            own: Cmp | None = Cmp("<=", _absolute(bottom), ZERO)
-        case Pow(base, exponent) if exponent.denominator != 1:
-            own = Cmp("<" if exponent > 0 else "<=", base, ZERO)
-        case Pow(base, exponent) if exponent < 0:
-            own = Cmp("<=", _absolute(base), ZERO)
-        case Call(function, (arg,)) if RECORDS[function].domain:
-            own = Cmp("<" if "=" in RECORDS[function].domain else "<=", arg, ZERO)
-        case _:
-            own = None
-    return _any([If(ONE, own, ZERO) if own else ZERO, *map(_hole, children(node))])
-
-
-def _any(parts: list[Expr]) -> Expr:
-    """Return the largest of some nonnegative expressions."""
-    kept = [part for part in dict.fromkeys(parts) if part != ZERO]
-    return reduce(lambda one, other: Call("max", (one, other)), kept) if kept else ZERO
-
-
-def _edges(tree: Node) -> Iterator[ZeroSet]:
+def _edges(tree: Node) -> Iterator[Edge]:
     """Yield the edges of a law, outermost first."""
     for node in walk(tree):
         match node:
             case LaneSum() | Num() | Sym():
                 continue
             case Cmp(_, left, right):
-                yield ZeroSet(add(left, neg(right)), kink=True)
+                yield Edge(add(left, neg(right)), kink=True)
             case Call(function) if not RECORDS[function].smooth:
-                yield from (ZeroSet(add(c.left, neg(c.right)), kink=True) for c in kinks(node))
+                yield from (Edge(add(c.left, neg(c.right)), kink=True) for c in kinks(node))
             case Call(function, (z,)) if RECORDS[function].units == "pure":
-                yield from (ZeroSet(z), ZeroSet(add(z, neg(ONE))), ZeroSet(add(z, ONE)))
+                yield from (Edge(z), Edge(add(z, neg(ONE))), Edge(add(z, ONE)))
             case Call(_, (z,)) | Pow(z, _) | Div(_, z):
-                yield ZeroSet(z)
+                yield Edge(z)
             case Add():
-                yield ZeroSet(node)
+                yield Edge(node)
 
 
 def _equal(iphs: IPHS, q: Quantities) -> Iterator[Expr]:

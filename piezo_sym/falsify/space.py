@@ -1,4 +1,4 @@
-"""Points of a model as one array, and the functions of its module and its probe at them.
+"""Points of a model as one array, and its module, laws and edges at them.
 
 Input: a module, a probe, bank sizes.  Output: a `Space`.  Its n points are an array of shape
 (columns, n); the columns are all parameters, inputs and states, one per lane of a bank.
@@ -18,6 +18,7 @@ import numpy.typing as npt
 
 from piezo_sym.expressions.tree import Cmp, Num, Sym
 from piezo_sym.expressions.units import parse_unit
+from piezo_sym.falsify.floats import Approx, Floats
 from piezo_sym.falsify.probe import Probe
 from piezo_sym.spec.tables import conditions, greater
 
@@ -102,15 +103,10 @@ class Space:
         }
 
     @cached_property
-    def law_rows(self) -> Mapping[tuple[str, str], slice]:
-        """The rows of the probe's laws, by element and quantity."""
-        return self._slices(self.probe.laws.items())
-
-    @cached_property
     def kinks(self) -> Mask:
-        """Which rows of the probe's edges are kinks."""
+        """Which rows of the edges are kinks."""
         edges = self.probe.edges
-        return np.array([kink for kink, bank in edges for _ in range(self.lanes(bank))], dtype=bool)
+        return np.array([e.kink for e in edges for _ in range(self.lanes(e.bank))], dtype=bool)
 
     def _slices(self, banks: Iterable[tuple[Key, str | None]]) -> Mapping[Key, slice]:
         """Return the rows of each key, given its bank."""
@@ -159,21 +155,47 @@ class Space:
 
 @final
 class Seen:
-    """The results of the functions of a module and its probe at points, computed when asked for."""
+    """The module's functions, single laws and edges at points, computed when they are asked for."""
 
     def __init__(self, space: Space, points: Array) -> None:
         self.space = space
         self.points = points
         self.x, self.u, self.p = space.split(points)
+        fields = ((f.name, f.bank, space.columns_of[f.name]) for f in space.fields)
+        given = {name: points[at] if bank else points[at.start] for name, bank, at in fields}
+        self.values = Floats(given, space.probe.defined, space.counts)
+        self._laws: dict[tuple[str, str], Approx] = {}
 
     def __getattr__(self, name: str) -> Array:
-        """Return the result of a function of the module or the probe, computed once."""
-        home = self.space.probe.module if name in PROBED else self.space.module
+        """Return the result of a function of the module, computed once."""
         arguments = (self.x, self.p) if name == "temperatures" else (self.x, self.u, self.p)
         with np.errstate(all="ignore"):
-            value: Array = getattr(home, name)(*arguments)
+            value: Array = getattr(self.space.module, name)(*arguments)
         setattr(self, name, value)
         return value
+
+    def law(self, what: str, element: str) -> Approx:
+        """Return a law, of shape (lanes, points)."""
+        key = what, element
+        if key not in self._laws:
+            tree, bank = self.space.probe.written(self.space.probe.laws[key])
+            shape = self.space.lanes(bank), self.points.shape[1]
+            with np.errstate(all="ignore"):
+                found = self.values[tree]
+            value, size = (np.broadcast_to(part, shape) for part in (found.value, found.size))
+            self._laws[key] = Approx(value, size, found.lost)
+        return self._laws[key]
+
+    @cached_property
+    def edges(self) -> Array:
+        """The values of all edges, of shape (rows, points)."""
+        found, n = np.empty((len(self.space.kinks), self.points.shape[1])), 0
+        with np.errstate(all="ignore"):
+            for edge in self.space.probe.edges:
+                lanes = self.space.lanes(edge.bank)
+                found[n : n + lanes] = self.values[edge.tree].value
+                n += lanes
+        return found
 
     def get(self, what: str, name: str) -> list[tuple[Any, Any]]:
         """Return a quantity as (value, size) pairs of rows, see `View`."""
@@ -182,19 +204,16 @@ class Seen:
             row = space.rows["PROCESSES"][name] if name else slice(None)
             if what == "production":
                 return [(value, np.abs(value)) for value in self.entropy_production[row]]
-            law, effort = space.law_rows[name, "output"], space.law_rows[name, "effort"]
-            return [*zip(self.heat[row], self.sizes[law] * np.abs(self.laws[effort]), strict=True)]
+            size = self.law("output", name).size * np.abs(self.law("effort", name).value)
+            return [*zip(self.heat[row], size, strict=True)]
         if what == "input":
             return [(value, 0) for value in self.points[space.columns_of[name]]]
         if what == "rate":
             return [(value, np.abs(value)) for value in self.rhs[space.rows["STATES"][name]]]
-        law = space.law_rows[name, "slope" if what == "slope" else "law"]
-        values = (
-            self.temperatures[space.rows["BODIES"][name]]
-            if what == "temperature"
-            else self.laws[law]
-        )
-        return [*zip(values, self.sizes[law], strict=True)]
+        law = self.law(what, name)
+        hot = what == "temperature"
+        values = self.temperatures[space.rows["BODIES"][name]] if hot else law.value
+        return [*zip(values, law.size, strict=True)]
 
     @property
     def inside(self) -> Mask:
@@ -221,11 +240,17 @@ class Seen:
         found: Mask = self.extreme | np.any((size > EXTREME) | (size < 1 / EXTREME), axis=0)
         return found
 
-    def holed(self, element: str) -> Mask:
-        """Return where an element's laws, or without a name the junction's, have no value."""
-        row = self.space.law_rows.get((element, "hole"), slice(0))
-        found: Mask = np.any(self.laws[row] > 0, axis=0)
+    @cached_property
+    def infinite(self) -> Mask:
+        """Which points have a law that overflows."""
+        laws = [self.law(*key).value for key in self.space.probe.laws]
+        found: Mask = np.isinf(np.concatenate(laws)).any(axis=0)
         return found
 
-
-PROBED = frozenset({"laws", "sizes", "edges"})
+    def holed(self, element: str) -> Mask:
+        """Return where an element's laws, or without a name the junction's, have no value."""
+        found: Mask = np.zeros(self.points.shape[1], dtype=bool)
+        with np.errstate(all="ignore"):
+            for tree, _ in self.space.probe.of_element(element):
+                found |= np.atleast_2d(self.values[tree].lost).any(axis=0)
+        return found

@@ -13,6 +13,7 @@ from functools import cached_property
 from itertools import product
 from typing import final
 
+from piezo_sym.expressions.exact_eval import all_hold
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.tree import (
     ZERO,
@@ -29,7 +30,6 @@ from piezo_sym.expressions.tree import (
     names,
 )
 from piezo_sym.proofs.branches import TooManyBranchesError
-from piezo_sym.proofs.exact_eval import all_hold
 from piezo_sym.proofs.obligations import NEVER, Question
 from piezo_sym.proofs.query import connected
 from piezo_sym.proofs.solvers import Answer, Asks

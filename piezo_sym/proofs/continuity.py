@@ -15,6 +15,7 @@ from fractions import Fraction
 from itertools import combinations, pairwise, product
 
 from piezo_sym.expressions.calculus import add, neg
+from piezo_sym.expressions.exact_eval import TooCloseError, Value, all_hold, differ, value_of
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import Call, Cmp, Expr, If, knots, names, walk
 from piezo_sym.proofs.assumptions import Assumptions, Law
@@ -29,7 +30,6 @@ from piezo_sym.proofs.branches import (
     settled,
     with_choices,
 )
-from piezo_sym.proofs.exact_eval import TooCloseError, Value, all_hold, differ, value_of
 from piezo_sym.proofs.laws import parts_valued, valued
 from piezo_sym.proofs.obligations import NEVER, Meeting, Obligation, Question
 from piezo_sym.proofs.solvers import Asks

@@ -13,13 +13,13 @@ from fractions import Fraction
 import sympy as sp
 
 from piezo_sym.algebra.coefficients import coefficient
+from piezo_sym.expressions.exact_eval import Value, all_hold, value_of
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ZERO, Cmp, Expr, Neg, names
 from piezo_sym.expressions.tree import replace as put
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.assumptions import Assumptions
-from piezo_sym.proofs.exact_eval import Value, all_hold, value_of
 from piezo_sym.proofs.laws import on_branches, valued
 from piezo_sym.proofs.obligations import NEVER, Obligation, Question
 from piezo_sym.proofs.solvers import Asks

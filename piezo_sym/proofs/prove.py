@@ -14,12 +14,12 @@ from fractions import Fraction
 import sympy as sp
 
 from piezo_sym.expressions.calculus import mul
+from piezo_sym.expressions.exact_eval import TooCloseError, all_hold, value_of
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ZERO, Cmp, Expr, Sym
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.asked import Asked, tried
 from piezo_sym.proofs.continuity import jumps, needed
-from piezo_sym.proofs.exact_eval import TooCloseError, all_hold, value_of
 from piezo_sym.proofs.laws import on_branches
 from piezo_sym.proofs.mending import mending
 from piezo_sym.proofs.obligations import Obligation, Question, Residual, SignOf

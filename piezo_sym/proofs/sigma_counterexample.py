@@ -14,10 +14,10 @@ import sympy as sp
 
 from piezo_sym.algebra.sums import LaneSymbol
 from piezo_sym.errors import PiezoError
+from piezo_sym.expressions.exact_eval import all_hold
 from piezo_sym.expressions.tree import Cmp, Num, Sym
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.assumptions import assumptions_of
-from piezo_sym.proofs.exact_eval import all_hold
 from piezo_sym.proofs.obligations import NEVER, Question
 from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.proofs.solvers import Asks

@@ -21,6 +21,7 @@ from piezo_sym.codegen.numpy.style import numpy_text
 from piezo_sym.expressions.calculus import clause, derivative, rule
 from piezo_sym.expressions.dimensions import dimension, matches
 from piezo_sym.expressions.enclosure import UndecidedError, interval_of
+from piezo_sym.expressions.exact_eval import OUTCOMES, value_of
 from piezo_sym.expressions.functions import FUNCTIONS, RECORDS
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import (
@@ -36,7 +37,6 @@ from piezo_sym.expressions.tree import (
     Sym,
     evaluate,
 )
-from piezo_sym.proofs.exact_eval import OUTCOMES, value_of
 from piezo_sym.proofs.reflection import reflected
 from piezo_sym.proofs.signs import intervals, jets
 from tests.codegen.c_compilers import COMPILERS

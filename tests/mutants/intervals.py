@@ -172,8 +172,8 @@ a product's choice is taken the other way round
   = F_1*(v/v_1)*(1 if v > 2*v_1 else exp(v/v_1 - 0.37) - 2.7184*(v/v_1 - 0.37)) | F_1 > 0; v_1 > 0
 ## proofs/signs/vanish
 what has a value at a point is zero there
-  - return value is not None and not value
-  + return value is not None
+  - return _value(tree, at) == 0
+  + return _value(tree, at) is not None
   = F_1*(log(1 + exp(v/v_1)) - log(2) - 1e-40) | F_1 > 0; v_1 > 0
 ## proofs/signs/cases
 only where a choice holds

@@ -5,7 +5,7 @@ The floors, two towers on one ground:
     errors < expressions < spec < algebra < network < iphs < derivation
         < {proofs, codegen} < {translation, falsify} < verification < build < modules
         < {sweeps, linearization} < api < bench < cli
-    checker < falsify; the checker imports nothing of the package
+    the checker imports nothing of the package, and nothing imports it
     errors < expressions < {run, progress} < {sweeps, analysis, build} < modules
         < {linearization, api} < bench < cli
 """

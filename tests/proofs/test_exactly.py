@@ -8,10 +8,10 @@ from flint import ctx
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from piezo_sym.expressions.exact_eval import TooCloseError, holds, value_of
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import Cmp
-from piezo_sym.proofs.exact_eval import TooCloseError, holds, value_of
 from tests.proofs import law_oracle as oracle
 from tests.spec.spec_laws import laws, precise, steady
 

@@ -10,11 +10,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from piezo_sym.expressions.exact_eval import OUTCOMES
 from piezo_sym.expressions.functions import FUNCTIONS as FUNCTIONS_OF
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ONE, Cmp, Div, Expr, Mul, Num, Pow, Sym, names, walk
-from piezo_sym.proofs.exact_eval import OUTCOMES
 from piezo_sym.proofs.facts import facts_on, facts_on_two
 from piezo_sym.proofs.rational import Part, Ratio, cleared, parts_of, ratio, signed
 from tests.spec.spec_laws import laws, steady

@@ -15,6 +15,7 @@ from fractions import Fraction
 from typing import final
 
 from piezo_sym.expressions.calculus import power
+from piezo_sym.expressions.exact_eval import value_of
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.tree import (
     ONE,
@@ -35,7 +36,6 @@ from piezo_sym.expressions.tree import (
     rebuild,
     walk,
 )
-from piezo_sym.proofs.exact_eval import value_of
 from piezo_sym.proofs.signs.cases import Positive
 
 #: A product of powers: base -> exponent, none of them zero.

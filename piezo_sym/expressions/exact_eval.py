@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, final
 
-from flint import arb, ctx, fmpq
+from flint import arb, ctx, fmpq, fmpz
 
 from piezo_sym.expressions.calculus import choices, increasing
 from piezo_sym.expressions.functions import RECORDS, LawFunction
@@ -58,7 +58,18 @@ Value = Any  # what a law's value is: a Fraction, or an arb; in here fmpq takes 
 
 
 def value_of(node: Expr, values: Mapping[str, Value]) -> Value:
-    """Return the value of a law.
+    """Return the value of a law; see `evaluated`."""
+    found = evaluated(node, values)
+    return Fraction(int(found.p), int(found.q)) if isinstance(found, fmpq) else found
+
+
+def evaluated(node: Expr, values: Mapping[Any, Value], bits: int = BITS) -> Value:
+    """Return the value of a law as a number of FLINT's.
+
+    Parameters
+    ----------
+    values : of names; of sums over lanes, too, where there are any.
+    bits : precision of balls.
 
     Raises
     ------
@@ -67,16 +78,14 @@ def value_of(node: Expr, values: Mapping[str, Value]) -> Value:
     TooCloseError
         Where that, or a comparison, cannot be decided.
     """
-    with ctx.workprec(BITS):
+    with ctx.workprec(bits):
         found = _value(node, values)
-    if isinstance(found, fmpq):
-        return Fraction(int(found.p), int(found.q))
-    if not found.is_finite():
+    if not (isinstance(found, fmpq) or found.is_finite()):
         raise TooCloseError
     return found
 
 
-def holds(condition: Cmp, values: Mapping[str, Value]) -> bool:
+def holds(condition: Cmp, values: Mapping[Any, Value], bits: int = BITS) -> bool:
     """Return whether a comparison holds.
 
     Raises
@@ -86,7 +95,7 @@ def holds(condition: Cmp, values: Mapping[str, Value]) -> bool:
     ArithmeticError, ValueError
         If a side has no value.
     """
-    with ctx.workprec(BITS):
+    with ctx.workprec(bits):
         return _holds(condition, values)
 
 
@@ -101,26 +110,27 @@ def all_hold(conditions: Iterable[Cmp], values: Mapping[str, Value]) -> bool | N
 def differ(left: Value, right: Value) -> bool:
     """Return whether two values are different for certain."""
     with ctx.workprec(BITS):
-        return bool(_number(left) != _number(right))
+        return bool(exact(left) != exact(right))
 
 
-def _number(value: Value) -> Value:
-    if not isinstance(value, Fraction):
-        return value
-    return fmpq(value.numerator, value.denominator)
+def exact(number: Value) -> Value:
+    """Return a Python number as a rational of FLINT's; FLINT's numbers stay."""
+    if not isinstance(number, int | float | Fraction):
+        return number
+    return fmpq(*number.as_integer_ratio())
 
 
-def _holds(condition: Cmp, values: Mapping[str, Value]) -> bool:
+def _holds(condition: Cmp, values: Mapping[Any, Value]) -> bool:
     difference = _value(condition.left, values) - _value(condition.right, values)
     return OUTCOMES[condition.op](_sign(difference))
 
 
-def _value(node: Expr, values: Mapping[str, Value]) -> Value:
+def _value(node: Expr, values: Mapping[Any, Value]) -> Value:
     match node:
         case Num(value):
-            return _number(value)
+            return exact(value)
         case Sym(name):
-            return _number(values[name])
+            return exact(values[name])
         case Neg(arg):
             return -_value(arg, values)
         case Add(terms):
@@ -141,8 +151,7 @@ def _value(node: Expr, values: Mapping[str, Value]) -> Value:
         case If(then, condition, other):
             return _value(then if _holds(condition, values) else other, values)
         case LaneSum():
-            msg = "a sum over lanes has no value outside a program"
-            raise TypeError(msg)
+            return values[node]
 
 
 def _quotient(a: Value, b: Value) -> Value:
@@ -163,11 +172,19 @@ def _power(base: Value, exponent: Fraction) -> Value:
     if sign < 0 or (sign == 0 and exponent < 0):
         msg = "root of a negative number"
         raise ValueError(msg)
-    return arb(base) ** arb(_number(exponent)) if sign else fmpq(0)
+    if not sign:
+        return fmpq(0)
+    if isinstance(base, fmpq):
+        root = fmpq(*(fmpz(part).root(exponent.denominator) for part in (base.p, base.q)))
+        if root**exponent.denominator == base:
+            return root**exponent.numerator
+    return arb(base) ** arb(exact(exponent))
 
 
 def _call(function: str, args: list[Value]) -> Value:
     record, z = RECORDS[function], args[0]
+    if function in {"min", "max"} and not all(isinstance(arg, fmpq) for arg in args):
+        return getattr(arb(z), function)(arb(args[-1]))
     if not record.smooth:  # as the contracts have it, whatever the sign of a width
         return _value(parse_rule(record.formula or record.choices), {"x": z, "w": args[-1]})
     if record.power is not None:

@@ -1,0 +1,155 @@
+"""Trees at many points at once, in floats.
+
+Input: a tree, and the value of each name: an array of points, with an axis of lanes before it where
+there is a bank.  Output: an `Approx`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache, partial, reduce
+from typing import Any, final
+
+import numpy as np
+
+from piezo_sym.expressions.calculus import choices, increasing, rule
+from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.expressions.tree import (
+    Add,
+    Call,
+    Cmp,
+    Div,
+    Expr,
+    If,
+    LaneSum,
+    Mul,
+    Neg,
+    Num,
+    Pow,
+    Sym,
+    knots,
+)
+
+#: A tree, and the bank of which it has a value per lane.
+Row = tuple[Expr, str | None]
+COMPARED: Mapping[str, Callable[..., Any]] = {
+    "<": np.less,
+    "<=": np.less_equal,
+    ">": np.greater,
+    ">=": np.greater_equal,
+}
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Approx:
+    """A law in floats.
+
+    Attributes
+    ----------
+    value : of the law.
+    size : the sum of the absolute values of its terms, so that value/size tells cancellation from a
+        change of sign.
+    lost : where it has no value on the branch taken.
+    """
+
+    value: Any
+    size: Any
+    lost: Any = False
+
+
+@final
+class Floats(dict[Expr, Approx]):
+    """Trees at points, each part computed once.
+
+    Parameters
+    ----------
+    given : the values of names.
+    defined : what other names stand for.
+    counts : the size of each bank.
+    """
+
+    def __init__(
+        self, given: Mapping[str, Any], defined: Mapping[str, Row], counts: Mapping[str, int]
+    ) -> None:
+        super().__init__({Sym(name): _plain(value) for name, value in given.items()})
+        self.defined, self.counts = defined, counts
+
+    def __missing__(self, node: Expr) -> Approx:
+        """Return what was not computed yet, and keep it."""
+        self[node] = self._made(node)
+        return self[node]
+
+    def _made(self, node: Expr) -> Approx:
+        match node:
+            case Num(number):
+                return _plain(np.float64(number))
+            case Sym(name):
+                return _plain(self[self.defined[name][0]].value)
+            case LaneSum(arg, bank):
+                own = self[arg].value
+                shape = self.counts[bank], *np.shape(own)[-1:]
+                return _plain(np.broadcast_to(own, shape).sum(axis=0))
+            case Neg(arg):
+                inner = self[arg]
+                return Approx(-inner.value, inner.size, inner.lost)
+            case Add(terms):
+                return reduce(partial(_each, np.add), (self[term] for term in terms))
+            case Mul(left, right):
+                return _each(np.multiply, self[left], self[right])
+            case Div(left, right):
+                b = self[right]
+                below = _plain(b.value, b.lost | (b.value == 0))
+                return _each(np.divide, self[left], below)
+            case Pow(base, exponent):
+                return _power(self[base], exponent)
+            case If(then, Cmp(op, left, right), other):
+                taken = COMPARED[op](self[left].value, self[right].value)
+                found = _each(partial(np.where, taken), self[then], self[other])
+                lost = found.lost | self[left].lost | self[right].lost
+                return Approx(found.value, found.size, lost)
+            case Call(function, (arg,)) if RECORDS[function].smooth:
+                return _smooth(function, self[arg])
+            case Call():
+                return self._kinked(node)
+        raise TypeError(f"{type(node).__name__} is no law")
+
+    def _kinked(self, node: Call) -> Approx:
+        formula = RECORDS[node.function].formula
+        inner = self[rule(formula, node.args[0], node.args[-1]) if formula else choices(node)]
+        order = (self[c.left].value < self[c.right].value for c in increasing(node))
+        lost = reduce(lambda out, rises: out | ~rises, order, inner.lost)
+        return _plain(inner.value, lost, inner.size if knots(node) else None)
+
+
+def _plain(value: Any, lost: Any = False, size: Any = None) -> Approx:
+    return Approx(value, np.abs(value) if size is None else size, lost)
+
+
+def _each(operation: Callable[..., Any], a: Approx, b: Approx) -> Approx:
+    """Return an operation on values and sizes; a choice chooses where there is no value, too."""
+    chosen = isinstance(operation, partial)
+    lost = operation(a.lost, b.lost) if chosen else a.lost | b.lost
+    return Approx(operation(a.value, b.value), operation(a.size, b.size), lost)
+
+
+def _power(a: Approx, exponent: Fraction) -> Approx:
+    whole = exponent.denominator == 1
+    e = exponent.numerator if whole else float(exponent)
+    lost = a.lost | (a.value == 0 if e < 0 else False) | (False if whole else a.value < 0)
+    return _plain(a.value**e, lost, a.size**e if whole and e > 0 else None)
+
+
+def _smooth(function: str, a: Approx) -> Approx:
+    domain = RECORDS[function].domain
+    outside = (a.value < 0 if "=" in domain else a.value <= 0) if domain else False
+    return _plain(_function(function)(a.value), a.lost | outside)
+
+
+@cache
+def _function(name: str) -> Callable[[Any], Any]:
+    record = RECORDS[name]
+    own = getattr(np, record.numpy.removeprefix("np."), None)
+    return own or np.vectorize(record.value, otypes=[float])
