@@ -101,8 +101,10 @@ sign is never below zero
   = F_1*(v/v_1)*(sign(exp(v/v_1) - 9) + 0.5) if v > 2*v_1 else F_1*v/v_1 | F_1 > 0; v_1 > 0
 ## proofs/signs/decide
 only one side of zero is looked at
-  - yield _ray(f, points[-1], 1, INF)
-  + yield _ray(f, points[-1], -1, INF)
+  - for side in (-1, 1):
+  -         decision, budget
+  + for side in (-1, -1):
+  +         decision, budget
   = F_1*(v/v_1)*(exp(v/v_1 - 0.37) - 2.7184*(v/v_1 - 0.37)) | F_1 > 0; v_1 > 0
 what may be above zero is shown to be
   - if found and found[0].lo >= 0:

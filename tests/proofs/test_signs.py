@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from piezo_sym.expressions.tree import Add, LaneSum, Mul, Num
 from piezo_sym.proofs import Verdict
-from piezo_sym.proofs.signs.decide import Span, decide_sign
+from piezo_sym.proofs.signs.decide import decide_sign
 from tests.proofs.sign_laws import X, law, laws, precise, steady
 
 #: W with W(x)*x >= 0 for every x.
@@ -111,36 +111,20 @@ def test_verdicts_on_sums_that_vanish_at_zero_are_true(terms):
         assert all(v is None or v >= -1e-40 * (1 + abs(v)) for v in values)
 
 
-ABOVE = Span(Fraction(300), None, lo_included=False)
 CASES = [
-    ("1/(x - 300)", ABOVE, Verdict.PROVED),
-    ("log(x/300)", ABOVE, Verdict.PROVED),
-    ("exp(300/x) - 1", ABOVE, Verdict.PROVED),
-    ("sqrt(x - 300)/log(x/300)", ABOVE, Verdict.PROVED),
-    ("x - 300", Span(Fraction(300)), Verdict.PROVED),
-    ("1/(x - 300)", Span(Fraction(300)), Verdict.OPEN),
-    ("1 - exp(x - 301)", ABOVE, Verdict.REFUTED),
-    ("sin(x)", Span(Fraction(0), Fraction(3)), Verdict.PROVED),
-    ("sin(x)", Span(Fraction(0), Fraction(314159, 100000)), Verdict.PROVED),
-    ("sin(x)", Span(Fraction(0), Fraction(22, 7)), Verdict.REFUTED),
-    ("-x", Span(None, Fraction(0)), Verdict.PROVED),
-    ("-x", Span(None, Fraction(1, 10**9)), Verdict.REFUTED),
-    ("-x", Span(None, Fraction(1), hi_included=False), Verdict.REFUTED),
-    ("x*log(x) - x + 1", Span(Fraction(1, 100)), Verdict.PROVED),
-    ("(x - 1/3)*tanh(x - 1/3)", Span(), Verdict.PROVED),
-    ("exp(x) - 1 - x", Span(), Verdict.PROVED),
-    ("sqrt(x)", Span(), Verdict.OPEN),
-    ("-1/x", Span(None, Fraction(0), hi_included=False), Verdict.PROVED),
-    ("sign(x)", Span(Fraction(0), Fraction(0)), Verdict.PROVED),
+    ("(x - 1/3)*tanh(x - 1/3)", Verdict.PROVED),
+    ("exp(x) - 1 - x", Verdict.PROVED),
+    ("sqrt(x)", Verdict.OPEN),
+    ("1/(x - 300)**2", Verdict.OPEN),
+    ("1 - exp(x - 301)", Verdict.REFUTED),
+    ("-x", Verdict.REFUTED),
+    ("x", Verdict.REFUTED),
 ]
 
 
-@pytest.mark.parametrize(("text", "domain", "verdict"), CASES)
-def test_a_domain_is_kept(text, domain, verdict):
-    decision = decide_sign(law(text), "x", domain)
-    assert decision.verdict is verdict
-    if decision.witness is not None:
-        assert decision.witness in domain
+@pytest.mark.parametrize(("text", "verdict"), CASES)
+def test_both_sides_of_zero_are_looked_at(text, verdict):
+    assert decide_sign(law(text), "x").verdict is verdict
 
 
 def test_a_jump_below_zero_at_one_point_is_seen():
@@ -172,12 +156,6 @@ def test_far_out_is_looked_at_on_both_sides(text):
     assert decide_sign(law(text), "x").verdict is Verdict.REFUTED
 
 
-@pytest.mark.parametrize("at", ["0.7", "9.3"])
-def test_both_halves_of_a_finite_domain_are_looked_at(at):
-    dip = law(f"abs(x - {at}) - 0.01")
-    assert decide_sign(dip, "x", Span(Fraction(0), Fraction(10))).verdict is Verdict.REFUTED
-
-
 def test_other_names_and_sums_over_lanes_are_open():
     assert decide_sign(law("r*x**2"), "x").reason == "depends on r too"
     assert decide_sign(LaneSum(X, "bank"), "x").reason == "sums over lanes"
@@ -187,8 +165,3 @@ def test_the_budget_ends_the_search():
     decision = decide_sign(power_of("x + 4.6*sin(x)"), "x", budget=3)
     assert decision.verdict is Verdict.OPEN
     assert "budget" in decision.reason
-
-
-def test_an_empty_domain_is_refused():
-    with pytest.raises(ValueError, match="no number lies from 2 to 1"):
-        Span(Fraction(2), Fraction(1))

@@ -1,19 +1,17 @@
 """Whether a function of one real variable is nowhere negative: proved, refuted, or open.
 
-Input: a tree in one name and a domain.  Output: a `Decision`.  The domain is cut at zero and at its
-ends; from each of these points c, rays x = c + t and x = c - t, t > 0, are cut into windows until
-an enclosure shows f >= 0 on each, a window to infinity among them.  Near a zero of f at c the jets
-there are exact: that is Taylor's theorem.  Work is counted in derivatives on windows, not in
-seconds: the same law gives the same decision everywhere.
+Input: a tree in one name.  Output: a `Decision`.  From zero, both rays x = t and x = -t, t > 0, are
+cut into windows until an enclosure shows f >= 0 on each, a window to infinity among them; where f
+touches zero at a number c, rays x = c + t and x = c - t are.  Near a zero of f at c the jets there
+are exact: that is Taylor's theorem.  Work is counted in derivatives on windows, not in seconds: the
+same law gives the same decision everywhere.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import pairwise
 from typing import final
 
 from piezo_sym.expressions.tree import Expr, LaneSum, names, walk
@@ -37,6 +35,13 @@ MOST_UNDECIDED = 3
 FARTHEST = 2.0**20
 #: Windows tried on each side of a point where f touches zero.
 MOST_BESIDE = 12
+#: Distances from zero at which f is evaluated first.
+STEPS = (
+    *(Fraction(n, 2) for n in range(2, 21)),
+    *(Fraction(10) ** n for n in range(2, 7)),
+    *(Fraction(1, n) for n in (2, 10, 100, 1000)),
+)
+ZERO = Fraction(0)
 
 
 @final
@@ -50,48 +55,8 @@ class Decision:
     rays: tuple[Windows, ...] = ()
 
 
-@final
-@dataclass(frozen=True, slots=True)
-class Span:
-    """The reals between two ends; None is an end at infinity."""
-
-    lo: Fraction | None = None
-    hi: Fraction | None = None
-    lo_included: bool = True
-    hi_included: bool = True
-
-    def __post_init__(self) -> None:
-        """Refuse ends in the wrong order."""
-        if self.lo is not None and self.hi is not None and self.lo > self.hi:
-            raise ValueError(f"no number lies from {self.lo} to {self.hi}")
-
-    def __contains__(self, x: Fraction) -> bool:
-        """Return whether a number is in the domain."""
-        above = self.lo is None or x > self.lo or (x == self.lo and self.lo_included)
-        below = self.hi is None or x < self.hi or (x == self.hi and self.hi_included)
-        return above and below
-
-
-REALS = Span()
-
-
-@final
-@dataclass(frozen=True, slots=True)
-class Ray:
-    """The points centre + side*t, 0 < t <= length; `tree` is f as a function of t."""
-
-    tree: Expr
-    centre: Fraction
-    side: int
-    length: float
-
-    def point(self, t: Fraction) -> Fraction:
-        """Return the x of a t."""
-        return self.centre + self.side * t
-
-
-def decide_sign(f: Expr, name: str, domain: Span = REALS, budget: int = BUDGET) -> Decision:
-    """Return whether f is defined and f >= 0 for every value of `name` in the domain.
+def decide_sign(f: Expr, name: str, budget: int = BUDGET) -> Decision:
+    """Return whether f is defined and f >= 0 for every real value of `name`.
 
     Parameters
     ----------
@@ -101,22 +66,22 @@ def decide_sign(f: Expr, name: str, domain: Span = REALS, budget: int = BUDGET) 
     Returns
     -------
     Decision
-        PROVED is a theorem.  REFUTED gives a rational number in the domain at which f < 0.
+        PROVED is a theorem.  REFUTED gives a rational number at which f < 0.
     """
     if others := [other for other in names(f) if other != name]:
         return Decision(Verdict.OPEN, reason=f"depends on {', '.join(others)} too")
     if any(isinstance(node, LaneSum) for node in walk(f)):
         return Decision(Verdict.OPEN, reason="sums over lanes")
     try:
-        return _at_points(f, domain) or _on_rays(f, name, domain, budget)
+        return _at_points(f) or _on_rays(f, name, budget)
     except (ArithmeticError, RecursionError) as error:
         return Decision(Verdict.OPEN, reason=f"has no bounds: {error}")
 
 
-def _at_points(f: Expr, domain: Span) -> Decision | None:
+def _at_points(f: Expr) -> Decision | None:
     """Return a refutation by a simple number, or that f may have no value at one of them."""
     gaps = []
-    for x in (x for x in _simple_numbers(domain) if x in domain):
+    for x in (ZERO, *(side * step for step in STEPS for side in (1, -1))):
         found = value(f, x)
         if found is None:
             gaps.append(x)
@@ -127,27 +92,15 @@ def _at_points(f: Expr, domain: Span) -> Decision | None:
     return None
 
 
-def _simple_numbers(domain: Span) -> Iterator[Fraction]:
-    """Yield numbers of few digits, most of them near zero or near an end of the domain."""
-    steps = [Fraction(n, 2) for n in range(2, 21)]
-    steps += [Fraction(10) ** n for n in range(2, 7)]
-    steps += [Fraction(1, 2), *(Fraction(1, 10) ** n for n in range(1, 4))]
-    for start in dict.fromkeys((Fraction(0), domain.lo, domain.hi)):
-        if start is not None:
-            yield from (start, *(start + side * step for step in steps for side in (1, -1)))
-
-
-def _on_rays(f: Expr, name: str, domain: Span, budget: int) -> Decision:
-    """Cut the domain into rays and prove f >= 0 on each, and at the points where they start."""
+def _on_rays(f: Expr, name: str, budget: int) -> Decision:
+    """Prove f >= 0 at zero, and on the rays to both sides of it."""
     reasons: list[str] = []
     shown: list[Windows] = []
-    left = budget
-    for point in (point for point in _starts(domain) if point in domain):
-        found = value(f, point)
-        if found is None or found.lo < 0:
-            reasons.append(f"is not told from zero at {name} = {point}")
-    for ray in _rays(f, domain):
-        decision, left = _search(f, name, ray, left)
+    at_zero = value(f, ZERO)
+    if at_zero is None or at_zero.lo < 0:
+        reasons.append(f"is not told from zero at {name} = 0")
+    for side in (-1, 1):
+        decision, budget = _search(f, name, side, budget)
         if decision.verdict is Verdict.REFUTED:
             return decision
         reasons += [decision.reason] if decision.verdict is Verdict.OPEN else []
@@ -157,37 +110,14 @@ def _on_rays(f: Expr, name: str, domain: Span, budget: int) -> Decision:
     return Decision(Verdict.PROVED, rays=tuple(shown))
 
 
-def _starts(domain: Span) -> list[Fraction]:
-    """Return the points where rays start: the finite ends, and zero if it is inside."""
-    points = {end for end in (domain.lo, domain.hi) if end is not None}
-    return sorted(points | ({Fraction(0)} if Fraction(0) in domain else set()))
-
-
-def _rays(f: Expr, domain: Span) -> Iterator[Ray]:
-    """Yield rays that cover the domain, its starting points aside."""
-    points = _starts(domain)
-    if domain.lo is None:
-        yield _ray(f, points[0], -1, INF)
-    for a, b in pairwise(points):
-        half = _not_below((b - a) / 2)
-        yield _ray(f, a, 1, half)
-        yield _ray(f, b, -1, half)
-    if domain.hi is None:
-        yield _ray(f, points[-1], 1, INF)
-
-
-def _ray(f: Expr, centre: Fraction, side: int, length: float) -> Ray:
-    return Ray(recentred(f, centre, side), centre, side, length)
-
-
 def _not_below(x: Fraction) -> float:
     near = float(x)
     return near if near >= x else math.nextafter(near, INF)
 
 
-def _search(f: Expr, name: str, ray: Ray, budget: int) -> tuple[Decision, int]:
-    """Return the decision on one ray and what is left of the budget."""
-    pieces = [(0.0, ray.length)]
+def _search(f: Expr, name: str, side: int, budget: int) -> tuple[Decision, int]:
+    """Return the decision on the ray x = side*t, t > 0, and what is left of the budget."""
+    tree, pieces = recentred(f, ZERO, side), [(0.0, INF)]
     undecided: list[str] = []
     shown: list[tuple[float, float, int]] = []
     others: list[Windows] = []
@@ -195,25 +125,25 @@ def _search(f: Expr, name: str, ray: Ray, budget: int) -> tuple[Decision, int]:
         if budget <= 0:
             return Decision(Verdict.OPEN, reason="needs more work than the budget allows"), 0
         a, b = pieces.pop()
-        order, work = _order(ray.tree, a, b)
+        order, work = _order(tree, a, b)
         budget -= work
         if order is not None:
             shown.append((a, b, order))
             continue
-        x = ray.point(_simplest(a, b))
+        x = side * _simplest(a, b)
         found = value(f, x)
         if found is not None and found.hi < 0:
             return Decision(Verdict.REFUTED, x), budget
         if not _narrow(a, b):
             middle = _middle(a, b)
             pieces += [(middle, b), (a, middle)]
-        elif a > 0 and b < INF and (touching := _touching(f, ray, a, b)) is not None:
+        elif a > 0 and b < INF and (touching := _touching(f, side, a, b)) is not None:
             others += touching
         else:
             undecided.append(f"is not told from zero near {name} = {float(x):.9g}")
     if undecided:
         return Decision(Verdict.OPEN, reason=undecided[0]), budget
-    rays = (Windows(ray.centre, ray.side, tuple(shown)), *others)
+    rays = (Windows(ZERO, side, tuple(shown)), *others)
     return Decision(Verdict.PROVED, rays=rays), budget
 
 
@@ -237,19 +167,19 @@ def _middle(a: float, b: float) -> float:
     return max(1.0, 2 * a) if b == INF else a + (b - a) / 2
 
 
-def _touching(f: Expr, ray: Ray, a: float, b: float) -> tuple[Windows, ...] | None:
+def _touching(f: Expr, side: int, a: float, b: float) -> tuple[Windows, ...] | None:
     """Return how f >= 0 is shown from the simplest number in a <= t <= b to both sides, or None.
 
     Where f touches zero at that number, the jets there are exact.
     """
-    middle = ray.point(_simplest(a, b))
+    middle = side * _simplest(a, b)
     found = value(f, middle)
     if found is None or found.lo < 0:
         return None
-    ends = sorted((ray.point(Fraction(a)), ray.point(Fraction(b))))
+    ends = sorted((side * Fraction(a), side * Fraction(b)))
     shown = [
-        _beside(f, middle, side, _not_below(abs(end - middle)))
-        for side, end in ((-1, ends[0]), (1, ends[1]))
+        _beside(f, middle, way, _not_below(abs(end - middle)))
+        for way, end in ((-1, ends[0]), (1, ends[1]))
         if end != middle
     ]
     both = tuple(windows for windows in shown if windows is not None)
