@@ -35,9 +35,8 @@ def main(arguments: list[str]) -> int:
         word = "not confirmed" if why else "stated" if name == rows.STATED else "confirmed"
         line = f"{word} {name} {element}".rstrip() + f": {why}" * bool(why)
         print("".join(c if c.isprintable() else "?" for c in line))  # noqa: T201
-    looked_at = [why for name, _, why in found_rows if name != rows.STATED]
-    good = looked_at.count("")
-    print(f"{good} of {len(looked_at)} rows confirmed; printed text is not read here")  # noqa: T201
+    seen = [why for name, _, why in found_rows if name != rows.STATED]
+    print(f"{seen.count('')} of {len(seen)} rows confirmed; printed text is not read here")  # noqa: T201
     return int(any(why for _, _, why in found_rows))
 
 

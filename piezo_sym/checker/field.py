@@ -22,7 +22,7 @@ CTX = fmpq_mpoly_ctx.get([f"x{n}" for n in range(SIZE)], "lex")
 UNIT = CTX.constant(1)
 
 
-class _Ratio:
+class Ratio:
     """A reduced quotient of two polynomials, the lower one with leading coefficient 1."""
 
     def __init__(self, top: Any, bottom: Any = UNIT) -> None:
@@ -34,24 +34,30 @@ class _Ratio:
         self.top, self.bottom = top, bottom
 
     def __add__(self, other: "Ratio") -> "Ratio":
+        """Return the sum."""
         if self.bottom == other.bottom:
             return Ratio(self.top + other.top, self.bottom)
         tops = _product(self.top, other.bottom) + _product(other.top, self.bottom)
         return Ratio(tops, _product(self.bottom, other.bottom))
 
     def __neg__(self) -> "Ratio":
+        """Return the negative."""
         return Ratio(-self.top, self.bottom)
 
     def __sub__(self, other: "Ratio") -> "Ratio":
+        """Return the difference."""
         return self + -other
 
     def __mul__(self, other: "Ratio") -> "Ratio":
+        """Return the product."""
         return Ratio(_product(self.top, other.top), _product(self.bottom, other.bottom))
 
     def __truediv__(self, other: "Ratio") -> "Ratio":
+        """Return the quotient."""
         return self * Ratio(other.bottom, other.top)
 
     def __pow__(self, power: int) -> "Ratio":
+        """Return a whole power."""
         if power < 0:
             return Ratio(self.bottom, self.top) ** -power
         terms = max(len(self.top), len(self.bottom))
@@ -59,15 +65,14 @@ class _Ratio:
         return Ratio(self.top**power, self.bottom**power)
 
     def __eq__(self, other: object) -> bool:
+        """Return whether both are one quotient, or a number."""
         if isinstance(other, Ratio):
             return bool(self.top == other.top and self.bottom == other.bottom)
         return bool(self.bottom.is_one() and self.top == other)
 
     def __hash__(self) -> int:
+        """Return the hash of both polynomials."""
         return hash((str(self.top), str(self.bottom)))
-
-
-Ratio = _Ratio
 
 
 def _product(left: Any, right: Any) -> Any:
@@ -81,8 +86,7 @@ def constant(value: int | Fraction) -> Ratio:
 
 
 ZERO, ONE = constant(0), constant(1)
-Known: TypeAlias = Callable[[Node], bool]
-Words: TypeAlias = Callable[[Node], Ratio]
+Told: TypeAlias = Callable[[Node], Any]
 
 
 class Field:
@@ -91,7 +95,7 @@ class Field:
     Comparisons lose their numeric factors only if it `scales`: some depend on the size of a bank.
     """
 
-    def __init__(self, known: Known = lambda _: False, *, scales: bool = False) -> None:
+    def __init__(self, known: Told = lambda _: False, *, scales: bool = False) -> None:
         self.atoms, self.known, self.scales = dict[Any, tuple[int, Node]](), known, scales
         self.relations = dict[Ratio, Any]()  # zero: of choices, their own squares, and of roots
         self.nonzero = set[Ratio]()  # factors of what is zero nowhere, taken or not
@@ -102,7 +106,7 @@ class Field:
         need(place < SIZE, f"more than {SIZE} different symbols and functions")
         return Ratio(CTX.gen(place))
 
-    def of(self, node: Node, words: Words | None = None) -> Ratio:
+    def of(self, node: Node, words: Told | None = None) -> Ratio:
         """Return the normal form of a tree, `words` giving that of its symbols and sums."""
         if node.op == "num":
             return constant(node.value)
@@ -130,7 +134,7 @@ class Field:
             return ONE if node.op in ("exp", "cos", "cosh") else ZERO
         return self.atom((node.op, *args), node)
 
-    def _choice(self, condition: Node, words: Words | None) -> Ratio:
+    def _choice(self, condition: Node, words: Told | None) -> Ratio:
         """Return the atom [difference > 0], or 1 less that of its opposite."""
         less = condition.value in ("<", ">=")
         left, right = condition.args[::-1] if less else condition.args

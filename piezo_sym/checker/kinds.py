@@ -1,60 +1,71 @@
-"""The checker's own table of kinds, and the units of their letters.
+"""The checker's own table of kinds.
 
-Input: nothing; this is data.  A row has the form (a hysteron is a store and a law in series), the
-domains of its branches, the fields that name nodes, + if what it imposes (co-state, input) is an
-across variable (a coupling gyrates if not), law fields with unit and letters, other fields, and the
-co-state of a store as a law of its state x.  ``?`` marks what may be left out.
+Input: nothing; this is data.  A row of `_TABLE` has the form (a hysteron is a store and a law in
+series), the domain of each field that names nodes, these fields, + if what it imposes (co-state,
+input) is an across variable (a coupling gyrates if not), law fields with unit and letters, a state
+first, other fields, and the co-state of a store as a law of its state x.  ``?`` marks what may be
+left out; of the second pairs of a coupling one is given, its ratio has the unit of its domains.  A
+row of `_DOMAINS` has its reference, where its inertia and sources stand, its across and through
+variables with letter and unit, and what else `_WITHIN` says of the kinds that each domain has.
 """
 
 from typing import NamedTuple
 
-REFERENCES = {"gnd": "E", "wall": "M"}
-LETTERS = {"q": "m", "p": "kg*m/s", "Q": "C", "phi": "Wb", "S": "J/K", "i": "A", "f": "N", "T": "K"}
-STATES = ("q", "p", "Q", "phi", "S")
-#: The units of what a source gives, by its domain and whether it is across; v has that of across.
-GIVES = {("E", True): "V", ("E", False): "A", ("M", True): "m/s", ("M", False): "N"}
+_DOMAINS = """
+E, gnd, between, voltage, v, V, current, i, A, capacitor, capacitance, F Q:C, inductor, inductance H phi:Wb, x/inductance, resistor
+M, wall, at, velocity, v, m/s, force, f, N, mass, mass, kg p:kg*m/s, spring, stiffness N/m q:m; rest? m, stiffness*(x - rest), damper
+R, frame, at, angular_velocity, omega, rad/s, torque, tau, N*m, inertia, inertia, kg*m**2 L:N*m*s, torsion_spring, stiffness N*m/rad theta:rad; rest? rad, stiffness*(x - rest), rotational_damper
+H, tank, between, pressure, dp, Pa, flow, flow, m**3/s, accumulator, capacitance, m**3/Pa V:m**3, inertance, inertance kg/m**4 G:Pa*s, x/inertance, orifice
+"""  # noqa: E501
+_WITHIN = """
+{9}        | store  | {0} | {2}     | + | {10} {11} | state? | x/{10}
+{12}       | store  | {0} | between | - | {13}      | state? | {14}
+{15}       | law    | {0} | between | + | {3}? {5} {7}:{8} T:K; {6}? {8} {4}:{5} T:K | heats discontinuous? |
+{3}_source | source | {0} | {2}     | + | | input |
+{6}_source | source | {0} | {2}     | - | | input |
+"""  # noqa: E501
 _TABLE = """
-capacitor      | store      | E  | between               | + | capacitance F Q            | state? | x/capacitance
-mass           | store      | M  | at                    | + | mass kg p                  | state? | x/mass
-inductor       | store      | E  | between               | - | inductance H phi           | state? | x/inductance
-spring         | store      | M  | between               | - | stiffness N/m q; rest? m   | state? | stiffness*(x - rest)
-hysteron       | hysteron   | E  | between               | - | inductance H phi; voltage V i T | state? count? heats discontinuous? | x/inductance
-resistor       | law        | E  | between               | + | voltage? V i T; current? A v T  | heats discontinuous? |
-damper         | law        | M  | between               | + | velocity? m/s f T; force? N v T | heats discontinuous? |
-transducer     | coupling   | EM | electrical mechanical | - | ratio C/m T                | temperature? |
-transformer    | coupling   | EE | first second          | + | ratio 1                    | |
-lever          | coupling   | MM | first second          | + | ratio 1                    | |
-voltage_source | source     | E  | between               | + |                            | input |
-current_source | source     | E  | between               | - |                            | input |
-velocity_source | source    | M  | at                    | + |                            | input |
-force_source   | source     | M  | at                    | - |                            | input |
-thermal_mass   | body       |    |                       | + | temperature K S            | state? | temperature
-conduction     | conduction |    |                       | + | conductance W/K T_1 T_2    | between |
-ambient        | ambient    |    |                       | + | conductance W/K T T_e      | body input |
+hysteron       | hysteron | E   | between             | - | inductance H phi:Wb; voltage V i:A T:K | state? count? heats discontinuous? | x/inductance
+transformer    | coupling | EE  | first second        | + | ratio 1                                | |
+lever          | coupling | MM  | first second        | + | ratio 1                                | |
+gear           | coupling | RR  | first second        | + | ratio 1                                | |
+transducer     | coupling | EMM | electrical translation? mechanical? | - | ratio 1 T:K            | temperature? |
+motor          | coupling | EMR | electrical translation? rotation?   | + | constant 1             | |
+rack           | coupling | MR  | translation rotation                | + | radius 1               | |
+cylinder       | coupling | HM  | hydraulic translation               | - | area 1                 | |
+pump           | coupling | RH  | rotation hydraulic                  | - | displacement 1         | |
+thermal_mass   | body       | | | + | temperature K S:J/K | state? | temperature
+conduction     | conduction | | | + | conductance W/K T_1:K T_2:K | between |
+ambient        | ambient    | | | + | conductance W/K T:K T_e:K   | body input |
 """  # noqa: E501
 
 
 class Kind(NamedTuple):
-    """A kind of element; `laws` is by field: unit, and the letters allowed beside parameters."""
+    """A kind: `ends` are fields of nodes and their domains, `laws` the unit and letters of each.
+
+    `fields` says of each whether it is needed.
+    """
 
     form: str
-    domains: str
-    nodes: list[str]
+    ends: list[tuple[str, str]]
     across: bool
-    laws: dict[str, tuple[str, list[str]]]
-    fields: set[str]
-    needed: set[str]
+    laws: dict[str, tuple[str, dict[str, str]]]
+    fields: dict[str, bool]
     costate: str
 
 
 def _kind(row: str) -> tuple[str, Kind]:
     name, form, domains, nodes, across, laws, others, costate = map(str.strip, row.split("|"))
     table = [text.split() for text in laws.split(";") if text]
-    fields = {"kind", *nodes.split(), *others.split(), *(field for field, *_ in table)}
-    needed = {field for field in fields if not field.endswith("?")}
-    known = {field.rstrip("?") for field in fields}
-    units = {field.rstrip("?"): (unit, letters) for field, unit, *letters in table}
-    return name, Kind(form, domains, nodes.split(), across == "+", units, known, needed, costate)
+    words = ["kind", *nodes.split(), *others.split(), *(field for field, *_ in table)]
+    ends = [*zip(nodes.replace("?", "").split(), domains, strict=True)]
+    units = {f.rstrip("?"): (u, dict(x.split(":") for x in own)) for f, u, *own in table}
+    fields = {word.rstrip("?"): word[-1] != "?" for word in words}
+    return name, Kind(form, ends, across == "+", units, fields, costate)
 
 
-KINDS = dict(map(_kind, _TABLE.strip().splitlines()))
+_ROWS = [row.split(", ") for row in _DOMAINS.strip().splitlines()]
+#: By domain its reference, and the units of its through and across variable.
+REFERENCES, UNITS = {r[0]: r[1] for r in _ROWS}, {r[0]: (r[8], r[5]) for r in _ROWS}
+_TEXT = "".join(_WITHIN.format(*row) for row in _ROWS) + _TABLE
+KINDS = dict(map(_kind, filter(None, _TEXT.splitlines())))

@@ -15,8 +15,7 @@ from typing import Any, NamedTuple
 
 from .functions import KINKS, SMOOTH
 
-MAX_LENGTH, MAX_DIGITS, MAX_EXPONENT, MAX_POWER = 1000, 60, 400, 16
-MAX_TABLE, MAX_KNOTS = 4000, 64
+MAX_LENGTH, MAX_TABLE, MAX_DIGITS, MAX_EXPONENT, MAX_POWER, MAX_KNOTS = 1000, 4000, 60, 400, 16, 64
 PLAIN = re.compile(
     r"(?>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![A-Za-z0-9_.])|[A-Za-z_]\w*|[-+*/(),<>=]| )*+",
     re.ASCII,
@@ -29,8 +28,7 @@ ARITHMETIC: dict[str, Callable[..., Any]] = {"*": operator.mul, "/": operator.tr
 ARITHMETIC |= {"neg": operator.neg, "+": lambda *terms: sum(terms[1:], terms[0])}
 #: The derivatives of operations on x and z, whose own are dx and dz.
 SLOPES = {"*": "dx*z + x*dz", "/": "dx/z - x*dz/z**2", "neg": "-dx"}
-ARGUMENTS = dict.fromkeys(SMOOTH, 1)
-ARGUMENTS |= {name: 2 if "z" in text else 1 for name, text in KINKS.items() if text}
+ARGUMENTS = dict.fromkeys(SMOOTH, 1) | {n: 1 + ("z" in t) for n, t in KINKS.items() if t}
 
 
 class InputError(Exception):

@@ -115,7 +115,7 @@ def _equations(spec: Spec, branches: list[Branch], algebra: Any) -> Iterator[For
     for branch in branches:
         fall: Form = {("across", branch): one}
         for node, sign in zip(branch.nodes, (one, -one), strict=True):
-            if node not in REFERENCES:
+            if node not in REFERENCES.values():
                 shared = isinstance(node, str)  # a lane's own node is not
                 many = algebra.like((branch.element, branch.lane)) if shared else one
                 balances.setdefault(node, {})["through", branch] = sign * many
@@ -130,7 +130,7 @@ def _law(element: Element, branch: Branch, algebra: Any) -> Form:
     (imposed, answer), one = branch.variables(), algebra.one
     if branch.role in ("first", "second"):
         first, second = _branches(element, (0,))
-        ratio = algebra.law(element, "ratio", 0)
+        ratio = algebra.law(element, next(iter(element.laws)), 0)
         # first: across or through = ratio*across of the second; second: through = -ratio*answer
         other = ("across", second) if branch == first else first.variables()[1]
         return {imposed: one, other: -ratio if branch == first else ratio}

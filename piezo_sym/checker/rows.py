@@ -26,9 +26,7 @@ MOVING, OWN = ("z", "x", "T"), ("domain", "system")  # rows that are not stated 
 
 def audit(spec: Spec, proofs: Mapping[str, Any]) -> list[tuple[str, str, str]]:
     """Return every row of a spec, and why it is not confirmed."""
-    found = _Audit(spec, proofs)
-    found.look()
-    return [(name, element, why) for (name, element), why in found.done.items()]
+    return [(*key, why) for key, why in _Audit(spec, proofs).look().items()]
 
 
 class _Audit:
@@ -47,8 +45,8 @@ class _Audit:
         self.ties = tuple(compare(sym(name), "=", law) for name, law in known.items())
         self.prover = Prover(spec.conditions, self.ties)
 
-    def look(self) -> None:
-        """Look at the rows, each after those that it rests on."""
+    def look(self) -> dict[Key, str]:
+        """Look at the rows, each after those that it rests on; return why each is not confirmed."""
         spec, reasons, system = self.spec, self.found.reasons, [("system", "")]
         self._row("domain", "", self._own_values())
         divisors = [true(tree, "!=") for tree in self.found.divisors]
@@ -84,6 +82,7 @@ class _Audit:
             claimed = any(e.get("verdict") == "PROVED" or e.get("required", True) for e in entries)
             if claimed and key not in self.done:
                 self._information(*key)
+        return self.done
 
     def _row(
         self, name: str, owner: str = "", claims: Any = (), rests: Iterable[Key] = (), why: str = ""

@@ -14,12 +14,11 @@ from typing import Any, NamedTuple
 
 from . import laws
 from .field import Field
-from .kinds import GIVES, KINDS, LETTERS, REFERENCES, STATES, Kind
+from .kinds import KINDS, REFERENCES, UNITS, Kind
 from .laws import InputError, Node, compare, made, need, num, parse, put, sym, symbols, walk
 from .units import Dimension, faults, unit
 
-DOTTED = re.compile(r"(\s*\.\s*[\w\"'-]+){9}")
-MAX_BYTES = 500_000
+DOTTED, MAX_BYTES = re.compile(r"(\s*\.\s*[\w\"'-]+){9}"), 500_000
 TABLES = ("model", "parameters", "inputs", "domain", "initial", "elements")
 Symbol = tuple[str, str]
 
@@ -87,16 +86,11 @@ class _Reader:
         need(bool(self.kinds), "no elements")
         self.bodies = [name for name, kind in self.kinds.items() if kind.form == "body"]
         self.lanes = {("x", n) for n, own in tables["elements"].items() if "count" in own}
-        self.words = self._words()
+        self.words, self.domains = self._words(), {b: a for a, b in REFERENCES.items()}
         self.states = {word: owner for word, (role, owner) in self.words.items() if role == "x"}
         self.elements = {name: self._element(name) for name in self.kinds}
 
     def spec(self) -> Spec:
-        domains = dict(REFERENCES)
-        for element in self.elements.values():
-            for pair, own in zip(element.pairs, element.kind.domains, strict=True):
-                same = all(domains.setdefault(node, own) == own for node in pair)
-                need(same, f"a node of {element.name} is in two domains")
         initial = {self.states[state]: self._starts(state) for state in self.tables["initial"]}
         conditions = tuple(dict.fromkeys(self._conditions(initial)))
         tables = (self.parameters, self.inputs, self.words, self.states, self.elements)
@@ -115,10 +109,11 @@ class _Reader:
     def _words(self) -> dict[str, Symbol]:
         found = [(name, (role, name)) for role, name in self.units]
         for name, kind in self.kinds.items():
-            for letter in (s for _, own in kind.laws.values() for s in own if s in STATES):
+            if kind.costate:
+                letter, own = next(iter(next(iter(kind.laws.values()))[1].items()))
                 word = self.tables["elements"][name].get("state", f"{letter}_{name}")
                 found.append((word, ("x", name)))
-                self.units["x", name] = unit(LETTERS[letter])[1]
+                self.units["x", name] = unit(own)[1]
         self.units |= {("T", name): unit("K")[1] for name in self.bodies}
         found += [(f"T_{name}", ("T", name)) for name in self.bodies]
         found += [("T", found[-1][1])] * (len(self.bodies) == 1 and "T" not in dict(found))
@@ -135,46 +130,53 @@ class _Reader:
 
     def _element(self, name: str) -> Element:
         entry, kind = self.tables["elements"][name], self.kinds[name]
-        known = kind.needed <= set(entry) <= kind.fields and name.isidentifier()
+        needed = {field for field, must in kind.fields.items() if must}
+        known = needed <= entry.keys() <= kind.fields.keys() and name.isidentifier()
         need(known, f"elements.{name[:60]} has a wrong key, or no name")
         heats = [entry[field] for field in ("heats", "body", "temperature") if field in entry]
         heats = entry["between"] if kind.form == "conduction" else heats
         bodies = () if kind.form == "body" else tuple(heats)
         good = set(bodies) <= set(self.bodies) and len(set(bodies)) == len(bodies)
         need(good, f"elements.{name} names what is no thermal_mass")
-        own = {field: self._law(name, field, bodies) for field in kind.laws if field in entry}
+        ends, coupled = [end for end in kind.ends if end[0] in entry], kind.form == "coupling"
+        need(len(ends) == 2 or not coupled, f"elements.{name} needs two pairs of nodes")
+        ratio = f"{UNITS[ends[0][1]][kind.across]}/({UNITS[ends[1][1]][1]})" if coupled else ""
+        own = {f: self._law(name, f, bodies, ratio) for f in kind.laws if f in entry}
         need(kind.form != "law" or len(own) == 1, f"elements.{name} needs exactly one law")
         field, dissipates = next(reversed(own), ""), kind.form in ("law", "hysteron")
         parts = {"rest": num(0), **own, "x": sym(("x", name))}
         costate = made(kind.costate, **parts) if kind.costate else None
-        law, letter = (own[field], kind.laws[field][1][0]) if dissipates else (None, "")
-        across = kind.across and (kind.form != "law" or field in ("voltage", "velocity"))
+        law, letter = (own[field], next(iter(kind.laws[field][1]))) if dissipates else (None, "")
+        across = kind.across and (kind.form != "law" or field == next(iter(kind.laws)))
         source, count = entry.get("input", ""), entry.get("count")
         need(count is None or count >= 1, f"elements.{name}.count is out of range")
-        row = GIVES[kind.domains, kind.across] if kind.form == "source" else "K"
+        row = UNITS[ends[0][1]][kind.across] if kind.form == "source" else "K"
         if "input" in kind.fields and self.units["u", source] != unit(row)[1]:
             self.faults.append(f"elements.{name}.input is not in {row}")
-        ends = ((entry[key], "wall") if key == "at" else entry[key] for key in kind.nodes)
-        pairs = tuple((a, b) for a, b in ends)
+        given = ((entry[key], REFERENCES[d]) if key == "at" else entry[key] for key, d in ends)
+        pairs = tuple((a, b) for a, b in given)
         need(all(a != b and isinstance(a + b, str) for a, b in pairs), "no pair of nodes")
+        for (_, d), (a, b) in zip(ends, pairs, strict=True):
+            same = self.domains.setdefault(a, d) == d == self.domains.setdefault(b, d)
+            need(same, f"a node of {name} is in two domains")
         state = next((word for word, owner in self.states.items() if owner == name), "")
-        given = (pairs, across, bodies, source, count, entry.get("discontinuous", False))
-        return Element(name, kind, own, state, costate, law, letter, *given)
+        others = (pairs, across, bodies, source, count, entry.get("discontinuous", False))
+        return Element(name, kind, own, state, costate, law, letter, *others)
 
-    def _law(self, name: str, field: str, bodies: tuple[str, ...]) -> Node:
+    def _law(self, name: str, field: str, bodies: tuple[str, ...], ratio: str) -> Node:
         entry, (needed, letters) = self.tables["elements"][name], self.kinds[name].laws[field]
-        lanes = self.lanes - {("x", name)}
-        roles = "p" if field == "rest" or {*letters} & {*STATES} else "pxT"
+        lanes, kind = self.lanes - {("x", name)}, self.kinds[name]
+        stored = field == "rest" or bool(kind.costate and field == next(iter(kind.laws)))
+        roles = "p" if stored else "pxT"
         words = {w: s for w, s in self.words.items() if s[0] in roles and s not in lanes}
         warm = zip(bodies or self.bodies[: len(self.bodies) == 1], ("T T_1", "T_2"), strict=False)
         words |= {w: ("T", body) for body, own in warm for w in own.split() if w in letters}
         words |= {"T_e": ("u", entry["input"])} if "T_e" in letters else {}
-        across = GIVES.get((self.kinds[name].domains, True), "1")
         for letter in (letter for letter in letters if letter[0] != "T"):
-            words[letter] = ("x" if letter in STATES else "z", name)
-            self.units[words[letter]] = unit(LETTERS.get(letter, across))[1]
+            words[letter] = ("x" if stored else "z", name)
+            self.units[words[letter]] = unit(letters[letter])[1]
         law = self._resolved(entry[field], words)
-        self.faults += faults(law, self.units, unit(needed)[1], f"elements.{name}")
+        self.faults += faults(law, self.units, unit(ratio or needed)[1], f"elements.{name}")
         return law
 
     def _conditions(self, initial: Mapping[str, tuple[Node, ...]]) -> Iterator[Node]:

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
+from piezo_sym.errors import with_article
 from piezo_sym.expressions.dimensions import (
     NONE,
     Dimension,
@@ -28,6 +29,7 @@ from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import Cmp, Expr, Mul, Neg, Node, Num, Sym, names, walk
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.report import Row, Verdict
+from piezo_sym.spec.elements import with_ratio_in
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.places import Place, places
 from piezo_sym.spec.tables import condition_text
@@ -58,7 +60,8 @@ def units(iphs: IPHS) -> Iterator[Row]:
     if not wrong:
         yield Row("units", "", STATEMENT, Verdict.PROVED)
     for fault in wrong:
-        reason = f"{fault.place.where}: {_finding(fault, model)}; {_remedy(fault, checks)}"
+        remedy = f"{_remedy(fault, checks)}{_other_kind(fault, model)}"
+        reason = f"{fault.place.where}: {_finding(fault, model)}; {remedy}"
         yield Row("units", fault.place.element, STATEMENT, Verdict.REFUTED, None, reason)
 
 
@@ -75,7 +78,16 @@ def _finding(fault: Check, model: Model) -> str:
         return f"{left} and {right} in {_short(rule.node)}, equal units are needed"
     if not rule.whole:
         return f"{left} in {_short(rule.node)}, a number without unit is needed"
-    return f"{left}, {quantity(rule.needed)} is needed"
+    return f"{left}, {quantity(rule.needed, fault.place.unit)} is needed"
+
+
+def _other_kind(fault: Check, model: Model) -> str:
+    """Return which kind of coupling would take a ratio in the unit that it has."""
+    found = dimension(fault.rule.left, fault.place.words)
+    if not fault.rule.whole or not fault.place.element or found is None:
+        return ""
+    kinds = with_ratio_in(found, model.elements[fault.place.element])
+    return "".join(f"; {with_article(kind.name)} takes {unit_text(found)}" for kind in kinds)
 
 
 def _unit(term: Expr, place: Place, model: Model) -> str:

@@ -31,6 +31,7 @@ class Place:
     given : the dimensions of the parameters and inputs in its reach; a user may change these.
     fixed : the dimensions of letters, states and temperatures; they go before those given.
     needed : the dimension that a law must have; None for a condition.
+    unit : that of `needed` as the kind gives it; empty if none does.
     """
 
     where: str
@@ -39,6 +40,7 @@ class Place:
     given: Mapping[str, Dimension]
     fixed: Mapping[str, Dimension]
     needed: Dimension | None
+    unit: str = ""
 
     @property
     def words(self) -> Mapping[str, Dimension]:
@@ -71,14 +73,16 @@ def _laws(
     for law in law_fields(name, spec.elements[name]):
         letters = {letter: _dimension(unit) for letter, unit in law.mark.units.items()}
         fixed = {**(seen if law.mark.sees else {}), **letters}
-        yield Place(law.where, name, law.tree, given, fixed, _dimension(law.mark.unit))
+        unit = law.mark.unit
+        yield Place(law.where, name, law.tree, given, fixed, _dimension(unit), unit)
 
 
 def _inputs(spec: Tables, name: str, given: Mapping[str, Dimension]) -> Iterator[Place]:
     for port in spec.elements[name].ports(name):
         if isinstance(port, Source | Exchange):
-            needed = _dimension(port.units[0] if isinstance(port, Source) else "K")
-            yield Place(f"elements.{name}.input", name, Sym(port.input), given, {}, needed)
+            unit = port.units[0] if isinstance(port, Source) else "K"
+            where, tree = f"elements.{name}.input", Sym(port.input)
+            yield Place(where, name, tree, given, {}, _dimension(unit), unit)
 
 
 def _conditions(spec: Tables, given: Mapping[str, Dimension]) -> Iterator[Place]:

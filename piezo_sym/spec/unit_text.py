@@ -9,7 +9,7 @@ from fractions import Fraction
 from functools import cache
 from itertools import combinations, product
 
-from piezo_sym.expressions.dimensions import BASES, NONE, Dimension
+from piezo_sym.expressions.dimensions import BASES, Dimension
 from piezo_sym.expressions.units import base_units, parse_unit, raised
 
 #: What is spelled like this although a text of fewer units exists.
@@ -21,7 +21,7 @@ PARTS = ("V", "A", "N", "W", "J", "C", "ohm", "F", "H", "Wb", "Pa", "m", "s", "k
 MOST_PARTS = 3
 SMALL, LARGE = (1, -1, 2, -2), (1, -1, 2, -2, 3, -3, 4, -4)
 
-#: What a quantity in a unit is called.
+#: What a quantity in a unit is called; of one dimension, the first unless the unit is said.
 QUANTITIES: Mapping[str, str] = {
     "V": "a voltage",
     "A": "a current",
@@ -43,6 +43,25 @@ QUANTITIES: Mapping[str, str] = {
     "W/K": "a heat conductance",
     "W": "a power",
     "1": "a number without unit",
+    "J": "an energy",
+    "J*s": "an action",
+    "1/s": "a rate",
+    "Pa": "a pressure",
+    "m**3/s": "a flow",
+    "m**3": "a volume",
+    "Pa*s": "a pressure impulse",
+    "m**3/Pa": "a hydraulic capacitance",
+    "Pa*s**2/m**3": "an inertance",
+    "m**2": "an area",
+    "m**3/rad": "a displacement",
+    "kg*m**2": "a moment of inertia",
+    "V*s/m": "a motor constant",
+    "V*s/rad": "a motor constant",
+    "rad": "an angle",
+    "rad/s": "an angular velocity",
+    "N*m": "a torque",
+    "N*m*s": "an angular momentum",
+    "N*m/rad": "a torsional stiffness",
 }
 
 
@@ -55,11 +74,14 @@ def unit_text(dimension: Dimension) -> str:
 
 
 @cache
-def quantity(dimension: Dimension) -> str:
-    """Return what a quantity is called, with its unit, such as ``a voltage [V]``."""
-    for text, words in QUANTITIES.items():
+def quantity(dimension: Dimension, said: str = "") -> str:
+    """Return what a quantity is called, with its unit, such as ``a voltage [V]``.
+
+    `said` is the unit as a kind of element gives it, if one does: ``a torque [N*m]``.
+    """
+    for text in (said,) if said in QUANTITIES else QUANTITIES:
         if parse_unit(text).dimension == dimension:
-            return words if dimension == NONE else f"{words} [{text}]"
+            return QUANTITIES[text] + f" [{text}]" * (text != "1")
     return f"a quantity in {unit_text(dimension)}"
 
 

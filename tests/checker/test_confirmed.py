@@ -3,6 +3,8 @@ from stated import PIEZO_STACK, SPECS, mass, refused, run, stated
 
 SOME = {
     "a1_two_bodies",
+    "geared_motor",
+    "hydraulic_cylinder",
     "output_resistance_of_a_bank",
     "series_across_a_capacitor",
     "transducer_between_moving_nodes",

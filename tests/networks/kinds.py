@@ -65,23 +65,34 @@ def dissipative(draft):
     return {"between": draft.pair(kind.domains), name: text, "heats": body, **jumps}
 
 
-def spring(draft):
-    k = draft.parameter("k", "N/m")
-    forms = (k, k, k, f"{k}*(1 + q**2)", f"{k}*(1 + q**2/3)**2", f"{k}*exp(q)")
-    rest = {"rest": draft.parameter("q_l", "m", -1, 1)} if draft.one_in(3) else {}
+def stiff(draft):
+    """Return a spring's fields, of any domain: x is the extension over a unit of it."""
+    x, unit, at_rest = KINDS[draft.kind].size
+    k = draft.parameter("k", unit)
+    forms = (k, k, k, f"{k}*(1 + {x}**2)", f"{k}*(1 + {x}**2/3)**2", f"{k}*exp({x})")
+    rest = {"rest": draft.parameter("q_l", at_rest, -1, 1)} if draft.one_in(3) else {}
     form = draft.pick(forms[:5]) if not draft.one_in(30) else forms[5]
-    return {"between": draft.pair("m"), "stiffness": form, **rest, **draft.state()}
+    ends = draft.pair(KINDS[draft.kind].domains)
+    return {"between": ends, "stiffness": form, **rest, **draft.state()}
 
 
-def mass(draft):
-    m = draft.parameter("m", "kg")
-    return {"at": draft.at(), "mass": draft.pick((m, m, f"2*{m}")), **draft.state()}
+def inert(draft):
+    """Return a mass's or an inertia's fields."""
+    field, unit = KINDS[draft.kind].size
+    m = draft.parameter("m", unit)
+    return {"at": draft.at(), field: draft.pick((m, m, f"2*{m}")), **draft.state()}
 
 
 def capacitor(draft):
     capacity = draft.parameter("C", "F")
     form = f"{capacity}/(1 + Q**2)" if draft.one_in(50) else capacity
     return {"between": draft.pair("e"), "capacitance": form, **draft.state()}
+
+
+def of_fluid(draft):
+    """Return an accumulator's or an inertance's fields."""
+    field, unit = KINDS[draft.kind].size
+    return {"between": draft.pair("h"), field: draft.parameter("C", unit), **draft.state()}
 
 
 def inductance(draft, lanes=None, *, saturates=True):
@@ -117,8 +128,30 @@ def transducer(draft):
     ratio, body = draft.parameter("a", "C/m", 0.3, 2), draft.body()
     hot = {"ratio": f"{ratio}*T/{draft.bodies[body]}", "temperature": body}
     fixed = {"ratio": ratio}
-    pairs = {"electrical": draft.pair("e"), "mechanical": draft.pair("m")}
+    pairs = {"electrical": draft.pair("e"), draft.pick(MOVES): draft.pair("m")}
     return {**pairs, **draft.pick((hot, fixed))}
+
+
+def motor(draft):
+    there = [d for d in "mr" if len(draft.nodes[d]) > 1]
+    moves = draft.ends[0] if draft.ends and draft.ends[0] in "mr" else draft.pick(there)
+    field, unit = {"m": ("translation", "V*s/m"), "r": ("rotation", "V*s/rad")}[moves]
+    pairs = {"electrical": draft.pair("e"), field: draft.pair(moves)}
+    return {**pairs, "constant": positive(draft, unit)}
+
+
+def converter(draft):
+    """Return the fields of a coupling of two domains whose ratio is a parameter."""
+    kind = KINDS[draft.kind]
+    pairs = {field: draft.pair(d) for field, d in zip(kind.nodes, kind.domains, strict=True)}
+    return {**pairs, kind.ratio: positive(draft, kind.size[0])}
+
+
+def positive(draft, unit):
+    """Return a new parameter for a ratio, which the domain says is positive."""
+    ratio = draft.parameter("n", unit, 0.5, 2)
+    draft.assume.append(f"{ratio} > 0")
+    return ratio
 
 
 def coupled(draft):
@@ -152,20 +185,15 @@ def ambient(draft):
     return {"body": draft.body(), "conductance": lam, "input": draft.input("K", 4.0)}
 
 
-def voltage_source(draft):
-    return {"between": draft.pair("e"), "input": draft.input("V")}
+def source(draft):
+    """Return a source's fields, whatever it gives."""
+    kind = KINDS[draft.kind]
+    place = {"at": draft.at()} if kind.nodes == AT else {"between": draft.pair(kind.domains)}
+    return {**place, "input": draft.input(kind.size[0])}
 
 
-def current_source(draft):
-    return {"between": draft.pair("e"), "input": draft.input("A")}
-
-
-def force_source(draft):
-    return {"at": draft.at(), "input": draft.input("N")}
-
-
-def velocity_source(draft):
-    return {"at": draft.at(), "input": draft.input("m/s")}
+AT = ("at",)
+MOVES = ("translation", "mechanical")
 
 
 @dataclass(frozen=True)
@@ -175,12 +203,14 @@ class Kind:
     Attributes
     ----------
     draw : draws the fields of its table.
-    domains : "e", "m" or both; "" for the thermal kinds.
+    domains : letters of the domains of its pairs of nodes; "" for the thermal kinds.
     form : a "store", "law" (of dissipation), "store, law" (in series), "source" or "coupling".
     across : whether it gives an across variable, and so may be in a tree of the network; a coupling
         that does not, gyrates.
     nodes : the fields that name nodes.
     letter, costate : of a store; the co-state is found from the words of a law and from its laws.
+    size : what `draw` asks for: units, a letter, the field of a store.
+    ratio : the field of a coupling's ratio.
     laws : field -> (the letter of what it is given, whether it gives the across variable).
     weight : how often it is drawn, beside others.
     """
@@ -190,6 +220,8 @@ class Kind:
     form: str = ""
     across: bool = True
     nodes: tuple[str, ...] = ("between",)
+    size: tuple[str, ...] = ()
+    ratio: str = "ratio"
     letter: str = ""
     costate: Callable | None = None
     laws: Mapping[str, tuple[str, bool]] = field(default_factory=dict)
@@ -222,12 +254,49 @@ def of_spring(q, law):
 
 
 PAIRS = ("first", "second")
-BOTH = ("electrical", "mechanical")
+BOTH = ("electrical", "mechanical", "translation")
 KINDS = {
     "capacitor": Kind(capacitor, "e", "store", letter="Q", costate=over("capacitance"), weight=2),
-    "mass": Kind(mass, "m", "store", nodes=("at",), letter="p", costate=over("mass"), weight=3),
+    "mass": Kind(
+        inert,
+        "m",
+        "store",
+        nodes=AT,
+        size=("mass", "kg"),
+        letter="p",
+        costate=over("mass"),
+        weight=3,
+    ),
+    "inertia": Kind(
+        inert,
+        "r",
+        "store",
+        nodes=AT,
+        size=("inertia", "kg*m**2"),
+        letter="L",
+        costate=over("inertia"),
+        weight=3,
+    ),
+    "accumulator": Kind(
+        of_fluid,
+        "h",
+        "store",
+        size=("capacitance", "m**3/Pa"),
+        letter="V",
+        costate=over("capacitance"),
+        weight=2,
+    ),
     "inductor": Kind(
         inductor, "e", "store", across=False, letter="phi", costate=over("inductance")
+    ),
+    "inertance": Kind(
+        of_fluid,
+        "h",
+        "store",
+        across=False,
+        size=("inertance", "Pa*s**2/m**3"),
+        letter="G",
+        costate=over("inertance"),
     ),
     "hysteron": Kind(
         hysteron,
@@ -239,18 +308,88 @@ KINDS = {
         laws={"voltage": ("i", True)},
         weight=2,
     ),
-    "spring": Kind(spring, "m", "store", across=False, letter="q", costate=of_spring, weight=2),
-    "voltage_source": Kind(voltage_source, "e", "source"),
-    "velocity_source": Kind(velocity_source, "m", "source", nodes=("at",)),
+    "spring": Kind(
+        stiff,
+        "m",
+        "store",
+        across=False,
+        size=("q", "N/m", "m"),
+        letter="q",
+        costate=of_spring,
+        weight=2,
+    ),
+    "torsion_spring": Kind(
+        stiff,
+        "r",
+        "store",
+        across=False,
+        size=("theta", "N*m/rad", "rad"),
+        letter="theta",
+        costate=of_spring,
+        weight=2,
+    ),
+    "voltage_source": Kind(source, "e", "source", size=("V",)),
+    "velocity_source": Kind(source, "m", "source", nodes=AT, size=("m/s",)),
+    "angular_velocity_source": Kind(source, "r", "source", nodes=AT, size=("rad/s",)),
+    "pressure_source": Kind(source, "h", "source", size=("Pa",)),
     "resistor": Kind(
         dissipative, "e", "law", laws={"voltage": ("i", True), "current": ("v", False)}
     ),
     "damper": Kind(dissipative, "m", "law", laws={"velocity": ("f", True), "force": ("v", False)}),
-    "current_source": Kind(current_source, "e", "source", across=False),
-    "force_source": Kind(force_source, "m", "source", across=False, nodes=("at",)),
+    "rotational_damper": Kind(
+        dissipative,
+        "r",
+        "law",
+        laws={"angular_velocity": ("tau", True), "torque": ("omega", False)},
+    ),
+    "orifice": Kind(
+        dissipative, "h", "law", laws={"pressure": ("flow", True), "flow": ("dp", False)}
+    ),
+    "current_source": Kind(source, "e", "source", across=False, size=("A",)),
+    "force_source": Kind(source, "m", "source", across=False, nodes=AT, size=("N",)),
+    "torque_source": Kind(source, "r", "source", across=False, nodes=AT, size=("N*m",)),
+    "flow_source": Kind(source, "h", "source", across=False, size=("m**3/s",)),
     "transformer": Kind(coupled, "e", "coupling", nodes=PAIRS),
     "lever": Kind(coupled, "m", "coupling", nodes=PAIRS, weight=2),
-    "transducer": Kind(transducer, "em", "coupling", across=False, nodes=BOTH),
+    "gear": Kind(coupled, "r", "coupling", nodes=PAIRS, weight=2),
+    "transducer": Kind(transducer, "em", "coupling", across=False, nodes=BOTH, weight=2),
+    "motor": Kind(
+        motor,
+        "emr",
+        "coupling",
+        nodes=("electrical", "translation", "rotation"),
+        ratio="constant",
+        weight=3,
+    ),
+    "rack": Kind(
+        converter,
+        "mr",
+        "coupling",
+        nodes=("translation", "rotation"),
+        size=("m",),
+        ratio="radius",
+        weight=3,
+    ),
+    "cylinder": Kind(
+        converter,
+        "hm",
+        "coupling",
+        across=False,
+        nodes=("hydraulic", "translation"),
+        size=("m**2",),
+        ratio="area",
+        weight=3,
+    ),
+    "pump": Kind(
+        converter,
+        "rh",
+        "coupling",
+        across=False,
+        nodes=("rotation", "hydraulic"),
+        size=("m**3/rad",),
+        ratio="displacement",
+        weight=3,
+    ),
     "thermal_mass": Kind(thermal_mass, letter="S"),
     "conduction": Kind(conduction),
     "ambient": Kind(ambient),

@@ -16,9 +16,12 @@ from kinds import KINDS
 from piezo_sym import Model, PiezoError, derive
 
 CHANCE = st.integers(0, 99)
-REFERENCE = {"e": "gnd", "m": "wall"}
-DISSIPATIVE = {"e": "resistor", "m": "damper"}
+REFERENCE = {"e": "gnd", "m": "wall", "r": "frame", "h": "tank"}
+DISSIPATIVE = {"e": "resistor", "m": "damper", "r": "rotational_damper", "h": "orifice"}
+CHORDS = {"e": "inductor", "m": "spring", "r": "torsion_spring", "h": "inertance"}
+TOGETHER = ("em", "em", "em", "er", "mr", "hm", "rh", "emr", "rhm")
 COUNTS = ((1, 1), (2, 0), (0, 2), (2, 1), (1, 2), (3, 0), (0, 3), (1, 3), (3, 2))
+THREE = ((1, 1, 1), (2, 1, 1), (1, 2, 1))
 HEAT = ("ambient", "conduction")
 NODES = dict.fromkeys(name for kind in KINDS.values() for name in kind.nodes)
 WORDS = ("x", "u", "p", "h", "F", "J", "out", "n", "z", "W")
@@ -43,7 +46,7 @@ class Draft:
     """
 
     draw: object
-    nodes: dict = field(default_factory=lambda: {"e": ["gnd"], "m": ["wall"]})
+    nodes: dict = field(default_factory=lambda: {d: [node] for d, node in REFERENCE.items()})
     parameters: dict = field(default_factory=dict)
     inputs: dict = field(default_factory=dict)
     assume: list = field(default_factory=list)
@@ -97,8 +100,20 @@ class Draft:
         return [first, self.pick([n for n in self.nodes[domain] if n != first])]
 
     def at(self):
-        """Return a mechanical node that is not the wall."""
-        return next(n for n in self.pair("m") if n != "wall")
+        """Return a node of the kind's domain that moves."""
+        domain = KINDS[self.kind].domains
+        return next(n for n in self.pair(domain) if n != REFERENCE[domain])
+
+    def can_couple(self, kind, domain):
+        """Return whether there are nodes for the other pair of a coupling that has one in a domain.
+
+        The first domain of a kind goes with any of its others.
+        """
+        first, *others = KINDS[kind].domains
+        there = [d for d in KINDS[kind].domains if len(self.nodes[d]) > 1]
+        if not others:
+            return bool(there)
+        return any(d in there for d in others) if domain == first else first in there
 
     def body(self):
         """Return the name of a body."""
@@ -129,7 +144,7 @@ def _tree(draft, domain, count):
     for n in range(count):
         node, earlier = f"{domain}{n}", draft.nodes[domain]
         kind = draft.pick(TREE[domain])
-        if KINDS[kind].form == "coupling" and len(earlier) < 2:
+        if KINDS[kind].form == "coupling" and not draft.can_couple(kind, domain):
             kind = DISSIPATIVE[domain]
         other = REFERENCE[domain] if KINDS[kind].nodes == ("at",) else draft.pick(earlier)
         ends = draft.draw(st.permutations([node, other]))
@@ -139,7 +154,7 @@ def _tree(draft, domain, count):
 
 def _chords(draft):
     """Put a chord at each node that has one attachment, and some more."""
-    for domain in ("e", "m"):
+    for domain in REFERENCE:
         for node in draft.nodes[domain][1:]:
             others = [n for n in draft.nodes[domain] if n != node]
             if _uses(draft, node) < 2 or draft.one_in(3):
@@ -148,8 +163,8 @@ def _chords(draft):
 
 def _chord(draft, domain, ends):
     kind = draft.pick(CHORD[domain])
-    if KINDS[kind].form == "coupling" and any(len(nodes) < 2 for nodes in draft.nodes.values()):
-        kind = "inductor" if domain == "e" else "spring"
+    if KINDS[kind].form == "coupling" and not draft.can_couple(kind, domain):
+        kind = CHORDS[domain]
     if KINDS[kind].nodes == ("at",) and REFERENCE[domain] not in ends:
         kind = DISSIPATIVE[domain]
     draft.add(kind, "chord", (domain, ends))
@@ -175,8 +190,10 @@ def _anywhere(draft):
     """Put an element of any kind at any nodes: most such networks have no solution."""
     there = {domain for domain, nodes in draft.nodes.items() if len(nodes) > 1}
     fit = [kind for domain in sorted(there) for kind in (*TREE[domain], *CHORD[domain])]
-    fit = [kind for kind in fit if there.issuperset(KINDS[kind].domains)]
-    draft.add(draft.pick(fit), draft.pick(("tree", "chord")))
+    couples = {kind for kind in fit if KINDS[kind].form == "coupling"}
+    first = {kind: KINDS[kind].domains[0] for kind in couples}
+    lost = {k for k in couples if first[k] not in there or not draft.can_couple(k, first[k])}
+    draft.add(draft.pick([k for k in fit if k not in lost]), draft.pick(("tree", "chord")))
 
 
 def _adrift(elements):
@@ -197,8 +214,9 @@ def networks(draw):
     draft = Draft(draw)
     draft.linear = draft.one_in(3)
     _bodies(draft)
-    counts = draw(st.sampled_from(COUNTS))
-    for domain, count in zip("em", counts, strict=True):
+    domains = draft.pick(TOGETHER)
+    counts = draft.pick(COUNTS if len(domains) == 2 else THREE)
+    for domain, count in zip(domains, counts, strict=True):
         _tree(draft, domain, count)
     _chords(draft)
     _heat(draft)

@@ -12,7 +12,7 @@ import numpy as np
 from kinds import KINDS
 from law_values import value
 
-REFERENCES = {"gnd", "wall"}
+REFERENCES = {"e": "gnd", "m": "wall", "r": "frame", "h": "tank"}
 SLOPE_STEP = 1e-6
 CLOSE = 1e-12
 MOST_STEPS = 60
@@ -55,7 +55,7 @@ class Tableau:
         for name, element in elements:
             self._add(name, element)
         names = dict.fromkeys(n for pair in self._all_nodes() for n in pair)
-        self.nodes = {n: k for k, n in enumerate(n for n in names if n not in REFERENCES)}
+        self.nodes = {n: k for k, n in enumerate(n for n in names if n not in REFERENCES.values())}
 
     def words(self, lane=0):
         """Return the values of the parameters, those of one lane where they are listed."""
@@ -128,17 +128,14 @@ class Tableau:
         first, second = pairs_of(element)
         self._balance(matrix, first, row)
         self._balance(matrix, second, row + 1)
-        words = self.words()
-        if not KINDS[element["kind"]].across:
-            hot = (
-                {"T": self.temperatures[element["temperature"]]} if "temperature" in element else {}
-            )
-            ratio = value(element["ratio"], {**words, **hot})
+        kind = KINDS[element["kind"]]
+        hot = {"T": self.temperatures[element["temperature"]]} if "temperature" in element else {}
+        ratio = value(element[kind.ratio], {**self.words(), **hot})
+        if not kind.across:
             matrix[row, row], matrix[row + 1, row + 1] = 1, 1
             self._across(matrix, row, second, -ratio)
             self._across(matrix, row + 1, first, ratio)
         else:
-            ratio = value(element["ratio"], words)
             self._across(matrix, row, first, 1)
             self._across(matrix, row, second, -ratio)
             matrix[row + 1, row + 1], matrix[row + 1, row] = 1, ratio
@@ -252,13 +249,14 @@ def state(name, element):
 
 
 def nodes_of(element):
-    """Return the two nodes of an element; one node means the mechanical reference, too."""
-    return tuple(element["between"]) if "between" in element else (element["at"], "wall")
+    """Return the two nodes of an element; one node means the reference of its domain, too."""
+    at_rest = REFERENCES.get(KINDS[element["kind"]].domains)
+    return tuple(element["between"]) if "between" in element else (element["at"], at_rest)
 
 
 def pairs_of(element):
     """Return the two pairs of nodes of a coupling."""
-    return tuple(tuple(element[name]) for name in KINDS[element["kind"]].nodes)
+    return tuple(tuple(element[n]) for n in KINDS[element["kind"]].nodes if n in element)
 
 
 def law_of(element):

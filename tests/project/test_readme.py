@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from piezo_sym.spec.elements import KINDS
+
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 MOST_LINES = 128  # two screens
@@ -92,6 +94,12 @@ def test_set_up_is_one_line_each():
 
 def test_the_whole_is_under_two_screens():
     assert len(README.splitlines()) <= MOST_LINES
+
+
+def test_every_kind_of_element_is_listed():
+    listed = README.partition("Element kinds (")[2].partition("Laws are text")[0]
+    words = re.findall(r"[a-z_]+", listed.partition("):")[2].replace("(a bank: `count", ""))
+    assert sorted(words) == sorted(KINDS)
 
 
 def test_pictures_and_links_are_there():

@@ -130,7 +130,7 @@ def test_a_law_names_its_letters_and_a_reference_what_it_names():
         for field, info in kind.model_fields.items():
             laws = [mark for mark in info.metadata if isinstance(mark, Letters)]
             words = [mark.to for mark in info.metadata if isinstance(mark, Refers)]
-            words += [f"in {law.unit}," for law in laws]
+            words += [f"in {law.unit}" for law in laws]
             words += [f"{name} [{unit}]" for law in laws for name, unit in law.units.items()]
             assert [w for w in words if w not in fields[field]["description"]] == []
 

@@ -9,7 +9,11 @@ from spec_laws import steady
 
 from piezo_sym.expressions.dimensions import NONE, times
 from piezo_sym.expressions.units import parse_unit
-from piezo_sym.spec.elements import KINDS
+from piezo_sym.spec.elements import KINDS, kind_of
+from piezo_sym.spec.elements.couplings import PairCoupling
+from piezo_sym.spec.elements.domains import DOMAINS, PowerVariable
+from piezo_sym.spec.elements.forms import Store
+from piezo_sym.spec.elements.kinds import TABLE
 from piezo_sym.spec.elements.marks import Letters
 from piezo_sym.spec.unit_text import PARTS, QUANTITIES, quantity, unit_text
 
@@ -38,12 +42,16 @@ def test_quantities_have_names_with_their_units():
     assert quantity(parse_unit("kg*m**2/s**3/A").dimension) == "a voltage [V]"
     assert quantity(NONE) == "a number without unit"
     assert quantity(parse_unit("A/K").dimension) == "a quantity in A/K"
-    assert len({parse_unit(unit).dimension for unit in QUANTITIES}) == len(QUANTITIES)
+    assert quantity(parse_unit("N*m").dimension) == "an energy [J]"
+    assert quantity(parse_unit("N*m").dimension, "N*m") == "a torque [N*m]"
 
 
 # What the kinds say of their laws.
 
 LETTERS = {"i": "A", "f": "N", "T": "K", "S": "J/K", "phi": "Wb", "q": "m", "Q": "C", "p": "kg*m/s"}
+LETTERS |= {"T_1": "K", "T_2": "K", "T_e": "K"}
+LETTERS |= {"omega": "rad/s", "tau": "N*m", "L": "N*m*s", "theta": "rad"}
+LETTERS |= {"dp": "Pa", "flow": "m**3/s", "V": "m**3", "G": "Pa*s"}
 
 
 def marks(kind):
@@ -54,9 +62,10 @@ def marks(kind):
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_kind_gives_its_laws_and_letters_known_units(kind):
     for field, mark in marks(kind).items():
-        assert quantity(parse_unit(mark.unit).dimension) in {
-            f"{words} [{unit}]" if unit != "1" else words for unit, words in QUANTITIES.items()
-        }, field
+        for unit in (mark.unit, *(unit for _, unit in mark.instead)):
+            words = QUANTITIES[unit]
+            named = words if unit == "1" else f"{words} [{unit}]"
+            assert quantity(parse_unit(unit).dimension, unit) == named, field
         for letter, unit in mark.units.items():
             assert unit == LETTERS.get(letter) or (letter == "v" and unit in {"V", "m/s"})
     if KINDS[kind].row.letter:
@@ -65,9 +74,35 @@ def test_a_kind_gives_its_laws_and_letters_known_units(kind):
 
 def test_the_product_of_a_dissipative_law_and_its_letter_is_a_power():
     watt = parse_unit("W").dimension
-    for kind in ("damper", "resistor", "hysteron"):
+    for kind in ("damper", "resistor", "hysteron", "rotational_damper", "orifice"):
         for mark in marks(kind).values():
             (letter,) = set(mark.units) - {"T", "phi"} or {""}
             if letter:
                 sizes = parse_unit(mark.unit).dimension, parse_unit(mark.units[letter]).dimension
                 assert times(*sizes) == watt
+
+
+def test_the_product_of_a_co_state_and_a_state_is_an_energy():
+    joule = parse_unit("J").dimension
+    for domain in DOMAINS:
+        for variable in (domain.across, domain.through):
+            sizes = [parse_unit(unit).dimension for unit in (variable.unit, variable.state_unit)]
+            assert times(*sizes) == joule
+
+
+@pytest.mark.parametrize("domain", DOMAINS, ids=lambda domain: domain.name)
+def test_the_size_of_a_store_has_the_unit_of_its_law(domain):
+    for imposes in PowerVariable:
+        form, costate = kind_of(Store, domain, imposes).forms[0], domain.variable(imposes)
+        state, out = (parse_unit(u).dimension for u in (costate.state_unit, costate.unit))
+        size = times(out, state, -1) if form.stiff else times(state, out, -1)
+        assert parse_unit(form.unit).dimension == size
+
+
+def test_a_ratio_has_the_unit_of_its_domains():
+    for kind in TABLE:
+        for form in (form for form in kind.forms if isinstance(form, PairCoupling)):
+            given = form.first[1].through if form.gyrates else form.first[1].across
+            for _, domain, unit in form.second:
+                sizes = [parse_unit(u).dimension for u in (given.unit, domain.across.unit)]
+                assert parse_unit(unit).dimension == times(*sizes, -1)

@@ -1,10 +1,14 @@
 """The kinds of elements, by the name that a spec gives them: a type each, made of its row."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
+from piezo_sym.expressions.dimensions import Dimension
+from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.elements.base import Element, Form, Kind
+from piezo_sym.spec.elements.couplings import PairCoupling
 from piezo_sym.spec.elements.domains import PhysicalDomain, PowerVariable
 from piezo_sym.spec.elements.kinds import TABLE
+from piezo_sym.spec.elements.ports import Coupling
 
 KINDS: Mapping[str, type[Element]] = {kind.name: kind.made() for kind in TABLE}
 globals().update({kind.__name__: kind for kind in KINDS.values()})  # where pickle looks for them
@@ -20,3 +24,16 @@ def kind_of(form: type[Form], domain: PhysicalDomain, imposes: PowerVariable | N
         and getattr(own, "domain", None) == domain
         and imposes in (None, getattr(own, "imposes", None))
     )
+
+
+def with_ratio_in(unit: Dimension, element: Element) -> Iterator[Kind]:
+    """Yield the kinds that couple the same domains as an element, with a ratio of some unit."""
+    (port,) = element.ports("") if len(element.row.forms) == 1 else (None,)
+    if not isinstance(port, Coupling):
+        return
+    for kind in TABLE:
+        for form in kind.forms:
+            if isinstance(form, PairCoupling):
+                own = form.unit_between(port.first_domain, port.second_domain)
+                if own and parse_unit(own).dimension == unit:
+                    yield kind

@@ -73,14 +73,14 @@ class Kind:
     Attributes
     ----------
     name : as a spec gives it.
-    about : what it is, on one line.
     forms : its parts; two are in series.
+    about : what it is, on one line.
     bank : whether it takes `count`, and then stands for lanes in parallel.
     """
 
     name: str
-    about: str
     forms: tuple[Form, ...]
+    about: str
     bank: bool = False
 
     @property

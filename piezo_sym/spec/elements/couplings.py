@@ -16,40 +16,38 @@ class PairCoupling(Form):
 
     Attributes
     ----------
-    first, second : the fields of the pairs, with their domains; of several, one is to be given.
-    ratio, units : the field of its ratio, and its unit with each field of the second pair.
-    symbol : the ratio in the example.
+    ratio, symbol : the field of its ratio, and a law for it in the example.
+    first : the field of its first pair, and the domain.
+    second : the same of the second, with the unit of the ratio; of several, one is to be given.
     gyrates : whether through_1 = ratio*across_2, not across_1 = ratio*across_2.
     warm : whether the ratio may depend on the temperature of a body.
     """
 
-    first: tuple[str, PhysicalDomain]
-    second: tuple[tuple[str, PhysicalDomain], ...]
     ratio: str
-    units: tuple[str, ...]
     symbol: str
+    first: tuple[str, PhysicalDomain]
+    second: tuple[tuple[str, PhysicalDomain, str], ...]
     gyrates: bool = False
     warm: bool = False
 
     @property
     def one_of(self) -> tuple[str, ...]:
         """The fields of the second pair, if there are several."""
-        return tuple(field for field, _ in self.second) if len(self.second) > 1 else ()
+        return tuple(field for field, *_ in self.second) if len(self.second) > 1 else ()
 
     @property
     def fields(self) -> Fields:
         """Its pairs and its ratio."""
-        others = zip(self.second[1:], self.units[1:], strict=True)
-        instead = {field: unit for (field, _), unit in others if unit != self.units[0]}
-        letters = {"T": "K"} if self.warm else {}
-        ratio = law_field(self.units[0], letters, self.symbol, sees=True, **instead)
+        first, letters = self.second[0][2], {"T": "K"} if self.warm else {}
+        instead = {field: unit for field, _, unit in self.second if unit != first}
+        ratio = law_field(first, letters, self.symbol, sees=True, **instead)
         body = {"temperature": (OptionalBody, None, "body")} if self.warm else {}
         return {**self._pairs(), self.ratio: ratio, **body}
 
     def _pairs(self) -> Fields:
         """Return the pairs; in the example there are the first two of them."""
         found: Fields = {}
-        for field, domain in (self.first, *self.second):
+        for field, domain in (self.first, *(pair[:2] for pair in self.second)):
             sample = [f"{domain.node}_{len(found) + 1}", domain.reference] * (len(found) < 2)
             chosen = field in self.one_of
             found[field] = (Pair | None if chosen else Pair, None if chosen else ..., sample)
@@ -59,9 +57,9 @@ class PairCoupling(Form):
     def doc(self) -> str:
         """Its two equations, for each choice of pairs."""
         return "\n\n".join(
-            self._equations(*self.second[n])
-            for n, (_, domain) in enumerate(self.second)
-            if domain not in [known for _, known in self.second[:n]]
+            self._equations(field, domain)
+            for n, (field, domain, _) in enumerate(self.second)
+            if domain not in [known for _, known, _ in self.second[:n]]
         )
 
     def _equations(self, field: str, domain: PhysicalDomain) -> str:
@@ -78,7 +76,7 @@ class PairCoupling(Form):
     def port(self, element: Any, name: str, branch: Branch) -> Coupling:
         """Return the coupling; it has two branches of its own."""
         del branch
-        pairs = ((getattr(element, field), domain) for field, domain in self.second)
+        pairs = ((getattr(element, field), domain) for field, domain, _ in self.second)
         second, domain = next(pair for pair in pairs if pair[0] is not None)
         return Coupling(
             first=getattr(element, self.first[0]),
@@ -90,3 +88,8 @@ class PairCoupling(Form):
             name=f"{'alpha' if self.gyrates else 'n'}_{name}",
             gyrates=self.gyrates,
         )
+
+    def unit_between(self, *domains: PhysicalDomain) -> str:
+        """Return the unit of the ratio if it couples two domains; empty if it does not."""
+        units = (unit for _, domain, unit in self.second if {self.first[1], domain} == {*domains})
+        return next(units, "")

@@ -7,7 +7,10 @@ from piezo_sym.spec.elements.base import Kind
 from piezo_sym.spec.elements.couplings import PairCoupling
 from piezo_sym.spec.elements.domains import (
     ELECTRICAL,
+    HYDRAULIC,
+    ROTATION,
     TRANSLATION,
+    PhysicalDomain,
     PowerVariable,
 )
 from piezo_sym.spec.elements.forms import Dissipation, Imposed, Store
@@ -16,96 +19,181 @@ from piezo_sym.spec.elements.thermal import Ambient, Conduction, ThermalMass
 ACROSS, THROUGH = PowerVariable.ACROSS, PowerVariable.THROUGH
 _INDUCTOR = Store(ELECTRICAL, THROUGH, "inductance", "H", "L")
 
-TRANSLATIONAL = (
+
+def _within(domain: PhysicalDomain) -> tuple[PairCoupling]:
+    """Return the coupling of two pairs of one domain."""
+    return (PairCoupling("ratio", "n", ("first", domain), (("second", domain, "1"),)),)
+
+
+def _pair(domain: PhysicalDomain, unit: str) -> tuple[str, PhysicalDomain, str]:
+    """Return the second pair of a coupling that goes by its domain, and the unit of the ratio."""
+    return (domain.name, domain, unit)
+
+
+TABLE = (
     Kind(
         "spring",
-        "A spring between two nodes, eqs. (9), (10) and the fourth term of (6).",
         (Store(TRANSLATION, THROUGH, "stiffness", "N/m", "k", stiff=True),),
+        "A spring between two nodes, eqs. (9), (10) and the fourth term of (6).",
     ),
     Kind(
         "mass",
-        "A mass at a node, eq. (10) and the third term of (6).",
         (Store(TRANSLATION, ACROSS, "mass", "kg", "M", at=True),),
+        "A mass at a node, eq. (10) and the third term of (6).",
     ),
     Kind(
         "damper",
-        "A damper between two nodes, the damping term of eq. (10).",
         (Dissipation(TRANSLATION, (THROUGH, ACROSS), "d*v"),),
+        "A damper between two nodes, the damping term of eq. (10).",
     ),
-    Kind(
-        "lever",
-        "An ideal lever between two pairs of nodes.",
-        (PairCoupling(("first", TRANSLATION), (("second", TRANSLATION),), "ratio", ("1",), "n"),),
-    ),
+    Kind("lever", _within(TRANSLATION), "An ideal lever between two pairs of nodes."),
     Kind(
         "force_source",
-        "A force on a node, F_ext of eq. (10).",
         (Imposed(TRANSLATION, THROUGH, "F_ext", at=True),),
+        "A force on a node, F_ext of eq. (10).",
     ),
     Kind(
         "velocity_source",
-        "A velocity given to a node.",
         (Imposed(TRANSLATION, ACROSS, "v_in", at=True),),
+        "A velocity given to a node.",
     ),
-)
-ELECTRIC = (
     Kind(
         "capacitor",
-        "A capacitor between two nodes, eq. (11) and the first term of (6).",
         (Store(ELECTRICAL, ACROSS, "capacitance", "F", "C"),),
+        "A capacitor between two nodes, eq. (11) and the first term of (6).",
     ),
     Kind(
         "inductor",
-        "An inductor between two nodes, the storage half of a hysteron, eq. (12).",
         (_INDUCTOR,),
+        "An inductor between two nodes, the storage half of a hysteron, eq. (12).",
     ),
     Kind(
         "resistor",
-        "A resistor between two nodes, V_R of section 3.2.",
         (Dissipation(ELECTRICAL, (ACROSS, THROUGH), "R*i"),),
+        "A resistor between two nodes, V_R of section 3.2.",
     ),
     Kind(
         "hysteron",
-        "A hysteron, an inductor and a resistor in series: eq. (12), Assumption 2.",
         (_INDUCTOR, Dissipation(ELECTRICAL, (ACROSS,), "rho/(T - T_0)*deadzone(i, i_0)")),
+        "A hysteron, an inductor and a resistor in series: eq. (12), Assumption 2.",
         bank=True,
     ),
-    Kind(
-        "transformer",
-        "An ideal transformer between two pairs of nodes.",
-        (PairCoupling(("first", ELECTRICAL), (("second", ELECTRICAL),), "ratio", ("1",), "n"),),
-    ),
+    Kind("transformer", _within(ELECTRICAL), "An ideal transformer between two pairs of nodes."),
     Kind(
         "voltage_source",
-        "A voltage between two nodes, V_in of eq. (12).",
         (Imposed(ELECTRICAL, ACROSS, "V_in"),),
+        "A voltage between two nodes, V_in of eq. (12).",
     ),
     Kind(
         "current_source",
-        "A current given into a node.",
         (Imposed(ELECTRICAL, THROUGH, "i_in"),),
+        "A current given into a node.",
     ),
-)
-COUPLINGS = (
+    Kind(
+        "inertia",
+        (Store(ROTATION, ACROSS, "inertia", "kg*m**2", "I", at=True),),
+        "A moment of inertia at a node, the rotor of a machine.",
+    ),
+    Kind(
+        "torsion_spring",
+        (Store(ROTATION, THROUGH, "stiffness", "N*m/rad", "k", stiff=True),),
+        "A torsion spring between two nodes, an elastic shaft.",
+    ),
+    Kind(
+        "rotational_damper",
+        (Dissipation(ROTATION, (THROUGH, ACROSS), "d*omega"),),
+        "A rotational damper between two nodes, a bearing.",
+    ),
+    Kind("gear", _within(ROTATION), "An ideal gear between two pairs of nodes."),
+    Kind(
+        "torque_source",
+        (Imposed(ROTATION, THROUGH, "tau_load", at=True),),
+        "A torque on a node.",
+    ),
+    Kind(
+        "angular_velocity_source",
+        (Imposed(ROTATION, ACROSS, "omega_in", at=True),),
+        "An angular velocity given to a node.",
+    ),
+    Kind(
+        "accumulator",
+        (Store(HYDRAULIC, ACROSS, "capacitance", "m**3/Pa", "C"),),
+        "A hydraulic accumulator between two nodes, or the compressibility of a volume.",
+    ),
+    Kind(
+        "inertance",
+        (Store(HYDRAULIC, THROUGH, "inertance", "Pa*s**2/m**3", "L"),),
+        "A hydraulic inertance between two nodes, the fluid in a line that moves.",
+    ),
+    Kind(
+        "orifice",
+        (Dissipation(HYDRAULIC, (THROUGH, ACROSS), "c*dp"),),
+        "An orifice between two nodes, a valve or the friction of a line.",
+    ),
+    Kind("flow_source", (Imposed(HYDRAULIC, THROUGH, "Q_in"),), "A flow given into a node."),
+    Kind(
+        "pressure_source",
+        (Imposed(HYDRAULIC, ACROSS, "p_in"),),
+        "A pressure between two nodes.",
+    ),
     Kind(
         "transducer",
-        "A piezoelectric transducer, the relations of Assumption 2: F = ratio*V, i = ratio*v.",
         (
             PairCoupling(
-                ("electrical", ELECTRICAL),
-                (("translation", TRANSLATION), ("mechanical", TRANSLATION)),
                 "ratio",
-                ("C/m", "C/m"),
                 "a*T/T_0",
+                ("electrical", ELECTRICAL),
+                (_pair(TRANSLATION, "C/m"), ("mechanical", TRANSLATION, "C/m")),
                 gyrates=True,
                 warm=True,
             ),
         ),
+        "A piezoelectric transducer, the relations of Assumption 2: F = ratio*V, i = ratio*v.",
+    ),
+    Kind(
+        "motor",
+        (
+            PairCoupling(
+                "constant",
+                "k",
+                ("electrical", ELECTRICAL),
+                (_pair(TRANSLATION, "V*s/m"), _pair(ROTATION, "V*s/rad")),
+            ),
+        ),
+        "A voice coil or an electrical machine, without its coil, resistance and rotor.",
+    ),
+    Kind(
+        "rack",
+        (PairCoupling("radius", "r", ("translation", TRANSLATION), (_pair(ROTATION, "m"),)),),
+        "A rack and pinion, or a drum with its rope.",
+    ),
+    Kind(
+        "cylinder",
+        (
+            PairCoupling(
+                "area", "A", ("hydraulic", HYDRAULIC), (_pair(TRANSLATION, "m**2"),), gyrates=True
+            ),
+        ),
+        "A hydraulic cylinder: the pressure pushes its piston.",
+    ),
+    Kind(
+        "pump",
+        (
+            PairCoupling(
+                "displacement",
+                "D",
+                ("rotation", ROTATION),
+                (_pair(HYDRAULIC, "m**3/rad"),),
+                gyrates=True,
+            ),
+        ),
+        "A displacement pump, or a hydraulic motor.",
+    ),
+    Kind("thermal_mass", (ThermalMass(),), "A body with a temperature, eqs. (8), (13)."),
+    Kind("conduction", (Conduction(),), "Heat conduction between two bodies, a heat exchanger."),
+    Kind(
+        "ambient",
+        (Ambient(),),
+        "Heat exchange with the environment: the third input, eq. (8).",
     ),
 )
-THERMAL = (
-    Kind("thermal_mass", "A body with a temperature, eqs. (8), (13).", (ThermalMass(),)),
-    Kind("conduction", "Heat conduction between two bodies, a heat exchanger.", (Conduction(),)),
-    Kind("ambient", "Heat exchange with the environment: the third input, eq. (8).", (Ambient(),)),
-)
-TABLE = (*TRANSLATIONAL, *ELECTRIC, *COUPLINGS, *THERMAL)
