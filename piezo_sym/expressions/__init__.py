@@ -5,6 +5,7 @@
     calculus     sums, products, derivatives; `integrals` their antiderivatives
     dimensions   which parts must have equal units
     enclosure    where a value lies, for certain
+    exact_eval   the value itself: a rational, or a ball
     text         a tree to text, in the language of a `Style`
 
 Input and output: each file says its own.  Nothing here knows of elements or models.

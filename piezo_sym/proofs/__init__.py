@@ -5,7 +5,7 @@ obligations    IPHS -> Obligation        domain, bodies, balances, laws, ties, c
 queries        Question -> Query         obligations, branches, rational, query
 answers        Query -> Answer           solvers, in processes of their own (worker)
 verdicts       Obligation -> Row         prove; sign_analysis and signs; witnesses by exact_eval
-report         rows -> Report            report, record, published
+report         rows -> Report            report, published
 """
 
 from __future__ import annotations
@@ -22,8 +22,7 @@ from piezo_sym.proofs.domain import defined, divisors, not_shown
 from piezo_sym.proofs.obligations import Obligation
 from piezo_sym.proofs.prove import prove
 from piezo_sym.proofs.published import published
-from piezo_sym.proofs.record import proofs_json, smt2
-from piezo_sym.proofs.report import Report, Row, Verdict
+from piezo_sym.proofs.report import Report, Row, Verdict, proofs_json, smt2
 from piezo_sym.proofs.solvers import opinions
 from piezo_sym.proofs.units import units
 

@@ -35,11 +35,10 @@ from piezo_sym.proofs.asked import Asked, Numbers, moved, tried
 from piezo_sym.proofs.branches import opposite
 from piezo_sym.proofs.obligations import SignOf
 from piezo_sym.proofs.report import Verdict
-from piezo_sym.proofs.signs.cases import cases
+from piezo_sym.proofs.signs.cases import balanced, cases, choice_outside, grouped, summands
 from piezo_sym.proofs.signs.certificate import Case, Term
 from piezo_sym.proofs.signs.decide import decide_sign
 from piezo_sym.proofs.signs.reduce import Reduction, reductions
-from piezo_sym.proofs.signs.sums import balanced, choice_outside, grouped, summands
 from piezo_sym.proofs.solvers import Asks
 
 #: Functions of one variable whose sign was not shown, before the search stops.

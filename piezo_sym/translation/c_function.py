@@ -18,13 +18,11 @@ from collections.abc import Collection
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
-from piezo_sym.translation.c_file import File
 from piezo_sym.translation.c_scope import Branch, CVariable, Deferred, Scope, helper_is
-from piezo_sym.translation.c_text import Tokens
+from piezo_sym.translation.c_text import File, Tokens
 from piezo_sym.translation.expressions import WHOLE, refused
 from piezo_sym.translation.field import NotShownError, Value
-from piezo_sym.translation.known import LEAST, Key
-from piezo_sym.translation.rows import Rows
+from piezo_sym.translation.known import LEAST, Key, Rows
 
 #: What may be written to: results, ledger rows, switching functions, margins.
 WRITTEN = ("out", "rows", "s", "m")

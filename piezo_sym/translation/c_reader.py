@@ -12,10 +12,9 @@ and for the rest see `c_function`.  Helpers mean what their text says.  Nothing 
 import re
 from collections import ChainMap
 
-from piezo_sym.translation.c_file import CALLS, File, Helper
 from piezo_sym.translation.c_function import CFunction
 from piezo_sym.translation.c_scope import Meaning, Scope
-from piezo_sym.translation.c_text import Tokens
+from piezo_sym.translation.c_text import CALLS, File, Helper, Tokens
 from piezo_sym.translation.expressions import PLAIN
 from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import Key, Proved
@@ -29,13 +28,7 @@ _HELPERS = r"pick|sign|min|max|saturate|deadzone|power_[2-8]"
 
 
 def read_c(text: str, known: Proved) -> dict[Key, Value]:
-    """Return every row that the functions of a C file write.
-
-    Raises
-    ------
-    NotShownError
-        If something is outside the grammar; it says what.
-    """
+    """Return every row that the functions of a C file write."""
     name = known.iphs.model.name
     tokens, file = Tokens(text, name), File(known, name, SIGNATURES, "parameters", CALLS)
     rows, seen = dict[Key, Value](), set[str]()

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import final
 
-from piezo_sym.translation.c_file import COMPARISONS, File, Helper
+from piezo_sym.translation.c_text import COMPARISONS, File, Helper
 from piezo_sym.translation.change import moved
 from piezo_sym.translation.expressions import PLAIN, TEST, WHOLE, Expressions, Read, refused
 from piezo_sym.translation.field import NotShownError, Value

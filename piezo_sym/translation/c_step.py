@@ -32,11 +32,10 @@ from piezo_sym.translation.c_data import (
     take_record,
     take_table,
 )
-from piezo_sym.translation.c_file import CALLS, File, Helper
 from piezo_sym.translation.c_function import NOT_COMPARED, CFunction
 from piezo_sym.translation.c_reader import add_helper
 from piezo_sym.translation.c_scope import Branch, Scope, helper_is
-from piezo_sym.translation.c_text import Tokens
+from piezo_sym.translation.c_text import CALLS, File, Helper, Tokens
 from piezo_sym.translation.change import put, spelled
 from piezo_sym.translation.expressions import WHOLE
 from piezo_sym.translation.field import NotShownError, Value
@@ -81,11 +80,6 @@ def read_step(text: str, known: Proved) -> dict[Key, Value]:
     Parameters
     ----------
     known : from `proved_step`.
-
-    Raises
-    ------
-    NotShownError
-        If something is outside the grammar; it says what.
     """
     lines = {f"#define {name}_of {name}\n": name for name in _LIBRARY}
     lines = {line: name for line, name in lines.items() if line in text}

@@ -1,17 +1,21 @@
 """Printed C as tokens, and its expressions as trees of Python's `ast`.
 
-Input: the text of a C file.  Output: `Tokens`.  Comments are left out; of directives only the two
-``#include`` lines and ``#pragma omp simd`` are in the grammar, strings and characters are not.
+Input: the text of a C file.  Output: `Tokens`; and `File`, what the functions of one file share.
+Comments are left out; of directives only the two ``#include`` lines and ``#pragma omp simd`` are in
+the grammar, strings and characters are not.
 """
 
 import ast
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from keyword import iskeyword
 from types import MappingProxyType
 from typing import final
 
+from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.translation.field import NotShownError
+from piezo_sym.translation.known import Proved
 
 _TOKEN = re.compile(
     r"(?P<space>\s+|/\*.*?\*/)"
@@ -158,3 +162,41 @@ class Tokens:
             found.append(self._in_python())
         self.take(_CLOSING[opening])
         return f"{opening}{', '.join(found)}{_CLOSING[opening]}"
+
+
+CALLS = {record.in_c: name for name, record in RECORDS.items() if record.smooth}
+CALLS |= {"pow": "pow", "fabs": "abs", "copysign": "copysign"}
+#: What the step's own words for comparisons stand for.
+COMPARISONS: dict[str, ast.cmpop] = {"is_above": ast.Gt(), "is_at_least": ast.GtE()}
+
+
+@final
+@dataclass(frozen=True)
+class Helper:
+    """A function of the file's own: its parameters and their types, and what it returns."""
+
+    parameters: tuple[tuple[str, str], ...]
+    value: ast.expr
+
+
+@final
+@dataclass(frozen=True)
+class File:
+    """What the functions of a C file have in common.
+
+    Attributes
+    ----------
+    model : with its name the name of each function begins.
+    signatures : of each function, what its arguments are.
+    record : the ending of the type that holds parameters.
+    calls : the functions of the library that may be called, and what they are.
+    results : of a function and an argument, which rows are written to it; else the function's.
+    """
+
+    known: Proved
+    model: str
+    signatures: Mapping[str, str]
+    record: str
+    calls: Mapping[str, str]
+    results: Mapping[str, str] = field(default_factory=dict)
+    helpers: dict[str, Helper] = field(default_factory=dict)

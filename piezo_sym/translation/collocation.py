@@ -29,13 +29,7 @@ from piezo_sym.translation.system_reader import SystemReader
 
 
 def proved_step(iphs: IPHS) -> Proved:
-    """Return a stage of a system in normal form.
-
-    Raises
-    ------
-    NotShownError
-        If something in it has none, or a co-state is not shown to be affine where it should be.
-    """
+    """Return a stage of a system in normal form."""
     read, given = SystemReader(iphs), [condition.tree for condition in conditions(iphs.model)]
     means = dict(_means(read))
     slots = {"integrands": tuple(slot for slot, _ in means.values())}

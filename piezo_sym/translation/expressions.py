@@ -79,13 +79,7 @@ class Expressions:
     whole_division: bool
 
     def __call__(self, node: ast.expr) -> Read:
-        """Return an expression's value and shape.
-
-        Raises
-        ------
-        NotShownError
-            If it is outside the grammar.
-        """
+        """Return an expression's value and shape."""
         match node:
             case ast.Constant(number):
                 return self._number(number)

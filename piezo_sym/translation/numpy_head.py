@@ -66,13 +66,7 @@ def rhs(x, u, p, /):
 
 
 def numpy_functions(text: str, iphs: IPHS) -> Mapping[str, ast.FunctionDef]:
-    """Return the functions of a module that compute rows.
-
-    Raises
-    ------
-    NotShownError
-        If anything else in the module is not as expected.
-    """
+    """Return the functions of a module that compute rows."""
     if re.search(r"coding[:=]", "\n".join(text.split("\n")[:2])):
         raise NotShownError("the NumPy module has another coding")
     try:

@@ -15,8 +15,7 @@ from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.translation.change import moved
 from piezo_sym.translation.expressions import PLAIN, WHOLE, Expressions, Read, Shape, refused
 from piezo_sym.translation.field import NotShownError, Value
-from piezo_sym.translation.known import ALL, LEAST, SAME, Key, Layout, Proved
-from piezo_sym.translation.rows import Rows
+from piezo_sym.translation.known import ALL, LEAST, SAME, Key, Layout, Proved, Rows
 from piezo_sym.translation.signs import reading
 
 ARGUMENTS = dict.fromkeys(
@@ -29,13 +28,7 @@ CALLS |= {"np.clip": "clip"}
 
 
 def read_numpy(functions: Mapping[str, ast.FunctionDef], known: Proved) -> dict[Key, Value]:
-    """Return every row that the functions of a module write; see `numpy_head` for the rest of it.
-
-    Raises
-    ------
-    NotShownError
-        If something is outside the grammar; it says what.
-    """
+    """Return every row that the functions of a module write; for the rest see `numpy_head`."""
     rows: dict[Key, Value] = {}
     for name, words in ARGUMENTS.items():
         if name not in functions:

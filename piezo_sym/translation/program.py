@@ -49,13 +49,7 @@ class Reference:
 
 
 def reference_of(iphs: IPHS) -> Reference:
-    """Return what printed texts of a system are compared with.
-
-    Raises
-    ------
-    NotShownError
-        If something in it has no normal form.
-    """
+    """Return what printed texts of a system are compared with."""
     return Reference(proved(iphs), proved_step(iphs))
 
 

@@ -27,13 +27,7 @@ from piezo_sym.translation.zero import is_zero
 
 
 def proved(iphs: IPHS) -> Proved:
-    """Return a system in normal form.
-
-    Raises
-    ------
-    NotShownError
-        If something in it has none, or if the co-states are not the gradient of the energy.
-    """
+    """Return a system in normal form."""
     read = SystemReader(iphs)
     domain = read.assume(condition.tree for condition in conditions(iphs.model))
     read.assume_temperatures()

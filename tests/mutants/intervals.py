@@ -161,7 +161,7 @@ factors in front are dropped
   - prefactors = (*front, *free, *outside)
   + prefactors = (*free, *outside)
   = (1000*a_1 - a)*v_1*(v/v_1*(exp(v/v_1) - 7.38*(v/v_1 - 1))) | a_1 > 0; v_1 > 0 | a=2000.0
-## proofs/signs/sums
+## proofs/signs/cases
 what is in no group is dropped
   - return None if left else groups
   + return groups
@@ -172,7 +172,7 @@ a product's choice is taken the other way round
   - If(_product(left, inner.then), inner.condition, _product(left, inner.other))
   + If(_product(left, inner.other), inner.condition, _product(left, inner.then))
   = F_1*(v/v_1)*(1 if v > 2*v_1 else exp(v/v_1 - 0.37) - 2.7184*(v/v_1 - 0.37)) | F_1 > 0; v_1 > 0
-## proofs/signs/vanish
+## proofs/signs/shift
 what has a value at a point is zero there
   - return _value(tree, at) == 0
   + return _value(tree, at) is not None

@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 from piezo_sym.expressions.tree import Add, Call, Neg, Num
 from piezo_sym.proofs.signs import intervals as iv
 from piezo_sym.proofs.signs.enclosures import Window, enclose, value
-from piezo_sym.proofs.signs.shift import recentred
-from piezo_sym.proofs.signs.vanish import vanishes
+from piezo_sym.proofs.signs.shift import recentred, vanishes
 from tests.proofs.sign_laws import law, laws, numbers, precise, steady
 
 PLACES = st.sampled_from([0.0, 0.25, 0.3, 1.0, 2.5, 7.0, 1e3, 1e6])

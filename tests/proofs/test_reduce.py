@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from piezo_sym.errors import SpecError
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import Cmp, Div, If, Mul, Neg, Sym, evaluate, names
+from piezo_sym.proofs.signs.cases import balanced, choice_outside, grouped, summands
 from piezo_sym.proofs.signs.reduce import Reduction, reductions
-from piezo_sym.proofs.signs.sums import balanced, choice_outside, grouped, summands
 from tests.proofs.sign_laws import law, steady
 
 POSITIVE = frozenset({"i_0", "i_1", "R", "T", "T_0", "V_T", "n", "q_e", "k_B", "v_s", "F_c"})

@@ -2,9 +2,9 @@
 
 stage       from -> to                            in
 cases       law -> guards and laws                choices that parameters make
-sums        law -> terms of one scale each        products of sums multiplied out
+            law -> terms of one scale each        products of sums multiplied out
 reduce      term -> prefactors * f(s)             a letter in units of parameters
 decide      f -> PROVED | REFUTED | OPEN          windows, Taylor series at zeros, both ends
-enclosures  tree, window -> interval and jet      intervals, jets, recentre, vanish
+enclosures  tree, window -> interval and jet      intervals, jets, shift
 certificate what was shown, as data               for a checker
 """

@@ -20,7 +20,7 @@ from piezo_sym.proofs.signs import intervals as iv
 from piezo_sym.proofs.signs import jets
 from piezo_sym.proofs.signs.intervals import INF, Interval
 from piezo_sym.proofs.signs.jets import Jet
-from piezo_sym.proofs.signs.vanish import vanishes
+from piezo_sym.proofs.signs.shift import vanishes
 
 
 @final

@@ -9,7 +9,7 @@ is defined.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
@@ -36,8 +36,9 @@ from piezo_sym.expressions.tree import (
     rebuild,
     walk,
 )
-from piezo_sym.proofs.signs.cases import Positive
 
+#: Whether a tree is known to be positive.
+Positive = Callable[[Expr], bool]
 #: A product of powers: base -> exponent, none of them zero.
 Powers = Mapping[Expr, Fraction]
 
