@@ -4,6 +4,7 @@ Run as ``python -I piezo_sym/checker SPEC.toml PROOFS.json``.
 """
 
 from .laws import InputError
-from .spec import Spec, read_spec
+from .rigid import read_spec
+from .spec import Spec
 
 __all__ = ["InputError", "Spec", "read_spec"]

@@ -52,16 +52,18 @@ class Flows(NamedTuple):
 
 def flows(spec: Spec, counts: Mapping[str, int], algebra: Any) -> Flows:
     """Return what flows in a network; raises `SingularError` if its laws do not tell."""
-    branches, zero = list[Branch](), algebra.one - algebra.one
-    for e in spec.of("store", "law", "source", "coupling", "hysteron"):
-        branches += _branches(e, range(1, counts[e.name] + 1) if e.lanes is not None else (0,))
-    unknowns, pivots = _solved(list(_equations(spec, branches, algebra)))
+    branches, zero = _all_branches(spec, counts), algebra.one - algebra.one
+    unknowns, pivots, left = _solved(list(_equations(spec, branches, algebra)))
+    if left:
+        raise SingularError("the laws of the network have no single solution")
     found = Flows({}, {}, {}, {}, pivots)
 
     def answer(branch: Branch) -> Any:
         total = zero
         for (role, *slot), factor in unknowns[branch.variables()[1]].items():
-            if role == "W" and (*slot,) not in found.outputs:
+            if role == "R" and branch.role == "store":
+                continue  # what follows adds the opposite to a joined rate
+            if role == "R" or (role == "W" and (*slot,) not in found.outputs):
                 raise SingularError("laws that are not linear depend on each other")
             total += factor * (found.outputs[*slot,] if role == "W" else algebra.given(role, *slot))
         return total
@@ -77,6 +79,19 @@ def flows(spec: Spec, counts: Mapping[str, int], algebra: Any) -> Flows:
             y = -answer(branch) if branch.across else answer(branch)
             found.ports[branch.element] = y, algebra.given("u", branch.element, 0)
     _heat(spec, algebra, found)
+    return found
+
+
+def relations(spec: Spec, counts: Mapping[str, int], algebra: Any) -> list[Form]:
+    """Return the combinations of what is given that the laws force to be zero."""
+    *_, left = _solved(list(_equations(spec, _all_branches(spec, counts), algebra)))
+    return [row for row in left if row]
+
+
+def _all_branches(spec: Spec, counts: Mapping[str, int]) -> list[Branch]:
+    found = list[Branch]()
+    for e in spec.of("store", "law", "source", "coupling", "hysteron"):
+        found += _branches(e, range(1, counts[e.name] + 1) if e.lanes is not None else (0,))
     return found
 
 
@@ -99,15 +114,16 @@ def _heat(spec: Spec, algebra: Any, found: Flows) -> None:
 
 def _branches(e: Element, lanes: Iterable[int]) -> Iterator[Branch]:
     law = "linear" if e.law and is_linear(e.law, ("z", e.name)) else "law"
+    store = "follower" if e.follows else "store"
     for lane in lanes:
         if e.kind.form == "hysteron":
             (a, b), inner = e.pairs[0], (e.name, lane)
-            yield Branch(e.name, lane, "store", (a, inner), False)
+            yield Branch(e.name, lane, store, (a, inner), e.follows)
             yield Branch(e.name, lane, law, (inner, b), True)
         else:
-            roles = {"coupling": ("first", "second"), "law": (law,)}
+            roles = {"coupling": ("first", "second"), "law": (law,), "store": (store,)}
             for role, pair in zip(roles.get(e.kind.form, (e.kind.form,)), e.pairs, strict=True):
-                yield Branch(e.name, lane, role, pair, e.across and role != "second")
+                yield Branch(e.name, lane, role, pair, (e.across and role != "second") != e.follows)
 
 
 def _equations(spec: Spec, branches: list[Branch], algebra: Any) -> Iterator[Form]:
@@ -136,18 +152,19 @@ def _law(element: Element, branch: Branch, algebra: Any) -> Form:
         return {imposed: one, other: -ratio if branch == first else ratio}
     if branch.role == "linear":
         return {imposed: one, answer: -algebra.law(element, "law", branch.lane, one)}
-    given = {"store": "E", "law": "W", "source": "u"}[branch.role], element.name, branch.lane
+    roles = {"store": "E", "follower": "R", "law": "W", "source": "u"}
+    given = roles[branch.role], element.name, branch.lane
     return {imposed: one, given: one if branch.role == "source" and not branch.across else -one}
 
 
-def _solved(left: list[Form]) -> tuple[dict[Any, Form], list[Any]]:
-    """Return each unknown by what is given, and the pivots."""
+def _solved(left: list[Form]) -> tuple[dict[Any, Form], list[Any], list[Form]]:
+    """Return each unknown by what is given, the pivots, and the rows that have no unknown."""
     rows, solved, pivots = dict(enumerate(left)), dict[Any, Form](), list[Any]()
     choices = {n: _choice(n, row) for n, row in rows.items()}
     while rows:
         (*_, n), label = min(choices.values(), key=lambda choice: choice[0])
         if label is None:
-            raise SingularError("the laws of the network have no single solution")
+            break
         row = rows.pop(n)
         del choices[n]
         pivots.append(pivot := row.pop(label))
@@ -161,7 +178,7 @@ def _solved(left: list[Form]) -> tuple[dict[Any, Form], list[Any]]:
                         del form[key]
                 if name in rows:
                     choices[name] = _choice(name, form)
-    return solved, pivots
+    return solved, pivots, [*rows.values()]
 
 
 def _choice(n: int, row: Form) -> tuple[tuple[int, int, int, int], Any]:

@@ -26,7 +26,8 @@ Symbol = tuple[str, str]
 class Element(NamedTuple):
     """An element: `laws` by field, `costate` dU/dx, a dissipative `law` of what it calls `letter`.
 
-    What it imposes is `across` or not; `bodies` it heats, reads T of, or conducts between.
+    What it imposes is `across` or not, or as its store `follows` another the opposite; `bodies` it
+    heats, reads T of, or conducts between.
     """
 
     name: str
@@ -42,6 +43,7 @@ class Element(NamedTuple):
     input: str
     lanes: int | None
     jumps: bool
+    follows: bool = False
 
 
 class Spec(NamedTuple):

@@ -108,12 +108,30 @@ def _equations(iphs: IPHS) -> Iterator[str]:
     pairs = equations_text(iphs.reading)
     width = max(len(left) for left, _ in pairs)
     yield from (f"  {left.ljust(width)} = {right}" for left, right in pairs)
+    yield from _joined(iphs)
     yield from _domain(iphs)
     yield from _matrix("J0, structure matrix", system.J0)
     for k, process in enumerate(system.processes):
         yield from _process(iphs, k, slot_text(process))
     if system.ports:
         yield from _matrix("g, input map", system.g)
+
+
+def _joined(iphs: IPHS) -> Iterator[str]:
+    """Yield what was joined: each state, and the co-state and energy of each store in it."""
+    from piezo_sym.expressions.calculus import add, mul
+    from piezo_sym.expressions.text import spell
+    from piezo_sym.expressions.tree import Sym
+
+    for joint in iphs.junction.joints:
+        for n, kept in enumerate(joint.kept):
+            own = (
+                mul(m.shares[n], Sym(f"({m.store.state} of {m.element})")) for m in joint.members
+            )
+            yield f"\nJoined: {kept.store.state} = {spell(add(*own))}"
+        for m in joint.members:
+            law = f"{m.store.costate} = {spell(joint.costate(m))}, " if m in joint.followers else ""
+            yield f"  {m.element}: {law}energy {spell(m.energy)}"
 
 
 def _domain(iphs: IPHS) -> Iterator[str]:

@@ -7,15 +7,13 @@ ports and processes.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from fractions import Fraction
 
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.codegen.program import ModuleFunction, OutputRow, bank_of
 from piezo_sym.codegen.quantities import Quantities
 from piezo_sym.expressions.calculus import add, div, mul, neg
-from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.text import signed
-from piezo_sym.expressions.tree import ONE, Expr, Num, Sym
+from piezo_sym.expressions.tree import ONE, Expr, Sym
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.elements.ports import Body, Exchange
 
@@ -46,7 +44,7 @@ def functions_of(q: Quantities) -> tuple[ModuleFunction, ...]:
     S = add(*(Sym(port.state) for port in q.bodies.values()))
     U = add(*(q.total(e.law, e.bank) if e.bank else e.law for e in q.iphs.energies))
     made = [
-        ("initial_state", tuple(_starts(q.iphs))),
+        ("initial_state", _starts(q.iphs)),
         ("rhs", rates_of(q)),
         ("outputs", _outputs(q)),
         ("supply", supply_of(q)),
@@ -150,14 +148,7 @@ def _rows(slots: Iterable[Slot], values: Iterable[Expr]) -> tuple[OutputRow, ...
     return tuple(OutputRow(slot, value) for slot, value in zip(slots, values, strict=True))
 
 
-def _starts(iphs: IPHS) -> Iterator[OutputRow]:
-    model = iphs.model
-    for slot in iphs.system.states:
-        start = model.initial.get(slot.label, 0.0)
-        parts = start if isinstance(start, tuple) else (start,)
-        trees = tuple(_start(part) for part in parts)
-        yield OutputRow(slot, trees[0], trees if len(trees) > 1 else ())
-
-
-def _start(part: str | float) -> Expr:
-    return parse_law(part, "initial") if isinstance(part, str) else Num(Fraction(repr(part)))
+def _starts(iphs: IPHS) -> tuple[OutputRow, ...]:
+    """Return the initial state; a bank's row lists its lanes where they differ."""
+    rows = zip(iphs.system.states, iphs.starts, strict=True)
+    return tuple(OutputRow(slot, one, (one, *more) if more else ()) for slot, (one, *more) in rows)

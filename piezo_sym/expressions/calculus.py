@@ -202,14 +202,14 @@ def _slopes(function: str, args: tuple[Expr, ...]) -> tuple[Expr, ...]:
 
 def rule(text: str, x: Expr, w: Expr = ZERO, value: Expr = ZERO) -> Expr:
     """Return the tree of a record's text, its arguments and its value put in."""
-    return _put(parse_rule(text), {"x": x, "w": w, "y": value})
+    return inserted(parse_rule(text), {"x": x, "w": w, "y": value})
 
 
 def clause(text: str, x: Expr, value: Expr) -> tuple[Cmp, ...]:
     """Return the comparisons of a record's text, the argument and the value put in."""
     words = {"x": x, "y": value}
     parts = parse_clause(text)
-    return tuple(Cmp(c.op, _put(c.left, words), _put(c.right, words)) for c in parts)
+    return tuple(Cmp(c.op, inserted(c.left, words), inserted(c.right, words)) for c in parts)
 
 
 def choices(node: Expr) -> Expr:
@@ -253,22 +253,22 @@ def kinks(node: Expr) -> Iterator[Cmp]:
     yield from (part.condition for part in walk(choices(node)) if isinstance(part, If))
 
 
-def _put(node: Expr, words: Mapping[str, Expr]) -> Expr:
+def inserted(node: Expr, words: Mapping[str, Expr]) -> Expr:
     """Return a tree with names replaced, its sums and products made anew."""
     match node:
         case Sym(name):
-            return words[name]
+            return words.get(name, node)
         case Neg(arg):
-            return neg(_put(arg, words))
+            return neg(inserted(arg, words))
         case Add(terms):
-            return add(*(_put(term, words) for term in terms))
+            return add(*(inserted(term, words) for term in terms))
         case Mul(left, right):
-            return mul(_put(left, words), _put(right, words))
+            return mul(inserted(left, words), inserted(right, words))
         case Div(left, right):
-            return div(_put(left, words), _put(right, words))
+            return div(inserted(left, words), inserted(right, words))
         case Pow(base, exponent):
-            return power(_put(base, words), exponent)
-    return rebuild(node, lambda part: _put(part, words))
+            return power(inserted(base, words), exponent)
+    return rebuild(node, lambda part: inserted(part, words))
 
 
 def is_affine(law: Expr, variables: Iterable[str]) -> bool:

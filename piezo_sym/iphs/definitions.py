@@ -30,6 +30,7 @@ from piezo_sym.spec.elements.ports import (
     Source,
     Storage,
 )
+from piezo_sym.spec.tables import starts
 
 
 def costate_name(port: Storage | Body) -> str:
@@ -148,6 +149,15 @@ def slopes_of(symbols: SymbolTable, slopes: tuple[Slope, ...]) -> Definitions:
     """Yield the slope of each law in a resistive loop, a function of temperatures and states."""
     for slope in slopes:
         yield slope.symbol, symbols.law(slope.law, {})
+
+
+def starts_of(junction: Junction) -> Iterator[tuple[Expr, ...]]:
+    """Yield the initial value of each state, one or one per lane: of joined stores Z^T x."""
+    model = junction.circuit.model
+    joints = {m.store.state: joint for joint in junction.joints for m in joint.kept}
+    for state in (slot.label for slot in junction.states):
+        joint = joints.get(state)
+        yield (joint.start(model, state),) if joint else starts(model, state)
 
 
 def costates_of(circuit: Circuit, symbols: SymbolTable) -> Definitions:

@@ -18,6 +18,7 @@ from piezo_sym.algebra.lanes import LaneMatrix, vector
 from piezo_sym.algebra.notation import slot_text, text
 from piezo_sym.algebra.symbols import SymbolTable, symbol_table
 from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tree import Expr
 from piezo_sym.iphs.definitions import (
     Energy,
     costates_of,
@@ -25,6 +26,7 @@ from piezo_sym.iphs.definitions import (
     laws_of,
     ratios_of,
     slopes_of,
+    starts_of,
     system_of,
 )
 from piezo_sym.iphs.reading import Pairs, Reading, document, equations_latex
@@ -74,6 +76,7 @@ class IPHS:
     system : Definition 1 in named co-states.
     junction : the solved network, where the matrices of `system` come from.
     energies : what U is the sum of: of one store, or of several that share one.
+    starts : the initial value of each state, one or one per lane.
     laws, shares, slopes, ratios, costates : what the names in `system` stand for, as (symbol,
         expression).
 
@@ -87,6 +90,7 @@ class IPHS:
     junction: Junction
     system: System
     energies: tuple[Energy, ...]
+    starts: tuple[tuple[Expr, ...], ...]
     laws: Pairs
     shares: Pairs
     slopes: Pairs
@@ -262,6 +266,7 @@ def iphs_of(symbols: SymbolTable, junction: Junction) -> IPHS:
         junction=junction,
         system=system,
         energies=energies_of(circuit),
+        starts=tuple(starts_of(junction)),
         laws=tuple(laws_of(circuit, symbols, system)),
         shares=junction.shares,
         slopes=tuple(slopes_of(symbols, junction.slopes)),

@@ -4,6 +4,7 @@ Input: a `Circuit`.  Output: the same circuit in which laws that are linear in t
 turned round where the junction laws ask for it (an amplifier's output resistance before a bank of
 hysterons is given the current, whether its law says ``voltage = "R*i"`` or ``current = "v/R"``).
 A law that is not linear keeps its causality; if that cannot be, the network is refused by name.
+Stores that depend on others are given their co-state, see `rigid`.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import NetworkError
 from piezo_sym.network.inverse import turn
 from piezo_sym.network.kirchhoff import Laws
-from piezo_sym.network.refusals import refusal
+from piezo_sym.network.rigid import dependent
 from piezo_sym.spec.circuit import Circuit, Placed
 from piezo_sym.spec.elements.ports import DissipativePort
 
@@ -32,15 +33,16 @@ def causal(circuit: Circuit, symbols: SymbolTable) -> Laws:
     NetworkError
         If no turn of a linear law resolves a contradiction; names the elements in it.
     """
-    turned: set[str] = set()
+    turned, followers = set[str](), frozenset[str]()
     while True:
-        laws = Laws(circuit, symbols)
+        laws = Laws(circuit, symbols, followers)
         contradiction = laws.contradiction()
         if contradiction is None:
             return laws
         found = _to_turn(laws, contradiction, turned)
         if found is None:
-            raise refusal(laws, contradiction)
+            followers |= dependent(laws, contradiction)
+            continue
         placed, port = found
         turned.add(placed.element)
         if len(turned) * len(laws.edges) > MOST_WORK:

@@ -25,7 +25,7 @@ def turn(port: DissipativePort, taken: Collection[str]) -> DissipativePort | Non
     `taken` are the names in use, none of which its new letter is.
     """
     slope = slope_of(port.law, port.letter)
-    if slope is None or _vanishes(slope):
+    if slope is None or vanishes(slope):
         return None
     letter = fresh(port.domain.variable(port.imposes).letter, taken)
     return replace(
@@ -41,10 +41,16 @@ def turn(port: DissipativePort, taken: Collection[str]) -> DissipativePort | Non
 
 def slope_of(law: Expr, letter: str) -> Expr | None:
     """Return the slope of a law that is linear in its letter, else None."""
+    slope, at_zero = constant_slope(law, letter), substitute(law, {letter: ZERO})
+    return slope if slope is not None and vanishes(at_zero) else None
+
+
+def constant_slope(law: Expr, letter: str) -> Expr | None:
+    """Return the slope of a law that is affine in a letter, else None."""
     if any(letter in names(node) for node in walk(law) if isinstance(node, Call | Cmp)):
         return None  # a function or a branch of the letter: its slope would not show a jump
-    slope, at_zero = derivative(law, letter), substitute(law, {letter: ZERO})
-    return slope if letter not in names(slope) and _vanishes(at_zero) else None
+    slope = derivative(law, letter)
+    return None if letter in names(slope) else slope
 
 
 def inverse_field(port: DissipativePort) -> tuple[str, str]:
@@ -60,7 +66,7 @@ def _over(top: Expr, slope: Expr) -> Expr:
     return div(top, slope)
 
 
-def _vanishes(law: Expr) -> bool:
+def vanishes(law: Expr) -> bool:
     """Return whether a law is seen to be zero, without multiplying it out."""
     table = {name: sp.Symbol(name, real=True) for name in names(law)}
     return bool(to_sympy(law, table) == 0)

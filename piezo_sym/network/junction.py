@@ -24,6 +24,7 @@ from piezo_sym.algebra.sums import Lanes
 from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import NetworkError
 from piezo_sym.network.causality import causal
+from piezo_sym.network.joints import Joint, joined
 from piezo_sym.network.kirchhoff import Answer, Laws
 from piezo_sym.network.loops import Definition, Slope, loops_of
 from piezo_sym.network.nodes import check_nodes
@@ -43,6 +44,7 @@ class Junction:
     states, processes, ports : slots; ports are ordered by their input, then by declaration.
     J0, B, D, g, N : matrices over them, their entries rational in the ratios, slopes and shares.
     slopes, shares : the symbols that resistive loops bring, see `Loops`.
+    joints : what was joined into the states of others.
     divisors : what the solution divides by; the structure exists where none is zero.
     """
 
@@ -57,6 +59,7 @@ class Junction:
     N: LaneMatrix
     slopes: tuple[Slope, ...]
     shares: tuple[Definition, ...]
+    joints: tuple[Joint, ...]
     divisors: tuple[sp.Expr, ...]
 
 
@@ -78,8 +81,8 @@ def junction_of(circuit: Circuit, symbols: SymbolTable) -> Junction:
 class _Blocks:
     """The answers of the junction laws, sorted into matrices.
 
-    A row is a branch's answer, a column what it is given: kinds "E" (states), "W" (processes) and
-    "u" (ports).
+    A row is a branch's answer, a column what it is given: kinds "E" (states), "W" (processes), "u"
+    (ports) and "R" (rates of followers, which states no longer see when they are joined).
     """
 
     def __init__(self, laws: Laws, lanes: Lanes) -> None:
@@ -89,6 +92,7 @@ class _Blocks:
             "E": tuple(Slot(port.state, placed.bank) for placed, port in laws.states),
             "W": tuple(Slot(placed.element, placed.bank) for placed, _ in laws.processes),
             "u": tuple(Slot(placed.element) for placed in laws.ports),
+            "R": tuple(Slot(placed.element) for placed, _ in laws.followers),
         }
         bodies = (n for n, (_, port) in enumerate(laws.states) if isinstance(port, Body))
         self.rows = {laws.states[n][0].element: n for n in bodies}  # each body's entropy
@@ -103,7 +107,11 @@ class _Blocks:
             g - self._output("E").T,
             D - self._block("W", "u").T,
             M + M.T,
+            self._block("E", "R") + self._block("R", "E").T,
+            *(self._block("R", kind) for kind in "WuR"),
+            *(self._block(kind, "R") for kind in "Wu"),
         )
+        circuit, joints = joined(self.laws)
         loops = loops_of(self.laws, M)
         B, D = loops.columns(B), loops.columns(D)
         used = {
@@ -111,7 +119,7 @@ class _Blocks:
         }
         divisors = map(self.laws.expression, self.laws.divisors)
         return Junction(
-            circuit=self.laws.circuit,
+            circuit=circuit,
             states=self.slots["E"],
             processes=self.slots["W"],
             ports=self.slots["u"],
@@ -122,6 +130,7 @@ class _Blocks:
             N=N + loops.between(D, D),
             slopes=loops.slopes,
             shares=tuple(share for share in loops.shares if share[0] in used),
+            joints=joints,
             divisors=tuple(dict.fromkeys((*divisors, *loops.divisors))),
         )
 

@@ -53,7 +53,8 @@ Answer = tuple[Form, Form]
 class Edge:
     """A branch as the junction laws see it: its through variable as a combination.
 
-    `key` is the given it imposes (``("E", 2)``), and the name of the unknown it answers with.
+    `key` is the given it imposes (``("E", 2)``; "R": the rate of a follower), and the name of the
+    unknown it answers with.
     """
 
     placed: Placed
@@ -77,9 +78,14 @@ def port_order(circuit: Circuit) -> tuple[Placed, ...]:
 
 @final
 class Laws:
-    """The junction laws of one circuit, and their solution."""
+    """The junction laws of one circuit, and their solution.
 
-    def __init__(self, circuit: Circuit, symbols: SymbolTable) -> None:
+    `followers` are the states of stores that are given their co-state, and give their rate.
+    """
+
+    def __init__(
+        self, circuit: Circuit, symbols: SymbolTable, followers: frozenset[str] = frozenset()
+    ) -> None:
         self.circuit, self.symbols = circuit, symbols
         self.banks = tuple(symbols.counts)
         couplings = [port for _, port in circuit.of(Coupling)]
@@ -92,7 +98,8 @@ class Laws:
         self._names = {
             letter: symbols[port.name] for port, letter in zip(couplings, letters, strict=True)
         }
-        self.states = tuple(circuit.of(Storage, Body))
+        self.states = tuple(s for s in circuit.of(Storage, Body) if s[1].state not in followers)
+        self.followers = tuple(s for s in circuit.of(Storage) if s[1].state in followers)
         self.processes = tuple(circuit.of(DissipativePort, Conductor))
         self.ports = port_order(circuit)
         self.edges = tuple(self._edges())
@@ -102,6 +109,8 @@ class Laws:
         for n, (placed, port) in enumerate(self.states):
             if isinstance(port, Storage):
                 yield Edge(placed, port.branch, port.imposes, ("E", n), 1)
+        for n, (placed, store) in enumerate(self.followers):
+            yield Edge(placed, store.branch, store.imposes.other, ("R", n), 1)
         for n, (placed, process) in enumerate(self.processes):
             if isinstance(process, DissipativePort):
                 yield Edge(placed, process.branch, process.imposes, ("W", n), 1)

@@ -13,6 +13,7 @@ from piezo_sym.errors import NetworkError, with_article
 from piezo_sym.network.inverse import inverse_field, turn
 from piezo_sym.network.kirchhoff import Edge, Laws
 from piezo_sym.network.nodes import branches, is_inner, is_reference
+from piezo_sym.spec.circuit import Placed
 from piezo_sym.spec.elements import kind_of
 from piezo_sym.spec.elements.domains import PhysicalDomain, PowerVariable
 from piezo_sym.spec.elements.forms import Dissipation, Store
@@ -23,12 +24,12 @@ ACROSS, THROUGH = PowerVariable.ACROSS, PowerVariable.THROUGH
 MIXED = "variables"
 
 
-def refusal(laws: Laws, singular: SingularError) -> NetworkError:
+def refusal(laws: Laws, singular: SingularError, why: str = "") -> NetworkError:
     """Return the first contradiction between givens, or else what nothing determines."""
     for relation in singular.relations:
         edges = _edges(laws, relation)
         if edges:
-            return _contradiction(laws, relation, edges)
+            return _contradiction(laws, relation, edges, why)
     return _undetermined(laws, singular)
 
 
@@ -40,17 +41,17 @@ def _edges(laws: Laws, relation: Form) -> list[Edge]:
     return sorted(found, key=lambda edge: order.index(edge.placed.element))
 
 
-def _contradiction(laws: Laws, relation: Form, edges: list[Edge]) -> NetworkError:
+def _contradiction(laws: Laws, relation: Form, edges: list[Edge], why: str) -> NetworkError:
     names = list(dict.fromkeys(edge.placed.element for edge in edges))
     ports = list(map(_port, edges))
     words = list(dict.fromkeys(p.domain.variable(p.imposes).name for p in ports))
     word = words[0].replace("_", " ") if len(words) == 1 else MIXED
-    couplings = _couplings(laws, relation)
+    couplings = [placed.element for placed, _ in couplings_in(laws, relation)]
     place = f" through {_listed(couplings)}" if couplings else _place(laws, names)
     if len(names) == 1:
         what = f"the {word} of {_listed(names)} is forced to be zero{place}"
         return NetworkError(what, "network", f"a free {word}", "connect it to other nodes")
-    what = f"elements {_listed(names)} fix each other's {word}{place}"
+    what = f"elements {_listed(names)} fix each other's {word}{place}{why}"
     fixed = _fixed(laws, edges)
     if fixed:
         expected, remedy = _inverse(*fixed[0])
@@ -116,12 +117,12 @@ def _inverse(element: str, port: DissipativePort) -> tuple[str, str]:
     return expected, f"{remedy} (only laws c*{port.letter} are turned round)"
 
 
-def _couplings(laws: Laws, relation: Form) -> list[str]:
+def couplings_in(laws: Laws, relation: Form) -> list[tuple[Placed, Coupling]]:
     """Return the couplings whose ratios stand in a relation, in the order of the spec."""
     found = {
         symbol for value in relation.values() for symbol in laws.expression(value).free_symbols
     }
-    return [p.element for p, port in laws.circuit.of(Coupling) if laws.symbols[port.name] in found]
+    return [(p, port) for p, port in laws.circuit.of(Coupling) if laws.symbols[port.name] in found]
 
 
 def _place(laws: Laws, names: list[str]) -> str:

@@ -155,7 +155,8 @@ def _gradient(iphs: IPHS) -> Iterator[Residual]:
     for slot, (_, costate) in zip(iphs.system.states, iphs.costates, strict=True):
         state = iphs.symbols[slot.label]
         slopes = (sp.diff(law, state) for used, law in stored if slot.label in used)
-        yield Residual(f"dU/d{slot.label}", sp.expand(sp.Add(*slopes) - costate))
+        difference = sp.Add(*slopes) - costate
+        yield Residual(f"dU/d{slot.label}", sp.expand(sp.together(difference)))
 
 
 def _entries(name: str, matrix: LaneMatrix) -> Iterator[Residual]:

@@ -14,7 +14,6 @@ import sympy as sp
 
 from piezo_sym.algebra.coefficients import coefficient
 from piezo_sym.expressions.exact_eval import Value, all_hold, value_of
-from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ZERO, Cmp, Expr, Neg, names
 from piezo_sym.expressions.tree import replace as put
@@ -24,7 +23,7 @@ from piezo_sym.proofs.laws import on_branches, valued
 from piezo_sym.proofs.obligations import NEVER, Obligation, Question
 from piezo_sym.proofs.solvers import Asks
 from piezo_sym.spec.elements.ports import Body, Coupling
-from piezo_sym.spec.tables import conditions, states
+from piezo_sym.spec.tables import conditions
 
 #: Of a longer divisor only the beginning is shown.
 MOST_TEXT = 60
@@ -105,8 +104,7 @@ def _own_values(iphs: IPHS) -> tuple[dict[str, Value], ...]:
     """Return the values of a spec in each lane of its banks; none if one of them has no value."""
     model = iphs.model
     lists = {name: parameter.lanes for name, parameter in model.parameters.items()}
-    starts = model.initial.values()
-    sizes = [*map(len, lists.values()), *(len(s) for s in starts if isinstance(s, tuple))]
+    sizes = [*map(len, lists.values()), *map(len, iphs.starts)]
     points = []
     try:
         for lane in range(max(sizes, default=1)):
@@ -114,19 +112,14 @@ def _own_values(iphs: IPHS) -> tuple[dict[str, Value], ...]:
                 name: Fraction(given[min(lane, len(given) - 1)]) for name, given in lists.items()
             }
             values |= {name: Fraction(entry.si) for name, entry in model.inputs.items()}
-            values |= {name: _start(iphs, name, lane, values) for name in states(model)}
+            values |= {
+                slot.label: value_of(parts[min(lane, len(parts) - 1)], values)
+                for slot, parts in zip(iphs.system.states, iphs.starts, strict=True)
+            }
             points.append({**values, **dict(_temperatures(iphs, values))})
     except (ArithmeticError, ValueError):
         return ()
     return tuple(points)
-
-
-def _start(iphs: IPHS, state: str, lane: int, values: Mapping[str, Value]) -> Value:
-    start = iphs.model.initial.get(state, 0.0)
-    given = start[min(lane, len(start) - 1)] if isinstance(start, tuple) else start
-    if isinstance(given, str):
-        return value_of(parse_law(given, f"initial.{state}"), values)
-    return Fraction(given)
 
 
 def _temperatures(iphs: IPHS, values: Mapping[str, Value]) -> Iterator[tuple[str, Value]]:

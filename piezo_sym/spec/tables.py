@@ -6,6 +6,7 @@ laws and conditions, in declaration order.
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import final
 
 from piezo_sym.expressions.calculus import increasing
@@ -61,6 +62,16 @@ def law_fields(name: str, element: Element) -> Iterator[LawField]:
 def states(spec: Tables) -> dict[str, str]:
     """Return the element of each state symbol, in declaration order."""
     return {state_symbol(e, name): name for name, e in spec.elements.items() if e.letter}
+
+
+def starts(spec: Tables, symbol: str) -> tuple[Expr, ...]:
+    """Return the initial value of a state, one or one per lane where lanes differ."""
+    start = spec.initial.get(symbol, 0.0)
+    parts = start if isinstance(start, tuple) else (start,)
+    return tuple(
+        parse_law(part, f"initial.{symbol}") if isinstance(part, str) else Num(Fraction(repr(part)))
+        for part in parts
+    )
 
 
 def bodies(spec: Tables) -> tuple[str, ...]:
@@ -220,10 +231,8 @@ def lane_parameters(spec: Tables) -> dict[str, str]:
 
 def _starts(spec: Tables) -> Iterator[tuple[str, Expr]]:
     """Yield the laws in initial values, each with its place."""
-    for symbol, start in spec.initial.items():
-        for part in start if isinstance(start, tuple) else (start,):
-            if isinstance(part, str):
-                yield f"initial.{symbol}", parse_law(part, f"initial.{symbol}")
+    for symbol in spec.initial:
+        yield from ((f"initial.{symbol}", tree) for tree in starts(spec, symbol))
 
 
 def _mixes(group: tuple[str, ...], own: Mapping[str, str]) -> bool:

@@ -9,12 +9,10 @@ co-states and laws of one lane, so they hold for lanes that differ.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from fractions import Fraction
 
 import sympy as sp
 
 from piezo_sym.algebra.lanes import Slot
-from piezo_sym.expressions.parse import parse_law
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.elements.ports import Body
 from piezo_sym.spec.tables import conditions
@@ -80,20 +78,12 @@ def _values(
     listed |= {"energy": [_energy(read)], "entropy": [read(iphs.S)], "temperatures": bodies}
     for function, rows in listed.items():
         yield from (((function, n), value) for n, value in enumerate(rows))
-    for n, slot in enumerate(system.states):
-        start = iphs.model.initial.get(slot.label, 0.0)
-        parts = start if isinstance(start, tuple) else (start,)
+    for n, parts in enumerate(iphs.starts):
         for lane, part in enumerate(parts):
             place = [lane] if len(parts) > 1 else []
-            yield ("initial_state", n, *place), _start(read, part)
+            yield ("initial_state", n, *place), read(iphs.symbols.law(part, {}))
     with on_path(field, None):
         yield from _jacobian(read, slots["rhs"], listed["rhs"])
-
-
-def _start(read: SystemReader, part: str | float) -> Value:
-    if isinstance(part, str):
-        return read(read.iphs.symbols.law(parse_law(part, "initial"), {}))
-    return read.field.number(Fraction(repr(part)))
 
 
 def _energy(read: SystemReader) -> Value:

@@ -32,3 +32,27 @@ def test_the_latex_is_balanced_mathematics(call):
 def test_the_size_of_a_bank_does_not_change_the_mathematics(call, spec_file):
     two, many = (call("show", spec_file("count = 2", f"count = {n}")).out for n in (2, 20_000))
     assert many.replace("20000 in the spec", "2 in the spec") == two
+
+
+JOINED = """
+[model]
+name = "joined"
+[parameters]
+m = { value = 2.0, unit = "kg" }
+n = { value = 3.0, unit = "1" }
+[domain]
+assume = ["n > 0"]
+[elements]
+m1 = { kind = "mass", at = "a", mass = "m" }
+m2 = { kind = "mass", at = "b", mass = "m" }
+lever = { kind = "lever", first = ["a", "wall"], second = ["b", "wall"], ratio = "n" }
+"""
+
+
+def test_what_was_joined_is_said(call, tmp_path):
+    path = tmp_path / "joined.toml"
+    path.write_text(JOINED, encoding="utf-8")
+    out = call("show", str(path)).out
+    assert "\nJoined: p_m1 = (p_m1 of m1) + (p_m2 of m2)/n\n" in out
+    assert "\n  m1: energy m*v_m1**2/2\n" in out
+    assert "\n  m2: v_m2 = v_m1/n, energy m*v_m2**2/2\n" in out

@@ -93,9 +93,26 @@ a law with a jump is linear
   + if False:
   = friction
 a law that is not zero at zero is linear
-  - return slope if letter not in names(slope) and _vanishes(at_zero) else None
-  + return slope if letter not in names(slope) else None
+  - return slope if slope is not None and vanishes(at_zero) else None
+  + return slope
   = affine
+## network/joints
+rests of joined springs are subtracted
+  - return add(Sym(joint.kept[n].store.state), neg(rest))
+  + return add(Sym(joint.kept[n].store.state), rest)
+  = rigid_couplings
+joined springs rest where the first does
+  - rest = add(*(mul(member.shares[n], member.rest) for member in joint.members))
+  + rest = joint.kept[n].rest
+  = rigid_couplings
+what follows adds no inertia
+  - Z.T * sp.diag(*sizes) * Z
+  + sp.diag(*sizes[: Z.cols])
+  = rigid_couplings
+joined states do not see each other
+  - Z.T * sp.diag(*sizes) * Z
+  + sp.diag(*(Z.T * sp.diag(*sizes) * Z).diagonal())
+  = rigid_couplings
 ## network/loops
 a loop is solved with the other sign
   - -e * slopes[c] for (r, c), e, _

@@ -4,7 +4,7 @@ Output: a Hypothesis strategy `networks`, and `explore`, which checks many.  A n
 of elements that give the across variable of each node (capacitor, mass, source, resistor), and
 chords that give their through variable (inductor, spring, hysteron, damper); that is a network with
 one solution.  Then a few elements are put anywhere, and most such networks have none, or need a law
-the other way round.
+the other way round, or stores that depend on others are to be joined.
 """
 
 from dataclasses import dataclass, field
@@ -196,6 +196,26 @@ def _anywhere(draft):
     draft.add(draft.pick([k for k in fit if k not in lost]), draft.pick(("tree", "chord")))
 
 
+def _tied(draft):
+    """Put stores whose co-states depend on others': at nodes that are held, or two in series."""
+    there = sorted(domain for domain, nodes in draft.nodes.items() if len(nodes) > 1)
+    for n in range(draft.draw(st.integers(1, 3))):
+        domain = draft.pick(there)
+        fit = {across: _stores(domain, across=across) for across in (True, False)}
+        if draft.one_in(3):
+            ends = [f"{domain}s{n}", *draft.draw(st.permutations(draft.nodes[domain]))[:2]]
+            for other in ends[1:]:
+                pair = draft.draw(st.permutations([ends[0], other]))
+                draft.add(draft.pick(fit[False]), "chord", (domain, pair))
+        else:
+            draft.add(draft.pick(fit[True]), "tree")
+
+
+def _stores(domain, *, across):
+    fit = ((name, kind) for name, kind in KINDS.items() if domain in kind.domains)
+    return [name for name, kind in fit if (kind.form, kind.across) == ("store", across)]
+
+
 def _adrift(elements):
     """Return the elements with nothing left at the electrical reference."""
 
@@ -222,6 +242,8 @@ def networks(draw):
     _heat(draft)
     if draft.one_in(5):
         _anywhere(draft)
+    if draft.one_in(5):
+        _tied(draft)
     order = draw(st.permutations(list(draft.elements)))
     if draft.one_in(15):  # what holds a node may be missing, or a body
         order = order[1:]

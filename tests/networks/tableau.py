@@ -3,10 +3,11 @@
 Input: a spec as plain data, states and inputs by name.  Output: rates, outputs and productions.
 Nothing of the package is used: every lane of a bank is a pair of branches of its own, every node's
 potential and every branch's through variable is an unknown, and one dense system holds all laws.
-Laws that are not linear are found by Newton's iteration.
+Laws that are not linear are found by Newton's iteration.  Where the laws tie co-states to each
+other, what they allow is the null space of those ties, found numerically (`Joint`).
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from kinds import KINDS
@@ -31,6 +32,19 @@ class Branch:
 
 
 @dataclass(frozen=True)
+class Joint:
+    """Stores whose co-states depend on each other, by their branches: e = Z e[kept].
+
+    Joinable are those that nothing else is tied to, whose co-states rise by constant slopes.
+    """
+
+    stores: tuple
+    kept: tuple
+    Z: object
+    joinable: bool
+
+
+@dataclass(frozen=True)
 class Answer:
     """What the laws say: the rates by state, the outputs by port, the productions by process."""
 
@@ -46,7 +60,7 @@ class Tableau:
     def __init__(self, spec, states, inputs):
         self.spec, self.states, self.inputs = spec, states, inputs
         self.branches, self.temperatures = [], {}
-        self.couplings = []
+        self.couplings, self.costates = [], {}
         elements = spec["elements"].items()
         for name, element in elements:
             if element["kind"] == "thermal_mass":
@@ -56,6 +70,8 @@ class Tableau:
             self._add(name, element)
         names = dict.fromkeys(n for pair in self._all_nodes() for n in pair)
         self.nodes = {n: k for k, n in enumerate(n for n in names if n not in REFERENCES.values())}
+        self.joint = self._joined()
+        self._give()
 
     def words(self, lane=0):
         """Return the values of the parameters, those of one lane where they are listed."""
@@ -82,16 +98,64 @@ class Tableau:
 
     def _store(self, label, lane, element, nodes, name):
         kind = KINDS[element["kind"]]
-        there = self.states[state(name, element) + label.removeprefix(name)]
-        words = {**self.words(lane), kind.letter: there}
-        given = kind.costate(there, lambda f, other=None: value(element.get(f, other), words))
-        self.branches.append(Branch(label, nodes, kind.across, given))
+        symbol = state(name, element) + label.removeprefix(name)
+
+        def costate(x):
+            words = {**self.words(lane), kind.letter: x}
+            return kind.costate(x, lambda f, other=None: value(element.get(f, other), words))
+
+        self.costates[len(self.branches)] = symbol, costate
+        self.branches.append(Branch(label, nodes, kind.across))
 
     def _resistor(self, label, lane, element, nodes):
         text, letter, across = law_of(element)
         words = {**self.words(lane), "T": self.temperatures[element["heats"]]}
         law = lambda z: float(value(text, {**words, letter: z}))  # noqa: E731
         self.branches.append(Branch(label, nodes, across, law=law))
+
+    # Stores
+
+    def _joined(self):
+        """Return the stores that the laws tie to each other, and what may be their co-states."""
+        left, sizes, _ = np.linalg.svd(self._given())
+        ties = left[:, sizes <= SINGULAR][len(self.nodes) :]
+        tied = [k for k in range(len(self.branches)) if abs(ties[k]).max(initial=0.0) > SINGULAR]
+        stores = [k for k in tied if k in self.costates]
+        _, sizes, right = np.linalg.svd(ties[stores].T)
+        allowed = right[np.count_nonzero(sizes > SINGULAR) :].T
+        ranks = [_rank(allowed[: n + 1]) for n in range(len(stores))]
+        kept = [n for n, rank in enumerate(ranks) if rank > (ranks[n - 1] if n else 0)]
+        joinable = [] != stores == tied and all(map(self._is_quadratic, stores))
+        Z = allowed @ np.linalg.inv(allowed[kept])
+        free = bool(abs(Z).max(axis=1, initial=0.0).all())  # none is forced to be zero
+        return Joint(tuple(stores), tuple(kept), Z, joinable and free)
+
+    def _is_quadratic(self, store):
+        _, costate = self.costates[store]
+        slopes = np.diff([costate(x) for x in (-2.0, -1.0, 0.0, 1.0, 2.0)])
+        _, element = self._element(self.branches[store].element)
+        return bool(np.ptp(slopes) <= CLOSE * abs(slopes).max()) and "count" not in element
+
+    def _give(self):
+        """Give all co-states: of those that are tied, what the joined states say."""
+        stores, kept, Z = self.joint.stores, self.joint.kept, self.joint.Z
+        given = {k: f(self.states[x]) for k, (x, f) in self.costates.items() if k not in stores}
+        if self.joint.joinable:
+            laws = [self.costates[k][1] for k in stores]
+            compliances = np.array([1 / (law(1.0) - law(0.0)) for law in laws])
+            rests = np.array([-law(0.0) for law in laws]) * compliances
+            x = np.array([self.states[self.costates[stores[n]][0]] for n in kept])
+            e = Z @ np.linalg.solve(Z.T @ (compliances[:, None] * Z), x - Z.T @ rests)
+            given |= dict(zip(stores, e, strict=True))
+        for k, value_there in given.items():
+            self.branches[k] = replace(self.branches[k], given=value_there)
+
+    def _join_rates(self, rates):
+        """Replace the rates of stores that are tied by those of the joined states, Z^T x'."""
+        symbols = [self.costates[k][0] for k in self.joint.stores]
+        own = np.array([rates.pop(symbol) for symbol in symbols])
+        for n, rate in zip(self.joint.kept, self.joint.Z.T @ own, strict=True):
+            rates[symbols[n]] = rate
 
     # The laws
 
@@ -177,7 +241,7 @@ class Tableau:
             for k, (branch, z, slope) in enumerate(zip(self.branches, given, slopes, strict=True)):
                 value_there = branch.law(z) - slope * z if branch.law else branch.given
                 right[len(self.nodes) + k] = value_there
-            solution = np.linalg.solve(matrix, right)
+            solution = self._solved(matrix, right)
             across, through = self._variables(solution)
             size = max(1.0, abs(solution).max())
             found = np.where([branch.across for branch in self.branches], through, across)
@@ -187,6 +251,12 @@ class Tableau:
             if change <= CLOSE * size:
                 return across, through, size
         raise AssertionError("the laws were not solved")
+
+    def _solved(self, matrix, right):
+        """Return a solution: where stores are tied, one of many with the same joined rates."""
+        if self.joint.stores:
+            return np.linalg.lstsq(matrix, right, rcond=CLOSE)[0]
+        return np.linalg.solve(matrix, right)
 
     def _variables(self, solution):
         potential = {n: solution[k] for n, k in self.nodes.items()}
@@ -204,6 +274,7 @@ class Tableau:
         flows = dict.fromkeys(self.temperatures, 0.0)
         for branch, e, t in zip(self.branches, across, through, strict=True):
             self._book(found, flows, branch, e, t)
+        self._join_rates(found.rates)
         for name, element in self.spec["elements"].items():
             self._book_heat(found, flows, name, element)
         for name, flow in flows.items():
@@ -279,3 +350,7 @@ def _slope(branch, z):
     if branch.law is None or linear is not None:
         return linear or 0.0
     return (branch.law(z + SLOPE_STEP) - branch.law(z - SLOPE_STEP)) / (2 * SLOPE_STEP)
+
+
+def _rank(matrix):
+    return np.linalg.matrix_rank(matrix, tol=SINGULAR)

@@ -264,14 +264,6 @@ def test_proofs(case):
 
 
 REFUSED = {
-    "two capacitors in parallel": (
-        """
-        C1 = { kind = "capacitor", between = ["in2", "gnd"], capacitance = "C" }
-        C2 = { kind = "capacitor", between = ["in2", "gnd"], capacitance = "C" }
-        R1 = { kind = "resistor", between = ["in", "in2"], current = "v/R", heats = "body" }
-        """,
-        "'C1', 'C2' fix each other",
-    ),
     "a voltage source across a capacitor": (
         'C1 = { kind = "capacitor", between = ["in", "gnd"], capacitance = "C" }',
         "'source', 'C1' fix each other",
@@ -306,14 +298,6 @@ REFUSED = {
             for n in range(9)
         ),
         "expected at most 8 that do",
-    ),
-    "two masses on one node": (
-        """
-        R0 = { kind = "resistor", between = ["in", "gnd"], current = "v/R", heats = "body" }
-        m1 = { kind = "mass", at = "a", mass = "m" }
-        m2 = { kind = "mass", at = "a", mass = "m" }
-        """,
-        "'m1', 'm2' fix each other",
     ),
     "two banks in series through a bare node": (
         """

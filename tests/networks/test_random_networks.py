@@ -20,6 +20,7 @@ def features(spec, _):
     has = {
         "a list of values": any(isinstance(value, list) for value in values),
         "a loop of resistors": bool(iphs.junction.slopes),
+        "joined stores": bool(iphs.junction.joints),
         "two banks": sum("count" in element for element in elements) > 1,
     }
     return {element["kind"] for element in elements} | {
@@ -36,6 +37,7 @@ def check_seen(outcomes, *, missing):
     """Check that both outcomes are frequent, and that what derives is not only what is simple."""
     found, refused = set().union(*outcomes), outcomes.count(set())
     wanted = {*elements.KINDS, "a list of values", "a loop of resistors", "two banks"}
+    wanted.add("joined stores")
     assert found <= wanted
     assert len(wanted - found) <= missing
     assert len(outcomes) / 20 <= refused <= len(outcomes) / 2

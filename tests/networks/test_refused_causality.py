@@ -12,6 +12,7 @@ from drawing import (
     damper,
     force,
     inductor,
+    line,
     mass,
     refused,
     resistor,
@@ -31,15 +32,45 @@ SERIES = "merge those in series into one, or put a capacitor between their node 
 CUBIC = {"current": "v**3/R"}
 
 CONFLICTS = {
-    "two capacitors in parallel": (
-        LC + capacitor("C2", "a", "gnd"),
-        "elements 'C1', 'C2' fix each other's voltage at node 'a'",
+    "two capacitors in parallel across a voltage source": (
+        voltage("s", "a", "gnd") + capacitor("C1", "a", "gnd") + capacitor("C2", "a", "gnd"),
+        "elements 's', 'C1' fix each other's voltage at node 'a'",
         MERGE,
     ),
-    "three capacitors in a loop": (
-        capacitor("C1", "a", "gnd") + capacitor("C2", "a", "b") + capacitor("C3", "b", "gnd"),
-        "elements 'C1', 'C2', 'C3' fix each other's voltage",
+    "a force between two springs in series": (
+        spring("s1", "wall", "a") + spring("s2", "a", "b") + force("s", "a") + mass("m1", "b"),
+        "elements 's1', 's2', 's' fix each other's force at node 'a'",
+        "put a mass at the node between them",
+    ),
+    "two capacitors in parallel, one of which saturates": (
+        LC + line("C2", "capacitor", between=["a", "gnd"], capacitance="C/(1 + Q**2)"),
+        "elements 'C1', 'C2' fix each other's voltage at node 'a', and the energy of 'C2' is not "
+        "quadratic",
         MERGE,
+    ),
+    "two springs in series, one with a kink": (
+        spring("s1", "wall", "a")
+        + line("s2", "spring", between=["a", "b"], stiffness="k if q < 0 else 2*k")
+        + mass("m1", "b"),
+        "elements 's1', 's2' fix each other's force at node 'a', and the energy of 's2' is not "
+        "quadratic",
+        "put a mass at the node between them",
+    ),
+    "an inductor and a mass on a transducer that is warm": (
+        inductor("L1", "a", "gnd")
+        + mass("m1", "x")
+        + transducer("t", ("a", "gnd"), ("x", "wall"), "a*T/T_0", temperature="body")
+        + BODY,
+        "elements 'L1', 'm1' fix each other's variables through 't', and the ratio of 't' is not "
+        "of parameters alone",
+        "or a capacitor or mass at a node",
+    ),
+    "four free inertias in one bar": (
+        "".join(mass(f"m{n}", f"n{n}") for n in range(6))
+        + coupling("l1", "lever", ("n0", "n1"), ("n2", "wall"))
+        + coupling("l2", "lever", ("n4", "n2"), ("n3", "n5")),
+        "'m0', 'm1', 'm3', 'm4', 'm2', 'm5' are joined into 4 states that depend on each other",
+        "at most 3",
     ),
     "a voltage source across a capacitor": (
         voltage("s", "a", "gnd") + capacitor("C1", "a", "gnd"),
@@ -50,11 +81,6 @@ CONFLICTS = {
         voltage("s", "a", "gnd") + voltage("s2", "a", "gnd") + inductor("L1", "a", "gnd"),
         "elements 's', 's2' fix each other's voltage at node 'a'",
         MERGE,
-    ),
-    "two inductors in series through a bare node": (
-        capacitor("C1", "a", "gnd") + inductor("L1", "a", "b") + inductor("L2", "b", "gnd"),
-        "elements 'L1', 'L2' fix each other's current at node 'b'",
-        SERIES,
     ),
     "a current source into an inductor": (
         current("s", "gnd", "a") + inductor("L1", "a", "gnd"),
@@ -68,45 +94,18 @@ CONFLICTS = {
     ),
     "a bank in series with an inductor": (
         voltage("s", "in", "gnd") + bank("h1", "in", "n") + inductor("L1", "n", "gnd") + BODY,
-        "elements 'h1', 'L1' fix each other's current at node 'n'",
+        "elements 'h1', 'L1' fix each other's current at node 'n', and 'h1' is a bank, which is",
         SERIES,
-    ),
-    "two masses on one node": (
-        mass("m1", "a") + mass("m2", "a") + spring("s1", "a", "wall"),
-        "elements 'm1', 'm2' fix each other's velocity at node 'a'",
-        "put a spring or damper between them",
     ),
     "a velocity source on a mass": (
         velocity("s", "a") + mass("m1", "a"),
         "elements 's', 'm1' fix each other's velocity at node 'a'",
         "put a spring or damper between them",
     ),
-    "two springs in series through a bare node": (
-        spring("s1", "wall", "a") + spring("s2", "a", "b") + mass("m1", "b"),
-        "elements 's1', 's2' fix each other's force at node 'a'",
-        "put a mass at the node between them",
-    ),
     "a force on a spring without a mass": (
         force("s", "a") + spring("s1", "a", "wall"),
         "elements 's', 's1' fix each other's force at node 'a'",
         "put a mass at the node between them",
-    ),
-    "two masses on a lever": (
-        mass("m1", "x") + mass("m2", "y") + coupling("lev", "lever", ("x", "wall"), ("y", "wall")),
-        "elements 'm1', 'm2' fix each other's velocity through 'lev'",
-        "put a damper between two of them, or a mass at a node",
-    ),
-    "two inductors on a transformer": (
-        inductor("L1", "x", "gnd")
-        + inductor("L2", "y", "gnd")
-        + coupling("tr", "transformer", ("x", "gnd"), ("y", "gnd")),
-        "elements 'L1', 'L2' fix each other's current through 'tr'",
-        "put a resistor between two of them, or a capacitor at a node",
-    ),
-    "an inductor and a mass on a transducer": (
-        inductor("L1", "a", "gnd") + mass("m1", "x") + transducer("t", ("a", "gnd"), ("x", "wall")),
-        "elements 'L1', 'm1' fix each other's variables through 't'",
-        "or a capacitor or mass at a node",
     ),
     "two transformers side by side": (
         capacitor("C1", "x", "gnd")

@@ -13,8 +13,7 @@ from typing import TypeAlias
 
 from piezo_sym.errors import SpecError, quote
 from piezo_sym.expressions.enclosure import Interval, UndecidedError, holds_surely, interval_of
-from piezo_sym.expressions.parse import parse_law
-from piezo_sym.expressions.tree import Expr, Num, names
+from piezo_sym.expressions.tree import Expr, names
 from piezo_sym.spec.elements.base import state_symbol
 from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.tables import (
@@ -24,6 +23,7 @@ from piezo_sym.spec.tables import (
     conditions,
     lane_parameters,
     orders,
+    starts,
     states,
     temperatures,
 )
@@ -80,13 +80,11 @@ def _check_lists(spec: Tables) -> None:
 
 def _starts(spec: Tables, symbol: str, lanes: Mapping[str, Values]) -> Iterator[Interval]:
     """Yield the initial values of a state, one, or one per lane where lanes differ."""
-    start, where = spec.initial.get(symbol, 0.0), f"initial.{symbol}"
-    parts = start if isinstance(start, tuple) else (start,)
-    for n, part in enumerate(parts):
-        tree = parse_law(part, where) if isinstance(part, str) else Num(Fraction(part))
+    parts = starts(spec, symbol)
+    for n, tree in enumerate(parts):
         words = names(tree)
         for lane in range(_count(words, lanes)) if len(parts) == 1 else (n,):
-            yield _value(tree, _at(lane, words, lanes), where)
+            yield _value(tree, _at(lane, words, lanes), f"initial.{symbol}")
 
 
 def _value(tree: Expr, values: Mapping[str, Interval], where: str) -> Interval:

@@ -1,0 +1,265 @@
+"""What stores that depend on each other are joined into: few states, with the energy of all.
+
+Input: solved junction laws, in which the stores that others decide give their rates.  Output: the
+circuit without them, and a `Joint` for each group.  With the co-states e = Z e_r that the junctions
+allow, rests x_0 and e = Q (x - x_0),
+
+    x_r = Z^T x     e_r = A^-1 y     U_r = y^T A^-1 y/2     y = x_r - Z^T x_0     A = Z^T Q^-1 Z.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import final
+
+import sympy as sp
+
+from piezo_sym.algebra.coefficients import coefficient
+from piezo_sym.errors import NetworkError, SpecError, listing, quote
+from piezo_sym.expressions.calculus import add, div, inserted, mul, neg, power
+from piezo_sym.expressions.tree import (
+    ONE,
+    ZERO,
+    Add,
+    Div,
+    Expr,
+    Mul,
+    Neg,
+    Num,
+    Sym,
+    evaluate,
+    names,
+)
+from piezo_sym.network.inverse import constant_slope
+from piezo_sym.network.kirchhoff import Laws
+from piezo_sym.spec.circuit import Circuit, Placed
+from piezo_sym.spec.elements.ports import Coupling, Storage
+from piezo_sym.spec.model import Model
+from piezo_sym.spec.tables import conditions, law_fields, starts
+
+#: Co-states of initial values agree to this, relative to their terms.
+CLOSE = 1e-9
+#: The inverse of a larger matrix would have thousands of terms.
+MOST_KEPT = 3
+TWO = Num(Fraction(2))
+
+
+@final
+@dataclass(frozen=True)
+class Member:
+    """A store that is joined with others.
+
+    Attributes
+    ----------
+    element, store : as the spec declares it.
+    shares : its row of Z: its co-state is that sum of the co-states of those kept.
+    compliance, rest : 1/Q and x_0: its co-state is (x - x_0)/compliance.
+    """
+
+    element: str
+    store: Storage
+    shares: tuple[Expr, ...]
+    compliance: Expr
+    rest: Expr
+
+    @property
+    def energy(self) -> Expr:
+        """The energy of this store alone, in its co-state."""
+        return Div(mul(self.compliance, power(Sym(self.store.costate), Fraction(2))), TWO)
+
+
+@final
+@dataclass(frozen=True)
+class Joint:
+    """Stores that are joined: those kept, whose symbols the states have, then the others."""
+
+    kept: tuple[Member, ...]
+    followers: tuple[Member, ...]
+
+    @property
+    def members(self) -> tuple[Member, ...]:
+        """All that are joined."""
+        return (*self.kept, *self.followers)
+
+    def costate(self, member: Member) -> Expr:
+        """Return the co-state of a member in those of the stores kept."""
+        costates = (Sym(other.store.costate) for other in self.kept)
+        return add(*map(mul, member.shares, costates))
+
+    def start(self, model: Model, state: str) -> Expr:
+        """Return the initial value Z^T x of a state that is kept."""
+        n = next(n for n, member in enumerate(self.kept) if member.store.state == state)
+        return add(*(mul(m.shares[n], *starts(model, m.store.state)) for m in self.members))
+
+
+def joined(laws: Laws) -> tuple[Circuit, tuple[Joint, ...]]:
+    """Return the circuit without the stores that others decide, and what they were joined into.
+
+    Raises
+    ------
+    SpecError
+        If initial values disagree, or something depends on the state of a store that is not kept.
+    NetworkError
+        If too many states are joined with each other.
+    """
+    Z = [
+        {number: laws.expression(share) for (_, number), share in laws.answers["R", m][0].items()}
+        for m in range(len(laws.followers))
+    ]
+    circuit, joints = laws.circuit, list[Joint]()
+    for kept, followers in _groups(Z):
+        states = [laws.states[n] for n in kept] + [laws.followers[m] for m in followers]
+        stores = [(placed, port) for placed, port in states if isinstance(port, Storage)]
+        rows = [{n: sp.S.One} for n in kept] + [Z[m] for m in followers]
+        shares = sp.Matrix([[row.get(n, sp.S.Zero) for n in kept] for row in rows])
+        joint = _joint(circuit, stores, shares)
+        _check_uses(circuit.model, joint)
+        _check_starts(circuit.model, joint)
+        for (placed, _), port in zip(stores, _states(circuit, joint, shares), strict=False):
+            circuit = circuit.replaced(placed, port)
+        joints.append(joint)
+    gone = [placed for placed, _ in laws.followers]
+    left = tuple(placed for placed in circuit.ports if placed not in gone)
+    return replace(circuit, ports=left), tuple(joints)
+
+
+def _groups(Z: list[dict[int, sp.Expr]]) -> list[tuple[list[int], list[int]]]:
+    """Return (kept, followers) of each group of stores that have to do with each other."""
+    groups: list[tuple[list[int], list[int]]] = []
+    for m, row in enumerate(Z):
+        near = [group for group in groups if not row.keys().isdisjoint(group[0])]
+        groups = [group for group in groups if group not in near]
+        kept = sorted({*row, *(n for group in near for n in group[0])})
+        groups.append((kept, [*(other for group in near for other in group[1]), m]))
+    return [(kept, sorted(followers)) for kept, followers in groups]
+
+
+def _joint(circuit: Circuit, stores: list[tuple[Placed, Storage]], shares: sp.Matrix) -> Joint:
+    """Return stores with their rows of Z, those kept first."""
+    ratios = _ratios(circuit)
+    members = [
+        Member(
+            placed.element,
+            store,
+            tuple(inserted(coefficient(share), ratios) for share in shares.row(i)),
+            _compliance(store),
+            _rest(store),
+        )
+        for i, (placed, store) in enumerate(stores)
+    ]
+    count = shares.cols
+    if count > MOST_KEPT:
+        named = listing(quote(member.element) for member in members)
+        remedy = "put a spring or damper, or a resistor, between some of them"
+        raise NetworkError(
+            f"{named} are joined into {count} states that depend on each other",
+            "network",
+            f"at most {MOST_KEPT}",
+            remedy,
+        )
+    return Joint(tuple(members[:count]), tuple(members[count:]))
+
+
+def _ratios(circuit: Circuit) -> dict[str, Expr]:
+    return {port.name: port.ratio for _, port in circuit.of(Coupling)}
+
+
+def _compliance(store: Storage) -> Expr:
+    """Return 1/Q of a store whose energy is quadratic."""
+    slope = constant_slope(store.law, store.state) or ONE
+    return slope.right if isinstance(slope, Div) and slope.left == ONE else div(ONE, slope)
+
+
+def _rest(store: Storage) -> Expr:
+    """Return the state at which the co-state of a store is zero."""
+    match store.law:
+        case Div(Sym(), _) | Mul(_, Sym()):
+            return ZERO
+        case Mul(_, Add((Sym(), Neg(rest)))):
+            return rest
+    return neg(mul(_compliance(store), inserted(store.law, {store.state: ZERO})))
+
+
+def _states(circuit: Circuit, joint: Joint, Z: sp.Matrix) -> Iterator[Storage]:
+    """Yield the stores that are kept, with the energy of all: e_r = A^-1 y."""
+    sizes = [sp.Dummy() for _ in joint.members]
+    words = [member.compliance for member in joint.members]
+    A, ratios = Z.T * sp.diag(*sizes) * Z, _ratios(circuit)
+
+    def spelled(expr: sp.Expr) -> Expr:
+        """Return a polynomial in compliances, its terms in the order of their stores."""
+        terms = sp.Poly(expr, *sizes).terms()
+        return add(*(_term(inserted(coefficient(c), ratios), powers, words) for powers, c in terms))
+
+    divisor, adjugate = spelled(A.det()), A.adjugate().applyfunc(sp.expand)
+    y = [_beyond_rest(joint, n) for n in range(Z.cols)]
+    tops = [
+        add(*(mul(spelled(entry), y[m]) for m, entry in enumerate(adjugate.row(n))))
+        for n in range(Z.cols)
+    ]
+    energy = div(add(*map(mul, y, tops)), mul(TWO, divisor)) if Z.cols > 1 else None
+    for member, top in zip(joint.kept, tops, strict=True):
+        others = listing(quote(other.element) for other in joint.followers)
+        doc = f"{member.store.doc}, joined with {others}"
+        yield replace(member.store, law=div(top, divisor), energy=energy, doc=doc)
+
+
+def _term(value: Expr, powers: tuple[int, ...], words: list[Expr]) -> Expr:
+    """Return a coefficient times powers of compliances."""
+    for word, exponent in zip(words, powers, strict=True):
+        value = mul(value, power(word, Fraction(exponent))) if exponent else value
+    return value
+
+
+def _beyond_rest(joint: Joint, n: int) -> Expr:
+    """Return x_r - Z^T x_0 of one of the states."""
+    rest = add(*(mul(member.shares[n], member.rest) for member in joint.members))
+    return add(Sym(joint.kept[n].store.state), neg(rest))
+
+
+# What is said of their states
+
+
+def _check_uses(model: Model, joint: Joint) -> None:
+    """Refuse laws and conditions that use the state of a store that is not kept."""
+    used = [(c.where, {*names(c.tree)}) for c in conditions(model)]
+    for name, element in model.elements.items():
+        laws = law_fields(name, element)
+        used += [(law.where, {*names(law.tree)}.difference(law.letters)) for law in laws]
+    for store in (member.store for member in joint.followers):
+        for where, words in used:
+            if store.state in words:
+                kept = listing(quote(member.store.state) for member in joint.kept)
+                what = f"{quote(store.state)} is joined into {kept}, and no state of its own"
+                raise SpecError(what, where, remedy=f"write it with {kept}: see piezo-sym show")
+
+
+def _check_starts(model: Model, joint: Joint) -> None:
+    """Refuse initial values, if any are said, with co-states that joined stores cannot have."""
+    if model.initial.keys().isdisjoint(member.store.state for member in joint.members):
+        return
+    values = {n: p.si for n, p in model.parameters.items() if isinstance(p.si, float)}
+    values |= {name: entry.si for name, entry in model.inputs.items()}
+    costates = [_start(model, member, values) for member in joint.kept]
+    for member in joint.followers:
+        found, store = _start(model, member, values), member.store
+        terms = [evaluate(z, values) * e for z, e in zip(member.shares, costates, strict=True)]
+        if abs(found - sum(terms)) > CLOSE * max(abs(found), *map(abs, terms)):
+            given = listing(
+                f"{other.store.costate} = {e:g} {other.store.units[1]}"
+                for other, e in zip(joint.kept, costates, strict=True)
+            )
+            there = sum(terms) * evaluate(member.compliance, values) + evaluate(member.rest, values)
+            what = f"{quote(member.element)} is joined, and starts with {store.costate} = {found:g}"
+            expected = f"{sum(terms):g} {store.units[1]}, as {given}"
+            remedy = f"give {store.state} = {there:.12g}"
+            raise SpecError(what, f"initial.{store.state}", expected, remedy)
+
+
+def _start(model: Model, member: Member, values: Mapping[str, float]) -> float:
+    """Return the co-state of a store at the initial value that is said of it."""
+    (start,) = starts(model, member.store.state)
+    beyond = evaluate(start, values) - evaluate(member.rest, values)
+    return beyond / evaluate(member.compliance, values)
