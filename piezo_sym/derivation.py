@@ -1,6 +1,7 @@
 """Model to irreversible port-Hamiltonian system: the table of contents of the derivation.
 
     stage        from -> to                    what happens                           in
+    flatten      Model -> Model                components become elements             spec
     circuit      Model -> Circuit              elements state their ports             spec
     symbols      Circuit -> SymbolTable        names become SymPy symbols             algebra
     junction     Circuit -> Junction           Kirchhoff's and Newton's laws solved   network
@@ -44,7 +45,7 @@ def derive(model: Model) -> IPHS:
     if not isinstance(model, Model):
         remedy = "load it first: derive(load('piezo_stack'))"
         raise UsageError(f"{quote(model)} is no Model", "derive", remedy=remedy)
-    circuit = circuit_of(model)
+    circuit = circuit_of(model.flatten())
     symbols = symbol_table(circuit)
     junction = junction_of(circuit, symbols)
     return iphs_of(symbols, junction)

@@ -36,7 +36,9 @@ class PiezoError(Exception):
 
     def __str__(self) -> str:
         """Return the error as one line of printable text."""
-        where = self.where if len(self.where) <= MAX_PLACE else f"{self.where[: MAX_PLACE - 3]}..."
+        where = self.where
+        if len(where) > MAX_PLACE:
+            where = f"{where[: MAX_PLACE // 2]}...{where[-MAX_PLACE // 2 + 3 :]}"
         parts = [f"{where}: {self.what}" if where else self.what]
         if self.expected:
             parts.append(f"expected {self.expected}")

@@ -77,6 +77,10 @@ def _identified(spec: str | Path | Model) -> tuple[str, str, Model | None]:
         refuse_no_model(spec)
         return spec.name, spec.sha256, spec
     content = data(read(find(spec)))
+    if "components" in content:  # their files count too
+        from piezo_sym.spec.load import load
+
+        return _identified(load(spec))
     header = content.get("model")
     name = header.get("name") if isinstance(header, dict) else None
     known = isinstance(name, str) and name.isidentifier() and len(name) <= MAX_NAME

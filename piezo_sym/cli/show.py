@@ -26,11 +26,12 @@ def show(
     from piezo_sym.spec.load import load
 
     with about(spec):
-        iphs = derive(load(spec))
+        model = load(spec)
+        iphs = derive(model)
     if latex:
         typer.echo(iphs.latex())
         return
-    for line in _head(iphs.model):
+    for line in (*_head(model), *_banks(iphs.model), ""):
         typer.echo(line)
     _elements(iphs.model)
     for line in _equations(iphs):
@@ -38,14 +39,19 @@ def show(
 
 
 def _head(model: Model) -> Iterator[str]:
-    from piezo_sym.spec.tables import banks
-
     header = model.model
     yield f"{header.name}: {header.title}" if header.title else header.name
     yield from ([f"source: {header.source}"] if header.source else [])
+    for name, part in model.components.items():
+        without = f", without {', '.join(part.without)}" if part.without else ""
+        yield f"component '{name}': {part.spec.text or part.spec.model.model.name}{without}"
+
+
+def _banks(model: Model) -> Iterator[str]:
+    from piezo_sym.spec.tables import banks
+
     for bank, count in banks(model).items():
         yield f"bank '{bank}': lanes j = 1..r for any r = {bank}_count; {count} in the spec"
-    yield ""
 
 
 def _elements(model: Model) -> None:

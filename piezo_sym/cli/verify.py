@@ -93,7 +93,9 @@ def _rechecked(spec: str, report: Report) -> Recheck:
     from piezo_sym.spec.source import find, read
     from piezo_sym.verification.recheck import recheck
 
-    return recheck(read(find(spec)), proofs_json(report, load(spec), ""))
+    model = load(spec)
+    text = model.flatten().to_toml() if model.components else read(find(spec))
+    return recheck(text, proofs_json(report, model, ""))
 
 
 def _rows(report: Report, second: Recheck | None) -> list[dict[str, object]]:

@@ -9,10 +9,8 @@ from collections.abc import Iterator
 
 from piezo_sym.errors import NetworkError, listing, nearest, with_article
 from piezo_sym.spec.circuit import Circuit
-from piezo_sym.spec.elements.domains import DOMAINS, PhysicalDomain
+from piezo_sym.spec.elements.domains import REFERENCES, PhysicalDomain
 from piezo_sym.spec.elements.ports import Branch, Coupling, DissipativePort, Source, Storage
-
-REFERENCES = {domain.reference: domain for domain in DOMAINS}
 
 
 def is_reference(node: str) -> bool:

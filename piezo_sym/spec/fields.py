@@ -1,16 +1,19 @@
 """The tables of a spec, field by field, as frozen pydantic types.
 
-Input: TOML data or Python arguments.  Output: `Header`, `Parameter`, `Input`, `Domain` and the type
-of an element, each right in itself; what must hold between them is `check`'s.
+Input: TOML data or Python arguments.  Output: `Header`, `Parameter`, `Input`, `Domain`, `Component`
+and the type of an element, each right in itself; what must hold between them is `check`'s.
 """
 
 import math
+from dataclasses import dataclass, field
 from typing import Annotated, Any, Union, final
 
 from pydantic import (
     AfterValidator,
     BeforeValidator,
     Field,
+    InstanceOf,
+    PlainSerializer,
     StrictStr,
     StringConstraints,
     WithJsonSchema,
@@ -19,6 +22,7 @@ from pydantic import (
 from piezo_sym.expressions.units import Unit, parse_unit, to_si
 from piezo_sym.spec.elements import KINDS
 from piezo_sym.spec.elements.base import Frozen
+from piezo_sym.spec.elements.marks import Node
 from piezo_sym.spec.table import Table
 
 MAX_TEXT = 400
@@ -41,6 +45,10 @@ def _values(value: Any) -> float | tuple[float, ...]:
     if isinstance(value, (list, tuple)) and value:
         return tuple(_number(item) for item in value)
     return _number(value)
+
+
+def _replacement(value: Any) -> str | float | tuple[float, ...]:
+    return value if isinstance(value, str) else _values(value)
 
 
 def _law_or_number(value: Any) -> str | float:
@@ -72,6 +80,11 @@ LAW_OR_NUMBER: Schema = NUMBER | {"type": ["number", "string"]}
 Number = Annotated[float, BeforeValidator(_number), WithJsonSchema(NUMBER)]
 Values = Annotated[
     float | tuple[float, ...], BeforeValidator(_values), WithJsonSchema(_one_or_list(NUMBER))
+]
+Replacement = Annotated[
+    str | float | tuple[float, ...],
+    BeforeValidator(_replacement),
+    WithJsonSchema(_one_or_list(NUMBER) | {"type": ["number", "string", "array"]}),
 ]
 Start = Annotated[
     str | float | tuple[str | float, ...],
@@ -157,6 +170,42 @@ class Domain(Frozen):
 AnyElement: Any = Annotated[Union[tuple(KINDS.values())], Field(discriminator="kind")]  # noqa: UP007
 
 
+@final
+@dataclass(frozen=True)
+class Included:
+    """The model of a component, and the text that names it, where a text does."""
+
+    model: "Tables"
+    text: str = field(default="", compare=False)
+
+
+@final
+class Component(Frozen):
+    """A model as a part of another; its names get the component's name in front."""
+
+    spec: Annotated[
+        InstanceOf[Included],
+        PlainSerializer(lambda included: included.text),
+        WithJsonSchema({"type": "string"}),
+        Field(description="A shipped name, or the path of a spec in this file's folder."),
+    ]
+    nodes: Annotated[
+        Table[Node], Field(description="Its nodes on ours; others become '<component>.<node>'.")
+    ] = Table()
+    parameters: Annotated[
+        Table[Replacement],
+        Field(description="Values of its parameters, in its units, or parameters of this spec."),
+    ] = Table()
+    inputs: Annotated[
+        Table[StrictStr],
+        Field(description="Inputs of this spec for its own; others become '<component>_<input>'."),
+    ] = Table()
+    without: Annotated[
+        tuple[StrictStr, ...],
+        Field(description="Elements that are left out, with inputs that only they used."),
+    ] = ()
+
+
 class Tables(Frozen):
     """All tables of a spec, each right in itself."""
 
@@ -165,4 +214,5 @@ class Tables(Frozen):
     inputs: Table[Input] = Table()
     domain: Domain = Domain()
     initial: Table[Start] = Table()
-    elements: Table[AnyElement]
+    components: Table[Component] = Table()
+    elements: Table[AnyElement] = Table()

@@ -6,10 +6,11 @@ name.  All text from users comes in here.
 
 from pathlib import Path
 
-from piezo_sym.errors import PiezoError, SpecError, quote
+from piezo_sym.errors import SpecError, quote
 from piezo_sym.spec.checks.names import check_model_name
+from piezo_sym.spec.components import Reader
 from piezo_sym.spec.model import Model
-from piezo_sym.spec.source import data, find, read, shipped
+from piezo_sym.spec.source import find, shipped
 
 STARTER = Path(__file__).with_name("starter.toml")
 OWN_NAME = 'name  = "starter"'
@@ -27,12 +28,11 @@ def load(spec: str | Path) -> Model:
     FileError
         If the file cannot be read.
     SpecError
-        If it is not a spec; the message names the place.
+        If it, or a component, is not a spec; the message names the place.
     UsageError
         If `spec` is neither text nor a path.
     """
-    path = find(spec)
-    return parse(read(path), path.name)
+    return Reader(Model).file(find(spec))
 
 
 def parse(text: str, source: str = "spec") -> Model:
@@ -43,11 +43,7 @@ def parse(text: str, source: str = "spec") -> Model:
     SpecError
         If the text is not a spec; the message begins with `source`.
     """
-    try:
-        return Model(**data(text))
-    except PiezoError as error:
-        error.where = f"{source}: {error.where}" if error.where else source
-        raise
+    return Reader(Model).text(text, source, None)
 
 
 def starter(name: str, where: str = "name") -> str:

@@ -12,13 +12,14 @@ from pydantic_core import ErrorDetails
 
 from piezo_sym.errors import SpecError, listing, nearest, quote
 from piezo_sym.spec.elements import KINDS
-from piezo_sym.spec.fields import Domain, Header, Input, Parameter, Tables
+from piezo_sym.spec.fields import Component, Domain, Header, Input, Parameter, Tables
 
 TABLES: Mapping[str, type[BaseModel]] = {
     "model": Header,
     "parameters": Parameter,
     "inputs": Input,
     "domain": Domain,
+    "components": Component,
 }
 
 

@@ -22,6 +22,7 @@ TABLES = {
     "parameters": "Constants of the model, by symbol.",
     "inputs": "Inputs of the model, by symbol, in the order in which modules take them.",
     "initial": "Initial states by symbol, in SI; 0 if not said; laws of parameters and inputs.",
+    "components": "Other models as parts of this one, by name; see their fields.",
     "elements": "Elements by name; states and processes follow their order.",
 }
 

@@ -95,13 +95,14 @@ def temperatures(spec: Tables) -> dict[str, str]:
     return {"T": found[0]} if single else {f"T_{name}": name for name in found}
 
 
-def seen(spec: Tables, name: str) -> Iterator[str]:
-    """Yield the names that a law of an element may use that sees more than its own state.
+def seen(spec: Tables) -> Iterator[str]:
+    """Yield the names that a law may use that sees more than its own state.
 
-    These are states, of banks only those of the element's own lane, and ``T_<element>``.
+    These are states, but for those of banks, which only laws in the same lane see, and
+    ``T_<element>``.
     """
     sizes = banks(spec)
-    yield from (s for s, owner in states(spec).items() if owner == name or owner not in sizes)
+    yield from (symbol for symbol, owner in states(spec).items() if owner not in sizes)
     yield from (f"T_{body}" for body in bodies(spec))
 
 

@@ -10,12 +10,12 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from piezo_sym.errors import UsageError, nearest, quote
-from piezo_sym.expressions.parse import parse_condition, parse_law
-from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import Cmp, names, rename
+from piezo_sym.expressions.parse import parse_condition
+from piezo_sym.expressions.tree import names
 from piezo_sym.spec.elements.base import Element, state_symbol
 from piezo_sym.spec.model import Model
-from piezo_sym.spec.tables import banks, condition_text, lane_parameters, law_fields, states
+from piezo_sym.spec.rename import relawed, reworded, started
+from piezo_sym.spec.tables import banks, lane_parameters, states
 
 
 def unroll(model: Model, counts: Mapping[str, int]) -> Model:
@@ -87,11 +87,7 @@ def _elements(model: Model, sizes: Mapping[str, int], split: Mapping[str, int]) 
 
 def _lane(name: str, element: Element, lane: int, split: Mapping[str, int]) -> Element:
     symbol = state_symbol(element, name)
-    laws = {
-        law.where.rpartition(".")[2]: spell(rename(law.tree, words))
-        for law in law_fields(name, element)
-        if (words := _words(lane, {*split, symbol} - {*law.letters})).keys() & set(names(law.tree))
-    }
+    laws = relawed(element, _words(lane, {*split, symbol}))
     return element.model_copy(update={**laws, "count": None, "state": f"{symbol}_{lane}"})
 
 
@@ -110,23 +106,15 @@ def _initial(model: Model, sizes: Mapping[str, int], split: Mapping[str, int]) -
         starts = start if isinstance(start, tuple) else (start,)
         for lane in range(1, size + 1):
             own = starts[lane - 1] if len(starts) == size else starts[0]
-            yield f"{symbol}_{lane}", _start(own, _words(lane, split))
-
-
-def _start(start: str | float, words: Mapping[str, str]) -> str | float:
-    if not isinstance(start, str):
-        return start
-    return spell(rename(parse_law(start, "initial"), words))
+            yield f"{symbol}_{lane}", started(own, _words(lane, split))
 
 
 def _assumptions(model: Model, sizes: Mapping[str, int], split: Mapping[str, int]) -> Any:
     lanes = {s: sizes[name] for s, name in states(model).items() if name in sizes}
     lanes |= split
     for text in model.domain.assume:
-        tree = parse_condition(text, "domain.assume")
-        count = max((lanes[word] for word in names(tree) if word in lanes), default=0)
-        for lane in range(1, count + 1):
-            words = _words(lane, lanes)
-            yield condition_text(Cmp(tree.op, rename(tree.left, words), rename(tree.right, words)))
+        used = names(parse_condition(text, "domain.assume"))
+        count = max((lanes[word] for word in used if word in lanes), default=0)
+        yield from (reworded(text, _words(lane, lanes)) for lane in range(1, count + 1))
         if not count:
             yield text

@@ -19,7 +19,8 @@ def to_toml(data: Mapping[str, Any]) -> str:
     blocks = [_table("model", data["model"])]
     blocks += [_lines(name, data[name]) for name in ("parameters", "inputs") if data.get(name)]
     blocks += [_table(name, data[name]) for name in ("domain", "initial") if data.get(name)]
-    blocks += [_table(f"elements.{name}", fields) for name, fields in data["elements"].items()]
+    for kind in ("components", "elements"):
+        blocks += [_table(f"{kind}.{name}", row) for name, row in data.get(kind, {}).items()]
     return "\n".join(blocks)
 
 
@@ -28,8 +29,7 @@ def _table(name: str, fields: Mapping[str, Any]) -> str:
 
 
 def _lines(name: str, rows: Mapping[str, Mapping[str, Any]]) -> str:
-    lines = [f"{_key(key)} = {{ {', '.join(_pairs(row))} }}" for key, row in rows.items()]
-    return "\n".join([f"[{name}]", *lines, ""])
+    return "\n".join([f"[{name}]", *_pairs(rows), ""])
 
 
 def _pairs(row: Mapping[str, Any]) -> list[str]:
@@ -43,6 +43,8 @@ def _key(key: str) -> str:
 def _value(value: Any) -> str:
     if isinstance(value, (list, tuple)):
         return f"[{', '.join(_value(item) for item in value)}]"
+    if isinstance(value, Mapping):
+        return f"{{ {', '.join(_pairs(value))} }}"
     return _dumped({"value": value}).partition("= ")[2]
 
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections import ChainMap
 from collections.abc import Collection, Mapping
 
 from piezo_sym.errors import SpecError, listing, nearest, quote
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import Node, names
 from piezo_sym.spec.elements import KINDS
-from piezo_sym.spec.elements.base import Element
+from piezo_sym.spec.elements.base import Element, state_symbol
 from piezo_sym.spec.elements.ports import Source
 from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.names import NAME
@@ -71,10 +72,11 @@ def check_laws(spec: Tables) -> None:
     """Parse every law, initial value and condition, and check the names in them."""
     one_body = len(bodies(spec)) == 1
     hot = {body: word for word, body in temperatures(spec).items()}
+    every = dict.fromkeys((*spec.parameters, *seen(spec)))
     for name, element in spec.elements.items():
-        every = dict.fromkeys((*spec.parameters, *seen(spec, name)))
+        own = {state_symbol(element, name): None} if element.letter else {}
         for law in law_fields(name, element):
-            words = every if law.mark.sees else spec.parameters
+            words: Collection[str] = ChainMap(own, every) if law.mark.sees else spec.parameters
             _check_words(spec, law.tree, law.where, law.letters, words, name)
             if {"T"} & {*law.letters} & {*names(law.tree)} and not one_body:
                 _check_body(element, law)

@@ -186,7 +186,11 @@ class Element(Frozen):
                     yield field, text, mark.of(self)
 
     def references(self) -> Iterator[tuple[str, str, str]]:
-        """Yield (field, what it refers to, the name given)."""
+        """Yield (field, 'input' or 'thermal_mass', the name given)."""
+        return (row for row in self.named() if row[1] != "node")
+
+    def named(self) -> Iterator[tuple[str, str, str]]:
+        """Yield (field, what it refers to, the name given); nodes, too."""
         for field, info in type(self).model_fields.items():
             for mark in info.metadata:
                 given = getattr(self, field)

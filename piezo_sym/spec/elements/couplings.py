@@ -5,7 +5,7 @@ from typing import Any, final
 
 from piezo_sym.spec.elements.base import Form
 from piezo_sym.spec.elements.domains import PhysicalDomain
-from piezo_sym.spec.elements.marks import Fields, OptionalBody, Pair, law_field
+from piezo_sym.spec.elements.marks import Fields, OptionalBody, OptionalPair, Pair, law_field
 from piezo_sym.spec.elements.ports import Branch, Coupling
 
 
@@ -50,7 +50,7 @@ class PairCoupling(Form):
         for field, domain in (self.first, *(pair[:2] for pair in self.second)):
             sample = [f"{domain.node}_{len(found) + 1}", domain.reference] * (len(found) < 2)
             chosen = field in self.one_of
-            found[field] = (Pair | None if chosen else Pair, None if chosen else ..., sample)
+            found[field] = (OptionalPair if chosen else Pair, None if chosen else ..., sample)
         return found
 
     @property

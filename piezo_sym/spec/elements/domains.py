@@ -112,3 +112,4 @@ HYDRAULIC = PhysicalDomain(
 )
 
 DOMAINS = (TRANSLATION, ELECTRICAL, ROTATION, HYDRAULIC)
+REFERENCES = {domain.reference: domain for domain in DOMAINS}

@@ -67,7 +67,7 @@ class Letters:
 @final
 @dataclass(frozen=True)
 class Refers:
-    """Marks a field as the name of something else in the spec: an 'input' or a 'thermal_mass'."""
+    """Marks a field as names of something else: of a 'node', an 'input' or a 'thermal_mass'."""
 
     to: str
 
@@ -76,9 +76,13 @@ _AT_REST = ", ".join(f"'{domain.reference}' ({domain.name})" for domain in DOMAI
 Node = Annotated[
     StrictStr,
     StringConstraints(pattern=r"^[A-Za-z0-9_.+-]{1,40}$"),
+    Refers("node"),
     Field(description=f"A node, any label; references: {_AT_REST}."),
 ]
-Pair = Annotated[tuple[Node, Node], Field(description="Two nodes, [first, second].")]
+Pair = Annotated[
+    tuple[Node, Node], Refers("node"), Field(description="Two nodes, [first, second].")
+]
+OptionalPair = Annotated[Pair | None, Refers("node")]
 Law = StrictStr  # each field adds its `Letters`
 InputName = Annotated[
     StrictStr, Refers("input"), Field(description="Name of an input, a key of [inputs].")

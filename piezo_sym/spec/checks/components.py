@@ -1,0 +1,78 @@
+"""Components of a spec: what they name exists, here or in their models, and units agree."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from piezo_sym.errors import SpecError, nearest, quote, with_article
+from piezo_sym.spec.elements.domains import REFERENCES
+from piezo_sym.spec.fields import Component, Input, Parameter, Tables
+from piezo_sym.spec.names import NAME, check_name
+from piezo_sym.spec.unit_text import quantity
+
+
+def check_component(spec: Tables, where: str, component: Component, model: Tables) -> None:
+    """Check a component of a spec; `model` is its own, without components.
+
+    Raises
+    ------
+    SpecError
+        Naming what it has not, or does not fit.
+    """
+    check_name(where.removeprefix("components."), where)
+    used = {node for e in model.elements.values() for _, to, node in e.named() if to == "node"}
+    for node in component.nodes:
+        if node in REFERENCES:
+            what = f"{quote(node)} is a reference, the same node in all models"
+            raise SpecError(what, f"{where}.nodes.{node}", remedy="leave it out")
+        _check_known(f"{where}.nodes.{node}", "node", node, used - REFERENCES.keys(), model)
+    for name, given in component.parameters.items():
+        place = f"{where}.parameters.{name}"
+        _check_known(place, "parameter", name, model.parameters, model)
+        if isinstance(given, str):
+            _check_fits(place, "parameter", given, spec.parameters, model.parameters[name])
+    for name, given in component.inputs.items():
+        place = f"{where}.inputs.{name}"
+        _check_known(place, "input", name, model.inputs, model)
+        _check_fits(place, "input", given, spec.inputs, model.inputs[name])
+    for name in component.without:
+        _check_known(f"{where}.without", "element", name, model.elements, model)
+    _check_left(where, component, model)
+
+
+def _check_known(where: str, what: str, name: str, known: Iterable[str], model: Tables) -> None:
+    if name not in known:
+        text = f"{quote(name)} is no {what} of '{model.model.name}'"
+        raise SpecError(text, where, remedy=nearest(name, known))
+
+
+def _check_fits(
+    where: str, what: str, given: str, known: Mapping[str, Any], meant: Parameter | Input
+) -> None:
+    """Refuse a name that this spec does not have, or that has another unit than is meant."""
+    if given not in known:
+        example = f'{given} = {{ value = 1.0, unit = "{meant.unit}" }}'
+        example = example.replace("value = 1.0, ", "") if what == "input" else example
+        other = f"{nearest(given, known)} or " if known else ""
+        remedy = f"{other}declare it in [{what}s]: {example}" if NAME.fullmatch(given) else other
+        expected = (
+            f"a number, or {with_article(what)}" if what == "parameter" else with_article(what)
+        )
+        raise SpecError(f"{quote(given)} is no {what} of this spec", where, expected, remedy)
+    found = known[given].dimension.dimension
+    needed = meant.dimension.dimension
+    if found != needed:
+        raise SpecError(f"{quote(given)} is {quantity(found)}", where, quantity(needed))
+
+
+def _check_left(where: str, component: Component, model: Tables) -> None:
+    """Refuse to leave out everything, or a body that another element names."""
+    gone = {*component.without}
+    if gone >= model.elements.keys():
+        raise SpecError("leaves out all elements", f"{where}.without", "some are left")
+    for name, element in model.elements.items():
+        for field, to, body in element.references():
+            if to == "thermal_mass" and body in gone and name not in gone:
+                what = f"elements.{name}.{field} names {quote(body)}, which is left out"
+                raise SpecError(what, f"{where}.without", remedy=f"leave out {quote(name)} too")

@@ -1,0 +1,188 @@
+"""Models made of models, written out as one model of ordinary elements.
+
+Input: the tables of a spec, and of the models of its components.  Output: the tables of a spec
+without components, in which all that was a component's has its name in front: ``left_q``,
+``left_body``, ``T_left_body``, ``left.cap``; and where each of them stands as the user wrote it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import chain
+from typing import Any, final
+
+from piezo_sym.errors import SpecError
+from piezo_sym.expressions.parse import parse_condition, parse_law
+from piezo_sym.expressions.tree import names
+from piezo_sym.spec.checks.components import check_component
+from piezo_sym.spec.elements.base import Element, state_symbol
+from piezo_sym.spec.elements.domains import REFERENCES
+from piezo_sym.spec.fields import Component, Tables
+from piezo_sym.spec.rename import renamed, reworded, started
+from piezo_sym.spec.tables import bodies, states, temperatures
+
+#: About as many elements as fit into the text of a spec.
+MOST_ELEMENTS = 5_000
+PLACE = re.compile(r"(?:elements|parameters|inputs|initial)\.\w+|domain\.assume\[\d+\]")
+#: A name in a table, what it stands for, and where the user wrote it.
+Row = tuple[str, Any, str]
+
+
+@final
+@dataclass(frozen=True)
+class Flat:
+    """The tables of a model without components, and where what is in them was written."""
+
+    tables: dict[str, Any] = field(default_factory=dict)
+    origins: dict[str, str] = field(default_factory=dict)
+
+    def origin(self, where: str) -> str:
+        """Return a place as the user wrote it: ``components.left: elements.damper.force``."""
+        return PLACE.sub(lambda match: self.origins.get(match[0], match[0]), where, count=1)
+
+    def add(self, table: str, rows: Iterable[Row], *, over: bool = False) -> None:
+        """Add rows to a table; one may stand `over` another of its name, or is refused."""
+        made = self.tables.setdefault(table, {})
+        for name, value, written in rows:
+            place = f"{table}.{name}"
+            if name in made and not over:
+                what = f"would be called '{name}', like {self.origins[place]}"
+                raise SpecError(what, written, remedy="rename one of them, or the component")
+            made[name], self.origins[place] = value, written
+
+
+def flattened(spec: Tables, models: Iterable[Tables]) -> Flat:
+    """Return the tables of a spec with those of its components in them.
+
+    Parameters
+    ----------
+    models : those of the components, in order, without components themselves.
+
+    Raises
+    ------
+    SpecError
+        If a component names what its model or this spec does not have, or names clash.
+    """
+    pairs = zip(spec.components.items(), models, strict=True)
+    parts = [Part(name, component, model) for (name, component), model in pairs]
+    count = len(spec.elements) + sum(len(part.model.elements) for part in parts)
+    if count > MOST_ELEMENTS:
+        expected = f"at most {MOST_ELEMENTS}"
+        raise SpecError(f"would be {count} elements, written out", "components", expected)
+    for part in parts:
+        check_component(spec, part.where, part.component, part.model)
+    flat = Flat({"model": spec.model})
+    for table in ("parameters", "inputs"):
+        flat.add(table, _own(spec, table))
+        flat.add(table, chain.from_iterable(part.rows(table) for part in parts))
+    for table in ("initial", "elements"):
+        flat.add(table, chain.from_iterable(part.rows(table) for part in parts))
+        flat.add(table, _own(spec, table), over=table == "initial")
+    assumed = [*((text, "") for text in spec.domain.assume), *_all_assumed(parts)]
+    flat.tables["domain"] = {"assume": [text for text, _ in assumed]}
+    written = enumerate(where for _, where in assumed)
+    flat.origins.update({f"domain.assume[{n}]": where for n, where in written if where})
+    return flat
+
+
+def _own(spec: Tables, table: str) -> Iterator[Row]:
+    return ((name, value, f"{table}.{name}") for name, value in getattr(spec, table).items())
+
+
+def _all_assumed(parts: Iterable[Part]) -> Iterator[tuple[str, str]]:
+    return chain.from_iterable(part.assumed() for part in parts)
+
+
+@final
+@dataclass(frozen=True)
+class Part:
+    """A component in its place: its model's names, and what they become."""
+
+    name: str
+    component: Component
+    model: Tables
+
+    @property
+    def where(self) -> str:
+        """Its place in the spec around it."""
+        return f"components.{self.name}"
+
+    def rows(self, table: str) -> Iterator[Row]:
+        """Yield what it adds to a table."""
+        made = getattr(self, f"_{table}")()
+        return ((new, value, f"{self.where}: {table}.{old}") for old, new, value in made)
+
+    def assumed(self) -> Iterator[tuple[str, str]]:
+        """Yield the conditions of its domain, and their places; without those on what is gone."""
+        for n, text in enumerate(self.model.domain.assume):
+            used = names(parse_condition(text, "domain.assume"))
+            if self.gone.isdisjoint(used):
+                yield reworded(text, self.words), f"{self.where}: domain.assume[{n}]"
+
+    @cached_property
+    def kept(self) -> Mapping[str, Element]:
+        """Its elements, without those that are left out."""
+        left_out, elements = {*self.component.without}, self.model.elements
+        return {name: element for name, element in elements.items() if name not in left_out}
+
+    @cached_property
+    def gone(self) -> frozenset[str]:
+        """States, temperatures and inputs that only elements used that are left out."""
+        symbols, hot = states(self.model), temperatures(self.model)
+        gone = {word for word, name in (*symbols.items(), *hot.items()) if name not in self.kept}
+        starts = (start for name, start in self.model.initial.items() if name not in gone)
+        texts = (part for start in starts for part in _texts(start))
+        used = {word for text in texts for word in names(parse_law(text, "initial"))}
+        used |= _inputs_of(self.kept.values())
+        return frozenset(gone | (_inputs_of(self.model.elements.values()) - used))
+
+    @cached_property
+    def words(self) -> Mapping[str, str]:
+        """What its symbols become."""
+        front, given = f"{self.name}_", self.component.parameters
+        own = {word: front + word for word in (*self.model.inputs, *states(self.model))}
+        hot = temperatures(self.model) | {f"T_{body}": body for body in bodies(self.model)}
+        values = {word: given.get(word) for word in self.model.parameters}
+        replaced = {w: v if isinstance(v, str) else front + w for w, v in values.items()}
+        temperature = {word: f"T_{front}{body}" for word, body in hot.items()}
+        return {**temperature, **own, **self.component.inputs, **replaced}
+
+    def node(self, node: str) -> str:
+        """Return what one of its nodes is called outside."""
+        same = node if node in REFERENCES else f"{self.name}.{node}"
+        return self.component.nodes.get(node, same)
+
+    def _parameters(self) -> Iterator[tuple[str, str, Any]]:
+        for name, parameter in self.model.parameters.items():
+            given = self.component.parameters.get(name, parameter.value)
+            if not isinstance(given, str):
+                yield name, self.words[name], parameter.model_copy(update={"value": given})
+
+    def _inputs(self) -> Iterator[tuple[str, str, Any]]:
+        for name, entry in self.model.inputs.items():
+            if name not in self.component.inputs and name not in self.gone:
+                yield name, self.words[name], entry
+
+    def _initial(self) -> Iterator[tuple[str, str, Any]]:
+        for name, start in self.model.initial.items():
+            if name not in self.gone:
+                yield name, self.words[name], started(start, self.words)
+
+    def _elements(self) -> Iterator[tuple[str, str, Any]]:
+        for name, element in self.kept.items():
+            made = renamed(element, self.words, lambda body: f"{self.name}_{body}", self.node)
+            if element.letter:
+                made["state"] = self.words[state_symbol(element, name)]
+            yield name, f"{self.name}_{name}", made
+
+
+def _inputs_of(elements: Iterable[Element]) -> set[str]:
+    return {given for e in elements for _, to, given in e.references() if to == "input"}
+
+
+def _texts(start: Any) -> Iterator[str]:
+    parts = start if isinstance(start, tuple) else (start,)
+    return (part for part in parts if isinstance(part, str))
