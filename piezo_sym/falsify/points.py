@@ -125,15 +125,15 @@ class Draw:
 
     def _bisected(self, roots: Roots) -> Roots:
         """Return brackets narrowed to neighbouring floats."""
-        here = np.arange(len(roots.edge))
+        here, needed = np.arange(len(roots.edge)), frozenset(roots.edge.tolist())
         low, high = _key(roots.low), _key(roots.high)
-        sign = np.sign(self.space.at(roots.at(roots.low)).edges[roots.edge, here])
+        sign = np.sign(self.space.at(roots.at(roots.low)).edges_of(needed)[roots.edge, here])
         for _ in range(64):
             middle = _middle(low, high)
             if ((middle == low) | (middle == high)).all():
                 break
-            seen = self.space.at(roots.at(_float(middle))).edges[roots.edge, here]
-            same = np.sign(seen) == sign
+            seen = self.space.at(roots.at(_float(middle))).edges_of(needed)
+            same = np.sign(seen[roots.edge, here]) == sign
             low, high = np.where(same, middle, low), np.where(same, high, middle)
         ends = np.array([_float(low), _float(high)])
         ends = np.where(np.abs(ends).max(axis=0) < LEAST, [[-TINY], [TINY]], ends)

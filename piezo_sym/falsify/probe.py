@@ -83,8 +83,10 @@ class Probe:
 
     def of(self, what: str, name: str) -> list[Row]:
         """Return the rows of a quantity; without a name, those of all that have it."""
-        table = {**self.laws, **self.rows}
-        return [row for key, row in table.items() if key == (what, name or key[1])]
+        if name:
+            row = self.laws.get((what, name)) or self.rows.get((what, name))
+            return [row] if row else []
+        return [row for (kind, _), row in {**self.laws, **self.rows}.items() if kind == what]
 
     def of_element(self, element: str) -> list[Row]:
         """Return the laws of an element, written out: what a name stands for, not the name."""

@@ -6,7 +6,7 @@ Input: a module, a probe, bank sizes.  Output: a `Space`.  Its n points are an a
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate, pairwise, starmap
@@ -161,9 +161,6 @@ class Seen:
         self.space = space
         self.points = points
         self.x, self.u, self.p = space.split(points)
-        fields = ((f.name, f.bank, space.columns_of[f.name]) for f in space.fields)
-        given = {name: points[at] if bank else points[at.start] for name, bank, at in fields}
-        self.values = Floats(given, space.probe.defined, space.counts)
         self._laws: dict[tuple[str, str], Approx] = {}
 
     def __getattr__(self, name: str) -> Array:
@@ -173,6 +170,17 @@ class Seen:
             value: Array = getattr(self.space.module, name)(*arguments)
         setattr(self, name, value)
         return value
+
+    @cached_property
+    def values(self) -> Floats:
+        """Trees at the points."""
+        return self._floats(sized=True)
+
+    def _floats(self, *, sized: bool) -> Floats:
+        space, points = self.space, self.points
+        fields = ((f.name, f.bank, space.columns_of[f.name]) for f in space.fields)
+        given = {name: points[at] if bank else points[at.start] for name, bank, at in fields}
+        return Floats(given, space.probe.defined, space.counts, sized=sized)
 
     def law(self, what: str, element: str) -> Approx:
         """Return a law, of shape (lanes, points)."""
@@ -189,12 +197,18 @@ class Seen:
     @cached_property
     def edges(self) -> Array:
         """The values of all edges, of shape (rows, points)."""
+        return self.edges_of(range(len(self.space.kinks)))
+
+    def edges_of(self, rows: Container[int]) -> Array:
+        """Return the values of edges of which at least some rows are needed; others are not set."""
         found, n = np.empty((len(self.space.kinks), self.points.shape[1])), 0
+        values = self._floats(sized=False)
         with np.errstate(all="ignore"):
             for edge in self.space.probe.edges:
-                lanes = self.space.lanes(edge.bank)
-                found[n : n + lanes] = self.values[edge.tree].value
-                n += lanes
+                own = range(n, n + self.space.lanes(edge.bank))
+                if any(row in rows for row in own):
+                    found[own.start : own.stop] = values[edge.tree].value
+                n = own.stop
         return found
 
     def get(self, what: str, name: str) -> list[tuple[Any, Any]]:
