@@ -17,8 +17,7 @@ from .functions import KINKS, SMOOTH
 
 MAX_LENGTH, MAX_TABLE, MAX_DIGITS, MAX_EXPONENT, MAX_POWER, MAX_KNOTS = 1000, 4000, 60, 400, 16, 64
 PLAIN = re.compile(
-    r"(?>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![A-Za-z0-9_.])|[A-Za-z_]\w*|[-+*/(),<>=]| )*+",
-    re.ASCII,
+    r"(?a)(?>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![A-Za-z0-9_.])|[A-Za-z_]\w*|[-+*/(),<>=]| )*+"
 )
 OPERATORS = {ast.Mult: "*", ast.Div: "/", ast.USub: "neg", ast.UAdd: "+"}
 OPERATORS |= {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}

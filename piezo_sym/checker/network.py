@@ -96,17 +96,17 @@ def _all_branches(spec: Spec, counts: Mapping[str, int]) -> list[Branch]:
 
 
 def _heat(spec: Spec, algebra: Any, found: Flows) -> None:
-    """Add the rates of entropies, and what environments bring: lam*(T_e/T - 1)."""
+    """Add the rates of entropies, and what comes in: lam*(T_e/T - 1) or P/T."""
     T = {body.name: algebra.given("T", body.name, 0) for body in spec.of("body")}
     found.rates.update({(body, 0): algebra.one - algebra.one for body in T})
     for slot, W in found.outputs.items():
         (body,) = spec.elements[slot[0]].bodies
         found.rates[body, 0] += algebra.like(slot) * W * found.letters[slot] / T[body]
-    for e in spec.of("ambient", "conduction"):
+    for e in spec.of("ambient", "conduction", "heat"):
         lam, ends = algebra.law(e, "conductance", 0), [T[body] for body in e.bodies]
         ends += [algebra.given("u", e.name, 0)] if e.input else []
         for body, own, other in zip(e.bodies, ends, reversed(ends), strict=False):
-            flow = lam * (other / own - algebra.one)
+            flow = other / own if e.kind.form == "heat" else lam * (other / own - algebra.one)
             found.rates[body, 0] += flow
             if e.input:
                 found.ports[e.name] = own, flow

@@ -18,10 +18,9 @@ from .prover import Claim, Prover, needed, partial, taken, true
 from .spec import Element, Spec
 from .system import Finding
 
-#: The row that has to be stated, and is not looked at.
-STATED, MOST_PIECES = "program", 400
+#: The row that has to be stated, and is not looked at; last, rows that are not stated.
 Key = tuple[str, str]
-MOVING, OWN = ("z", "x", "T"), ("domain", "system")  # rows that are not stated by the package
+STATED, MOST_PIECES, MOVING, OWN = "program", 400, ("z", "x", "T"), ("domain", "system")
 
 
 def audit(spec: Spec, proofs: Mapping[str, Any]) -> list[tuple[str, str, str]]:
@@ -172,6 +171,7 @@ class _Audit:
                 yield true(gains[1], ">=", path=between)
         floors = [c for c in self.spec.conditions if c.args[0 if c.value == ">" else 1] == T]
         strict = any(c.value in "<>" for c in floors) and any(e.input for e in around)
+        strict = strict and all(body not in e.bodies for e in self.spec.of("heat"))
         need(strict, "no floor of T, or no environment")
 
 

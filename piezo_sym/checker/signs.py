@@ -19,9 +19,8 @@ from .functions import KINKS, SMOOTH
 from .laws import InputError, Node, compare, made, need, num, put, sym
 from .prover import Prover
 
-BITS, ORDER = 192, 10
-T, TANH, ALL = sym("s"), "1 - 2/(exp(2*x) + 1)", frozenset((-1, 0, 1))
-HOLD = {"=": {0}, ">": {1}, ">=": {0, 1}, "<": {-1}, "<=": {-1, 0}}
+BITS, ORDER, T, TANH = 192, 10, sym("s"), "1 - 2/(exp(2*x) + 1)"
+ALL, HOLD = frozenset((-1, 0, 1)), {"=": {0}, ">": {1}, ">=": {0, 1}, "<": {-1}, "<=": {-1, 0}}
 RULES: dict[str, Any] = {"*": lambda a, b: a * b, "/": lambda a, b: a * b, "neg": lambda a: -a}
 RULES |= {"abs": abs, "min": min, "max": max, "sign": lambda a: a}
 RULES |= {n: RULES["sign"] if f.sign == "x" else lambda _: 1 for n, f in SMOOTH.items() if f.sign}

@@ -135,7 +135,7 @@ class _Reader:
         needed = {field for field, must in kind.fields.items() if must}
         known = needed <= entry.keys() <= kind.fields.keys() and name.isidentifier()
         need(known, f"elements.{name[:60]} has a wrong key, or no name")
-        heats = [entry[field] for field in ("heats", "body", "temperature") if field in entry]
+        heats = [entry[f] for f in ("heats", "body", "into", "temperature") if f in entry]
         heats = entry["between"] if kind.form == "conduction" else heats
         bodies = () if kind.form == "body" else tuple(heats)
         good = set(bodies) <= set(self.bodies) and len(set(bodies)) == len(bodies)
@@ -152,7 +152,7 @@ class _Reader:
         across = kind.across and (kind.form != "law" or field == next(iter(kind.laws)))
         source, count = entry.get("input", ""), entry.get("count")
         need(count is None or count >= 1, f"elements.{name}.count is out of range")
-        row = UNITS[ends[0][1]][kind.across] if kind.form == "source" else "K"
+        row = UNITS[ends[0][1]][kind.across] if kind.form == "source" else "KW"[kind.form == "heat"]
         if "input" in kind.fields and self.units["u", source] != unit(row)[1]:
             self.faults.append(f"elements.{name}.input is not in {row}")
         given = ((entry[key], REFERENCES[d]) if key == "at" else entry[key] for key, d in ends)

@@ -42,7 +42,7 @@ class _Published:
                 self.sums(tree, 0)
         banks = {e.name for e in spec.elements.values() if e.lanes}
         expected = [(s, name, name if name in banks else None) for s, name in spec.states.items()]
-        ports = {e.name for e in spec.of("source", "ambient")}
+        ports = {e.name for e in spec.of("source", "ambient", "heat")}
         tables = set(self.rates) == set(spec.states) and set(self.outputs) == ports
         need(self.states == expected and tables, "states or ports are not those of the spec")
 

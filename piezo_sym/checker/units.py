@@ -17,8 +17,7 @@ from .laws import ARITHMETIC, InputError, Node, need, parse
 
 Dimension = Any  # of pint: a product of powers
 PLAIN = re.compile(r"[A-Za-z1-9*/^() -]{1,60}")
-MAX_BITS = 10_000
-EQUAL = ("+", "min", "max", "deadzone", "saturate", "table", "cmp", "if")
+MAX_BITS, EQUAL = 10_000, ("+", "min", "max", "deadzone", "saturate", "table", "cmp", "if")
 
 
 @cache

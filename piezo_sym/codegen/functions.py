@@ -15,7 +15,7 @@ from piezo_sym.expressions.calculus import add, div, mul, neg
 from piezo_sym.expressions.text import signed
 from piezo_sym.expressions.tree import ONE, Expr, Sym
 from piezo_sym.iphs import IPHS
-from piezo_sym.spec.elements.ports import Body, Exchange
+from piezo_sym.spec.elements.ports import Body, Exchange, HeatInput
 
 STATE_INPUT, STATE = ("x", "u", "p"), ("x", "p")
 #: What each function returns, and its arguments.
@@ -98,12 +98,14 @@ def _entropy_rate(n: int, q: Quantities) -> Expr:
 
 
 def exchanges_of(q: Quantities) -> Iterator[OutputRow]:
-    """Yield the entropy rate that each heat exchange brings, with the body that gets it."""
+    """Yield the entropy rate that each exchange or source of heat brings, and the body."""
     for entry in q.ports:
-        if isinstance(entry.port, Exchange):
-            temperature = Sym(q.bodies[entry.port.body].temperature)
-            drive = add(div(Sym(entry.port.input), temperature), neg(ONE))
-            yield OutputRow(Slot(entry.port.body), mul(entry.port.conductance, drive))
+        port = entry.port
+        if isinstance(port, Exchange | HeatInput):
+            ratio = div(Sym(port.input), Sym(q.bodies[port.body].temperature))
+            if isinstance(port, Exchange):
+                ratio = mul(port.conductance, add(ratio, neg(ONE)))
+            yield OutputRow(Slot(port.body), ratio)
 
 
 def _outputs(q: Quantities) -> tuple[OutputRow, ...]:
@@ -112,7 +114,7 @@ def _outputs(q: Quantities) -> tuple[OutputRow, ...]:
 
 def _output(n: int, q: Quantities) -> Expr:
     port = q.ports[n].port
-    if isinstance(port, Exchange):
+    if isinstance(port, Exchange | HeatInput):
         return Sym(q.bodies[port.body].temperature)
     return add(
         *q.product(q.iphs.system.G.T, n, q.costates),
@@ -128,6 +130,8 @@ def supply_of(q: Quantities) -> tuple[OutputRow, ...]:
         power = mul(y.value, u)
         if isinstance(placed.port, Exchange):
             power = mul(placed.port.conductance, add(u, neg(y.value)))
+        elif isinstance(placed.port, HeatInput):
+            power = u
         rows.append(OutputRow(y.slot, power))
     return tuple(rows)
 

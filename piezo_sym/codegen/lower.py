@@ -16,7 +16,7 @@ from piezo_sym.codegen.program import Described, ModuleFunction, Names, Program
 from piezo_sym.codegen.quantities import Quantities, quantities_of
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.circuit import Placed
-from piezo_sym.spec.elements.ports import Exchange, Source
+from piezo_sym.spec.elements.ports import Exchange, HeatInput, Source
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import banks, lane_parameters
 
@@ -83,7 +83,7 @@ def _output(placed: Placed) -> Described:
     match placed.port:
         case Source() as port:
             return Described(placed.element, port.units[1], port.doc)
-        case Exchange() as port:
+        case Exchange() | HeatInput() as port:
             return Described(placed.element, "K", f"temperature of thermal_mass '{port.body}'")
     msg = f"{placed.element} is no port of an input"
     raise TypeError(msg)

@@ -27,6 +27,7 @@ from piezo_sym.spec.elements.ports import (
     Coupling,
     DissipativePort,
     Exchange,
+    HeatInput,
     Source,
     Storage,
 )
@@ -144,7 +145,7 @@ def _by_value(defined: Sequence[Quantity]) -> dict[Expr, Sym]:
 
 
 def _input(placed: Placed) -> str:
-    if isinstance(placed.port, Source | Exchange):
+    if isinstance(placed.port, Source | Exchange | HeatInput):
         return placed.port.input
     msg = f"{placed.element} is no port of an input"
     raise TypeError(msg)

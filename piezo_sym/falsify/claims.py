@@ -13,7 +13,15 @@ from typing import Any, Protocol, final
 
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.circuit import Circuit
-from piezo_sym.spec.elements.ports import Body, Conductor, DissipativePort, Exchange, Port, Source
+from piezo_sym.spec.elements.ports import (
+    Body,
+    Conductor,
+    DissipativePort,
+    Exchange,
+    HeatInput,
+    Port,
+    Source,
+)
 
 #: A balance below zero by less than this part of its scale is rounding.
 TOLERANCE = 1e-9
@@ -129,12 +137,13 @@ class Claim:
         return cold
 
     def rest(self) -> tuple[tuple[str, ...], tuple[str, ...]] | None:
-        """Return for `exergy` the inputs that it sets to zero, and those that it sets equal."""
+        """Return for a balance the inputs that it sets to zero, and those that it sets equal."""
+        heat = tuple(port.input for _, port in self.circuit.of(HeatInput))
         if self.id != "exergy":
-            return None
+            return (heat, ()) if heat and self.id == "environment" else None
         outside = tuple(port.input for _, port in self.circuit.of(Exchange))
         sources = (port.input for _, port in self.circuit.of(Source))
-        return tuple(name for name in sources if name not in outside), outside
+        return tuple(name for name in (*sources, *heat) if name not in outside), outside
 
 
 def claim_of(iphs: IPHS, id_: str, element: str) -> Claim | None:

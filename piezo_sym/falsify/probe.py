@@ -43,6 +43,7 @@ from piezo_sym.spec.elements.ports import (
     Conductor,
     Coupling,
     DissipativePort,
+    HeatInput,
     Source,
     Storage,
 )
@@ -168,7 +169,7 @@ def _laws(q: Quantities) -> Iterator[tuple[tuple[str, str], Expr]]:
             case DissipativePort():
                 force, output = next(forces)
                 yield from ((("output", element), output), (("effort", element), force))
-            case Source():
+            case Source() | HeatInput():
                 continue
             case _:
                 if isinstance(port, Conductor):

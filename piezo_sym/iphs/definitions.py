@@ -27,6 +27,7 @@ from piezo_sym.spec.elements.ports import (
     Coupling,
     DissipativePort,
     Exchange,
+    HeatInput,
     Source,
     Storage,
 )
@@ -72,13 +73,15 @@ def system_of(circuit: Circuit, symbols: SymbolTable, junction: Junction) -> Sys
 
 
 def _input(port: object, circuit: Circuit, symbols: SymbolTable) -> sp.Expr:
-    """Return the input of Definition 1 behind a port: itself, or lam*(T_e/T - 1)."""
+    """Return the input of Definition 1 behind a port: itself, P/T or lam*(T_e/T - 1)."""
     match port:
         case Source():
             return symbols[port.input]
-        case Exchange():
+        case Exchange() | HeatInput():
             temperature = symbols[circuit.body(port.body).temperature]
             ratio = symbols[port.input] / temperature
+            if isinstance(port, HeatInput):
+                return ratio
             return symbols.law(port.conductance, {}) * (ratio - 1)
     msg = f"{type(port).__name__} is no port of an input"
     raise TypeError(msg)

@@ -30,7 +30,7 @@ from piezo_sym.network.loops import Definition, Slope, loops_of
 from piezo_sym.network.nodes import check_nodes
 from piezo_sym.spec.circuit import Circuit
 from piezo_sym.spec.elements.domains import PowerVariable
-from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, Source
+from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, HeatInput, Source
 
 
 @final
@@ -179,7 +179,7 @@ class _Blocks:
         heat = {
             (self.rows[placed.port.body], n): sp.S.One
             for n, placed in enumerate(self.laws.ports)
-            if isinstance(placed.port, Exchange)
+            if isinstance(placed.port, Exchange | HeatInput)
         }
         return replace(g, full={**g.full, **heat})
 

@@ -37,6 +37,7 @@ from piezo_sym.spec.elements.ports import (
     Coupling,
     DissipativePort,
     Exchange,
+    HeatInput,
     Source,
     Storage,
 )
@@ -72,7 +73,7 @@ class Edge:
 def port_order(circuit: Circuit) -> tuple[Placed, ...]:
     """Return the ports that an input drives: by the input's place in the spec, then declaration."""
     inputs = list(circuit.model.inputs)
-    driven = [placed for placed, _ in circuit.of(Source, Exchange)]
+    driven = [p for p in circuit.ports if isinstance(p.port, Source | Exchange | HeatInput)]
     return tuple(sorted(driven, key=lambda placed: inputs.index(placed.port.input)))  # type: ignore[union-attr]
 
 

@@ -23,6 +23,7 @@ from piezo_sym.spec.elements.ports import (
     Conductor,
     DissipativePort,
     Exchange,
+    HeatInput,
     Source,
 )
 
@@ -94,7 +95,7 @@ def exergy(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
         return
     system, common = iphs.system, iphs.symbols[exchanges[0][1].input]
     fixed = {iphs.symbols[port.input]: common for _, port in exchanges}
-    fixed |= {iphs.symbols[port.input]: sp.S.Zero for _, port in iphs.circuit.of(Source)}
+    fixed |= {iphs.symbols[port.input]: sp.S.Zero for _, port in iphs.circuit.of(Source, HeatInput)}
     rate = (system.y.T @ system.u)[0, 0] - common * (system.dS.T @ system.rhs)[0, 0]
     lost = sum(lam * (T - common) ** 2 / T for lam, T, _ in _exchanges(iphs))
     residual = (rate + common * system.sigma).xreplace(fixed) + lost.xreplace(fixed)
@@ -118,11 +119,13 @@ def environment(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
     taken = sum(lam * (T_e - T) / T_e for lam, T, T_e in _exchanges(iphs))
     crossed = sum(lam * (T_e - T) ** 2 / (T * T_e) for lam, T, T_e in _exchanges(iphs))
     total = (system.dS.T @ system.rhs)[0, 0] - taken - system.sigma - crossed
-    residual = Residual("dS/dt + dS_e/dt - sigma - lam (T_e - T)^2/(T T_e)", total)
+    heat = {iphs.symbols[port.input]: sp.S.Zero for _, port in iphs.circuit.of(HeatInput)}
+    residual = Residual("dS/dt + dS_e/dt - sigma - lam (T_e - T)^2/(T T_e)", total.xreplace(heat))
+    counted = "environment counted" + ", heat sources 0" * bool(heat)
     made = Obligation(
         "environment",
         "",
-        "sigma + lam (T_e - T)^2/(T T_e) >= 0, environment counted",
+        f"sigma + lam (T_e - T)^2/(T T_e) >= 0, {counted}",
         r"\sigma + \lambda (T_e - T)^2/(T\,T_e) \ge 0",
         assumptions.texts,
         residuals=(residual,),

@@ -16,7 +16,7 @@ from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.assumptions import Assumptions
 from piezo_sym.proofs.laws import on_branches, valued
 from piezo_sym.proofs.obligations import Obligation, Question
-from piezo_sym.spec.elements.ports import Body, Conductor, DissipativePort, Exchange
+from piezo_sym.spec.elements.ports import Body, Conductor, DissipativePort, Exchange, HeatInput
 from piezo_sym.spec.names import fresh
 from piezo_sym.spec.tables import conditions, greater
 
@@ -63,7 +63,8 @@ def invariant(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
         floor = floors.get(port.temperature)
         others = {slot.label for slot in iphs.system.states} - {port.state}
         worked = not others.isdisjoint(names(port.law))  # work changes its temperature, too
-        if floor is None or not exchanges or worked:
+        heated = any(p.body == placed.element for _, p in iphs.circuit.of(HeatInput))
+        if floor is None or not exchanges or worked or heated:
             continue
         contacts = tuple(_contacts(iphs, placed.element))
         neighbours = ", no neighbour colder" if contacts else ""

@@ -27,6 +27,7 @@ from piezo_sym.spec.elements.ports import (
     Coupling,
     DissipativePort,
     Exchange,
+    HeatInput,
     Source,
     Storage,
 )
@@ -55,7 +56,7 @@ def _law(iphs: IPHS, placed: Placed) -> Law | None:
             return Law(element, port.name, port.ratio)
         case Exchange() | Conductor():
             return Law(element, "conductance", port.conductance)
-        case Source():
+        case Source() | HeatInput():
             return None
 
 

@@ -18,6 +18,7 @@ from piezo_sym.spec.elements.ports import (
     Coupling,
     DissipativePort,
     Exchange,
+    HeatInput,
     Port,
     Source,
     Storage,
@@ -133,5 +134,5 @@ def _named(
             return replace(port, temperature=heat[entry.element])
         case Exchange() as port:
             return replace(port, conductance=laws["conductance"])
-        case Source() as port:
+        case Source() | HeatInput() as port:
             return port

@@ -13,7 +13,7 @@ from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.tree import Cmp, Expr, Node, Sym
 from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.elements.base import state_symbol
-from piezo_sym.spec.elements.ports import Exchange, Source
+from piezo_sym.spec.elements.ports import Exchange, HeatInput, Source
 from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.tables import bodies, law_fields, temperatures
 
@@ -79,8 +79,8 @@ def _laws(
 
 def _inputs(spec: Tables, name: str, given: Mapping[str, Dimension]) -> Iterator[Place]:
     for port in spec.elements[name].ports(name):
-        if isinstance(port, Source | Exchange):
-            unit = port.units[0] if isinstance(port, Source) else "K"
+        if isinstance(port, Source | Exchange | HeatInput):
+            unit = port.input_unit
             where, tree = f"elements.{name}.input", Sym(port.input)
             yield Place(where, name, tree, given, {}, _dimension(unit), unit)
 

@@ -19,7 +19,7 @@ from piezo_sym.expressions.tree import names
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name
 from piezo_sym.network import port_order
-from piezo_sym.spec.elements.ports import Body, Exchange, Storage
+from piezo_sym.spec.elements.ports import Body, Exchange, HeatInput, Storage
 from piezo_sym.spec.tables import conditions
 from piezo_sym.translation.change import spelled
 from piezo_sym.translation.field import NotShownError, Value
@@ -96,6 +96,6 @@ def _ledger(read: SystemReader, listed: dict[str, list[Value]]) -> Iterator[tupl
             yield Slot(f"{words} {slot.label}", slot.bank), value
     shares, inputs = system.G.T @ system.dS, system.u
     for n, placed in enumerate(port_order(read.iphs.circuit)):
-        if isinstance(placed.port, Exchange):
+        if isinstance(placed.port, Exchange | HeatInput):
             brought = read(shares[n, 0]) * read(inputs[n, 0])
             yield Slot(f"entropy brought by {placed.element}"), brought

@@ -4,6 +4,7 @@ from stated import PIEZO_STACK, SPECS, mass, refused, run, stated
 SOME = {
     "a1_two_bodies",
     "geared_motor",
+    "heater",
     "hydraulic_cylinder",
     "output_resistance_of_a_bank",
     "series_across_a_capacitor",

@@ -68,7 +68,7 @@ shares are left out of what drives processes
   + B, D = loops.columns(B), D
   = driven coil loop
 no heat is exchanged
-  - if isinstance(placed.port, Exchange)
+  - if isinstance(placed.port, Exchange | HeatInput)
   + if False
   = two airs
 states are coupled the other way

@@ -262,7 +262,7 @@ def spread(records, p):
 
 
 def check_entropy(module, spec, x, u):
-    """Check that entropy grows by what is produced and by what the environment brings."""
+    """Check that entropy grows by what is produced and by what environments and heaters bring."""
     p = module.Parameters()
     names, given = spread(module.STATES, p), dict(zip(spec["inputs"], u, strict=True))
     bodies = {n: state(n, e) for n, e in spec["elements"].items() if e["kind"] == "thermal_mass"}
@@ -274,6 +274,8 @@ def check_entropy(module, spec, x, u):
         for e in spec["elements"].values()
         if e["kind"] == "ambient"
     ]
+    heaters = [e for e in spec["elements"].values() if e["kind"] == "heat_source"]
+    brought += [given[e["input"]] / hot[e["into"]] for e in heaters]
     terms = [*produced, *brought]
     growth = sum(rates[s] for s in bodies.values())
     size = sum(map(abs, terms)) + sum(abs(rates[s]) for s in bodies.values())

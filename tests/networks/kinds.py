@@ -185,6 +185,10 @@ def ambient(draft):
     return {"body": draft.body(), "conductance": lam, "input": draft.input("K", 4.0)}
 
 
+def heat_source(draft):
+    return {"into": draft.body(), "input": draft.input("W")}
+
+
 def source(draft):
     """Return a source's fields, whatever it gives."""
     kind = KINDS[draft.kind]
@@ -393,4 +397,5 @@ KINDS = {
     "thermal_mass": Kind(thermal_mass, letter="S"),
     "conduction": Kind(conduction),
     "ambient": Kind(ambient),
+    "heat_source": Kind(heat_source),
 }

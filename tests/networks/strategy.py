@@ -22,7 +22,7 @@ CHORDS = {"e": "inductor", "m": "spring", "r": "torsion_spring", "h": "inertance
 TOGETHER = ("em", "em", "em", "er", "mr", "hm", "rh", "emr", "rhm")
 COUNTS = ((1, 1), (2, 0), (0, 2), (2, 1), (1, 2), (3, 0), (0, 3), (1, 3), (3, 2))
 THREE = ((1, 1, 1), (2, 1, 1), (1, 2, 1))
-HEAT = ("ambient", "conduction")
+HEAT = ("ambient", "conduction", "heat_source")
 NODES = dict.fromkeys(name for kind in KINDS.values() for name in kind.nodes)
 WORDS = ("x", "u", "p", "h", "F", "J", "out", "n", "z", "W")
 
@@ -182,7 +182,7 @@ def _uses(draft, node):
 def _heat(draft):
     for _ in range(draft.draw(st.integers(0, 2))):
         kind = draft.pick(HEAT)
-        if kind == "ambient" or len(draft.bodies) > 1:
+        if kind != "conduction" or len(draft.bodies) > 1:
             draft.add(kind, "chord")
 
 

@@ -307,6 +307,10 @@ class Tableau:
             flows[first] -= heat / hot
             flows[second] += heat / cold
             found.productions[name] = heat / cold - heat / hot
+        if element["kind"] == "heat_source":
+            own = self.temperatures[element["into"]]
+            flows[element["into"]] += self.inputs[element["input"]] / own
+            found.outputs[name] = own
         if element["kind"] == "ambient":
             own = self.temperatures[element["body"]]
             conductance = value(element["conductance"], self.words())

@@ -8,6 +8,7 @@ import sympy as sp
 
 from piezo_sym import derive, load
 from piezo_sym.modules import module_of
+from piezo_sym.proofs import obligations
 from piezo_sym.spec.load import parse
 
 SPECS = Path(__file__).with_name("specs")
@@ -144,3 +145,25 @@ def test_the_rates_of_the_hydraulic_cylinder():
         ]
         found = module.rhs(x, np.array([tau, F]), module.Parameters())
         assert found == pytest.approx(wanted, rel=1e-12)
+
+
+def test_the_rates_of_the_heater():
+    model = load(SPECS / "heater.toml")
+    module, (P, T_e) = module_of(model), (3.0, 310.0)
+    p, u = module.Parameters(), np.array([P, T_e])
+    for x in np.random.default_rng(3).uniform(0.1, 0.5, (5, 2)):
+        body, mount = 300 * np.exp(x / 2)
+        wanted = [
+            (P - 0.5 * (body - mount)) / body,
+            (0.5 * (body - mount) + 0.5 * (T_e - mount)) / mount,
+        ]
+        assert module.rhs(x, u, p) == pytest.approx(wanted, rel=1e-12)
+        assert module.outputs(x, u, p) == pytest.approx([body, mount], rel=1e-12)
+        assert module.supply(x, u, p) == pytest.approx([P, 0.5 * (T_e - mount)], rel=1e-12)
+
+
+def test_a_floor_is_promised_of_bodies_without_a_source_of_heat():
+    iphs = derive(load(SPECS / "heater.toml"))
+    assert [o.element for o in obligations(iphs) if o.id == "invariant"] == ["mount"]
+    text = (SPECS / "heater.toml").read_text().replace('into = "body"', 'into = "mount"')
+    assert [o for o in obligations(derive(parse(text))) if o.id == "invariant"] == []

@@ -10,7 +10,7 @@ from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import Node, names
 from piezo_sym.spec.elements import KINDS
 from piezo_sym.spec.elements.base import Element, state_symbol
-from piezo_sym.spec.elements.ports import Source
+from piezo_sym.spec.elements.ports import Exchange, HeatInput, Source
 from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.names import NAME
 from piezo_sym.spec.tables import (
@@ -65,7 +65,7 @@ def _unknown_reference(
 def _input_unit(element: Element) -> str:
     """Return the unit of the input that an element's kind takes."""
     ports = element.ports("")
-    return next((port.units[0] for port in ports if isinstance(port, Source)), "K")
+    return next(p.input_unit for p in ports if isinstance(p, Source | Exchange | HeatInput))
 
 
 def check_laws(spec: Tables) -> None:

@@ -14,7 +14,7 @@ from piezo_sym.spec.elements.domains import (
     PowerVariable,
 )
 from piezo_sym.spec.elements.forms import Dissipation, Imposed, Store
-from piezo_sym.spec.elements.thermal import Ambient, Conduction, ThermalMass
+from piezo_sym.spec.elements.thermal import Ambient, Conduction, HeatSource, ThermalMass
 
 ACROSS, THROUGH = PowerVariable.ACROSS, PowerVariable.THROUGH
 _INDUCTOR = Store(ELECTRICAL, THROUGH, "inductance", "H", "L")
@@ -196,4 +196,5 @@ TABLE = (
         (Ambient(),),
         "Heat exchange with the environment: the third input, eq. (8).",
     ),
+    Kind("heat_source", (HeatSource(),), "Heat into a body, a heater or a heat sink."),
 )

@@ -7,7 +7,7 @@ reads.  An element states here, once, its law; it knows nothing of matrices.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import final
+from typing import ClassVar, final
 
 from piezo_sym.expressions.tree import Expr
 from piezo_sym.spec.elements.domains import PhysicalDomain, PowerVariable
@@ -106,6 +106,11 @@ class Source:
     units: tuple[str, str]
     doc: str
 
+    @property
+    def input_unit(self) -> str:
+        """The unit of its input."""
+        return self.units[0]
+
 
 @final
 @dataclass(frozen=True)
@@ -127,6 +132,17 @@ class Exchange:
     body: str
     conductance: Expr
     input: str
+    input_unit: ClassVar[str] = "K"
+
+
+@final
+@dataclass(frozen=True)
+class HeatInput:
+    """Heat P that an input gives to a body: entropy P/T, y = T, power P."""
+
+    body: str
+    input: str
+    input_unit: ClassVar[str] = "W"
 
 
 @final
@@ -146,4 +162,4 @@ class Conductor:
     output: str
 
 
-Port = Storage | DissipativePort | Coupling | Source | Body | Exchange | Conductor
+Port = Storage | DissipativePort | Coupling | Source | Body | Exchange | HeatInput | Conductor

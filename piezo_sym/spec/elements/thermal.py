@@ -1,4 +1,4 @@
-"""The thermal forms: a body, conduction between two, and exchange with the environment."""
+"""The thermal forms: a body, conduction between two, exchange with the environment, heat."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar, final
@@ -6,7 +6,7 @@ from typing import Any, ClassVar, final
 from piezo_sym.expressions.tree import Cmp, Sym, names, rename
 from piezo_sym.spec.elements.base import Form, positive, state_symbol
 from piezo_sym.spec.elements.marks import BodyName, BodyPair, Fields, InputName, law_field
-from piezo_sym.spec.elements.ports import Body, Branch, Conductor, Exchange
+from piezo_sym.spec.elements.ports import Body, Branch, Conductor, Exchange, HeatInput
 
 
 @final
@@ -100,3 +100,28 @@ class Ambient(Form):
         """Return the exchange."""
         del name, branch
         return Exchange(element.body, element.law("conductance"), element.input)
+
+
+@final
+@dataclass(frozen=True)
+class HeatSource(Form):
+    """Heat that an input gives to a body."""
+
+    @property
+    def fields(self) -> Fields:
+        """Its body and its input."""
+        return {"into": (BodyName, ..., "body"), "input": (InputName, ..., "P_in")}
+
+    @property
+    def doc(self) -> str:
+        """Its flow and its output."""
+        return (
+            "Its input is the heat P [W] that flows into the body, whose entropy rises by P/T; the "
+            "conjugate output is y = T, the power put in is P. The rows exergy and environment "
+            "hold for P = 0."
+        )
+
+    def port(self, element: Any, name: str, branch: Branch) -> HeatInput:
+        """Return the port."""
+        del name, branch
+        return HeatInput(element.into, element.input)
