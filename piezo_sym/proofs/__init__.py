@@ -25,6 +25,7 @@ from piezo_sym.proofs.published import published
 from piezo_sym.proofs.report import Report, Row, Verdict, proofs_json, smt2
 from piezo_sym.proofs.solvers import opinions
 from piezo_sym.proofs.units import units
+from piezo_sym.spec.elements.ports import Conductor
 
 __all__ = [
     "Obligation",
@@ -92,5 +93,5 @@ def _of_laws(
         yield from filter(None, (continuous(law, assumptions),))
         if law.letter:
             yield from (laws.passive(law, assumptions), laws.odd(law, assumptions))
-        elif iphs.model.elements[element].kind == "conduction":
+        elif any(placed.element == element for placed, _ in iphs.circuit.of(Conductor)):
             yield laws.conducts(law, assumptions)

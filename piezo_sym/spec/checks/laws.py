@@ -8,7 +8,7 @@ from collections.abc import Collection, Mapping
 from piezo_sym.errors import SpecError, listing, nearest, quote
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import Node, names
-from piezo_sym.spec.elements import KINDS
+from piezo_sym.spec.elements import KINDS, LETTERS
 from piezo_sym.spec.elements.base import Element, state_symbol
 from piezo_sym.spec.elements.ports import Exchange, HeatInput, Source
 from piezo_sym.spec.fields import Tables
@@ -150,7 +150,7 @@ def _check_words(
         if word in letters or word in words:
             continue
         remedy = _meant_letter(spec, word, letters, element)
-        if word in {"i", "v", "f", "T", *(kind.row.letter for kind in KINDS.values())}:
+        if word in LETTERS:
             expected = f"the letters {listing(letters)}" if letters else "parameters"
             if {*spec.inputs} <= {*words} and states(spec).keys() <= {*words}:
                 expected = "parameters, inputs, states and temperatures"

@@ -6,12 +6,15 @@ from piezo_sym.expressions.dimensions import Dimension
 from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.elements.base import Element, Form, Kind
 from piezo_sym.spec.elements.couplings import PairCoupling
-from piezo_sym.spec.elements.domains import PhysicalDomain, PowerVariable
+from piezo_sym.spec.elements.domains import DOMAINS, PhysicalDomain, PowerVariable
 from piezo_sym.spec.elements.kinds import TABLE
 from piezo_sym.spec.elements.ports import Coupling
 
 KINDS: Mapping[str, type[Element]] = {kind.name: kind.made() for kind in TABLE}
 globals().update({kind.__name__: kind for kind in KINDS.values()})  # where pickle looks for them
+#: The letters of laws: of variables, states and T.
+LETTERS = frozenset(v.letter for d in DOMAINS for v in (d.across, d.through)) | {"T"}
+LETTERS |= {kind.letter for kind in TABLE}
 
 
 def kind_of(form: type[Form], domain: PhysicalDomain, imposes: PowerVariable | None = None) -> Kind:
