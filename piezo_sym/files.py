@@ -111,13 +111,7 @@ def read_bytes(path: Path) -> bytes | None:
 
 
 def folder_entries(path: Path) -> list[Path]:
-    """Return what a folder contains, in order.
-
-    Raises
-    ------
-    FileError
-        If it cannot be read.
-    """
+    """Return what a folder contains, in order."""
     try:
         return sorted(path.iterdir())
     except OSError as error:
@@ -126,12 +120,7 @@ def folder_entries(path: Path) -> list[Path]:
 
 @cache
 def temporary_folder() -> Path:
-    """Return a folder that lives as long as the process, in place of a cache.
-
-    Raises
-    ------
-    FileError : there is no place for it either.
-    """
+    """Return a folder that lives as long as the process, in place of a cache."""
     try:
         folder, owner = tempfile.mkdtemp(prefix="piezo_sym-"), os.getpid()
     except OSError as error:

@@ -210,13 +210,7 @@ def _generator() -> str:
 
 
 def load_module(path: Path) -> ModuleType:
-    """Return the module in a file, loaded again when the file has changed.
-
-    Raises
-    ------
-    FileError
-        If the file is no generated module.
-    """
+    """Return the module in a file, loaded again when the file has changed."""
     return _loaded(path.resolve(), read_text(path))
 
 

@@ -79,10 +79,6 @@ def zeros(strobe: Stroboscope, known: Sequence[Settled]) -> list[Settled]:
 
     Where |drift| has a minimum without a change of sign, states at the vertex of a parabola
     through three of them are added, so that two zeros close together are found.
-
-    Raises
-    ------
-    RunError : every temperature is steady, for nothing heats or cools the body.
     """
     for a, b in pairwise(known):
         if a.drift == b.drift == 0:

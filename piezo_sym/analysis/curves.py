@@ -124,10 +124,6 @@ def _corrected(
     Parameters
     ----------
     steepness : derivative of the drift per second along the line, if known from a point nearby.
-
-    Raises
-    ------
-    RunError : the secant method does not converge, or nothing settles on the way.
     """
     s, before = 0.0, (0.0, 0.0)
     for n in range(MOST_SECANTS):

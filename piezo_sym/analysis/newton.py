@@ -66,10 +66,6 @@ def settled(
     ----------
     near : a state (n,) to start from; its entropy does not count.
     slope : that of a settled state nearby, if there is one.
-
-    Raises
-    ------
-    RunError : the run leaves the domain, or nothing settles.
     """
     x = strobe.at_temperature(near, T)
     fast = np.arange(x.size) != strobe.entropy_row(x)

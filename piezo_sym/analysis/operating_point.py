@@ -118,12 +118,7 @@ def operating_point(
 def read_constants(
     module: GeneratedModule, given: Mapping[str, float] | None, where: str = f"{WHERE}.inputs"
 ) -> FloatArray:
-    """Return constant inputs u (m,): those given, and defaults; `where` is for messages.
-
-    Raises
-    ------
-    UsageError : a name is unknown, or a value is no number.
-    """
+    """Return constant inputs u (m,): those given, and defaults; `where` is for messages."""
     names = [record.name for record in module.INPUTS]
     values = known_keys(given, names, where)
     default = dict(zip(names, module.INPUT_DEFAULTS, strict=True))

@@ -75,10 +75,6 @@ def steps_needed(inputs: Mapping[str, InputValue], frequency: float, steps: int)
     """Return `steps` per period, doubled until every input is nearly straight between them.
 
     A sine of 512 cycles per period is 0 at each of 256 steps, and of 512: a run would miss it.
-
-    Raises
-    ------
-    UsageError : an input varies too fast for the period.
     """
     for name, value in (inputs or {}).items():
         where = f"periodic_steady_state.inputs.{name}"

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, final
 import numpy as np
 
 from piezo_sym.errors import RunError
-from piezo_sym.run.module import row_name
+from piezo_sym.run.module import held, row_name
 
 if TYPE_CHECKING:
     from piezo_sym.run.checks import FloatArray
@@ -55,10 +55,7 @@ class RestSearch:
         """Return whether x is in the domain and has rates."""
         with np.errstate(all="ignore"):
             margins = self.module.margins(x, self.u, self.parameters)
-        strict = np.array([condition.strict for condition in self.module.DOMAIN], dtype=bool)
-        return bool(
-            np.all(np.where(strict, margins > 0, margins >= 0)) and np.isfinite(self.rates(x)).all()
-        )
+        return bool(np.all(held(self.module, margins)) and np.isfinite(self.rates(x)).all())
 
     def moved(self, x: FloatArray, move: FloatArray) -> FloatArray:
         """Return x with its free rows moved."""

@@ -23,13 +23,12 @@ from piezo_sym.analysis.repeating import Driven, refuse_unperiodic, steps_needed
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run import simulate
 from piezo_sym.run.checks import known_keys
-from piezo_sym.run.collocation import FixedStep, collocate
+from piezo_sym.run.collocation import METHOD, FixedStep, collocate
 from piezo_sym.run.guard import check_inputs, check_start
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.method import choose_method
 from piezo_sym.run.module import checked, rows
 from piezo_sym.run.parameters import read_initial, read_parameters
-from piezo_sym.run.runs import METHOD
 from piezo_sym.run.system import DrivenModule
 
 if TYPE_CHECKING:
@@ -86,12 +85,7 @@ class Stroboscope:
         return self if frequency == self.frequency else replace(self, frequency=frequency)
 
     def look(self, x: FloatArray) -> Period:
-        """Return the period that begins with the state x (n,) at t = 0.
-
-        Raises
-        ------
-        RunError : the run leaves the domain.
-        """
+        """Return the period that begins with the state x (n,) at t = 0."""
         states = self._period(x)
         size = np.maximum(np.max(np.abs(states), axis=1), FLOOR)
         for part in rows(self.module.STATES, self.values):
@@ -218,11 +212,6 @@ def stroboscope(
     Parameters
     ----------
     steps : per period; doubled until they resolve the inputs.
-
-    Raises
-    ------
-    UsageError : the module has not one body, an input does not repeat, or an argument is wrong.
-    RunError : a run leaves the domain in its first period.
     """
     bodies = [record.name for record in checked(module).BODIES]
     if len(bodies) != 1:

@@ -72,13 +72,7 @@ def legend(axes: Axes, title: str, **place: Any) -> None:
 
 
 def save(figure: Figure, data: xarray.Dataset, folder: Path, name: str) -> tuple[Path, ...]:
-    """Write a figure as PNG and SVG and its data as CSV, each file atomically; return the paths.
-
-    Raises
-    ------
-    FileError
-        If the folder cannot be written.
-    """
+    """Write a figure as PNG and SVG and its data as CSV, each file atomically; return the paths."""
     paths = tuple(folder / f"{name}{ending}" for ending in (".png", ".svg", ".csv"))
     for path in paths:
         write_bytes(path, _content(figure, data, path.suffix))

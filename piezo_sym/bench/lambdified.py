@@ -28,13 +28,7 @@ def solver(method: str, modules: str, cse: bool, problem: Problem) -> Callable[[
 
 
 def integrated(rates: Callable[..., Any], problem: Problem, method: Any, rtol: float) -> FloatArray:
-    """Return the state at the end, by solve_ivp.
-
-    Raises
-    ------
-    RuntimeError
-        If it gives up; with its reason.
-    """
+    """Return the state at the end, by solve_ivp."""
     end, atol = problem.duration, rtol * problem.scale
     found = solve_ivp(
         rates, (0.0, end), problem.start, method=method, t_eval=(end,), rtol=rtol, atol=atol

@@ -24,8 +24,8 @@ from piezo_sym.bench.lambdified import batch, field, solver
 from piezo_sym.bench.problem import INSTANT, Problem, problem_of
 from piezo_sym.errors import EngineError, PiezoError, RunError, UsageError, nearest, quote
 from piezo_sym.run import simulate
+from piezo_sym.run.collocation import METHOD
 from piezo_sym.run.engine.engine import engine_of
-from piezo_sym.run.runs import METHOD
 
 if TYPE_CHECKING:
     from piezo_sym.run.checks import FloatArray

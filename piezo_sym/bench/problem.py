@@ -95,11 +95,6 @@ def problem_of(
     ----------
     inputs : those left out keep the spec's defaults.
     sizes : of banks, where not the spec's.
-
-    Raises
-    ------
-    UsageError
-        If an input is neither a constant nor a sine.
     """
     shipped = not inputs and model.sha256 == load(SHIPPED).sha256
     given: Mapping[str, InputValue] = DRIVEN if shipped else inputs

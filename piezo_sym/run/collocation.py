@@ -6,22 +6,26 @@ a tolerance or a `FixedStep`.  Output: `Runs`, whose states are those of their l
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from math import ceil
-from typing import final
+from typing import Any, TypeAlias, final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from piezo_sym.errors import RunError, UsageError, listing, quote
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.engine import Engine
 from piezo_sym.run.engine.batch import Batch, Stepping
+from piezo_sym.run.engine.engine import Engine
 from piezo_sym.run.engine.library import Layout
 from piezo_sym.run.inputs import Inputs, Segment
-from piezo_sym.run.runs import Runs, Watch, stuck
+from piezo_sym.run.ledger import Trajectory
 from piezo_sym.run.system import DrivenModule, DrivenModules
 
+METHOD = "discrete_gradient"
+#: Told the time that runs have reached, now and then; what it raises ends them.
+Watch: TypeAlias = Callable[[float], object]
 #: The first step, the longest, and the longest of the survey of scales, in parts of the run.
 FIRST, LONGEST, SURVEYED = 1e-5, 0.25, 1 / 64
 #: Numbers of state that are stepped between two calls of `watch`: some milliseconds.
@@ -50,8 +54,56 @@ class FixedStep:
     order: int = 2
 
 
+@final
+@dataclass(frozen=True)
+class Runs:
+    """Runs of some systems, and why those that did not come through stopped.
+
+    Attributes
+    ----------
+    systems, start : with equal inputs and sizes; their states (runs, n) at t = 0.
+    times : the sample times (nt,).
+    states, sums : at samples, (runs, nt, n) and (runs, nt, rows), rows in the order of
+        `DrivenModule.rates`, and then heat and entropy that dissipative starts produce.
+    work : of each run, its steps, Newton's iterations, and steps refused (runs, 3).
+    errors : of each run, its error, or None.
+    numerical : whether sums have those last two rows.
+    """
+
+    systems: DrivenModules
+    start: FloatArray
+    times: FloatArray
+    states: FloatArray
+    sums: FloatArray
+    work: NDArray[Any]
+    errors: Sequence[RunError | None]
+    numerical: bool
+
+    def trajectory(self, k: int) -> Trajectory:
+        """Return run k; raise its error, which holds what was reached, if it stopped."""
+        if error := self.errors[k]:
+            error.reached = self.so_far(k).until(self.times)
+            raise error
+        return self.so_far(k)
+
+    def so_far(self, k: int) -> Trajectory:
+        """Return run k, whose samples are nan beyond what it reached."""
+        sums = self.sums[k].T
+        steps, evaluations, halvings = (int(number) for number in self.work[k])
+        return Trajectory(
+            start=self.start[k],
+            states=self.states[k].T,
+            inputs=self.systems.inputs.at_samples(self.times),
+            integrals=sums[:-2] if self.numerical else sums,
+            steps=steps,
+            evaluations=evaluations,
+            halvings=halvings,
+            numerical=sums[-2:] if self.numerical else None,
+        )
+
+
 def collocate(
-    systems: Sequence[DrivenModule],
+    systems: Sequence[DrivenModule] | DrivenModules,
     engine: Engine,
     x: FloatArray,
     times: FloatArray,
@@ -75,11 +127,6 @@ def collocate(
     stages : of a step with a tolerance; when left out, those that are cheapest for it.
     starts : whether the first fixed step after a jump of the inputs is dissipative.
     side_by_side : whether runs of few states lie in the lanes of vectors.
-
-    Raises
-    ------
-    RunError : inputs are so fast that no number of steps would do.
-    KeyboardInterrupt : it holds what the first of the runs has reached.
     """
     known = DrivenModules.of(systems)
     first = known[0]
@@ -134,9 +181,20 @@ def results(batch: Batch, systems: DrivenModules, x: FloatArray, times: FloatArr
     work = np.stack([records[n] for n in ("steps", "iterations", "rejected")], axis=1)
     errors: list[RunError | None] = [None] * len(x)
     for k in np.flatnonzero(records["failed"]).tolist():
-        errors[k] = stuck(systems[k], float(records["t"][k]), batch.x[k])
+        errors[k] = _stuck(systems[k], float(records["t"][k]), batch.x[k])
     arrays = batch.states, batch.sums, work
     return Runs(systems, x, times, *arrays, tuple(errors), numerical=batch.extra > 0)
+
+
+def _stuck(system: DrivenModule, t: float, x: FloatArray) -> RunError:
+    """Return the error of a run that cannot go on: it says when and where."""
+    why = "no step stays in the domain, or a law that jumps holds the state there"
+    remedy = "look at inputs and state; allow more room in [domain]; tanh(v/w) for sign(v)"
+    names = [record.name for record in system.module.STATES]
+    rows = system.rows(system.module.STATES)
+    values = ", ".join(f"{n} = {x[row.start]:.6g}" for n, row in zip(names, rows, strict=True))
+    what = f"{METHOD} cannot go on from t = {t:.6g} s at {values}: {why}"
+    return RunError(what, f"model '{system.module.NAME}'", remedy=remedy)
 
 
 def stepping(system: DrivenModule, accuracy: float | FixedStep, stages: int | None) -> Stepping:

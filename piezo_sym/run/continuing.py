@@ -29,12 +29,7 @@ def start_of(
     initial: Mapping[str, LaneValue] | xarray.Dataset | None,
     parameters: Mapping[str, LaneValue] | None,
 ) -> tuple[float, Mapping[str, LaneValue] | None, Mapping[str, LaneValue] | None]:
-    """Return when a run starts [s], from which state, and with which parameters.
-
-    Raises
-    ------
-    UsageError : `t0` is no number, or the Dataset is no run of this model and version.
-    """
+    """Return when a run starts [s], from which state, and with which parameters."""
     start = None if t0 is None else number(t0, "simulate.t0")
     run: Any = initial
     if not hasattr(run, "data_vars"):  # no Dataset: xarray is not loaded to ask
@@ -46,12 +41,7 @@ def start_of(
 def continued(
     module: GeneratedModule, run: xarray.Dataset, parameters: Mapping[str, LaneValue] | None
 ) -> tuple[float, dict[str, LaneValue], dict[str, LaneValue]]:
-    """Return the last time of a run [s], its last state, and its parameters with those given.
-
-    Raises
-    ------
-    UsageError : it is no run of this model, or of another version of its spec.
-    """
+    """Return the last time of a run [s], its last state, and its parameters with those given."""
     model, sha256 = (str(run.attrs.get(key, "")) for key in ("model", "spec_sha256"))
     if "time" not in run.dims or not model:
         raise UsageError("this Dataset is no run of simulate()", WHERE)

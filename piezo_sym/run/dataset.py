@@ -35,12 +35,7 @@ ENTROPY_LEFT = "S - S(0) - entropy produced - entropy exchanged"
 def to_dataset(
     system: DrivenModule, times: FloatArray, trajectory: Trajectory, attrs: Mapping[str, Any]
 ) -> xarray.Dataset:
-    """Return a run as a Dataset; `attrs` are added to its own attributes.
-
-    Raises
-    ------
-    UsageError : two quantities of the module would have one name.
-    """
+    """Return a run as a Dataset; `attrs` are added to its own attributes."""
     import xarray
 
     coords = dict(coordinates(system, times))

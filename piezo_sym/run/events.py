@@ -64,13 +64,7 @@ class Located:
 
 
 def read_watched(system: DrivenModule, events: object, stop: object, step: object) -> Watched:
-    """Return what a user wants to be looked for; not in a run with a fixed step.
-
-    Raises
-    ------
-    UsageError : a text is no expression (for `stop`: no comparison) of what the run knows, or a
-        name is none, or taken by a quantity of the run.
-    """
+    """Return what a user wants to be looked for; not in a run with a fixed step."""
     given = {} if events is None else events
     if not isinstance(given, Mapping):
         expected = 'name -> expression, such as {"hit": "q - 1e-3"}'
@@ -153,12 +147,7 @@ def values_of(system: DrivenModule, tree: Expr, trajectory: Trajectory) -> Float
 def look(
     system: DrivenModule, watched: Watched, samples: FloatArray, steps: int, run: Sampler
 ) -> Located:
-    """Return where events are, and where the run ends, from a run of so many steps.
-
-    Raises
-    ------
-    UsageError : `stop` holds from the beginning.
-    """
+    """Return where events are, and where the run ends, from a run of so many steps."""
     number = min(max(PER_STEP * steps, LEAST), MOST)
     even = np.linspace(system.inputs.start, system.inputs.end, number)
     times, seen = run(np.union1d(samples, even))

@@ -139,12 +139,7 @@ def read_inputs(
     duration: float,
     start: float = 0.0,
 ) -> Inputs:
-    """Return the inputs of a run; those not given keep the module's defaults.
-
-    Raises
-    ------
-    UsageError : a name is unknown, or a value is not usable or does not cover the run.
-    """
+    """Return the inputs of a run; those not given keep the module's defaults."""
     names = [record.name for record in module.INPUTS]
     defaults = dict(zip(names, module.INPUT_DEFAULTS, strict=True))
     values = defaults | known_keys(given, names, "simulate.inputs", others(module, "inputs"))

@@ -83,10 +83,6 @@ def batches(
 
     The start of each segment is a batch of its own, so that its state and inputs are looked at
     before a solver is.
-
-    Raises
-    ------
-    RunError : the solver cannot go on; what it had accepted is yielded before.
     """
     for segment in system.inputs.segments:
         yield Stretches(segment, (start_stretch(segment, x, times),), 0, 0)
@@ -145,10 +141,6 @@ def accepted(
 
     LSODA takes a trial state where the laws give nan for an answer, and other solvers give up
     near one. So a step that fails is tried again from the last good state, ten times shorter.
-
-    Raises
-    ------
-    RunError : no step is short enough; the message says when and why.
     """
     span = trial = segment.stop - segment.start
     solver, rest, spent, still = None, segment, 0, 0

@@ -65,13 +65,7 @@ class Trajectory:
 def record(
     system: DrivenModule, start: FloatArray, batches: Iterable[Stretches], times: FloatArray
 ) -> Trajectory:
-    """Return the trajectory at `times` (nt,) of a run from `start` (n,) that comes in batches.
-
-    Raises
-    ------
-    RunError : a stop (sample or end of an accepted step) is outside the domain.  It, and a
-        `KeyboardInterrupt`, hold what was reached.
-    """
+    """Return the trajectory at `times` (nt,) of a run from `start` (n,) that comes in batches."""
     n, m, k = row_counts(system)
     states, inputs, integrals = (np.full((size, times.size), np.nan) for size in (n, m, k))
     total, steps, evaluations = np.zeros(k), 0, 0

@@ -18,12 +18,11 @@ from typing import final
 
 from piezo_sym.errors import EngineError, UsageError, listing, one_line, quote
 from piezo_sym.files import path_text
-from piezo_sym.run.engine import Engine, EngineWarning
-from piezo_sym.run.engine.engine import engine_of
-from piezo_sym.run.engine.library import cache_folder, read_source, source_path
+from piezo_sym.run.collocation import METHOD
+from piezo_sym.run.engine.engine import Engine, engine_of
+from piezo_sym.run.engine.library import EngineWarning, cache_folder, read_source, source_path
 from piezo_sym.run.integrate import METHODS
 from piezo_sym.run.module import GeneratedModule
-from piezo_sym.run.runs import METHOD
 
 OFFERED = (METHOD, *METHODS)
 FALLBACK = "LSODA"
@@ -48,17 +47,7 @@ def checked_method(method: object) -> str | None:
 
 
 def choose_method(module: GeneratedModule, method: str | None, step: object) -> ChosenMethod:
-    """Return the method that runs a module.
-
-    Parameters
-    ----------
-    method : the one that the user named, or None.
-    step : the fixed step that the user asked for, or None.
-
-    Raises
-    ------
-    EngineError : the discrete gradient or a step was asked for, and there is no engine.
-    """
+    """Return the method that runs a module; `method` and `step` are the user's, or None."""
     if method not in (None, METHOD):
         return ChosenMethod(method, None, f"none: method {method} was asked for")
     free = method is None and step is None
@@ -77,7 +66,7 @@ def choose_method(module: GeneratedModule, method: str | None, step: object) -> 
 
 def _found(module: GeneratedModule) -> Engine | EngineError:
     """Return a module's engine, or why there is none."""
-    if not _loaded(module):
+    if not _own(module):
         what = "is no module loaded from a file, so no C source is its own"
         return EngineError(what, f"model '{module.NAME}'")
     if not os.path.isfile(_own(module)):
@@ -96,22 +85,15 @@ def _compiler(engine: Engine) -> str:
     return one_line(ctypes.string_at(ctypes.addressof(text)).decode(errors="replace").strip())
 
 
-def _loaded(module: object) -> bool:
-    """Return whether it is a module of a file, so that C beside that file may be its own."""
-    return isinstance(module, ModuleType) and bool(_own(module))
-
-
 def _own(module: object) -> str:
-    """Return the file that a module was loaded from, or nothing."""
-    return getattr(module, "__file__", None) or ""
+    """Return the file that a module was loaded from, beside which its C is; or nothing."""
+    return (getattr(module, "__file__", None) or "") if isinstance(module, ModuleType) else ""
 
 
 def _has_source(module: GeneratedModule) -> bool:
     """Return whether a module came with C: there is some, or not even its own file is left."""
-    if not _loaded(module):
-        return False
-    beside = (source_path(module, ending) for ending in (".h", ".c"))
-    return not os.path.isfile(_own(module)) or any(os.path.isfile(path) for path in beside)
+    own, beside = _own(module), (source_path(module, ending) for ending in (".h", ".c"))
+    return bool(own) and (not os.path.isfile(own) or any(map(os.path.isfile, beside)))
 
 
 @lru_cache(maxsize=256)

@@ -8,7 +8,8 @@ import re
 from collections.abc import Callable, Sequence
 from typing import Any, Protocol, TypeVar
 
-from numpy.typing import ArrayLike
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from piezo_sym.errors import UsageError, listing, quote
 from piezo_sym.run.checks import FloatArray
@@ -82,6 +83,13 @@ def verdict_of(module: GeneratedModule) -> str:
     """Return what a module's head says of its proofs: "skew, ... PROVED", or "NOT PROVED (...)"."""
     found = re.search(r"^Proofs: +(.+)$", module.__doc__ or "", re.MULTILINE)
     return found[1] if found else f"{UNPROVED} (its head says nothing of proofs)"
+
+
+def held(module: GeneratedModule, margins: FloatArray) -> NDArray[np.bool_]:
+    """Return whether each condition holds, from its margin (conditions, *batch); nan does not."""
+    strict = np.array([condition.strict for condition in module.DOMAIN], dtype=bool)
+    strict = strict.reshape(-1, *(1,) * (margins.ndim - 1))
+    return np.where(strict, margins > 0, margins >= 0)
 
 
 def lanes(parameters: Any, bank: str) -> int:

@@ -5,10 +5,10 @@ Input: the parameters of one run, and what of them differs in others.  Output: `
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
-from typing import Any, TypeAlias, final, overload
+from typing import Any, TypeAlias, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +18,8 @@ Column: TypeAlias = Sequence[Any] | NDArray[Any]
 
 @final
 @dataclass(frozen=True, eq=False)  # a key by identity: what C has of it is kept as long as it
-class ParameterTable(Sequence[Any]):
-    """The parameters of many runs, of equal sizes.
+class ParameterTable:
+    """The parameters of many runs, of equal sizes: those of run k are `table[k]`.
 
     Attributes
     ----------
@@ -40,7 +40,7 @@ class ParameterTable(Sequence[Any]):
                 raise ValueError(msg)
 
     @staticmethod
-    def of(parameters: Sequence[Any]) -> ParameterTable:
+    def of(parameters: Sequence[Any] | ParameterTable) -> ParameterTable:
         """Return the parameters of some runs as a table."""
         if isinstance(parameters, ParameterTable):
             return parameters
@@ -53,37 +53,30 @@ class ParameterTable(Sequence[Any]):
         """Return the number of runs."""
         return self.size
 
-    @overload
-    def __getitem__(self, k: int) -> Any: ...
-    @overload
-    def __getitem__(self, k: slice) -> ParameterTable: ...
-    def __getitem__(self, k: int | slice) -> Any:
-        """Return the parameters of one run, or of some."""
-        if isinstance(k, slice):
-            return self.some(range(self.size)[k])
+    def __iter__(self) -> Iterator[Any]:
+        """Yield the parameters of each run."""
+        return (self[k] for k in range(self.size))
+
+    def __getitem__(self, k: int) -> Any:
+        """Return the parameters of one run: made in a tenth of the time of `replace`."""
         run = range(self.size)[k]
-        change = {name: _item(column, run) for name, column in self.columns.items()}
-        return _changed(self.base, change) if change else self.base
+        if not self.columns:
+            return self.base
+        found = object.__new__(type(self.base))
+        change = {
+            name: column[run].item() if isinstance(column, np.ndarray) else column[run]
+            for name, column in self.columns.items()
+        }
+        vars(found).update(vars(self.base), **change)
+        return found
 
     def some(self, runs: Sequence[int]) -> ParameterTable:
         """Return the parameters of some of the runs; the table itself for all in their order."""
         runs = list(runs)
         if runs == list(range(self.size)):
             return self
-        columns = {name: _part(column, runs) for name, column in self.columns.items()}
-        return ParameterTable(self.base, len(runs), columns)
-
-
-def _item(column: Column, run: int) -> Any:
-    return column[run].item() if isinstance(column, np.ndarray) else column[run]
-
-
-def _part(column: Column, runs: list[int]) -> Column:
-    return column[runs] if isinstance(column, np.ndarray) else [column[k] for k in runs]
-
-
-def _changed(base: Any, change: Mapping[str, Any]) -> Any:
-    """Return parameters with some of their fields changed: `replace`, in a tenth of its time."""
-    found = object.__new__(type(base))
-    vars(found).update(vars(base), **change)
-    return found
+        parts = {
+            name: column[runs] if isinstance(column, np.ndarray) else [column[k] for k in runs]
+            for name, column in self.columns.items()
+        }
+        return ParameterTable(self.base, len(runs), parts)

@@ -34,12 +34,7 @@ MOST_STEPS = 1e12
 
 
 def read_parameters(module: GeneratedModule, given: Mapping[str, LaneValue] | None) -> Any:
-    """Return the module's parameters with those a user gave in place of the defaults.
-
-    Raises
-    ------
-    UsageError : a name is unknown, a value is not finite, or a list does not fit its bank.
-    """
+    """Return the module's parameters with those a user gave in place of the defaults."""
     default = module.Parameters()
     banks = {record.name: record.bank for record in module.PARAMETERS}
     values, sizes = _known(module, given), read_sizes(module, given)
@@ -52,12 +47,7 @@ def read_parameters(module: GeneratedModule, given: Mapping[str, LaneValue] | No
 
 
 def read_sizes(module: GeneratedModule, given: Mapping[str, LaneValue] | None) -> dict[str, int]:
-    """Return the number of lanes of each bank.
-
-    Raises
-    ------
-    UsageError : a name is unknown, or a size is no whole number.
-    """
+    """Return the number of lanes of each bank."""
     default, values = module.Parameters(), _known(module, given)
     names = {bank: f"{bank}_count" for bank in module.BANKS}
     return {
@@ -99,11 +89,6 @@ def read_initial(
     Parameters
     ----------
     u : the inputs at t = 0, shape (m,).
-
-    Raises
-    ------
-    UsageError : a name is unknown, a value is not finite, or a list does not fit its bank.
-    RunError : the module cannot compute its own initial state.
     """
     names, places = [record.name for record in module.STATES], others(module, "initial")
     values = known_keys(given, names, "simulate.initial", places)
@@ -129,13 +114,7 @@ def own_initial(module: GeneratedModule, parameters: Any, u: FloatArray) -> Floa
 def sample_times(
     times: object, every: object, step: float | None, duration: float, start: float = 0.0
 ) -> FloatArray:
-    """Return the times (nt,) of the samples [s], from what a user said of `times` and `every`.
-
-    Raises
-    ------
-    UsageError : neither says when; see `read_times` and `read_every`; or the step is too short, or
-        longer than the run.
-    """
+    """Return the times (nt,) of the samples [s], from what a user said of `times` and `every`."""
     if step is not None and not duration / step <= MOST_STEPS:
         what = f"{step:g} s is too short a step for {duration:g} s: a run of over 10^12 steps"
         raise UsageError(what, "simulate.step", f"at least {duration / MOST_STEPS:.1g} s")
@@ -151,13 +130,7 @@ def sample_times(
 
 
 def read_times(given: object, duration: float, start: float = 0.0) -> FloatArray:
-    """Return the times (nt,) of the samples [s]: even ones, or those a user gave.
-
-    Raises
-    ------
-    UsageError : neither None, a number of samples >= 2, nor increasing times in the run; a last one
-        that is beyond by round-off alone is the end.
-    """
+    """Return the times (nt,) of the samples [s]: even ones, or those a user gave."""
     where, end = "simulate.times", start + duration
     if given is None:
         return np.linspace(start, end, SAMPLES)
@@ -175,12 +148,7 @@ def read_times(given: object, duration: float, start: float = 0.0) -> FloatArray
 def read_every(
     every: object, times: object, step: float | None, duration: float, start: float
 ) -> FloatArray:
-    """Return the times (nt,) of samples every so many steps, and the end [s].
-
-    Raises
-    ------
-    UsageError : `every` is no whole number, times are given too, or there is no fixed step.
-    """
+    """Return the times (nt,) of samples every so many steps, and the end [s]."""
     where = "simulate.every"
     if step is None or times is not None:
         what = "times are given too" if step else "there is no fixed step"

@@ -1,40 +1,41 @@
 """A run that is ready to go: its system, start and method; and its Dataset.
 
 Input: what `simulate` has read.  Output: the samples at any times, and the Dataset of a run, with
-its events if there are any.  An error, or Ctrl-C, brings the Dataset so far.
+its events if there are any.  An error, or Ctrl-C, brings the Dataset so far; the error of a run in
+C says which condition of the domain the state leaves, when, and with which values.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 
-from piezo_sym.errors import RunError
-from piezo_sym.run.compiled import compiled_run
+from piezo_sym.errors import RunError, UsageError
+from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.collocation import METHOD, FixedStep, Watch, choice, collocate
 from piezo_sym.run.dataset import to_dataset
-from piezo_sym.run.events import event_variables, look
-from piezo_sym.run.guard import check_start
-from piezo_sym.run.inputs import read_inputs
-from piezo_sym.run.parameters import read_initial
-from piezo_sym.run.scipy_runs import by_scipy
+from piezo_sym.run.engine.batch import is_lossy
+from piezo_sym.run.engine.engine import Engine
+from piezo_sym.run.events import Watched, event_variables, look
+from piezo_sym.run.guard import check_inputs, check_start
+from piezo_sym.run.inputs import InputValue, read_inputs
+from piezo_sym.run.ledger import Trajectory
+from piezo_sym.run.method import ChosenMethod
+from piezo_sym.run.module import GeneratedModule
+from piezo_sym.run.parameters import LaneValue, read_initial
+from piezo_sym.run.scipy_runs import by_scipy, cause
 from piezo_sym.run.system import DrivenModule
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     import xarray
 
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.collocation import FixedStep
-    from piezo_sym.run.events import Watched
-    from piezo_sym.run.inputs import InputValue
-    from piezo_sym.run.ledger import Trajectory
-    from piezo_sym.run.method import ChosenMethod
-    from piezo_sym.run.module import GeneratedModule
-    from piezo_sym.run.parameters import LaneValue
-    from piezo_sym.run.runs import Watch
+#: Of a step: one that is shorter by less is rounded, not cut.
+SAME = 1e-6
+#: No better accuracy is asked for: round-off is all that would be left.
+LEAST_RTOL = 1e-12
 
 
 @final
@@ -63,51 +64,32 @@ class Request:
     def planned(
         self, start: float, duration: float, state: Mapping[str, LaneValue] | None
     ) -> PlannedRun:
-        """Return the run from a time and a state.
-
-        Raises
-        ------
-        UsageError, RunError : inputs or state are wrong, or outside the domain.
-        """
+        """Return the run from a time and a state, both checked."""
         inputs = read_inputs(self.module, self.inputs, duration, start)
         system = DrivenModule(self.module, self.parameters, inputs)
         x = read_initial(self.module, self.parameters, inputs.segments[0].at(start), state)
         check_start(system, x)
-        return PlannedRun(system, x, self.chosen, self.rtol, self.step, self.starts, self.watch)
+        return PlannedRun(self, system, x)
 
 
 @final
 @dataclass(frozen=True)
 class PlannedRun:
-    """A run from the state x (n,), by a method and its tolerance or step.
+    """A run from the state x (n,)."""
 
-    `starts`: whether the first step after a jump of the inputs is dissipative; `watch` is told the
-    time reached, now and then.
-    """
-
+    request: Request
     system: DrivenModule
     x: FloatArray
-    chosen: ChosenMethod
-    rtol: float
-    step: FixedStep | None
-    starts: bool
-    watch: Watch | None
 
     def go(self, samples: FloatArray) -> tuple[Trajectory, dict[str, object]]:
         """Return the run at its samples (nt,), and what it took; an error holds what it reached."""
-        system, x, chosen = self.system, self.x, self.chosen
-        if chosen.engine:
-            given = system, chosen.engine, x, samples, self.rtol, self.step, self.watch
-            return compiled_run(*given, starts=self.starts)
-        return by_scipy(system, x, samples, chosen.method, self.rtol, self.watch)
+        request, system, x = self.request, self.system, self.x
+        if request.chosen.engine:
+            return compiled_run(request, request.chosen.engine, system, x, samples)
+        return by_scipy(system, x, samples, request.chosen.method, request.rtol, request.watch)
 
     def dataset(self, samples: FloatArray, watched: Watched) -> xarray.Dataset:
-        """Return the run as a Dataset, with its events.
-
-        Raises
-        ------
-        RunError, KeyboardInterrupt : the run stopped; `partial` is the Dataset so far.
-        """
+        """Return the run as a Dataset, with its events; `partial` of an error is that so far."""
         try:
             if watched:
                 return self._watched(samples, watched)
@@ -123,7 +105,8 @@ class PlannedRun:
     def _made(
         self, times: FloatArray, trajectory: Trajectory, attrs: dict[str, object]
     ) -> xarray.Dataset:
-        told = {"method": self.chosen.method, **attrs, "engine": self.chosen.note}
+        chosen = self.request.chosen
+        told = {"method": chosen.method, **attrs, "engine": chosen.note}
         return to_dataset(self.system, times, trajectory, told)
 
     def _watched(self, samples: FloatArray, watched: Watched) -> xarray.Dataset:
@@ -154,3 +137,56 @@ class PlannedRun:
         times, seen = run(np.unique(np.concatenate([kept, *located.times.values()])))
         made = self._made(kept, seen.at(np.searchsorted(times, kept)), work)
         return made.assign(dict(event_variables(self.system, located, times, seen)))
+
+
+def compiled_run(
+    request: Request, engine: Engine, system: DrivenModule, x: FloatArray, samples: FloatArray
+) -> tuple[Trajectory, dict[str, object]]:
+    """Return a run in C, with a fixed step or a tolerance, and what it took."""
+    step = request.step
+    if request.starts:
+        _check_dissipative(engine, step)
+    check_inputs(system, x, samples)
+    rtol = max(request.rtol, LEAST_RTOL)
+    accuracy: dict[str, object] = {"rtol": rtol, "order": 2 * choice(rtol)[0]}
+    try:
+        if step:
+            shortest = shortest_step(system, samples, step.length)
+            accuracy = {"step": step.length, "order": step.order, "shortest_step": shortest}
+        given = [system], engine, x[None], samples, step or rtol, request.watch
+        trajectory = collocate(*given, starts=request.starts).trajectory(0)
+    except RunError as stopped:
+        found = cause(system, x, samples, stopped)
+        found.reached = stopped.reached
+        raise found from stopped
+    work = {
+        "accepted_steps": trajectory.steps,
+        "newton_iterations": trajectory.evaluations,
+        "halvings": trajectory.halvings,
+    }
+    return trajectory, {"method": METHOD, **accuracy, **work}
+
+
+def _check_dissipative(engine: Engine, step: FixedStep | None) -> None:
+    """Raise `UsageError` if there is no store to damp, no body to take the loss, or no step."""
+    where = "simulate.dissipative_start"
+    if not is_lossy(engine):
+        what = f"model '{engine.module.NAME}' has no thermal_mass to take a loss, or no storage"
+        raise UsageError(what, where, "False", "leave it out, or add a thermal_mass")
+    if step is None:
+        what = "a run with a tolerance follows what a jump sets off, and damps nothing"
+        raise UsageError(what, where, "False", "leave it out, or give step")
+
+
+def shortest_step(system: DrivenModule, samples: FloatArray, step: float) -> float:
+    """Return the shortest step [s] of a run with a fixed one, but for halvings.
+
+    Steps end at samples and at breaks of inputs; those between two of them are equal.
+    """
+    segments = system.inputs.segments
+    inner = samples[(samples > segments[0].start) & (samples < segments[-1].stop)]
+    edges = [segment.start for segment in segments] + [segments[-1].stop]
+    widths = np.diff(np.union1d(inner, edges))
+    rounding = 4 * np.finfo(float).eps * edges[-1] / step
+    taken = float(np.min(widths / np.maximum(1, np.ceil(widths / step - rounding))))
+    return step if taken > step * (1 - SAME) else taken

@@ -136,12 +136,7 @@ def header_of(name: object, unit: str) -> str:
 
 
 def column_headers(path: str | PathLike[str]) -> list[tuple[str, str]]:
-    """Return the names and units in the header of a delimited text file, "" where none is said.
-
-    Raises
-    ------
-    FileError : the file cannot be read, or is empty.
-    """
+    """Return the names and units in the header of a delimited text file, "" where none is said."""
     with _opened(Path(path)) as (header, _, _):
         return header
 

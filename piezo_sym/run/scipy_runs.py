@@ -14,10 +14,10 @@ import numpy as np
 
 from piezo_sym.errors import PiezoError, RunError
 from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.collocation import Watch
 from piezo_sym.run.inputs import Segment
 from piezo_sym.run.integrate import Stretches, Tolerance, accepted, batches
 from piezo_sym.run.ledger import Trajectory, record
-from piezo_sym.run.runs import Watch
 from piezo_sym.run.system import DrivenModule
 
 #: Absolute tolerances: this part of rtol times the scale of each state.

@@ -13,14 +13,13 @@ from typing import TYPE_CHECKING
 
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.run.checks import number, positive
-from piezo_sym.run.collocation import FixedStep, read_order
+from piezo_sym.run.collocation import METHOD, FixedStep, read_order
 from piezo_sym.run.continuing import start_of
 from piezo_sym.run.events import read_watched
 from piezo_sym.run.method import checked_method, choose_method
 from piezo_sym.run.module import checked
 from piezo_sym.run.parameters import read_parameters, sample_times
 from piezo_sym.run.planned import Request
-from piezo_sym.run.runs import METHOD
 from piezo_sym.run.streaming import streamed
 
 if TYPE_CHECKING:
@@ -194,13 +193,7 @@ def read_rtol(rtol: object) -> float:
 
 
 def read_step(step: object, order: object, method: str | None, rtol: object) -> FixedStep | None:
-    """Return the fixed step, None without one.
-
-    Raises
-    ------
-    UsageError
-        If it is asked of a method that chooses its own, or there is no step of that order.
-    """
+    """Return the fixed step, None without one."""
     if step is None:
         if order is not None:
             what = "there is no fixed step"

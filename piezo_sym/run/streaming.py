@@ -42,14 +42,7 @@ def streamed(
     stop: str | None,
     store: str | PathLike[str],
 ) -> xarray.Dataset:
-    """Run through all samples into a new store, and return what it holds.
-
-    Raises
-    ------
-    UsageError : the path is none of a new Zarr store, or zarr is not installed.
-    FileError : the store cannot be written.
-    RunError, KeyboardInterrupt : the run stopped; the store holds it until then, `partial` is that.
-    """
+    """Run through all samples into a new store, and return what it holds."""
     path = _new(store)
     rows = row_count(request.module.STATES, request.parameters) + len(request.module.OUTPUTS)
     most = max(2, WINDOW // (PER_ROW * rows))

@@ -6,15 +6,16 @@ Input: a generated module, `Parameters`, `Inputs`.  Output: `DrivenModule`; of m
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, final, overload
+from typing import Any, final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.inputs import Inputs, Segment
-from piezo_sym.run.module import GeneratedModule, Record, exchanges, rows
+from piezo_sym.run.module import GeneratedModule, Record, exchanges, held, rows
 from piezo_sym.run.parameter_table import ParameterTable
 
 FLOOR = 1e-15  # so that no tolerance is 0
@@ -55,14 +56,11 @@ class DrivenModule:
         with np.errstate(all="ignore"):
             return self.module.margins(x, u, self.parameters)
 
-    def violated(self, x: FloatArray, u: FloatArray) -> np.ndarray[Any, np.dtype[np.bool_]]:
+    def violated(self, x: FloatArray, u: FloatArray) -> NDArray[np.bool_]:
         """Return whether each condition fails, (conditions, *batch); a margin of nan fails."""
-        margins = self.margins(x, u)
-        strict = np.array([c.strict for c in self.module.DOMAIN], dtype=bool)
-        strict = strict.reshape(-1, *(1,) * (margins.ndim - 1))
-        return ~np.where(strict, margins > 0, margins >= 0)
+        return ~held(self.module, self.margins(x, u))
 
-    def finite(self, x: FloatArray, u: FloatArray) -> np.ndarray[Any, np.dtype[np.bool_]]:
+    def finite(self, x: FloatArray, u: FloatArray) -> NDArray[np.bool_]:
         """Return whether each row of dx/dt is a finite number, (n, *batch)."""
         with np.errstate(all="ignore"):
             return np.isfinite(self.module.rhs(x, u, self.parameters))
@@ -82,41 +80,31 @@ class DrivenModule:
 
 @final
 @dataclass(frozen=True, eq=False)
-class DrivenModules(Sequence[DrivenModule]):
-    """Systems of one module with equal inputs, each made when asked for.
-
-    Attributes
-    ----------
-    module, inputs : of all.
-    parameters : of each.
-    """
+class DrivenModules:
+    """Systems of one module with equal inputs and sizes, `systems[k]` made when asked for."""
 
     module: GeneratedModule
     parameters: ParameterTable
     inputs: Inputs
 
     @staticmethod
-    def of(systems: Sequence[DrivenModule]) -> DrivenModules:
+    def of(systems: Sequence[DrivenModule] | DrivenModules) -> DrivenModules:
         """Return systems with equal inputs as one value."""
         if isinstance(systems, DrivenModules):
             return systems
-        first = systems[0]
-        return DrivenModules(
-            first.module, ParameterTable.of([one.parameters for one in systems]), first.inputs
-        )
+        first, table = systems[0], ParameterTable.of([one.parameters for one in systems])
+        return DrivenModules(first.module, table, first.inputs)
 
     def __len__(self) -> int:
         """Return the number of systems."""
         return len(self.parameters)
 
-    @overload
-    def __getitem__(self, k: int) -> DrivenModule: ...
-    @overload
-    def __getitem__(self, k: slice) -> DrivenModules: ...
-    def __getitem__(self, k: int | slice) -> DrivenModule | DrivenModules:
-        """Return one system, or some."""
-        if isinstance(k, slice):
-            return DrivenModules(self.module, self.parameters[k], self.inputs)
+    def __iter__(self) -> Iterator[DrivenModule]:
+        """Yield each system."""
+        return (self[k] for k in range(len(self)))
+
+    def __getitem__(self, k: int) -> DrivenModule:
+        """Return one system."""
         return DrivenModule(self.module, self.parameters[k], self.inputs)
 
     def some(self, runs: Sequence[int]) -> DrivenModules:

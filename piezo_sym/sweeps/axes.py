@@ -76,10 +76,6 @@ def read_axes(
     Parameters
     ----------
     lanes : the size of each bank if it is not swept.
-
-    Raises
-    ------
-    UsageError : a name is unknown, ambiguous or swept twice, or a value is not usable.
     """
     if not isinstance(over, Mapping) or not over:
         what = f"{quote(over)} sweeps nothing" if over in ({}, None) else f"{quote(over)} is no map"

@@ -32,12 +32,7 @@ ERROR_ATTRS = described("1", "why a run failed; empty where it did not") | {"mis
 
 
 def frame_of(plan: Plan, module: GeneratedModule) -> xarray.Dataset:
-    """Return the frame of a sweep; time and banks only where its results have them.
-
-    Raises
-    ------
-    UsageError : two quantities would have one name.
-    """
+    """Return the frame of a sweep; time and banks only where its results have them."""
     system, own = widest(plan, module), callable(plan.reduce)
     inputs = dict(inputs_of(plan, module, system))
     coords = dict(coordinates(system, plan.samples))

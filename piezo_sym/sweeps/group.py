@@ -110,7 +110,7 @@ def starts(
     own = started(module, read, u)
     found = [own] * len(systems)
     if not read.names.isdisjoint(systems.parameters.columns):
-        found[1:] = [started(module, p, u) for p in systems.parameters[1:]]
+        found = [started(module, p, u) for p in systems.parameters]
     parts = dict(zip((r.name for r in module.STATES), first.rows(module.STATES), strict=True))
     size = rows(module.STATES, first.parameters)[-1].stop if module.STATES else 0
     start = np.array([np.full(size, np.nan) if isinstance(x, str) else x for x in found])

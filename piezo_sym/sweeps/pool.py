@@ -70,12 +70,7 @@ def at_hand(result: Result) -> Future[Result]:
 def sender(
     plan: Plan, module: GeneratedModule, model: str | Path | Model, executor: Executor
 ) -> Submit:
-    """Return a way to run boxes by a user's executor; threads need nothing sent.
-
-    Raises
-    ------
-    UsageError : what a task needs cannot be sent to another process.
-    """
+    """Return a way to run boxes by a user's executor; threads need nothing sent."""
     if isinstance(executor, ThreadPoolExecutor):
         return lambda region: executor.submit(run_box, plan.part(region), module, ignore)
     from piezo_sym.spec.load import load
@@ -111,12 +106,7 @@ def ignore(_: float) -> None:
 def results(
     submit: Submit, boxes: Iterable[Region], at_once: int
 ) -> Generator[tuple[Region, Result], None, None]:
-    """Yield boxes and results as they are completed; if the caller stops, cancel the others.
-
-    Raises
-    ------
-    RunError : a process of the executor died.
-    """
+    """Yield boxes and results as they are completed; if the caller stops, cancel the others."""
     pending: dict[Future[Result], Region] = {}
     try:
         for box in boxes:

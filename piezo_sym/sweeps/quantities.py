@@ -12,12 +12,12 @@ import xarray
 from numpy.typing import NDArray
 
 from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.collocation import Runs
 from piezo_sym.run.dataset import variables
 from piezo_sym.run.engine import Engine
 from piezo_sym.run.engine.engine import Members
 from piezo_sym.run.ledger import Trajectory, row_counts
 from piezo_sym.run.module import Record, exchanges
-from piezo_sym.run.runs import Runs
 from piezo_sym.run.system import DrivenModule
 
 

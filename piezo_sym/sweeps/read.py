@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from piezo_sym.errors import PiezoError, UsageError, listing, quote
 from piezo_sym.run.checks import FloatArray, positive
+from piezo_sym.run.collocation import METHOD
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.method import checked_method, choose_method
 from piezo_sym.run.module import GeneratedModule, lanes
@@ -22,7 +23,6 @@ from piezo_sym.run.parameters import (
     read_sizes,
     sample_times,
 )
-from piezo_sym.run.runs import METHOD
 from piezo_sym.run.simulate import read_rtol, read_step
 from piezo_sym.sweeps.axes import Axis, read_axes, single_numbers
 from piezo_sym.sweeps.plan import (
@@ -55,12 +55,7 @@ def read_plan(
     reduce: object,
     reduce_by: object,
 ) -> Plan:
-    """Return what a sweep runs; without a compiler, its method is LSODA.
-
-    Raises
-    ------
-    UsageError : an argument is unknown, of the wrong kind, or not finite.
-    """
+    """Return what a sweep runs; without a compiler, its method is LSODA."""
     with named_sweep():
         named, bound = checked_method(method), read_rtol(rtol)
         fixed, end = read_step(step, order, named, rtol), positive(duration, "sweep.duration")

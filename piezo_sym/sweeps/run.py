@@ -14,11 +14,10 @@ import numpy as np
 import xarray
 
 from piezo_sym.errors import PiezoError, RunError
-from piezo_sym.run.collocation import collocate
+from piezo_sym.run.collocation import METHOD, Runs, collocate
 from piezo_sym.run.dataset import coordinates, spread
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.guard import check_inputs, inputs_move
-from piezo_sym.run.runs import METHOD, Runs
 from piezo_sym.run.scipy_runs import by_scipy, cause
 from piezo_sym.sweeps.group import Group, group_at
 from piezo_sym.sweeps.quantities import layout, of_runs, of_trajectory
@@ -74,11 +73,6 @@ def run_box(plan: Plan, module: GeneratedModule, watch: Watch) -> Result:
     ----------
     plan : of the box alone.
     watch : called now and then with the time reached; an exception from it ends the work.
-
-    Raises
-    ------
-    EngineError : there is no compiler here.
-    UsageError : the reduction's function returns something that cannot be used.
     """
     engine = engine_of(module) if plan.method == METHOD else None
     errors = np.full(plan.size, "", dtype=object)

@@ -35,13 +35,7 @@ UNREADABLE = (OSError, ValueError, KeyError, RuntimeError)
 
 
 def store_at(path: Path, plan: Plan, frame: xarray.Dataset, spec_sha256: str) -> tuple[Plan, Store]:
-    """Return the store at a path, created if there is none, and the plan with its boxes.
-
-    Raises
-    ------
-    FileError : the path holds something else, or the store of another sweep, or cannot be written.
-    UsageError : zarr is not installed.
-    """
+    """Return the store at a path, created if there is none, and the plan with its boxes."""
     try:
         import zarr
     except ImportError as error:

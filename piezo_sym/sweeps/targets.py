@@ -79,12 +79,7 @@ class Target:
 
 
 def find(module: GeneratedModule, word: object, where: str) -> Target:
-    """Return the quantity that a user's name means, without values.
-
-    Raises
-    ------
-    UsageError : nothing has that name, or two things have it.
-    """
+    """Return the quantity that a user's name means, without values."""
     known = list(targets(module))
     kind, dot, name = word.partition(".") if isinstance(word, str) else ("", "", word)
     if dot:

@@ -13,10 +13,9 @@ import numpy as np
 
 from piezo_sym.bench.problem import INSTANT
 from piezo_sym.run import simulate
-from piezo_sym.run.collocation import collocate
+from piezo_sym.run.collocation import METHOD, collocate
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.module import GeneratedModule
-from piezo_sym.run.runs import METHOD
 
 if TYPE_CHECKING:
     import xarray

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, final
 import numpy as np
 
 from piezo_sym.errors import RunError
-from piezo_sym.run.runs import METHOD
+from piezo_sym.run.collocation import METHOD
 from tests.benchmarks.case_p import case_p
 from tests.benchmarks.ours import states, whole
 

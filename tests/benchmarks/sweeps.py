@@ -14,9 +14,8 @@ import numpy as np
 
 from piezo_sym.bench.contest import Contestant, Pair, compared
 from piezo_sym.errors import EngineError, RunError
-from piezo_sym.run.collocation import collocate
+from piezo_sym.run.collocation import METHOD, collocate
 from piezo_sym.run.engine.engine import engine_of
-from piezo_sym.run.runs import METHOD
 from piezo_sym.sweeps.plan import Plan
 from piezo_sym.sweeps.pool import threads_for
 from piezo_sym.sweeps.read import read_plan

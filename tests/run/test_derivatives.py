@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from collocations import prepared
+from derivatives import Derivatives
+from replay import Taped
 
 from piezo_sym import sine
 from piezo_sym.run.collocation import stepping
 from piezo_sym.run.engine.batch import Stepping
-from piezo_sym.run.engine.derivatives import Derivatives
 from piezo_sym.run.engine.engine import engine_of
-from piezo_sym.run.engine.replay import Taped
 from tests.networks.test_specs import SPECS
 
 DRIVE = {"V_in": sine(100, 100)}

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from piezo_sym.analysis.figures.figure import CELSIUS, TEMPERATURES, ZERO_CELSIUS, PaperFigure
 from piezo_sym.analysis.style import column_figure, draw_lines, legend, name_axes
 from piezo_sym.run import simulate, step
-from piezo_sym.run.runs import METHOD
+from piezo_sym.run.collocation import METHOD
 
 if TYPE_CHECKING:
     import xarray

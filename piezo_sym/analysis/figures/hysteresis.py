@@ -26,7 +26,7 @@ from piezo_sym.analysis.figures.figure import (
 )
 from piezo_sym.analysis.style import column_figure, draw_lines, legend, name_axes
 from piezo_sym.run import simulate, sine
-from piezo_sym.run.runs import METHOD
+from piezo_sym.run.collocation import METHOD
 
 if TYPE_CHECKING:
     import xarray

@@ -19,6 +19,7 @@ from piezo_sym.run.engine.library import Layout, read_source, shared_library
 from piezo_sym.run.engine.records import DOUBLE, LONG, addresses, at, c_record, record_dtype
 from piezo_sym.run.engine.signals import InputRecords
 from piezo_sym.run.inputs import Inputs
+from piezo_sym.run.parameter_table import ParameterTable
 
 #: Vectors lie at multiples of so many bytes.
 ALIGNED = 64
@@ -53,13 +54,7 @@ class Stepping:
 def collocation_library(
     engine: Engine, stages: int, layout: Layout, *, lossy: bool = False
 ) -> ctypes.CDLL:
-    """Return the library of a module's collocation steps of so many stages.
-
-    Raises
-    ------
-    EngineError
-        If ``<model>_step.c`` is missing or of another spec, or cannot be compiled.
-    """
+    """Return the library of a module's collocation steps of so many stages."""
     step = read_source(engine.module, "_step.c")
     made = replace(engine.sources, step=step, stages=stages, layout=layout, lossy=lossy)
     return shared_library(made)
@@ -100,7 +95,7 @@ class Batch:
     def __init__(
         self,
         engine: Engine,
-        parameters: Sequence[Any],
+        parameters: Sequence[Any] | ParameterTable,
         x: FloatArray,
         inputs: Inputs,
         times: FloatArray,

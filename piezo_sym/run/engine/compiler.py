@@ -106,13 +106,7 @@ def _version(command: tuple[str, ...]) -> str:
 
 
 def build(compiler: Compiler, flags: Sequence[str], sources: Sequence[Path], library: Path) -> None:
-    """Compile source files into a shared library.
-
-    Raises
-    ------
-    EngineError
-        If the compiler fails; with the first line of what it says.
-    """
+    """Compile source files into a shared library."""
     words = [*compiler.command, *flags, *map(str, sources), "-o", str(library), "-lm"]
     done = _call(words, MOST_SECONDS)
     if done.returncode != 0 or not library.is_file():

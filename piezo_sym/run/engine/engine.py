@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import ctypes
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
+from math import prod
 from typing import Any, final
 
 import numpy as np
@@ -20,24 +21,28 @@ from piezo_sym.errors import EngineError
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.engine.library import CACHE, Sources, read_source, shared_library
 from piezo_sym.run.engine.records import INT, LONG, POINTER, ParameterRecords, at
-from piezo_sym.run.module import GeneratedModule, row_count
+from piezo_sym.run.module import GeneratedModule, held, row_count
+from piezo_sym.run.parameter_table import ParameterTable
 
+#: Of which records each function of a module gives rows; of none: one number.
+_ROWS = {
+    "rhs": "STATES",
+    "jacobian": "STATES",
+    "outputs": "OUTPUTS",
+    "supply": "OUTPUTS",
+    "heat": "PROCESSES",
+    "entropy_production": "PROCESSES",
+    "margins": "DOMAIN",
+    "temperatures": "BODIES",
+    "energy": "",
+    "entropy": "",
+}
 #: The functions of a module that a library computes.
-OFFERED = (
-    *("initial_state", "rhs", "jacobian", "outputs", "supply", "heat", "entropy_production"),
-    *("margins", "temperatures", "energy", "entropy"),
-)
+OFFERED = ("initial_state", *_ROWS)
 
 
 def engine_of(module: GeneratedModule) -> Engine:
-    """Return the compiled engine of a module, loaded from a file with its .c and .h beside it.
-
-    Raises
-    ------
-    EngineError
-        If the sources are missing or of another spec, nothing can compile them, or the cache
-        cannot be written.
-    """
+    """Return the compiled engine of a module, loaded from a file with its .c and .h beside it."""
     sources = Sources(module.NAME, read_source(module, ".h"), read_source(module, ".c"))
     environment = tuple(map(os.environ.get, ("CC", "PATH", CACHE, "HOME")))
     found = _engine(module, sources, environment)  # type: ignore[arg-type]  # a module can be a key
@@ -63,7 +68,9 @@ def _engine(
 class Engine:
     """The functions of a generated module, compiled; arguments and results as in the module.
 
-    x is (n, *batch); u is (inputs,) or (inputs, *batch); p is the module's `Parameters`.
+    x is (n, *batch); u is (inputs,) or (inputs, *batch); p is the module's `Parameters`. Results of
+    one shape may be put into `out`, a C-contiguous array apart from x and u: new memory for many
+    states costs as much as their rates.
     """
 
     module: GeneratedModule
@@ -73,96 +80,44 @@ class Engine:
 
     def initial_state(self, u: ArrayLike, p: Any, /) -> FloatArray:
         """Return the state at t = 0, shape (n,), for the inputs u (inputs,) at t = 0."""
-        u = self._array(u, len(self.module.INPUTS), "inputs").ravel()
+        u = _array(u, len(self.module.INPUTS), "inputs").ravel()
         out = np.empty(row_count(self.module.STATES, p))
         structure = self.structure(p)  # a name of its own keeps the arrays of its lanes alive
         self.function("initial_state")(at(u), ctypes.byref(structure.value), at(out))
         return out
 
-    def rhs(
-        self, x: ArrayLike, u: ArrayLike, p: Any, /, out: FloatArray | None = None
-    ) -> FloatArray:
-        """Return dx/dt, shape (n, *batch).
-
-        Parameters
-        ----------
-        out : a C-contiguous array of that shape to put it in, apart from x and u: new memory for
-            many states costs as much as their rates.
-        """
-        return self._called("rhs", x, u, p, row_count(self.module.STATES, p), out)
-
-    def jacobian(self, x: ArrayLike, u: ArrayLike, p: Any, /) -> FloatArray:
-        """Return the derivative of `rhs` by the state, shape (n, n, *batch)."""
-        n = row_count(self.module.STATES, p)
-        found = self._called("jacobian", x, u, p, n * n)
-        return found.reshape(n, n, *found.shape[1:])
-
-    def outputs(self, x: ArrayLike, u: ArrayLike, p: Any, /) -> FloatArray:
-        """Return one y per port, shape (ports, *batch)."""
-        return self._called("outputs", x, u, p, len(self.module.OUTPUTS))
-
-    def supply(self, x: ArrayLike, u: ArrayLike, p: Any, /) -> FloatArray:
-        """Return the power put in [W], shape (ports, *batch)."""
-        return self._called("supply", x, u, p, len(self.module.OUTPUTS))
-
-    def heat(self, x: ArrayLike, u: ArrayLike, p: Any, /) -> FloatArray:
-        """Return the heat of each process [W], shape (processes, *batch), banks spread."""
-        return self._called("heat", x, u, p, row_count(self.module.PROCESSES, p))
-
-    def entropy_production(self, x: ArrayLike, u: ArrayLike, p: Any, /) -> FloatArray:
-        """Return the entropy produced [W/K], shape (processes, *batch), banks spread."""
-        return self._called("entropy_production", x, u, p, row_count(self.module.PROCESSES, p))
-
-    def margins(self, x: ArrayLike, u: ArrayLike, p: Any, /) -> FloatArray:
-        """Return the margin of each condition of the domain, shape (conditions, *batch)."""
-        return self._called("margins", x, u, p, len(self.module.DOMAIN))
-
-    def temperatures(self, x: ArrayLike, p: Any, /) -> FloatArray:
-        """Return the temperature of each body [K], shape (bodies, *batch)."""
-        return self._called("temperatures", x, None, p, len(self.module.BODIES))
-
-    def energy(self, x: ArrayLike, p: Any, /) -> FloatArray:
-        """Return the Hamiltonian U [J], shape (*batch)."""
-        rows = self._called("energy", x, None, p, 1)
-        return rows.reshape(rows.shape[1:])
-
-    def entropy(self, x: ArrayLike, p: Any, /) -> FloatArray:
-        """Return the total entropy [J/K], shape (*batch)."""
-        rows = self._called("entropy", x, None, p, 1)
-        return rows.reshape(rows.shape[1:])
-
-    def _array(self, value: ArrayLike, rows: int, what: str) -> FloatArray:
-        array = np.asarray(value, dtype=float)
-        if array.shape[:1] != (rows,):
-            msg = f"{what} have shape {array.shape}, but there are {rows}"
-            raise ValueError(msg)
-        return array
+    def __getattr__(self, name: str) -> Callable[..., FloatArray]:
+        """Return another function of the module, computed in C."""
+        if name not in _ROWS:
+            raise AttributeError(name)
+        return partial(self._called, name)
 
     def _called(
-        self,
-        name: str,
-        x: ArrayLike,
-        u: ArrayLike | None,
-        p: Any,
-        rows: int,
-        out: FloatArray | None = None,
+        self, name: str, x: ArrayLike, *more: Any, out: FloatArray | None = None
     ) -> FloatArray:
-        """Return a function's rows for every column of a batch, shape (rows, *batch)."""
-        states = self._array(x, row_count(self.module.STATES, p), "states")
+        """Return a function's values; `more` is u, of a function that takes inputs, and p."""
+        *given, p = more
+        n, rows = row_count(self.module.STATES, p), self._rows(name, p)
+        states = _array(x, n, "states")
         batch, structure = states.shape[1:], self.structure(p)  # it keeps its lanes' arrays alive
-        width = int(np.prod(batch, dtype=int))
-        columns = np.ascontiguousarray(states.reshape(states.shape[0], width))
-        inputs = np.ascontiguousarray(self._inputs(u, batch))
-        found = _place(out, (rows, *batch))
-        sizes = columns.shape[0], inputs.shape[0], rows
+        columns = np.ascontiguousarray(states.reshape(n, prod(batch)))
+        inputs = np.ascontiguousarray(self._inputs(given[0], batch)) if given else np.empty(0)
+        shape = {"jacobian": (n, n), "energy": (), "entropy": ()}.get(name, (rows,))
+        found = _place(out, (*shape, *batch))
+        sizes = n, inputs.shape[0], prod(shape)
         space = np.empty(
             LONG.in_dll(self.library, f"{self.module.NAME}_tile").value * (sum(sizes) + 1)
         )
         self.function("of_columns")(
             *(self.loop(name), at(columns), at(inputs), ctypes.byref(structure.value), at(found)),
-            *(*map(LONG, (width, *sizes)), INT(inputs.ndim == 2), at(space)),
+            *(*map(LONG, (prod(batch), *sizes)), INT(inputs.ndim == 2), at(space)),
         )
         return found
+
+    def _rows(self, name: str, p: Any) -> int:
+        if name == "margins":
+            return len(self.module.DOMAIN)
+        return row_count(getattr(self.module, _ROWS[name]), p) if _ROWS[name] else 1
 
     def function(self, word: str) -> Any:
         """Return a function of the library by its own name."""
@@ -172,15 +127,21 @@ class Engine:
         """Return the loop of a function over columns, for `of_columns` and `of_runs`."""
         return ctypes.cast(self.function(f"{name}_columns"), POINTER)
 
-    def _inputs(self, u: ArrayLike | None, batch: tuple[int, ...]) -> FloatArray:
+    def _inputs(self, u: ArrayLike, batch: tuple[int, ...]) -> FloatArray:
         """Return inputs (inputs, columns), or (inputs,) for all columns."""
-        if u is None:
-            return np.empty(0)
         size = len(self.module.INPUTS)
-        given = self._array(u, size, "inputs")
+        given = _array(u, size, "inputs")
         if given.ndim == 1:
             return given
-        return np.broadcast_to(given, (size, *batch)).reshape(size, int(np.prod(batch, dtype=int)))
+        return np.broadcast_to(given, (size, *batch)).reshape(size, prod(batch))
+
+
+def _array(value: ArrayLike, rows: int, what: str) -> FloatArray:
+    array = np.asarray(value, dtype=float)
+    if array.shape[:1] != (rows,):
+        msg = f"{what} have shape {array.shape}, but there are {rows}"
+        raise ValueError(msg)
+    return array
 
 
 def _place(out: FloatArray | None, shape: tuple[int, ...]) -> FloatArray:
@@ -197,31 +158,25 @@ def _place(out: FloatArray | None, shape: tuple[int, ...]) -> FloatArray:
 class Members:
     """The functions of a module for some runs of equal sizes, each with parameters of its own."""
 
-    def __init__(self, engine: Engine, parameters: Sequence[Any]) -> None:
+    def __init__(self, engine: Engine, parameters: Sequence[Any] | ParameterTable) -> None:
         self._engine = engine
         self._kept = engine.structure.many(parameters)
 
     def inside(self, x: FloatArray, u: FloatArray) -> NDArray[np.bool_]:
         """Return which states (runs, k, n) lie in the domain, and have a finite rate, (runs, k)."""
-        domain = self._engine.module.DOMAIN
-        margins = self("margins", x, len(domain), u)
-        strict = np.array([condition.strict for condition in domain], dtype=bool)
-        held = np.where(strict, margins > 0, margins >= 0)
+        module = self._engine.module
+        margins = self("margins", x, len(module.DOMAIN), u)
         finite = np.isfinite(self("rhs", x, x.shape[2], u))
-        good: NDArray[np.bool_] = np.all(held, axis=2) & np.all(finite, axis=2)
+        holding = held(module, np.moveaxis(margins, 2, 0))
+        good: NDArray[np.bool_] = np.all(holding, axis=0) & np.all(finite, axis=2)
         return good
 
     def __call__(
         self, name: str, x: FloatArray, rows: int, u: FloatArray | None = None
     ) -> FloatArray:
-        """Return a function's rows (runs, k, rows).
+        """Return a function's rows (runs, k, rows) of states (runs, k, n).
 
-        Parameters
-        ----------
-        name : of the function, such as "outputs".
-        x : states (runs, k, n), C-contiguous.
-        rows : that it gives.
-        u : inputs (k, inputs) for all runs, C-contiguous; None for a function without.
+        Inputs (k, inputs), where it takes any, are those of all runs; arrays are C-contiguous.
         """
         out = np.empty((*x.shape[:2], rows))
         inputs = np.empty((1, 0)) if u is None else u

@@ -84,13 +84,7 @@ class Sources:
 
 
 def read_source(module: GeneratedModule, ending: str) -> str:
-    """Return the text beside a module, ``<model>.c`` for ".c", checked to be of its spec.
-
-    Raises
-    ------
-    EngineError
-        If it is missing, or of another spec.
-    """
+    """Return the text beside a module, ``<model>.c`` for ".c", checked to be of its spec."""
     file = source_path(module, ending)
     text = _text(file)
     if text is None or f"spec sha256 {module.SPEC_SHA256}" not in text:
@@ -143,11 +137,6 @@ def library(sources: Sources, *, again: bool = False) -> Path:
     ----------
     sources : the texts.
     again : compile even if there is a library, since that one cannot be loaded.
-
-    Raises
-    ------
-    EngineError
-        If there is no compiler, none of them can compile it, or no folder can be written.
     """
     first: EngineError | None = None
     hung: set[Compiler] = set()
@@ -236,13 +225,7 @@ def _digest(path: Path) -> str:
 
 
 def _build(sources: Sources, compiler: Compiler, flags: tuple[str, ...], path: Path) -> None:
-    """Compile beside the library's place, then move the result there.
-
-    Raises
-    ------
-    OSError : the place cannot be written.
-    EngineError : the compiler fails.
-    """
+    """Compile beside the library's place, then move the result there."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         _clean(path.parent)

@@ -128,7 +128,7 @@ class ParameterRecords:
         values += [lanes(p, bank) for bank in self._module.BANKS]
         return Structure(self._kind(*values), tuple(arrays))
 
-    def many(self, parameters: Sequence[Any]) -> Structures:
+    def many(self, parameters: Sequence[Any] | ParameterTable) -> Structures:
         """Return the structures of runs whose banks have equal sizes.
 
         Those of a `ParameterTable` are made once, and go with it.

@@ -14,11 +14,11 @@ from typing import Any, Literal, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from replay import Solved, Taped, TapedStep
 
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.engine.batch import collocation_library
 from piezo_sym.run.engine.records import LONG, at, c_record
-from piezo_sym.run.engine.replay import Solved, Taped, TapedStep
 
 #: A slope is an imaginary part of so much: a power of two, whose square is nothing beside 1.
 TINY = 2.0**-400
