@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from piezo_sym.errors import FileError, UsageError, one_line, quote
 
@@ -132,6 +133,16 @@ def temporary_folder() -> Path:
 
     atexit.register(remove)
     return Path(folder)
+
+
+def zarr_library(where: str) -> Any:
+    """Return zarr; raise `UsageError` if it is not installed."""
+    try:
+        import zarr
+    except ImportError as error:
+        remedy = "run `pip install 'piezo_sym[store]'`"
+        raise UsageError("zarr is not installed", where, remedy=remedy) from error
+    return zarr
 
 
 def path_of(value: object, where: str) -> Path:

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from math import fsum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, final
+from typing import Any, final
 
 import numpy as np
 
@@ -32,12 +32,9 @@ from piezo_sym.expressions.tree import Expr, LaneSum, evaluate, names
 from piezo_sym.modules import module_of
 from piezo_sym.run.checks import FloatArray, known_keys
 from piezo_sym.run.module import GeneratedModule, Record, lanes, row_names, rows
-from piezo_sym.run.parameters import read_initial, read_parameters
+from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
 from piezo_sym.spec.load import load
 from piezo_sym.spec.model import Model
-
-if TYPE_CHECKING:
-    from piezo_sym.run.parameters import LaneValue
 
 WHERE = "linearize"
 

@@ -7,6 +7,7 @@ the residual of the energy balance.  Empty panels are left out.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -14,15 +15,12 @@ import numpy as np
 
 from piezo_sym.analysis.style import COLOURS, DASHES, LABEL, SMALL, dress
 from piezo_sym.errors import UsageError, listing, one_line, quote
+from piezo_sym.run.checks import FloatArray
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
     import xarray
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-    from piezo_sym.run.checks import FloatArray
 
     Panel = tuple[str, Callable[[Axes], None]]
 

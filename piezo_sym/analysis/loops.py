@@ -16,15 +16,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from piezo_sym.errors import UsageError, nearest
-from piezo_sym.run.checks import positive
+from piezo_sym.run.checks import FloatArray, positive
 
 if TYPE_CHECKING:
     import xarray
-    from numpy.typing import ArrayLike
-
-    from piezo_sym.run.checks import FloatArray
 
 FEWEST = 8  # samples; fewer make no loop
 

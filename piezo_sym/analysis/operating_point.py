@@ -14,23 +14,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, final
+from typing import Any, final
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from piezo_sym.analysis.rest import ROUND_OFF, RestSearch
 from piezo_sym.errors import RunError, UsageError
-from piezo_sym.run.checks import known_keys, number, positive
-from piezo_sym.run.module import checked, row_name, rows
-from piezo_sym.run.parameters import read_initial, read_parameters
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.module import GeneratedModule, Record
-    from piezo_sym.run.parameters import LaneValue
+from piezo_sym.run.checks import FloatArray, known_keys, number, positive
+from piezo_sym.run.module import GeneratedModule, Record, checked, row_name, rows
+from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
 
 WHERE = "operating_point"
 

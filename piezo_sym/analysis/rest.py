@@ -7,16 +7,13 @@ Output: the state x (n,) at which their rates are zero, or a `RunError` that nam
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, final
+from typing import Any, final
 
 import numpy as np
 
 from piezo_sym.errors import RunError
-from piezo_sym.run.module import held, row_name
-
-if TYPE_CHECKING:
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.module import GeneratedModule
+from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.module import GeneratedModule, held, row_name
 
 MOST_STEPS, MOST_MOVES = 400, 40
 LONGEST = 1e15  # of the first Euler step

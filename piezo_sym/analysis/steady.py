@@ -33,15 +33,13 @@ from piezo_sym.analysis.newton import Settled, fixed_point, jacobian
 from piezo_sym.analysis.repeating import any_varies
 from piezo_sym.analysis.stroboscope import Stroboscope, stroboscope
 from piezo_sym.errors import RunError, UsageError
-from piezo_sym.run.checks import number, positive
+from piezo_sym.run.checks import FloatArray, number, positive
+from piezo_sym.run.inputs import InputValue
+from piezo_sym.run.module import GeneratedModule
+from piezo_sym.run.parameters import LaneValue
 
 if TYPE_CHECKING:
     import xarray
-
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.inputs import InputValue
-    from piezo_sym.run.module import GeneratedModule
-    from piezo_sym.run.parameters import LaneValue
 
 RTOL = 1e-6
 STEPS, MOST_STEPS = 256, 1 << 16  # per period

@@ -22,23 +22,18 @@ import numpy as np
 from piezo_sym.analysis.repeating import Driven, refuse_unperiodic, steps_needed
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run import simulate
-from piezo_sym.run.checks import known_keys
+from piezo_sym.run.checks import FloatArray, known_keys
 from piezo_sym.run.collocation import METHOD, FixedStep, collocate
+from piezo_sym.run.engine import Engine
 from piezo_sym.run.guard import check_inputs, check_start
-from piezo_sym.run.inputs import read_inputs
+from piezo_sym.run.inputs import Inputs, read_inputs
 from piezo_sym.run.method import choose_method
-from piezo_sym.run.module import checked, rows
-from piezo_sym.run.parameters import read_initial, read_parameters
+from piezo_sym.run.module import GeneratedModule, checked, rows
+from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
 from piezo_sym.run.system import DrivenModule
 
 if TYPE_CHECKING:
     import xarray
-
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.engine import Engine
-    from piezo_sym.run.inputs import Inputs
-    from piezo_sym.run.module import GeneratedModule
-    from piezo_sym.run.parameters import LaneValue
 
 SAMPLES = 16  # of a period, for the sizes of states and the mean temperature
 FLOOR = 1e-15  # so that no size is 0

@@ -7,14 +7,13 @@ PNG to look at, an SVG to print, a CSV of the data; the same bytes in every run.
 from __future__ import annotations
 
 import io
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from piezo_sym.files import write_bytes
 from piezo_sym.run.samples import header_of
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     import xarray
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure

@@ -24,12 +24,12 @@ from piezo_sym.bench.lambdified import batch, field, solver
 from piezo_sym.bench.problem import INSTANT, Problem, problem_of
 from piezo_sym.errors import EngineError, PiezoError, RunError, UsageError, nearest, quote
 from piezo_sym.run import simulate
+from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.collocation import METHOD
 from piezo_sym.run.engine.engine import engine_of
+from piezo_sym.run.inputs import InputValue
 
 if TYPE_CHECKING:
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.inputs import InputValue
     from piezo_sym.spec.model import Model
 
 MANY, CHECKED, DIGITS = 10_000, 8, 30

@@ -21,17 +21,15 @@ import sympy as sp
 from piezo_sym.derivation import derive
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.modules import module_of
-from piezo_sym.run.inputs import read_inputs
-from piezo_sym.run.module import lanes
+from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.inputs import InputValue, read_inputs
+from piezo_sym.run.module import GeneratedModule, lanes
 from piezo_sym.run.parameters import read_initial, read_parameters
 from piezo_sym.run.signals import Constant, Signal, Sine
 from piezo_sym.run.system import DrivenModule
 from piezo_sym.spec.load import load
 
 if TYPE_CHECKING:
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.inputs import InputValue
-    from piezo_sym.run.module import GeneratedModule
     from piezo_sym.spec.model import Model
 
 TIME = sp.Symbol("t", real=True)

@@ -12,12 +12,11 @@ import numpy as np
 
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.run.checks import number
+from piezo_sym.run.module import GeneratedModule
+from piezo_sym.run.parameters import LaneValue
 
 if TYPE_CHECKING:
     import xarray
-
-    from piezo_sym.run.module import GeneratedModule
-    from piezo_sym.run.parameters import LaneValue
 
 WHERE = "simulate.initial"
 PARAMETER = "parameter_"
@@ -34,14 +33,6 @@ def start_of(
     run: Any = initial
     if not hasattr(run, "data_vars"):  # no Dataset: xarray is not loaded to ask
         return start or 0.0, run, parameters
-    last, state, used = continued(module, run, parameters)
-    return last if start is None else start, state, used
-
-
-def continued(
-    module: GeneratedModule, run: xarray.Dataset, parameters: Mapping[str, LaneValue] | None
-) -> tuple[float, dict[str, LaneValue], dict[str, LaneValue]]:
-    """Return the last time of a run [s], its last state, and its parameters with those given."""
     model, sha256 = (str(run.attrs.get(key, "")) for key in ("model", "spec_sha256"))
     if "time" not in run.dims or not model:
         raise UsageError("this Dataset is no run of simulate()", WHERE)
@@ -59,4 +50,4 @@ def continued(
         if str(name).startswith(PARAMETER):
             word = str(name).removeprefix(PARAMETER)
             used[word] = int(value) if word.endswith("_count") else np.asarray(value).tolist()
-    return float(last.time), state, {**used, **(parameters or {})}
+    return float(last.time) if start is None else start, state, {**used, **(parameters or {})}

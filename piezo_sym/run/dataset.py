@@ -1,35 +1,125 @@
 """The Dataset of a run: every quantity by name, with units, ready for netCDF.
 
 Input: a `DrivenModule`, the sample times (nt,), a `Trajectory`.  Output: an `xarray.Dataset` with
-coordinate `time` [s] and, for each bank, its lanes 1..r under the element's name.
+coordinate `time` [s] and, for each bank, its lanes 1..r under the element's name.  Sweeps name the
+quantities of many runs by the same functions.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, TypeAlias
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, TypeAlias, final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from piezo_sym.errors import UsageError, quote
-from piezo_sym.run.module import exchanges, lanes, verdict_of
+from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.ledger import Trajectory
+from piezo_sym.run.module import Record, exchanges, lanes, verdict_of
+from piezo_sym.run.system import DrivenModule
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-
     import pandas
     import xarray
-    from numpy.typing import NDArray
-
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.ledger import Trajectory
-    from piezo_sym.run.module import Record
-    from piezo_sym.run.system import DrivenModule
 
 Variable: TypeAlias = tuple[tuple[str, ...], "NDArray[Any] | pandas.Index[Any]", dict[str, Any]]
 Named: TypeAlias = tuple[str, Variable]
 
-ENERGY_LEFT = "U - U(0) - energy put in"
-ENTROPY_LEFT = "S - S(0) - entropy produced - entropy exchanged"
+
+@final
+@dataclass(frozen=True)
+class Known:
+    """What is known of a run, or of runs of equal sizes, at samples: arrays (rows, [runs], nt).
+
+    Attributes
+    ----------
+    states, inputs, integrals, numerical : as in a `Trajectory`; inputs and numerical may be absent.
+    values : of the module's functions, by their names; energies have no rows.
+    start : energy and entropy at the start, of many runs (runs, 1).
+    dims : of a quantity, lanes of a bank aside.
+    """
+
+    system: DrivenModule
+    states: FloatArray
+    inputs: FloatArray | None
+    values: Mapping[str, FloatArray]
+    start: tuple[FloatArray, FloatArray]
+    integrals: FloatArray
+    numerical: FloatArray | None = None
+    dims: tuple[str, ...] = ("time",)
+
+    @staticmethod
+    def of(system: DrivenModule, run: Trajectory) -> Known:
+        """Return what is known of one run."""
+        module, p, x, u = system.module, system.parameters, run.states, run.inputs
+        values = {
+            "outputs": module.outputs(x, u, p),
+            "temperatures": module.temperatures(x, p),
+            "energy": module.energy(x, p),
+            "entropy": module.entropy(x, p),
+        }
+        start = module.energy(run.start, p), module.entropy(run.start, p)
+        return Known(system, x, u, values, start, run.integrals, run.numerical)
+
+    def instants(self) -> Iterator[Named]:
+        """Yield what states and inputs at one time decide."""
+        module, dims, values = self.system.module, self.dims, self.values
+        named = partial(spread, self.system, dims)
+        yield from named(module.STATES, self.states)
+        if self.inputs is not None:
+            yield from named(module.INPUTS, self.inputs)
+        yield from named(module.OUTPUTS, values["outputs"], "y_")
+        yield from named(module.BODIES, values["temperatures"], "T_")
+        yield "energy", (dims, values["energy"], described("J", "energy U"))
+        yield "entropy", (dims, values["entropy"], described("J/K", "entropy S"))
+
+    def ledger(self) -> Iterator[Named]:
+        """Yield what ports and processes did since the start, and what both balances leave over."""
+        module, dims, named = self.system.module, self.dims, partial(spread, self.system, self.dims)
+        processes, exchanging = self.system.rows(module.PROCESSES), exchanges(module)
+        size, ports = processes[-1].stop if processes else 0, len(module.OUTPUTS)
+        ends = np.cumsum([ports, size, size, len(exchanging)])
+        supplied, heat, produced, exchanged, _ = np.split(self.integrals, ends)
+        made = np.sum(produced, axis=0) + np.sum(exchanged, axis=0)
+        ambients = [module.OUTPUTS[n] for n in exchanging]
+        yield from named(module.OUTPUTS, supplied, "supplied_", ("J", "energy put in by"))
+        yield from named(module.PROCESSES, heat, "heat_", ("J", "heat released by"))
+        yield from named(module.PROCESSES, produced, "produced_", ("J/K", "entropy produced by"))
+        yield from named(ambients, exchanged, "entropy_exchanged_", ("J/K", "entropy brought by"))
+        if self.numerical is not None:
+            about = f"by dissipative starts since t = {self.system.inputs.start:g}"
+            heat, produced = self.numerical
+            yield "heat_numerical", (dims, heat, described("J", f"heat released {about}"))
+            text = f"entropy produced {about}"
+            yield "produced_numerical", (dims, produced, described("J/K", text))
+            made = made + produced
+        energy = self.values["energy"] - self.start[0] - np.sum(supplied, axis=0)
+        entropy = self.values["entropy"] - self.start[1] - made
+        yield "energy_residual", (dims, energy, described("J", "U - U(0) - energy put in"))
+        text = "S - S(0) - entropy produced - entropy exchanged"
+        yield "entropy_residual", (dims, entropy, described("J/K", text))
+
+
+def spread(
+    system: DrivenModule,
+    dims: tuple[str, ...],
+    records: Sequence[Record],
+    values: FloatArray,
+    prefix: str = "",
+    integral: tuple[str, str] | None = None,
+) -> Iterator[Named]:
+    """Yield the rows of `values` (rows, *dims) by record; `integral`: its unit and text."""
+    for record, part in zip(records, system.rows(records), strict=True):
+        attrs = described(record.unit, record.doc or record.name)
+        if integral:
+            text = f"{integral[1]} {quote(record.name)} since t = {system.inputs.start:g}"
+            attrs = described(integral[0], text)
+        found = np.moveaxis(values[part], 0, -1) if record.bank else values[part.start]
+        over = (*dims, record.bank) if record.bank else dims
+        yield f"{prefix}{record.name}", (over, found, attrs)
 
 
 def to_dataset(
@@ -38,9 +128,10 @@ def to_dataset(
     """Return a run as a Dataset; `attrs` are added to its own attributes."""
     import xarray
 
+    known = Known.of(system, trajectory)
     coords = dict(coordinates(system, times))
     data: dict[str, Variable] = {}
-    for name, variable in variables(system, trajectory):
+    for name, variable in (*known.instants(), *known.ledger()):
         if name in data or name in coords:
             what = f"two quantities are named '{name}'"
             raise UsageError(what, f"model '{system.module.NAME}'", remedy="rename one in the spec")
@@ -68,84 +159,6 @@ def coordinates(system: DrivenModule, times: FloatArray) -> Iterator[Named]:
     for bank in system.module.BANKS:
         numbers = pandas.RangeIndex(1, lanes(system.parameters, bank) + 1)
         yield bank, ((bank,), numbers, described("1", f"lane of bank '{bank}'"))
-
-
-def variables(system: DrivenModule, trajectory: Trajectory) -> Iterator[Named]:
-    """Yield every variable of the Dataset, in order."""
-    yield from instants(system, trajectory)
-    yield from ledger(system, trajectory)
-
-
-def instants(system: DrivenModule, trajectory: Trajectory) -> Iterator[Named]:
-    """Yield what states and inputs at one time decide, over time."""
-    module, p = system.module, system.parameters
-    x, u = trajectory.states, trajectory.inputs
-    yield from spread(system, module.STATES, x)
-    yield from spread(system, module.INPUTS, u)
-    yield from spread(system, module.OUTPUTS, module.outputs(x, u, p), "y_")
-    yield from spread(system, module.BODIES, module.temperatures(x, p), "T_")
-    yield "energy", (("time",), module.energy(x, p), described("J", "energy U"))
-    yield "entropy", (("time",), module.entropy(x, p), described("J/K", "entropy S"))
-
-
-def ledger(system: DrivenModule, trajectory: Trajectory) -> Iterator[Named]:
-    """Yield what the ports and processes did since t = 0, and what the two balances leave over."""
-    module, p, start = system.module, system.parameters, trajectory.start
-    x = trajectory.states
-    supplied, heat, produced, exchanged = integrals(system, trajectory)
-    made = np.sum(produced, axis=0) + np.sum(exchanged, axis=0)
-    brought = [module.OUTPUTS[n] for n in exchanges(module)]
-    yield from spread(system, module.OUTPUTS, supplied, "supplied_", ("J", "energy put in by {}"))
-    yield from spread(system, module.PROCESSES, heat, "heat_", ("J", "heat released by {}"))
-    yield from spread(
-        system, module.PROCESSES, produced, "produced_", ("J/K", "entropy produced by {}")
-    )
-    yield from spread(
-        system, brought, exchanged, "entropy_exchanged_", ("J/K", "entropy brought by {}")
-    )
-    if trajectory.numerical is not None:
-        yield from numerical(trajectory.numerical, system.inputs.start)
-        made = made + trajectory.numerical[1]
-    energy = module.energy(x, p) - module.energy(start, p) - np.sum(supplied, axis=0)
-    entropy = module.entropy(x, p) - module.entropy(start, p) - made
-    yield "energy_residual", (("time",), energy, described("J", f"{ENERGY_LEFT}"))
-    yield "entropy_residual", (("time",), entropy, described("J/K", f"{ENTROPY_LEFT}"))
-
-
-def integrals(system: DrivenModule, trajectory: Trajectory) -> list[FloatArray]:
-    """Return what was supplied, released as heat, produced and exchanged, rows (., nt) each."""
-    module = system.module
-    processes = system.rows(module.PROCESSES)
-    ports, size = len(module.OUTPUTS), processes[-1].stop if processes else 0
-    return np.split(trajectory.integrals, np.cumsum([ports, size, size]))
-
-
-def numerical(rows: FloatArray, start: float) -> Iterator[Named]:
-    """Yield heat and entropy production of dissipative starts."""
-    about = f"by dissipative starts since t = {start:g}"
-    yield "heat_numerical", (("time",), rows[0], described("J", f"heat released {about}"))
-    text = f"entropy produced {about}"
-    yield "produced_numerical", (("time",), rows[1], described("J/K", text))
-
-
-def spread(
-    system: DrivenModule,
-    records: Sequence[Record],
-    values: FloatArray,
-    prefix: str = "",
-    integral: tuple[str, str] | None = None,
-) -> Iterator[Named]:
-    """Yield the rows of `values` (rows, nt) by record; `integral`: its unit and text."""
-    for record, part in zip(records, system.rows(records), strict=True):
-        attrs = described(record.unit, record.doc or record.name)
-        if integral:
-            unit, text = integral[0], integral[1].format(quote(record.name))
-            attrs = described(unit, f"{text} since t = {system.inputs.start:g}")
-        dims = ("time", record.bank) if record.bank else ("time",)
-        yield (
-            f"{prefix}{record.name}",
-            (dims, values[part].T if record.bank else values[part.start], attrs),
-        )
 
 
 def described(unit: str, long_name: str) -> dict[str, Any]:

@@ -22,7 +22,7 @@ from piezo_sym.errors import PiezoError, UsageError, nearest, quote
 from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.tree import Add, Cmp, Expr, Neg, evaluate, names
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.dataset import described, instants
+from piezo_sym.run.dataset import Known, described
 from piezo_sym.run.ledger import Trajectory
 from piezo_sym.run.module import row_names
 from piezo_sym.run.system import DrivenModule
@@ -247,5 +247,5 @@ def event_variables(
     for name, at in located.times.items():
         yield name, ((name,), at, described("s", f"times of event {quote(name)}"))
         then = seen.at(np.searchsorted(times, at))
-        for quantity, (dims, values, attrs) in instants(system, then):
+        for quantity, (dims, values, attrs) in Known.of(system, then).instants():
             yield f"{quantity}_at_{name}", ((name, *dims[1:]), values, attrs)

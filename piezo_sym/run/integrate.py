@@ -7,23 +7,21 @@ batches of accepted steps, each with its interpolant, the samples that lie in it
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from piezo_sym.errors import PiezoError, RunError
+from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.inputs import Segment
+from piezo_sym.run.system import DrivenModule
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Iterator
-
-    from numpy.typing import NDArray
     from scipy.integrate import OdeSolver
-
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.inputs import Segment
-    from piezo_sym.run.system import DrivenModule
 
 METHODS = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
 IMPLICIT = ("Radau", "BDF", "LSODA")

@@ -84,12 +84,7 @@ def lane_value(value: object, size: int | None, where: str) -> float | tuple[flo
 def read_initial(
     module: GeneratedModule, parameters: Any, u: FloatArray, given: Mapping[str, LaneValue] | None
 ) -> FloatArray:
-    """Return the state (n,) at t = 0: the module's own, with the entries a user gave.
-
-    Parameters
-    ----------
-    u : the inputs at t = 0, shape (m,).
-    """
+    """Return the state (n,) at t = 0, with inputs u (m,): the module's own, and what is given."""
     names, places = [record.name for record in module.STATES], others(module, "initial")
     values = known_keys(given, names, "simulate.initial", places)
     x = own_initial(module, parameters, u)

@@ -22,15 +22,9 @@ ROUNDING = 1e-9
 
 @final
 class Plant:
-    """One Stepper or several side by side, as a controller sees them.
+    """One Stepper or several side by side, as a controller sees them: see `piezo_sym.Stepper`.
 
-    Parameters
-    ----------
-    made : makes a Stepper with some parameters.
-    parameters : of each, a list of mappings; or of the one.
-    step, sample : the length of a step, and of the time that inputs are held [s].
-    delay : samples from a call until its inputs act.
-    resolution : port -> the measurement is rounded to multiples of that, SI units.
+    `made` makes a Stepper with some parameters; a list of them makes as many plants.
 
     Attributes
     ----------
@@ -57,16 +51,16 @@ class Plant:
         self.states, self.inputs, self.outputs = first.states, first.inputs, first.outputs
         self._steps = read_sample(sample, step)
         self._delay = whole(delay, "Stepper.delay", 0)
-        self._wanted = deque([self._first()] * self._delay)
+        self._wanted = self._waiting()
         sizes = known_keys(resolution, self.outputs, "Stepper.resolution")
-        parts = [sizes.get(name, 0.0) for name in self.outputs]
-        named = zip(self.outputs, parts, strict=True)
+        named = ((name, sizes.get(name, 0.0)) for name in self.outputs)
         checked = [positive(v, f"Stepper.resolution.{name}") if v else 0.0 for name, v in named]
         self._resolution = np.array(checked)[:, None]
 
-    def _first(self) -> FloatArray:
-        """Return the inputs at t = 0, (m, plants)."""
-        return np.repeat(self._plants[0].initial_inputs[:, None], len(self._plants), axis=1)
+    def _waiting(self) -> deque[FloatArray]:
+        """Return the inputs at t = 0 (m, plants), as often as there is delay."""
+        first = np.repeat(self._plants[0].initial_inputs[:, None], len(self._plants), axis=1)
+        return deque([first] * self._delay)
 
     @property
     def x(self) -> FloatArray:
@@ -126,7 +120,7 @@ class Plant:
         """Go back to t = 0, with empty ledgers, and no inputs on their way."""
         for plant in self._plants:
             plant.reset()
-        self._wanted = deque([self._first()] * self._delay)
+        self._wanted = self._waiting()
 
 
 def read_sample(sample: object, step: float) -> int:

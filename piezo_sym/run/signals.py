@@ -5,7 +5,7 @@ Input: a waveform's numbers (SI; frequencies in Hz).  Output: a frozen `Signal`,
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from math import inf, pi
 from typing import ClassVar, final
 
@@ -14,7 +14,7 @@ import numpy as np
 from piezo_sym.errors import UsageError
 from piezo_sym.run.checks import FloatArray, number, positive
 
-#: The functions that make signals: `piezo_sym.run` and the command line offer all of them.
+#: What makes signals: `piezo_sym.run` and the command line offer all of them.
 __all__ = ["chirp", "ramp", "sine", "step", "triangle"]
 
 MOST_CORNERS = 1000
@@ -26,11 +26,20 @@ class Signal(ABC):
 
     A solver restarts at `breaks`, where the signal or its slope jumps, and takes no step longer
     than `max_step`, so that it misses no period and no pulse. A new kind of signal is a class
-    below, and a function in `__all__` that makes it from checked numbers.
+    below, whose numbers are checked as it is made, and its name in small letters in `__all__`.
     """
 
     #: Whether there are no corners but breaks: steps with several stages may then be longer.
     _smooth: ClassVar[bool] = False
+    #: Which of its numbers are above 0; None where they are no numbers of a user.
+    _above_zero: ClassVar[tuple[str, ...] | None] = None
+
+    def __post_init__(self) -> None:
+        """Take a user's numbers as finite floats."""
+        for field in fields(self) if self._above_zero is not None else ():  # type: ignore[arg-type]
+            check = positive if field.name in (self._above_zero or ()) else number
+            place = f"{type(self).__name__.lower()}.{field.name}"
+            object.__setattr__(self, field.name, check(getattr(self, field.name), place))
 
     def __call__(self, t: FloatArray | float) -> FloatArray:
         """Return the values at the times t [s]; shape of t."""
@@ -79,13 +88,24 @@ class Constant(Signal):
 @final
 @dataclass(frozen=True)
 class Sine(Signal):
-    """A sine; see `sine`."""
+    """The signal offset + amplitude sin(2 pi frequency t + phase).
+
+    Parameters
+    ----------
+    amplitude, offset : in the input's unit.
+    frequency : in Hz, above 0.
+    phase : in rad.
+
+    Raises
+    ------
+    UsageError : a number is not finite, or the frequency not positive.
+    """
 
     amplitude: float
     frequency: float
-    offset: float
-    phase: float
-    _smooth = True
+    offset: float = 0.0
+    phase: float = 0.0
+    _smooth, _above_zero = True, ("frequency",)
 
     def _values(self, t: FloatArray | float) -> FloatArray:
         angle = 2 * pi * self.frequency * t + self.phase
@@ -99,11 +119,17 @@ class Sine(Signal):
 @final
 @dataclass(frozen=True)
 class Step(Signal):
-    """A jump; see `step`."""
+    """A jump at `time` [s] from `before` to `after`, which holds at `time` itself.
+
+    Raises
+    ------
+    UsageError : a number is not finite.
+    """
 
     time: float
     before: float
     after: float
+    _above_zero = ()
 
     def _values(self, t: FloatArray | float) -> FloatArray:
         return np.where(np.less(t, self.time), self.before, self.after)
@@ -115,12 +141,25 @@ class Step(Signal):
 @final
 @dataclass(frozen=True)
 class Ramp(Signal):
-    """A straight line between two constants; see `ramp`."""
+    """The signal `before` until the time `start` [s], `after` from `stop` on, a line between.
+
+    Raises
+    ------
+    UsageError : a number is not finite, or `stop` is not after `start`.
+    """
 
     start: float
     stop: float
     before: float
     after: float
+    _above_zero = ()
+
+    def __post_init__(self) -> None:
+        """Check that it stops after it starts."""
+        super().__post_init__()
+        if self.stop <= self.start:
+            what, expected = f"the ramp stops at {self.stop:g}", f"over {self.start:g}"
+            raise UsageError(what, "ramp.stop", expected, "use step() for a jump")
 
     def _values(self, t: FloatArray | float) -> FloatArray:
         return np.asarray(np.interp(t, (self.start, self.stop), (self.before, self.after)))
@@ -132,11 +171,22 @@ class Ramp(Signal):
 @final
 @dataclass(frozen=True)
 class Triangle(Signal):
-    """A triangle wave; see `triangle`."""
+    """A triangle wave that starts at `offset`, rising, and reaches offset +- amplitude.
+
+    Parameters
+    ----------
+    amplitude, offset : in the input's unit.
+    frequency : in Hz, above 0.
+
+    Raises
+    ------
+    UsageError : a number is not finite, or the frequency not positive.
+    """
 
     amplitude: float
     frequency: float
-    offset: float
+    offset: float = 0.0
+    _above_zero = ("frequency",)
 
     def _values(self, t: FloatArray | float) -> FloatArray:
         turns = self.frequency * np.asarray(t) + 0.25
@@ -158,14 +208,25 @@ class Triangle(Signal):
 @final
 @dataclass(frozen=True)
 class Chirp(Signal):
-    """A sine whose frequency moves; see `chirp`."""
+    """A sine whose frequency moves linearly from `f_start` to `f_stop`, then stays.
+
+    Parameters
+    ----------
+    amplitude, offset : in the input's unit.
+    f_start, f_stop : in Hz, above 0.
+    duration : time of the sweep [s], above 0.
+
+    Raises
+    ------
+    UsageError : a number is not finite, or a frequency or the duration not positive.
+    """
 
     amplitude: float
     f_start: float
     f_stop: float
     duration: float
-    offset: float
-    _smooth = True
+    offset: float = 0.0
+    _smooth, _above_zero = True, ("f_start", "f_stop", "duration")
 
     def _values(self, t: FloatArray | float) -> FloatArray:
         sweep = np.minimum(t, self.duration)
@@ -181,91 +242,5 @@ class Chirp(Signal):
         return 1 / max(self.f_start, self.f_stop)
 
 
-def sine(amplitude: float, frequency: float, offset: float = 0.0, phase: float = 0.0) -> Sine:
-    """Return offset + amplitude sin(2 pi frequency t + phase).
-
-    Parameters
-    ----------
-    amplitude, offset : in the input's unit.
-    frequency : in Hz, above 0.
-    phase : in rad.
-
-    Raises
-    ------
-    UsageError : a number is not finite, or the frequency not positive.
-    """
-    given = {"amplitude": amplitude, "frequency": frequency, "offset": offset, "phase": phase}
-    return Sine(**_checked("sine", given, "frequency"))
-
-
-def step(time: float, before: float, after: float) -> Step:
-    """Return a jump at `time` [s] from `before` to `after`, which holds at `time` itself.
-
-    Raises
-    ------
-    UsageError : a number is not finite.
-    """
-    return Step(**_checked("step", {"time": time, "before": before, "after": after}))
-
-
-def ramp(start: float, stop: float, before: float, after: float) -> Ramp:
-    """Return `before` until the time `start` [s], `after` from `stop` on, a line between.
-
-    Raises
-    ------
-    UsageError : a number is not finite, or `stop` is not after `start`.
-    """
-    given = {"start": start, "stop": stop, "before": before, "after": after}
-    found = Ramp(**_checked("ramp", given))
-    if found.stop <= found.start:
-        remedy = "use step() for a jump"
-        what = f"the ramp stops at {found.stop:g}"
-        raise UsageError(what, "ramp.stop", f"over {found.start:g}", remedy)
-    return found
-
-
-def triangle(amplitude: float, frequency: float, offset: float = 0.0) -> Triangle:
-    """Return a triangle wave that starts at `offset`, rising, and reaches offset +- amplitude.
-
-    Parameters
-    ----------
-    amplitude, offset : in the input's unit.
-    frequency : in Hz, above 0.
-
-    Raises
-    ------
-    UsageError : a number is not finite, or the frequency not positive.
-    """
-    given = {"amplitude": amplitude, "frequency": frequency, "offset": offset}
-    return Triangle(**_checked("triangle", given, "frequency"))
-
-
-def chirp(
-    amplitude: float, f_start: float, f_stop: float, duration: float, offset: float = 0.0
-) -> Chirp:
-    """Return a sine whose frequency moves linearly from `f_start` to `f_stop`, then stays.
-
-    Parameters
-    ----------
-    amplitude, offset : in the input's unit.
-    f_start, f_stop : in Hz, above 0.
-    duration : time of the sweep [s], above 0.
-
-    Raises
-    ------
-    UsageError : a number is not finite, or a frequency or the duration not positive.
-    """
-    moved = {"f_start": f_start, "f_stop": f_stop, "duration": duration}
-    given = {"amplitude": amplitude, **moved, "offset": offset}
-    return Chirp(**_checked("chirp", given, *moved))
-
-
-def _checked(signal: str, given: dict[str, float], *above_zero: str) -> dict[str, float]:
-    """Return a signal's numbers as finite floats, some of them above 0."""
-    return {
-        name: (positive if name in above_zero else number)(value, f"{signal}.{name}")
-        for name, value in given.items()
-    }
-
-
+sine, step, ramp, triangle, chirp = Sine, Step, Ramp, Triangle, Chirp
 SIGNALS: dict[str, Callable[..., Signal]] = {name: globals()[name] for name in __all__}

@@ -9,29 +9,26 @@ Output: an `xarray.Dataset`.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from os import PathLike
 from typing import TYPE_CHECKING
+
+from numpy.typing import ArrayLike
 
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.run.checks import number, positive
 from piezo_sym.run.collocation import METHOD, FixedStep, read_order
 from piezo_sym.run.continuing import start_of
 from piezo_sym.run.events import read_watched
+from piezo_sym.run.inputs import InputValue
 from piezo_sym.run.method import checked_method, choose_method
-from piezo_sym.run.module import checked
-from piezo_sym.run.parameters import read_parameters, sample_times
+from piezo_sym.run.module import GeneratedModule, checked
+from piezo_sym.run.parameters import LaneValue, read_parameters, sample_times
 from piezo_sym.run.planned import Request
 from piezo_sym.run.streaming import streamed
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-    from os import PathLike
-
     import xarray
-    from numpy.typing import ArrayLike
-
-    from piezo_sym.run.inputs import InputValue
-    from piezo_sym.run.module import GeneratedModule
-    from piezo_sym.run.parameters import LaneValue
 
 RTOL = 1e-5
 RTOL_LEAST, RTOL_MOST = 1e-13, 0.1
@@ -158,28 +155,25 @@ def simulate(
         to the last sample before, and so is that of a `KeyboardInterrupt`.
     """
     checked(module)
-    watch = read_progress(progress)
+    if progress is not None and not callable(progress):
+        expected = "a function of the time in s, or None"
+        raise UsageError(f"{quote(progress)} shows no progress", "simulate.progress", expected)
     named, tolerance = checked_method(method), read_rtol(rtol)
     fixed = read_step(step, order, named, rtol)
-    named = start_method(dissipative_start, named)
+    named = read_start(dissipative_start, named)
     length = positive(duration, "simulate.duration")
     start, state, given = start_of(module, t0, initial, parameters)
     samples = sample_times(times, every, step, length, start)
     values = read_parameters(module, given)
     chosen = choose_method(module, named, step)
-    request = Request(module, values, inputs, chosen, tolerance, fixed, dissipative_start, watch)
+    request = Request(module, values, inputs, chosen, tolerance, fixed, dissipative_start, progress)
     if store is not None:
-        refuse_events(events)
+        if events:
+            what = "events of a run into a store are not kept"
+            raise UsageError(what, "simulate.events", "none", "leave out store, or take stop")
         return streamed(request, start, samples, state, stop, store)
     planned = request.planned(start, length, state)
     return planned.dataset(samples, read_watched(planned.system, events, stop, step))
-
-
-def refuse_events(events: object) -> None:
-    """Raise `UsageError` if there are events of a run that goes into a store."""
-    if events:
-        what = "events of a run into a store are not kept"
-        raise UsageError(what, "simulate.events", "none", "leave out store, or take stop")
 
 
 def read_rtol(rtol: object) -> float:
@@ -193,7 +187,7 @@ def read_rtol(rtol: object) -> float:
 
 
 def read_step(step: object, order: object, method: str | None, rtol: object) -> FixedStep | None:
-    """Return the fixed step, None without one."""
+    """Return the fixed step, None without one; its method must not choose its own steps."""
     if step is None:
         if order is not None:
             what = "there is no fixed step"
@@ -210,15 +204,7 @@ def read_step(step: object, order: object, method: str | None, rtol: object) -> 
     return FixedStep(length, 2 if order is None else read_order(order, "simulate.order"))
 
 
-def read_progress(progress: object) -> Callable[[float], object] | None:
-    """Return what is told the time; raise `UsageError` if a user gave nothing that can be."""
-    if progress is not None and not callable(progress):
-        expected = "a function of the time in s, or None"
-        raise UsageError(f"{quote(progress)} shows no progress", "simulate.progress", expected)
-    return progress
-
-
-def start_method(dissipative_start: object, method: str | None) -> str | None:
+def read_start(dissipative_start: object, method: str | None) -> str | None:
     """Return the method to run; raise `UsageError` if it has no dissipative start, but shall."""
     where = "simulate.dissipative_start"
     if not isinstance(dissipative_start, bool):

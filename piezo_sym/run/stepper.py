@@ -18,12 +18,12 @@ import numpy as np
 from piezo_sym.errors import PiezoError, RunError, UsageError, listing, quote
 from piezo_sym.run.checks import FloatArray, number, positive, vector
 from piezo_sym.run.collocation import layout_of, read_order
-from piezo_sym.run.dataset import ledger
+from piezo_sym.run.dataset import Known
 from piezo_sym.run.engine.batch import Batch, Stepping
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.engine.records import POINTER, at, c_record
 from piezo_sym.run.guard import check_start, domain_error, input_conditions
-from piezo_sym.run.inputs import Inputs, read_inputs
+from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.ledger import Trajectory
 from piezo_sym.run.module import GeneratedModule, checked, row_names
 from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
@@ -48,36 +48,9 @@ class Limits:
         return bool(np.all((found > 0) | ((found == 0) & (self.strict == 0))))
 
 
-def refuse_signals(module: GeneratedModule, known: Inputs) -> None:
-    """Raise `UsageError` if an input at t = 0 is no number."""
-    for record, signal in zip(module.INPUTS, known.signals, strict=True):
-        if not isinstance(signal, Constant):
-            where, remedy = f"Stepper.inputs.{record.name}", "give the others to step(u)"
-            raise UsageError("this is no number", where, "the input at t = 0", remedy)
-
-
 @final
 class Stepper:
-    """A model that goes step by step, its inputs given anew for each step.
-
-    >>> from piezo_sym import Stepper
-    >>> actuator = Stepper("piezo_stack", step=2e-5)
-    >>> actuator.inputs, actuator.outputs
-    (('F_ext', 'V_in', 'T_e'), ('load', 'supply', 'ambient'))
-    >>> for _ in range(1000):
-    ...     v, i, T = actuator.step([0.0, 50.0, 298.15])  # y of the ports; u = F_ext, V_in, T_e
-    >>> print(f"q = {actuator.x[0] * 1e6:.0f} um, T = {T:.2f} K at t = {actuator.time:.2f} s")
-    q = 1007 um, T = 298.20 K at t = 0.02 s
-    >>> print(f"{actuator.ledger['supplied_supply']:.3f} J put in by the supply")
-    0.519 J put in by the supply
-
-    Parameters
-    ----------
-    module : a generated module; `piezo_sym.Stepper` also takes a model, a name or a path.
-    step : length of a step [s]; the step is halved inside where it has to be.
-    order : 2, 4, 6, 8 or 10: by which power of the step its error falls, where laws are smooth and
-        inputs are constant.
-    parameters, initial, inputs : as for `simulate`; `inputs` are those at t = 0, numbers only.
+    """A model that goes step by step, its inputs given anew for each step: see `piezo_sym.Stepper`.
 
     Attributes
     ----------
@@ -85,12 +58,6 @@ class Stepper:
     x : the state (n,), a copy, banks spread.
     time : the time [s] after the steps taken.
     ledger : what ports and processes did since t = 0, by the names of `simulate`'s Dataset.
-
-    Raises
-    ------
-    UsageError : an argument is wrong.
-    EngineError : there is no compiler.
-    RunError : the state at t = 0 is outside the domain.
     """
 
     def __init__(
@@ -109,7 +76,10 @@ class Stepper:
         engine = engine_of(module)
         values = read_parameters(module, parameters)
         known = read_inputs(module, inputs, self._h)
-        refuse_signals(module, known)
+        for record, signal in zip(module.INPUTS, known.signals, strict=True):
+            if not isinstance(signal, Constant):
+                where, remedy = f"Stepper.inputs.{record.name}", "give the others to step(u)"
+                raise UsageError("this is no number", where, "the input at t = 0", remedy)
         system = self._system = DrivenModule(module, values, known)
         x = read_initial(module, values, system.inputs.segments[0].at(0.0), initial)
         check_start(system, x)
@@ -125,8 +95,8 @@ class Stepper:
         self._put, self._buffer = struct.Struct(f"{self._u.size}d").pack_into, self._u.data
         self._copied: Callable[[], FloatArray] = self._y.copy
         self._limits = Limits(system)
-        functions = (getattr(engine.library, f"{module.NAME}_{n}") for n in ("outputs", "margins"))
-        self._call = self._made(*(ctypes.cast(function, POINTER) for function in functions))
+        functions = (ctypes.cast(engine.function(n), POINTER) for n in ("outputs", "margins"))
+        self._call = self._made(*functions)
         self._at = ctypes.byref(self._call)
         self._once: Any = self._batch.function("step_once")
         self._forget: Any = self._batch.function("forget")
@@ -171,7 +141,7 @@ class Stepper:
         x, u = self._batch.x[0][:, None], self._u[:, None]
         sums = self._batch.ledgers[0, 0][:, None]
         past = Trajectory(self._start, x, u, sums, self._taken, 0)
-        rows = {name: values[0] for name, (_, values, _) in ledger(self._system, past)}
+        rows = {name: values[0] for name, (_, values, _) in Known.of(self._system, past).ledger()}
         return {name: row.copy() if row.ndim else float(row) for name, row in rows.items()}
 
     def step(self, u: Sequence[float] | FloatArray) -> FloatArray:
@@ -194,7 +164,8 @@ class Stepper:
             before the step.
         """
         if not self._begin(False):  # not to wait
-            raise _busy()
+            what = "another thread is stepping this Stepper"
+            raise UsageError(what, "Stepper.step", remedy="give each thread a Stepper of its own")
         try:
             self._put(self._buffer, 0, *u)
             if not self._once(self._at):
@@ -253,9 +224,3 @@ class Stepper:
             return domain_error(self._system, self.time, self._batch.x[0], self._u)
         what = f"no step stays in the domain at t = {self.time:.6g} s"
         return RunError(what, "Stepper.step", remedy="look at the inputs, or take shorter steps")
-
-
-def _busy() -> UsageError:
-    """Return the error of a Stepper that is used by two threads at once."""
-    what = "another thread is stepping this Stepper"
-    return UsageError(what, "Stepper.step", remedy="give each thread a Stepper of its own")

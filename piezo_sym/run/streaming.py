@@ -16,16 +16,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from piezo_sym.errors import FileError, RunError, UsageError, quote
-from piezo_sym.files import path_text
+from piezo_sym.files import path_text, zarr_library
+from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.events import read_watched
 from piezo_sym.run.module import row_count
 from piezo_sym.run.parameters import LaneValue
+from piezo_sym.run.planned import Request
 
 if TYPE_CHECKING:
     import xarray
-
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.planned import Request
 
 WHERE = "simulate.store"
 #: Numbers of a window, of which a sample has a few per state, port and process.
@@ -82,11 +81,7 @@ def _new(store: object) -> Path:
         raise FileError(
             "exists already", path_text(path), remedy="choose another path, or delete it"
         )
-    try:
-        import zarr  # noqa: F401
-    except ImportError as error:
-        remedy = "run `pip install 'piezo_sym[store]'`"
-        raise UsageError("zarr is not installed", WHERE, remedy=remedy) from error
+    zarr_library(WHERE)
     return path
 
 

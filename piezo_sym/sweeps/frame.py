@@ -5,27 +5,23 @@ Input: a `Plan` and its module.  Output: a Dataset with all but the results and 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import pandas
 import xarray
+from numpy.typing import NDArray
 
 from piezo_sym.errors import UsageError
 from piezo_sym.run.dataset import coordinates, described, model_attrs, spread
+from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.parameters import read_parameters
 from piezo_sym.run.system import DrivenModule
 from piezo_sym.sweeps.group import inputs_at_point
+from piezo_sym.sweeps.plan import Plan
 from piezo_sym.sweeps.quantities import layout
 from piezo_sym.sweeps.reduce import weights
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from numpy.typing import NDArray
-
-    from piezo_sym.run.module import GeneratedModule
-    from piezo_sym.sweeps.plan import Plan
 
 NOT_RUN = "not run"
 ERROR_ATTRS = described("1", "why a run failed; empty where it did not") | {"missing": NOT_RUN}
@@ -69,7 +65,9 @@ def inputs_of(
     """Yield each input over time, or its last or mean value; swept ones are named `u_<input>`."""
     swept = {target.name: n for n, target in plan.swept() if target.kind == "inputs"}
     waves = system.inputs.at_samples(plan.samples)
-    for row, (name, (dims, wave, attrs)) in enumerate(spread(system, module.INPUTS, waves)):
+    for row, (name, (dims, wave, attrs)) in enumerate(
+        spread(system, ("time",), module.INPUTS, waves)
+    ):
         if name not in swept:
             yield name, reduced(plan, xarray.Variable(dims, wave, attrs))
             continue

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from piezo_sym.errors import PiezoError, RunError
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.engine import Engine
-from piezo_sym.run.engine.engine import Members
+from piezo_sym.run.engine.engine import Engine, Members
 from piezo_sym.run.guard import check_start
 from piezo_sym.run.inputs import Inputs
 from piezo_sym.run.module import GeneratedModule, rows
@@ -135,19 +134,15 @@ def check_starts(
     systems: DrivenModules, engine: Engine | None, start: FloatArray, errors: list[str]
 ) -> None:
     """Fill in the errors of runs whose start is outside the domain; C finds them."""
-    fine = inside(systems, engine, start) if engine else np.zeros(len(systems), dtype=bool)
+    fine = np.zeros(len(systems), dtype=bool)
+    if engine:
+        first = systems.inputs.segments[0]
+        u = np.ascontiguousarray(first.at(first.start)[None])
+        x = np.ascontiguousarray(start[:, None])
+        fine = Members(engine, systems.parameters).inside(x, u)[:, 0]
     for k in np.flatnonzero(~fine).tolist():
         if not errors[k]:
             try:
                 check_start(systems[k], start[k])
             except PiezoError as error:
                 errors[k] = str(error)
-
-
-def inside(systems: DrivenModules, engine: Engine, start: FloatArray) -> NDArray[np.bool_]:
-    """Return whether each run starts inside the domain with a finite rate."""
-    first = systems.inputs.segments[0]
-    u = np.ascontiguousarray(first.at(first.start)[None])
-    call = Members(engine, systems.parameters)
-    found: NDArray[np.bool_] = call.inside(np.ascontiguousarray(start[:, None]), u)[:, 0]
-    return found

@@ -10,22 +10,27 @@ from __future__ import annotations
 import os
 import pickle
 from collections.abc import Callable, Generator, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, ThreadPoolExecutor, wait
-from contextlib import contextmanager
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    Executor,
+    Future,
+    ThreadPoolExecutor,
+    wait,
+)
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING, TypeAlias
 
 from piezo_sym.errors import RunError, UsageError, one_line
 from piezo_sym.modules import module_of
+from piezo_sym.run.module import GeneratedModule
+from piezo_sym.sweeps.plan import Plan, Region
 from piezo_sym.sweeps.run import Result, run_box
 
 if TYPE_CHECKING:
-    from concurrent.futures import Executor
-
-    from piezo_sym.run.module import GeneratedModule
     from piezo_sym.spec.model import Model
-    from piezo_sym.sweeps.plan import Plan, Region
 
 Submit: TypeAlias = "Callable[[Region], Future[Result]]"
 
@@ -70,7 +75,7 @@ def at_hand(result: Result) -> Future[Result]:
 def sender(
     plan: Plan, module: GeneratedModule, model: str | Path | Model, executor: Executor
 ) -> Submit:
-    """Return a way to run boxes by a user's executor; threads need nothing sent."""
+    """Return what submits a box to a user's executor; threads need nothing sent."""
     if isinstance(executor, ThreadPoolExecutor):
         return lambda region: executor.submit(run_box, plan.part(region), module, ignore)
     from piezo_sym.spec.load import load
@@ -81,10 +86,9 @@ def sender(
 
 def packed(plan: Plan, model: Model) -> bytes:
     """Return what a box needs as bytes for another process; functions by value if possible."""
-    try:
+    way = pickle
+    with suppress(ImportError):
         import cloudpickle as way
-    except ImportError:
-        way = pickle
     try:
         return bytes(way.dumps((plan, model)))
     except Exception as cause:  # pickling runs the code of a user's objects

@@ -1,28 +1,25 @@
 """All quantities of many runs, as arrays computed for a whole group at once.
 
-Input: runs in C, or the `Trajectory` of one run.  Output: arrays (runs, time, [lanes]), with the
-names that `simulate` gives them; `layout` gives their dimensions, order and units.
+Input: runs in C, or the `Trajectory` of one run.  Output: quantities over (runs, time, [lanes]),
+inputs left out, with the names that `simulate` gives them.
 """
 
-from collections.abc import Iterator, Sequence
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 import xarray
-from numpy.typing import NDArray
 
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.collocation import Runs
-from piezo_sym.run.dataset import variables
-from piezo_sym.run.engine import Engine
-from piezo_sym.run.engine.engine import Members
+from piezo_sym.run.dataset import Known
+from piezo_sym.run.engine.engine import Engine, Members
 from piezo_sym.run.ledger import Trajectory, row_counts
-from piezo_sym.run.module import Record, exchanges
 from piezo_sym.run.system import DrivenModule
+from piezo_sym.sweeps.reduce import MEMBER, Quantities
 
 
-def layout(system: DrivenModule) -> dict[str, xarray.Variable]:
-    """Return every quantity of a run but its inputs, in order, at one sample and without values."""
+def layout(system: DrivenModule) -> Quantities:
+    """Return every quantity of a run, in order, at one sample and without values."""
     n, m, k = row_counts(system)
     states, inputs, integrals = (np.full((size, 1), np.nan) for size in (n, m, k))
     with np.errstate(all="ignore"):
@@ -31,58 +28,29 @@ def layout(system: DrivenModule) -> dict[str, xarray.Variable]:
         )
 
 
-def of_trajectory(system: DrivenModule, trajectory: Trajectory) -> dict[str, xarray.Variable]:
-    """Return every quantity of one run (time, [lanes]), inputs left out."""
-    inputs = {record.name for record in system.module.INPUTS}
-    found = variables(system, trajectory)
-    return {name: xarray.Variable(*parts) for name, parts in found if name not in inputs}
+def of_trajectory(system: DrivenModule, trajectory: Trajectory) -> Quantities:
+    """Return every quantity of one run, over (time, [lanes])."""
+    return named(replace(Known.of(system, trajectory), inputs=None))
 
 
-def of_runs(runs: Runs, engine: Engine, u: FloatArray, kept: slice) -> dict[str, NDArray[Any]]:
-    """Return every quantity of runs in C (runs, time, [lanes]), inputs left out.
-
-    Parameters
-    ----------
-    u : inputs (m, nt) at all samples.
-    kept : the samples to return.
-    """
-    with np.errstate(all="ignore"):
-        return dict(quantities(runs, engine, np.ascontiguousarray(u[:, kept].T), kept))
+def named(known: Known) -> Quantities:
+    """Return every quantity as a variable."""
+    return {name: xarray.Variable(*of) for name, of in (*known.instants(), *known.ledger())}
 
 
-def quantities(
-    runs: Runs, engine: Engine, u: FloatArray, kept: slice
-) -> Iterator[tuple[str, NDArray[Any]]]:
-    """Yield the quantities, in an order of no meaning."""
+def of_runs(runs: Runs, engine: Engine, u: FloatArray, kept: slice) -> Quantities:
+    """Return every quantity of runs in C; `u` (m, nt) at all samples, of which some are kept."""
     system = runs.systems[0]
-    module = system.module
-    call = Members(engine, runs.systems.parameters)
-    x, sums = np.ascontiguousarray(runs.states[:, kept]), runs.sums[:, kept]
-    ports, exchanging = len(module.OUTPUTS), exchanges(module)
-    processes = sum(part.stop - part.start for part in system.rows(module.PROCESSES))
-    ends = np.cumsum([ports, processes, processes, len(exchanging)])
-    supplied, heat, produced, exchanged, _ = np.split(sums, ends, axis=2)
+    module, call = system.module, Members(engine, runs.systems.parameters)
+    x, u = np.ascontiguousarray(runs.states[:, kept]), np.ascontiguousarray(u[:, kept].T)
     first = np.ascontiguousarray(runs.start[:, None])
-    yield from by_record(system, module.STATES, x)
-    yield from by_record(system, module.OUTPUTS, call("outputs", x, ports, u), "y_")
-    bodies = call("temperatures", x, len(module.BODIES))
-    yield from by_record(system, module.BODIES, bodies, "T_")
-    for name in ("energy", "entropy"):
-        yield name, call(name, x, 1)[..., 0]
-    yield from by_record(system, module.OUTPUTS, supplied, "supplied_")
-    yield from by_record(system, module.PROCESSES, heat, "heat_")
-    yield from by_record(system, module.PROCESSES, produced, "produced_")
-    brought = [module.OUTPUTS[n] for n in exchanging]
-    yield from by_record(system, brought, exchanged, "entropy_exchanged_")
-    made = np.sum(produced, axis=2) + np.sum(exchanged, axis=2)
-    for name, booked in (("energy", np.sum(supplied, axis=2)), ("entropy", made)):
-        gained = call(name, x, 1)[..., 0] - call(name, first, 1)[..., 0]
-        yield f"{name}_residual", gained - booked
-
-
-def by_record(
-    system: DrivenModule, records: Sequence[Record], values: FloatArray, prefix: str = ""
-) -> Iterator[tuple[str, FloatArray]]:
-    """Yield the columns of values (runs, time, rows) by record."""
-    for record, part in zip(records, system.rows(records), strict=True):
-        yield f"{prefix}{record.name}", values[..., part if record.bank else part.start]
+    with np.errstate(all="ignore"):
+        values = {
+            "outputs": np.moveaxis(call("outputs", x, len(module.OUTPUTS), u), 2, 0),
+            "temperatures": np.moveaxis(call("temperatures", x, len(module.BODIES)), 2, 0),
+            "energy": call("energy", x, 1)[..., 0],
+            "entropy": call("entropy", x, 1)[..., 0],
+        }
+        start = call("energy", first, 1)[..., 0], call("entropy", first, 1)[..., 0]
+        states, sums = (np.moveaxis(one, 2, 0) for one in (x, runs.sums[:, kept]))
+        return named(Known(system, states, None, values, start, sums, dims=(MEMBER, "time")))

@@ -35,10 +35,11 @@ def weights(samples: FloatArray) -> FloatArray:
 
 def over_time(found: Quantities, weight: FloatArray) -> Quantities:
     """Return quantities (runs, time, ...) summed over time with weights (nt,)."""
-    sums = {n: np.einsum("kt...,t->k...", one.values, weight) for n, one in found.items()}
-    return {
-        n: xarray.Variable((MEMBER, *one.dims[2:]), sums[n], one.attrs) for n, one in found.items()
-    }
+    sums = {}
+    for name, one in found.items():
+        values = np.einsum("kt...,t->k...", one.values, weight)
+        sums[name] = xarray.Variable((MEMBER, *one.dims[2:]), values, one.attrs)
+    return sums
 
 
 def run_by_run(

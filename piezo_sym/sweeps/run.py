@@ -4,22 +4,24 @@ Input: the `Plan` of a box, its module.  Output: a `Result`: the quantities kept
 the error of each that failed.
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias, final
+from typing import Any, final
 
 import numpy as np
 import xarray
+from numpy.typing import NDArray
 
 from piezo_sym.errors import PiezoError, RunError
-from piezo_sym.run.collocation import METHOD, Runs, collocate
+from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.collocation import METHOD, Watch, collocate
 from piezo_sym.run.dataset import coordinates, spread
-from piezo_sym.run.engine.engine import engine_of
+from piezo_sym.run.engine.engine import Engine, engine_of
 from piezo_sym.run.guard import check_inputs, inputs_move
+from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.scipy_runs import by_scipy, cause
+from piezo_sym.run.system import DrivenModules
 from piezo_sym.sweeps.group import Group, group_at
+from piezo_sym.sweeps.plan import Plan
 from piezo_sym.sweeps.quantities import layout, of_runs, of_trajectory
 from piezo_sym.sweeps.reduce import (
     MEMBER,
@@ -33,19 +35,6 @@ from piezo_sym.sweeps.reduce import (
     run_by_run,
     weights,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import NDArray
-
-    from piezo_sym.run.checks import FloatArray
-    from piezo_sym.run.engine import Engine
-    from piezo_sym.run.module import GeneratedModule
-    from piezo_sym.run.system import DrivenModule, DrivenModules
-    from piezo_sym.sweeps.plan import Plan
-
-Watch: TypeAlias = Callable[[float], object]
 
 
 @final
@@ -124,12 +113,10 @@ def group_result(
     plan: Plan, group: Group, engine: Engine | None, points: NDArray[np.intp], watch: Watch
 ) -> tuple[Quantities, Quantities]:
     """Return the quantities kept of a group, and a function's coordinates; fill in its errors."""
-    system = group.systems[0]
-    u = system.inputs.at_samples(plan.samples)
-    arrays = in_c(plan, group, engine, u, watch) if engine else one_by_one(plan, group, watch)
-    known = layout(system)
-    arrays = with_failed(group.errors, arrays, known, plan.samples[plan.kept].size)
-    found = {n: xarray.Variable((MEMBER, *v.dims), arrays[n], v.attrs) for n, v in known.items()}
+    u = group.systems.inputs.at_samples(plan.samples)
+    found = in_c(plan, group, engine, u, watch) if engine else one_by_one(plan, group, watch)
+    if any(group.errors):
+        found = with_failed(plan, group, found)
     if plan.reduce is None:
         return found, {}
     if isinstance(plan.reduce, str):
@@ -142,25 +129,19 @@ def group_result(
     return as_quantities(made)
 
 
-def with_failed(
-    errors: list[str],
-    found: dict[str, NDArray[Any]],
-    known: Mapping[str, xarray.Variable],
-    times: int,
-) -> dict[str, NDArray[Any]]:
+def with_failed(plan: Plan, group: Group, found: Quantities) -> Quantities:
     """Return quantities of all runs from those of the successful ones; the others are nan."""
-    through = [not error for error in errors]
-    if all(through):
-        return found
-    whole = {name: np.full((len(errors), times, *v.shape[1:]), np.nan) for name, v in known.items()}
-    for name, values in found.items():
-        whole[name][through] = values
+    through = [not error for error in group.errors]
+    size, whole = (len(through), plan.samples[plan.kept].size), {}
+    for name, one in layout(group.systems[0]).items():
+        values = np.full((*size, *one.shape[1:]), np.nan)
+        if found:
+            values[through] = found[name].values
+        whole[name] = xarray.Variable((MEMBER, *one.dims), values, one.attrs)
     return whole
 
 
-def in_c(
-    plan: Plan, group: Group, engine: Engine, u: FloatArray, watch: Watch
-) -> dict[str, NDArray[Any]]:
+def in_c(plan: Plan, group: Group, engine: Engine, u: FloatArray, watch: Watch) -> Quantities:
     """Return every quantity of the runs that succeed in C; fill in the errors of the others.
 
     As with `simulate`, a run whose inputs leave the domain is an error.
@@ -170,43 +151,31 @@ def in_c(
         return {}
     systems, x = group.systems.some(started), group.start[started]
     outside = input_errors(systems, x, plan.samples)
-    runs = stepped(plan, systems, engine, x, watch)
+    given = systems, engine, x, plan.samples, plan.step or plan.rtol, watch
+    runs = collocate(*given, side_by_side=plan.side_by_side)
     for n, k in enumerate(started):
         stopped = runs.errors[n]
         error = outside[n] or (stopped and cause(systems[n], x[n], plan.samples, stopped))
         group.errors[k] = str(error or "")
     found = of_runs(runs, engine, u, plan.kept)
     through = [not group.errors[k] for k in started]
-    return found if all(through) else {name: values[through] for name, values in found.items()}
+    return found if all(through) else {name: one[through] for name, one in found.items()}
 
 
 def input_errors(
     systems: DrivenModules, x: FloatArray, samples: FloatArray
 ) -> list[RunError | None]:
     """Return the errors of inputs that leave the domain after t = 0, where starts are checked."""
-    if not inputs_move(systems[0]):
-        return [None] * len(systems)
-    return [input_error(*one, samples) for one in zip(systems, x, strict=True)]
+    found: list[RunError | None] = [None] * len(systems)
+    for k in range(len(systems)) if inputs_move(systems[0]) else ():
+        try:
+            check_inputs(systems[k], x[k], samples)
+        except RunError as error:
+            found[k] = error
+    return found
 
 
-def input_error(system: DrivenModule, x: FloatArray, samples: FloatArray) -> RunError | None:
-    """Return the error of inputs that leave the domain, or None."""
-    try:
-        check_inputs(system, x, samples)
-    except RunError as error:
-        return error
-    return None
-
-
-def stepped(
-    plan: Plan, systems: DrivenModules, engine: Engine, x: FloatArray, watch: Watch
-) -> Runs:
-    """Return runs in C, with the plan's step or tolerance."""
-    given = systems, engine, x, plan.samples, plan.step or plan.rtol, watch
-    return collocate(*given, side_by_side=plan.side_by_side)
-
-
-def one_by_one(plan: Plan, group: Group, watch: Watch) -> dict[str, NDArray[Any]]:
+def one_by_one(plan: Plan, group: Group, watch: Watch) -> Quantities:
     """Return every quantity of the runs that succeed in SciPy; fill in the errors of the others."""
     parts = []
     for k, system in enumerate(group.systems):
@@ -219,8 +188,11 @@ def one_by_one(plan: Plan, group: Group, watch: Watch) -> dict[str, NDArray[Any]
             group.errors[k] = str(error)
         else:
             parts.append(of_trajectory(system, run))
-    names = parts[0] if parts else ()
-    return {name: np.stack([part[name].values[plan.kept] for part in parts]) for name in names}
+    found = {}
+    for name, one in parts[0].items() if parts else ():
+        values = np.stack([part[name].values[plan.kept] for part in parts])
+        found[name] = xarray.Variable((MEMBER, *one.dims), values, one.attrs)
+    return found
 
 
 def dataset(
@@ -228,11 +200,9 @@ def dataset(
 ) -> xarray.Dataset:
     """Return the runs of a group as a Dataset over `member`, for a user's function."""
     system = group.systems[0]
-    module, size = system.module, (len(points), plan.samples.size)
-    inputs = {
-        name: xarray.Variable((MEMBER, *dims), np.broadcast_to(wave, size), attrs)
-        for name, (dims, wave, attrs) in spread(system, module.INPUTS, u)
-    }
+    module, size = system.module, (len(u), len(points), plan.samples.size)
+    waves = np.broadcast_to(u[:, None], size)
+    inputs = dict(spread(system, (MEMBER, "time"), module.INPUTS, waves))
     coords: dict[str, Any] = dict(coordinates(system, plan.samples))
     for n, axis in enumerate(plan.axes):
         for name, (values, attrs) in axis.coordinates():

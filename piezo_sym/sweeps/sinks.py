@@ -1,40 +1,19 @@
-"""Sinks collect the results of boxes: in memory here, on disk in `store`.
+"""The results of boxes, collected in memory; `store` collects them on disk.
 
-Input: a `Plan`, its frame, `Result` records.  Output: a Dataset over the swept dimensions.
+Input: a `Plan`, its frame, `Result` records.  Output: a Dataset over the swept dimensions.  Both
+have the same three methods: the boxes that are `missing`, `take` and `dataset`.
 """
 
-from __future__ import annotations
-
-from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any, final
+from collections.abc import Iterable
+from typing import Any, final
 
 import numpy as np
 import xarray
 
 from piezo_sym.sweeps.frame import ERROR_ATTRS
+from piezo_sym.sweeps.plan import Plan, Region
 from piezo_sym.sweeps.reduce import refuse_other_names, refuse_other_sizes
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from piezo_sym.sweeps.plan import Plan, Region
-    from piezo_sym.sweeps.run import Result
-
-
-class Sink(ABC):
-    """Collects the results of boxes, in any order."""
-
-    @abstractmethod
-    def missing(self) -> Iterable[Region]:
-        """Return the boxes still to be run."""
-
-    @abstractmethod
-    def take(self, region: Region, result: Result) -> None:
-        """Keep the result of a box."""
-
-    @abstractmethod
-    def dataset(self) -> xarray.Dataset:
-        """Return all results."""
+from piezo_sym.sweeps.run import Result
 
 
 def write(array: Any, region: Region, name: str, one: xarray.Variable) -> None:
@@ -44,7 +23,7 @@ def write(array: Any, region: Region, name: str, one: xarray.Variable) -> None:
 
 
 @final
-class Memory(Sink):
+class Memory:
     """Keeps results in arrays over the grid."""
 
     def __init__(self, plan: Plan, frame: xarray.Dataset) -> None:

@@ -9,25 +9,22 @@ from __future__ import annotations
 import json
 import tempfile
 import warnings
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, final
+from typing import Any, final
 
 import numpy as np
 import xarray
 
-from piezo_sym.errors import FileError, UsageError, listing
-from piezo_sym.files import path_text
+from piezo_sym.errors import FileError, listing
+from piezo_sym.files import path_text, zarr_library
 from piezo_sym.sweeps.fingerprint import fingerprint
 from piezo_sym.sweeps.frame import ERROR_ATTRS, NOT_RUN
+from piezo_sym.sweeps.plan import Plan, Region
 from piezo_sym.sweeps.reduce import refuse_other_names
-from piezo_sym.sweeps.sinks import Sink, write
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from piezo_sym.sweeps.plan import Plan, Region
-    from piezo_sym.sweeps.run import Result
+from piezo_sym.sweeps.run import Result
+from piezo_sym.sweeps.sinks import write
 
 MARK, BOX, RESULTS = "sweep_fingerprint", "sweep_box", "sweep_results"
 FRESH = "choose another path, or delete it"
@@ -36,12 +33,7 @@ UNREADABLE = (OSError, ValueError, KeyError, RuntimeError)
 
 def store_at(path: Path, plan: Plan, frame: xarray.Dataset, spec_sha256: str) -> tuple[Plan, Store]:
     """Return the store at a path, created if there is none, and the plan with its boxes."""
-    try:
-        import zarr
-    except ImportError as error:
-        remedy = "run `pip install 'piezo_sym[store]'`"
-        raise UsageError("zarr is not installed", "sweep.store", remedy=remedy) from error
-    mark = fingerprint(plan, spec_sha256)
+    zarr, mark = zarr_library("sweep.store"), fingerprint(plan, spec_sha256)
     if not path.exists():
         create(path, plan, frame, {MARK: mark, BOX: plan.most})
     try:
@@ -59,22 +51,18 @@ def store_at(path: Path, plan: Plan, frame: xarray.Dataset, spec_sha256: str) ->
 
 def difference(group: Any, frame: xarray.Dataset, dims: tuple[str, ...]) -> str:
     """Return how the sweep in a store differs from this one, as far as the store shows it."""
-    other = [name for name, value in frame.attrs.items() if not same(group.attrs.get(name), value)]
-    other += [name for name in group.attrs if name not in {*frame.attrs, MARK, BOX, RESULTS}]
+    stored, ours = {MARK, BOX, RESULTS}, frame.attrs
+    other = [name for name in ours if not np.array_equal(group.attrs.get(name), ours[name])]
+    other += [name for name in group.attrs if name not in {*ours, *stored}]
     swept = group["error"].metadata.dimension_names or ()
     other += sorted(set(swept) ^ set(dims))
     for name, one in frame.coords.items():
         if name in group and set(one.dims) <= set(dims):
-            other += [] if same(group[name][...], one.values) else [str(name)]
+            other += [] if np.array_equal(group[name][...], one.values) else [str(name)]
     names = [name for name in dict.fromkeys(other) if name != "engine"]
     if not names:
         return "its inputs, samples, initial values or functions are others"
     return f"others are {listing(name.removeprefix('parameter_') for name in names)}"
-
-
-def same(one: Any, other: Any) -> bool:
-    """Return whether two values are equal, arrays entry by entry."""
-    return bool(np.array_equal(np.asarray(one), np.asarray(other)))
 
 
 def create(path: Path, plan: Plan, frame: xarray.Dataset, marks: dict[str, object]) -> None:
@@ -107,7 +95,7 @@ def consolidate(path: Path) -> None:
 
 
 @final
-class Store(Sink):
+class Store:
     """Writes results into arrays over the grid, one chunk per box."""
 
     def __init__(self, path: Path, group: Any, plan: Plan) -> None:

@@ -9,37 +9,36 @@ Input: a model, the quantities to sweep and their values, and what a single run 
 from __future__ import annotations
 
 import warnings
+from collections.abc import Mapping
+from concurrent.futures import Executor
 from contextlib import ExitStack, closing
 from dataclasses import replace
 from math import prod
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.files import path_of
 from piezo_sym.modules import module_of
 from piezo_sym.progress import progress_of
 from piezo_sym.run.checks import whole
+from piezo_sym.run.inputs import InputValue
+from piezo_sym.run.module import GeneratedModule
+from piezo_sym.run.parameters import LaneValue
 from piezo_sym.sweeps.frame import frame_of
-from piezo_sym.sweeps.pool import SENT_AT_ONCE, Submit, processors, results, sender, threads_for
+from piezo_sym.sweeps.plan import Plan, Reduction
+from piezo_sym.sweeps.pool import SENT_AT_ONCE, processors, results, sender, threads_for
 from piezo_sym.sweeps.read import read_plan
 from piezo_sym.sweeps.sinks import Memory
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from concurrent.futures import Executor
-    from pathlib import Path
-
     import xarray
-    from numpy.typing import ArrayLike
 
-    from piezo_sym.run.inputs import InputValue
-    from piezo_sym.run.module import GeneratedModule
-    from piezo_sym.run.parameters import LaneValue
     from piezo_sym.spec.model import Model
-    from piezo_sym.sweeps.plan import Plan, Reduction
-    from piezo_sym.sweeps.sinks import Sink
+    from piezo_sym.sweeps.store import Store
 
 
 class SweepWarning(UserWarning):
@@ -130,26 +129,21 @@ def sweep(
     runs = (inputs, duration, rtol, step, order, parameters, initial, method, times, every)
     plan = read_plan(module, over, *runs, reduce, reduce_by)
     plan, sink = sink_of(plan, module, store, count)
+    boxes = list(sink.missing())
+    done = plan.size - sum(prod(part.stop - part.start for part in box) for box in boxes)
     with ExitStack() as stack:
         if executor is None:
             submit, at_once = stack.enter_context(threads_for(plan, module, count))
         else:
             submit, at_once = sender(plan, module, model, executor), SENT_AT_ONCE
-        run_missing(sink, submit, at_once, progress, plan.size)
-    found = sink.dataset()
-    warn(found, plan)
-    return found
-
-
-def run_missing(sink: Sink, submit: Submit, at_once: int, progress: object, total: int) -> None:
-    """Run the boxes that a sink lacks, and give it the results as they are completed."""
-    boxes = list(sink.missing())
-    done = total - sum(prod(part.stop - part.start for part in box) for box in boxes)
-    with progress_of(progress, total) as tell, closing(results(submit, boxes, at_once)) as found:
-        for region, result in found:
+        tell = stack.enter_context(progress_of(progress, plan.size))
+        for region, result in stack.enter_context(closing(results(submit, boxes, at_once))):
             sink.take(region, result)
             done += result.errors.size
             tell(done)
+    found = sink.dataset()
+    warn(found, plan)
+    return found
 
 
 def refuse_executor(executor: object, threads: object) -> None:
@@ -165,8 +159,8 @@ def refuse_executor(executor: object, threads: object) -> None:
 
 def sink_of(
     plan: Plan, module: GeneratedModule, store: str | Path | None, threads: int
-) -> tuple[Plan, Sink]:
-    """Return the sink of the results, and the plan with the sink's boxes."""
+) -> tuple[Plan, Memory | Store]:
+    """Return what collects the results, and the plan with its boxes."""
     frame = frame_of(plan, module)
     plan = replace(plan, most=max(1, min(plan.most, -(-plan.size // (2 * threads)))))
     if store is None:
