@@ -80,21 +80,14 @@ class Branches:
         (0 or 1), and at a fold the temperature that the body jumps to [K] (inf if beyond the
         range), elsewhere nan.
         """
-        lands = {jump.frequency: jump.lands for jump in self.jumps}
+        lands = {j.frequency: np.inf if np.isnan(j.lands) else j.lands for j in self.jumps}
         rows = [
-            (n, *p.described(), _jumps_to(lands.get(p.frequency)))
+            (n, *p.described(), lands.get(p.frequency, np.nan))
             for n, curve in enumerate(self.curves)
             for p in curve
         ]
         columns = np.array(rows, dtype=float).reshape(-1, len(COLUMNS)).T
         return dict(zip(COLUMNS, columns, strict=True))
-
-
-def _jumps_to(lands: float | None) -> float:
-    """Return the entry of a table: nan for a point that is no fold, inf if `lands` is unknown."""
-    if lands is None:
-        return np.nan
-    return np.inf if np.isnan(lands) else lands
 
 
 def steady_branches(

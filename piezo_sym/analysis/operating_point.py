@@ -12,7 +12,7 @@ circulates within dead zones) stay where they were.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, final
 
@@ -23,7 +23,7 @@ from scipy.optimize import brentq
 from piezo_sym.analysis.rest import ROUND_OFF, RestSearch
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.checks import FloatArray, known_keys, number, positive
-from piezo_sym.run.module import GeneratedModule, Record, checked, row_name, rows
+from piezo_sym.run.module import GeneratedModule, by_name, checked, row_name
 from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
 
 WHERE = "operating_point"
@@ -184,8 +184,7 @@ def _described(
     undetermined: list[int],
 ) -> OperatingPoint:
     module, p, u = search.module, search.parameters, search.u
-    parts = zip(module.STATES, rows(module.STATES, p), strict=True)
-    temperatures = _named(module.BODIES, module.temperatures(x, p))
+    temperatures = by_name(module.BODIES, p, module.temperatures(x, p))
     rates = module.rhs(x, u, p)
     holding = {}
     for name in held:
@@ -194,19 +193,15 @@ def _described(
     eigenvalues = np.linalg.eigvals(search.slope(x))
     margin = ROUND_OFF * float(np.max(np.abs(eigenvalues), initial=0.0))
     return OperatingPoint(
-        inputs=_named(module.INPUTS, u),
-        initial={r.name: x[part] if r.bank else float(x[part.start]) for r, part in parts},
+        inputs=by_name(module.INPUTS, p, u),
+        initial=by_name(module.STATES, p, x),
         x=x,
         u=u,
         parameters=parameters,
-        outputs=_named(module.OUTPUTS, module.outputs(x, u, p)),
+        outputs=by_name(module.OUTPUTS, p, module.outputs(x, u, p)),
         temperatures=temperatures,
         holding=holding,
         eigenvalues=eigenvalues.astype(complex),
         stable=bool(np.max(eigenvalues.real, initial=0.0) <= margin),
         undetermined=tuple(row_name(module.STATES, p, row) for row in undetermined),
     )
-
-
-def _named(records: Sequence[Record], values: FloatArray) -> dict[str, float]:
-    return {record.name: float(value) for record, value in zip(records, values, strict=True)}

@@ -31,7 +31,7 @@ from piezo_sym.analysis.balance import (
 )
 from piezo_sym.analysis.newton import Settled, fixed_point, jacobian
 from piezo_sym.analysis.repeating import any_varies
-from piezo_sym.analysis.stroboscope import Stroboscope, stroboscope
+from piezo_sym.analysis.stroboscope import Stroboscope, over_period, stroboscope
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.checks import FloatArray, number, positive
 from piezo_sym.run.inputs import InputValue
@@ -257,15 +257,17 @@ def _moved(strobe: Stroboscope, x: FloatArray, before: FloatArray) -> float:
 
 def _described(strobe: Stroboscope, x: FloatArray, slope: FloatArray) -> SteadyState:
     orbit = strobe.run(x, times=SAMPLES + 1, rtol=ORBIT_RTOL)
-    states, T = strobe.states_of(orbit), strobe.temperature_of(orbit)
+    states = strobe.states_of(orbit)
+    T = np.asarray(orbit[f"T_{strobe.module.BODIES[0].name}"].values, dtype=float)
+    mean, coldest, hottest = over_period(T)
     size = strobe.look(x).size
     heats = [orbit[f"heat_{name}"] for name in {r.name: None for r in strobe.module.PROCESSES}]
     multiplier = float(np.max(np.abs(np.linalg.eigvals(slope))))
     return SteadyState(
         frequency=strobe.frequency,
-        temperature=float((T[0] + T[-1]) / 2 + T[1:-1].sum()) / SAMPLES,
-        coldest=float(T.min()),
-        hottest=float(T.max()),
+        temperature=mean,
+        coldest=coldest,
+        hottest=hottest,
         loss=float(sum(heat.isel(time=-1).sum() for heat in heats)),
         residual=float(np.max(np.abs(states[:, -1] - states[:, 0]) / size)),
         multiplier=multiplier,

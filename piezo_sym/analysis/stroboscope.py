@@ -28,7 +28,7 @@ from piezo_sym.run.engine import Engine
 from piezo_sym.run.guard import check_inputs, check_start
 from piezo_sym.run.inputs import Inputs, read_inputs
 from piezo_sym.run.method import choose_method
-from piezo_sym.run.module import GeneratedModule, checked, rows
+from piezo_sym.run.module import GeneratedModule, by_name, checked
 from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
 from piezo_sym.run.system import DrivenModule
 
@@ -51,6 +51,12 @@ class Period:
     mean: float  # temperature of the body [K]
     coldest: float
     hottest: float
+
+
+def over_period(T: FloatArray) -> tuple[float, float, float]:
+    """Return mean, least and greatest of a period's samples (nt,), both ends included."""
+    mean = float((T[0] + T[-1]) / 2 + T[1:-1].sum()) / (T.size - 1)
+    return mean, float(T.min()), float(T.max())
 
 
 @final
@@ -82,12 +88,9 @@ class Stroboscope:
     def look(self, x: FloatArray) -> Period:
         """Return the period that begins with the state x (n,) at t = 0."""
         states = self._period(x)
-        size = np.maximum(np.max(np.abs(states), axis=1), FLOOR)
-        for part in rows(self.module.STATES, self.values):
-            size[part] = np.max(size[part])
+        size = DrivenModule(self.module, self.values, self.inputs).scale(np.abs(states).max(axis=1))
         T = np.asarray(self.module.temperatures(states, self.values))[0]
-        mean = float((T[0] + T[-1]) / 2 + T[1:-1].sum()) / SAMPLES
-        return Period(states[:, -1], size, mean, float(T.min()), float(T.max()))
+        return Period(states[:, -1], size, *over_period(T))
 
     def _period(self, x: FloatArray) -> FloatArray:
         """Return the states (n, SAMPLES + 1) of one period; no Dataset is built, for speed."""
@@ -127,15 +130,9 @@ class Stroboscope:
         values = [run[record.name].values.T for record in self.module.STATES]
         return np.concatenate([np.atleast_2d(value) for value in values])
 
-    def temperature_of(self, run: xarray.Dataset) -> FloatArray:
-        """Return the body's temperature (nt,)."""
-        return np.asarray(run[f"T_{self.module.BODIES[0].name}"].values, dtype=float)
-
     def named(self, x: FloatArray) -> dict[str, LaneValue]:
         """Return a state x (n,) by name, as `simulate` takes it."""
-        records = self.module.STATES
-        parts = zip(records, rows(records, self.values), strict=True)
-        return {r.name: x[part] if r.bank else float(x[part.start]) for r, part in parts}
+        return by_name(self.module.STATES, self.values, x)
 
     @cached_property
     def engine(self) -> Engine | None:
@@ -202,11 +199,9 @@ def stroboscope(
     initial: Mapping[str, LaneValue] | None,
     steps: int,
 ) -> Stroboscope:
-    """Return the stroboscope of a module, checked by a run of one period.
+    """Return a module's stroboscope, checked by a run of one period.
 
-    Parameters
-    ----------
-    steps : per period; doubled until they resolve the inputs.
+    Its steps per period are doubled until they resolve the inputs.
     """
     bodies = [record.name for record in checked(module).BODIES]
     if len(bodies) != 1:

@@ -13,7 +13,7 @@ import numpy as np
 from piezo_sym.errors import RunError, listing
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.inputs import Segment
-from piezo_sym.run.module import row_name
+from piezo_sym.run.module import by_name, row_name
 from piezo_sym.run.system import DrivenModule
 
 NAME = re.compile(r"[A-Za-z_]\w*")
@@ -176,8 +176,8 @@ def values_in(system: DrivenModule, text: str, x: FloatArray, u: FloatArray) -> 
 def symbols(system: DrivenModule, x: FloatArray, u: FloatArray) -> Iterator[Value]:
     """Yield every symbol that a condition can use."""
     module = system.module
-    for record, part in zip(module.STATES, system.rows(module.STATES), strict=True):
-        yield record.name, record.unit, x[part] if record.bank else float(x[part.start])
+    states = by_name(module.STATES, system.parameters, x)
+    yield from ((record.name, record.unit, states[record.name]) for record in module.STATES)
     for record, value in zip(module.INPUTS, u, strict=True):
         yield record.name, record.unit, float(value)
     for record in module.PARAMETERS:

@@ -108,6 +108,12 @@ def rows(records: Sequence[Record], parameters: Any) -> tuple[slice, ...]:
     return tuple(found)
 
 
+def by_name(records: Sequence[Record], parameters: Any, x: FloatArray) -> dict[str, Any]:
+    """Return the rows of x (n,) by record: a number, for a bank one per lane."""
+    parts = zip(records, rows(records, parameters), strict=True)
+    return {r.name: x[part] if r.bank else float(x[part.start]) for r, part in parts}
+
+
 def row_count(records: Sequence[Record], parameters: Any) -> int:
     """Return the number of rows of an array that spreads banks."""
     return sum(lanes(parameters, record.bank) if record.bank else 1 for record in records)

@@ -18,7 +18,7 @@ from concurrent.futures import (
     ThreadPoolExecutor,
     wait,
 )
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING, TypeAlias
@@ -86,9 +86,10 @@ def sender(
 
 def packed(plan: Plan, model: Model) -> bytes:
     """Return what a box needs as bytes for another process; functions by value if possible."""
-    way = pickle
-    with suppress(ImportError):
+    try:
         import cloudpickle as way
+    except ImportError:
+        way = pickle
     try:
         return bytes(way.dumps((plan, model)))
     except Exception as cause:  # pickling runs the code of a user's objects

@@ -1,6 +1,6 @@
 """What section 4 of the paper claims, as numbers: what holds, and what does not, and how it fails.
 
-The table in piezo_sym/analysis/figures/__init__.py says the same in words.
+The table in notebooks/06-paper-and-software.ipynb says the same in words.
 """
 
 import numpy as np

@@ -58,41 +58,32 @@ class Compiler:
 
 def compilers() -> Iterator[Compiler]:
     """Yield the compilers that there are and that answer, best first."""
-    seen: set[tuple[str, ...]] = set()
-    for command in _commands():
-        if command not in seen:
-            seen.add(command)
-            version = _version(command)
-            if version:
-                yield Compiler(command, version)
+    for command in dict.fromkeys(_commands()):
+        if version := _version(command):
+            yield Compiler(command, version)
 
 
 def passed_by(taken: Compiler) -> str:
     """Return what ``$CC`` says if it is not the compiler that was taken; nothing otherwise."""
     wanted = os.environ.get("CC", "").strip()
-    return wanted if wanted and _found(_split(wanted)) != taken.command else ""
+    return wanted if wanted and _found(wanted) != taken.command else ""
 
 
 def _commands() -> Iterator[tuple[str, ...]]:
-    chosen = _split(os.environ.get("CC", ""))
-    for words in (chosen, ("cc",), ("gcc",), ("clang",)):
-        if command := _found(words):
-            yield command
+    found = map(_found, (os.environ.get("CC", ""), "cc", "gcc", "clang"))
+    yield from filter(None, found)
     if find_spec("ziglang") is not None:
         yield (sys.executable, "-m", "ziglang", "cc")
 
 
-def _found(words: tuple[str, ...]) -> tuple[str, ...]:
+def _found(text: str) -> tuple[str, ...]:
     """Return a command with the path of its program, or nothing if there is none."""
-    path = shutil.which(words[0]) if words else None
-    return (path, *words[1:]) if path else ()
-
-
-def _split(text: str) -> tuple[str, ...]:
     try:
-        return tuple(shlex.split(text))
-    except ValueError:  # a quote that is not closed
+        program, *options = shlex.split(text)
+    except ValueError:  # no words, or a quote that is not closed
         return ()
+    path = shutil.which(program)
+    return (path, *options) if path else ()
 
 
 @lru_cache(maxsize=16)
@@ -154,20 +145,15 @@ def processor() -> str:
     """Return the kind and instructions of the processor, which compiled code depends on."""
     found = [sys.platform, platform.machine(), platform.processor()]
     try:
-        found += _cpu_lines(Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace"))
+        cpuinfo = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace")
     except OSError:
-        found += _cpu_of_macos()
-    return "\n".join(found)
-
-
-def _cpu_lines(cpuinfo: str) -> list[str]:
-    """Return what the first processor listed says of its instructions."""
-    known: dict[str, str] = {}
+        return "\n".join([*found, *_cpu_of_macos()])
+    known: dict[str, str] = {}  # of the first processor listed
     for line in cpuinfo.splitlines():
         key, _, value = line.partition(":")
         if key.strip().lower() in _INSTRUCTIONS:
             known.setdefault(key.strip().lower(), value.strip())
-    return [f"{key}: {value}" for key, value in sorted(known.items())]
+    return "\n".join([*found, *(f"{key}: {value}" for key, value in sorted(known.items()))])
 
 
 def _cpu_of_macos() -> list[str]:

@@ -35,12 +35,10 @@ from piezo_sym.run.module import GeneratedModule
 Layout = Literal["one", "many", "lanes", "slopes"]
 #: What is compiled; the other files are included there.
 UNITS = ("driver.c", "stages.c")
-ENDINGS = {"win32": ".dll", "darwin": ".dylib"}
+ENDING = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 #: Of the file with a library's digest; of folders in which one is compiled, and their age [s] where
 #: a killed compilation has left one.
 DIGEST, BUILD, LEFT_SECONDS = ".sha256", ".build-", 3600.0
-
-
 #: Which variable says where caches are.
 CACHE = {"win32": "LOCALAPPDATA", "darwin": "HOME"}.get(sys.platform, "XDG_CACHE_HOME")
 
@@ -119,10 +117,9 @@ def _read(file: Path, changed: int, size: int) -> str | None:
 
 def shared_library(sources: Sources) -> ctypes.CDLL:
     """Return the library of some texts, compiled if need be, loaded."""
-    try:
+    with suppress(OSError):  # a damaged file in the cache
         return ctypes.CDLL(str(library(sources)))
-    except OSError:  # a damaged file in the cache
-        path = library(sources, again=True)
+    path = library(sources, again=True)
     try:
         return ctypes.CDLL(str(path))
     except OSError as error:
@@ -169,10 +166,6 @@ def cache_folder() -> Path:
     return Path(platformdirs.user_cache_dir("piezo_sym")) / "compiled"
 
 
-def _ending() -> str:
-    return ENDINGS.get(sys.platform, ".so")
-
-
 def _flags(sources: Sources, flags: tuple[str, ...]) -> tuple[str, ...]:
     """Return the flags for some texts.
 
@@ -193,7 +186,7 @@ def _key(sources: Sources, compiler: Compiler, flags: tuple[str, ...]) -> str:
 
 def _kept(sources: Sources, compiler: Compiler, flags: tuple[str, ...], *, again: bool) -> Path:
     """Return a compiled library, in the cache or else in a folder of this process alone."""
-    place = Path(_key(sources, compiler, flags)) / f"{sources.name}{_ending()}"
+    place = Path(_key(sources, compiler, flags)) / f"{sources.name}{ENDING}"
     path = cache_folder() / place
     if not again and _whole(path):
         return path
