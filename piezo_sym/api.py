@@ -130,11 +130,11 @@ def Stepper(
     UsageError, EngineError, RunError
         If an option is wrong, there is no compiler, or the start is outside the domain.
     """
-    module = module_of(model)
+    given: Any = {"step": step, "order": order, "initial": initial, "inputs": inputs}
+    module: Any = module_of(model)
 
     def made(parameters: Mapping[str, LaneValue] | None) -> Steps:
-        given = {"parameters": parameters, "initial": initial, "inputs": inputs}
-        return Steps(module, step=step, order=order, **given)  # type: ignore[arg-type]
+        return Steps(module, parameters=parameters, **given)
 
     if isinstance(parameters, Sequence) or sample is not None or delay or resolution:
         return Plant(made, parameters, step, sample, delay, resolution)

@@ -10,7 +10,7 @@ which are the chain rule of the generated Jacobian, for inputs and outputs, too.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from math import fsum
@@ -31,7 +31,7 @@ from piezo_sym.errors import RunError, UsageError, quote
 from piezo_sym.expressions.tree import Expr, LaneSum, evaluate, names
 from piezo_sym.modules import module_of
 from piezo_sym.run.checks import FloatArray, known_keys
-from piezo_sym.run.module import GeneratedModule, Record, lanes, row_names, rows
+from piezo_sym.run.module import GeneratedModule, by_name, lanes, row_names, rows
 from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
 from piezo_sym.spec.load import load
 from piezo_sym.spec.model import Model
@@ -159,22 +159,17 @@ def _linear(
     states, inputs, outputs = (row_names(records, p) for records in parts)
     outputs = [f"y_{name}" for name in outputs]
     n = len(states)
-    units = (unit for records in parts for unit in _units(records, p))
+    units = {
+        name: record.unit
+        for records, prefix in zip(parts, ("", "", "y_"), strict=True)
+        for record in records
+        for name in (f"{prefix}{row}" for row in row_names([record], p))
+    }
     return LinearModel(
         *(matrix[:n, :n], matrix[:n, n:], matrix[n:, :n], matrix[n:, n:]),
-        *(
-            tuple(states),
-            tuple(inputs),
-            tuple(outputs),
-            dict(zip((*states, *inputs, *outputs), units, strict=True)),
-        ),
+        *(tuple(states), tuple(inputs), tuple(outputs), units),
         *(x, u, module.outputs(x, u, p), module.rhs(x, u, p)),
     )
-
-
-def _units(records: Sequence[Record], p: Any) -> Iterator[str]:
-    for record in records:
-        yield from [record.unit] * (lanes(p, record.bank) if record.bank else 1)
 
 
 def _matrix(
@@ -198,10 +193,8 @@ def _block(entry: Entry, banks: tuple[str | None, str | None], values: _Values) 
     value = values.of(entry.value)
     if row and row == col:
         block = np.diag(np.broadcast_to(value, values.counts[row]))
-    elif row:
-        block = np.reshape(value, (-1, 1))
     else:
-        block = np.reshape(value, (1, -1))
+        block = np.reshape(value, (-1, 1) if row else (1, -1))
     for outer in entry.outer:
         block = block + np.reshape(values.of(outer.left), (-1, 1)) * values.of(outer.right)
     return block
@@ -229,9 +222,7 @@ class _Values:
             found.known[record.name] = (
                 np.broadcast_to(value, counts[record.bank]) if record.bank else value
             )
-        for record, part in zip(module.STATES, rows(module.STATES, p), strict=True):
-            found.known[record.name] = x[part] if record.bank else x[part.start]
-        found.known.update(zip((record.name for record in module.INPUTS), u, strict=True))
+        found.known.update(by_name(module.STATES, p, x) | by_name(module.INPUTS, p, u))
         for quantity in program.quantities:
             found.known[quantity.name] = found.of(quantity.value)
         return found
@@ -239,8 +230,7 @@ class _Values:
     def of(self, node: Expr) -> Any:
         """Return the value of an expression, or one per lane, (count,)."""
         if isinstance(node, LaneSum):
-            each = self._each(node.arg, self.counts[node.bank])
-            return fsum(each)
+            return fsum(self._each(node.arg, self.counts[node.bank]))
         bank = bank_of(node, self.lanes)
         return np.array([*self._each(node, self.counts[bank])]) if bank else self._one(node)
 

@@ -74,7 +74,11 @@ def module_of(spec: str | Path | Model) -> ModuleType:
 def _identified(spec: str | Path | Model) -> tuple[str, str, Model | None]:
     """Return the name and the hash of a spec; the spec's types are loaded only in doubt."""
     if not isinstance(spec, str | Path):
-        refuse_no_model(spec)
+        from piezo_sym.spec.model import Model  # whoever has one has loaded its type
+
+        if not isinstance(spec, Model):
+            expected = "the name of a shipped spec, the path of a spec file, or a Model"
+            raise UsageError(f"{quote(spec)} is no model", "model", expected)
         return spec.name, spec.sha256, spec
     content = data(read(find(spec)))
     if "components" in content:  # their files count too
@@ -84,7 +88,8 @@ def _identified(spec: str | Path | Model) -> tuple[str, str, Model | None]:
     header = content.get("model")
     name = header.get("name") if isinstance(header, dict) else None
     known = isinstance(name, str) and name.isidentifier() and len(name) <= MAX_NAME
-    return (str(name) if known else ""), spec_hash_of(content), None
+    tables = all(isinstance(table, dict) for table in content.values())  # of a spec's shape
+    return (str(name) if known else ""), spec_hash(content) if tables else "", None
 
 
 def _command(spec: str | Path | Model) -> str:
@@ -92,21 +97,6 @@ def _command(spec: str | Path | Model) -> str:
     if not isinstance(spec, str | Path):
         return f"piezo_sym.generate(model) for '{spec.name}'"
     return f"piezo-sym generate {spec if str(spec) in shipped() else find(spec)}"
-
-
-def refuse_no_model(spec: object) -> None:
-    """Raise `UsageError` if this is no `Model`; whoever has one has loaded its type."""
-    from piezo_sym.spec.model import Model
-
-    if not isinstance(spec, Model):
-        expected = "the name of a shipped spec, the path of a spec file, or a Model"
-        raise UsageError(f"{quote(spec)} is no model", "model", expected)
-
-
-def spec_hash_of(content: dict[str, object]) -> str:
-    """Return the hash of plain spec data, or nothing if it is not even of a spec's shape."""
-    tables = all(isinstance(table, dict) for table in content.values())
-    return spec_hash(content) if tables else ""
 
 
 def _own(name: str, sha256: str) -> ModuleType | None:

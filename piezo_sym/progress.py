@@ -25,16 +25,9 @@ SECOND = 1.0
 
 @contextmanager
 def progress_of(wanted: object, total: int) -> Iterator[Tell]:
-    """Give a function to be told how many runs are done.
+    """Give a function to be told how many of `total` runs are done.
 
-    Parameters
-    ----------
-    wanted : True or False; None for a bar on a terminal; or a function of (done, total).
-    total : the number of runs.
-
-    Raises
-    ------
-    UsageError : `wanted` is nothing of these.
+    `wanted` is True or False; None for a bar on a terminal; or a function of (done, total).
     """
     if callable(wanted):
         call: Callable[[float, int], object] = wanted
@@ -49,38 +42,24 @@ def progress_of(wanted: object, total: int) -> Iterator[Tell]:
 
 @contextmanager
 def watch_of(wanted: object, duration: object, start: float = 0.0) -> Iterator[Tell | None]:
-    """Give what a run is to tell the time that it has reached [s], or None.
+    """Give what a run from `start` [s] is to tell the time that it has reached [s], or None.
 
-    Parameters
-    ----------
-    wanted : True for a bar; False or None for nothing; or a function of the time.
-    duration, start : the length of the run, and when it starts [s].
-
-    Raises
-    ------
-    UsageError : `wanted` is nothing of these.
+    `wanted` is True for a bar; False or None for nothing; or a function of the time.
     """
     if callable(wanted):
         yield wanted
     elif wanted is None or wanted is False:
         yield None
     elif wanted is True:
+        from rich.progress import TextColumn
+
         length = duration if isinstance(duration, int | float) else 0.0  # the run refuses others
-        with time_bar(length, shown=True) as tell:
+        reached = TextColumn("{task.completed:.4g} s of {task.total:.4g} s")
+        with bar(length, "simulated", reached, shown=True) as tell:
             yield lambda t: tell(t - start)
     else:
         expected = "True, False, None or a function of the time in s"
         raise UsageError(f"{quote(wanted)} shows no progress", "simulate.progress", expected)
-
-
-@contextmanager
-def time_bar(duration: float, *, shown: bool | None = None) -> Iterator[Tell]:
-    """Give a function to be told the time that a run has reached [s]."""
-    from rich.progress import TextColumn
-
-    reached = TextColumn("{task.completed:.4g} s of {task.total:.4g} s")
-    with bar(duration, "simulated", reached, shown=shown) as tell:
-        yield tell
 
 
 def tracked(items: Sequence[ItemT], what: str) -> Iterator[ItemT]:
@@ -98,26 +77,20 @@ def bar(
 ) -> Iterator[Tell]:
     """Give a function to be told how much is done, for a bar on stderr, after a second.
 
-    Parameters
-    ----------
-    amount : how the bar writes what is done; a number of the total when left out.
-    shown : whether there is a bar; when left out, on a terminal.
+    There is none where `shown` is False, or None and stderr is no terminal; `amount` is how it
+    writes what is done, a number of the total when left out.
     """
     if not (sys.stderr.isatty() if shown is None else shown):
         yield lambda done: None  # noqa: ARG005
         return
+    from rich import progress
     from rich.console import Console
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        Progress,
-        TextColumn,
-        TimeRemainingColumn,
-    )
 
-    columns = (TextColumn(what), BarColumn(), amount or MofNCompleteColumn(), TimeRemainingColumn())
+    amount = amount or progress.MofNCompleteColumn()
+    columns = progress.TextColumn(what), progress.BarColumn(), amount
     console = Console(stderr=True)
-    drawn = Progress(*columns, console=console, transient=console.is_terminal)
+    end = progress.TimeRemainingColumn()
+    drawn = progress.Progress(*columns, end, console=console, transient=console.is_terminal)
     task, begun = drawn.add_task(what, total=total), time.monotonic()
 
     def tell(done: float) -> None:

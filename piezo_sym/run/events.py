@@ -20,7 +20,7 @@ import numpy as np
 
 from piezo_sym.errors import PiezoError, UsageError, nearest, quote
 from piezo_sym.expressions.parse import parse_condition, parse_law
-from piezo_sym.expressions.tree import Add, Cmp, Expr, Neg, evaluate, names
+from piezo_sym.expressions.tree import Add, Expr, Neg, evaluate, names
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.dataset import Known, described
 from piezo_sym.run.ledger import Trajectory
@@ -84,7 +84,9 @@ def read_watched(system: DrivenModule, events: object, stop: object, step: objec
         return Watched(found, None)
     condition: Any = _read(parse_condition, stop, "simulate.stop", '"T_body > 350"')
     _known(condition, known, "simulate.stop")
-    return Watched(found, _margin(condition), str(stop))
+    sides = condition.left, condition.right
+    more, less = sides if condition.op in {">", ">="} else sides[::-1]
+    return Watched(found, Add((more, Neg(less))), str(stop))
 
 
 def _read(read: Callable[[str, str], Any], text: object, where: str, such: str) -> Any:
@@ -94,13 +96,6 @@ def _read(read: Callable[[str, str], Any], text: object, where: str, such: str) 
         return read(text, where)
     except PiezoError as error:
         raise UsageError(error.what, where, error.expected, error.remedy) from error
-
-
-def _margin(condition: Cmp) -> Expr:
-    """Return what is positive where a comparison holds."""
-    left, right = condition.left, condition.right
-    more, less = (left, right) if condition.op in {">", ">="} else (right, left)
-    return Add((more, Neg(less)))
 
 
 def _known(tree: Any, words: Sequence[str], where: str) -> Any:
@@ -171,10 +166,8 @@ def look(
 
 def _signs(values: FloatArray) -> FloatArray:
     """Return the sign of each value; what is zero or nan has the one before it."""
-    signs = np.nan_to_num(np.sign(values))
-    last = np.maximum.accumulate(np.where(signs != 0, np.arange(signs.size), 0))
-    filled: FloatArray = signs[last]
-    return filled
+    signs: FloatArray = np.nan_to_num(np.sign(values))
+    return signs[np.maximum.accumulate(np.where(signs != 0, np.arange(signs.size), 0))]
 
 
 def _crossings(values: FloatArray) -> list[int]:

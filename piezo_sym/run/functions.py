@@ -7,7 +7,7 @@ chance.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from math import nextafter
@@ -111,28 +111,18 @@ def jumps(function: Callable[[Any], Any], start: float, end: float) -> tuple[flo
     """Return the times in (start, end) from which on a function has jumped, in order."""
     times = np.linspace(start, nextafter(end, start), INTERVALS + 1)
     values = function(times)
-    return tuple(_jumps_between(function, times, values))
-
-
-def _jumps_between(
-    function: Callable[[Any], Any], times: FloatArray, values: FloatArray
-) -> Iterator[float]:
     changes = np.abs(np.diff(values))
     padded = np.pad(changes, NEARBY, mode="reflect")
     usual = np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * NEARBY + 1), axis=1)
     least = LEAST * np.max(np.abs(values))
-    for k in np.flatnonzero((changes > UNUSUAL * usual) & (changes > least)).tolist():
-        ends = (float(times[k]), float(times[k + 1]))
-        found = _jump(function, ends, (float(values[k]), float(values[k + 1])))
-        if found is not None:
-            yield found
+    steep = np.flatnonzero((changes > UNUSUAL * usual) & (changes > least)).tolist()
+    found = (_jump(function, times[k : k + 2], values[k : k + 2]) for k in steep)
+    return tuple(time for time in found if time is not None)
 
 
-def _jump(
-    function: Callable[[Any], Any], ends: tuple[float, float], values: tuple[float, float]
-) -> float | None:
+def _jump(function: Callable[[Any], Any], ends: FloatArray, values: FloatArray) -> float | None:
     """Return the first time after a jump between two times, or None if there is none."""
-    (a, b), (at_a, at_b) = ends, values
+    (a, b), (at_a, at_b) = map(float, ends), map(float, values)
     steep, change = STEEP * (b - a), abs(at_b - at_a)
     while a < (middle := 0.5 * (a + b)) < b:
         at_middle = float(function(middle))

@@ -26,21 +26,16 @@ Value = tuple[str, str, "float | FloatArray"]  # label, unit, value
 
 def check_start(system: DrivenModule, x: FloatArray) -> None:
     """Raise `RunError` if the run cannot start from the state x (n,) at t = 0."""
-    segment = system.inputs.segments[0]
-    u = segment.at(segment.start)
+    t = system.inputs.start
+    u = system.inputs.segments[0].at(t)
     try:
-        check_point(system, segment.start, x, u)
+        if np.any(system.violated(x, u)):
+            raise domain_error(system, t, x, u)
+        if not np.all(system.finite(x, u)):
+            raise rate_error(system, t, x, u)
     except ArithmeticError as cause:
-        what = f"the state at t = {segment.start:g} s cannot be evaluated: {cause}"
+        what = f"the state at t = {t:g} s cannot be evaluated: {cause}"
         raise RunError(what, place(system), remedy="check the parameters") from cause
-
-
-def check_point(system: DrivenModule, t: float, x: FloatArray, u: FloatArray) -> None:
-    """Raise `RunError` if the state x (n,) with inputs u (m,) is outside the domain."""
-    if np.any(system.violated(x, u)):
-        raise domain_error(system, t, x, u)
-    if not np.all(system.finite(x, u)):
-        raise rate_error(system, t, x, u)
 
 
 def crossing(

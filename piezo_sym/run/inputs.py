@@ -105,10 +105,8 @@ class Inputs:
     @cached_property
     def jumps(self) -> frozenset[float]:
         """Starts of the segments before which an input jumps, and of the run."""
-        pairs = pairwise(self.segments)
-        return frozenset(
-            {self.start, *(later.start for first, later in pairs if jump(first, later))}
-        )
+        found = (later.start for first, later in pairwise(self.segments) if jump(first, later))
+        return frozenset({self.start, *found})
 
     @cached_property
     def max_step(self) -> float:
@@ -123,14 +121,10 @@ class Inputs:
 
 def jump(first: Segment, later: Segment) -> bool:
     """Return whether an input jumps between two segments, one after the other."""
-    before, after = first.over(_places(first)), later.over(_places(later))
+    # a few times show how large the inputs of a segment are, its ends among them
+    before, after = (s.over(np.linspace(s.start, s.stop, 5)) for s in (first, later))
     size = np.maximum(np.abs(before).max(axis=1), np.abs(after).max(axis=1))
     return bool(np.any(np.abs(after[:, 0] - before[:, -1]) > LEAST_JUMP * size))
-
-
-def _places(segment: Segment) -> FloatArray:
-    """Return a few times that show how large the inputs of a segment are, its ends among them."""
-    return np.linspace(segment.start, segment.stop, 5)
 
 
 def read_inputs(
@@ -143,12 +137,9 @@ def read_inputs(
     names = [record.name for record in module.INPUTS]
     defaults = dict(zip(names, module.INPUT_DEFAULTS, strict=True))
     values = defaults | known_keys(given, names, "simulate.inputs", others(module, "inputs"))
-    signals = []
-    for record in module.INPUTS:
-        where = f"simulate.inputs.{record.name}"
-        signals.append(
-            read_signal(values[record.name], where, (start, start + duration), record.unit)
-        )
+    span = start, start + duration
+    named = ((record, f"simulate.inputs.{record.name}") for record in module.INPUTS)
+    signals = (read_signal(values[r.name], where, span, r.unit) for r, where in named)
     return Inputs(tuple(signals), duration, start)
 
 
@@ -177,5 +168,4 @@ def as_signal(value: object, where: str, start: float = 0.0) -> Signal:
     if callable(value) and not isinstance(value, type):
         return InputFunction(value, where, start)
     expected = "a number, (t, values), a function of t or a signal"
-    what = f"{quote(value)} is no input"
-    raise UsageError(what, where, expected)
+    raise UsageError(f"{quote(value)} is no input", where, expected)

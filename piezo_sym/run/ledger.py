@@ -12,7 +12,7 @@ Batches pass through one at a time, so memory grows with the samples, not with t
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from typing import final
 
@@ -63,9 +63,16 @@ class Trajectory:
 
 
 def record(
-    system: DrivenModule, start: FloatArray, batches: Iterable[Stretches], times: FloatArray
+    system: DrivenModule,
+    start: FloatArray,
+    batches: Iterable[Stretches],
+    times: FloatArray,
+    watch: Callable[[float], object] | None = None,
 ) -> Trajectory:
-    """Return the trajectory at `times` (nt,) of a run from `start` (n,) that comes in batches."""
+    """Return the trajectory at `times` (nt,) of a run from `start` (n,) that comes in batches.
+
+    `watch` is told the time that each begins from.
+    """
     n, m, k = row_counts(system)
     states, inputs, integrals = (np.full((size, times.size), np.nan) for size in (n, m, k))
     total, steps, evaluations = np.zeros(k), 0, 0
@@ -74,6 +81,8 @@ def record(
             steps, evaluations = steps + batch.steps, evaluations + batch.evaluations
             if not batch.stretches:
                 continue
+            if watch:
+                watch(batch.stretches[0].start)
             x, u, error = looked_at(system, batch)
             run = total[:, None] + np.cumsum(increments(system, batch), axis=1)
             total = run[:, -1]
@@ -107,12 +116,10 @@ def looked_at(
     left = np.any(system.violated(x, u), axis=0)
     lost = ~np.all(system.finite(x, u), axis=0)
     if np.any(left | lost):
-        first = int(np.argmax(left | lost))
-        if left[first]:
-            error = leaving(system, batch, first)
-        else:
-            error = rate_error(system, float(stops[first]), x[:, first], u[:, first])
-        return x[:, :first], u[:, :first], error
+        k = int(np.argmax(left | lost))
+        at = float(stops[k]), x[:, k], u[:, k]
+        error = leaving(system, batch, k) if left[k] else rate_error(system, *at)
+        return x[:, :k], u[:, :k], error
     return x, u, None
 
 

@@ -49,13 +49,12 @@ def read_parameters(module: GeneratedModule, given: Mapping[str, LaneValue] | No
 def read_sizes(module: GeneratedModule, given: Mapping[str, LaneValue] | None) -> dict[str, int]:
     """Return the number of lanes of each bank."""
     default, values = module.Parameters(), _known(module, given)
-    names = {bank: f"{bank}_count" for bank in module.BANKS}
-    return {
-        bank: whole(
-            values.get(name, lanes(default, bank)), f"simulate.parameters.{name}", 1, MOST_LANES
-        )
-        for bank, name in names.items()
-    }
+    found = {}
+    for bank in module.BANKS:
+        name = f"{bank}_count"
+        size = values.get(name, lanes(default, bank))
+        found[bank] = whole(size, f"simulate.parameters.{name}", 1, MOST_LANES)
+    return found
 
 
 def _known(module: GeneratedModule, given: Mapping[str, LaneValue] | None) -> dict[str, Any]:

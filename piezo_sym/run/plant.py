@@ -49,7 +49,11 @@ class Plant:
         self._plants = tuple(made(one) for one in each)
         first = self._plants[0]
         self.states, self.inputs, self.outputs = first.states, first.inputs, first.outputs
-        self._steps = read_sample(sample, step)
+        ratio = 1.0 if sample is None else positive(sample, "Stepper.sample") / step
+        self._steps = round(ratio)
+        if self._steps < 1 or abs(ratio - self._steps) > ROUNDING * self._steps:
+            what = f"{quote(sample)} s is no multiple of the step"
+            raise UsageError(what, "Stepper.sample", f"a whole number of steps of {step:g} s")
         self._delay = whole(delay, "Stepper.delay", 0)
         self._wanted = self._waiting()
         sizes = known_keys(resolution, self.outputs, "Stepper.resolution")
@@ -121,15 +125,3 @@ class Plant:
         for plant in self._plants:
             plant.reset()
         self._wanted = self._waiting()
-
-
-def read_sample(sample: object, step: float) -> int:
-    """Return how many steps a sample is; raise `UsageError` if it is no whole number of them."""
-    if sample is None:
-        return 1
-    ratio = positive(sample, "Stepper.sample") / step
-    steps = round(ratio)
-    if steps < 1 or abs(ratio - steps) > ROUNDING * steps:
-        what = f"{quote(sample)} s is no multiple of the step"
-        raise UsageError(what, "Stepper.sample", f"a whole number of steps of {step:g} s")
-    return steps

@@ -5,7 +5,7 @@ largest magnitude of each state, so that absolute tolerances fit its unit; or th
 why a run in C stopped.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
 from itertools import islice
@@ -44,8 +44,7 @@ def by_scipy(
     """Return a run of one of SciPy's methods, and what it took; `watch` is told the time."""
     scale, spent = magnitudes(system, x)
     tolerance = Tolerance(method, rtol, rtol * ATOL_FACTOR * scale)
-    found = watched(batches(system, x, samples, tolerance), watch)
-    trajectory = record(system, x, found, samples)
+    trajectory = record(system, x, batches(system, x, samples, tolerance), samples, watch)
     work = {
         "method": method,
         "rtol": rtol,
@@ -54,14 +53,6 @@ def by_scipy(
         "scale_evaluations": spent,
     }
     return trajectory, work
-
-
-def watched(found: Iterable[Stretches], watch: Watch | None) -> Iterator[Stretches]:
-    """Yield batches, and tell the time that each begins from."""
-    for batch in found:
-        if watch and batch.stretches:
-            watch(batch.stretches[0].start)
-        yield batch
 
 
 def magnitudes(
@@ -99,12 +90,8 @@ def coarse_run(system: DrivenModule, x: FloatArray) -> Iterator[tuple[float, Flo
             solvers = accepted(system, rest, x, Tolerance("LSODA", RTOL, ATOL * scale))
             rest, spent = None, 0
             for solver in solvers:
-                t, x, cost, spent = (
-                    float(solver.t),
-                    solver.y.copy(),
-                    solver.nfev - spent,
-                    solver.nfev,
-                )
+                t, x = float(solver.t), solver.y.copy()
+                cost, spent = solver.nfev - spent, solver.nfev
                 if np.any(system.violated(x, segment.at(t))):
                     return
                 met = np.maximum(met, system.scale(x))

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 WHERE = "simulate.store"
 #: Numbers of a window, of which a sample has a few per state, port and process.
 WINDOW, PER_ROW = 4_000_000, 6
+#: How the names of integrals begin, or end.
+SUMS, LEFT = ("supplied_", "heat_", "produced_", "entropy_exchanged_"), "_residual"
 #: What a run took, which windows add up.
 WORK = ("accepted_steps", "newton_iterations", "halvings", "rhs_evaluations", "scale_evaluations")
 
@@ -89,19 +91,13 @@ def _added(found: xarray.Dataset, before: xarray.Dataset | None) -> xarray.Datas
     """Return a window's Dataset as one of the whole run, without the sample it begins with."""
     if before is None:
         return found
-    integrals = [name for name in found.data_vars if _is_integral(str(name))]
+    integrals = [n for n in found.data_vars if str(n).startswith(SUMS) or str(n).endswith(LEFT)]
     last = before[integrals].isel(time=-1).drop_vars("time")
     whole = found.assign({name: found[name] + last[name] for name in integrals})
     for name in integrals:
         whole[name].attrs = before[name].attrs
     work = {n: found.attrs[n] + before.attrs[n] for n in WORK if n in found.attrs}
     return whole.isel(time=slice(1, None)).assign_attrs(work)
-
-
-def _is_integral(name: str) -> bool:
-    return name.startswith(("supplied_", "heat_", "produced_", "entropy_exchanged_")) or (
-        name.endswith("_residual")
-    )
 
 
 def _append(path: Path, part: xarray.Dataset, *, first: bool) -> None:
