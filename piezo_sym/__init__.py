@@ -43,32 +43,24 @@ if TYPE_CHECKING:  # "as" makes them public for type checkers
     from piezo_sym.sweeps import sweep as sweep
     from piezo_sym.verification import verify as verify
 
-_HOME = {
-    "Model": "spec.model",
-    "PiezoError": "errors",
-    "Stepper": "api",
-    "chirp": "run",
-    "derive": "derivation",
-    "generate": "build",
-    "linearize": "linearization",
-    "load": "spec.load",
-    "operating_point": "api",
-    "periodic_steady_state": "api",
-    "periodic_steady_states": "api",
-    "plot": "analysis.dashboard",
-    "ramp": "run",
-    "samples": "run",
-    "samples_from_csv": "run",
-    "simulate": "api",
-    "sine": "run",
-    "steady_branches": "api",
-    "step": "run",
-    "sweep": "sweeps",
-    "triangle": "run",
-    "verify": "verification",
+_STEADY = ("operating_point", "periodic_steady_state", "periodic_steady_states", "steady_branches")
+#: Where the public names are.
+_NAMES: dict[str, tuple[str, ...]] = {
+    "analysis.dashboard": ("plot",),
+    "api": ("Stepper", "simulate", *_STEADY),
+    "build": ("generate",),
+    "derivation": ("derive",),
+    "errors": ("PiezoError",),
+    "linearization": ("linearize",),
+    "run": ("chirp", "ramp", "samples", "samples_from_csv", "sine", "step", "triangle"),
+    "spec.load": ("load",),
+    "spec.model": ("Model",),
+    "sweeps": ("sweep",),
+    "verification": ("verify",),
 }
+_HOME = {name: home for home, names in _NAMES.items() for name in names}
 
-__all__ = ["__version__", *_HOME]
+__all__ = ["__version__", *sorted(_HOME)]
 
 
 def __getattr__(name: str) -> Any:

@@ -87,15 +87,13 @@ def zeros(strobe: Stroboscope, known: Sequence[Settled]) -> list[Settled]:
             raise RunError(what, strobe.where, remedy=remedy)
     points = list(known)
     for a, b, c in zip(known, known[1:], known[2:], strict=False):
-        if a.drift * b.drift > 0 < b.drift * c.drift and abs(b.drift) < min(
-            abs(a.drift), abs(c.drift)
-        ):
+        least = abs(b.drift) < min(abs(a.drift), abs(c.drift))
+        if least and a.drift * b.drift > 0 < b.drift * c.drift:
             points += _turning(strobe, a, b, c)
     points.sort(key=lambda point: point.temperature)
+    changes = [(a, b) for a, b in pairwise(points) if a.drift * b.drift < 0]
     found = [point for point in points if point.drift == 0]
-    for a, b in pairwise(points):
-        if a.drift * b.drift < 0 and (zero := _zero(strobe, a, b)):
-            found.append(zero)
+    found += filter(None, (_zero(strobe, a, b) for a, b in changes))
     return sorted(found, key=lambda point: point.temperature)
 
 
@@ -117,10 +115,8 @@ def _turning(strobe: Stroboscope, a: Settled, b: Settled, c: Settled) -> list[Se
         if new.drift * b.drift <= 0:
             break
         inner, outer = (new, b) if abs(new.drift) < abs(b.drift) else (b, new)
-        if outer.temperature > inner.temperature:
-            b, c = inner, outer
-        else:
-            a, b = outer, inner
+        above = outer.temperature > inner.temperature
+        a, b, c = (a, inner, outer) if above else (outer, inner, c)
     return found
 
 
@@ -140,10 +136,7 @@ def _zero(strobe: Stroboscope, a: Settled, b: Settled) -> Settled | None:
         except RunError as error:
             warnings.warn(f"{error}; a steady state there may be missed", SteadyWarning, 2)
             return None
-        if new.drift * b.drift < 0:
-            a, weight_a = b, weight_b
-        else:
-            weight_a /= 2
+        a, weight_a = (b, weight_b) if new.drift * b.drift < 0 else (a, weight_a / 2)
         close = abs(new.temperature - b.temperature) < ZERO * T
         b, weight_b = new, new.drift
         if close or new.drift == 0:

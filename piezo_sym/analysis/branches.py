@@ -10,7 +10,7 @@ A stable part ends in a fold, where it meets an unstable one.  When the frequenc
 fold, the temperature jumps to another branch, up or down.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import final
@@ -18,7 +18,7 @@ from typing import final
 import numpy as np
 
 from piezo_sym.analysis.balance import grid, scan, temperature_range, zeros
-from piezo_sym.analysis.curves import Curve, CurvePoint, folds, traced, with_folds
+from piezo_sym.analysis.curves import Curve, CurvePoint, folds, traced
 from piezo_sym.analysis.newton import settled
 from piezo_sym.analysis.repeating import Driven, refuse_not_following
 from piezo_sym.analysis.stroboscope import Stroboscope, stroboscope
@@ -133,9 +133,10 @@ def steady_branches(
     for curve in _curves(strobe, span):
         found = tuple(folds(strobe, curve))
         ends += found
-        curves.append(with_folds(curve, found))
-    whole = tuple(curves)
-    return Branches(whole, tuple(_jump(strobe, whole, point, up) for _, point, up in ends))
+        at = {n: point for n, point, _ in found}  # in place of the points nearest to them
+        curves.append(tuple(at.get(n, point) for n, point in enumerate(curve)))
+    jumps = (_jump(strobe, curves, point, up) for _, point, up in ends)
+    return Branches(tuple(curves), tuple(jumps))
 
 
 def _curves(strobe: Stroboscope, span: FloatArray) -> Iterator[Curve]:
@@ -156,7 +157,7 @@ def _curves(strobe: Stroboscope, span: FloatArray) -> Iterator[Curve]:
             yield curve
 
 
-def _jump(strobe: Stroboscope, curves: tuple[Curve, ...], fold: CurvePoint, upward: bool) -> Jump:
+def _jump(strobe: Stroboscope, curves: Sequence[Curve], fold: CurvePoint, upward: bool) -> Jump:
     """Return the jump at a fold: the sign of the drift just past it gives the direction."""
     beyond = fold.frequency * (1.01 if upward else 0.99)
     heats = settled(strobe.at(beyond), fold.state.temperature, fold.state.x).drift > 0
@@ -167,7 +168,7 @@ def _jump(strobe: Stroboscope, curves: tuple[Curve, ...], fold: CurvePoint, upwa
     return Jump(fold.frequency, upward, fold.state.period.mean, float(lands))
 
 
-def _crossings(curves: tuple[Curve, ...], log_f: float) -> Iterator[tuple[float, float]]:
+def _crossings(curves: Sequence[Curve], log_f: float) -> Iterator[tuple[float, float]]:
     """Yield log T at t = 0 and mean T of the stable states at a frequency, interpolated."""
     for curve in curves:
         for a, b in pairwise(curve):

@@ -60,10 +60,8 @@ def traced(
 ) -> Iterator[CurvePoint]:
     """Yield the points of the curve from a zero on, to where it leaves the ranges.
 
-    Parameters
-    ----------
-    way : 1 or -1: whether the frequency rises or falls at first.
-    span : least and greatest log f, and log T: shape (2, 2).
+    The frequency rises at first if `way` is 1, and falls if it is -1; `span` (2, 2) is least and
+    greatest log f, and log T.
     """
     tangent, known = np.array([way, 0.0]), False
     try:
@@ -121,9 +119,7 @@ def _corrected(
 ) -> CurvePoint:
     """Return the zero of the drift on the line through `guess` along `across`, by secants.
 
-    Parameters
-    ----------
-    steepness : derivative of the drift per second along the line, if known from a point nearby.
+    `steepness` is the derivative of the drift per second along it, if known from a point nearby.
     """
     s, before = 0.0, (0.0, 0.0)
     for n in range(MOST_SECANTS):
@@ -135,19 +131,13 @@ def _corrected(
             steepness = (rate - before[1]) / (s - before[0])
         move = -rate / steepness if steepness else FIRST
         if (n and abs(move) <= EXACT) or rate == 0:
-            return _point(strobe, state, place, steepness)
+            beside = settled(strobe, state.temperature * (1 + DIFFERENCE), state.x, state.slope)
+            rising = (beside.drift - state.drift) * strobe.frequency / DIFFERENCE
+            return CurvePoint(strobe.frequency, state, rising, steepness, place)
         before, near = (s, rate), state
         s += float(np.clip(move, -LONGEST, LONGEST)) or FIRST
     what = f"no steady state near {strobe.frequency:g} Hz and {near.temperature:.6g} K"
     raise RunError(what, strobe.where)
-
-
-def _point(strobe: Stroboscope, state: Settled, place: FloatArray, steepness: float) -> CurvePoint:
-    """Return a zero of the drift as a point, with the derivative of the drift by temperature."""
-    T = state.temperature * (1 + DIFFERENCE)
-    beside = settled(strobe, T, state.x, state.slope)
-    rising = (beside.drift - state.drift) * strobe.frequency / DIFFERENCE
-    return CurvePoint(strobe.frequency, state, rising, steepness, place)
 
 
 def folds(strobe: Stroboscope, curve: Curve) -> Iterator[tuple[int, CurvePoint, bool]]:
@@ -156,12 +146,6 @@ def folds(strobe: Stroboscope, curve: Curve) -> Iterator[tuple[int, CurvePoint, 
         a, b, c = curve[n - 1 : n + 2]
         if (b.place[0] - a.place[0]) * (c.place[0] - b.place[0]) < 0:
             yield n, _fold(strobe, a, b, c), bool(b.place[0] > a.place[0])
-
-
-def with_folds(curve: Curve, folds: tuple[tuple[int, CurvePoint, bool], ...]) -> Curve:
-    """Return a curve with its folds in place of the points nearest to them."""
-    at = {n: point for n, point, _ in folds}
-    return tuple(at.get(n, point) for n, point in enumerate(curve))
 
 
 def _fold(strobe: Stroboscope, a: CurvePoint, b: CurvePoint, c: CurvePoint) -> CurvePoint:

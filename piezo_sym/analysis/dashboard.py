@@ -97,17 +97,18 @@ def refuse_others(run: xarray.Dataset) -> None:
 def _panels(run: xarray.Dataset) -> Iterator[Panel]:
     """Yield the label of each panel, and the function that draws it."""
     for unit, names in _by_unit(run).items():
-        yield f"{_short(names)} [{unit}]", partial(_lines, run=run, names=names)
-    if heats := _with_prefix(run, "heat_"):
-        yield "heat released [J]", partial(_stack, run=run, names=heats, prefix="heat_")
-    if produced := _with_prefix(run, "produced_"):
-        yield "entropy produced [J/K]", partial(_stack, run=run, names=produced, prefix="produced_")
-    if supplied := _with_prefix(run, "supplied_"):
-        yield "energy put in [J]", partial(_lines, run=run, names=supplied, prefix="supplied_")
-    yield (
-        "energy residual [J]",
-        partial(_lines, run=run, names=["energy_residual"], prefix="energy_"),
+        shown = ", ".join(names[:3]) + (", ..." if len(names) > 3 else "")
+        yield f"{shown} [{unit}]", partial(_lines, run=run, names=names)
+    sums = (
+        ("heat released [J]", _stack, "heat_"),
+        ("entropy produced [J/K]", _stack, "produced_"),
+        ("energy put in [J]", _lines, "supplied_"),
     )
+    for label, draw, prefix in sums:
+        if names := [str(name) for name in run.data_vars if str(name).startswith(prefix)]:
+            yield label, partial(draw, run=run, names=names, prefix=prefix)
+    draw = partial(_lines, names=["energy_residual"], prefix="energy_")
+    yield "energy residual [J]", partial(draw, run=run)
 
 
 def _by_unit(run: xarray.Dataset) -> dict[str, list[str]]:
@@ -119,15 +120,6 @@ def _by_unit(run: xarray.Dataset) -> dict[str, list[str]]:
             continue
         found.setdefault(str(run[name].attrs.get("units", "1")), []).append(name)
     return found
-
-
-def _with_prefix(run: xarray.Dataset, prefix: str) -> list[str]:
-    return [str(name) for name in run.data_vars if str(name).startswith(prefix)]
-
-
-def _short(names: list[str]) -> str:
-    shown = ", ".join(names[:3])
-    return f"{shown}, ..." if len(names) > 3 else shown
 
 
 def _lines(axes: Axes, run: xarray.Dataset, names: list[str], prefix: str = "") -> None:

@@ -62,10 +62,8 @@ def settled(
 ) -> Settled:
     """Return the settled state at the temperature T, by Newton's method with Broyden's updates.
 
-    Parameters
-    ----------
-    near : a state (n,) to start from; its entropy does not count.
-    slope : that of a settled state nearby, if there is one.
+    It starts from the state `near` (n,), whose entropy does not count, and the slope of a settled
+    state nearby, if there is one.
     """
     x = strobe.at_temperature(near, T)
     fast = np.arange(x.size) != strobe.entropy_row(x)
@@ -105,10 +103,8 @@ def _iterate(strobe: Stroboscope, x: FloatArray, fast: Rows) -> Iterate | None:
 def _updated(slope: FloatArray, now: Iterate, before: Iterate, fast: Rows) -> FloatArray:
     """Return the slope with Broyden's update for the last step."""
     move = (now.x - before.x)[fast] / now.period.size[fast]
-    square = float(move @ move)
-    if square == 0:
-        return slope
-    changed: FloatArray = slope + np.outer(now.off - before.off - slope @ move, move) / square
+    wrong = np.outer(now.off - before.off - slope @ move, move)
+    changed: FloatArray = slope + wrong / square if (square := float(move @ move)) else slope
     return changed
 
 
@@ -123,7 +119,8 @@ def _step(at: Iterate, slope: FloatArray, fast: Rows) -> FloatArray:
 def _fast_slope(strobe: Stroboscope, at: Iterate, fast: Rows) -> FloatArray:
     """Return d(P_fast - x_fast)/dx_fast in units of sizes, by one-sided differences."""
     size = at.period.size[fast]
-    ends = [strobe.look(at.x + step).end - at.period.end for step in _steps(at.period.size, fast)]
+    steps = np.diag(DIFFERENCE * at.period.size)[fast]
+    ends = [strobe.look(at.x + step).end - at.period.end for step in steps]
     columns = [end[fast] / size / DIFFERENCE for end in ends]
     return np.array(columns).T.reshape(size.size, size.size) - np.eye(size.size)
 
@@ -131,14 +128,9 @@ def _fast_slope(strobe: Stroboscope, at: Iterate, fast: Rows) -> FloatArray:
 def jacobian(strobe: Stroboscope, x: FloatArray) -> FloatArray:
     """Return dP/dx (n, n) in units of the states' sizes, by central differences."""
     size = strobe.look(x).size
-    steps = _steps(size, np.ones(x.size, dtype=bool))
+    steps = np.diag(DIFFERENCE * size)
     ends = [strobe.look(x + step).end - strobe.look(x - step).end for step in steps]
     return np.array([end / size / (2 * DIFFERENCE) for end in ends]).T
-
-
-def _steps(size: FloatArray, part: Rows) -> list[FloatArray]:
-    """Return a small change (n,) of each state in `part`."""
-    return list(np.diag(DIFFERENCE * size)[part])
 
 
 def _solved(matrix: FloatArray, right: FloatArray) -> FloatArray:

@@ -36,12 +36,7 @@ def refuse_unperiodic(
     caller: str = "periodic_steady_state",
     remedy: str = COMMON,
 ) -> None:
-    """Raise `UsageError` if an input is not the same one period later.
-
-    Parameters
-    ----------
-    caller, remedy : the function and the advice that the error names.
-    """
+    """Raise `UsageError` if an input is not the same one period later, with this remedy."""
     period = 1 / frequency
     read_inputs(module, inputs, period)
     for name, value in (inputs or {}).items():

@@ -226,14 +226,16 @@ def _first(strobe: Stroboscope, known: list[Settled]) -> Settled:
 def _state(strobe: Stroboscope, zero: Settled, rtol: float) -> SteadyState:
     """Return the steady state at a zero of the heat balance, to the accuracy asked for."""
     slope = jacobian(strobe, zero.x)
-    x, before = zero.x, None
-    while before is None or _moved(strobe, x, before) > rtol:
+    x, error = zero.x, np.inf
+    while error > rtol:
         before = x
         strobe = replace(strobe, steps=2 * strobe.steps)
         if strobe.steps > MOST_STEPS:
             what = f"rtol {rtol:g} asks for more than {MOST_STEPS} steps a period"
             raise RunError(what, strobe.where, remedy="give a larger rtol")
         x = fixed_point(strobe, x, slope)
+        # steps were halved, and are of order 2: the error left is a third of the change
+        error = float(np.max(np.abs(x - before) / strobe.look(x).size)) / 3
     found = _described(strobe, x, slope)
     _refuse_residual(strobe, found, rtol)
     return found
@@ -247,12 +249,6 @@ def _refuse_residual(strobe: Stroboscope, found: SteadyState, rtol: float) -> No
         what += f"{found.residual:.1g} of its size after a period"
         where = f"{strobe.where} at {found.frequency:g} Hz"
         raise RunError(what, where, remedy="simulate until it settles")
-
-
-def _moved(strobe: Stroboscope, x: FloatArray, before: FloatArray) -> float:
-    """Return the error of x after the steps have been halved: a third of the change, at order 2."""
-    size = strobe.look(x).size
-    return float(np.max(np.abs(x - before) / size)) / 3
 
 
 def _described(strobe: Stroboscope, x: FloatArray, slope: FloatArray) -> SteadyState:

@@ -69,10 +69,9 @@ class Comparison:
         """Its cells as text, in the order of `COLUMNS`."""
         ratio = self.ratio
         return (
-            *(self.group, self.other or "-"),
-            *(_duration(self.other_time), _error(self.other_error)),
+            *(self.group, self.other or "-", _duration(self.other_time), _error(self.other_error)),
             *(self.ours, _duration(self.ours_time), _error(self.ours_error)),
-            *(f"{ratio.median:.3g}" if ratio else "-",),
+            f"{ratio.median:.3g}" if ratio else "-",
             f"{ratio.low:.3g} - {ratio.high:.3g}" if ratio else "-",
         )
 
@@ -90,18 +89,13 @@ def compared(
 def _row(group: str, pair: Pair, times: dict[Contestant, Times], measure: str) -> Comparison:
     other, ours = pair.other, pair.ours
     sides = (("its", other), ("our", ours))
-    return Comparison(
-        group=group,
-        other=other.name if other else "",
-        ours=ours.name,
-        other_time=times[other].spread if other else None,
-        ours_time=times[ours].spread,
-        ratio=times[other].over(times[ours]) if other else None,
-        other_error=other.error if other else None,
-        ours_error=ours.error,
-        measure=measure,
-        note="; ".join(f"{whose} {side.note}" for whose, side in sides if side and side.note),
-    )
+    note = "; ".join(f"{whose} {side.note}" for whose, side in sides if side and side.note)
+    own = times[ours].spread
+    if other is None:
+        return Comparison(group, "", ours.name, None, own, None, None, ours.error, measure, note)
+    ratio = times[other].over(times[ours])
+    found = group, other.name, ours.name, times[other].spread, own, ratio
+    return Comparison(*found, other.error, ours.error, measure, note)
 
 
 def _duration(spread: Spread | None) -> str:

@@ -28,11 +28,9 @@ def solver(method: str, modules: str, cse: bool, problem: Problem) -> Callable[[
 
 
 def integrated(rates: Callable[..., Any], problem: Problem, method: Any, rtol: float) -> FloatArray:
-    """Return the state at the end, by solve_ivp."""
-    end, atol = problem.duration, rtol * problem.scale
-    found = solve_ivp(
-        rates, (0.0, end), problem.start, method=method, t_eval=(end,), rtol=rtol, atol=atol
-    )
+    """Return the state at the end, by solve_ivp; raise `RuntimeError` if it gives up."""
+    end, how = problem.duration, {"method": method, "rtol": rtol, "atol": rtol * problem.scale}
+    found = solve_ivp(rates, (0.0, end), problem.start, t_eval=(end,), **how)
     if not found.success:
         raise RuntimeError(found.message)
     state: FloatArray = found.y[:, -1]

@@ -76,11 +76,6 @@ def bench(
     only : names of groups; all when empty.
     rounds : how often every call is timed.
     say : called with the name of each group before it is measured.
-
-    Raises
-    ------
-    UsageError
-        If a group is unknown, or an input is neither a constant nor a sine.
     """
     names = tuple(dict.fromkeys(only)) or tuple(GROUPS)
     for name in names:
@@ -155,13 +150,13 @@ def _precise(problem: Problem, x: FloatArray) -> list[float]:
 def _run(problem: Problem, rounds: int, left_out: list[str]) -> tuple[Comparison, ...]:
     """Return the rows of whole runs, each at the loosest tolerance that reaches `TARGET`."""
     problem, exact, measure = reference_of(problem)
-    usual = (("LSODA", "numpy", False), ("RK45", "numpy", False), ("LSODA", "math", True))
+    usual = "on lambdified SymPy"
     solvers: dict[str, Callable[[float], FloatArray]] = {
-        "simulate()": lambda rtol: _path(problem, (METHOD, rtol), [problem.duration])[:, -1]
+        "simulate()": lambda rtol: _path(problem, (METHOD, rtol), [problem.duration])[:, -1],
+        f"LSODA {usual}": solver("LSODA", "numpy", False, problem),
+        f"RK45 {usual}": solver("RK45", "numpy", False, problem),
+        f"LSODA {usual}, math and cse": solver("LSODA", "math", True, problem),
     }
-    for method, modules, cse in usual:
-        name = f"{method} on lambdified SymPy{', math and cse' if cse else ''}"
-        solvers[name] = solver(method, modules, cse, problem)
     error = partial(problem.error, exact=exact)
     found = [tuned(name, solve, error) for name, solve in solvers.items()]
     left_out += [f"run, {reason}" for reason in found if isinstance(reason, str)]
@@ -211,15 +206,9 @@ def tuned(
 
 def _path(problem: Problem, how: tuple[str, float], times: Any) -> FloatArray:
     """Return the states (n, nt) of a run by a method with an rtol."""
-    found = simulate(
-        problem.module,
-        inputs=problem.inputs,
-        duration=problem.duration,
-        parameters=problem.counts,
-        method=how[0],
-        rtol=how[1],
-        times=times,
-    )
+    given: Any = {"inputs": problem.inputs, "parameters": problem.counts, "times": times}
+    method, rtol = how
+    found = simulate(problem.module, duration=problem.duration, method=method, rtol=rtol, **given)
     names = [record.name for record in problem.module.STATES]
     return np.concatenate([np.atleast_2d(found[name].values.T) for name in names])
 

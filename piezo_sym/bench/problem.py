@@ -65,10 +65,8 @@ class Problem:
     @cached_property
     def system(self) -> DrivenModule:
         """The module with its parameters and inputs, as a run takes it."""
-        values = read_parameters(self.module, self.counts)
-        return DrivenModule(
-            self.module, values, read_inputs(self.module, self.inputs, self.duration)
-        )
+        inputs = read_inputs(self.module, self.inputs, self.duration)
+        return DrivenModule(self.module, read_parameters(self.module, self.counts), inputs)
 
     @cached_property
     def at_instant(self) -> tuple[sp.Expr, ...]:
@@ -87,13 +85,7 @@ def problem_of(
     duration: float,
     sizes: Mapping[str, int] | None = None,
 ) -> Problem:
-    """Return a model as a problem, its scale 1.
-
-    Parameters
-    ----------
-    inputs : those left out keep the spec's defaults.
-    sizes : of banks, where not the spec's.
-    """
+    """Return a model as a problem, its scale 1; inputs and `sizes` of banks as in the spec."""
     shipped = not inputs and model.sha256 == load(SHIPPED).sha256
     given: Mapping[str, InputValue] = DRIVEN if shipped else inputs
     counts = {f"{bank}_count": size for bank, size in (sizes or {}).items()}
@@ -113,9 +105,7 @@ def explicit(
 ) -> tuple[tuple[sp.Symbol, ...], tuple[sp.Expr, ...]]:
     """Return the states and their rates, with the values of parameters and inputs substituted.
 
-    Parameters
-    ----------
-    free : a parameter that stays a symbol, with its own name.
+    The parameter `free` stays a symbol, with its own name.
     """
     iphs = derive(model).expand(sizes)
     known = {iphs.symbols[n]: sp.Float(p.si) for n, p in iphs.model.parameters.items() if n != free}

@@ -12,26 +12,20 @@ from piezo_sym.cli.output import about, console, row, table
 from piezo_sym.cli.words import pairs, signal
 from piezo_sym.files import write_text
 
-Spec = Annotated[str, typer.Argument(metavar="[SPEC]", help="Path or shipped name.")]
-Groups = Annotated[
-    list[str] | None, typer.Option(metavar="GROUP", help="rhs, batch or run; repeat.")
-]
-Repeat = Annotated[int, typer.Option(min=1, help="Repetitions of each call.")]
-Duration = Annotated[float, typer.Option(help="Length of a run [s].")]
-Inputs = Annotated[
-    list[str] | None,
-    typer.Option("--input", "-i", help="NAME=NUMBER or NAME=sine(100,100); SI."),
-]
-AsJson = Annotated[Path | None, typer.Option(metavar="FILE", help="Report as JSON.")]
+Words = list[str] | None
 
 
 def bench(
-    spec: Spec = "piezo_stack",
-    only: Groups = None,
-    repeat: Repeat = 5,
-    duration: Duration = 0.1,
-    inputs: Inputs = None,
-    json: AsJson = None,
+    spec: Annotated[
+        str, typer.Argument(metavar="[SPEC]", help="Path or shipped name.")
+    ] = "piezo_stack",
+    only: Annotated[Words, typer.Option(metavar="GROUP", help="rhs, batch or run; repeat.")] = None,
+    repeat: Annotated[int, typer.Option(min=1, help="Repetitions of each call.")] = 5,
+    duration: Annotated[float, typer.Option(help="Length of a run [s].")] = 0.1,
+    inputs: Annotated[
+        Words, typer.Option("--input", "-i", help="NAME=NUMBER or NAME=sine(100,100); SI.")
+    ] = None,
+    json: Annotated[Path | None, typer.Option(metavar="FILE", help="Report as JSON.")] = None,
 ) -> None:
     """Measure a spec against lambdified SymPy with solve_ivp.
 

@@ -40,7 +40,10 @@ def generate(
 
     names = specs or []
     models = [load(spec) for spec in names] or list(shipped_models())
-    _refuse_namesakes(models)
+    called = [model.name for model in models]
+    if twice := next((name for name in called if called.count(name) > 1), None):
+        what = f"two specs are called {quote(twice)}"  # their files would be the same
+        raise UsageError(what, "generate", remedy="give each model a name of its own")
     if check:
         _check(models, names, out, allow_unproved, every or not names)
         return
@@ -50,15 +53,6 @@ def generate(
         for spec, model in zip(names or [model.name for model in models], models, strict=True):
             with about(spec):
                 lines += map(str, write(model, out, allow_unproved=allow_unproved))
-
-
-def _refuse_namesakes(models: list[Model]) -> None:
-    """Raise if two models have one name: their files would be the same."""
-    names = [model.name for model in models]
-    twice = next((name for name in names if names.count(name) > 1), None)
-    if twice:
-        what = f"two specs are called {quote(twice)}"
-        raise UsageError(what, "generate", remedy="give each model a name of its own")
 
 
 def _check(

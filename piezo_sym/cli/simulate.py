@@ -29,76 +29,52 @@ if TYPE_CHECKING:
 ENDINGS = (".nc", ".csv")
 METHODS = """discrete_gradient (compiled) if left out; or SciPy's RK23, RK45, DOP853, Radau, BDF or
 LSODA."""
+SIGNALS = "NAME=NUMBER, NAME=sine(100,100) or NAME=@FILE.csv; SI; repeat."
 
-Spec: TypeAlias = Annotated[str, typer.Argument(metavar="SPEC", help="Path or shipped name.")]
-Duration: TypeAlias = Annotated[float, typer.Option(help="Length of the run [s].")]
-Inputs: TypeAlias = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--input",
-        "-i",
-        help="NAME=NUMBER, NAME=sine(100,100) or NAME=@FILE.csv; SI; repeat.",
-    ),
-]
-Parameters: TypeAlias = Annotated[
-    list[str] | None, typer.Option("--set", "-p", help="PARAMETER=NUMBER; SI; repeat.")
-]
-Initial: TypeAlias = Annotated[
-    list[str] | None, typer.Option("--initial", help="STATE=NUMBER at t = 0; SI; repeat.")
-]
-Continue: TypeAlias = Annotated[
-    Path | None, typer.Option("--continue", help="Go on from the end of this run (.nc).")
-]
-T0: TypeAlias = Annotated[
-    float | None, typer.Option("--t0", help="When the run starts [s]; 0, or where it goes on.")
-]
-Events: TypeAlias = Annotated[
-    list[str] | None,
-    typer.Option("--event", help="NAME=EXPRESSION, located where its sign changes; repeat."),
-]
-Stop: TypeAlias = Annotated[
-    str | None, typer.Option(help="A comparison, such as 'T_body > 350', that ends the run.")
-]
-Rtol: TypeAlias = Annotated[
-    float | None, typer.Option(help="Relative tolerance; 1e-5 if left out.")
-]
-Step: TypeAlias = Annotated[float | None, typer.Option(help="A fixed step [s] instead of --rtol.")]
-Order: TypeAlias = Annotated[
-    int | None, typer.Option(help="With --step: its order, 2 (if left out), 4, 6, 8 or 10.")
-]
-Method: TypeAlias = Annotated[str | None, typer.Option(help=METHODS)]
-Times: TypeAlias = Annotated[
-    int | None, typer.Option(help="Number of samples; 1001, or ends of steps, if left out.")
-]
-Every: TypeAlias = Annotated[
-    int | None, typer.Option(help="With --step: a sample every so many steps.")
-]
-Start: TypeAlias = Annotated[
-    bool, typer.Option("--dissipative-start", help="Damp what rings after a jump of an input.")
-]
-Out: TypeAlias = Annotated[
-    Path | None, typer.Option(help="Result as .nc (NetCDF) or .csv; makes its folder.")
-]
+Number: TypeAlias = float | None
+Count: TypeAlias = int | None
+Word: TypeAlias = str | None
+Words: TypeAlias = list[str] | None
+File: TypeAlias = Path | None
+
+
+def option(about: str, *names: str) -> Any:
+    """Return an option of the command."""
+    return typer.Option(*names, help=about)
 
 
 def simulate(
-    spec: Spec,
-    duration: Duration,
-    inputs: Inputs = None,
-    parameters: Parameters = None,
-    initial: Initial = None,
-    continued: Continue = None,
-    t0: T0 = None,
-    rtol: Rtol = None,
-    step: Step = None,
-    order: Order = None,
-    method: Method = None,
-    times: Times = None,
-    every: Every = None,
-    events: Events = None,
-    stop: Stop = None,
-    dissipative_start: Start = False,
-    out: Out = None,
+    spec: Annotated[str, typer.Argument(metavar="SPEC", help="Path or shipped name.")],
+    duration: Annotated[float, option("Length of the run [s].")],
+    inputs: Annotated[Words, option(SIGNALS, "--input", "-i")] = None,
+    parameters: Annotated[Words, option("PARAMETER=NUMBER; SI; repeat.", "--set", "-p")] = None,
+    initial: Annotated[Words, option("STATE=NUMBER at t = 0; SI; repeat.", "--initial")] = None,
+    continued: Annotated[
+        File, option("Go on from the end of this run (.nc).", "--continue")
+    ] = None,
+    t0: Annotated[
+        Number, option("When the run starts [s]; 0, or where it goes on.", "--t0")
+    ] = None,
+    rtol: Annotated[Number, option("Relative tolerance; 1e-5 if left out.")] = None,
+    step: Annotated[Number, option("A fixed step [s] instead of --rtol.")] = None,
+    order: Annotated[
+        Count, option("With --step: its order, 2 (if left out), 4, 6, 8 or 10.")
+    ] = None,
+    method: Annotated[Word, option(METHODS)] = None,
+    times: Annotated[
+        Count, option("Number of samples; 1001, or ends of steps, if left out.")
+    ] = None,
+    every: Annotated[Count, option("With --step: a sample every so many steps.")] = None,
+    events: Annotated[
+        Words, option("NAME=EXPRESSION, located where its sign changes; repeat.", "--event")
+    ] = None,
+    stop: Annotated[
+        Word, option("A comparison, such as 'T_body > 350', that ends the run.")
+    ] = None,
+    dissipative_start: Annotated[
+        bool, option("Damp what rings after a jump of an input.", "--dissipative-start")
+    ] = False,
+    out: Annotated[File, option("Result as .nc (NetCDF) or .csv; makes its folder.")] = None,
 ) -> None:
     """Simulate a spec's generated module and print its last values.
 
@@ -138,7 +114,9 @@ def _report(result: xarray.Dataset, inputs: Mapping[str, Any], out: Path | None)
     if out is not None:
         _write(result, out)
     _print(result)
-    _print_assumed(inputs)
+    for name, value in inputs.items():
+        if assumed := getattr(value, "assumed", ""):
+            typer.echo(f"{name}: its file names no units; read {assumed}")
     if out is not None:
         typer.echo(f"{out}")
 
@@ -164,12 +142,6 @@ def _check_ending(out: Path | None, events: list[str] | None) -> None:
     if out is not None and out.suffix == ".csv" and events:
         what = f"{path_text(out)}, a table over time, has no place for events"
         raise UsageError(what, "--out", "a file ending in .nc")
-
-
-def _print_assumed(inputs: Mapping[str, Any]) -> None:
-    for name, value in inputs.items():
-        if assumed := getattr(value, "assumed", ""):
-            typer.echo(f"{name}: its file names no units; read {assumed}")
 
 
 @contextmanager

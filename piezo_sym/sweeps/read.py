@@ -8,8 +8,6 @@ from contextlib import contextmanager
 from math import prod
 from typing import Any
 
-from numpy.typing import ArrayLike
-
 from piezo_sym.errors import PiezoError, UsageError, listing, quote
 from piezo_sym.run.checks import FloatArray, positive
 from piezo_sym.run.collocation import METHOD
@@ -40,22 +38,13 @@ REDUCTIONS = ("last", "mean")
 
 
 def read_plan(
-    module: GeneratedModule,
-    over: object,
-    inputs: Mapping[str, Any] | None,
-    duration: float,
-    rtol: float | None,
-    step: float | None,
-    order: int | None,
-    parameters: Mapping[str, Any] | None,
-    initial: Mapping[str, Any] | None,
-    method: str | None,
-    times: int | ArrayLike | None,
-    every: int | None,
-    reduce: object,
-    reduce_by: object,
+    module: GeneratedModule, over: object, runs: tuple[Any, ...], reduce: Any, reduce_by: object
 ) -> Plan:
-    """Return what a sweep runs; without a compiler, its method is LSODA."""
+    """Return what a sweep runs; without a compiler, its method is LSODA.
+
+    `runs` is what `simulate` takes, as `sweep` lists it.
+    """
+    inputs, duration, rtol, step, order, parameters, initial, method, times, every = runs
     with named_sweep():
         named, bound = checked_method(method), read_rtol(rtol)
         fixed, end = read_step(step, order, named, rtol), positive(duration, "sweep.duration")
@@ -63,23 +52,25 @@ def read_plan(
         samples = sample_times(2 if only_end else times, every, step, end)
         signals = read_inputs(module, inputs, end)
         axes = read_axes(module, over, end, read_sizes(module, parameters))
-        refuse_twice(axes, {"parameters": parameters, "initial": initial, "inputs": inputs})
-        given = ({**(parameters or {}), **single_numbers(axes)}, dict(initial or {}))
-        base = read_parameters(module, given[0])
-        refuse_sizes(module, axes, *given, signals.segments[0].at(0.0))
+        for target in (target for axis in axes for target in axis.targets):
+            given = {"parameters": parameters, "initial": initial, "inputs": inputs}[target.kind]
+            if target.name in (given or {}):
+                what = f"'{target.name}' is swept and also given in '{target.kind}'"
+                raise UsageError(what, "sweep.over", remedy="give it once")
+        own = ({**(parameters or {}), **single_numbers(axes)}, dict(initial or {}))
+        base = read_parameters(module, own[0])
+        refuse_sizes(module, axes, *own, signals.segments[0].at(0.0))
         refuse_reduction(reduce, reduce_by)
         chosen = choose_method(module, named, step)
-        together = most_together(samples.size * row_numbers(module, base, axes), chosen.method)
-        boxes = together if reduce is None else box_of_reduced(axes, together)
-        how = (chosen.method, bound, fixed, reduce, reduce_by == "run", largest_banks(axes))
-        sizes = (together, boxes, chosen.note)
-        return Plan(axes, signals.signals, end, *given, samples, *how, *sizes)  # type: ignore[arg-type]  # reduce is checked
-
-
-def most_together(numbers: int, method: str) -> int:
-    """Return how many runs of so many numbers each are held in memory at a time."""
-    most = MOST_TOGETHER if method == METHOD else MOST_BY_SCIPY
-    return max(1, min(most, MOST_NUMBERS // numbers))
+        most = MOST_TOGETHER if chosen.method == METHOD else MOST_BY_SCIPY
+        numbers = samples.size * row_numbers(module, base, axes)
+        together = boxes = max(1, min(most, MOST_NUMBERS // numbers))
+        if reduce is not None:  # only reductions are kept; many boxes if possible
+            size = prod(axis.size for axis in axes)
+            boxes = max(together, min(MOST_REDUCED, size // ENOUGH_BOXES))
+        how: Any = (chosen.method, bound, fixed, reduce, reduce_by == "run", largest_banks(axes))
+        note = chosen.note
+        return Plan(axes, signals.signals, end, *own, samples, *how, together, boxes, note)
 
 
 @contextmanager
@@ -90,15 +81,6 @@ def named_sweep() -> Iterator[None]:
     except PiezoError as error:
         error.where = error.where.replace("simulate.", "sweep.", 1)
         raise
-
-
-def refuse_twice(axes: tuple[Axis, ...], given: Mapping[str, Mapping[str, Any] | None]) -> None:
-    """Raise `UsageError` where a quantity is swept and also given one value."""
-    for axis in axes:
-        for target in axis.targets:
-            if target.name in (given[target.kind] or {}):
-                what = f"'{target.name}' is swept and also given in '{target.kind}'"
-                raise UsageError(what, "sweep.over", remedy="give it once")
 
 
 def refuse_sizes(
@@ -128,12 +110,6 @@ def refuse_reduction(reduce: object, reduce_by: object) -> None:
     if reduce_by not in WAYS:
         what = f"{quote(reduce_by)} is not known"
         raise UsageError(what, "sweep.reduce_by", listing(map(repr, WAYS)))
-
-
-def box_of_reduced(axes: tuple[Axis, ...], together: int) -> int:
-    """Return the most runs in a box where only reductions are kept; many boxes if possible."""
-    size = prod(axis.size for axis in axes)
-    return max(together, min(MOST_REDUCED, size // ENOUGH_BOXES))
 
 
 def row_numbers(module: GeneratedModule, base: Any, axes: tuple[Axis, ...]) -> int:

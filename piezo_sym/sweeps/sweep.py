@@ -127,7 +127,7 @@ def sweep(
     refuse_executor(executor, threads)
     module: Any = module_of(model)
     runs = (inputs, duration, rtol, step, order, parameters, initial, method, times, every)
-    plan = read_plan(module, over, *runs, reduce, reduce_by)
+    plan = read_plan(module, over, runs, reduce, reduce_by)
     plan, sink = sink_of(plan, module, store, count)
     boxes = list(sink.missing())
     done = plan.size - sum(prod(part.stop - part.start for part in box) for box in boxes)

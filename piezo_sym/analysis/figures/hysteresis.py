@@ -43,13 +43,7 @@ RTOL = 1e-7
 
 
 def run(module: GeneratedModule, celsius: float, frequency: float = FREQUENCY) -> xarray.Dataset:
-    """Return voltage, displacement and temperature over ten periods.
-
-    Parameters
-    ----------
-    celsius : temperature of the environment [degrees Celsius].
-    frequency : of the voltage [Hz].
-    """
+    """Return ten periods, at a temperature of the environment [deg C] and a frequency [Hz]."""
     found = simulate(
         module,
         inputs={"V_in": sine(AMPLITUDE, frequency), "T_e": celsius + ZERO_CELSIUS},
