@@ -68,9 +68,9 @@ def read_plan(
         if reduce is not None:  # only reductions are kept; many boxes if possible
             size = prod(axis.size for axis in axes)
             boxes = max(together, min(MOST_REDUCED, size // ENOUGH_BOXES))
-        how: Any = (chosen.method, bound, fixed, reduce, reduce_by == "run", largest_banks(axes))
-        note = chosen.note
-        return Plan(axes, signals.signals, end, *own, samples, *how, together, boxes, note)
+        how = (chosen.method, bound, fixed, reduce, reduce_by == "run", largest_banks(axes))
+        sizes = (together, boxes, chosen.note)
+        return Plan(axes, signals.signals, end, *own, samples, *how, *sizes)  # type: ignore[arg-type]  # reduce is checked
 
 
 @contextmanager
