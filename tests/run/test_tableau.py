@@ -2,20 +2,19 @@
 
 import math
 import re
+from pathlib import Path
 
 import mpmath as mp
 import numpy as np
 import pytest
 from sympy.integrals.quadrature import gauss_legendre
-
-from piezo_sym.run.engine.tableau import tableau
+from tableau import files, tableau, text
 
 
 def tables(stages, nodes):
     """Return the tables in C as arrays."""
-    text = tableau(stages, nodes)
-    found = {}
-    for name, body in re.findall(r"double (\w+)\[[^=]*= (\{.*?\});", text, re.DOTALL):
+    found, printed = {}, tableau(stages, nodes)
+    for name, body in re.findall(r"double (\w+)\[[^=]*= (\{.*?\});", printed, re.DOTALL):
         rows = re.findall(r"\{([^{}]+)\}", body)
         values = [[float(part) for part in row.split(",")] for row in rows]
         found[name] = np.array(values if len(values) > 1 or "{\n" in body else values[0])
@@ -113,3 +112,15 @@ def test_printed_numbers_are_those_of_gauss_to_the_last_digit(stages):
         assert abs(mp.fsum(t["stage_weight"]) - 1) <= mp.mpf("2e-16")
         for i in range(stages):  # the mean of a constant is the constant
             assert abs(mp.fsum(t["node_mean"][i * nodes : (i + 1) * nodes]) - 1) <= mp.mpf("1e-15")
+
+
+TABLES = Path(__file__).parents[2] / "piezo_sym" / "run" / "engine" / "tables"
+
+
+@pytest.mark.parametrize("name", files())
+def test_the_engine_has_these_numbers(name):
+    assert (TABLES / f"{name}.c").read_text(encoding="utf-8") == text(name)
+
+
+def test_the_engine_has_no_others():
+    assert {path.stem for path in TABLES.iterdir()} == {*files()}

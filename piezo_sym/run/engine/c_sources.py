@@ -68,6 +68,17 @@ def c_source(*names: str) -> str:
     return "\n".join(folder.joinpath(name).read_text(encoding="utf-8") for name in names)
 
 
+def tables(stages: int, nodes: int, *kinds: str) -> str:
+    """Return the numbers of Gauss collocation, its means taken at so many nodes.
+
+    `kinds`: "lossy" for those of a dissipative step; "lanes" for some once more, as vectors that
+    hold all stages take them, behind the others. `tests/run/tableau.py` writes the files.
+    """
+    names = [f"{stages}_{nodes}{'_lossy' if 'lossy' in kinds else ''}"]
+    names += [f"{stages}_{nodes}_lanes"] if "lanes" in kinds else []
+    return "\n".join(c_source(f"tables/{name}.c").removesuffix("\n") for name in names)
+
+
 @cache
 def numbers_source(header: str) -> str:
     """Return ``real.h`` or ``dual.h``, with the smooth functions that it does not define itself."""
@@ -96,12 +107,10 @@ def steps_source(model: str, stages: int, layout: str, *, lossy: bool = False) -
     ----------
     layout, lossy : of `Sources`.
     """
-    from piezo_sym.run.engine.tableau import tableau  # loads mpmath, once a compilation
-
     step = [f'#include "{model}_step.c"', _prefix(model)]
     if layout == "slopes":
-        tables = tableau(stages, stages)
-        return "\n".join([numbers_source("dual.h"), *step, tables, c_source("derivatives.c")])
+        made = [numbers_source("dual.h"), *step, tables(stages, stages)]
+        return "\n".join([*made, c_source("derivatives.c")])
     lanes = stage_lanes(stages, layout, lossy=lossy)
     vectors = ["#if !defined(PLAIN)", f"#define LANES {lanes}", c_source("at_once.h"), "#endif"]
     head = [
@@ -115,13 +124,14 @@ def steps_source(model: str, stages: int, layout: str, *, lossy: bool = False) -
         "const long MODEL(width) = REAL_WIDTH;",
         *(vectors * bool(lanes)),
     ]
-    tables = tableau(stages, 1 if lossy else stages + _MORE_NODES, lossy=lossy, lanes=lanes)
+    nodes, kinds = (1, ["lossy"]) if lossy else (stages + _MORE_NODES, ["lanes"] * bool(lanes))
+    numbers = tables(stages, nodes, *kinds)
     gaps = c_source("gaps.c")
     if lanes:
         gaps = f"#if defined(LANES)\n{c_source('gaps_at_once.c')}\n#else\n{gaps}\n#endif"
     paths = ["#if defined(PATHS)", c_source("stop.c"), "#endif"]
     rest = c_source(*_COLLOCATION, *(["loss.c"] * lossy))
-    return "\n".join([*head, tables, c_source("gauss.c", "bends.c"), *paths, gaps, rest])
+    return "\n".join([*head, numbers, c_source("gauss.c", "bends.c"), *paths, gaps, rest])
 
 
 def stages_source(model: str, lanes: int) -> str:
@@ -146,8 +156,6 @@ def standalone_step(model: str, step: str) -> str:
 
     It is the engine's step of order two, for numbers of one run.
     """
-    from piezo_sym.run.engine.tableau import tableau
-
     needed = {word: file for word, file in _PARTS.items() if f"#define {word}" in step}
     solver = c_source("gauss.c", *needed.values(), "gaps.c", "newton.c", "nodes.c")
     others = (rf"#if defined\({w}\).*?#endif /\* {w} \*/\n" for w in _PARTS if w not in needed)
@@ -156,12 +164,12 @@ def standalone_step(model: str, step: str) -> str:
     solver = solver.replace('#include "elimination.c"\n', c_source("elimination.c"))
     text = f"{solver}\n{c_source('standalone.c')}"
     bare = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
-    tables = tableau(1, 1 + _MORE_NODES)
-    for table in _TABLE.finditer(tables):
+    numbers = tables(1, 1 + _MORE_NODES)
+    for table in _TABLE.finditer(numbers):
         if not re.search(rf"\b{table[1]}\b", bare):
-            tables = tables.replace(table[0], "")
+            numbers = numbers.replace(table[0], "")
     head = _STANDALONE_HEAD.format(model=model)
-    return "\n".join([head, tables, text, "#endif /* ALONE */\n"])
+    return "\n".join([head, numbers, text, "#endif /* ALONE */\n"])
 
 
 def _prefix(model: str) -> str:

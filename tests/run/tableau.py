@@ -1,11 +1,13 @@
 """The numbers of Gauss collocation with s stages, as tables of C.
 
 Input: the number of stages, and of nodes for means over a step.  Output: text.  Everything is found
-from Legendre's polynomials in 40 digits and rounded once.
+from Legendre's polynomials in 40 digits and rounded once.  ``python tests/run/tableau.py`` writes
+what the engine reads, ``piezo_sym/run/engine/tables``; test_tableau.py compares it.
 """
 
 from functools import cache
 from itertools import pairwise
+from pathlib import Path
 from threading import Lock
 from typing import Any
 
@@ -204,3 +206,28 @@ def _table(name: str, rows: list[Any]) -> str:
 
 def _numbers(values: list[Any]) -> str:
     return ", ".join(mp.nstr(value, 17, min_fixed=1, max_fixed=0) for value in values)
+
+
+def files():
+    """Return the arguments of the tables in each file, by its name."""
+    found = {}
+    for stages in range(1, 6):
+        lanes, nodes = 1 << (stages - 1).bit_length(), stages + 2
+        found[f"{stages}_{stages}"] = stages, stages, {}
+        found[f"{stages}_{nodes}"] = stages, nodes, {}
+        if stages > 1:
+            found[f"{stages}_{nodes}_lanes"] = stages, nodes, {"lanes": lanes}
+    return {**found, "1_1_lossy": (1, 1, {"lossy": True})}
+
+
+def text(name):
+    """Return the text of a file; that of lanes goes behind the one without."""
+    stages, nodes, options = files()[name]
+    found, alone = tableau(stages, nodes, **options), tableau(stages, nodes)
+    return f"{found.removeprefix(alone).lstrip()}\n" if "lanes" in options else f"{found}\n"
+
+
+if __name__ == "__main__":
+    folder = Path(__file__).parents[2] / "piezo_sym" / "run" / "engine" / "tables"
+    for name in files():
+        (folder / f"{name}.c").write_text(text(name), encoding="utf-8")
