@@ -12,12 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import final
 
-from piezo_sym.codegen import (
-    MARK,
-    collocation_of,
-    lower,
-    printed,
-)
+from piezo_sym.codegen import MARK, collocation_of, lower, printed
 from piezo_sym.derivation import derive
 from piezo_sym.errors import DriftError
 from piezo_sym.files import folder_entries, path_of, path_text, read_bytes, write_together
@@ -60,18 +55,8 @@ def render(
 ) -> dict[str, str]:
     """Return the text of each generated file of a model, by its path below the output folder.
 
-    Parameters
-    ----------
-    model : from `load`, or made in Python.
-    allow_unproved : render even if a required property is not proved.
-    report : its verdicts, if they are known already.
-
-    Raises
-    ------
-    ProofError
-        If a required property is refuted or open, unless `allow_unproved`.
-    NetworkError, SpecError
-        If the model cannot be derived.
+    A model that is not proved is refused, unless `allow_unproved`; `report` is its verdicts, if
+    they are known already.
     """
     iphs = derive(model)
     report = report or verify(iphs)
@@ -129,17 +114,7 @@ def drift(
 ) -> tuple[Drift, ...]:
     """Return what is below a folder and is not, byte for byte, what the models give.
 
-    Parameters
-    ----------
-    models : the models whose folders to compare, file for file.
-    out : the folder with the generated files.
-    complete : whether these models are all there is to be in `out`.
-    allow_unproved : as for `generate`.
-
-    Raises
-    ------
-    FileError
-        If a file or folder cannot be read.
+    Their own folders are compared, or, if they are `complete`, all that is in `out`.
     """
     root, expected = path_of(out, "generate.out"), {}
     for model in models:
@@ -153,9 +128,10 @@ def drift(
 
 def _compare(path: Path, data: bytes) -> Iterator[Drift]:
     """Yield how a file differs from what it should hold."""
-    present = None if _is_odd(path) or path.is_dir() else read_bytes(path)
+    odd = _is_odd(path) or path.is_dir()
+    present = None if odd else read_bytes(path)
     if present is None:
-        yield Drift(path, LINK if _is_odd(path) or path.is_dir() else MISSING)
+        yield Drift(path, LINK if odd else MISSING)
     elif present.splitlines() == data.splitlines() and present != data:
         yield Drift(path, ENDS)
     elif present != data:
@@ -183,13 +159,7 @@ def _others(path: Path, expected: Collection[Path]) -> Iterator[Drift]:
 
 
 def raise_if_drifted(found: Iterable[Drift], command: str) -> None:
-    """Raise on the first drifted file; `command` is what brings the files up to date.
-
-    Raises
-    ------
-    DriftError
-        Naming the file and the remedy.
-    """
+    """Raise on the first drifted file; `command` is what brings the files up to date."""
     faults = list(found)
     if faults:
         more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""

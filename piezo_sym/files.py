@@ -17,35 +17,17 @@ from piezo_sym.errors import FileError, UsageError, one_line, quote
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text file as UTF-8 in one step: readers see the old one or the new one.
-
-    Raises
-    ------
-    FileError
-        If the folder or the file cannot be written.
-    """
-    write_bytes(path, text.encode("utf-8"))
+    """Write a text file as UTF-8 in one step: readers see the old one or the new one."""
+    write_together({path: text.encode("utf-8")})
 
 
 def write_bytes(path: Path, data: bytes) -> None:
-    """Write a file in one step: readers see the old one or the new one.
-
-    Raises
-    ------
-    FileError
-        If the folder or the file cannot be written.
-    """
+    """Write a file in one step: readers see the old one or the new one."""
     write_together({path: data})
 
 
 def write_together(contents: Mapping[Path, bytes]) -> None:
-    """Write files that belong together: none is replaced before all are on the disk.
-
-    Raises
-    ------
-    FileError
-        If a folder or file cannot be written.
-    """
+    """Write files that belong together: none is replaced before all are on the disk."""
     staged: dict[Path, Path] = {}
     try:
         for path, data in contents.items():
@@ -80,13 +62,7 @@ def _staged(path: Path, data: bytes) -> Path:
 
 
 def read_text(path: Path) -> str | None:
-    """Return a text file's content, or None if there is no such file or folder.
-
-    Raises
-    ------
-    FileError
-        If it is there and cannot be read.
-    """
+    """Return a text file's content, or None if there is no such file or folder."""
     try:
         return path.read_text(encoding="utf-8")
     except (FileNotFoundError, NotADirectoryError):
@@ -96,13 +72,7 @@ def read_text(path: Path) -> str | None:
 
 
 def read_bytes(path: Path) -> bytes | None:
-    """Return a file's content, or None if there is no such file or folder.
-
-    Raises
-    ------
-    FileError
-        If it is there and cannot be read.
-    """
+    """Return a file's content, or None if there is no such file or folder."""
     try:
         return path.read_bytes()
     except (FileNotFoundError, NotADirectoryError):

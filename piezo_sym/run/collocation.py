@@ -131,16 +131,8 @@ def collocate(
     known = DrivenModules.of(systems)
     first = known[0]
     how = stepping(first, accuracy, stages)
-    batch = Batch(
-        engine,
-        known.parameters,
-        x,
-        first.inputs,
-        times,
-        how,
-        layout_of(x, side_by_side=side_by_side),
-        extra=2 if starts else 0,
-    )
+    lying, extra = layout_of(x, side_by_side=side_by_side), 2 if starts else 0
+    batch = Batch(engine, known.parameters, x, first.inputs, times, how, lying, extra=extra)
     try:
         if starts:
             go_dissipatively(batch, how, first.inputs, times, watch)

@@ -6,7 +6,7 @@ is > 0 if it is strict, >= 0 otherwise; nan holds nowhere.
 """
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import numpy as np
 
@@ -112,13 +112,10 @@ def domain_error(system: DrivenModule, t: float, x: FloatArray, u: FloatArray) -
     failed = np.flatnonzero(system.violated(x, u)).tolist()
     row = min(failed, key=lambda k: depth(system, system.module.DOMAIN[k].text))
     condition, margin = system.module.DOMAIN[row], system.margins(x, u)[row]
-    values = list(values_in(system, condition.text, x, u))
-    shown = ", ".join(shown_value(*value) for value in values)
+    shown = ", ".join(shown_value(*value) for value in values_in(system, condition.text, x, u))
     event = "state leaves" if t > system.inputs.start else "start is outside"
-    what = (
-        f"{event} the domain at t = {t:.6g} s: "
-        f"condition '{condition.text}' has margin {margin:.3g} ({shown})"
-    )
+    what = f"{event} the domain at t = {t:.6g} s: condition '{condition.text}' has margin"
+    what = f"{what} {margin:.3g} ({shown})"
     expected = f"{condition.text} throughout the run"
     remedy = f"change {listing(remedies(system, condition.text))}"
     return RunError(what, place(system), expected, remedy)
@@ -141,43 +138,27 @@ def place(system: DrivenModule) -> str:
 
 def depth(system: DrivenModule, text: str) -> int:
     """Return how far a condition is from what a user sets: 0 parameters, 1 inputs, 2 states."""
-    names = set(NAME.findall(text))
-    inputs = {record.name for record in system.module.INPUTS}
-    parameters = {record.name for record in system.module.PARAMETERS}
-    if names <= parameters:
-        return 0
-    return 1 if names <= parameters | inputs else 2
+    names = set(NAME.findall(text)) - {record.name for record in system.module.PARAMETERS}
+    return (1 if names <= {r.name for r in system.module.INPUTS} else 2) if names else 0
 
 
 def remedies(system: DrivenModule, text: str) -> list[str]:
     """Return what a user can change to meet a condition."""
-    module, level = system.module, depth(system, text)
-    names = set(NAME.findall(text))
+    module, level, names = system.module, depth(system, text), set(NAME.findall(text))
     inputs = [f"input '{r.name}'" for r in module.INPUTS if r.name in names]
     parameters = [f"parameter '{r.name}'" for r in module.PARAMETERS if r.name in names]
     return [parameters, inputs, ["the inputs", "the parameters", "the initial state"]][level]
 
 
-def values_in(system: DrivenModule, text: str, x: FloatArray, u: FloatArray) -> Iterator[Value]:
-    """Yield the value of every symbol in a condition's text, or the temperatures if none."""
-    known = {value[0]: value for value in symbols(system, x, u)}
-    bodies = body_values(system, x)
-    if len(bodies) == 1:
-        known["T"] = bodies[0]
-    found = [known[name] for name in dict.fromkeys(NAME.findall(text)) if name in known]
-    yield from found or bodies
-
-
-def symbols(system: DrivenModule, x: FloatArray, u: FloatArray) -> Iterator[Value]:
-    """Yield every symbol that a condition can use."""
-    module = system.module
-    states = by_name(module.STATES, system.parameters, x)
-    yield from ((record.name, record.unit, states[record.name]) for record in module.STATES)
-    for record, value in zip(module.INPUTS, u, strict=True):
-        yield record.name, record.unit, float(value)
-    for record in module.PARAMETERS:
-        yield record.name, record.unit, getattr(system.parameters, record.name)
-    yield from body_values(system, x)
+def values_in(system: DrivenModule, text: str, x: FloatArray, u: FloatArray) -> list[Value]:
+    """Return the value of every symbol in a condition's text, or the temperatures if none."""
+    module, p, bodies = system.module, system.parameters, body_values(system, x)
+    given = by_name(module.STATES, p, x) | by_name(module.INPUTS, p, u) | vars(p)
+    records = (*module.STATES, *module.INPUTS, *module.PARAMETERS)
+    known = {r.name: (r.name, r.unit, given[r.name]) for r in records} | {b[0]: b for b in bodies}
+    known |= {"T": bodies[0]} if len(bodies) == 1 else {}
+    names = dict.fromkeys(NAME.findall(text))
+    return [known[name] for name in names if name in known] or bodies
 
 
 def body_values(system: DrivenModule, x: FloatArray) -> list[Value]:

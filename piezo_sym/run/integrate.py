@@ -184,17 +184,10 @@ def new_solver(
     span = segment.stop - segment.start
     if trial < span:
         more["first_step"] = trial
+    more |= {"rtol": tolerance.rtol, "atol": tolerance.atol}
+    more["max_step"] = min(system.inputs.max_step, span)
     with np.errstate(all="ignore"):
-        solver: OdeSolver = make(
-            system.field(segment),
-            segment.start,
-            x,
-            segment.stop,
-            rtol=tolerance.rtol,
-            atol=tolerance.atol,
-            max_step=min(system.inputs.max_step, span),
-            **more,
-        )
+        solver: OdeSolver = make(system.field(segment), segment.start, x, segment.stop, **more)
     solver.nfev += evaluations
     return solver
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from math import inf, isfinite
 from os import PathLike
 from pathlib import Path
-from typing import final
+from typing import Any, final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -123,9 +123,8 @@ def samples_from_csv(
     times, values = _columns(Path(path), t, x)
     seconds, _ = _factor(headers[t], f"{path}, header", "s")
     factor, unit = _factor(headers[x], f"{path}, header")
-    (time, time_unit), (name, value_unit) = headers[t], headers[x]
-    taken = [f"{time} in s"] if not time_unit else []
-    taken += [f"{name} in the input's SI unit"] if not value_unit else []
+    words = (t, "s"), (x, "the input's SI unit")
+    taken = [f"{headers[n][0]} in {unit}" for n, unit in words if not headers[n][1]]
     found = read_samples(times * seconds, values * factor, str(path))
     return replace(found, unit=unit, assumed=" and ".join(taken))
 
@@ -171,16 +170,9 @@ def _columns(path: Path, t: int, x: int) -> tuple[FloatArray, FloatArray]:
     with _opened(path) as (_, delimiter, rows), warnings.catch_warnings():
         warnings.simplefilter("error")
         with suppress(ValueError, Warning):  # pandas does not say where; the rows one by one do
-            table = pandas.read_csv(
-                path,
-                sep=delimiter,
-                usecols=[t, x],
-                index_col=False,
-                dtype=float,
-                na_filter=False,
-                skipinitialspace=True,
-                encoding="utf-8-sig",
-            )
+            how: Any = {"index_col": False, "dtype": float, "na_filter": False, "usecols": [t, x]}
+            how |= {"sep": delimiter, "skipinitialspace": True, "encoding": "utf-8-sig"}
+            table = pandas.read_csv(path, **how)
             both = table.to_numpy()[:, [0, 1] if t < x else [1, 0]]
             if np.isfinite(both).all():
                 return both[:, 0], both[:, 1]
@@ -212,13 +204,11 @@ def _position(headers: Sequence[tuple[str, str]], wanted: str, where: str) -> in
     match = HEADER.fullmatch(wanted.strip())
     names = [f"{name} [{unit}]" if match and unit else name for name, unit in headers]
     wanted = f"{match['name']} [{match['unit'].strip()}]" if match else wanted
-    if names.count(wanted) == 1:
-        return names.index(wanted)
-    if wanted in names:
-        what = f"two columns are named {quote(wanted)}"
-        raise UsageError(what, where, "distinct headers")
-    what = f"no column {quote(wanted)}"
-    raise UsageError(what, where, remedy=nearest(str(wanted), names))
+    if wanted not in names:
+        raise UsageError(f"no column {quote(wanted)}", where, remedy=nearest(str(wanted), names))
+    if names.count(wanted) > 1:
+        raise UsageError(f"two columns are named {quote(wanted)}", where, "distinct headers")
+    return names.index(wanted)
 
 
 def _other_column(headers: Sequence[tuple[str, str]], t: int, path: object) -> int:
@@ -241,6 +231,5 @@ def _cell(row: Sequence[str], at: int, path: Path, line: int) -> float:
         what = f"{quote(text)} is not a number"
         raise FileError(what, where, "a number like 1.5e-3") from cause
     if not isfinite(value):
-        what = f"{quote(text)} is not finite"
-        raise FileError(what, where, "a finite number")
+        raise FileError(f"{quote(text)} is not finite", where, "a finite number")
     return value

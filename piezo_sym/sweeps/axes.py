@@ -71,12 +71,7 @@ class Axis:
 def read_axes(
     module: GeneratedModule, over: object, duration: float, lanes: Mapping[str, int]
 ) -> tuple[Axis, ...]:
-    """Return the axes of a sweep, in the order given.
-
-    Parameters
-    ----------
-    lanes : the size of each bank if it is not swept.
-    """
+    """Return the axes of a sweep, in the order given; `lanes` of each bank if it is not swept."""
     if not isinstance(over, Mapping) or not over:
         what = f"{quote(over)} sweeps nothing" if over in ({}, None) else f"{quote(over)} is no map"
         raise UsageError(what, WHERE, "a mapping of names to lists of values")

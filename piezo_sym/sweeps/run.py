@@ -56,13 +56,7 @@ class Result:
 
 
 def run_box(plan: Plan, module: GeneratedModule, watch: Watch) -> Result:
-    """Return the result of a box.
-
-    Parameters
-    ----------
-    plan : of the box alone.
-    watch : called now and then with the time reached; an exception from it ends the work.
-    """
+    """Return the result of a box, whose plan this is; what `watch` raises ends the work."""
     engine = engine_of(module) if plan.method == METHOD else None
     errors = np.full(plan.size, "", dtype=object)
     found: Quantities = {}
@@ -74,23 +68,17 @@ def run_box(plan: Plan, module: GeneratedModule, watch: Watch) -> Result:
         if found and made:
             refuse_other_names(found, made)
         for name, one in made.items():
-            found[name] = filled_in(plan, name, found.get(name), runs, one)
+            found[name] = filled_in(plan, name, found, runs, one)
         coords |= {name: one for name, one in own.items() if name not in plan.largest_banks}
-    grids = {
-        name: xarray.Variable(
-            (*plan.dims, *one.dims[1:]), one.values.reshape(*plan.shape, *one.shape[1:]), one.attrs
-        )
-        for name, one in found.items()
-    }
+    grids = {}
+    for name, one in found.items():
+        values = one.values.reshape(*plan.shape, *one.shape[1:])
+        grids[name] = xarray.Variable((*plan.dims, *one.dims[1:]), values, one.attrs)
     return Result(errors.reshape(plan.shape), grids, coords)
 
 
 def filled_in(
-    plan: Plan,
-    name: str,
-    whole: xarray.Variable | None,
-    runs: NDArray[np.intp],
-    part: xarray.Variable,
+    plan: Plan, name: str, known: Quantities, runs: NDArray[np.intp], part: xarray.Variable
 ) -> xarray.Variable:
     """Return a quantity of a box with the values of some of its runs filled in.
 
@@ -98,10 +86,11 @@ def filled_in(
     """
     sizes = zip(part.dims[1:], part.shape[1:], strict=True)
     shape = (plan.size, *(plan.largest_banks.get(str(dim), size) for dim, size in sizes))
-    if whole is None and shape == part.shape:
-        return part
-    if whole is None:
-        whole = xarray.Variable(part.dims, np.full(shape, np.nan), part.attrs)
+    if name not in known:
+        if shape == part.shape:
+            return part
+        known[name] = xarray.Variable(part.dims, np.full(shape, np.nan), part.attrs)
+    whole = known[name]
     refuse_other_sizes(name, whole.shape[1:], shape[1:])
     lanes = [slice(size) for size in part.shape[1:]]
     where: Any = (runs, *lanes)

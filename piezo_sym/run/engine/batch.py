@@ -70,26 +70,19 @@ def is_lossy(engine: Engine) -> bool:
 class Batch:
     """Runs of equal sizes, stepped together.
 
+    In vectors lie numbers of "one" run after another, of "many" side by side, or of the "lanes" of
+    one run's banks: `layout`.
+
     Attributes
     ----------
     x : the states (runs, n): at t = 0, and then where runs are.
     largest : the largest magnitude of each state (runs, n).
     ledgers : what is booked so far, and what rounding lost of it (runs, 2, rows).
     states, sums : at samples, (runs, samples, n) and (runs, samples, rows), rows in the order of
-        `System.rates`, then `extra`; nan beyond the time a run reached.
+        `DrivenModule.rates`, then `extra`: 2 for heat and entropy of dissipative steps; nan beyond
+        the time a run reached.
     records : what else C tells of each run, by the names of MODEL(run).
-    inputs : those of all runs, in C.
-    address : of MODEL(batch).
-
-    Parameters
-    ----------
-    engine : of the module.
-    parameters : of each run.
-    x : their states (runs, n) at t = 0.
-    inputs : of all.
-    times : of samples (samples,).
-    layout : "one" run after another, "many" side by side in vectors, or "lanes" of one run's banks.
-    extra : rows of ledgers behind the model's own: 2 for heat and entropy of dissipative steps.
+    inputs, address : those of all runs, in C; of MODEL(batch).
     """
 
     def __init__(
