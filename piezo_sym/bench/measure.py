@@ -20,8 +20,7 @@ import numpy as np
 import sympy as sp
 
 from piezo_sym.bench.contest import Comparison, Contestant, Pair, compared
-from piezo_sym.bench.lambdified import batch, field, solver
-from piezo_sym.bench.problem import INSTANT, Problem, problem_of
+from piezo_sym.bench.problem import INSTANT, Problem, batch, field, problem_of, solver
 from piezo_sym.errors import EngineError, PiezoError, RunError, UsageError, nearest, quote
 from piezo_sym.run import simulate
 from piezo_sym.run.checks import FloatArray

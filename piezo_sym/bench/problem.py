@@ -1,10 +1,11 @@
-"""A model with its inputs as every competitor gets it: explicit rates in SymPy.
+"""A model with its inputs as every competitor gets it: explicit rates in SymPy, and lambdified.
 
 Input: a `Model` and its inputs.  Output: a `Problem`
 
     dx/dt = f(t, x),  x(0) given
 
-with banks expanded into their lanes, and the values of parameters and inputs substituted.
+with banks expanded into their lanes, and the values of parameters and inputs substituted; and the
+usual way to solve it without this package: lambdified, integrated by SciPy's solve_ivp.
 """
 
 from __future__ import annotations
@@ -31,6 +32,10 @@ from piezo_sym.spec.load import load
 
 if TYPE_CHECKING:
     from piezo_sym.spec.model import Model
+from collections.abc import Callable
+from functools import partial
+
+from scipy.integrate import solve_ivp
 
 TIME = sp.Symbol("t", real=True)
 #: Time [s] at which the rates of many states are compared.
@@ -124,3 +129,39 @@ def as_expression(signal: Signal, name: str) -> sp.Expr:
             return sp.Float(amplitude) * sp.sin(angle) + sp.Float(offset)
     what = f"input {quote(name)} is neither"
     raise UsageError(what, "bench", "a number or sine(amplitude, frequency)")
+
+
+def field(problem: Problem, modules: str = "numpy", cse: bool = False) -> Callable[..., Any]:
+    """Return dx/dt as a function of t and x, lambdified."""
+    arguments, rates = [TIME, list(problem.states)], list(problem.rates)
+    made: Callable[..., Any] = sp.lambdify(arguments, rates, modules, cse=cse)
+    return made
+
+
+def solver(method: str, modules: str, cse: bool, problem: Problem) -> Callable[[float], FloatArray]:
+    """Return solve_ivp over the whole run, its error bound rtol (|x| + scale)."""
+    return partial(integrated, field(problem, modules, cse), problem, method)
+
+
+def integrated(rates: Callable[..., Any], problem: Problem, method: Any, rtol: float) -> FloatArray:
+    """Return the state at the end, by solve_ivp; raise `RuntimeError` if it gives up."""
+    end, how = problem.duration, {"method": method, "rtol": rtol, "atol": rtol * problem.scale}
+    found = solve_ivp(rates, (0.0, end), problem.start, t_eval=(end,), **how)
+    if not found.success:
+        raise RuntimeError(found.message)
+    state: FloatArray = found.y[:, -1]
+    return state
+
+
+def batch(problem: Problem) -> Callable[[FloatArray], FloatArray]:
+    """Return the rates of many states at once, as an array (n, columns)."""
+    rates = sp.lambdify([list(problem.states)], list(problem.at_instant), "numpy")
+
+    def many(x: FloatArray) -> FloatArray:
+        out = np.empty_like(x)
+        with np.errstate(all="ignore"):  # select computes every branch
+            for row, rate in zip(out, rates(x), strict=True):
+                row[:] = rate
+        return out
+
+    return many

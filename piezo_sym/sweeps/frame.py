@@ -1,12 +1,13 @@
-"""The Dataset of a sweep before its results: coordinates, inputs, attributes.
+"""The Dataset of a sweep: coordinates, inputs, attributes, and results as they come in memory.
 
-Input: a `Plan` and its module.  Output: a Dataset with all but the results and their errors.
+Input: a `Plan`, its module; `Result` records.  Output: a Dataset with all but the results and their
+errors; and with them.  `store` collects results on disk: it has the three methods of `Memory`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Iterable, Iterator
+from typing import Any, final
 
 import numpy as np
 import pandas
@@ -19,9 +20,9 @@ from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.parameters import read_parameters
 from piezo_sym.run.system import DrivenModule
 from piezo_sym.sweeps.group import inputs_at_point
-from piezo_sym.sweeps.plan import Plan
-from piezo_sym.sweeps.quantities import layout
-from piezo_sym.sweeps.reduce import weights
+from piezo_sym.sweeps.plan import Plan, Region
+from piezo_sym.sweeps.reduce import layout, refuse_other_names, refuse_other_sizes, weights
+from piezo_sym.sweeps.run import Result
 
 NOT_RUN = "not run"
 ERROR_ATTRS = described("1", "why a run failed; empty where it did not") | {"missing": NOT_RUN}
@@ -99,3 +100,44 @@ def attrs_of(plan: Plan, system: DrivenModule) -> dict[str, Any]:
     reduction = {"reduction": plan.reduce} if isinstance(plan.reduce, str) else {}
     done = {"method": plan.method, **accuracy, **reduction, "duration": plan.duration}
     return {**attrs, **done, "engine": plan.engine}
+
+
+def write(array: Any, region: Region, name: str, one: xarray.Variable) -> None:
+    """Write a quantity of a box into an array over the grid."""
+    refuse_other_sizes(name, array.shape[len(region) :], one.shape[len(region) :])
+    array[region] = one.values
+
+
+@final
+class Memory:
+    """Keeps results in arrays over the grid."""
+
+    def __init__(self, plan: Plan, frame: xarray.Dataset) -> None:
+        self._plan, self._frame = plan, frame
+        self._errors = np.full(plan.shape, "", dtype=object)
+        self._found: dict[str, xarray.Variable] = {}
+        self._coords: dict[str, xarray.Variable] = {}
+
+    def missing(self) -> Iterable[Region]:
+        """Return all boxes."""
+        return self._plan.regions()
+
+    def take(self, region: Region, result: Result) -> None:
+        """Keep the result of a box."""
+        self._errors[region] = result.errors
+        self._coords = result.coords or self._coords
+        if self._found and result.quantities:
+            refuse_other_names(self._found, result.quantities)
+        for name, one in result.quantities.items():
+            if name not in self._found:
+                shape = (*self._plan.shape, *one.shape[len(region) :])
+                # a function that fails for a whole box leaves nan
+                room = np.full(shape, np.nan) if callable(self._plan.reduce) else np.empty(shape)
+                self._found[name] = xarray.Variable(one.dims, room, one.attrs)
+            write(self._found[name].values, region, name, one)
+
+    def dataset(self) -> xarray.Dataset:
+        """Return all results; only errors, if the reduction never ran."""
+        errors = xarray.Variable(self._plan.dims, self._errors, ERROR_ATTRS)
+        found = self._frame.assign_coords(self._coords).assign({**self._found, "error": errors})
+        return found[[*self._found, *self._frame.data_vars, "error"]]

@@ -16,10 +16,9 @@ from piezo_sym.run.engine.engine import Engine, Members
 from piezo_sym.run.guard import check_start
 from piezo_sym.run.inputs import Inputs
 from piezo_sym.run.module import GeneratedModule, rows
-from piezo_sym.run.parameter_table import Column, ParameterTable
 from piezo_sym.run.parameters import own_initial, read_parameters
 from piezo_sym.run.signals import Constant, Signal
-from piezo_sym.run.system import DrivenModules
+from piezo_sym.run.system import Column, DrivenModules, ParameterTable
 from piezo_sym.sweeps.plan import Plan
 from piezo_sym.sweeps.targets import Target
 

@@ -1,12 +1,14 @@
-"""Reductions of runs, so that a sweep need not keep trajectories.
+"""All quantities of many runs, and their reductions, so that a sweep need not keep trajectories.
 
-Input: the quantities of a group's runs.  Output: quantities without time, or what a user's function
-returns for the Dataset of one run, or of many runs over the dimension `member`.
+Input: runs in C, or the `Trajectory` of one run.  Output: quantities over (runs, time, [lanes]),
+inputs left out, with the names that `simulate` gives them; the same without time; or what a user's
+function returns for the Dataset of one run, or of many runs over the dimension `member`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -14,6 +16,11 @@ import xarray
 
 from piezo_sym.errors import UsageError, listing, quote
 from piezo_sym.run.checks import FloatArray, is_number
+from piezo_sym.run.collocation import Runs
+from piezo_sym.run.dataset import Known
+from piezo_sym.run.engine.engine import Engine, Members
+from piezo_sym.run.ledger import Trajectory, row_counts
+from piezo_sym.run.system import DrivenModule
 
 #: Quantities of many runs by name, over `MEMBER` first.
 Quantities: TypeAlias = dict[str, xarray.Variable]
@@ -21,6 +28,44 @@ Quantities: TypeAlias = dict[str, xarray.Variable]
 MEMBER = "member"
 WHERE = "sweep.reduce"
 KINDS = "a Dataset, a DataArray, a number, or a mapping of names to DataArrays and numbers"
+
+
+def layout(system: DrivenModule) -> Quantities:
+    """Return every quantity of a run, in order, at one sample and without values."""
+    n, m, k = row_counts(system)
+    states, inputs, integrals = (np.full((size, 1), np.nan) for size in (n, m, k))
+    with np.errstate(all="ignore"):
+        return of_trajectory(
+            system, Trajectory(np.full(n, np.nan), states, inputs, integrals, 0, 0)
+        )
+
+
+def of_trajectory(system: DrivenModule, trajectory: Trajectory) -> Quantities:
+    """Return every quantity of one run, over (time, [lanes])."""
+    return as_variables(replace(Known.of(system, trajectory), inputs=None))
+
+
+def as_variables(known: Known) -> Quantities:
+    """Return every quantity as a variable."""
+    return {name: xarray.Variable(*of) for name, of in (*known.instants(), *known.ledger())}
+
+
+def of_runs(runs: Runs, engine: Engine, u: FloatArray, kept: slice) -> Quantities:
+    """Return every quantity of runs in C; `u` (m, nt) at all samples, of which some are kept."""
+    system = runs.systems[0]
+    module, call = system.module, Members(engine, runs.systems.parameters)
+    x, u = np.ascontiguousarray(runs.states[:, kept]), np.ascontiguousarray(u[:, kept].T)
+    first = np.ascontiguousarray(runs.start[:, None])
+    with np.errstate(all="ignore"):
+        values = {
+            "outputs": np.moveaxis(call("outputs", x, len(module.OUTPUTS), u), 2, 0),
+            "temperatures": np.moveaxis(call("temperatures", x, len(module.BODIES)), 2, 0),
+            "energy": call("energy", x, 1)[..., 0],
+            "entropy": call("entropy", x, 1)[..., 0],
+        }
+        start = call("energy", first, 1)[..., 0], call("entropy", first, 1)[..., 0]
+        states, sums = (np.moveaxis(one, 2, 0) for one in (x, runs.sums[:, kept]))
+        return as_variables(Known(system, states, None, values, start, sums, dims=(MEMBER, "time")))
 
 
 def weights(samples: FloatArray) -> FloatArray:

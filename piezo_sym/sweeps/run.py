@@ -22,12 +22,14 @@ from piezo_sym.run.scipy_runs import by_scipy, cause
 from piezo_sym.run.system import DrivenModules
 from piezo_sym.sweeps.group import Group, group_at
 from piezo_sym.sweeps.plan import Plan
-from piezo_sym.sweeps.quantities import layout, of_runs, of_trajectory
 from piezo_sym.sweeps.reduce import (
     MEMBER,
     Quantities,
     all_at_once,
     as_quantities,
+    layout,
+    of_runs,
+    of_trajectory,
     over_time,
     refuse_names,
     refuse_other_names,

@@ -20,11 +20,10 @@ import xarray
 from piezo_sym.errors import FileError, listing
 from piezo_sym.files import path_text, zarr_library
 from piezo_sym.sweeps.fingerprint import fingerprint
-from piezo_sym.sweeps.frame import ERROR_ATTRS, NOT_RUN
+from piezo_sym.sweeps.frame import ERROR_ATTRS, NOT_RUN, write
 from piezo_sym.sweeps.plan import Plan, Region
 from piezo_sym.sweeps.reduce import refuse_other_names
 from piezo_sym.sweeps.run import Result
-from piezo_sym.sweeps.sinks import write
 
 MARK, BOX, RESULTS = "sweep_fingerprint", "sweep_box", "sweep_results"
 FRESH = "choose another path, or delete it"

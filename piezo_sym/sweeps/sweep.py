@@ -28,11 +28,9 @@ from piezo_sym.run.checks import whole
 from piezo_sym.run.inputs import InputValue
 from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.parameters import LaneValue
-from piezo_sym.sweeps.frame import frame_of
-from piezo_sym.sweeps.plan import Plan, Reduction
+from piezo_sym.sweeps.frame import Memory, frame_of
+from piezo_sym.sweeps.plan import Plan, Reduction, read_plan
 from piezo_sym.sweeps.pool import SENT_AT_ONCE, processors, results, sender, threads_for
-from piezo_sym.sweeps.read import read_plan
-from piezo_sym.sweeps.sinks import Memory
 
 if TYPE_CHECKING:
     import xarray

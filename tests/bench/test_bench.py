@@ -9,10 +9,9 @@ import pytest
 
 from piezo_sym import load
 from piezo_sym.bench import GROUPS, bench
-from piezo_sym.bench.contest import COLUMNS, Comparison
+from piezo_sym.bench.contest import COLUMNS, Comparison, Spread
 from piezo_sym.bench.measure import LADDER, TARGET, reference_of, tuned
 from piezo_sym.bench.problem import problem_of
-from piezo_sym.bench.timing import Spread
 from piezo_sym.cli import run
 
 OSCILLATOR = Path(__file__).parents[1] / "networks" / "specs" / "a2_oscillator.toml"

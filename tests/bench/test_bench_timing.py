@@ -6,8 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from piezo_sym.bench.contest import Contestant, Pair, compared
-from piezo_sym.bench.timing import Times, interleaved, spread
+from piezo_sym.bench.contest import Contestant, Pair, Times, compared, interleaved, spread
 
 TIMES = st.lists(st.floats(1e-9, 1e3), min_size=1, max_size=30)
 
@@ -32,7 +31,7 @@ def test_a_ratio_is_taken_round_by_round(values, factor):
 def clock(monkeypatch):
     """A clock that goes on only when it is told to: a busy machine changes nothing."""
     now = [0.0]
-    monkeypatch.setattr("piezo_sym.bench.timing.perf_counter", lambda: now[0])
+    monkeypatch.setattr("piezo_sym.bench.contest.perf_counter", lambda: now[0])
 
     def going(seconds, seen=None):
         def call():

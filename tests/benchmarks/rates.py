@@ -14,8 +14,7 @@ import numpy as np
 import sympy as sp
 
 from piezo_sym.bench.contest import Contestant, Pair, compared
-from piezo_sym.bench.lambdified import field
-from piezo_sym.bench.problem import INSTANT
+from piezo_sym.bench.problem import INSTANT, field
 from piezo_sym.errors import EngineError
 from piezo_sym.run.engine.engine import engine_of
 from tests.benchmarks.by_hand import hand_of

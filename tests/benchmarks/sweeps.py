@@ -16,9 +16,8 @@ from piezo_sym.bench.contest import Contestant, Pair, compared
 from piezo_sym.errors import EngineError, RunError
 from piezo_sym.run.collocation import METHOD, collocate
 from piezo_sym.run.engine.engine import engine_of
-from piezo_sym.sweeps.plan import Plan
+from piezo_sym.sweeps.plan import Plan, read_plan
 from piezo_sym.sweeps.pool import threads_for
-from piezo_sym.sweeps.read import read_plan
 from piezo_sym.sweeps.sweep import run_missing, sink_of
 from tests.benchmarks.family import family_of
 from tests.benchmarks.peers import PEERS

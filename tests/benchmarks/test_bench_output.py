@@ -8,9 +8,8 @@ from pathlib import Path
 import pytest
 
 from piezo_sym import load
-from piezo_sym.bench.contest import COLUMNS, Comparison
+from piezo_sym.bench.contest import COLUMNS, Comparison, Spread
 from piezo_sym.bench.problem import problem_of
-from piezo_sym.bench.timing import Spread
 from tests.benchmarks.__main__ import main
 from tests.benchmarks.groups import bench
 from tests.benchmarks.machine import installed, machine

@@ -20,7 +20,7 @@ from piezo_sym.run.engine import library as libraries
 from piezo_sym.run.engine.compiler import compilers, processor
 from piezo_sym.run.engine.engine import Members, engine_of
 from piezo_sym.run.engine.records import ParameterRecords
-from piezo_sym.run.parameter_table import ParameterTable
+from piezo_sym.run.system import ParameterTable
 from tests.conftest import full_disk, write_script
 
 ROOT = Path(__file__).parents[2]

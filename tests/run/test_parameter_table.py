@@ -12,8 +12,7 @@ from piezo_sym.modules import module_of
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.module import lanes
-from piezo_sym.run.parameter_table import ParameterTable
-from piezo_sym.run.system import DrivenModules
+from piezo_sym.run.system import DrivenModules, ParameterTable
 
 NUMBERS = st.floats(1e-6, 1e6)
 

@@ -21,7 +21,7 @@ BOXES = 4  # 140 runs that go together are cut in two, for each of two inputs
 @pytest.fixture(autouse=True)
 def small_boxes(monkeypatch):
     """Cut sweeps into boxes of no more runs than it takes to make four here."""
-    monkeypatch.setattr("piezo_sym.sweeps.read.MOST_TOGETHER", 128)
+    monkeypatch.setattr("piezo_sym.sweeps.plan.MOST_TOGETHER", 128)
 
 
 def assert_same(found, wanted):

@@ -19,7 +19,7 @@ from piezo_sym.run.engine.library import Layout, read_source, shared_library
 from piezo_sym.run.engine.records import DOUBLE, LONG, addresses, at, c_record, record_dtype
 from piezo_sym.run.engine.signals import InputRecords
 from piezo_sym.run.inputs import Inputs
-from piezo_sym.run.parameter_table import ParameterTable
+from piezo_sym.run.system import ParameterTable
 
 #: Vectors lie at multiples of so many bytes.
 ALIGNED = 64

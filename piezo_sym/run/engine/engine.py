@@ -22,7 +22,7 @@ from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.engine.library import CACHE, Sources, read_source, shared_library
 from piezo_sym.run.engine.records import INT, LONG, POINTER, ParameterRecords, at
 from piezo_sym.run.module import GeneratedModule, held, row_count
-from piezo_sym.run.parameter_table import ParameterTable
+from piezo_sym.run.system import ParameterTable
 
 #: Of which records each function of a module gives rows; of none: one number.
 _ROWS = {

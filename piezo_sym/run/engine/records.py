@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.engine.c_sources import c_source
 from piezo_sym.run.module import GeneratedModule, lanes
-from piezo_sym.run.parameter_table import Column, ParameterTable
+from piezo_sym.run.system import Column, ParameterTable
 
 POINTER, LONG, INT, DOUBLE = ctypes.c_void_p, ctypes.c_long, ctypes.c_int, ctypes.c_double
 _DECLARED = ("trajectory.c", "batch.c", "step_once.c", "derivatives.c")

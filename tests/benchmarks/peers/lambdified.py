@@ -7,7 +7,7 @@ write and which is several times faster.
 
 from functools import partial
 
-from piezo_sym.bench.lambdified import batch, solver
+from piezo_sym.bench.problem import batch, solver
 from tests.benchmarks.peers.peer import Peer
 
 LSODA = Peer("LSODA on lambdified SymPy", "sympy", partial(solver, "LSODA", "numpy", False), batch)

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import sympy as sp
 
-from piezo_sym.bench.lambdified import integrated
-from piezo_sym.bench.problem import INSTANT, TIME
+from piezo_sym.bench.problem import INSTANT, TIME, integrated
 from tests.benchmarks.peers.peer import Peer
 
 if TYPE_CHECKING:
