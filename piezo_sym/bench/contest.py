@@ -89,19 +89,13 @@ UNITS = ((1.0, "s"), (1e-3, "ms"), (1e-6, "us"), (1e-9, "ns"))
 @final
 @dataclass(frozen=True, eq=False)
 class Contestant:
-    """A call to be timed, which computes `per` results.
-
-    Attributes
-    ----------
-    error : of a result, where there is a measure.
-    note : tolerance, time of compilation.
-    """
+    """A call to be timed, which computes `per` results."""
 
     name: str
     call: Callable[[], object]
     per: int = 1
-    error: float | None = None
-    note: str = ""
+    error: float | None = None  # of a result, where there is a measure
+    note: str = ""  # tolerance, time of compilation
 
 
 @final
@@ -116,23 +110,15 @@ class Pair:
 @final
 @dataclass(frozen=True)
 class Comparison:
-    """One benchmark: this package against something else that does the same.
-
-    Attributes
-    ----------
-    other_time, ours_time : seconds per result; `other_time` is absent where there is nothing to
-        compare with.
-    ratio : of the times, measured in turns: above 1, ours is faster.
-    other_error, ours_error : in units of the scale that `measure` names; absent without one.
-    """
+    """One benchmark: this package against something else that does the same, or nothing."""
 
     group: str
     other: str
     ours: str
-    other_time: Spread | None
+    other_time: Spread | None  # seconds per result
     ours_time: Spread
-    ratio: Spread | None
-    other_error: float | None = None
+    ratio: Spread | None  # of times measured in turns: above 1, ours is faster
+    other_error: float | None = None  # in units of the scale that `measure` names
     ours_error: float | None = None
     measure: str = ""
     note: str = ""

@@ -47,25 +47,17 @@ SHIPPED, DRIVEN = "piezo_stack", {"V_in": Sine(100.0, 100.0, 0.0, 0.0)}
 @final
 @dataclass(frozen=True)
 class Problem:
-    """A model with its inputs and the length of a run.
-
-    Attributes
-    ----------
-    inputs, duration : what drives the module, and for how long [s].
-    counts : sizes of banks other than the spec's, as parameters of the module.
-    states, rates : symbols of x, and dx/dt as expressions of `TIME` and x alone.
-    start, scale : x(0) (n,), and the unit of each state's error (n,).
-    """
+    """A model with its inputs and the length of a run."""
 
     model: Model
     module: GeneratedModule
     inputs: Mapping[str, InputValue]
-    duration: float
-    counts: Mapping[str, int]
+    duration: float  # [s]
+    counts: Mapping[str, int]  # sizes of banks other than the spec's, as parameters
     states: tuple[sp.Symbol, ...]
-    rates: tuple[sp.Expr, ...]
-    start: FloatArray
-    scale: FloatArray
+    rates: tuple[sp.Expr, ...]  # dx/dt, of `TIME` and x alone
+    start: FloatArray  # x(0) (n,)
+    scale: FloatArray  # the unit of each state's error (n,)
 
     @cached_property
     def system(self) -> DrivenModule:

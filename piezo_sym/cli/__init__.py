@@ -13,9 +13,8 @@ import typer
 from piezo_sym.cli.bench import bench
 from piezo_sym.cli.generate import generate
 from piezo_sym.cli.new import new
-from piezo_sym.cli.reference import functions, kinds, units
+from piezo_sym.cli.reference import functions, kinds, schema, units
 from piezo_sym.cli.reproduce import reproduce
-from piezo_sym.cli.schema import schema
 from piezo_sym.cli.show import show
 from piezo_sym.cli.simulate import simulate
 from piezo_sym.cli.verify import verify

@@ -1,7 +1,8 @@
-"""``piezo-sym kinds``, ``functions``, ``units``: what a spec may say, with examples."""
+"""``piezo-sym kinds``, ``functions``, ``units``, ``schema``: what a spec may say, with examples."""
 
 from __future__ import annotations
 
+import json
 from textwrap import wrap
 from typing import Annotated, Any
 
@@ -76,3 +77,19 @@ def units() -> None:
     console().print(made)
     typer.echo("Joined by * and /, with powers: N*s/m, m**2, kg/m**3, N/(m/s)**(1/2), 1 (none).")
     typer.echo("No offsets: a temperature is given in K.")
+
+
+def schema() -> None:
+    """Print the JSON Schema (draft 2020-12) of specs.
+
+    Editors complete and check specs with it (Even Better TOML, Taplo). Once in a folder:
+
+    piezo-sym schema > piezo-sym.schema.json
+
+    and as the first line of each spec, where `piezo-sym new` writes it:
+
+    #:schema ./piezo-sym.schema.json
+    """
+    from piezo_sym.spec.schema import schema as of_specs
+
+    typer.echo(json.dumps(of_specs(), indent=2))

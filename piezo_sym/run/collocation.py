@@ -57,27 +57,16 @@ class FixedStep:
 @final
 @dataclass(frozen=True)
 class Runs:
-    """Runs of some systems, and why those that did not come through stopped.
+    """Runs of some systems, and why those that did not come through stopped."""
 
-    Attributes
-    ----------
-    systems, start : with equal inputs and sizes; their states (runs, n) at t = 0.
-    times : the sample times (nt,).
-    states, sums : at samples, (runs, nt, n) and (runs, nt, rows), rows in the order of
-        `DrivenModule.rates`, and then heat and entropy that dissipative starts produce.
-    work : of each run, its steps, Newton's iterations, and steps refused (runs, 3).
-    errors : of each run, its error, or None.
-    numerical : whether sums have those last two rows.
-    """
-
-    systems: DrivenModules
-    start: FloatArray
-    times: FloatArray
-    states: FloatArray
-    sums: FloatArray
-    work: NDArray[Any]
-    errors: Sequence[RunError | None]
-    numerical: bool
+    systems: DrivenModules  # with equal inputs and sizes
+    start: FloatArray  # their states (runs, n) at t = 0
+    times: FloatArray  # of samples (nt,)
+    states: FloatArray  # (runs, nt, n)
+    sums: FloatArray  # (runs, nt, rows), in the order of `DrivenModule.rates`
+    work: NDArray[Any]  # of each run its steps, Newton's iterations, steps refused (runs, 3)
+    errors: Sequence[RunError | None]  # of each run
+    numerical: bool  # whether sums end with heat and entropy that dissipative starts produce
 
     def trajectory(self, k: int) -> Trajectory:
         """Return run k; raise its error, which holds what was reached, if it stopped."""

@@ -32,24 +32,16 @@ Named: TypeAlias = tuple[str, Variable]
 @final
 @dataclass(frozen=True)
 class Known:
-    """What is known of a run, or of runs of equal sizes, at samples: arrays (rows, [runs], nt).
-
-    Attributes
-    ----------
-    states, inputs, integrals, numerical : as in a `Trajectory`; inputs and numerical may be absent.
-    values : of the module's functions, by their names; energies have no rows.
-    start : energy and entropy at the start, of many runs (runs, 1).
-    dims : of a quantity, lanes of a bank aside.
-    """
+    """What is known of a run, or of runs of equal sizes, at samples: arrays (rows, [runs], nt)."""
 
     system: DrivenModule
     states: FloatArray
-    inputs: FloatArray | None
-    values: Mapping[str, FloatArray]
-    start: tuple[FloatArray, FloatArray]
+    inputs: FloatArray | None  # or left out
+    values: Mapping[str, FloatArray]  # of the module's functions; energies have no rows
+    start: tuple[FloatArray, FloatArray]  # energy and entropy there; of many runs (runs, 1)
     integrals: FloatArray
-    numerical: FloatArray | None = None
-    dims: tuple[str, ...] = ("time",)
+    numerical: FloatArray | None = None  # as in a `Trajectory`
+    dims: tuple[str, ...] = ("time",)  # of a quantity, lanes of a bank aside
 
     @staticmethod
     def of(system: DrivenModule, run: Trajectory) -> Known:

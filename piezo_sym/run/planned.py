@@ -41,24 +41,15 @@ LEAST_RTOL = 1e-12
 @final
 @dataclass(frozen=True)
 class Request:
-    """What a user wants to be run, but when and from where.
-
-    Attributes
-    ----------
-    module, parameters : of the system.
-    inputs : as the user gave them.
-    chosen, rtol, step : the method, and its tolerance or step.
-    starts : whether the first step after a jump of the inputs is dissipative.
-    watch : told the time reached, now and then.
-    """
+    """What a user wants to be run, but when and from where."""
 
     module: GeneratedModule
     parameters: Any
-    inputs: Mapping[str, InputValue] | None
+    inputs: Mapping[str, InputValue] | None  # as the user gave them
     chosen: ChosenMethod
     rtol: float
     step: FixedStep | None
-    starts: bool
+    starts: bool  # whether the first step after a jump of the inputs is dissipative
     watch: Watch | None
 
     def planned(

@@ -18,12 +18,11 @@ from numpy.typing import ArrayLike
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.run.checks import number, positive
 from piezo_sym.run.collocation import METHOD, FixedStep, read_order
-from piezo_sym.run.continuing import start_of
 from piezo_sym.run.events import read_watched
 from piezo_sym.run.inputs import InputValue
 from piezo_sym.run.method import checked_method, choose_method
 from piezo_sym.run.module import GeneratedModule, checked
-from piezo_sym.run.parameters import LaneValue, read_parameters, sample_times
+from piezo_sym.run.parameters import LaneValue, read_parameters, sample_times, start_of
 from piezo_sym.run.planned import Request
 from piezo_sym.run.streaming import streamed
 

@@ -24,18 +24,11 @@ Column: TypeAlias = Sequence[Any] | NDArray[Any]
 @final
 @dataclass(frozen=True, eq=False)  # a key by identity: what C has of it is kept as long as it
 class ParameterTable:
-    """The parameters of many runs, of equal sizes: those of run k are `table[k]`.
+    """The parameters of many runs, of equal sizes: those of run k are `table[k]`."""
 
-    Attributes
-    ----------
-    base : those of one run.
-    size : how many runs.
-    columns : of each parameter in which runs differ, one value per run; nobody writes to them.
-    """
-
-    base: Any
+    base: Any  # those of one run
     size: int
-    columns: Mapping[str, Column]
+    columns: Mapping[str, Column]  # of each in which runs differ, one value per run; never written
 
     def __post_init__(self) -> None:
         """Refuse columns of another length."""

@@ -26,20 +26,12 @@ Attributed: TypeAlias = tuple[Any, dict[str, str]]
 @final
 @dataclass(frozen=True)
 class Axis:
-    """A dimension of a sweep.
-
-    Attributes
-    ----------
-    dim : its name.
-    size : the number of its points.
-    targets : what changes along it.
-    labels : of its points, if the user gave them: numbers or texts.
-    """
+    """A dimension of a sweep."""
 
     dim: str
     size: int
-    targets: tuple[Target, ...]
-    labels: tuple[float | str, ...] | None
+    targets: tuple[Target, ...]  # what changes along it
+    labels: tuple[float | str, ...] | None  # of its points, if the user gave them
 
     @property
     def divides(self) -> bool:

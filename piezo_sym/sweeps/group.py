@@ -26,18 +26,11 @@ from piezo_sym.sweeps.targets import Target
 @final
 @dataclass(frozen=True)
 class Group:
-    """Runs with equal inputs and sizes.
-
-    Attributes
-    ----------
-    systems : of each run.
-    start : states (runs, n) at t = 0.
-    errors : of each run, why it cannot start, or "".
-    """
+    """Runs with equal inputs and sizes."""
 
     systems: DrivenModules
-    start: FloatArray
-    errors: list[str]
+    start: FloatArray  # states (runs, n) at t = 0
+    errors: list[str]  # of each run, why it cannot start, or ""
 
 
 def group_at(

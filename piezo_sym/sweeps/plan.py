@@ -54,40 +54,26 @@ ENOUGH_BOXES = 256
 @final
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """What a sweep runs.
+    """What a sweep runs."""
 
-    Attributes
-    ----------
-    axes : in the user's order.
-    signals : of each input, where it is not swept.
-    parameters, initial : as the user gave them, without those swept; and one number for each
-        swept parameter of a bank, since a list in the spec may not fit the swept sizes.
-    samples : the sample times (nt,) [s].
-    method, rtol, step : of each run; the step is None where rtol counts.
-    reduce, each : the reduction, and whether its function takes one run or many.
-    largest_banks : the largest size of each bank whose size is swept.
-    together : the most runs in one call of C.
-    most : the most runs in a box.
-    engine : the `engine` attribute of the Dataset, as of `simulate`.
-    side_by_side : whether runs in one call of C share vectors, or are computed one by one.
-    """
-
-    axes: tuple[Axis, ...]
-    signals: tuple[Signal, ...]
+    axes: tuple[Axis, ...]  # in the user's order
+    signals: tuple[Signal, ...]  # of each input, where it is not swept
     duration: float
+    #: As the user gave them, without those swept; and one number for each swept parameter of a
+    #: bank, since a list in the spec may not fit the swept sizes.
     parameters: Mapping[str, LaneValue]
     initial: Mapping[str, LaneValue]
-    samples: FloatArray
+    samples: FloatArray  # their times (nt,) [s]
     method: str
     rtol: float
-    step: FixedStep | None
+    step: FixedStep | None  # None where rtol counts
     reduce: Reduction | None
-    each: bool
-    largest_banks: Mapping[str, int]
-    together: int
-    most: int
-    engine: str = ""
-    side_by_side: bool = True
+    each: bool  # whether a function that reduces takes one run, or many
+    largest_banks: Mapping[str, int]  # of each bank whose size is swept
+    together: int  # the most runs in one call of C
+    most: int  # the most runs in a box
+    engine: str = ""  # the attribute of the Dataset, as of `simulate`
+    side_by_side: bool = True  # whether runs in one call of C share vectors
 
     @property
     def dims(self) -> tuple[str, ...]:

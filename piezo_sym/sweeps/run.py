@@ -42,19 +42,11 @@ from piezo_sym.sweeps.reduce import (
 @final
 @dataclass(frozen=True)
 class Result:
-    """The results of a box.
+    """The results of a box, over the axes of the sweep."""
 
-    Attributes
-    ----------
-    errors : why each run failed, or "", over the axes of the sweep.
-    quantities : over these axes first; nan where a run failed; empty if a function reduces the runs
-        and all of them failed.
-    coords : of dimensions that a function created.
-    """
-
-    errors: NDArray[Any]
-    quantities: Quantities
-    coords: Quantities
+    errors: NDArray[Any]  # why each run failed, or ""
+    quantities: Quantities  # nan where a run failed; none if a function's runs all failed
+    coords: Quantities  # of dimensions that a function created
 
 
 def run_box(plan: Plan, module: GeneratedModule, watch: Watch) -> Result:

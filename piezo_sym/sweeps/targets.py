@@ -32,26 +32,16 @@ MOST_TEXT = 60
 @final
 @dataclass(frozen=True)
 class Target:
-    """A quantity and its values along an axis.
-
-    Attributes
-    ----------
-    kind, name : what it is.
-    unit, doc : of its values.
-    bank : the bank that it belongs to, or whose size it is, if any.
-    is_size : whether it is the number of lanes of a bank.
-    values : one per point: an array of numbers, or numbers, tuples of one per lane, and signals.
-    texts : labels of the values on a coordinate, if not all values are numbers.
-    """
+    """A quantity and its values along an axis."""
 
     kind: Kind
     name: str
     unit: str
     doc: str
-    bank: str | None
-    is_size: bool = False
-    values: FloatArray | tuple[Value, ...] = ()
-    texts: tuple[str, ...] = ()
+    bank: str | None  # to which it belongs, or whose size it is
+    is_size: bool = False  # whether it is the number of lanes of a bank
+    values: FloatArray | tuple[Value, ...] = ()  # one per point; tuples of one per lane
+    texts: tuple[str, ...] = ()  # that label the values, if not all of them are numbers
 
     @property
     def coordinate(self) -> str:

@@ -10,7 +10,7 @@ from piezo_sym import samples, simulate, sine, step, sweep
 from piezo_sym.errors import FileError, UsageError
 from piezo_sym.sweeps import SweepWarning
 from piezo_sym.sweeps import store as stores
-from piezo_sym.sweeps.fingerprint import parts
+from piezo_sym.sweeps.store import parts
 from tests.conftest import full_disk
 
 OVER = {"L": np.linspace(1e-3, 2e-3, 140), "V_in": {50.0: sine(100, 50), 100.0: sine(100, 100)}}

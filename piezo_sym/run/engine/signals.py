@@ -30,12 +30,9 @@ FIRST, ROUNDS, MOST = 192, 16, 5000
 
 @final
 class InputRecords:
-    """The segments of some inputs in C, and what their pointers point into.
+    """The segments of some inputs in C, an array of MODEL(segment), and what they point into.
 
-    Attributes
-    ----------
-    segments : an array of MODEL(segment).
-    raised : what functions of time have raised, which C cannot pass on.
+    `raised` is what functions of time have raised, which C cannot pass on.
     """
 
     def __init__(self, inputs: Inputs) -> None:
