@@ -29,6 +29,11 @@ if TYPE_CHECKING:
 ENDINGS = (".nc", ".csv")
 METHODS = """discrete_gradient (compiled) if left out; or SciPy's RK23, RK45, DOP853, Radau, BDF or
 LSODA."""
+ORDER = "With --step: its order, 2 (if left out), 4, 6, 8 or 10."
+TIMES = "Number of samples; 1001, or ends of steps, if left out."
+EVENTS = "NAME=EXPRESSION, located where its sign changes; repeat."
+STOP = "A comparison, such as 'T_body > 350', that ends the run."
+T0 = "When the run starts [s]; 0, or where it goes on."
 SIGNALS = "NAME=NUMBER, NAME=sine(100,100) or NAME=@FILE.csv; SI; repeat."
 
 Number: TypeAlias = float | None
@@ -52,25 +57,15 @@ def simulate(
     continued: Annotated[
         File, option("Go on from the end of this run (.nc).", "--continue")
     ] = None,
-    t0: Annotated[
-        Number, option("When the run starts [s]; 0, or where it goes on.", "--t0")
-    ] = None,
+    t0: Annotated[Number, option(T0, "--t0")] = None,
     rtol: Annotated[Number, option("Relative tolerance; 1e-5 if left out.")] = None,
     step: Annotated[Number, option("A fixed step [s] instead of --rtol.")] = None,
-    order: Annotated[
-        Count, option("With --step: its order, 2 (if left out), 4, 6, 8 or 10.")
-    ] = None,
+    order: Annotated[Count, option(ORDER)] = None,
     method: Annotated[Word, option(METHODS)] = None,
-    times: Annotated[
-        Count, option("Number of samples; 1001, or ends of steps, if left out.")
-    ] = None,
+    times: Annotated[Count, option(TIMES)] = None,
     every: Annotated[Count, option("With --step: a sample every so many steps.")] = None,
-    events: Annotated[
-        Words, option("NAME=EXPRESSION, located where its sign changes; repeat.", "--event")
-    ] = None,
-    stop: Annotated[
-        Word, option("A comparison, such as 'T_body > 350', that ends the run.")
-    ] = None,
+    events: Annotated[Words, option(EVENTS, "--event")] = None,
+    stop: Annotated[Word, option(STOP)] = None,
     dissipative_start: Annotated[
         bool, option("Damp what rings after a jump of an input.", "--dissipative-start")
     ] = False,

@@ -23,7 +23,7 @@ from piezo_sym.run.engine.batch import Batch, Stepping
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.engine.records import POINTER, at, c_record
 from piezo_sym.run.guard import check_start, domain_error, input_conditions
-from piezo_sym.run.inputs import read_inputs
+from piezo_sym.run.inputs import Inputs, read_inputs
 from piezo_sym.run.ledger import Trajectory
 from piezo_sym.run.module import GeneratedModule, checked, row_names
 from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
@@ -46,6 +46,14 @@ class Limits:
         """Return whether the last step's inputs lay in the domain; a margin of nan does not."""
         found = self.margins[self.conditions]
         return bool(np.all((found > 0) | ((found == 0) & (self.strict == 0))))
+
+
+def _refuse_signals(module: GeneratedModule, known: Inputs) -> None:
+    """Raise `UsageError` if an input at t = 0 is no number."""
+    for record, signal in zip(module.INPUTS, known.signals, strict=True):
+        if not isinstance(signal, Constant):
+            where, remedy = f"Stepper.inputs.{record.name}", "give the others to step(u)"
+            raise UsageError("this is no number", where, "the input at t = 0", remedy)
 
 
 @final
@@ -76,10 +84,7 @@ class Stepper:
         engine = engine_of(module)
         values = read_parameters(module, parameters)
         known = read_inputs(module, inputs, self._h)
-        for record, signal in zip(module.INPUTS, known.signals, strict=True):
-            if not isinstance(signal, Constant):
-                where, remedy = f"Stepper.inputs.{record.name}", "give the others to step(u)"
-                raise UsageError("this is no number", where, "the input at t = 0", remedy)
+        _refuse_signals(module, known)
         system = self._system = DrivenModule(module, values, known)
         x = read_initial(module, values, system.inputs.segments[0].at(0.0), initial)
         check_start(system, x)

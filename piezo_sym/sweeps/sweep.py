@@ -30,7 +30,7 @@ from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.parameters import LaneValue
 from piezo_sym.sweeps.frame import Memory, frame_of
 from piezo_sym.sweeps.plan import Plan, Reduction, read_plan
-from piezo_sym.sweeps.pool import SENT_AT_ONCE, processors, results, sender, threads_for
+from piezo_sym.sweeps.pool import SENT_AT_ONCE, Submit, processors, results, sender, threads_for
 
 if TYPE_CHECKING:
     import xarray
@@ -127,21 +127,28 @@ def sweep(
     runs = (inputs, duration, rtol, step, order, parameters, initial, method, times, every)
     plan = read_plan(module, over, runs, reduce, reduce_by)
     plan, sink = sink_of(plan, module, store, count)
-    boxes = list(sink.missing())
-    done = plan.size - sum(prod(part.stop - part.start for part in box) for box in boxes)
     with ExitStack() as stack:
         if executor is None:
             submit, at_once = stack.enter_context(threads_for(plan, module, count))
         else:
             submit, at_once = sender(plan, module, model, executor), SENT_AT_ONCE
-        tell = stack.enter_context(progress_of(progress, plan.size))
-        for region, result in stack.enter_context(closing(results(submit, boxes, at_once))):
-            sink.take(region, result)
-            done += result.errors.size
-            tell(done)
+        run_missing(sink, submit, at_once, progress, plan.size)
     found = sink.dataset()
     warn(found, plan)
     return found
+
+
+def run_missing(
+    sink: Memory | Store, submit: Submit, at_once: int, progress: object, total: int
+) -> None:
+    """Run the boxes that are missing, and keep the results as they are completed."""
+    boxes = list(sink.missing())
+    done = total - sum(prod(part.stop - part.start for part in box) for box in boxes)
+    with progress_of(progress, total) as tell, closing(results(submit, boxes, at_once)) as found:
+        for region, result in found:
+            sink.take(region, result)
+            done += result.errors.size
+            tell(done)
 
 
 def refuse_executor(executor: object, threads: object) -> None:

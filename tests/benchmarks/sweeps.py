@@ -91,23 +91,11 @@ def in_threads(plan: Plan, module: GeneratedModule, count: int) -> Any:
 
 
 def _plan(family: Family, rtol: float) -> Plan:
-    problem = family.problem
-    return read_plan(
-        problem.module,
-        over={family.name: family.values},
-        inputs=problem.inputs,
-        duration=problem.duration,
-        rtol=rtol,
-        step=None,
-        order=None,
-        parameters=problem.counts,
-        initial=None,
-        method=METHOD,
-        times=[problem.duration],
-        every=None,
-        reduce="last",
-        reduce_by="run",
-    )
+    problem, end = family.problem, [family.problem.duration]
+    stepping = rtol, None, None
+    start = problem.counts, None, METHOD
+    runs = problem.inputs, problem.duration, *stepping, *start, end, None
+    return read_plan(problem.module, {family.name: family.values}, runs, "last", "run")
 
 
 def single_runs(family: Family) -> Solver:
