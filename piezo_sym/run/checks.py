@@ -102,9 +102,7 @@ def known_keys(
 ) -> dict[str, object]:
     """Return a user's mapping of names as a dict, or name the first key that nothing answers to.
 
-    Parameters
-    ----------
-    others : names that belong elsewhere, and where.
+    `others` are names that belong elsewhere, and where.
     """
     if given is None:
         return {}

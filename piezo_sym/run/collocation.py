@@ -108,14 +108,9 @@ def collocate(
     With a tolerance, a rough run first shows how large each state becomes; errors are measured by
     that. Fixed steps end at samples and at breaks of inputs.
 
-    Parameters
-    ----------
-    systems : with equal inputs and sizes.
-    accuracy : the relative tolerance, or the step.
-    watch : told the time reached, now and then.
-    stages : of a step with a tolerance; when left out, those that are cheapest for it.
-    starts : whether the first fixed step after a jump of the inputs is dissipative.
-    side_by_side : whether runs of few states lie in the lanes of vectors.
+    Systems have equal inputs and sizes. `stages` of a step with a tolerance are those that are
+    cheapest for it, when left out; `starts`: the first fixed step after a jump of the inputs is
+    dissipative; `side_by_side`: runs of few states lie in the lanes of vectors.
     """
     known = DrivenModules.of(systems)
     first = known[0]

@@ -18,23 +18,17 @@ from piezo_sym.run.checks import FloatArray
 class Record(Protocol):
     """A row of an array: name, SI unit, one line on it, its bank if it has a row per lane."""
 
-    @property
-    def name(self) -> str: ...  # noqa: D102
-    @property
-    def unit(self) -> str: ...  # noqa: D102
-    @property
-    def doc(self) -> str: ...  # noqa: D102
-    @property
-    def bank(self) -> str | None: ...  # noqa: D102
+    name: str
+    unit: str
+    doc: str
+    bank: str | None
 
 
 class Condition(Protocol):
     """A condition of the domain: its text, and whether its margin must be > 0 or only >= 0."""
 
-    @property
-    def text(self) -> str: ...  # noqa: D102
-    @property
-    def strict(self) -> bool: ...  # noqa: D102
+    text: str
+    strict: bool
 
 
 class GeneratedModule(Protocol):

@@ -101,12 +101,7 @@ def stage_lanes(stages: int, layout: str, *, lossy: bool) -> int:
 
 
 def steps_source(model: str, stages: int, layout: str, *, lossy: bool = False) -> str:
-    """Return the file to compile for collocation steps of so many stages.
-
-    Parameters
-    ----------
-    layout, lossy : of `Sources`.
-    """
+    """Return the file to compile for collocation steps; `layout` and `lossy` as in `Sources`."""
     step = [f'#include "{model}_step.c"', _prefix(model)]
     if layout == "slopes":
         made = [numbers_source("dual.h"), *step, tables(stages, stages)]

@@ -130,10 +130,7 @@ def shared_library(sources: Sources) -> ctypes.CDLL:
 def library(sources: Sources, *, again: bool = False) -> Path:
     """Return the library of a module; it is compiled if it is not in the cache.
 
-    Parameters
-    ----------
-    sources : the texts.
-    again : compile even if there is a library, since that one cannot be loaded.
+    It is compiled `again` even if there is one, where that cannot be loaded.
     """
     first: EngineError | None = None
     hung: set[Compiler] = set()
