@@ -7,6 +7,7 @@ Input: a shipped name, a path, or a `Model`.  Output: its generated module, load
 
 from __future__ import annotations
 
+import filecmp
 import hashlib
 import importlib.util
 import sys
@@ -171,22 +172,15 @@ def _is_current(module: ModuleType) -> bool:
     """Return whether ``generated/`` of the working folder has this very module, or none."""
     folder, own = GENERATED / module.NAME, Path(str(module.__file__)).parent
     names = [f"{module.NAME}{ending}" for ending in (".py", ".h", ".c", "_step.h", "_step.c")]
-    return not folder.is_dir() or all(_digest(folder / n) == _digest(own / n) for n in names)
+    return not folder.is_dir() or all(_same(folder / n, own / n) for n in names)
 
 
-def _digest(path: Path) -> bytes:
-    """Return the digest of a file, taken again when the file has changed."""
+def _same(one: Path, other: Path) -> bool:
+    """Return whether two files are equal, or both missing; read again only if one has changed."""
     try:
-        status = path.stat()
-        return _digest_of(path.resolve(), status.st_mtime_ns, status.st_size)
+        return filecmp.cmp(one, other, shallow=False)
     except OSError:
-        return b""
-
-
-@lru_cache(maxsize=256)
-def _digest_of(path: Path, changed: int, size: int) -> bytes:
-    del changed, size  # they tell one content of the file from another
-    return hashlib.sha256(path.read_bytes()).digest()
+        return not one.is_file() and not other.is_file()
 
 
 @cache
