@@ -12,6 +12,7 @@ from pathlib import Path
 import mpmath as mp
 import numpy as np
 from kinds import KINDS
+from law_values import value
 from precise import DIGITS, measured
 from tableau import Tableau, pairs_of, state
 
@@ -269,11 +270,13 @@ def check_entropy(module, spec, x, u):
     rates = dict(zip(names, module.rhs(x, u, p), strict=True))
     hot = dict(zip((r.name for r in module.BODIES), module.temperatures(x, p), strict=True))
     produced = module.entropy_production(x, u, p)
-    brought = [
-        getattr(p, e["conductance"]) * (given[e["input"]] / hot[e["body"]] - 1)
+    seen = Tableau(spec, dict(zip(names, x, strict=True)), given).seen()
+    airs = [
+        (e["conductance"], hot[e["body"]], given[e["input"]])
         for e in spec["elements"].values()
         if e["kind"] == "ambient"
     ]
+    brought = [value(law, {**seen, "T": T, "T_e": T_e}) * (T_e / T - 1) for law, T, T_e in airs]
     heaters = [e for e in spec["elements"].values() if e["kind"] == "heat_source"]
     brought += [given[e["input"]] / hot[e["into"]] for e in heaters]
     terms = [*produced, *brought]

@@ -38,7 +38,21 @@ SMOOTH = (
 )
 
 
-def law(draft, letter, body, *, linear, lanes=None):
+SEEN = ("1 + {x}**2", "1 + abs({x})", "2 + tanh({x})", "1 if {x} > 0 else 1 + {x}**2")
+
+
+def seeing(draft, text, own=""):
+    """Return a law, at times with a factor of another element's state, or a temperature."""
+    there = [own] * bool(own) + draft.states()
+    if not draft.one_in(3):
+        return text
+    if there and draft.one_in(2):
+        return f"({text})*({draft.pick(SEEN).format(x=draft.pick(there))})"
+    body = draft.body()
+    return f"({text})*T_{body}/{draft.bodies[body]}"
+
+
+def law(draft, letter, body, *, linear, lanes=None, own=""):
     """Return the text of a dissipative law in a letter, with parameters of its own."""
     forms = LINEAR if linear else (*KINKED, *SMOOTH)
     form = draft.pick(forms)
@@ -47,7 +61,7 @@ def law(draft, letter, body, *, linear, lanes=None):
         if f"{{{word}}}" in form:
             words[word] = draft.parameter(word, unit, low, high, lanes=lanes)
             draft.assume.append(f"{words[word]} > 0")
-    return form.format(**words)
+    return seeing(draft, form.format(**words), own)
 
 
 def dissipative(draft):
@@ -114,20 +128,22 @@ def hysteron(draft):
     count = None if draft.one_in(4) else draft.pick((1, 2, 3, 4))
     bank = {} if count is None else {"count": count}
     linear = draft.one_in(2)  # row program stays open for a kink of a current that saturates
+    state = draft.state()
+    own = state.get("state", f"phi_{draft.name}")
     return {
         "between": draft.pair("e"),
         **bank,
         "inductance": inductance(draft, count, saturates=linear),
-        "voltage": law(draft, "i", body, linear=linear, lanes=count),
+        "voltage": law(draft, "i", body, linear=linear, lanes=count, own=own),
         "heats": body,
-        **draft.state(),
+        **state,
     }
 
 
 def transducer(draft):
     ratio, body = draft.parameter("a", "C/m", 0.3, 2), draft.body()
     hot = {"ratio": f"{ratio}*T/{draft.bodies[body]}", "temperature": body}
-    fixed = {"ratio": ratio}
+    fixed = {"ratio": seeing(draft, ratio)}
     pairs = {"electrical": draft.pair("e"), draft.pick(MOVES): draft.pair("m")}
     return {**pairs, **draft.pick((hot, fixed))}
 
@@ -163,7 +179,11 @@ def coupled(draft):
     new = draft.pair(domain)
     draft.ends = ()
     first, second = draft.pick(((new, draft.pair(domain)), (draft.pair(domain), new)))
-    return {"first": first, "second": second, "ratio": draft.pick((ratio, f"2*{ratio}"))}
+    return {
+        "first": first,
+        "second": second,
+        "ratio": seeing(draft, draft.pick((ratio, f"2*{ratio}"))),
+    }
 
 
 def thermal_mass(draft):
@@ -177,12 +197,16 @@ def thermal_mass(draft):
 def conduction(draft):
     hot = draft.body()
     cold = draft.pick([name for name in draft.bodies if name != hot])
-    return {"between": [hot, cold], "conductance": draft.parameter("lam", "W/K")}
+    lam = draft.parameter("lam", "W/K")
+    forms = (lam, f"{lam}*(T_1**2 + T_2**2)*(T_1 + T_2)", seeing(draft, lam))
+    return {"between": [hot, cold], "conductance": draft.pick(forms)}
 
 
 def ambient(draft):
     lam = draft.parameter("lam", "W/K")
-    return {"body": draft.body(), "conductance": lam, "input": draft.input("K", 4.0)}
+    forms = (lam, f"{lam}*(T**2 + T_e**2)*(T + T_e)", seeing(draft, lam))
+    conductance, given = draft.pick(forms), draft.input("K", 4.0)
+    return {"body": draft.body(), "conductance": conductance, "input": given}
 
 
 def heat_source(draft):

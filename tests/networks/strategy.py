@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from hypothesis import HealthCheck, given, reject, seed, settings
 from hypothesis import strategies as st
 from kinds import KINDS
+from tableau import state
 
 from piezo_sym import Model, PiezoError, derive
 
@@ -118,6 +119,11 @@ class Draft:
     def body(self):
         """Return the name of a body."""
         return self.pick(self.bodies)
+
+    def states(self):
+        """Return the symbols of the states so far, but for those of banks."""
+        there = [(n, e) for n, e in self.elements.items() if "count" not in e]
+        return [state(n, e) for n, e in there if KINDS[e["kind"]].letter]
 
     def state(self):
         """Return the symbol of a state, if it has one of its own."""

@@ -78,6 +78,11 @@ class Tableau:
         given = {n: p["value"] for n, p in self.spec["parameters"].items()}
         return {n: v[lane % len(v)] if isinstance(v, list) else v for n, v in given.items()}
 
+    def seen(self, lane=0):
+        """Return the values of all that laws see: states and temperatures, too."""
+        hot = {f"T_{name}": value for name, value in self.temperatures.items()}
+        return {**self.words(lane), **self.states, **hot}
+
     def _add(self, name, element):
         kind = KINDS[element["kind"]]
         if kind.form == "store, law":
@@ -85,14 +90,14 @@ class Tableau:
                 label = f"{name}_{lane + 1}" if "count" in element else name
                 a, b = element["between"]
                 self._store(label, lane, element, (a, f"{label}:inner"), name)
-                self._resistor(label, lane, element, (f"{label}:inner", b))
+                self._resistor(label, lane, element, (f"{label}:inner", b), name)
         elif kind.form == "store":
             self._store(name, 0, element, nodes_of(element), name)
         elif kind.form == "source":
             given = self.inputs[element["input"]] * (1 if kind.across else -1)
             self.branches.append(Branch(name, nodes_of(element), kind.across, given))
         elif kind.form == "law":
-            self._resistor(name, 0, element, nodes_of(element))
+            self._resistor(name, 0, element, nodes_of(element), name)
         elif kind.form == "coupling":
             self.couplings.append((name, element))
 
@@ -107,9 +112,13 @@ class Tableau:
         self.costates[len(self.branches)] = symbol, costate
         self.branches.append(Branch(label, nodes, kind.across))
 
-    def _resistor(self, label, lane, element, nodes):
+    def _resistor(self, label, lane, element, nodes, name):
         text, letter, across = law_of(element)
-        words = {**self.words(lane), "T": self.temperatures[element["heats"]]}
+        words = self.seen(lane)
+        if KINDS[element["kind"]].letter:
+            symbol = state(name, element)
+            words[symbol] = self.states[symbol + label.removeprefix(name)]
+        words = {**words, "T": self.temperatures[element["heats"]]}
         law = lambda z: float(value(text, {**words, letter: z}))  # noqa: E731
         self.branches.append(Branch(label, nodes, across, law=law))
 
@@ -194,7 +203,7 @@ class Tableau:
         self._balance(matrix, second, row + 1)
         kind = KINDS[element["kind"]]
         hot = {"T": self.temperatures[element["temperature"]]} if "temperature" in element else {}
-        ratio = value(element[kind.ratio], {**self.words(), **hot})
+        ratio = value(element[kind.ratio], {**self.seen(), **hot})
         if not kind.across:
             matrix[row, row], matrix[row + 1, row + 1] = 1, 1
             self._across(matrix, row, second, -ratio)
@@ -303,7 +312,8 @@ class Tableau:
         if element["kind"] == "conduction":
             first, second = element["between"]
             hot, cold = self.temperatures[first], self.temperatures[second]
-            heat = value(element["conductance"], self.words()) * (hot - cold)
+            words = {**self.seen(), "T_1": hot, "T_2": cold}
+            heat = value(element["conductance"], words) * (hot - cold)
             flows[first] -= heat / hot
             flows[second] += heat / cold
             found.productions[name] = heat / cold - heat / hot
@@ -313,8 +323,10 @@ class Tableau:
             found.outputs[name] = own
         if element["kind"] == "ambient":
             own = self.temperatures[element["body"]]
-            conductance = value(element["conductance"], self.words())
-            flows[element["body"]] += conductance * (self.inputs[element["input"]] / own - 1)
+            outside = self.inputs[element["input"]]
+            words = {**self.seen(), "T": own, "T_e": outside}
+            conductance = value(element["conductance"], words)
+            flows[element["body"]] += conductance * (outside / own - 1)
             found.outputs[name] = own
 
 

@@ -1,12 +1,29 @@
 """Random networks derive to a proved system whose module is right, or are refused by name."""
 
+import ast
+
 import pytest
 from agreement import DERIVED, check
 from kinds import KINDS
 from strategy import explore
+from tableau import state
 
 from piezo_sym import Model, PiezoError, derive
 from piezo_sym.spec import elements
+
+MORE = (
+    "a list of values",
+    "a loop of resistors",
+    "two banks",
+    "joined stores",
+    "a law of another's state",
+    "a law of another's temperature",
+)
+
+
+def words(law):
+    """Return the names in a law."""
+    return {node.id for node in ast.walk(ast.parse(law)) if isinstance(node, ast.Name)}
 
 
 def features(spec, _):
@@ -17,7 +34,12 @@ def features(spec, _):
         return set()
     elements = spec["elements"].values()
     values = [entry["value"] for entry in spec["parameters"].values()]
+    symbols = {state(n, e) for n, e in spec["elements"].items() if KINDS[e["kind"]].letter}
+    fields = ("voltage", "current", "force", "velocity", "ratio", "conductance")
+    laws = [e[field] for e in elements for field in fields if field in e]
     has = {
+        "a law of another's state": any(symbols & words(law) for law in laws),
+        "a law of another's temperature": any("T_bo" in law or "T_th" in law for law in laws),
         "a list of values": any(isinstance(value, list) for value in values),
         "a loop of resistors": bool(iphs.junction.slopes),
         "joined stores": bool(iphs.junction.joints),
@@ -36,8 +58,7 @@ def checked(spec, seed):
 def check_seen(outcomes, *, missing):
     """Check that both outcomes are frequent, and that what derives is not only what is simple."""
     found, refused = set().union(*outcomes), outcomes.count(set())
-    wanted = {*elements.KINDS, "a list of values", "a loop of resistors", "two banks"}
-    wanted.add("joined stores")
+    wanted = {*elements.KINDS, *MORE}
     assert found <= wanted
     assert len(wanted - found) <= missing
     assert len(outcomes) / 20 <= refused <= len(outcomes) / 2
