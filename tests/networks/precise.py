@@ -63,5 +63,11 @@ def _branch(expr, values, known):
 
 
 def _holds(condition, values, known):
+    if isinstance(condition, sp.And | sp.Or):
+        every = all if isinstance(condition, sp.And) else any
+        return every(_holds(part, values, known) for part in condition.args)
+    if isinstance(condition, sp.ITE):
+        test, then, other = condition.args
+        return _holds(then if _holds(test, values, known) else other, values, known)
     left, right = (_measured(side, values, known)[0] for side in condition.args)
     return RELATIONS[condition.func](left, right)
