@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from functools import reduce
 
 from piezo_sym.expressions.calculus import mul
-from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Div, Expr, Mul, Neg, Num, names
+from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Div, Expr, Mul, Neg, names
 from piezo_sym.network import slope_of
 from piezo_sym.spec.tables import condition_text
 
@@ -33,7 +33,7 @@ def mending(law: Expr, letter: str, shown: Shown) -> str:
     if rest and not shown(reduce(mul, rest), letter):
         return ""
     kept = [f for f in factors if f not in rest and not shown(f, "")]
-    if not kept or all(isinstance(f, Num) for f in kept):
+    if not any(map(names, kept)):
         return ""
     return condition_text(Cmp(">=", reduce(mul, kept), ZERO))
 
