@@ -38,6 +38,7 @@ if TYPE_CHECKING:  # "as" makes them public for type checkers
     from piezo_sym.run import sine as sine
     from piezo_sym.run import step as step
     from piezo_sym.run import triangle as triangle
+    from piezo_sym.spec.layered import layered as layered
     from piezo_sym.spec.load import load as load
     from piezo_sym.spec.model import Model as Model
     from piezo_sym.sweeps import sweep as sweep
@@ -53,6 +54,7 @@ _NAMES: dict[str, tuple[str, ...]] = {
     "errors": ("PiezoError",),
     "linearization": ("linearize",),
     "run": ("chirp", "ramp", "samples", "samples_from_csv", "sine", "step", "triangle"),
+    "spec.layered": ("layered",),
     "spec.load": ("load",),
     "spec.model": ("Model",),
     "sweeps": ("sweep",),

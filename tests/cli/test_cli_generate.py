@@ -101,5 +101,5 @@ def test_what_is_not_proved_is_written_if_allowed(call, unproved, tmp_path):
 
 def test_a_folder_that_cannot_be_written_is_one_line(refused, tmp_path):
     (tmp_path / "file").write_text("")
-    message = refused("generate", "--out", tmp_path / "file")
+    message = refused("generate", "piezo_stack", "--out", tmp_path / "file")
     assert message.startswith(f"'{tmp_path / 'file' / NAME}': cannot be written")

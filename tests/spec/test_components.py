@@ -374,7 +374,7 @@ def test_what_does_not_fit_is_refused_in_one_line(whole, text):
 
 def test_a_text_without_a_file_has_shipped_components_only():
     assert parse(HEAD + '[components.a]\nspec = "piezo_stack"').components
-    with pytest.raises(PiezoError, match="no shipped spec; shipped: piezo_stack"):
+    with pytest.raises(PiezoError, match=r"no shipped spec; shipped: .*piezo_stack"):
         parse(HEAD + '[components.a]\nspec = "cell.toml"')
 
 

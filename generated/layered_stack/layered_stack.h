@@ -1,0 +1,209 @@
+/*
+ * Piezoelectric stack of 3 layers that conduct heat: irreversible port-Hamiltonian system.
+ *
+ * Source:  Caballeria, Ramirez, Le Gorrec (2021), eqs. (9)-(13), Table 1, cut into layers; conductance between them: a choice
+ * Model:   layered_stack, spec sha256 b46e92f413d7be38d2b0d17c8e7e220000a9ea90d48a027e94b79d81ff92ba5e
+ * Proofs:  skew, casimir, temperature, energy, entropy, welldef, continuous, passive, odd, sigma, exergy, environment, invariant, units, program PROVED
+ *
+ * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
+ * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
+ *
+ * x = (q_1, p_1, Q_1, phi_1, S_1, q_2, p_2, Q_2, phi_2, S_2, q_3, p_3, Q_3, phi_3, S_3)
+ * u = (F_ext, V_in, T_e)
+ */
+#ifndef PIEZO_SYM_layered_stack_H
+#define PIEZO_SYM_layered_stack_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Parameters in SI units. The caller sets all; comments show the values of the spec. */
+typedef struct {
+    double M; /* mass of a layer [kg]; spec: 0.00225 */
+    double k; /* stiffness of a layer [N/m]; spec: 1500000.0 */
+    double d; /* damping of a layer [N*s/m]; spec: 1200.0 */
+    double C; /* capacitance of a layer [F]; spec: 1.6666666666666667e-06 */
+    double L; /* inductance of a layer's hysteron [H]; spec: 0.0015 */
+    double rho; /* resistance law of a layer: slope rho/(T - T_0) [ohm*K]; spec: 15.0 */
+    double i_0; /* half width of a layer's dead zone [A]; spec: 0.3333333333333333 */
+    double a; /* transducer ratio of a layer at T_0 [C/m]; spec: 10.0 */
+    double T_0; /* reference temperature [K]; spec: 296.15 */
+    double c_0; /* heat capacity of a layer [J/K]; spec: 1.6666666666666667 */
+    double lam; /* heat conductance from an end to the environment [W/K]; spec: 1.0 */
+    double lam_l; /* heat conductance from a layer to the next [W/K]; spec: 6.0 */
+} layered_stack_parameters;
+
+/* An initializer for parameters: the values of the spec. */
+#define layered_stack_DEFAULTS { \
+    .M = 0.00225, \
+    .k = 1500000.0, \
+    .d = 1200.0, \
+    .C = 1.6666666666666667e-06, \
+    .L = 0.0015, \
+    .rho = 15.0, \
+    .i_0 = 0.3333333333333333, \
+    .a = 10.0, \
+    .T_0 = 296.15, \
+    .c_0 = 1.6666666666666667, \
+    .lam = 1.0, \
+    .lam_l = 6.0, \
+}
+
+/* Sizes that no bank changes: of inputs, outputs, bodies, conditions of the domain. */
+enum {
+    layered_stack_input_count = 3,
+    layered_stack_output_count = 4,
+    layered_stack_body_count = 3,
+    layered_stack_limit_count = 15,
+};
+
+/*
+ * Number of states n.
+ */
+long layered_stack_states(const layered_stack_parameters *p);
+
+/*
+ * Number of processes; of a bank, one per lane.
+ */
+long layered_stack_processes(const layered_stack_parameters *p);
+
+/*
+ * State at t = 0 [SI], for the inputs u at t = 0.
+ * u[layered_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[n], written; must not overlap another argument: q_1 [m], p_1 [kg*m/s], Q_1 [C], phi_1
+ *     [Wb], S_1 [J/K], q_2 [m], p_2 [kg*m/s], Q_2 [C], phi_2 [Wb], S_2 [J/K], q_3 [m], p_3
+ *     [kg*m/s], Q_3 [C], phi_3 [Wb], S_3 [J/K]
+ */
+void layered_stack_initial_state(const double *u,
+                                 const layered_stack_parameters *p,
+                                 double *out);
+
+/*
+ * Rates dx/dt = J_ir dU/dx + g u.
+ * x[n], read: q_1 [m], p_1 [kg*m/s], Q_1 [C], phi_1 [Wb], S_1 [J/K], q_2 [m], p_2 [kg*m/s],
+ *     Q_2 [C], phi_2 [Wb], S_2 [J/K], q_3 [m], p_3 [kg*m/s], Q_3 [C], phi_3 [Wb], S_3 [J/K]
+ * u[layered_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[n], written; must not overlap another argument
+ */
+void layered_stack_rhs(const double *x,
+                       const double *u,
+                       const layered_stack_parameters *p,
+                       double *out);
+
+/*
+ * Derivative of rhs by the state, n x n, row after row.
+ * x[n], read: q_1 [m], p_1 [kg*m/s], Q_1 [C], phi_1 [Wb], S_1 [J/K], q_2 [m], p_2 [kg*m/s],
+ *     Q_2 [C], phi_2 [Wb], S_2 [J/K], q_3 [m], p_3 [kg*m/s], Q_3 [C], phi_3 [Wb], S_3 [J/K]
+ * u[layered_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[n*n], written; must not overlap another argument
+ */
+void layered_stack_jacobian(const double *x,
+                            const double *u,
+                            const layered_stack_parameters *p,
+                            double *out);
+
+/*
+ * Outputs y, one per port, conjugate to its input.
+ * x[n], read: q_1 [m], p_1 [kg*m/s], Q_1 [C], phi_1 [Wb], S_1 [J/K], q_2 [m], p_2 [kg*m/s],
+ *     Q_2 [C], phi_2 [Wb], S_2 [J/K], q_3 [m], p_3 [kg*m/s], Q_3 [C], phi_3 [Wb], S_3 [J/K]
+ * u[layered_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[layered_stack_output_count], written; must not overlap another argument: load [m/s],
+ *     supply [A], base [K], top [K]
+ */
+void layered_stack_outputs(const double *x,
+                           const double *u,
+                           const layered_stack_parameters *p,
+                           double *out);
+
+/*
+ * Power supplied through each port [W]; the sum is dU/dt.
+ * x[n], read: q_1 [m], p_1 [kg*m/s], Q_1 [C], phi_1 [Wb], S_1 [J/K], q_2 [m], p_2 [kg*m/s],
+ *     Q_2 [C], phi_2 [Wb], S_2 [J/K], q_3 [m], p_3 [kg*m/s], Q_3 [C], phi_3 [Wb], S_3 [J/K]
+ * u[layered_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[layered_stack_output_count], written; must not overlap another argument
+ */
+void layered_stack_supply(const double *x,
+                          const double *u,
+                          const layered_stack_parameters *p,
+                          double *out);
+
+/*
+ * Hamiltonian U [J].
+ * x[n], read: q_1 [m], p_1 [kg*m/s], Q_1 [C], phi_1 [Wb], S_1 [J/K], q_2 [m], p_2 [kg*m/s],
+ *     Q_2 [C], phi_2 [Wb], S_2 [J/K], q_3 [m], p_3 [kg*m/s], Q_3 [C], phi_3 [Wb], S_3 [J/K]
+ */
+double layered_stack_energy(const double *x, const layered_stack_parameters *p);
+
+/*
+ * Total entropy S [J/K].
+ * x[n], read: q_1 [m], p_1 [kg*m/s], Q_1 [C], phi_1 [Wb], S_1 [J/K], q_2 [m], p_2 [kg*m/s],
+ *     Q_2 [C], phi_2 [Wb], S_2 [J/K], q_3 [m], p_3 [kg*m/s], Q_3 [C], phi_3 [Wb], S_3 [J/K]
+ */
+double layered_stack_entropy(const double *x, const layered_stack_parameters *p);
+
+/*
+ * Temperature of each body [K].
+ * x[n], read: q_1 [m], p_1 [kg*m/s], Q_1 [C], phi_1 [Wb], S_1 [J/K], q_2 [m], p_2 [kg*m/s],
+ *     Q_2 [C], phi_2 [Wb], S_2 [J/K], q_3 [m], p_3 [kg*m/s], Q_3 [C], phi_3 [Wb], S_3 [J/K]
+ * out[layered_stack_body_count], written; must not overlap another argument: body_1 [K],
+ *     body_2 [K], body_3 [K]
+ */
+void layered_stack_temperatures(const double *x, const layered_stack_parameters *p, double *out);
+
+/*
+ * Power that each process turns into heat [W]; of a bank, one row per lane.
+ * x[n], read: q_1 [m], p_1 [kg*m/s], Q_1 [C], phi_1 [Wb], S_1 [J/K], q_2 [m], p_2 [kg*m/s],
+ *     Q_2 [C], phi_2 [Wb], S_2 [J/K], q_3 [m], p_3 [kg*m/s], Q_3 [C], phi_3 [Wb], S_3 [J/K]
+ * u[layered_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[layered_stack_processes(p)], written; must not overlap another argument
+ */
+void layered_stack_heat(const double *x,
+                        const double *u,
+                        const layered_stack_parameters *p,
+                        double *out);
+
+/*
+ * Entropy that each process produces [W/K]; of a bank, one row per lane.
+ * x[n], read: q_1 [m], p_1 [kg*m/s], Q_1 [C], phi_1 [Wb], S_1 [J/K], q_2 [m], p_2 [kg*m/s],
+ *     Q_2 [C], phi_2 [Wb], S_2 [J/K], q_3 [m], p_3 [kg*m/s], Q_3 [C], phi_3 [Wb], S_3 [J/K]
+ * u[layered_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[layered_stack_processes(p)], written; must not overlap another argument
+ */
+void layered_stack_entropy_production(const double *x,
+                                      const double *u,
+                                      const layered_stack_parameters *p,
+                                      double *out);
+
+/*
+ * Margin of each condition of the domain; of a bank, the least over its lanes.
+ * x[n], read: q_1 [m], p_1 [kg*m/s], Q_1 [C], phi_1 [Wb], S_1 [J/K], q_2 [m], p_2 [kg*m/s],
+ *     Q_2 [C], phi_2 [Wb], S_2 [J/K], q_3 [m], p_3 [kg*m/s], Q_3 [C], phi_3 [Wb], S_3 [J/K]
+ * u[layered_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[layered_stack_limit_count], written; must not overlap another argument
+ * out[0]: T_body_1 > T_0; inside, > 0
+ * out[1]: T_body_2 > T_0; inside, > 0
+ * out[2]: T_body_3 > T_0; inside, > 0
+ * out[3]: T_e > T_0; inside, > 0
+ * out[4]: d >= 0; inside, >= 0
+ * out[5]: rho >= 0; inside, >= 0
+ * out[6]: i_0 >= 0; inside, >= 0
+ * out[7]: lam >= 0; inside, >= 0
+ * out[8]: lam_l >= 0; inside, >= 0
+ * out[9]: k > 0; inside, > 0
+ * out[10]: M > 0; inside, > 0
+ * out[11]: C > 0; inside, > 0
+ * out[12]: L > 0; inside, > 0
+ * out[13]: T_0 > 0; inside, > 0
+ * out[14]: c_0 > 0; inside, > 0
+ */
+void layered_stack_margins(const double *x,
+                           const double *u,
+                           const layered_stack_parameters *p,
+                           double *out);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* PIEZO_SYM_layered_stack_H */
