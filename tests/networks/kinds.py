@@ -86,6 +86,7 @@ def stiff(draft):
     forms = (k, k, k, f"{k}*(1 + {x}**2)", f"{k}*(1 + {x}**2/3)**2", f"{k}*exp({x})")
     rest = {"rest": draft.parameter("q_l", at_rest, -1, 1)} if draft.one_in(3) else {}
     form = draft.pick(forms[:5]) if not draft.one_in(30) else forms[5]
+    form = k if draft.role == "tied" else form
     ends = draft.pair(KINDS[draft.kind].domains)
     return {"between": ends, "stiffness": form, **rest, **draft.state()}
 

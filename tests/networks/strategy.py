@@ -43,7 +43,8 @@ class Draft:
     """A spec in the making: what is drawn so far, and what an element may ask for.
 
     `linear` says that all resistors and dampers are, so that they may be in loops; `role` is "tree"
-    or "chord": whether the next element gives the across or the through variable.
+    or "chord": whether the next element gives the across or the through variable, or "tied" where
+    it is to depend on others.
     """
 
     draw: object
@@ -203,23 +204,26 @@ def _anywhere(draft):
 
 
 def _tied(draft):
-    """Put stores whose co-states depend on others': at nodes that are held, or two in series."""
+    """Put stores whose co-states depend on others': two in series or in parallel, or on levers."""
     there = sorted(domain for domain, nodes in draft.nodes.items() if len(nodes) > 1)
-    for n in range(draft.draw(st.integers(1, 3))):
-        domain = draft.pick(there)
-        fit = {across: _stores(domain, across=across) for across in (True, False)}
-        if draft.one_in(3):
-            ends = [f"{domain}s{n}", *draft.draw(st.permutations(draft.nodes[domain]))[:2]]
-            for other in ends[1:]:
-                pair = draft.draw(st.permutations([ends[0], other]))
-                draft.add(draft.pick(fit[False]), "chord", (domain, pair))
-        else:
-            draft.add(draft.pick(fit[True]), "tree")
+    for n in range(draft.draw(st.integers(1, 2))):
+        domain, node = draft.pick(there), f"tied{n}"
+        springs, held = _inside(domain, "store", False), _inside(domain, "store", True)
+        ways = [(springs, springs), (held, held, springs)]
+        ways += [(held, levers) for levers in [_inside(domain, "coupling", True)] if levers]
+        shared = draft.pick(draft.nodes[domain])
+        for kinds in draft.pick(ways):
+            kind = draft.pick(kinds)
+            other = shared if kinds is held else draft.pick(draft.nodes[domain])
+            other = REFERENCE[domain] if KINDS[kind].nodes == ("at",) else other
+            draft.add(kind, "tied", (domain, draft.draw(st.permutations([node, other]))))
+        draft.nodes[domain] = [*draft.nodes[domain], node]
 
 
-def _stores(domain, *, across):
-    fit = ((name, kind) for name, kind in KINDS.items() if domain in kind.domains)
-    return [name for name, kind in fit if (kind.form, kind.across) == ("store", across)]
+def _inside(domain, form, across):
+    """Return the kinds of a form that have nodes of one domain alone."""
+    fit = ((name, kind) for name, kind in KINDS.items() if domain == kind.domains)
+    return [name for name, kind in fit if (kind.form, kind.across) == (form, across)]
 
 
 def _adrift(elements):

@@ -219,7 +219,7 @@ class Tableau:
 
     def has_nonlinear_loop(self):
         """Return whether what a nonlinear law gives changes what one is given, its own or not."""
-        answers, count = np.linalg.inv(self._given()), len(self.nodes)
+        answers, count = np.linalg.pinv(self._given(), rcond=SINGULAR), len(self.nodes)
         laws = [k for k, b in enumerate(self.branches) if b.law and _linear_slope(b) is None]
         taken = [self._given_row(self.branches[k], count + k) for k in laws]
         gains = [row @ answers[:, count + k] for row in taken for k in laws]
