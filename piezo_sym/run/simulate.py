@@ -99,8 +99,9 @@ def simulate(
     parameters : name -> number, for a bank's parameter also a list of one number per lane; and
         `<bank>_count` -> number of lanes. SI units.
     initial : state -> number, for a bank's state also a list of one number per lane. SI units.
-        Those left out keep the module's initial state. Or a Dataset of this model: the run goes on
-        from its last state, with its parameters but for those given; integrals begin at 0 again.
+        Those left out keep the module's initial state. Stores that are joined have one state, as
+        `show` says. Or a Dataset of this model: the run goes on from its last state, with its
+        parameters but for those given; integrals begin at 0 again.
     t0 : the time at which the run starts [s]; when left out, 0, or the last time of a Dataset.
     method : discrete_gradient when left out, or one of SciPy's: RK23, RK45, DOP853, Radau, BDF,
         LSODA. Left out, a module without C beside it runs by LSODA; and so does one whose C cannot
