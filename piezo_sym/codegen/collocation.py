@@ -23,8 +23,8 @@ from piezo_sym.codegen.jacobian import jacobian_of
 from piezo_sym.codegen.paths import Path
 from piezo_sym.codegen.program import Entry, Limit, Names, OutputRow, Quantity, needed
 from piezo_sym.codegen.quantities import COSTATES, Quantities, quantities_of
-from piezo_sym.codegen.switches import Switch, compared, switched
-from piezo_sym.expressions.calculus import is_affine
+from piezo_sym.codegen.switches import Switch, switched
+from piezo_sym.expressions.calculus import compared, is_affine
 from piezo_sym.expressions.tree import names
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.elements.ports import Body, Storage

@@ -14,7 +14,7 @@ from typing import final
 
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.codegen.program import Names, OutputRow, Quantity, bank_of
-from piezo_sym.expressions.calculus import add, choices, kinks, neg
+from piezo_sym.expressions.calculus import add, choices, compared, kinks, neg
 from piezo_sym.expressions.tree import ZERO, Cmp, Expr, If, Sym, rebuild
 
 NOTE = "switching functions"
@@ -154,8 +154,3 @@ class _Switches:
             self.lanes |= {branch: bank} if bank else {}
             self.found[condition] = Switch(branch, Sym(name), bank, "=" not in condition.op)
         return Cmp(">", Sym(self.found[condition].branch), ZERO)
-
-
-def compared(node: Expr) -> Expr:
-    """Return an expression whose kinks are choices by comparisons, as no step keeps them."""
-    return choices(rebuild(node, compared))

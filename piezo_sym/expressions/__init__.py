@@ -2,7 +2,7 @@
 
     tree         the nodes, and the walks that every stage shares
     parse        text to a tree; `lexer` and `size` refuse what is too long or too deep
-    calculus     sums, products, derivatives; `integrals` their antiderivatives
+    calculus     sums, products, derivatives; `integrals`, `energies` their antiderivatives
     dimensions   which parts must have equal units
     enclosure    where a value lies, for certain
     exact_eval   the value itself: a rational, or a ball

@@ -152,9 +152,11 @@ def div(top: Expr, bottom: Expr) -> Expr:
 
 
 def power(base: Expr, exponent: Fraction) -> Expr:
-    """Return a power; exponents 0 and 1 vanish."""
+    """Return a power; exponents 0 and 1 vanish, and so does a power of zero."""
     if exponent == 0:
         return ONE
+    if base == ZERO and exponent > 0:
+        return ZERO
     return base if exponent == 1 else Pow(base, exponent)
 
 
@@ -269,6 +271,11 @@ def inserted(node: Expr, words: Mapping[str, Expr]) -> Expr:
         case Pow(base, exponent):
             return power(inserted(base, words), exponent)
     return rebuild(node, lambda part: inserted(part, words))
+
+
+def compared(node: Expr) -> Expr:
+    """Return an expression whose kinks are choices by comparisons."""
+    return choices(rebuild(node, compared))
 
 
 def is_affine(law: Expr, variables: Iterable[str]) -> bool:

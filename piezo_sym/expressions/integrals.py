@@ -1,4 +1,4 @@
-"""Antiderivatives of laws: the energies of storage elements from their co-state laws.
+"""Antiderivatives of laws without choices, by rules.
 
 Input: a tree and a name.  Output: a tree, or None where there is none of a simple form.
 """
@@ -6,7 +6,15 @@ Input: a tree and a name.  Output: a tree, or None where there is none of a simp
 from fractions import Fraction
 from math import comb
 
-from piezo_sym.expressions.calculus import add, derivative, div, mul, neg, power, rule
+from piezo_sym.expressions.calculus import (
+    add,
+    derivative,
+    div,
+    mul,
+    neg,
+    power,
+    rule,
+)
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.tree import (
     ONE,
@@ -29,37 +37,38 @@ from piezo_sym.expressions.tree import (
 MAX_PARTS = 20_000
 
 
-def antiderivative(node: Expr, name: str) -> Expr | None:
+def by_rules(node: Expr, name: str) -> Expr | None:
     """Return an antiderivative of `node` by `name`, or None where there is none of a simple form.
 
     Known forms: polynomials, also as x/(a/(1 + x**2)), and sums of c*(a*x + b)**n and
-    c*exp(a*x + b), c, a, b free of x.
+    c*f(a*x + b), c, a, b free of x.
     """
     if name not in names(node):
         return mul(node, Sym(name))
     match node:
         case Neg(arg):
-            inner = antiderivative(arg, name)
+            inner = by_rules(arg, name)
             return None if inner is None else neg(inner)
-        case Add(terms) if _slope(node, name) is None:
-            parts = [antiderivative(term, name) for term in terms]
+        case Add(terms) if not _divides_well(slope_of(node, name)):
+            parts = [by_rules(term, name) for term in terms]
             known = [part for part in parts if part is not None]
             return add(*known) if len(known) == len(parts) else None
         case Mul(left, right) if name not in names(left):
-            inner = antiderivative(right, name)
+            inner = by_rules(right, name)
             return None if inner is None else mul(left, inner)
         case Mul(left, right) if name not in names(right):
-            inner = antiderivative(left, name)
+            inner = by_rules(left, name)
             return None if inner is None else mul(right, inner)
         case Div(left, right) if name not in names(right):
-            inner = antiderivative(left, name)
+            inner = by_rules(left, name)
             return None if inner is None else _over(inner, right)
         case Div(left, Div(top, bottom)) if name not in names(top):  # phi/(L/(1 + phi**2))
-            return antiderivative(div(mul(left, bottom), top), name)
-        case Call(function, (arg,)) if RECORDS[function].integral:
-            slope = _slope(arg, name)
-            whole = rule(RECORDS[function].integral, arg, value=node)
-            return None if slope is None else _divided(whole, slope)
+            return by_rules(div(mul(left, bottom), top), name)
+        case Call(function, (arg, *rest)) if RECORDS[function].integral:
+            arg, *rest = (*rest, arg) if rest and name not in names(arg) else (arg, *rest)
+            slope = None if any(name in names(w) for w in rest) else slope_of(arg, name)
+            whole = rule(RECORDS[function].integral, arg, rest[0] if rest else ZERO, node)
+            return None if slope is None else divided(whole, slope)
     found = _power_rule(node, name)
     return _polynomial_rule(node, name) if found is None else found
 
@@ -147,7 +156,7 @@ def _size(polynomial: dict[int, Expr]) -> int:
 
 def _power_rule(node: Expr, name: str) -> Expr | None:
     base, exponent = (node.base, node.exponent) if isinstance(node, Pow) else (node, Fraction(1))
-    slope = _slope(base, name)
+    slope = slope_of(base, name)
     if slope is None or exponent == -1:
         return None
     raised = power(base, exponent + 1)
@@ -164,7 +173,7 @@ def _over(top: Expr, bottom: Expr) -> Expr:
     return div(top, bottom)
 
 
-def _divided(top: Expr, slope: Expr) -> Expr:
+def divided(top: Expr, slope: Expr) -> Expr:
     """Return ``top/slope``, with ``1/(1/c)`` written ``c``."""
     match slope:
         case Div(Num(value), bottom):
@@ -172,12 +181,17 @@ def _divided(top: Expr, slope: Expr) -> Expr:
     return div(top, slope)
 
 
-def _slope(node: Expr, name: str) -> Expr | None:
+def slope_of(node: Expr, name: str) -> Expr | None:
     """Return a where node = a*x + b with a, b free of x, else None."""
     if not _smooth(node):
         return None
     slope = derivative(node, name)
     return slope if slope != ZERO and name not in names(slope) else None
+
+
+def _divides_well(slope: Expr | None) -> bool:
+    """Return whether dividing by a slope divides by no name."""
+    return isinstance(slope, Num) or (isinstance(slope, Div) and isinstance(slope.left, Num))
 
 
 def _smooth(node: Expr) -> bool:

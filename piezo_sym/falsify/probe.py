@@ -163,7 +163,7 @@ def _laws(q: Quantities) -> Iterator[tuple[tuple[str, str], Expr]]:
                 yield ("temperature", element), Sym(port.temperature)
                 yield ("slope", element), derivative(port.law, port.state)
             case Storage():
-                yield ("costate", element), Sym(costate_name(port))
+                yield (f"costate {port.state}", element), Sym(costate_name(port))
             case Coupling():
                 yield ("ratio", element), Sym(port.name)
             case DissipativePort():

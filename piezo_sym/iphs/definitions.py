@@ -12,12 +12,13 @@ from typing import final
 
 import sympy as sp
 
+from piezo_sym.algebra.integrals import integral
 from piezo_sym.algebra.lanes import vector
 from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import SpecError, quote
-from piezo_sym.expressions.integrals import antiderivative
+from piezo_sym.expressions.energies import antiderivative
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import Expr
+from piezo_sym.expressions.tree import ZERO, Expr, Sym
 from piezo_sym.iphs.system import System
 from piezo_sym.network import Junction, Slope, port_order
 from piezo_sym.spec.circuit import Circuit
@@ -31,7 +32,7 @@ from piezo_sym.spec.elements.ports import (
     Source,
     Storage,
 )
-from piezo_sym.spec.tables import starts
+from piezo_sym.spec.tables import conditions, greater, starts
 
 
 def costate_name(port: Storage | Body) -> str:
@@ -114,18 +115,25 @@ def energies_of(circuit: Circuit) -> tuple[Energy, ...]:
     """
     rows: dict[tuple[Expr, str | None], tuple[int, ...]] = {}
     for n, (placed, port) in enumerate(circuit.of(Storage, Body)):
-        key = port.energy or _integral(placed.element, port), placed.bank
+        key = port.energy or _integral(circuit, placed.element, port), placed.bank
         rows[key] = (*rows.get(key, ()), n)
     return tuple(Energy(law, found, bank) for (law, bank), found in rows.items())
 
 
-def _integral(element: str, port: Storage | Body) -> Expr:
+def _integral(circuit: Circuit, element: str, port: Storage | Body) -> Expr:
     """Return the integral of a co-state law by its state."""
-    energy = antiderivative(port.law, port.state)
+    above = (greater(condition.tree) for condition in conditions(circuit.model))
+    positive = frozenset(
+        c.left.name for c in above if c.op == ">" and c.right == ZERO and isinstance(c.left, Sym)
+    )
+    energy = antiderivative(
+        port.law, port.state, lambda law, name: integral(law, name, positive), positive
+    )
     if energy is None:
-        what = f"the law {quote(spell(port.law))} has no energy in closed form"
-        expected = f"a polynomial in {port.state}, or an exponential"
-        raise SpecError(what, f"elements.{element}", expected)
+        what = f"no integral of the law {quote(spell(port.law))} by {port.state} is found"
+        expected = "one of the functions of laws, found by SymPy in 5 s"
+        remedy = f"give the energy itself instead: energy = '...', a law of {port.state}"
+        raise SpecError(what, f"elements.{element}", expected, remedy)
     return energy
 
 

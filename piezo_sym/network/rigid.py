@@ -68,7 +68,8 @@ def _hindrance(laws: Laws, row: Form) -> str:
         if placed.bank:
             return f", and {name} is a bank, which is not joined to others"
         slope = constant_slope(store.law, store.state)
-        if slope is None or vanishes(slope) or not known >= {*names(store.law)} - {store.state}:
+        used = {*names(store.law), *names(store.energy or store.law)} - {store.state}
+        if slope is None or vanishes(slope) or not known >= used:
             return f", and the energy of {name} is not quadratic"
     for placed, port in couplings_in(laws, row):
         if not known >= {*names(port.ratio)}:

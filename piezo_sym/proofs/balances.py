@@ -12,10 +12,13 @@ from collections.abc import Iterator
 import sympy as sp
 
 from piezo_sym.algebra.lanes import LaneMatrix
+from piezo_sym.expressions.calculus import add
+from piezo_sym.expressions.energies import slope
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ZERO, Cmp, Sym, names
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.assumptions import Assumptions
+from piezo_sym.proofs.gradients import same
 from piezo_sym.proofs.laws import valued
 from piezo_sym.proofs.obligations import Obligation, Question, Residual
 from piezo_sym.spec.elements.ports import (
@@ -25,6 +28,7 @@ from piezo_sym.spec.elements.ports import (
     Exchange,
     HeatInput,
     Source,
+    Storage,
 )
 
 
@@ -154,12 +158,17 @@ def _cooling(iphs: IPHS, assumptions: Assumptions) -> Iterator[Question]:
 
 def _gradient(iphs: IPHS) -> Iterator[Residual]:
     """Yield dU/dx minus the co-state, for each state."""
-    stored = [(names(e.law), iphs.symbols.law(e.law, {})) for e in iphs.energies]
-    for slot, (_, costate) in zip(iphs.system.states, iphs.costates, strict=True):
-        state = iphs.symbols[slot.label]
-        slopes = (sp.diff(law, state) for used, law in stored if slot.label in used)
-        difference = sp.Add(*slopes) - costate
-        yield Residual(f"dU/d{slot.label}", sp.expand(sp.together(difference)))
+    stored = [(names(e.law), e.law, iphs.symbols.law(e.law, {})) for e in iphs.energies]
+    stores = iphs.circuit.of(Storage, Body)
+    for (_, port), (_, costate) in zip(stores, iphs.costates, strict=True):
+        state = iphs.symbols[port.state]
+        own = [(tree, law) for used, tree, law in stored if port.state in used]
+        difference = sp.Add(*(sp.diff(law, state) for _, law in own)) - costate
+        residual = sp.expand(sp.together(difference))
+        rise = add(*(slope(tree, port.state) for tree, _ in own))
+        if residual != 0 and same(iphs, rise, port.law, port.state):
+            residual = sp.S.Zero
+        yield Residual(f"dU/d{port.state}", residual)
 
 
 def _entries(name: str, matrix: LaneMatrix) -> Iterator[Residual]:

@@ -11,12 +11,18 @@ from dataclasses import replace
 
 from piezo_sym.expressions.calculus import add, increasing, mul, neg
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import ZERO, Call, Cmp, Expr, Node, Sym, names
+from piezo_sym.expressions.tree import ZERO, Call, Cmp, Expr, Mul, Node, Num, Sym, names
 from piezo_sym.expressions.tree import replace as substituted
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name
 from piezo_sym.proofs.assumptions import Assumptions, Law
-from piezo_sym.proofs.branches import TooManyBranchesError, branches, partial
+from piezo_sym.proofs.branches import (
+    TooManyBranchesError,
+    branches,
+    choices,
+    partial,
+    with_choices,
+)
 from piezo_sym.proofs.obligations import Obligation, Question, SignOf
 from piezo_sym.proofs.reflection import reflected
 from piezo_sym.proofs.ties import ties
@@ -36,12 +42,33 @@ from piezo_sym.spec.tables import condition_text
 
 def laws_of(iphs: IPHS) -> tuple[Law, ...]:
     """Return every law of a model, in declaration order."""
-    tied = ties(iphs)
-    found = [law for placed in iphs.circuit.ports if (law := _law(iphs, placed))]
+    tied, stored = ties(iphs), dict(_energies(iphs))
+    found: list[Law] = []
+    for placed in iphs.circuit.ports:
+        found += filter(None, (_law(iphs, placed), stored.get(placed)))
     return tuple(
         replace(law, ties=(tied[law.element],)) if law.letter and law.element in tied else law
         for law in found
     )
+
+
+def _energies(iphs: IPHS) -> Iterator[tuple[Placed, Law]]:
+    """Yield the energies that choose, or may lack a value where their slopes have one."""
+    stores = tuple(iphs.circuit.of(Storage, Body))
+    for energy in iphs.energies:
+        placed, _ = stores[energy.rows[0]]
+        slopes = {claim for n in energy.rows for claim in _claims(stores[n][1].law)}
+        if choices(with_choices(energy.law)) or not slopes.issuperset(_claims(energy.law)):
+            yield placed, Law(placed.element, f"U_{placed.element}", energy.law)
+
+
+def _claims(law: Expr) -> Iterator[Cmp]:
+    """Yield what a law needs to have a value, without factors that are numbers."""
+    for claim in partial(law):
+        left = claim.left.right if isinstance(claim.left, Mul) else claim.left
+        plain = isinstance(claim.left, Mul) and isinstance(claim.left.left, Num)
+        if not isinstance(claim.left, Num):
+            yield Cmp(claim.op, left if plain else claim.left, claim.right)
 
 
 def _law(iphs: IPHS, placed: Placed) -> Law | None:

@@ -12,6 +12,7 @@ from typing import Any, cast, final
 from pydantic import PrivateAttr, ValidationError, model_validator
 
 from piezo_sym.errors import PiezoError
+from piezo_sym.spec.checks.energies import check_energies
 from piezo_sym.spec.checks.laws import check_laws, check_references
 from piezo_sym.spec.checks.names import check_names
 from piezo_sym.spec.checks.values import check_values
@@ -55,6 +56,7 @@ class Model(Tables):
         """Check the tables against each other: names first, values last."""
         if self.flatten() is self:
             check_names(self)
+            check_energies(self)
             check_references(self)
             check_laws(self)
             check_values(self)

@@ -12,7 +12,6 @@ from piezo_sym.expressions.dimensions import Dimension, Match, matches
 from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.tree import Cmp, Expr, Node, Sym
 from piezo_sym.expressions.units import parse_unit
-from piezo_sym.spec.elements.base import state_symbol
 from piezo_sym.spec.elements.ports import Exchange, HeatInput, Source
 from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.tables import bodies, law_fields, temperatures
@@ -105,13 +104,9 @@ def _starts(spec: Tables, given: Mapping[str, Dimension]) -> Iterator[Place]:
 
 
 def state_dimensions(spec: Tables) -> dict[str, Dimension]:
-    """Return the dimension of each state: that of its kind's letter."""
-    return {
-        state_symbol(element, name): _dimension(law.mark.units[element.letter])
-        for name, element in spec.elements.items()
-        for law in law_fields(name, element)
-        if element.letter and element.letter in law.mark.units
-    }
+    """Return the dimension of each state."""
+    elements = spec.elements.items()
+    return {s.symbol: _dimension(s.unit) for name, e in elements for s in e.own_states(name)}
 
 
 def _temperatures(spec: Tables) -> dict[str, Dimension]:

@@ -33,7 +33,7 @@ def relawed(element: Element, words: Mapping[str, str]) -> dict[str, Any]:
     hot = any(to == "thermal_mass" for _, to, _ in element.references())
     made = {}
     for field, text, mark in element.laws():
-        letters = {*mark.names} - (set() if hot else {"T"})
+        letters = set() if mark.own else {*mark.names} - (set() if hot else {"T"})
         made[field] = reworded(text, {word: words[word] for word in words.keys() - letters})
     return made
 
@@ -47,7 +47,14 @@ def renamed(
     """Return the fields of an element with new names of symbols, bodies and nodes."""
     ways = {"thermal_mass": body, "node": node, "input": words.__getitem__}
     made = {**element.model_dump(exclude_none=True), **relawed(element, words)}
-    for field, to, _ in element.named():
+    if hasattr(element, "states"):
+        made["states"] = {
+            words[symbol]: state.model_copy(
+                update={"between": state.between and tuple(map(node, state.between))}
+            )
+            for symbol, state in element.states.items()
+        }
+    for field, to, _ in (row for row in element.named() if row[0] != "states"):
         given = getattr(element, field)
         many = isinstance(given, tuple)
         made[field] = tuple(map(ways[to], given)) if many else ways[to](given)

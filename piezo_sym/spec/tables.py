@@ -61,7 +61,7 @@ def law_fields(name: str, element: Element) -> Iterator[LawField]:
 
 def states(spec: Tables) -> dict[str, str]:
     """Return the element of each state symbol, in declaration order."""
-    return {state_symbol(e, name): name for name, e in spec.elements.items() if e.letter}
+    return {s.symbol: name for name, e in spec.elements.items() for s in e.own_states(name)}
 
 
 def starts(spec: Tables, symbol: str) -> tuple[Expr, ...]:

@@ -57,8 +57,9 @@ def _dumped(pair: Mapping[str, Any]) -> str:
 def spec_hash(data: Mapping[str, Any]) -> str:
     """Return the SHA-256 of spec data.
 
-    Order counts where it means something: among parameters, inputs and elements.  Entries that say
-    nothing (0, "0", "", false, an empty list) are left out, since leaving them out means the same.
+    Order counts where it means something: among parameters, inputs, elements and their states.
+    Entries that say nothing (0, "0", "", false, an empty list) are left out, since leaving them out
+    means the same.
     """
     rows = {name: _rows(table, name in ORDERED) for name, table in data.items()}
     tables = {name: table for name, table in rows.items() if table}
@@ -67,18 +68,18 @@ def spec_hash(data: Mapping[str, Any]) -> str:
 
 
 def _rows(table: Mapping[str, Any], ordered: bool) -> list[Any]:
-    rows = [[key, _canonical(value)] for key, value in table.items()]
+    rows = [[key, _canonical(value, key == "states")] for key, value in table.items()]
     return rows if ordered else sorted(row for row in rows if row[1] not in NOTHING)
 
 
-def _canonical(value: Any) -> Any:
+def _canonical(value: Any, ordered: bool = False) -> Any:
     match value:
         case bool() | str() | None:
             return value
         case int() | float() if abs(value) <= MAX_SIZE:
             return float(value)
         case Mapping():
-            return _rows(value, ordered=False)
+            return _rows(value, ordered)
         case list() | tuple():
             return [_canonical(item) for item in value]
     return str(value)  # nan, a date: no valid spec has them, so their hash must differ from any

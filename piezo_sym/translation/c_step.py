@@ -13,8 +13,9 @@ by function and row.  The grammar:
 MACROS say what a word means where ``real`` is one number.  A mean that a stage is given is that of
 its integrand: a co-state and what is free of the state.  A branch is 1 where its switching function
 is positive, else 0; a stage chooses by branches alone: ``chosen(NAME > 0.0, value, value)``.
-`slopes` and the tables behind it serve Newton's method alone: of them nothing is said, but that
-they are in the grammar, and that slopes fill their array.
+`slopes` and the tables behind it serve Newton's method alone, and `bends`, which a line ``#define
+BENDS`` announces, says where the engine splits means: of them nothing is said, but that they are in
+the grammar, and that what they write fills its array.
 """
 
 import ast
@@ -69,9 +70,10 @@ _SIGNATURES = {
     "integrands": "x p out",
     "stage": "x g b u p out rows s m",
     "slopes": "x g b u p out",
+    "bends": "x p out",
 }
 _RESULTS = {"stage out": "rhs", "stage rows": "ledger", "stage m": "margins"}
-_RESULTS |= {"slopes out": NOT_COMPARED}
+_RESULTS |= {"slopes out": NOT_COMPARED, "bends out": NOT_COMPARED}
 
 
 def read_step(text: str, known: Proved) -> dict[Key, Value]:
@@ -97,14 +99,15 @@ class _Step:
         calls = {name: CALLS[name] for name in _LIBRARY}
         self.file = File(known, self.iphs.model.name, _SIGNATURES, "reals", calls, _RESULTS)
         self.file.helpers["min"] = Helper((("a", "double"), ("b", "double")), _LEAST)
-        self.branches, self.slopes = list[Branch](), list[Branch]()
+        self.branches, self.slopes, self.bends = list[Branch](), list[Branch](), list[Branch]()
         self.found: dict[Key, Value] = {}
 
     def rows(self) -> dict[Key, Value]:
         """Return what is written."""
         tokens, model, tables = self.tokens, self.iphs.model, Tables()
         fields = take_record(tokens, model)
-        parts = [self._integrands, self._stage, self._slopes, self._sizes]
+        parts = [self._integrands, *([self._bends] * tokens.bends), self._stage]
+        parts += [self._slopes, self._sizes]
         parts += [lambda: take_place(tokens, model, fields)]
         parts += [lambda: take_give(tokens, model, fields)]
         while tokens.peek():
@@ -161,6 +164,9 @@ class _Step:
             names[label] = names[label] + more
         self.file = replace(self.file, known=replace(known, names=names))
 
+    def _bends(self) -> None:
+        self.bends = self._function("bends").places
+
     def _stage(self) -> None:
         """Read a stage: its rates and what it books by branches, its margins by comparisons."""
         start = self.tokens.at
@@ -202,7 +208,8 @@ class _Step:
             processes = processes + (known.sizes[slot.bank] if slot.bank else known.field.one)
         wanted += [known.layouts["ledger"].places[-1], processes, self._end(self.slopes)]
         wanted += known.sizes.values()
-        if found != [*wanted, *places[:-1]]:
+        bends = [self._end(self.bends)] * tokens.bends
+        if found != [*wanted, *places[:-1], *bends]:
             raise NotShownError("the sizes of the step's arrays are not the system's")
 
     def _end(self, written: list[Branch]) -> Value:

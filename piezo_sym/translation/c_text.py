@@ -29,6 +29,8 @@ _TOKEN = re.compile(
 _HEAD = r'\s*(?:/\*(?:(?!\*/)[^\\])*\*/\s*)*(?:#include (?:"{model}\.h"|<math\.h>)\n\s*){{2}}'
 _SPELLED, _CLOSING = {"||": "or", "->": "."}, {"(": ")", "[": "]"}
 MOST_DIGITS = 9
+#: The line by which a step says that integrands have kinks.
+BENDS = "\n#define BENDS /* integrands have kinks: see run/engine */\n"
 
 
 @final
@@ -41,6 +43,10 @@ class Tokens:
     model : its name, which its header has.
     macros : what stands behind the headers and gives `spelled` their meaning.
     spelled : words that stand for others, or for nothing before what is in brackets.
+
+    Attributes
+    ----------
+    bends : whether the line `BENDS` is there.
     """
 
     def __init__(
@@ -62,6 +68,8 @@ class Tokens:
             text[head.end() + len(macros) :],
         )
         self.found: list[str] = []
+        self.bends = bool(macros) and BENDS in text
+        text = text.replace(BENDS, "\n", int(self.bends))
         self.at = 0
         self.sums: dict[int, frozenset[str]] = {}
         place = 0

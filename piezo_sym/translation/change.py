@@ -63,6 +63,19 @@ def spelled(value: Value) -> Value:
     return value
 
 
+def in_exponentials(value: Value) -> Value:
+    """Return a value with hyperbolic functions written as exponentials."""
+    field, new, value = value.field, dict[int, Value](), spelled(value)
+    half, minus = field.number(Fraction(1, 2)), field.number(-1)
+    for g in value.parts:
+        gen = field.gens[g]
+        if gen.kind in {"sinh", "cosh", "tanh"} and gen.arg is not None:
+            up, down = (call("exp", in_exponentials(arg)) for arg in (gen.arg, gen.arg * minus))
+            odd, even = (up - down) * half, (up + down) * half
+            new[g] = {"sinh": odd, "cosh": even, "tanh": odd * power(even, -1)}[gen.kind]
+    return put(value, new)
+
+
 def moved(value: Value, bank: str, lane: int) -> Value:
     """Return a value with names of one lane of a bank (0: row, 1: column) moved to the other."""
     field, new = value.field, {}

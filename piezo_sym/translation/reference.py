@@ -16,7 +16,7 @@ from piezo_sym.algebra.lanes import Slot
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.elements.ports import Body
 from piezo_sym.spec.tables import conditions
-from piezo_sym.translation.change import across, derivative
+from piezo_sym.translation.change import across, derivative, in_exponentials
 from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import ALL, LEAST, SAME, Key, Proved
 from piezo_sym.translation.signs import on_path
@@ -99,7 +99,7 @@ def _energy(read: SystemReader) -> Value:
         for n in energy.rows:
             label = system.states[n].label
             (state,) = read.names[label].parts
-            if not is_zero(derivative(term, state) - read(system.E[n, 0])):
+            if not is_zero(in_exponentials(derivative(term, state) - read(system.E[n, 0]))):
                 raise NotShownError(f"dU/d{label} is not shown to be the co-state")
         parts.append(read.field.lane_sum(term, energy.bank) if energy.bank else term)
     return read.field.total(parts)

@@ -25,8 +25,8 @@ from piezo_sym.codegen.program import (
     Program,
     Quantity,
 )
-from piezo_sym.codegen.switches import compared, switched
-from piezo_sym.expressions.calculus import add, derivative, div, is_affine, mul, neg
+from piezo_sym.codegen.switches import switched
+from piezo_sym.expressions.calculus import add, compared, derivative, div, is_affine, mul, neg
 from piezo_sym.expressions.parse import parse_rule
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, If, LaneSum, Num, Sym, rebuild
 from piezo_sym.expressions.tree import replace as put

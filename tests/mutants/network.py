@@ -37,7 +37,7 @@ conduction leaves the second body
   = two airs
 heat comes to another body
   - (self.rows[placed.port.body], n): sp.S.One
-  + (min(self.rows[p.element] for p, _ in self.laws.states if p.element in ("body", "hot")), n): sp.S.One
+  + (min(self.rows[e] for e in ("body", "hot") if e in self.rows), n): sp.S.One
   = two airs
 resistors in a loop push the other way
   - J0=J0 - loops.between(B, B),

@@ -113,7 +113,8 @@ def ends_of(element):
     """Return the nodes of an element."""
     if KINDS[element["kind"]].form == "coupling":
         return pairs_of(element)
-    return (element.get("between", ()), (element["at"],) if "at" in element else ())
+    inner = (tuple(entry["between"]) for entry in element.get("states", {}).values())
+    return (element.get("between", ()), (element["at"],) if "at" in element else (), *inner)
 
 
 def generic(spec):
@@ -124,6 +125,7 @@ def generic(spec):
         if KINDS[e["kind"]].letter
         for lane in ([f"_{n + 1}" for n in range(e["count"])] if "count" in e else [""])
     ]
+    names += [symbol for e in spec["elements"].values() for symbol in e.get("states", ())]
     rng = np.random.default_rng(1)
     states = dict(zip(names, rng.uniform(0.1, 0.9, len(names)), strict=True))
     parameters = {

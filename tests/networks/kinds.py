@@ -87,8 +87,17 @@ def stiff(draft):
     rest = {"rest": draft.parameter("q_l", at_rest, -1, 1)} if draft.one_in(3) else {}
     form = draft.pick(forms[:5]) if not draft.one_in(30) else forms[5]
     form = k if draft.role == "tied" else form
-    ends = draft.pair(KINDS[draft.kind].domains)
-    return {"between": ends, "stiffness": form, **rest, **draft.state()}
+    ends, law = draft.pair(KINDS[draft.kind].domains), {"stiffness": form, **rest}
+    if draft.role != "tied" and draft.one_in(5):
+        field = KINDS[draft.kind].itself
+        laws = (
+            f"{k}*{x} if {x} < 0.5 else 4*{k}*{x} - 1.5*{k}",
+            f"{k}*sinh({x})",
+            f"{k}*tanh({x})",
+        )
+        energies = (f"{k}*{x}**2/2", f"{k}*max({x} - 0.2, 0)**2", f"{k}*cosh({x})")
+        law = {field: draft.pick(laws)} if draft.one_in(2) else {"energy": draft.pick(energies)}
+    return {"between": ends, **law, **draft.state()}
 
 
 def inert(draft):
@@ -214,6 +223,17 @@ def heat_source(draft):
     return {"into": draft.body(), "input": draft.input("W")}
 
 
+def storage(draft):
+    """Return an energy of a flux and an extension."""
+    L, k = draft.parameter("L", "H"), draft.parameter("k", "N/m")
+    phi, x = f"phi_{draft.name}", f"x_{draft.name}"
+    coupled = (f"{phi}**2*(2 + {x}**2)/{L}", f"{phi}**2/{L}*exp({x}/3)", f"{phi}**2/{L}")
+    alone = (f"{k}*{x}**2/2", f"{k}*{x}*abs({x})**2", f"{k}/2*max({x} - 0.3, 0)**2 + {k}*{x}")
+    states = {phi: {"rate": "voltage", "between": draft.pair("e")}}
+    states[x] = {"rate": "velocity", "between": draft.pair("m")}
+    return {"energy": f"{draft.pick(coupled)} + {draft.pick(alone)}", "states": states}
+
+
 def source(draft):
     """Return a source's fields, whatever it gives."""
     kind = KINDS[draft.kind]
@@ -233,7 +253,8 @@ class Kind:
     ----------
     draw : draws the fields of its table.
     domains : letters of the domains of its pairs of nodes; "" for the thermal kinds.
-    form : a "store", "law" (of dissipation), "store, law" (in series), "source" or "coupling".
+    form : a "store", "storage" (of several states), "law" (of dissipation), "store, law" (in
+        series), "source" or "coupling".
     across : whether it gives an across variable, and so may be in a tree of the network; a coupling
         that does not, gyrates.
     nodes : the fields that name nodes.
@@ -255,6 +276,11 @@ class Kind:
     costate: Callable | None = None
     laws: Mapping[str, tuple[str, bool]] = field(default_factory=dict)
     weight: int = 1
+
+    @property
+    def itself(self):
+        """The field in which a spring says its co-state."""
+        return {"q": "force", "theta": "torque"}.get(self.letter, "")
 
     @property
     def in_tree(self):
@@ -357,6 +383,7 @@ KINDS = {
         costate=of_spring,
         weight=2,
     ),
+    "storage": Kind(storage, "em", "storage", across=False, nodes=(), weight=2),
     "voltage_source": Kind(source, "e", "source", size=("V",)),
     "velocity_source": Kind(source, "m", "source", nodes=AT, size=("m/s",)),
     "angular_velocity_source": Kind(source, "r", "source", nodes=AT, size=("rad/s",)),

@@ -24,6 +24,7 @@ TOGETHER = ("em", "em", "em", "er", "mr", "hm", "rh", "emr", "rhm")
 COUNTS = ((1, 1), (2, 0), (0, 2), (2, 1), (1, 2), (3, 0), (0, 3), (1, 3), (3, 2))
 THREE = ((1, 1, 1), (2, 1, 1), (1, 2, 1))
 HEAT = ("ambient", "conduction", "heat_source")
+TWO_PAIRS = ("coupling", "storage")
 NODES = dict.fromkeys(name for kind in KINDS.values() for name in kind.nodes)
 WORDS = ("x", "u", "p", "h", "F", "J", "out", "n", "z", "W")
 
@@ -170,7 +171,7 @@ def _chords(draft):
 
 def _chord(draft, domain, ends):
     kind = draft.pick(CHORD[domain])
-    if KINDS[kind].form == "coupling" and not draft.can_couple(kind, domain):
+    if KINDS[kind].form in TWO_PAIRS and not draft.can_couple(kind, domain):
         kind = CHORDS[domain]
     if KINDS[kind].nodes == ("at",) and REFERENCE[domain] not in ends:
         kind = DISSIPATIVE[domain]
@@ -180,7 +181,9 @@ def _chord(draft, domain, ends):
 
 
 def _uses(draft, node):
-    ends = [element.get(f, ()) for element in draft.elements.values() for f in NODES]
+    elements = draft.elements.values()
+    ends = [element.get(f, ()) for element in elements for f in NODES]
+    ends += [s["between"] for element in elements for s in element.get("states", {}).values()]
     return sum(node == end or node in end for end in ends if not isinstance(end, str)) + sum(
         node == end for end in ends if isinstance(end, str)
     )
@@ -197,7 +200,7 @@ def _anywhere(draft):
     """Put an element of any kind at any nodes: most such networks have no solution."""
     there = {domain for domain, nodes in draft.nodes.items() if len(nodes) > 1}
     fit = [kind for domain in sorted(there) for kind in (*TREE[domain], *CHORD[domain])]
-    couples = {kind for kind in fit if KINDS[kind].form == "coupling"}
+    couples = {kind for kind in fit if KINDS[kind].form in TWO_PAIRS}
     first = {kind: KINDS[kind].domains[0] for kind in couples}
     lost = {k for k in couples if first[k] not in there or not draft.can_couple(k, first[k])}
     draft.add(draft.pick([k for k in fit if k not in lost]), draft.pick(("tree", "chord")))

@@ -14,7 +14,7 @@ from kinds import KINDS
 from law_values import value
 
 REFERENCES = {"e": "gnd", "m": "wall", "r": "frame", "h": "tank"}
-SLOPE_STEP = 1e-6
+SLOPE_STEP, ENERGY_STEP = 1e-6, 2e-5
 CLOSE = 1e-12
 MOST_STEPS = 60
 SINGULAR = 1e-9
@@ -29,6 +29,7 @@ class Branch:
     across: bool
     given: float = 0.0
     law: object = None
+    state: str = ""
 
 
 @dataclass(frozen=True)
@@ -93,6 +94,8 @@ class Tableau:
                 self._resistor(label, lane, element, (f"{label}:inner", b), name)
         elif kind.form == "store":
             self._store(name, 0, element, nodes_of(element), name)
+        elif kind.form == "storage":
+            self._storage(name, element)
         elif kind.form == "source":
             given = self.inputs[element["input"]] * (1 if kind.across else -1)
             self.branches.append(Branch(name, nodes_of(element), kind.across, given))
@@ -107,10 +110,22 @@ class Tableau:
 
         def costate(x):
             words = {**self.words(lane), kind.letter: x}
+            if "energy" in element:
+                return slope(element["energy"], words, kind.letter)
+            if kind.itself in element:
+                return value(element[kind.itself], words)
             return kind.costate(x, lambda f, other=None: value(element.get(f, other), words))
 
         self.costates[len(self.branches)] = symbol, costate
         self.branches.append(Branch(label, nodes, kind.across))
+
+    def _storage(self, name, element):
+        """Add a branch for each state; co-states are differences of the energy."""
+        for symbol, entry in element["states"].items():
+            given = slope(element["energy"], {**self.words(), **self.states}, symbol)
+            nodes = tuple(entry["between"])
+            across = entry["rate"] in {"current", "force", "torque", "flow"}
+            self.branches.append(Branch(name, nodes, across, given, state=symbol))
 
     def _resistor(self, label, lane, element, nodes, name):
         text, letter, across = law_of(element)
@@ -297,6 +312,8 @@ class Tableau:
             temperature = self.temperatures[element["heats"]]
             found.productions[branch.element] = heat / temperature
             flows[element["heats"]] += heat / temperature
+        elif branch.state:
+            found.rates[branch.state] = t if branch.across else e
         elif KINDS[element["kind"]].form == "source":
             found.outputs[name] = -t if branch.across else e
         else:
@@ -328,6 +345,13 @@ class Tableau:
             conductance = value(element["conductance"], words)
             flows[element["body"]] += conductance * (outside / own - 1)
             found.outputs[name] = own
+
+
+def slope(energy, words, name):
+    """Return the slope of an energy, by differences."""
+    steps = (ENERGY_STEP, -ENERGY_STEP)
+    high, low = (value(energy, {**words, name: words[name] + step}) for step in steps)
+    return (high - low) / (2 * ENERGY_STEP)
 
 
 def state(name, element):

@@ -66,7 +66,6 @@ def test_an_element_without_a_kind():
     [
         ('unit = "kg", ', "parameters.M.unit"),
         ("value = 3.5e-3, ", "parameters.M.value"),
-        ('stiffness = "k"', "elements.spring.stiffness"),
         ('name   = "piezo_stack"', "model.name"),
     ],
 )

@@ -56,6 +56,8 @@ def sample(kind):
         pair = "tuple" in str(info.annotation)
         if info.is_required() or name in {group[0] for group in KINDS[kind].row.one_of}:
             fields[name] = ["a", "b"] if pair else "body"
+    if kind == "storage":
+        fields["states"] = {"q": {"rate": "force", "between": ["a", "b"]}}
     return fields
 
 
@@ -91,7 +93,7 @@ WRONG = {
     "a table": ("[domain]", "[domian]", "'domian' was"),
     "a kind": ('kind = "spring"', 'kind = "sprin"', "'sprin' is not one of ['spring', 'mass', "),
     "no kind": ('kind = "spring"', "", "'kind' is a required property"),
-    "no law": ('mass = "M"', "", "'mass' is a required property"),
+    "no law": ('mass = "M"', "", "is not valid under any of the given schemas"),
     "no unit": ('unit = "kg", ', "", "'unit' is a required property"),
     "no inverse law": ('force = "d*v"', "", "is not valid under any of the given schemas"),
     "both laws": ('force = "d*v"', 'force = "d*v"\nvelocity = "f/d"', "is valid under each of"),

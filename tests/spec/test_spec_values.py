@@ -121,7 +121,8 @@ def test_good_sizes_of_banks(count):
 def test_only_a_hysteron_has_a_size():
     message = refused_edit(('kind = "mass"', 'kind = "mass"\ncount = 2'))
     assert message == (
-        "spec: elements.mass.count: unknown key 'count'; known: kind, at, mass, state"
+        "spec: elements.mass.count: unknown key 'count'; known: kind, at, mass, velocity, "
+        "energy, state"
     )
 
 

@@ -7,7 +7,6 @@ from keyword import iskeyword
 
 from piezo_sym.errors import SpecError, quote
 from piezo_sym.expressions.units import parse_unit
-from piezo_sym.spec.elements.base import state_symbol
 from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.names import check_name, check_symbol
 from piezo_sym.spec.tables import banks, bodies, states
@@ -68,8 +67,7 @@ def _symbols(spec: Tables) -> Iterator[tuple[str, str]]:
     yield from ((name, f"parameters.{name}") for name in spec.parameters)
     yield from ((name, f"inputs.{name}") for name in spec.inputs)
     for name, element in spec.elements.items():
-        if element.letter:
-            yield state_symbol(element, name), f"elements.{name}"
+        yield from ((state.symbol, f"elements.{name}") for state in element.own_states(name))
 
 
 def _check_case(elements: Iterable[str]) -> None:

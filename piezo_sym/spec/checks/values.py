@@ -6,7 +6,6 @@ temperatures are intervals.  A condition that is then neither true nor false ref
 
 from __future__ import annotations
 
-from collections import ChainMap
 from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from typing import TypeAlias
@@ -14,7 +13,7 @@ from typing import TypeAlias
 from piezo_sym.errors import SpecError, quote
 from piezo_sym.expressions.enclosure import Interval, UndecidedError, holds_surely, interval_of
 from piezo_sym.expressions.tree import Expr, names
-from piezo_sym.spec.elements.base import state_symbol
+from piezo_sym.spec.elements.ports import Body
 from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.tables import (
     Condition,
@@ -22,6 +21,7 @@ from piezo_sym.spec.tables import (
     condition_text,
     conditions,
     lane_parameters,
+    law_fields,
     orders,
     starts,
     states,
@@ -42,9 +42,10 @@ def check_values(spec: Tables) -> None:
     lanes |= {symbol: tuple(_starts(spec, symbol, lanes)) for symbol in states(spec)}
     for symbol, body in temperatures(spec).items():
         element = spec.elements[body]
-        law, state = element.law("temperature"), lanes[state_symbol(element, body)]
-        values = _at(0, names(law), ChainMap({element.letter: state}, lanes))
-        lanes[symbol] = (_value(law, values, f"elements.{body}.temperature"),)
+        ports, field = element.ports(body), next(law.field for law in law_fields(body, element))
+        law = next(port.law for port in ports if isinstance(port, Body))
+        values = _at(0, names(law), lanes)
+        lanes[symbol] = (_value(law, values, f"elements.{body}.{field}"),)
     for condition in conditions(spec):
         _check_condition(condition, lanes)
 

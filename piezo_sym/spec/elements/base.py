@@ -27,6 +27,16 @@ class Frozen(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
 
+@final
+@dataclass(frozen=True)
+class State:
+    """A state of an element: its symbol, its unit, and whether it is the entropy of a body."""
+
+    symbol: str
+    unit: str
+    is_entropy: bool = False
+
+
 class Form(ABC):
     """A part of a kind: a store, a dissipation, a coupling, a source, a body ...; see `forms`."""
 
@@ -41,11 +51,6 @@ class Form(ABC):
         return ""
 
     @property
-    def is_body(self) -> bool:
-        """Whether it has an entropy, and others may heat it."""
-        return False
-
-    @property
     @abstractmethod
     def fields(self) -> Fields:
         """What a spec says of it; nodes first."""
@@ -57,7 +62,21 @@ class Form(ABC):
 
     @abstractmethod
     def port(self, element: Any, name: str, branch: Branch) -> Port:
-        """Return the port of an element called `name`; `branch` is where it stands."""
+        """Return the first port of an element called `name`; `branch` is where it stands."""
+
+    def ports(self, element: Any, name: str, branch: Branch) -> tuple[Port, ...]:
+        """Return all of its ports."""
+        return (self.port(element, name, branch),)
+
+    def states(self, element: Any, name: str) -> tuple[State, ...]:
+        """Return the states of an element called `name`."""
+        del element, name
+        return ()
+
+    def fault(self, element: Any) -> tuple[str, str, str, str] | None:
+        """Return what is wrong with fields taken together: place, what, expected, remedy."""
+        del element
+        return None
 
     def requires(self, element: Any) -> tuple[Cmp, ...]:
         """Return the conditions that this part of an element adds to the domain."""
@@ -139,8 +158,9 @@ class Element(Frozen):
         for group in self.row.one_of:
             given = [field for field in group if getattr(self, field) is not None]
             if len(given) != 1:
-                said = f"both {' and '.join(given)}" if given else "neither"
-                message = f"exactly one of {' and '.join(group)}; {said} given"
+                none = "neither" if len(group) == 2 else "none"
+                said = f"both {' and '.join(given)}" if given else none
+                message = f"exactly one of {', '.join(group)}; {said} given"
                 raise ValueError(message)
         return self
 
@@ -149,10 +169,12 @@ class Element(Frozen):
         first, last = getattr(self, "between", ("", ""))
         forms = self.row.forms
         nodes = (first, *(f"{name}:inner" for _ in forms[1:]), last)
-        return tuple(
-            form.port(self, name, branch)
-            for form, branch in zip(forms, pairwise(nodes), strict=True)
-        )
+        parts = zip(forms, pairwise(nodes), strict=True)
+        return tuple(port for form, branch in parts for port in form.ports(self, name, branch))
+
+    def own_states(self, name: str) -> tuple[State, ...]:
+        """Return the states of this element, called `name` in its spec, in order."""
+        return tuple(state for form in self.row.forms for state in form.states(self, name))
 
     def requires(self) -> tuple[Cmp, ...]:
         """Return the conditions that this element adds to the domain."""
@@ -166,7 +188,7 @@ class Element(Frozen):
     @property
     def is_body(self) -> bool:
         """Whether it has an entropy, and others may heat it."""
-        return any(form.is_body for form in self.row.forms)
+        return any(state.is_entropy for state in self.own_states(""))
 
     @property
     def letter(self) -> str:
@@ -197,6 +219,8 @@ class Element(Frozen):
                 if isinstance(mark, Refers) and given is not None:
                     names = given if isinstance(given, tuple) else (given,)
                     yield from ((field, mark.to, name) for name in names)
+        for state in getattr(self, "states", {}).values():
+            yield from (("states", "node", node) for node in state.between or ())
 
 
 def positive(law: Expr) -> Cmp:
@@ -210,7 +234,9 @@ def state_symbol(element: Element, name: str) -> str:
 
 
 def _toml(value: Any) -> str:
-    """Return a text, or a list of texts, as TOML."""
+    """Return a text, a list or a table of such, as TOML."""
     if isinstance(value, str):
         return f'"{value}"'
+    if isinstance(value, dict):
+        return f"{{ {', '.join(f'{key} = {_toml(v)}' for key, v in value.items())} }}"
     return f"[{', '.join(map(_toml, value))}]"

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from typing import Any, final
 
 from piezo_sym.expressions.calculus import add, neg
+from piezo_sym.expressions.energies import slope, without_common_factors
 from piezo_sym.expressions.tree import Cmp, Div, Expr, Mul, Sym, rename
-from piezo_sym.spec.elements.base import Form, positive, state_symbol
+from piezo_sym.spec.elements.base import Form, State, positive, state_symbol
 from piezo_sym.spec.elements.domains import PhysicalDomain, PhysicalVariable, PowerVariable
 from piezo_sym.spec.elements.marks import (
     BodyName,
@@ -54,12 +55,21 @@ class Store(Form):
         return self.costate.state_letter
 
     @property
+    def one_of(self) -> tuple[str, ...]:
+        """Its size, its co-state or its energy."""
+        return (self.size, self.costate.name, "energy")
+
+    @property
     def fields(self) -> Fields:
-        """Its nodes, size and rest."""
-        state, unit = self.letter, self.costate.state_unit
-        size = {self.size: law_field(self.unit, {state: unit}, self.symbol)}
-        rest = {"rest": law_field(unit, {}, default="0")} if self.stiff else {}
-        return {**_places(self.domain, self.at), **size, **rest}
+        """Its nodes, what its energy is, and rest."""
+        letter = {self.letter: self.costate.state_unit}
+        laws = {
+            self.size: law_field(self.unit, letter, self.symbol, None),
+            self.costate.name: law_field(self.costate.unit, letter, default=None),
+            "energy": law_field("J", letter, default=None),
+        }
+        rest = {"rest": law_field(self.costate.state_unit, {}, default="0")} if self.stiff else {}
+        return {**_places(self.domain, self.at), **laws, **rest}
 
     @property
     def doc(self) -> str:
@@ -71,32 +81,65 @@ class Store(Form):
             f"State {self.letter} [{out.state_unit}], the {out.state}, is the integral of the "
             f"{_said(driven, self.at)}; co-state the {_said(out, self.at)}, "
             f"{out.prefix} = {law} [{out.unit}]; energy the integral of {out.prefix} "
-            f"over {self.letter}."
+            f"over {self.letter}. Instead of `{self.size}`, `{out.name}` gives {out.prefix} or "
+            f"`energy` the energy [J], as a law of {self.letter}."
         )
 
     def port(self, element: Any, name: str, branch: Branch) -> Storage:
         """Return the store, whose state is the integral of the conjugate variable."""
         costate, state = self.costate, state_symbol(element, name)
+        energy = self._given(element, "energy", state)
         return Storage(
             state=state,
-            law=self._law(element, state),
+            law=self._law(element, state) if energy is None else slope(energy, state),
             costate=f"{costate.prefix}_{name}",
             branch=_placed(element, branch, self.domain),
             domain=self.domain,
             imposes=self.imposes,
             units=(costate.state_unit, costate.unit),
             doc=f"{costate.state} of {element.kind} '{name}'",
+            energy=energy,
         )
 
+    def _given(self, element: Any, field: str, state: str) -> Expr | None:
+        """Return a law of the element in its state's symbol, if it is given."""
+        if getattr(element, field) is None:
+            return None
+        return rename(element.law(field), {self.letter: state})
+
     def _law(self, element: Any, state: str) -> Expr:
-        size = rename(element.law(self.size), {self.letter: state})
+        """Return the co-state."""
+        size = self._given(element, self.size, state)
+        if size is None:
+            return rename(element.law(self.costate.name), {self.letter: state})
+        return without_common_factors(self._by_size(element, size, state), state)
+
+    def _by_size(self, element: Any, size: Expr, state: str) -> Expr:
+        """Return the co-state that a size gives; it may be 0/0 where its limit has a value."""
         if not self.stiff:
             return Div(Sym(state), size)
         return Mul(size, add(Sym(state), neg(element.law("rest"))))
 
+    def states(self, element: Any, name: str) -> tuple[State, ...]:
+        """Return its state."""
+        return (State(state_symbol(element, name), self.costate.state_unit),)
+
+    def fault(self, element: Any) -> tuple[str, str, str, str] | None:
+        """Return that a rest belongs to a stiffness."""
+        alone = getattr(element, self.size) is None and "rest" in element.model_fields_set
+        if self.stiff and alone:
+            given = next(name for name in self.one_of if getattr(element, name) is not None)
+            remedy = f"write {self.letter} - ({element.rest}) in the law, and leave rest out"
+            return ".rest", f"rest is given beside {given}", f"rest beside {self.size}", remedy
+        return None
+
     def requires(self, element: Any) -> tuple[Cmp, ...]:
-        """Return that its size is positive."""
-        return (positive(element.law(self.size)),)
+        """Return that its size is positive, if it is given, and no quotient like sinh(q)/q."""
+        if getattr(element, self.size) is None:
+            return ()
+        size = element.law(self.size)
+        law = self._by_size(element, size, self.letter)
+        return (positive(size),) if without_common_factors(law, self.letter) == law else ()
 
 
 @final

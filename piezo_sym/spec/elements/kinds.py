@@ -14,6 +14,7 @@ from piezo_sym.spec.elements.domains import (
     PowerVariable,
 )
 from piezo_sym.spec.elements.forms import Dissipation, Imposed, Store
+from piezo_sym.spec.elements.storage import SharedEnergy
 from piezo_sym.spec.elements.thermal import Ambient, Conduction, HeatSource, ThermalMass
 
 ACROSS, THROUGH = PowerVariable.ACROSS, PowerVariable.THROUGH
@@ -188,6 +189,11 @@ TABLE = (
             ),
         ),
         "A displacement pump, or a hydraulic motor.",
+    ),
+    Kind(
+        "storage",
+        (SharedEnergy(),),
+        "A store with one energy of several states: variable inductance, gas and the like.",
     ),
     Kind("thermal_mass", (ThermalMass(),), "A body with a temperature, eqs. (8), (13)."),
     Kind("conduction", (Conduction(),), "Heat conduction between two bodies, a heat exchanger."),

@@ -35,22 +35,25 @@ class Letters:
     unit : the unit of the law itself.
     instead : the unit of the law where some other field is given, by that field.
     sees : whether it may use states and temperatures of other elements, by their names.
+    own : whether its letters are the states that the element lists.
     """
 
     units: Mapping[str, str]
     unit: str
     instead: tuple[tuple[str, str], ...] = ()
     sees: bool = False
+    own: bool = False
 
     @property
     def names(self) -> tuple[str, ...]:
         """The letters."""
         return tuple(self.units)
 
-    def of(self, element: object) -> "Letters":
+    def of(self, element: Any) -> "Letters":
         """Return the letters and units of a law in one element."""
         given = (unit for field, unit in self.instead if getattr(element, field) is not None)
-        return replace(self, unit=next(given, self.unit), instead=())
+        own = {state.symbol: state.unit for state in element.own_states("")} if self.own else {}
+        return replace(self, units={**self.units, **own}, unit=next(given, self.unit), instead=())
 
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, final
 
 from piezo_sym.expressions.tree import Cmp, Sym, names, rename
-from piezo_sym.spec.elements.base import Form, positive, state_symbol
+from piezo_sym.spec.elements.base import Form, State, positive, state_symbol
 from piezo_sym.spec.elements.marks import BodyName, BodyPair, Fields, InputName, law_field
 from piezo_sym.spec.elements.ports import Body, Branch, Conductor, Exchange, HeatInput
 
@@ -15,7 +15,6 @@ class ThermalMass(Form):
     """A body with a temperature, eqs. (8), (13) and f_h(S) of (6)."""
 
     letter: ClassVar[str] = "S"
-    is_body: ClassVar[bool] = True
 
     @property
     def fields(self) -> Fields:
@@ -40,6 +39,10 @@ class ThermalMass(Form):
             temperature=f"T_{name}",
             doc=f"entropy of {element.kind} '{name}'",
         )
+
+    def states(self, element: Any, name: str) -> tuple[State, ...]:
+        """Return its entropy."""
+        return (State(state_symbol(element, name), "J/K", is_entropy=True),)
 
     def requires(self, element: Any) -> tuple[Cmp, ...]:
         """Every parameter of the temperature law is positive."""

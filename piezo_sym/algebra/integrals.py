@@ -1,0 +1,94 @@
+"""Integrals that SymPy finds: ``python -m piezo_sym.algebra.integrals`` is the process that looks.
+
+Input: a smooth law and a name.  Output: a tree whose derivative is shown to be the law, or None.
+The process ends itself after `SECONDS`, whatever SymPy does, and its memory is limited.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+from functools import lru_cache
+
+import sympy as sp
+
+from piezo_sym.algebra.symbols import to_sympy
+from piezo_sym.errors import PiezoError
+from piezo_sym.expressions.parse import parse_law
+from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tree import Expr, names
+
+#: What SymPy is given, and what the process may take with its start.
+SECONDS, WITH_START, MEMORY = 5, 60, 4 << 30
+#: Functions that laws have no word for, written by those that they have.
+WRITTEN_OUT = (sp.asinh, sp.acosh, sp.atanh, sp.asech, sp.acsch, sp.acoth)
+_OWN = sp.sinh, sp.cosh, sp.tanh
+
+
+@lru_cache(256)
+def integral(law: Expr, name: str, positive: frozenset[str]) -> Expr | None:
+    """Return an integral of a smooth law, or None where SymPy finds none in time.
+
+    Parameters
+    ----------
+    positive : the names that are positive.
+    """
+    request = json.dumps([spell(law), name, sorted(positive)])
+    command = (sys.executable, "-m", "piezo_sym.algebra.integrals")
+    found = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    try:
+        done = subprocess.run(
+            command,
+            input=request,
+            capture_output=True,
+            text=True,
+            timeout=WITH_START,
+            check=False,
+            env=found,
+        )
+        return parse_law(done.stdout.strip(), "an integral") if done.returncode == 0 else None
+    except (subprocess.TimeoutExpired, PiezoError):  # or it is of no function that laws have
+        return None
+
+
+def vanishes(expr: sp.Expr) -> bool:
+    """Return whether a smooth expression is shown to be zero wherever it has a value."""
+    if sp.expand(expr) == 0:
+        return True
+    plain = expr.rewrite(sp.exp) if expr.has(*_OWN) else expr
+    return bool(sp.expand(sp.numer(sp.together(sp.expand(plain)))) == 0)
+
+
+def _found(text: str, name: str, positive: list[str]) -> str | None:
+    """Return the text of an integral whose derivative is the law."""
+    tree = parse_law(text, "law")
+    known = {n: sp.Symbol(n, positive=n in positive or None, real=True) for n in names(tree)}
+    law, x = to_sympy(tree, known), known[name]
+    energy = sp.integrate(law, x, conds="none")
+    if isinstance(energy, sp.Piecewise):  # the generic case; others are zeros of its divisors
+        energy = energy.args[0][0]
+    for function in WRITTEN_OUT:
+        energy = energy.replace(function, lambda arg, f=function: f(arg).rewrite(sp.log))
+    four = sp.Mul(4, sp.atan(1, evaluate=False), evaluate=False)
+    energy = energy.xreplace({sp.pi: four})
+    return str(energy) if vanishes(sp.diff(energy, x) - law) else None
+
+
+def main() -> None:
+    """Answer the one request on stdin; the exit status tells whether there is an answer."""
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, resource.getrlimit(resource.RLIMIT_AS)[1]))
+    request = json.load(sys.stdin)
+    signal.signal(signal.SIGALRM, signal.SIG_DFL)
+    signal.alarm(SECONDS)
+    answer = _found(*request)
+    if answer is None:
+        sys.exit(1)
+    print(answer)  # noqa: T201 - the answer
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,58 @@
+"""Energies of a spec: fields that go together, and stores that are none of one state.
+
+A capacitance that depends on a temperature is no energy of its charge alone: with the body's
+entropy it is one of two states, which a `storage` says.
+"""
+
+from __future__ import annotations
+
+from piezo_sym.errors import SpecError, quote
+from piezo_sym.expressions.energies import antiderivative
+from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tree import names, replace
+from piezo_sym.spec.elements.base import Element
+from piezo_sym.spec.elements.ports import Body, Storage
+from piezo_sym.spec.fields import Tables
+from piezo_sym.spec.tables import LawField, law_fields, temperatures
+
+
+def check_energies(spec: Tables) -> None:
+    """Check what elements that store energy say of it."""
+    for name, element in spec.elements.items():
+        for form in element.row.forms:
+            if fault := form.fault(element):
+                field, what, expected, remedy = fault
+                raise SpecError(what, f"elements.{name}{field}", expected, remedy)
+        for law in law_fields(name, element):
+            if element.letter and law.letters == (element.letter,) and not element.is_body:
+                _check_law(spec, name, element, law)
+
+
+def _check_law(spec: Tables, name: str, element: Element, law: LawField) -> None:
+    """Refuse a law of a store that depends on a temperature."""
+    hot = {"T": next(iter(temperatures(spec).values()), ""), **temperatures(spec)}
+    hot |= {f"T_{body}": body for body in temperatures(spec).values()}
+    word = next((w for w in names(law.tree) if w in hot and w not in spec.parameters), "")
+    if not word:
+        return
+    what = f"the {law.field} depends on {quote(word)}, and then is no energy of {element.letter}"
+    remedy = "let it depend on parameters and its own state"
+    if hot[word]:
+        body = hot[word]
+        storage = _storage(spec, name, body, word)
+        remedy = f"give one energy of both states in place of '{name}' and '{body}': {storage}"
+    raise SpecError(what, law.where, "an energy of all states that it depends on", remedy)
+
+
+def _storage(spec: Tables, name: str, body: str, word: str) -> str:
+    """Return the storage of a store and a body, whose temperature is that of the body alone."""
+    (store,) = (p for p in spec.elements[name].ports(name) if isinstance(p, Storage))
+    heat = next(p for p in spec.elements[body].ports(body) if isinstance(p, Body))
+    own = replace(store.law, {word: heat.law})
+    stored, warm = antiderivative(own, store.state), antiderivative(heat.law, heat.state)
+    texts = (spell(part) if part else "<its energy>" for part in (stored, warm))
+    rate = store.domain.variable(store.imposes.other).name
+    nodes = ", ".join(f'"{node}"' for node in store.branch)
+    branch = f'{{ rate = "{rate}", between = [{nodes}] }}'
+    states = f'{{ {store.state} = {branch}, {heat.state} = {{ rate = "entropy" }} }}'
+    return f'{body} = {{ kind = "storage", energy = "{" + ".join(texts)}", states = {states} }}'
