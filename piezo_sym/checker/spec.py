@@ -84,6 +84,8 @@ class _Reader:
         self.tables, self.faults, self.units = tables, list[str](), dict[Symbol, Dimension]()
         self.parameters = self._values("parameters", "value", "p")
         self.inputs = self._values("inputs", "default", "u")
+        for name, entry in tables["elements"].items():
+            need(entry["kind"] in KINDS, f"{entry['kind']!r} of {name} is a kind it does not know")
         self.kinds = {name: KINDS[entry["kind"]] for name, entry in tables["elements"].items()}
         need(bool(self.kinds), "no elements")
         self.bodies = [name for name, kind in self.kinds.items() if kind.form == "body"]
