@@ -97,33 +97,39 @@ class RestSearch:
     def at_rest(self, x: FloatArray, size: FloatArray) -> FloatArray:
         """Return the state of rest near x, by Newton's method, moved no more than it must be."""
         for _ in range(MOST_MOVES):
-            left, values, right, row_size = self._factors(x, size)
+            left, values, right, row_size, scale = self._factors(x, size)
             kept = values > SINGULAR * values[0] if values.size else values > 0
             parts = left.T[kept] @ (self.rates(x) / row_size) / values[kept]
-            move = -size * (right[kept].T @ parts)
+            move = -scale * (right[kept].T @ parts)
             if not self.inside(self.moved(x, move)):
                 break
             x = self.moved(x, move)
             if _part(move, size) <= ROUND_OFF:
                 break
-        left, values, right, row_size = self._factors(x, size)
+        *_, row_size, _ = self._factors(x, size)
         if np.max(np.abs(self.rates(x) / row_size), initial=0.0) > AT_REST:
             raise self._none(self.rates(x), size)
         return x
 
     def _factors(
         self, x: FloatArray, size: FloatArray
-    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Return the singular value decomposition of the Jacobian over the rows' sizes (n,)."""
-        slope = self.slope(x) * size
-        row_size = np.max(np.abs(slope), axis=1, initial=0.0)
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Return the singular value decomposition of the Jacobian over the rows' sizes (n,).
+
+        A state that is 0 and never moved has no size: its column then gives its scale (n,).
+        """
+        scale = np.where(size > 0, size, 1.0)
+        row_size = np.max(np.abs(self.slope(x) * scale), axis=1, initial=0.0)
         row_size[row_size == 0] = 1.0
-        left, values, right = np.linalg.svd(slope / row_size[:, None])
-        return left, values, right, row_size
+        scaled = self.slope(x) * scale / row_size[:, None]
+        column = np.max(np.abs(scaled), axis=0, initial=0.0)
+        column = np.where((size > 0) | (column == 0), 1.0, column)
+        left, values, right = np.linalg.svd(scaled / column)
+        return left, values, right, row_size, scale / column
 
     def undetermined(self, x: FloatArray, size: FloatArray) -> list[int]:
         """Return the rows along which other states are at rest, too."""
-        _, values, right, _ = self._factors(x, size)
+        _, values, right, *_ = self._factors(x, size)
         open_ = right[values <= SINGULAR * values[0]] if values.size else right
         return [int(row) for row in self.free[np.any(np.abs(open_) > UNDETERMINED, axis=0)]]
 

@@ -160,10 +160,9 @@ def test_several_faults_are_counted():
 
 HINTS = [
     (
-        ('force = "d*v"', 'force = "d*q"'),
-        "it is the state of 'spring', which other laws cannot use",
+        ('stiffness = "k"', 'stiffness = "k*Q_C"'),
+        "it is the state of 'capacitor', which the law of a store cannot use",
     ),
-    (('"a*T/T_0"', '"a*Q_C/T_0"'), "it is the state of 'capacitor', which other laws cannot use"),
     (('"T > T_0"', '"Q > 0"'), "states go by their own symbols: Q_C"),
     (('"T_0*exp(S/c_0)"', '"T_0*exp(s/c_0)"'), "unknown name 's'; did you mean 'S'?"),
     (('state = "S"', 'state = "S_b"'), "states go by their own symbols: S_b"),

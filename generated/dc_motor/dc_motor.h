@@ -1,0 +1,183 @@
+/*
+ * DC motor with gear, bearing, and a winding that warms: irreversible port-Hamiltonian system.
+ *
+ * Source:  Messner, Tilbury, Control Tutorials for MATLAB and Simulink: DC motor speed, with gear and heat
+ * Model:   dc_motor, spec sha256 96a82a6d03ed86fc2c97e6ac88a26dd86ab244ed2d6fd71b14db35164a855b91
+ * Proofs:  skew, casimir, temperature, welldef, energy, entropy, passive, odd, sigma, exergy, environment, units, program PROVED
+ *
+ * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
+ * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
+ *
+ * x = (phi, H, S)
+ * u = (V_in, tau, T_e)
+ */
+#ifndef PIEZO_SYM_dc_motor_H
+#define PIEZO_SYM_dc_motor_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Parameters in SI units. The caller sets all; comments show the values of the spec. */
+typedef struct {
+    double R_0; /* resistance of the armature at T_0 [ohm]; spec: 1.0 */
+    double al; /* temperature coefficient of copper [1/K]; spec: 0.00393 */
+    double L; /* inductance of the armature [H]; spec: 0.5 */
+    double K; /* motor constant [N*m/A]; spec: 0.01 */
+    double J_m; /* inertia of the rotor [kg*m**2]; spec: 0.01 */
+    double b; /* friction of the bearing [N*m*s]; spec: 0.1 */
+    double n; /* speed of the rotor over that of the load [1]; spec: 5.0 */
+    double J_l; /* inertia of the load [kg*m**2]; spec: 0.25 */
+    double c; /* heat capacity of the motor [J/K]; spec: 50.0 */
+    double lam; /* heat conductance to the environment [W/K]; spec: 0.2 */
+    double T_0; /* temperature at the start [K]; spec: 293.15 */
+} dc_motor_parameters;
+
+/* An initializer for parameters: the values of the spec. */
+#define dc_motor_DEFAULTS { \
+    .R_0 = 1.0, \
+    .al = 0.00393, \
+    .L = 0.5, \
+    .K = 0.01, \
+    .J_m = 0.01, \
+    .b = 0.1, \
+    .n = 5.0, \
+    .J_l = 0.25, \
+    .c = 50.0, \
+    .lam = 0.2, \
+    .T_0 = 293.15, \
+}
+
+/* Sizes that no bank changes: of inputs, outputs, bodies, conditions of the domain. */
+enum {
+    dc_motor_input_count = 3,
+    dc_motor_output_count = 3,
+    dc_motor_body_count = 1,
+    dc_motor_limit_count = 12,
+};
+
+/*
+ * Number of states n.
+ */
+long dc_motor_states(const dc_motor_parameters *p);
+
+/*
+ * Number of processes; of a bank, one per lane.
+ */
+long dc_motor_processes(const dc_motor_parameters *p);
+
+/*
+ * State at t = 0 [SI], for the inputs u at t = 0.
+ * u[dc_motor_input_count], read: V_in [V], tau [N*m], T_e [K]
+ * out[n], written; must not overlap another argument: phi [Wb], H [N*m*s], S [J/K]
+ */
+void dc_motor_initial_state(const double *u, const dc_motor_parameters *p, double *out);
+
+/*
+ * Rates dx/dt = J_ir dU/dx + g u.
+ * x[n], read: phi [Wb], H [N*m*s], S [J/K]
+ * u[dc_motor_input_count], read: V_in [V], tau [N*m], T_e [K]
+ * out[n], written; must not overlap another argument
+ */
+void dc_motor_rhs(const double *x, const double *u, const dc_motor_parameters *p, double *out);
+
+/*
+ * Derivative of rhs by the state, n x n, row after row.
+ * x[n], read: phi [Wb], H [N*m*s], S [J/K]
+ * u[dc_motor_input_count], read: V_in [V], tau [N*m], T_e [K]
+ * out[n*n], written; must not overlap another argument
+ */
+void dc_motor_jacobian(const double *x,
+                       const double *u,
+                       const dc_motor_parameters *p,
+                       double *out);
+
+/*
+ * Outputs y, one per port, conjugate to its input.
+ * x[n], read: phi [Wb], H [N*m*s], S [J/K]
+ * u[dc_motor_input_count], read: V_in [V], tau [N*m], T_e [K]
+ * out[dc_motor_output_count], written; must not overlap another argument: supply [A], torque
+ *     [rad/s], air [K]
+ */
+void dc_motor_outputs(const double *x,
+                      const double *u,
+                      const dc_motor_parameters *p,
+                      double *out);
+
+/*
+ * Power supplied through each port [W]; the sum is dU/dt.
+ * x[n], read: phi [Wb], H [N*m*s], S [J/K]
+ * u[dc_motor_input_count], read: V_in [V], tau [N*m], T_e [K]
+ * out[dc_motor_output_count], written; must not overlap another argument
+ */
+void dc_motor_supply(const double *x,
+                     const double *u,
+                     const dc_motor_parameters *p,
+                     double *out);
+
+/*
+ * Hamiltonian U [J].
+ * x[n], read: phi [Wb], H [N*m*s], S [J/K]
+ */
+double dc_motor_energy(const double *x, const dc_motor_parameters *p);
+
+/*
+ * Total entropy S [J/K].
+ * x[n], read: phi [Wb], H [N*m*s], S [J/K]
+ */
+double dc_motor_entropy(const double *x, const dc_motor_parameters *p);
+
+/*
+ * Temperature of each body [K].
+ * x[n], read: phi [Wb], H [N*m*s], S [J/K]
+ * out[dc_motor_body_count], written; must not overlap another argument: body [K]
+ */
+void dc_motor_temperatures(const double *x, const dc_motor_parameters *p, double *out);
+
+/*
+ * Power that each process turns into heat [W]; of a bank, one row per lane.
+ * x[n], read: phi [Wb], H [N*m*s], S [J/K]
+ * u[dc_motor_input_count], read: V_in [V], tau [N*m], T_e [K]
+ * out[dc_motor_processes(p)], written; must not overlap another argument
+ */
+void dc_motor_heat(const double *x, const double *u, const dc_motor_parameters *p, double *out);
+
+/*
+ * Entropy that each process produces [W/K]; of a bank, one row per lane.
+ * x[n], read: phi [Wb], H [N*m*s], S [J/K]
+ * u[dc_motor_input_count], read: V_in [V], tau [N*m], T_e [K]
+ * out[dc_motor_processes(p)], written; must not overlap another argument
+ */
+void dc_motor_entropy_production(const double *x,
+                                 const double *u,
+                                 const dc_motor_parameters *p,
+                                 double *out);
+
+/*
+ * Margin of each condition of the domain; of a bank, the least over its lanes.
+ * x[n], read: phi [Wb], H [N*m*s], S [J/K]
+ * u[dc_motor_input_count], read: V_in [V], tau [N*m], T_e [K]
+ * out[dc_motor_limit_count], written; must not overlap another argument
+ * out[0]: R_0 >= 0; inside, >= 0
+ * out[1]: al >= 0; inside, >= 0
+ * out[2]: b >= 0; inside, >= 0
+ * out[3]: lam >= 0; inside, >= 0
+ * out[4]: n > 0; inside, > 0
+ * out[5]: 1 + al*(T - T_0) > 0; inside, > 0
+ * out[6]: T_e > 0; inside, > 0
+ * out[7]: L > 0; inside, > 0
+ * out[8]: J_m > 0; inside, > 0
+ * out[9]: J_l > 0; inside, > 0
+ * out[10]: T_0 > 0; inside, > 0
+ * out[11]: c > 0; inside, > 0
+ */
+void dc_motor_margins(const double *x,
+                      const double *u,
+                      const dc_motor_parameters *p,
+                      double *out);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* PIEZO_SYM_dc_motor_H */

@@ -1,0 +1,432 @@
+"""DC motor with gear, bearing, and a winding that warms: irreversible port-Hamiltonian system.
+
+Source:  Messner, Tilbury, Control Tutorials for MATLAB and Simulink: DC motor speed, with gear and heat
+Model:   dc_motor, spec sha256 96a82a6d03ed86fc2c97e6ac88a26dd86ab244ed2d6fd71b14db35164a855b91
+Proofs:  skew, casimir, temperature, welldef, energy, entropy, passive, odd, sigma, exergy, environment, units, program PROVED
+
+Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
+Arrays have shape (n, *batch); values are in SI units.
+
+x = (phi, H, S)
+u = (V_in, tau, T_e)
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+NAME = "dc_motor"
+SPEC_SHA256 = "96a82a6d03ed86fc2c97e6ac88a26dd86ab244ed2d6fd71b14db35164a855b91"
+
+
+class Record(NamedTuple):
+    """One row of an array, or of a bank one row per lane: its name, SI unit and meaning."""
+
+    name: str
+    unit: str
+    doc: str
+    bank: str | None = None
+
+
+class Condition(NamedTuple):
+    """A condition of the domain: its margin is > 0 inside, or >= 0 if it is not strict."""
+
+    text: str
+    strict: bool
+
+
+STATES = (
+    Record("phi", "Wb", "flux linkage of inductor 'armature'"),
+    Record("H", "N*m*s", "angular momentum of inertia 'rotor', joined with 'load'"),
+    Record("S", "J/K", "entropy of thermal_mass 'body'"),
+)
+INPUTS = (
+    Record("V_in", "V", "voltage of the armature"),
+    Record("tau", "N*m", "torque on the load"),
+    Record("T_e", "K", "temperature of the environment"),
+)
+INPUT_DEFAULTS = (0.0, 0.0, 293.15)
+OUTPUTS = (
+    Record("supply", "A", "current given by voltage_source 'supply'"),
+    Record("torque", "rad/s", "angular velocity at torque_source 'torque'"),
+    Record("air", "K", "temperature of thermal_mass 'body'"),
+)
+PROCESSES = (
+    Record("winding", "W/K", "resistor 'winding'"),
+    Record("bearing", "W/K", "rotational_damper 'bearing'"),
+)
+BODIES = (
+    Record("body", "K", "temperature of thermal_mass 'body'"),
+)
+PARAMETERS = (
+    Record("R_0", "ohm", "resistance of the armature at T_0"),
+    Record("al", "1/K", "temperature coefficient of copper"),
+    Record("L", "H", "inductance of the armature"),
+    Record("K", "N*m/A", "motor constant"),
+    Record("J_m", "kg*m**2", "inertia of the rotor"),
+    Record("b", "N*m*s", "friction of the bearing"),
+    Record("n", "1", "speed of the rotor over that of the load"),
+    Record("J_l", "kg*m**2", "inertia of the load"),
+    Record("c", "J/K", "heat capacity of the motor"),
+    Record("lam", "W/K", "heat conductance to the environment"),
+    Record("T_0", "K", "temperature at the start"),
+)
+BANKS = ()
+DOMAIN = (
+    Condition("R_0 >= 0", False),
+    Condition("al >= 0", False),
+    Condition("b >= 0", False),
+    Condition("lam >= 0", False),
+    Condition("n > 0", True),
+    Condition("1 + al*(T - T_0) > 0", True),
+    Condition("T_e > 0", True),
+    Condition("L > 0", True),
+    Condition("J_m > 0", True),
+    Condition("J_l > 0", True),
+    Condition("T_0 > 0", True),
+    Condition("c > 0", True),
+)
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """Parameters of dc_motor in SI units; defaults are the values of the spec."""
+
+    R_0: float = 1.0
+    al: float = 0.00393
+    L: float = 0.5
+    K: float = 0.01
+    J_m: float = 0.01
+    b: float = 0.1
+    n: float = 5.0
+    J_l: float = 0.25
+    c: float = 50.0
+    lam: float = 0.2
+    T_0: float = 293.15
+
+
+def _states(x, p):
+    """Return states x, shape (n, *batch), as floats."""
+    x = np.asarray(x, dtype=float)
+    n = 3
+    if x.shape[:1] != (n,):
+        raise ValueError(f"x has shape {x.shape}, but there are {n} states")
+    return x
+
+
+def _inputs(u):
+    """Return inputs u, shape (3, *batch), as floats."""
+    u = np.asarray(u, dtype=float)
+    if u.shape[:1] != (3,):
+        raise ValueError(f"u has shape {u.shape}, but there are 3 inputs")
+    return u
+
+
+def initial_state(u, p, /):
+    """State at t = 0 [SI], for the inputs u at t = 0; shape (n,)."""
+    out = np.zeros(3)
+    return out
+
+
+_BLOCK = 150_000  # numbers in one part of a large batch: they fit in the cache
+
+
+def rhs(x, u, p, /):
+    """Rates dx/dt = J_ir dU/dx + g u; shape (n, *batch)."""
+    x, u = _states(x, p), _inputs(u)
+    out = np.empty(x.shape)
+    if x.ndim != 2 or x.size <= _BLOCK:
+        _rates(x, u, p, out)
+        return out
+    step = max(1, _BLOCK // len(x))
+    for first in range(0, x.shape[1], step):
+        part = slice(first, first + step)
+        _rates(x[:, part], u[:, part] if u.ndim == 2 else u, p, out[:, part])
+    return out
+
+
+def _rates(x, u, p, out, /):
+    """Write the rates dx/dt into `out`."""
+    R_0 = p.R_0
+    al = p.al
+    L = p.L
+    K = p.K
+    J_m = p.J_m
+    b = p.b
+    n = p.n
+    J_l = p.J_l
+    c = p.c
+    lam = p.lam
+    T_0 = p.T_0
+    phi = x[0]
+    H = x[1]
+    S = x[2]
+    V_in = u[0]
+    tau = u[1]
+    T_e = u[2]
+    # co-states dU/dx
+    i_armature = phi/L
+    omega_rotor = H/(J_m + J_l/n**2)
+    T_minus_T_0 = T_0*np.expm1(S/c)
+    T = T_0 + T_minus_T_0
+    # transducer ratios
+    n_machine = K
+    n_gear = n
+    # dissipative laws
+    V_winding = R_0*(1 + al*T_minus_T_0)*i_armature
+    tau_bearing = b*omega_rotor
+    # heats
+    heat_winding = V_winding*i_armature
+    heat_bearing = tau_bearing*omega_rotor
+    # result
+    out[0] = V_in - n_machine*omega_rotor - V_winding
+    out[1] = n_machine*i_armature - tau_bearing + tau/n_gear
+    out[2] = (heat_winding + heat_bearing)/T + lam*(T_e/T - 1)
+
+
+def outputs(x, u, p, /):
+    """Outputs y, one per port, conjugate to its input; shape (3, *batch)."""
+    x = _states(x, p)
+    L = p.L
+    J_m = p.J_m
+    n = p.n
+    J_l = p.J_l
+    c = p.c
+    T_0 = p.T_0
+    phi = x[0]
+    H = x[1]
+    S = x[2]
+    # co-states dU/dx
+    i_armature = phi/L
+    omega_rotor = H/(J_m + J_l/n**2)
+    T_minus_T_0 = T_0*np.expm1(S/c)
+    T = T_0 + T_minus_T_0
+    # transducer ratios
+    n_gear = n
+    # result
+    out = np.empty((3, *x.shape[1:]))
+    out[0] = i_armature
+    out[1] = omega_rotor/n_gear
+    out[2] = T
+    return out
+
+
+def supply(x, u, p, /):
+    """Power supplied through each port [W]; the sum is dU/dt; shape (3, *batch)."""
+    x = _states(x, p)
+    u = _inputs(u)
+    L = p.L
+    J_m = p.J_m
+    n = p.n
+    J_l = p.J_l
+    c = p.c
+    lam = p.lam
+    T_0 = p.T_0
+    phi = x[0]
+    H = x[1]
+    S = x[2]
+    V_in = u[0]
+    tau = u[1]
+    T_e = u[2]
+    # co-states dU/dx
+    i_armature = phi/L
+    omega_rotor = H/(J_m + J_l/n**2)
+    T_minus_T_0 = T_0*np.expm1(S/c)
+    T = T_0 + T_minus_T_0
+    # transducer ratios
+    n_gear = n
+    # result
+    out = np.empty((3, *x.shape[1:]))
+    out[0] = i_armature*V_in
+    out[1] = omega_rotor/n_gear*tau
+    out[2] = lam*(T_e - T)
+    return out
+
+
+def energy(x, p, /):
+    """Hamiltonian U [J]; shape (*batch)."""
+    x = _states(x, p)
+    L = p.L
+    J_m = p.J_m
+    n = p.n
+    J_l = p.J_l
+    c = p.c
+    T_0 = p.T_0
+    phi = x[0]
+    H = x[1]
+    S = x[2]
+    return phi**2/(2*L) + H**2/(2*(J_m + J_l/n**2)) + T_0*c*np.exp(S/c)
+
+
+def entropy(x, p, /):
+    """Total entropy S [J/K]; shape (*batch)."""
+    x = _states(x, p)
+    S = x[2]
+    return S.copy()
+
+
+def temperatures(x, p, /):
+    """Temperature of each body [K]; shape (1, *batch)."""
+    x = _states(x, p)
+    c = p.c
+    T_0 = p.T_0
+    S = x[2]
+    # co-states dU/dx
+    T_minus_T_0 = T_0*np.expm1(S/c)
+    T = T_0 + T_minus_T_0
+    # result
+    out = np.empty((1, *x.shape[1:]))
+    out[0] = T
+    return out
+
+
+def heat(x, u, p, /):
+    """Power that each process turns into heat [W]; of a bank, one row per lane; shape (2, *batch)."""
+    x = _states(x, p)
+    R_0 = p.R_0
+    al = p.al
+    L = p.L
+    J_m = p.J_m
+    b = p.b
+    n = p.n
+    J_l = p.J_l
+    c = p.c
+    T_0 = p.T_0
+    phi = x[0]
+    H = x[1]
+    S = x[2]
+    # co-states dU/dx
+    i_armature = phi/L
+    omega_rotor = H/(J_m + J_l/n**2)
+    T_minus_T_0 = T_0*np.expm1(S/c)
+    # dissipative laws
+    V_winding = R_0*(1 + al*T_minus_T_0)*i_armature
+    tau_bearing = b*omega_rotor
+    # result
+    out = np.empty((2, *x.shape[1:]))
+    out[0] = V_winding*i_armature
+    out[1] = tau_bearing*omega_rotor
+    return out
+
+
+def entropy_production(x, u, p, /):
+    """Entropy that each process produces [W/K]; of a bank, one row per lane; shape (2, *batch)."""
+    x = _states(x, p)
+    R_0 = p.R_0
+    al = p.al
+    L = p.L
+    J_m = p.J_m
+    b = p.b
+    n = p.n
+    J_l = p.J_l
+    c = p.c
+    T_0 = p.T_0
+    phi = x[0]
+    H = x[1]
+    S = x[2]
+    # co-states dU/dx
+    i_armature = phi/L
+    omega_rotor = H/(J_m + J_l/n**2)
+    T_minus_T_0 = T_0*np.expm1(S/c)
+    T = T_0 + T_minus_T_0
+    # dissipative laws
+    V_winding = R_0*(1 + al*T_minus_T_0)*i_armature
+    tau_bearing = b*omega_rotor
+    # result
+    out = np.empty((2, *x.shape[1:]))
+    out[0] = V_winding*i_armature/T
+    out[1] = tau_bearing*omega_rotor/T
+    return out
+
+
+def jacobian(x, u, p, /):
+    """Derivative of rhs by the state; shape (n, n, *batch)."""
+    x = _states(x, p)
+    u = _inputs(u)
+    R_0 = p.R_0
+    al = p.al
+    L = p.L
+    K = p.K
+    J_m = p.J_m
+    b = p.b
+    n = p.n
+    J_l = p.J_l
+    c = p.c
+    lam = p.lam
+    T_0 = p.T_0
+    phi = x[0]
+    H = x[1]
+    S = x[2]
+    T_e = u[2]
+    # co-states dU/dx
+    i_armature = phi/L
+    omega_rotor = H/(J_m + J_l/n**2)
+    T_minus_T_0 = T_0*np.expm1(S/c)
+    T = T_0 + T_minus_T_0
+    # transducer ratios
+    n_machine = K
+    # dissipative laws
+    V_winding = R_0*(1 + al*T_minus_T_0)*i_armature
+    tau_bearing = b*omega_rotor
+    # heats
+    heat_winding = V_winding*i_armature
+    heat_bearing = tau_bearing*omega_rotor
+    # derivatives
+    dV_winding_dphi = R_0*(1 + al*T_minus_T_0)/L
+    dheat_winding_dphi = i_armature*dV_winding_dphi + V_winding/L
+    domega_rotor_dH = 1/(J_m + J_l/n**2)
+    dtau_bearing_dH = b*domega_rotor_dH
+    dheat_bearing_dH = omega_rotor*dtau_bearing_dH + tau_bearing*domega_rotor_dH
+    dT_minus_T_0_dS = T/c
+    dV_winding_dS = R_0*al*i_armature*dT_minus_T_0_dS
+    dheat_winding_dS = i_armature*dV_winding_dS
+    # result
+    out = np.zeros((x.shape[0], *x.shape))
+    out[0, 0] = -dV_winding_dphi
+    out[0, 1] = -n_machine*domega_rotor_dH
+    out[0, 2] = -dV_winding_dS
+    out[1, 0] = n_machine/L
+    out[1, 1] = -dtau_bearing_dH
+    out[2, 0] = dheat_winding_dphi/T
+    out[2, 1] = dheat_bearing_dH/T
+    out[2, 2] = (
+        dheat_winding_dS/T
+        + (-(heat_winding + heat_bearing)/T**2 - lam*T_e/T**2)*dT_minus_T_0_dS
+    )
+    return out
+
+
+def margins(x, u, p, /):
+    """Margin of each condition of DOMAIN; of a bank, the least over its lanes; shape (len(DOMAIN), *batch)."""
+    x = _states(x, p)
+    u = _inputs(u)
+    R_0 = p.R_0
+    al = p.al
+    L = p.L
+    J_m = p.J_m
+    b = p.b
+    n = p.n
+    J_l = p.J_l
+    c = p.c
+    lam = p.lam
+    T_0 = p.T_0
+    S = x[2]
+    T_e = u[2]
+    # co-states dU/dx
+    T_minus_T_0 = T_0*np.expm1(S/c)
+    # result
+    out = np.empty((12, *x.shape[1:]))
+    out[0] = R_0
+    out[1] = al
+    out[2] = b
+    out[3] = lam
+    out[4] = n
+    out[5] = 1 + al*T_minus_T_0
+    out[6] = T_e
+    out[7] = L
+    out[8] = J_m
+    out[9] = J_l
+    out[10] = T_0
+    out[11] = c
+    return out

@@ -1,0 +1,169 @@
+/*
+ * Damped oscillator that heats itself: irreversible port-Hamiltonian system.
+ *
+ * Source:  Ramirez, Maschke, Sbarbaro (2013), Eur. J. Control 19, 513-520, the mass-spring-damper
+ * Model:   oscillator, spec sha256 98f74415ae4d927ffd7693687e1755d27c6ee4baa18ca60809e3c3d10d605268
+ * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, units, program PROVED
+ *
+ * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
+ * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
+ *
+ * x = (q, p, S)
+ * u = (F)
+ */
+#ifndef PIEZO_SYM_oscillator_H
+#define PIEZO_SYM_oscillator_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Parameters in SI units. The caller sets all; comments show the values of the spec. */
+typedef struct {
+    double m; /* mass [kg]; spec: 1.0 */
+    double k; /* stiffness [N/m]; spec: 4.0 */
+    double d; /* damping [N*s/m]; spec: 0.4 */
+    double T_0; /* temperature at the start [K]; spec: 300.0 */
+    double c; /* heat capacity [J/K]; spec: 2.0 */
+} oscillator_parameters;
+
+/* An initializer for parameters: the values of the spec. */
+#define oscillator_DEFAULTS { \
+    .m = 1.0, \
+    .k = 4.0, \
+    .d = 0.4, \
+    .T_0 = 300.0, \
+    .c = 2.0, \
+}
+
+/* Sizes that no bank changes: of inputs, outputs, bodies, conditions of the domain. */
+enum {
+    oscillator_input_count = 1,
+    oscillator_output_count = 1,
+    oscillator_body_count = 1,
+    oscillator_limit_count = 5,
+};
+
+/*
+ * Number of states n.
+ */
+long oscillator_states(const oscillator_parameters *p_);
+
+/*
+ * Number of processes; of a bank, one per lane.
+ */
+long oscillator_processes(const oscillator_parameters *p_);
+
+/*
+ * State at t = 0 [SI], for the inputs u at t = 0.
+ * u[oscillator_input_count], read: F [N]
+ * out[n], written; must not overlap another argument: q [m], p [kg*m/s], S [J/K]
+ */
+void oscillator_initial_state(const double *u, const oscillator_parameters *p_, double *out);
+
+/*
+ * Rates dx/dt = J_ir dU/dx + g u.
+ * x[n], read: q [m], p [kg*m/s], S [J/K]
+ * u[oscillator_input_count], read: F [N]
+ * out[n], written; must not overlap another argument
+ */
+void oscillator_rhs(const double *x,
+                    const double *u,
+                    const oscillator_parameters *p_,
+                    double *out);
+
+/*
+ * Derivative of rhs by the state, n x n, row after row.
+ * x[n], read: q [m], p [kg*m/s], S [J/K]
+ * u[oscillator_input_count], read: F [N]
+ * out[n*n], written; must not overlap another argument
+ */
+void oscillator_jacobian(const double *x,
+                         const double *u,
+                         const oscillator_parameters *p_,
+                         double *out);
+
+/*
+ * Outputs y, one per port, conjugate to its input.
+ * x[n], read: q [m], p [kg*m/s], S [J/K]
+ * u[oscillator_input_count], read: F [N]
+ * out[oscillator_output_count], written; must not overlap another argument: hand [m/s]
+ */
+void oscillator_outputs(const double *x,
+                        const double *u,
+                        const oscillator_parameters *p_,
+                        double *out);
+
+/*
+ * Power supplied through each port [W]; the sum is dU/dt.
+ * x[n], read: q [m], p [kg*m/s], S [J/K]
+ * u[oscillator_input_count], read: F [N]
+ * out[oscillator_output_count], written; must not overlap another argument
+ */
+void oscillator_supply(const double *x,
+                       const double *u,
+                       const oscillator_parameters *p_,
+                       double *out);
+
+/*
+ * Hamiltonian U [J].
+ * x[n], read: q [m], p [kg*m/s], S [J/K]
+ */
+double oscillator_energy(const double *x, const oscillator_parameters *p_);
+
+/*
+ * Total entropy S [J/K].
+ * x[n], read: q [m], p [kg*m/s], S [J/K]
+ */
+double oscillator_entropy(const double *x, const oscillator_parameters *p_);
+
+/*
+ * Temperature of each body [K].
+ * x[n], read: q [m], p [kg*m/s], S [J/K]
+ * out[oscillator_body_count], written; must not overlap another argument: body [K]
+ */
+void oscillator_temperatures(const double *x, const oscillator_parameters *p_, double *out);
+
+/*
+ * Power that each process turns into heat [W]; of a bank, one row per lane.
+ * x[n], read: q [m], p [kg*m/s], S [J/K]
+ * u[oscillator_input_count], read: F [N]
+ * out[oscillator_processes(p_)], written; must not overlap another argument
+ */
+void oscillator_heat(const double *x,
+                     const double *u,
+                     const oscillator_parameters *p_,
+                     double *out);
+
+/*
+ * Entropy that each process produces [W/K]; of a bank, one row per lane.
+ * x[n], read: q [m], p [kg*m/s], S [J/K]
+ * u[oscillator_input_count], read: F [N]
+ * out[oscillator_processes(p_)], written; must not overlap another argument
+ */
+void oscillator_entropy_production(const double *x,
+                                   const double *u,
+                                   const oscillator_parameters *p_,
+                                   double *out);
+
+/*
+ * Margin of each condition of the domain; of a bank, the least over its lanes.
+ * x[n], read: q [m], p [kg*m/s], S [J/K]
+ * u[oscillator_input_count], read: F [N]
+ * out[oscillator_limit_count], written; must not overlap another argument
+ * out[0]: d >= 0; inside, >= 0
+ * out[1]: k > 0; inside, > 0
+ * out[2]: m > 0; inside, > 0
+ * out[3]: T_0 > 0; inside, > 0
+ * out[4]: c > 0; inside, > 0
+ */
+void oscillator_margins(const double *x,
+                        const double *u,
+                        const oscillator_parameters *p_,
+                        double *out);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* PIEZO_SYM_oscillator_H */

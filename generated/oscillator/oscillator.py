@@ -1,0 +1,294 @@
+"""Damped oscillator that heats itself: irreversible port-Hamiltonian system.
+
+Source:  Ramirez, Maschke, Sbarbaro (2013), Eur. J. Control 19, 513-520, the mass-spring-damper
+Model:   oscillator, spec sha256 98f74415ae4d927ffd7693687e1755d27c6ee4baa18ca60809e3c3d10d605268
+Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, units, program PROVED
+
+Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
+Arrays have shape (n, *batch); values are in SI units.
+
+x = (q, p, S)
+u = (F)
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+NAME = "oscillator"
+SPEC_SHA256 = "98f74415ae4d927ffd7693687e1755d27c6ee4baa18ca60809e3c3d10d605268"
+
+
+class Record(NamedTuple):
+    """One row of an array, or of a bank one row per lane: its name, SI unit and meaning."""
+
+    name: str
+    unit: str
+    doc: str
+    bank: str | None = None
+
+
+class Condition(NamedTuple):
+    """A condition of the domain: its margin is > 0 inside, or >= 0 if it is not strict."""
+
+    text: str
+    strict: bool
+
+
+STATES = (
+    Record("q", "m", "extension of spring 'spring'"),
+    Record("p", "kg*m/s", "momentum of mass 'mass'"),
+    Record("S", "J/K", "entropy of thermal_mass 'body'"),
+)
+INPUTS = (
+    Record("F", "N", "force on the mass"),
+)
+INPUT_DEFAULTS = (0.0,)
+OUTPUTS = (
+    Record("hand", "m/s", "velocity at force_source 'hand'"),
+)
+PROCESSES = (
+    Record("damper", "W/K", "damper 'damper'"),
+)
+BODIES = (
+    Record("body", "K", "temperature of thermal_mass 'body'"),
+)
+PARAMETERS = (
+    Record("m", "kg", "mass"),
+    Record("k", "N/m", "stiffness"),
+    Record("d", "N*s/m", "damping"),
+    Record("T_0", "K", "temperature at the start"),
+    Record("c", "J/K", "heat capacity"),
+)
+BANKS = ()
+DOMAIN = (
+    Condition("d >= 0", False),
+    Condition("k > 0", True),
+    Condition("m > 0", True),
+    Condition("T_0 > 0", True),
+    Condition("c > 0", True),
+)
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """Parameters of oscillator in SI units; defaults are the values of the spec."""
+
+    m: float = 1.0
+    k: float = 4.0
+    d: float = 0.4
+    T_0: float = 300.0
+    c: float = 2.0
+
+
+def _states(x, p):
+    """Return states x, shape (n, *batch), as floats."""
+    x = np.asarray(x, dtype=float)
+    n = 3
+    if x.shape[:1] != (n,):
+        raise ValueError(f"x has shape {x.shape}, but there are {n} states")
+    return x
+
+
+def _inputs(u):
+    """Return inputs u, shape (1, *batch), as floats."""
+    u = np.asarray(u, dtype=float)
+    if u.shape[:1] != (1,):
+        raise ValueError(f"u has shape {u.shape}, but there are 1 inputs")
+    return u
+
+
+def initial_state(u, p_, /):
+    """State at t = 0 [SI], for the inputs u at t = 0; shape (n,)."""
+    out = np.zeros(3)
+    out[0] = 1
+    return out
+
+
+_BLOCK = 150_000  # numbers in one part of a large batch: they fit in the cache
+
+
+def rhs(x, u, p, /):
+    """Rates dx/dt = J_ir dU/dx + g u; shape (n, *batch)."""
+    x, u = _states(x, p), _inputs(u)
+    out = np.empty(x.shape)
+    if x.ndim != 2 or x.size <= _BLOCK:
+        _rates(x, u, p, out)
+        return out
+    step = max(1, _BLOCK // len(x))
+    for first in range(0, x.shape[1], step):
+        part = slice(first, first + step)
+        _rates(x[:, part], u[:, part] if u.ndim == 2 else u, p, out[:, part])
+    return out
+
+
+def _rates(x, u, p_, out, /):
+    """Write the rates dx/dt into `out`."""
+    m = p_.m
+    k = p_.k
+    d = p_.d
+    T_0 = p_.T_0
+    c = p_.c
+    q = x[0]
+    p = x[1]
+    S = x[2]
+    F = u[0]
+    # co-states dU/dx
+    F_spring = k*q
+    v_mass = p/m
+    T = T_0*np.exp(S/c)
+    # dissipative laws
+    F_damper = d*v_mass
+    # heats
+    heat_damper = F_damper*v_mass
+    # result
+    out[0] = v_mass
+    out[1] = F - F_spring - F_damper
+    out[2] = heat_damper/T
+
+
+def outputs(x, u, p_, /):
+    """Outputs y, one per port, conjugate to its input; shape (1, *batch)."""
+    x = _states(x, p_)
+    m = p_.m
+    p = x[1]
+    # co-states dU/dx
+    v_mass = p/m
+    # result
+    out = np.empty((1, *x.shape[1:]))
+    out[0] = v_mass
+    return out
+
+
+def supply(x, u, p_, /):
+    """Power supplied through each port [W]; the sum is dU/dt; shape (1, *batch)."""
+    x = _states(x, p_)
+    u = _inputs(u)
+    m = p_.m
+    p = x[1]
+    F = u[0]
+    # co-states dU/dx
+    v_mass = p/m
+    # result
+    out = np.empty((1, *x.shape[1:]))
+    out[0] = v_mass*F
+    return out
+
+
+def energy(x, p_, /):
+    """Hamiltonian U [J]; shape (*batch)."""
+    x = _states(x, p_)
+    m = p_.m
+    k = p_.k
+    T_0 = p_.T_0
+    c = p_.c
+    q = x[0]
+    p = x[1]
+    S = x[2]
+    return k*q**2/2 + p**2/(2*m) + T_0*c*np.exp(S/c)
+
+
+def entropy(x, p_, /):
+    """Total entropy S [J/K]; shape (*batch)."""
+    x = _states(x, p_)
+    S = x[2]
+    return S.copy()
+
+
+def temperatures(x, p_, /):
+    """Temperature of each body [K]; shape (1, *batch)."""
+    x = _states(x, p_)
+    T_0 = p_.T_0
+    c = p_.c
+    S = x[2]
+    # co-states dU/dx
+    T = T_0*np.exp(S/c)
+    # result
+    out = np.empty((1, *x.shape[1:]))
+    out[0] = T
+    return out
+
+
+def heat(x, u, p_, /):
+    """Power that each process turns into heat [W]; of a bank, one row per lane; shape (1, *batch)."""
+    x = _states(x, p_)
+    m = p_.m
+    d = p_.d
+    p = x[1]
+    # co-states dU/dx
+    v_mass = p/m
+    # dissipative laws
+    F_damper = d*v_mass
+    # result
+    out = np.empty((1, *x.shape[1:]))
+    out[0] = F_damper*v_mass
+    return out
+
+
+def entropy_production(x, u, p_, /):
+    """Entropy that each process produces [W/K]; of a bank, one row per lane; shape (1, *batch)."""
+    x = _states(x, p_)
+    m = p_.m
+    d = p_.d
+    T_0 = p_.T_0
+    c = p_.c
+    p = x[1]
+    S = x[2]
+    # co-states dU/dx
+    v_mass = p/m
+    T = T_0*np.exp(S/c)
+    # dissipative laws
+    F_damper = d*v_mass
+    # result
+    out = np.empty((1, *x.shape[1:]))
+    out[0] = F_damper*v_mass/T
+    return out
+
+
+def jacobian(x, u, p_, /):
+    """Derivative of rhs by the state; shape (n, n, *batch)."""
+    x = _states(x, p_)
+    m = p_.m
+    k = p_.k
+    d = p_.d
+    T_0 = p_.T_0
+    c = p_.c
+    p = x[1]
+    S = x[2]
+    # co-states dU/dx
+    v_mass = p/m
+    T = T_0*np.exp(S/c)
+    # dissipative laws
+    F_damper = d*v_mass
+    # heats
+    heat_damper = F_damper*v_mass
+    # derivatives
+    dF_damper_dp = d/m
+    dheat_damper_dp = v_mass*dF_damper_dp + F_damper/m
+    dT_dS = T/c
+    # result
+    out = np.zeros((x.shape[0], *x.shape))
+    out[0, 1] = 1/m
+    out[1, 0] = -k
+    out[1, 1] = -dF_damper_dp
+    out[2, 1] = dheat_damper_dp/T
+    out[2, 2] = -heat_damper/T**2*dT_dS
+    return out
+
+
+def margins(x, u, p_, /):
+    """Margin of each condition of DOMAIN; of a bank, the least over its lanes; shape (len(DOMAIN), *batch)."""
+    x = _states(x, p_)
+    m = p_.m
+    k = p_.k
+    d = p_.d
+    T_0 = p_.T_0
+    c = p_.c
+    out = np.empty((5, *x.shape[1:]))
+    out[0] = d
+    out[1] = k
+    out[2] = m
+    out[3] = T_0
+    out[4] = c
+    return out

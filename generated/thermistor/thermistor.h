@@ -1,0 +1,171 @@
+/*
+ * Series RLC circuit with a thermistor: irreversible port-Hamiltonian system.
+ *
+ * Source:  Becker, Green, Pearson (1946), Bell Syst. Tech. J. 26, 170-212, R = R_0 exp(B (1/T - 1/T_0))
+ * Model:   thermistor, spec sha256 b3ce3439410245bed29fbaef5d338f6c046728146ec30a1b29ddd4240ea71ae0
+ * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, units, program PROVED
+ *
+ * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
+ * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
+ *
+ * x = (phi, Q, S)
+ * u = ()
+ */
+#ifndef PIEZO_SYM_thermistor_H
+#define PIEZO_SYM_thermistor_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Parameters in SI units. The caller sets all; comments show the values of the spec. */
+typedef struct {
+    double L; /* inductance [H]; spec: 0.05 */
+    double C; /* capacitance [F]; spec: 2e-06 */
+    double R_0; /* resistance at T_0 [ohm]; spec: 1000.0 */
+    double B; /* how steeply the resistance falls [K]; spec: 3000.0 */
+    double c; /* heat capacity of the bead [J/K]; spec: 1e-06 */
+    double T_0; /* temperature at the start [K]; spec: 300.0 */
+} thermistor_parameters;
+
+/* An initializer for parameters: the values of the spec. */
+#define thermistor_DEFAULTS { \
+    .L = 0.05, \
+    .C = 2e-06, \
+    .R_0 = 1000.0, \
+    .B = 3000.0, \
+    .c = 1e-06, \
+    .T_0 = 300.0, \
+}
+
+/* Sizes that no bank changes: of inputs, outputs, bodies, conditions of the domain. */
+enum {
+    thermistor_input_count = 0,
+    thermistor_output_count = 0,
+    thermistor_body_count = 1,
+    thermistor_limit_count = 5,
+};
+
+/*
+ * Number of states n.
+ */
+long thermistor_states(const thermistor_parameters *p);
+
+/*
+ * Number of processes; of a bank, one per lane.
+ */
+long thermistor_processes(const thermistor_parameters *p);
+
+/*
+ * State at t = 0 [SI], for the inputs u at t = 0.
+ * u[thermistor_input_count], read
+ * out[n], written; must not overlap another argument: phi [Wb], Q [C], S [J/K]
+ */
+void thermistor_initial_state(const double *u, const thermistor_parameters *p, double *out);
+
+/*
+ * Rates dx/dt = J_ir dU/dx + g u.
+ * x[n], read: phi [Wb], Q [C], S [J/K]
+ * u[thermistor_input_count], read
+ * out[n], written; must not overlap another argument
+ */
+void thermistor_rhs(const double *x,
+                    const double *u,
+                    const thermistor_parameters *p,
+                    double *out);
+
+/*
+ * Derivative of rhs by the state, n x n, row after row.
+ * x[n], read: phi [Wb], Q [C], S [J/K]
+ * u[thermistor_input_count], read
+ * out[n*n], written; must not overlap another argument
+ */
+void thermistor_jacobian(const double *x,
+                         const double *u,
+                         const thermistor_parameters *p,
+                         double *out);
+
+/*
+ * Outputs y, one per port, conjugate to its input.
+ * x[n], read: phi [Wb], Q [C], S [J/K]
+ * u[thermistor_input_count], read
+ * out[thermistor_output_count], written; must not overlap another argument
+ */
+void thermistor_outputs(const double *x,
+                        const double *u,
+                        const thermistor_parameters *p,
+                        double *out);
+
+/*
+ * Power supplied through each port [W]; the sum is dU/dt.
+ * x[n], read: phi [Wb], Q [C], S [J/K]
+ * u[thermistor_input_count], read
+ * out[thermistor_output_count], written; must not overlap another argument
+ */
+void thermistor_supply(const double *x,
+                       const double *u,
+                       const thermistor_parameters *p,
+                       double *out);
+
+/*
+ * Hamiltonian U [J].
+ * x[n], read: phi [Wb], Q [C], S [J/K]
+ */
+double thermistor_energy(const double *x, const thermistor_parameters *p);
+
+/*
+ * Total entropy S [J/K].
+ * x[n], read: phi [Wb], Q [C], S [J/K]
+ */
+double thermistor_entropy(const double *x, const thermistor_parameters *p);
+
+/*
+ * Temperature of each body [K].
+ * x[n], read: phi [Wb], Q [C], S [J/K]
+ * out[thermistor_body_count], written; must not overlap another argument: body [K]
+ */
+void thermistor_temperatures(const double *x, const thermistor_parameters *p, double *out);
+
+/*
+ * Power that each process turns into heat [W]; of a bank, one row per lane.
+ * x[n], read: phi [Wb], Q [C], S [J/K]
+ * u[thermistor_input_count], read
+ * out[thermistor_processes(p)], written; must not overlap another argument
+ */
+void thermistor_heat(const double *x,
+                     const double *u,
+                     const thermistor_parameters *p,
+                     double *out);
+
+/*
+ * Entropy that each process produces [W/K]; of a bank, one row per lane.
+ * x[n], read: phi [Wb], Q [C], S [J/K]
+ * u[thermistor_input_count], read
+ * out[thermistor_processes(p)], written; must not overlap another argument
+ */
+void thermistor_entropy_production(const double *x,
+                                   const double *u,
+                                   const thermistor_parameters *p,
+                                   double *out);
+
+/*
+ * Margin of each condition of the domain; of a bank, the least over its lanes.
+ * x[n], read: phi [Wb], Q [C], S [J/K]
+ * u[thermistor_input_count], read
+ * out[thermistor_limit_count], written; must not overlap another argument
+ * out[0]: R_0 >= 0; inside, >= 0
+ * out[1]: L > 0; inside, > 0
+ * out[2]: C > 0; inside, > 0
+ * out[3]: T_0 > 0; inside, > 0
+ * out[4]: c > 0; inside, > 0
+ */
+void thermistor_margins(const double *x,
+                        const double *u,
+                        const thermistor_parameters *p,
+                        double *out);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* PIEZO_SYM_thermistor_H */

@@ -1,0 +1,54 @@
+"""Shipped devices, each against a closed form or a published number."""
+
+import numpy as np
+import pytest
+
+from piezo_sym import linearize, load, simulate
+
+
+def value(model, *names):
+    return tuple(load(model).parameters[name].value for name in names)
+
+
+def test_heat_exchanger_as_its_temperatures_decay():
+    run = simulate("heat_exchanger", duration=12.0, rtol=1e-9, times=np.linspace(0, 12, 25))
+    gap = 60 * np.exp(-0.5 * (1 / 2 + 1 / 3) * run.time)
+    assert np.allclose(run.T_hot, 314 + 3 / 5 * gap, atol=1e-6)
+    assert np.allclose(run.T_cold, 314 - 2 / 5 * gap, atol=1e-6)
+
+
+def test_oscillator_decays_and_its_energy_ends_as_heat():
+    run = simulate("oscillator", duration=100.0, rtol=1e-9, times=np.linspace(0, 100, 101))
+    d, w = 0.2, np.sqrt(4 - 0.2**2)
+    exact = np.exp(-d * run.time) * (np.cos(w * run.time) + d / w * np.sin(w * run.time))
+    assert np.allclose(run.q, exact, atol=1e-6)
+    assert float(run.T_body[-1]) == pytest.approx(301.0, abs=1e-6)
+
+
+def test_thermistor_ends_at_400_kelvin():
+    run = simulate("thermistor", duration=0.1, rtol=1e-7, times=[0.0, 0.1])
+    assert float(run.T_body[-1]) == pytest.approx(400.0, rel=1e-7)
+
+
+def impedance(frequency):
+    """Return the impedance of the voice coil as its linearization has it, and as a formula has."""
+    R, L, B, m, k, d = value("voice_coil", "R_0", "L", "Bl", "m", "k", "d")
+    A, B_u, C, _ = (np.asarray(part) for part in linearize("voice_coil"))
+    names = [*load("voice_coil").inputs]
+    outputs = 1  # ports follow their inputs; the amplifier's is the first
+    s = 2j * np.pi * frequency
+    admittance = C[:outputs] @ np.linalg.solve(s * np.eye(len(A)) - A, B_u)
+    formula = R + s * L + B**2 / (d + s * m + k / s)
+    return 1 / admittance[0, names.index("V_in")], formula
+
+
+@pytest.mark.parametrize("frequency", [5.0, 44.6, 300.0, 5e3])
+def test_impedance_of_the_voice_coil_is_that_of_small(frequency):
+    found, formula = impedance(frequency)
+    assert found == pytest.approx(formula, rel=1e-6)
+
+
+def test_cold_motor_turns_as_the_tutorial_says():
+    given = {"al": 0.0, "n": 1.0, "J_l": 1e-9}
+    run = simulate("dc_motor", inputs={"V_in": 1.0}, duration=8.0, rtol=1e-8, parameters=given)
+    assert float(run.H[-1]) / 0.01 == pytest.approx(0.01 / (0.01**2 + 1.0 * 0.1), rel=1e-4)
