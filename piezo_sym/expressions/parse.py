@@ -198,9 +198,15 @@ def _sum(left: ast.expr, op: ast.operator, right: ast.expr, text: str, depth: in
     return Add(tuple(reversed(backwards)))
 
 
+#: Letters that no parameter can be meant by: a power of these is none of parameters alone.
+LETTERS = frozenset({"i", "v", "f", "T"})
+
+
 def _power(base: Expr, exponent: Expr) -> Expr:
-    if names(exponent):
+    if LETTERS & {*names(exponent)}:
         raise RefusedError("has a power that is not a number", "a small number, as in v**2")
+    if names(exponent):  # of a positive base; of what has a unit, exp and log say so
+        return Call("exp", (Mul(exponent, Call("log", (base,))),))
     value = _rational(exponent)
     if value is None or max(abs(value.numerator), value.denominator) > MAX_POWER:
         raise RefusedError("has too large a power", f"whole numbers or p/q up to {MAX_POWER}")

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
-from piezo_sym import linearize, load, simulate
+from piezo_sym import linearize, load, operating_point, simulate
 
 
 def value(model, *names):
@@ -52,3 +53,47 @@ def test_cold_motor_turns_as_the_tutorial_says():
     given = {"al": 0.0, "n": 1.0, "J_l": 1e-9}
     run = simulate("dc_motor", inputs={"V_in": 1.0}, duration=8.0, rtol=1e-8, parameters=given)
     assert float(run.H[-1]) / 0.01 == pytest.approx(0.01 / (0.01**2 + 1.0 * 0.1), rel=1e-4)
+
+
+def test_electromagnet_holds_its_armature_and_snaps_shut_beyond_a_third_of_the_gap():
+    g, A, N, mu, k, R = value("electromagnet", "g", "A", "N", "mu", "k", "R")
+    strongest = np.sqrt(8 * k * g**3 / (27 * mu * A * N**2))
+    current = 0.9 * strongest
+    rest = operating_point("electromagnet", inputs={"V_in": current * R})
+    x = brentq(
+        lambda x: k * x * (g + x) ** 2 + mu * A * N**2 * current**2 / 2, -g / 3, 0, xtol=1e-15
+    )
+    assert rest.initial["x"] == pytest.approx(x, rel=1e-6)
+    assert rest.initial["phi"] == pytest.approx(mu * A * N**2 * current / (g + x), rel=1e-6)
+
+
+def test_piston_has_the_period_of_ruechhardt():
+    m, A, V, N, c_v, R, T = value("gas_piston", "m", "A", "V_0", "N", "c_v", "R", "T_0")
+    gamma, p = 1 + R / c_v, N * R * T / V
+    period = 2 * np.pi * np.sqrt(m * V / (gamma * p * A**2))
+    run = simulate(
+        "gas_piston",
+        inputs={"F": -p * A},
+        duration=3 * period,
+        times=np.linspace(0, 3 * period, 3001),
+        parameters={"lam": 0.0, "d": 0.0},
+        initial={"q": 1e-3},
+        rtol=1e-9,
+    )
+    up = np.flatnonzero(np.diff(np.sign(run.p.values)) < 0)
+    found = np.diff(run.time.values[up]).mean()
+    assert found == pytest.approx(period, rel=2e-3)
+
+
+def test_cylinder_presses_and_moves_as_merritt_says():
+    C_d, a, rho, A, d = value("hydraulic_cylinder", "C_d", "a", "rho", "A", "d")
+    given = {"p_in": 1e7, "F": -4000.0}
+    far = {"x_s": 10.0}
+    run = simulate("hydraulic_cylinder", inputs=given, duration=8.0, rtol=1e-7, parameters=far)
+    speed = float(run.p[-1]) / 50.0
+    flow = brentq(
+        lambda v: v * A - C_d * a * np.sqrt(2 / rho * (1e7 - (4000 + d * v) / A)), 0, 1, xtol=1e-14
+    )
+    assert speed == pytest.approx(flow, rel=1e-5)
+    resting = simulate("hydraulic_cylinder", inputs=given, duration=20.0, rtol=1e-6)
+    assert float(resting.q[-1]) == pytest.approx(0.05 + (1e7 * A - 4000) / 1e7, rel=1e-4)

@@ -127,7 +127,7 @@ def test_an_unknown_function_is_answered_with_known_ones(text):
         ("d*w", "unknown name 'w'; "),
         ("dd*v", "did you mean 'd'?"),
         ("d*i", "'i' has no meaning here; expected the letters v, T"),
-        ("d*q", "'q' has no meaning here"),
+        ("d*phi", "'phi' has no meaning here"),
         ("d*V_in", "unknown name 'V_in'"),
         ("d*__debug__", "unknown name '__debug__'"),
         ("i@v", "has '@'"),
@@ -179,3 +179,8 @@ def test_refused_conditions(text):
 def test_a_condition_is_read():
     condition = parse_condition("T >= T_0 + 1", "domain.assume[0]")
     assert (condition.op, spell(condition.left), spell(condition.right)) == (">=", "T", "T_0 + 1")
+
+
+def test_parameters_in_an_exponent_are_exp_and_log():
+    written = parse_law("(1 + A*q/V)**(-R/c)", "law")
+    assert written == parse_law("exp(-R/c*log(1 + A*q/V))", "law")

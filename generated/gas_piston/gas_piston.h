@@ -1,0 +1,184 @@
+/*
+ * Ideal gas under a piston, with heat exchanged: irreversible port-Hamiltonian system.
+ *
+ * Source:  Ruechhardt (1929), Physikalische Zeitschrift 30, 58-59, the period; van der Schaft, Maschke (2018), Entropy 20, 925
+ * Model:   gas_piston, spec sha256 0a9d53c8700ddf1bb0d85a7756da7a071b3f29cf0a98843810acd07ee683352b
+ * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, exergy, environment, units, program PROVED
+ *
+ * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
+ * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
+ *
+ * x = (p, q, S)
+ * u = (F, T_e)
+ */
+#ifndef PIEZO_SYM_gas_piston_H
+#define PIEZO_SYM_gas_piston_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Parameters in SI units. The caller sets all; comments show the values of the spec. */
+typedef struct {
+    double V_0; /* volume at q = 0 [m**3]; spec: 0.01 */
+    double A; /* area of the piston [m**2]; spec: 0.0002 */
+    double N; /* amount of gas [mol]; spec: 0.41 */
+    double c_v; /* molar heat capacity at constant volume [J/mol/K]; spec: 20.786 */
+    double R; /* gas constant [J/mol/K]; spec: 8.314463 */
+    double T_0; /* temperature at S = 0 and q = 0 [K]; spec: 293.15 */
+    double m; /* mass of the piston [kg]; spec: 0.0165 */
+    double d; /* friction of the piston [N*s/m]; spec: 0.005 */
+    double lam; /* heat conductance through the vessel [W/K]; spec: 0.05 */
+} gas_piston_parameters;
+
+/* An initializer for parameters: the values of the spec. */
+#define gas_piston_DEFAULTS { \
+    .V_0 = 0.01, \
+    .A = 0.0002, \
+    .N = 0.41, \
+    .c_v = 20.786, \
+    .R = 8.314463, \
+    .T_0 = 293.15, \
+    .m = 0.0165, \
+    .d = 0.005, \
+    .lam = 0.05, \
+}
+
+/* Sizes that no bank changes: of inputs, outputs, bodies, conditions of the domain. */
+enum {
+    gas_piston_input_count = 2,
+    gas_piston_output_count = 2,
+    gas_piston_body_count = 1,
+    gas_piston_limit_count = 11,
+};
+
+/*
+ * Number of states n.
+ */
+long gas_piston_states(const gas_piston_parameters *p_);
+
+/*
+ * Number of processes; of a bank, one per lane.
+ */
+long gas_piston_processes(const gas_piston_parameters *p_);
+
+/*
+ * State at t = 0 [SI], for the inputs u at t = 0.
+ * u[gas_piston_input_count], read: F [N], T_e [K]
+ * out[n], written; must not overlap another argument: p [kg*m/s], q [m], S [J/K]
+ */
+void gas_piston_initial_state(const double *u, const gas_piston_parameters *p_, double *out);
+
+/*
+ * Rates dx/dt = J_ir dU/dx + g u.
+ * x[n], read: p [kg*m/s], q [m], S [J/K]
+ * u[gas_piston_input_count], read: F [N], T_e [K]
+ * out[n], written; must not overlap another argument
+ */
+void gas_piston_rhs(const double *x,
+                    const double *u,
+                    const gas_piston_parameters *p_,
+                    double *out);
+
+/*
+ * Derivative of rhs by the state, n x n, row after row.
+ * x[n], read: p [kg*m/s], q [m], S [J/K]
+ * u[gas_piston_input_count], read: F [N], T_e [K]
+ * out[n*n], written; must not overlap another argument
+ */
+void gas_piston_jacobian(const double *x,
+                         const double *u,
+                         const gas_piston_parameters *p_,
+                         double *out);
+
+/*
+ * Outputs y, one per port, conjugate to its input.
+ * x[n], read: p [kg*m/s], q [m], S [J/K]
+ * u[gas_piston_input_count], read: F [N], T_e [K]
+ * out[gas_piston_output_count], written; must not overlap another argument: load [m/s], vessel
+ *     [K]
+ */
+void gas_piston_outputs(const double *x,
+                        const double *u,
+                        const gas_piston_parameters *p_,
+                        double *out);
+
+/*
+ * Power supplied through each port [W]; the sum is dU/dt.
+ * x[n], read: p [kg*m/s], q [m], S [J/K]
+ * u[gas_piston_input_count], read: F [N], T_e [K]
+ * out[gas_piston_output_count], written; must not overlap another argument
+ */
+void gas_piston_supply(const double *x,
+                       const double *u,
+                       const gas_piston_parameters *p_,
+                       double *out);
+
+/*
+ * Hamiltonian U [J].
+ * x[n], read: p [kg*m/s], q [m], S [J/K]
+ */
+double gas_piston_energy(const double *x, const gas_piston_parameters *p_);
+
+/*
+ * Total entropy S [J/K].
+ * x[n], read: p [kg*m/s], q [m], S [J/K]
+ */
+double gas_piston_entropy(const double *x, const gas_piston_parameters *p_);
+
+/*
+ * Temperature of each body [K].
+ * x[n], read: p [kg*m/s], q [m], S [J/K]
+ * out[gas_piston_body_count], written; must not overlap another argument: gas [K]
+ */
+void gas_piston_temperatures(const double *x, const gas_piston_parameters *p_, double *out);
+
+/*
+ * Power that each process turns into heat [W]; of a bank, one row per lane.
+ * x[n], read: p [kg*m/s], q [m], S [J/K]
+ * u[gas_piston_input_count], read: F [N], T_e [K]
+ * out[gas_piston_processes(p_)], written; must not overlap another argument
+ */
+void gas_piston_heat(const double *x,
+                     const double *u,
+                     const gas_piston_parameters *p_,
+                     double *out);
+
+/*
+ * Entropy that each process produces [W/K]; of a bank, one row per lane.
+ * x[n], read: p [kg*m/s], q [m], S [J/K]
+ * u[gas_piston_input_count], read: F [N], T_e [K]
+ * out[gas_piston_processes(p_)], written; must not overlap another argument
+ */
+void gas_piston_entropy_production(const double *x,
+                                   const double *u,
+                                   const gas_piston_parameters *p_,
+                                   double *out);
+
+/*
+ * Margin of each condition of the domain; of a bank, the least over its lanes.
+ * x[n], read: p [kg*m/s], q [m], S [J/K]
+ * u[gas_piston_input_count], read: F [N], T_e [K]
+ * out[gas_piston_limit_count], written; must not overlap another argument
+ * out[0]: V_0 + A*q > 0; inside, > 0
+ * out[1]: V_0 > 0; inside, > 0
+ * out[2]: A > 0; inside, > 0
+ * out[3]: N > 0; inside, > 0
+ * out[4]: c_v > 0; inside, > 0
+ * out[5]: R > 0; inside, > 0
+ * out[6]: T_0 > 0; inside, > 0
+ * out[7]: d >= 0; inside, >= 0
+ * out[8]: lam >= 0; inside, >= 0
+ * out[9]: T_e > 0; inside, > 0
+ * out[10]: m > 0; inside, > 0
+ */
+void gas_piston_margins(const double *x,
+                        const double *u,
+                        const gas_piston_parameters *p_,
+                        double *out);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* PIEZO_SYM_gas_piston_H */
