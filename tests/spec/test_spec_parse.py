@@ -3,7 +3,7 @@
 import pytest
 from spec_tools import refusal, refused_edit, refused_law
 
-from piezo_sym.expressions.parse import parse_condition
+from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.text import spell
 
 HOSTILE = {
