@@ -18,8 +18,9 @@ FOLDER = ROOT / "notebooks"
 EXECUTE = FOLDER / "execute.py"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
 #: Not executed in the fast tier, where their data have tests of their own: `reproduce` draws the
-#: figures, banks of any size are compared with NumPy, sweeps with single runs.
-LONG = {"04-figures", "05-many-hysterons", "07-sweeps"}
+#: figures, banks of any size are compared with NumPy, sweeps with single runs, devices with closed
+#: forms.
+LONG = {"04-figures", "05-many-hysterons", "07-sweeps", "09-devices"}
 
 
 def execute(*words, script=EXECUTE):
