@@ -359,7 +359,7 @@ def test_a_run_that_stops_leaves_a_file_and_says_so(refused, spec_file, tmp_path
 def test_a_closed_pipe_loses_no_result(words, reader, written, tmp_path):
     spec = (ROOT / "tests/networks/specs/a2_oscillator.toml").read_text(encoding="utf-8")
     for name in "ab":
-        (tmp_path / f"{name}.toml").write_text(spec.replace('"oscillator"', f'"{name}"'))
+        (tmp_path / f"{name}.toml").write_text(spec.replace('"damped_oscillator"', f'"{name}"'))
     command = f"{sys.executable} -m piezo_sym {words} {reader}"
     done = subprocess.run(command, shell=True, cwd=tmp_path, capture_output=True, text=True)
     said = [line for line in done.stderr.splitlines() if not line.startswith("measuring")]

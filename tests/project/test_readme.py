@@ -25,7 +25,7 @@ def commands():
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     (tmp_path / "specs").mkdir()
-    for path in (tmp_path / "oscillator.toml", tmp_path / "specs" / "oscillator.toml"):
+    for path in (tmp_path / "damped_mass.toml", tmp_path / "specs" / "damped_mass.toml"):
         path.write_text(blocks("toml")[0], encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     return tmp_path
@@ -38,13 +38,13 @@ def test_every_command_works_in_the_order_given(folder, capsys):
     assert len(found) == 8
     for command in found:
         command, _, kept = command.partition(" > ")
-        _, *words = shlex.split(command.replace("specs/*.toml", "specs/oscillator.toml"))
+        _, *words = shlex.split(command.replace("specs/*.toml", "specs/damped_mass.toml"))
         assert run(words) == 0, command
         printed = capsys.readouterr().out
         if kept:
             (folder / kept).write_text(printed, encoding="utf-8")
     made = {path.name for path in folder.iterdir()}
-    assert {"oscillator.csv", "actuator.toml", "piezo-sym.schema.json"} <= made
+    assert {"damped_mass.csv", "actuator.toml", "piezo-sym.schema.json"} <= made
 
 
 def test_the_schema_line_is_that_of_a_new_spec():
@@ -77,9 +77,9 @@ def test_the_python_works(folder, monkeypatch):
 def test_the_refutation_is_what_verify_says(folder, capsys):
     from piezo_sym.cli import run
 
-    spec = folder / "oscillator.toml"
+    spec = folder / "damped_mass.toml"
     spec.write_text(spec.read_text(encoding="utf-8").replace('"d >= 0"', ""), encoding="utf-8")
-    assert run(["verify", "oscillator.toml"]) == 1
+    assert run(["verify", "damped_mass.toml"]) == 1
     (said,) = blocks("text")
     assert said in capsys.readouterr().out
 

@@ -122,7 +122,7 @@ def test_a_run_goes_on_where_another_ended(options, tmp_path):
 @pytest.mark.filterwarnings("ignore:.generated/piezo_stack. is not what")
 def test_a_run_of_another_model_is_refused():
     other = simulate(OSCILLATOR, duration=1.0)
-    with pytest.raises(UsageError, match=r"this is a run of model 'oscillator', spec [0-9a-f]+"):
+    with pytest.raises(UsageError, match=r"a run of model 'damped_oscillator', spec [0-9a-f]+"):
         simulate("piezo_stack", duration=1e-3, initial=other)
     changed = load("piezo_stack").to_toml().replace("3.5e-3", "3.6e-3").replace("0.0035", "0.0036")
     run = simulate("piezo_stack", duration=1e-3)
