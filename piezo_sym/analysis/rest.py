@@ -16,11 +16,12 @@ from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.module import GeneratedModule, held, row_name
 
 MOST_STEPS, MOST_MOVES = 400, 40
-LONGEST = 1e15  # of the first Euler step
+LONGEST = 1e20  # of the first Euler step
 GROWTH = 4.0  # of the Euler step
 CONTRACTION = 0.25  # a second Newton move larger than this part of the first: the step is too long
 AT_REST = 1e-9  # a move of this part of the states' sizes
 ROUND_OFF = 1e-13
+COUNTS = 1e-6  # of a body's temperature: a smaller change tells nothing of a step
 UNDETERMINED = 1e-6  # of a direction of unit length: less is round-off
 SINGULAR = 1e-10  # of the greatest singular value, after rows and columns are made equal in size
 
@@ -66,7 +67,7 @@ class RestSearch:
             what = "the initial state is outside the domain, or has no rates"
             raise RunError(what, self._model, remedy="give another as 'initial', or other inputs")
         eye = np.eye(self.free.size)
-        size: FloatArray = np.abs(x[self.free])
+        size: FloatArray = np.maximum(np.abs(x[self.free]), self._that_heats(x))
         if not np.any(self.rates(x)):
             return x, size
         first = step = 1e-3 / (float(np.linalg.norm(self.slope(x), 2)) or 1.0)
@@ -86,6 +87,16 @@ class RestSearch:
                 return x, size
             step *= GROWTH
         raise self._none(move / step, size)
+
+    def _that_heats(self, x: FloatArray) -> FloatArray:
+        """Return by how much the free states change a temperature by `COUNTS`; 0 if they do not."""
+        step = 1e-6 * np.maximum(np.abs(x), 1.0)
+        with np.errstate(all="ignore"):
+            still = self.module.temperatures(x, self.parameters)[:, None]
+            moved = self.module.temperatures(x[:, None] + np.diag(step), self.parameters)
+            part = np.max(np.abs(moved / still - 1.0), axis=0, initial=0.0)
+            enough = COUNTS * step / part
+        return np.asarray(np.where(part > 0, enough, 0.0)[self.free], dtype=float)
 
     def _contracts(
         self, matrix: FloatArray, step: float, move: FloatArray, ahead: FloatArray, size: FloatArray

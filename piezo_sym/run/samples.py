@@ -24,6 +24,9 @@ from piezo_sym.run.signals import MOST_CORNERS, Signal
 
 DELIMITERS = ",;\t"
 HEADER = re.compile(r"(?P<name>.*?)\s*\[(?P<unit>[^\[\]]*)\]")  # a name and its unit, t [ms]
+OTHERWISE = re.compile(  # t (ms), t/ms
+    r"(?P<name>.*?)\s*(?:\((?P<unit>[^()]+)\)|/\s*(?P<over>[^/()]+))"
+)
 SLACK = 1e-9  # of the duration: a last sample may fall short by rounding
 
 
@@ -100,9 +103,9 @@ def samples_from_csv(
 ) -> Samples:
     """Return the samples in a delimited text file (comma, semicolon or tab) with a header.
 
-    A header such as ``t [ms],V_in [V]`` says the units: times and values are converted to SI, and
-    a run refuses values whose unit is not of its input's dimension. Without units, times are in s,
-    and values in the SI unit of the input.
+    A header such as ``t [ms],V_in [V]``, ``t (ms)`` or ``t/ms`` says the units: times and values
+    are converted to SI, and a run refuses values whose unit is not of its input's dimension.
+    Without units, times are in s, and values in the SI unit of the input.
 
     Parameters
     ----------
@@ -150,17 +153,46 @@ def _opened(path: Path) -> Iterator[tuple[list[tuple[str, str]], str, Iterator[l
                 raise FileError("is empty", str(path), "a header line, then numbers")
             delimiter = max(DELIMITERS, key=first.count)
             (names,) = csv.reader([first], delimiter=delimiter, skipinitialspace=True)
-            found = [HEADER.fullmatch(name.strip()) for name in names]
-            header = [
-                (match["name"], match["unit"].strip()) if match else (name.strip(), "")
-                for name, match in zip(names, found, strict=True)
-            ]
+            if all(_is_number(name) for name in names):
+                what = "line 1 has numbers where names are expected"
+                raise FileError(what, str(path), "a header line, such as t [s],V_in [V]")
+            header = [_named(name.strip()) for name in names]
             rows = csv.reader(file, delimiter=delimiter, skipinitialspace=True)
             yield header, delimiter, rows
     except OSError as cause:
         raise FileError(f"cannot be read: {cause.strerror}", str(path)) from cause
     except UnicodeDecodeError as cause:
         raise FileError("is not text in UTF-8", str(path), remedy="save it as UTF-8") from cause
+
+
+def _named(text: str) -> tuple[str, str]:
+    """Return the name and the unit in a header: t [ms], and t (ms) or t/ms if that is a unit."""
+    if match := HEADER.fullmatch(text):
+        return match["name"], match["unit"].strip()
+    if match := OTHERWISE.fullmatch(text):
+        unit = (match["unit"] or match["over"]).strip()
+        if _is_unit(unit):
+            return match["name"], unit
+    return text, ""
+
+
+def _is_unit(text: str) -> bool:
+    """Return whether a text is meant as a unit: also degC, and what is not ASCII, which say why."""
+    from piezo_sym.expressions.units import parse_unit
+
+    try:
+        parse_unit(text)
+    except PiezoError as error:
+        return not text.isascii() or "offset" in error.what
+    return True
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
 
 
 def _columns(path: Path, t: int, x: int) -> tuple[FloatArray, FloatArray]:
@@ -201,9 +233,9 @@ def _factor(header: tuple[str, str], where: str, expected: str = "") -> tuple[fl
 
 def _position(headers: Sequence[tuple[str, str]], wanted: str, where: str) -> int:
     """Return the position of the one column named `wanted`, with or without its unit."""
-    match = HEADER.fullmatch(wanted.strip())
-    names = [f"{name} [{unit}]" if match and unit else name for name, unit in headers]
-    wanted = f"{match['name']} [{match['unit'].strip()}]" if match else wanted
+    name, said = _named(wanted.strip())
+    names = [f"{name} [{unit}]" if said and unit else name for name, unit in headers]
+    wanted = f"{name} [{said}]" if said else wanted
     if wanted not in names:
         raise UsageError(f"no column {quote(wanted)}", where, remedy=nearest(str(wanted), names))
     if names.count(wanted) > 1:
@@ -229,7 +261,8 @@ def _cell(row: Sequence[str], at: int, path: Path, line: int) -> float:
         value = float(text.replace("_", "x"))  # 1_0 is a number in Python alone
     except ValueError as cause:
         what = f"{quote(text)} is not a number"
-        raise FileError(what, where, "a number like 1.5e-3") from cause
+        remedy = "units go into the header: t [ms]" if line == 2 and text[:1].isalpha() else ""
+        raise FileError(what, where, "a number like 1.5e-3", remedy) from cause
     if not isfinite(value):
         raise FileError(f"{quote(text)} is not finite", where, "a finite number")
     return value

@@ -22,6 +22,16 @@ TABLES: Mapping[str, type[BaseModel]] = {
     "components": Component,
 }
 
+ENTRIES = {  # what stands for a name in a table
+    "parameters": '{{ value = {value}, unit = "N/m" }}, with its own unit; "1" is none',
+    "inputs": '{{ unit = "V" }}, with its own unit',
+}
+NEEDED = {  # examples of keys whose name alone does not say what to write
+    "unit": 'unit = "N/m", say; unit = "1" where there is none',
+    "heats": 'heats = "body", the name of an element of kind thermal_mass',
+    "value": "value = 1.0, or a list of one per lane",
+}
+
 
 def first_problem(error: ValidationError) -> SpecError:
     """Return the first of pydantic's findings as a `SpecError`."""
@@ -51,7 +61,7 @@ def _problem(detail: ErrorDetails) -> SpecError:
             entries = "1 entry is given" if count == 1 else f"{count} entries are given"
             return SpecError(entries, ".".join(place[:-1]), f"at least {count + 1}")
         case "missing":
-            return SpecError("is missing", where, remedy=f"keys here: {listing(known)}")
+            return SpecError("is missing", where, remedy=_missing(place[-1], known))
         case "union_tag_invalid":
             kind = value.get("kind") if isinstance(value, Mapping) else value
             remedy = nearest(str(kind), KINDS)
@@ -63,7 +73,20 @@ def _problem(detail: ErrorDetails) -> SpecError:
             return SpecError(f"{quote(value)} is not a label", where, expected)
         case "value_error" if isinstance(value, Mapping):
             return SpecError("its fields do not go together", where, _expected(detail))
+        case "model_type" | "dict_type" if place[0] in ENTRIES and len(place) == 2:
+            expected = ENTRIES[place[0]].format(value=_number(value))
+            return SpecError(f"{quote(value)} does not fit", where, expected)
     return SpecError(f"{quote(value)} does not fit", where, _expected(detail))
+
+
+def _missing(key: str, known: Iterable[str]) -> str:
+    """Return what to write for a key that is missing."""
+    more = NEEDED.get(key)
+    return f"add {more}" if more else f"add it; known keys: {listing(known)}"
+
+
+def _number(value: object) -> str:
+    return str(value) if isinstance(value, int | float) else "1.0"
 
 
 def _expected(detail: ErrorDetails) -> str:

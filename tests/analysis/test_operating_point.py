@@ -1,10 +1,13 @@
 """Operating points against closed forms, and what is said where there is none."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from piezo_sym import load, operating_point, simulate
 from piezo_sym.errors import RunError, UsageError
+from piezo_sym.spec.load import starter
 from tests.networks.test_acceptance import SPECS
 
 pytestmark = pytest.mark.filterwarnings("error")
@@ -21,6 +24,15 @@ def test_the_actuator_rests_where_its_forces_balance() -> None:
     assert found.stable
     assert found.undetermined == ("phi[1]", "phi[2]")  # they circulate within the dead zones
     assert np.abs(found.initial["phi"]).max() < 1e-15
+
+
+@pytest.mark.parametrize("volts", [0.0, 60.0])
+def test_the_starter_rests_though_its_entropy_starts_at_zero(volts: float, tmp_path: Path) -> None:
+    spec = tmp_path / "first.toml"
+    spec.write_text(starter("first", "NAME"))
+    found = operating_point(spec, inputs={"V_in": volts})
+    assert found.initial["q"] == pytest.approx(5.0 * volts / 2e7, rel=1e-12)
+    assert found.temperatures == {"body": pytest.approx(293.15, rel=1e-12)}
 
 
 def test_a_held_body_says_what_heat_holds_it() -> None:

@@ -51,6 +51,10 @@ def test_columns_by_name(write):
         ("t,V\n1,1\n0,1\n", {}, UsageError, "time 0 at entry 1 follows 1"),
         ("t [mm],V\n0,1\n1,1\n", {}, UsageError, "'t' is in mm; expected a time, such as in s"),
         ("t [ms],V [vlot]\n0,1\n1,1\n", {}, UsageError, "header: unknown unit 'vlot'"),
+        ("0,1\n1,2\n2,3\n", {}, FileError, "line 1 has numbers where names are expected"),
+        ("t,V\nms,V\n0,1\n", {}, FileError, "units go into the header: t [ms]"),
+        ("t (ms),T (degC)\n0,1\n1,1\n", {}, UsageError, "unit 'degC' has an offset"),
+        ("t (µs),V\n0,1\n1,1\n", {}, UsageError, "write 'us'"),
         ("t,V [V],V [A]\n0,1,2\n", {"column": "V"}, UsageError, "two columns are named 'V'"),
     ],
 )
@@ -75,6 +79,19 @@ def test_units_of_the_header_are_converted(write):
         assert signal.values.tolist() == [0.0, 100.0]
         assert (signal.unit, signal.assumed) == ("V", "")
     assert samples_from_csv(path, "V_in", "t [ms]").times[1] == 0.01
+
+
+@pytest.mark.parametrize("header", ["t (ms),V (kV)", "t/ms,V/kV", "t / ms,V / kV", "t [ms],V [kV]"])
+def test_headers_of_instruments_say_units_in_their_ways(write, header):
+    signal = samples_from_csv(write(header + "\n0,1\n20,2\n"), column="V")
+    assert np.allclose(signal.times, [0, 0.02], rtol=1e-15)
+    assert np.allclose(signal.values, [1e3, 2e3], rtol=1e-15)
+    assert (signal.unit, signal.assumed) == ("V", "")
+
+
+def test_what_stands_in_brackets_and_is_no_unit_is_part_of_a_name(write):
+    signal = samples_from_csv(write("t,V (measured)\n0,1\n1,2\n"), column="V (measured)")
+    assert signal.assumed == "t in s and V (measured) in the input's SI unit"
 
 
 def test_a_header_without_units_says_what_was_assumed(write):

@@ -62,15 +62,21 @@ def test_an_element_without_a_kind():
 
 
 @pytest.mark.parametrize(
-    ("old", "place"),
+    ("old", "place", "remedy"),
     [
-        ('unit = "kg", ', "parameters.M.unit"),
-        ("value = 3.5e-3, ", "parameters.M.value"),
-        ('name   = "piezo_stack"', "model.name"),
+        ('unit = "kg", ', "parameters.M.unit", 'add unit = "N/m", say; unit = "1" where'),
+        ("value = 3.5e-3, ", "parameters.M.value", "add value = 1.0, or"),
+        ('name   = "piezo_stack"', "model.name", "add it; known keys: name, "),
     ],
 )
-def test_missing_keys(old, place):
-    assert refused_edit((old, "")).startswith(f"spec: {place}: is missing; keys here: ")
+def test_missing_keys(old, place, remedy):
+    assert refused_edit((old, "")).startswith(f"spec: {place}: is missing; {remedy}")
+
+
+def test_a_parameter_that_is_a_number_alone():
+    old = 'd    = { value = 4e2,    unit = "N*s/m", doc = "damping" }'
+    said = "parameters.d: '400' does not fit; expected { value = 400, unit = "
+    assert said in refused_edit((old, "d = 400"))
 
 
 @pytest.mark.parametrize(
