@@ -156,6 +156,22 @@
 (check-sat)
 (pop 1)
 
+; welldef of rotor: J_m != 0
+(push 1)
+(declare-const ?J_m Real)
+(assert (> ?J_m 0))
+(assert (not (not (= ?J_m 0))))
+(check-sat)
+(pop 1)
+
+; welldef of rotor: J_l != 0
+(push 1)
+(declare-const ?J_l Real)
+(assert (> ?J_l 0))
+(assert (not (not (= ?J_l 0))))
+(check-sat)
+(pop 1)
+
 ; passive of bearing: tau_bearing*omega >= 0
 (push 1)
 (declare-const ?J_m Real)

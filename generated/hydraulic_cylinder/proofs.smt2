@@ -61,6 +61,27 @@
 (check-sat)
 (pop 1)
 
+; energy: 0.5*(k_s*(q - x_s)**2) = 0.5*(k_s*0**2) at q - x_s = 0
+(push 1)
+(declare-const ?k_s Real)
+(declare-const ?x_s Real)
+(declare-const ?q Real)
+(assert (> ?k_s 0))
+(assert (> ?x_s 0))
+(assert (= (+ ?q (- ?x_s)) 0))
+(assert (not (= (* (/ 1 2) ?k_s (* (+ ?q (- ?x_s)) (+ ?q (- ?x_s)))) 0)))
+(check-sat)
+(pop 1)
+
+; energy: U has no jump where its branches meet: the branches cover all points
+(push 1)
+(declare-const ?x_s Real)
+(declare-const ?q Real)
+(assert (> ?x_s 0))
+(assert (not (>= (+ (ite (>= (+ ?q (- ?x_s)) 0) 1 0) (ite (< (+ ?q (- ?x_s)) 0) 1 0)) 1)))
+(check-sat)
+(pop 1)
+
 ; welldef of orifice: dp**2 + p_t**2 >= 0
 (push 1)
 (declare-const ?p_t Real)

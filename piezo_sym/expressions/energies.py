@@ -149,10 +149,13 @@ def _sign(node: Expr, positive: Collection[str]) -> int | None:
 
 
 def without_common_factors(node: Expr, name: str) -> Expr:
-    """Return a product or quotient without factors of `name` above and below: sinh(x)/x*x."""
+    """Return a product or quotient without factors of `name` above and below: sinh(x)/x*x.
+
+    These are polynomials, which have a value everywhere: of log(x)/log(x) nothing is left out.
+    """
     above, below = _factors(node)
     one: Expr = ONE
-    both = [factor for factor in above if factor in below and name in names(factor)]
+    both = [f for f in above if f in below and name in names(f) and _is_polynomial(f)]
     if not both:
         return node
     for factor in both:
@@ -161,6 +164,13 @@ def without_common_factors(node: Expr, name: str) -> Expr:
             below.remove(factor)
     top, bottom = (reduce(mul, factors, one) for factors in (above, below))
     return div(top, bottom)
+
+
+def _is_polynomial(node: Node) -> bool:
+    if isinstance(node, Pow) and (node.exponent < 0 or node.exponent.denominator != 1):
+        return False
+    known = isinstance(node, Num | Sym | Neg | Add | Mul | Pow)
+    return known and all(map(_is_polynomial, children(node)))
 
 
 def _factors(node: Expr) -> tuple[list[Expr], list[Expr]]:

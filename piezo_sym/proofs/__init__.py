@@ -67,7 +67,7 @@ def _obligations(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
     yield from defined(iphs, assumptions)
     yield from bodies.temperature(iphs, assumptions)
     yield from divisors(iphs, assumptions)
-    yield from (balances.energy(iphs), balances.entropy(iphs))
+    yield from (balances.energy(iphs, assumptions), balances.entropy(iphs))
     for element, own in groupby(laws.laws_of(iphs), key=lambda law: law.element):
         yield from _of_element(iphs, element, tuple(own), assumptions)
     yield balances.sigma(iphs)
@@ -89,8 +89,8 @@ def _of_laws(
     iphs: IPHS, element: str, own: tuple[Law, ...], assumptions: Assumptions
 ) -> Iterator[Obligation]:
     yield from filter(None, (laws.welldef(own, assumptions),))
+    yield from filter(None, (continuous(own, assumptions),))
     for law in own:
-        yield from filter(None, (continuous(law, assumptions),))
         if law.letter:
             yield from (laws.passive(law, assumptions), laws.odd(law, assumptions))
         elif any(placed.element == element for placed, _ in iphs.circuit.of(Conductor)):

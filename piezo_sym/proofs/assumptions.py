@@ -37,7 +37,7 @@ class Law:
     jumps : whether the spec says that it is discontinuous on purpose.
     ties : what its letter is as a function of states, where not every value is taken; None if that
         is not known.
-    written : the law as the spec writes it, in its own letter, where the network turns it round.
+    written : what the spec writes in its place, where the network turns a law round, or joins it.
     """
 
     element: str
@@ -46,7 +46,7 @@ class Law:
     letter: str = ""
     jumps: bool = False
     ties: tuple[Cmp | None, ...] = ()
-    written: Expr | None = None
+    written: tuple[Expr, ...] = ()
 
     @property
     def of_element(self) -> str:

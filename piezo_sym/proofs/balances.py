@@ -17,7 +17,8 @@ from piezo_sym.expressions.energies import slope
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ZERO, Cmp, Sym, names
 from piezo_sym.iphs import IPHS
-from piezo_sym.proofs.assumptions import Assumptions
+from piezo_sym.proofs.assumptions import Assumptions, Law
+from piezo_sym.proofs.continuity import unbroken
 from piezo_sym.proofs.gradients import same
 from piezo_sym.proofs.laws import valued
 from piezo_sym.proofs.obligations import Obligation, Question, Residual
@@ -54,12 +55,14 @@ def casimir(iphs: IPHS) -> Obligation:
     return Obligation("casimir", "", "J0 dS/dx = 0", latex, residuals=found)
 
 
-def energy(iphs: IPHS) -> Obligation:
-    """First law: dU/dx is the co-states, and dU/dt is the power put in."""
+def energy(iphs: IPHS, assumptions: Assumptions) -> Obligation:
+    """First law: U does not jump, dU/dx is the co-states, and dU/dt is the power put in."""
     system = iphs.system
     balance = (system.E.T @ system.rhs - system.y.T @ system.u)[0, 0]
     found = (*_gradient(iphs), Residual("dU/dt - y^T u", balance))
-    return Obligation("energy", "", "dU/dt = y^T u", r"\dot U = y^\top u", residuals=found)
+    made = Obligation("energy", "", "dU/dt = y^T u", r"\dot U = y^\top u", residuals=found)
+    laws = [Law("", "U", energy.law) for energy in iphs.energies]
+    return made.asking(lambda: (q for law in laws for q in unbroken(law, assumptions)), "an energy")
 
 
 def entropy(iphs: IPHS) -> Obligation:

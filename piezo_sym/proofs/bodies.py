@@ -13,7 +13,8 @@ from piezo_sym.expressions.calculus import add, derivative, div, mul, neg
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Expr, Sym, names
 from piezo_sym.iphs import IPHS
-from piezo_sym.proofs.assumptions import Assumptions
+from piezo_sym.proofs.assumptions import Assumptions, Law
+from piezo_sym.proofs.continuity import unbroken
 from piezo_sym.proofs.laws import on_branches, valued
 from piezo_sym.proofs.obligations import Obligation, Question
 from piezo_sym.spec.elements.ports import Body, Conductor, DissipativePort, Exchange, HeatInput
@@ -34,7 +35,10 @@ def temperature(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
 
 
 def _warm(law: Expr, state: str, assumptions: Assumptions) -> Iterator[Question]:
-    """Yield the questions whether a temperature and its slope have values, and are positive."""
+    """Yield the questions whether a temperature and its slope have values, and are positive.
+
+    Where it jumped down as its entropy rises, it would have no slope.
+    """
     slope = derivative(law, state)
     found = [
         *valued(law, assumptions),
@@ -44,6 +48,8 @@ def _warm(law: Expr, state: str, assumptions: Assumptions) -> Iterator[Question]
     ]
     asked = {(question.where, question.claim): question for question in reversed(found)}
     yield from reversed(asked.values())
+    others = {name for name in names(law) if name != state}
+    yield from unbroken(Law("", "T", law), replace(assumptions, fixed=assumptions.fixed | others))
 
 
 def invariant(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:

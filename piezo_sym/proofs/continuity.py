@@ -45,26 +45,60 @@ GROWTH = 10
 Numbers = Mapping[str, Fraction]
 
 
-def continuous(law: Law, assumptions: Assumptions) -> Obligation | None:
-    """State that a law has no jump; None if it has no edge to jump at, or jumps on purpose.
+def continuous(laws: tuple[Law, ...], assumptions: Assumptions) -> Obligation | None:
+    """State that the laws of one element have no jump; None if none has an edge to jump at.
 
     An edge is where states, inputs or temperatures choose another branch: a branch chosen by
-    parameters alone is the same throughout a run.
+    parameters alone is the same throughout a run.  Laws that jump on purpose are left out.
     """
-    statement = f"{law.name} has no jump where its branches meet"
-    latex = r"W_k(z^-) = W_k(z^+)"
-    made = Obligation("continuous", law.element, statement, latex, assumptions.texts)
-    about = assumptions.about(law)
-    edges = [c for c in choices(with_choices(law.tree)) if not {*names(c)} <= assumptions.fixed]
-    if law.jumps or not edges:
+    own = [law for law in laws if not law.jumps and _edges(law, assumptions)]
+    if not own:
         return None
-    if not _chooses(law.tree):
-        rests = (("welldef", law.element),)
-        if law.letter:
-            return replace(made, rests_on=rests)
-        asked = made.asking(lambda: valued(law.tree, about), law.of_element)
-        return replace(asked, questions=(), rests_on=rests if asked.questions else ())
-    return made.asking(lambda: _on_pairs(law, about, statement), law.of_element)
+    element, latex = own[0].element, r"W_k(z^-) = W_k(z^+)"
+    statement = _statement(*own)
+    made = Obligation("continuous", element, statement, latex, assumptions.texts)
+    tables = [law for law in own if not _chooses(law.tree)]
+    valid = made.asking(lambda: _valued(tables, assumptions), own[0].of_element)
+    if valid.open_because:
+        return valid
+    given = valid.questions or any(law.letter for law in tables)
+    asked = made.asking(lambda: _unbroken(own, assumptions), own[0].of_element)
+    return replace(asked, rests_on=(("welldef", element),) if given else ())
+
+
+def _statement(*laws: Law) -> str:
+    named = " and ".join(dict.fromkeys(law.name for law in laws))
+    if len(laws) > 1:
+        return f"{named} have no jump where branches meet"
+    return f"{named} has no jump where its branches meet"
+
+
+def _valued(tables: list[Law], assumptions: Assumptions) -> Iterator[Question]:
+    for law in tables:
+        if not law.letter:  # else row welldef is there in any case
+            yield from valued(law.tree, assumptions)
+
+
+def _unbroken(laws: list[Law], assumptions: Assumptions) -> Iterator[Question]:
+    for law in laws:
+        yield from unbroken(law, assumptions.about(law))
+
+
+def unbroken(law: Law, assumptions: Assumptions) -> Iterator[Question]:
+    """Yield the questions whether a law has no jump, as a part of what another row says.
+
+    Raises
+    ------
+    TooManyBranchesError
+        If the law has too many branches.
+    """
+    if _edges(law, assumptions) and _chooses(law.tree):
+        yield from _on_pairs(law, assumptions, _statement(law))
+
+
+def _edges(law: Law, assumptions: Assumptions) -> list[Cmp]:
+    """Return the comparisons that choose in a law, but for those that parameters decide."""
+    return [c for c in choices(with_choices(law.tree)) if not {*names(c)} <= assumptions.fixed]
 
 
 def _on_pairs(law: Law, assumptions: Assumptions, statement: str) -> Iterator[Question]:
@@ -131,16 +165,20 @@ def _border(one: Branch, other: Branch, fixed: frozenset[str]) -> Iterator[Cmp]:
 
 
 def needed(questions: tuple[Question, ...], solver: Asks) -> Iterator[Question]:
-    """Yield the questions that are left: of those on two branches, the ones on neighbours.
+    """Yield the questions that are left: of those on two branches of a law, the ones on neighbours.
 
     Two branches are neighbours if there is no third whose conditions are all among theirs.  Where
     two others meet, such a third meets both; that each of them agrees with it is asked, or follows
     in the same way: the third contradicts each of them in fewer conditions than they do each other.
     """
-    about = {side: q for q in questions if q.meeting for side in q.meeting.sides}
-    taken = tuple(side for side, question in about.items() if not _empty(side, question, solver))
-    near = frozenset(_neighbours(taken))
-    yield from (q for q in questions if q.meeting is None or q.meeting.sides in near)
+    yield from (q for q in questions if q.meeting is None)
+    meetings = [(q.meeting.law, q) for q in questions if q.meeting]
+    for law in dict.fromkeys(law for law, _ in meetings):
+        own = [q for of, q in meetings if of == law]
+        about = {side: q for q in own if q.meeting for side in q.meeting.sides}
+        taken = tuple(side for side, q in about.items() if not _empty(side, q, solver))
+        near = frozenset(_neighbours(taken))
+        yield from (q for q in own if q.meeting and q.meeting.sides in near)
 
 
 def _neighbours(taken: tuple[Branch, ...]) -> Iterator[tuple[Branch, Branch]]:

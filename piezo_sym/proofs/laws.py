@@ -75,16 +75,24 @@ def _law(iphs: IPHS, placed: Placed) -> Law | None:
     element, port = placed.element, placed.port
     match port:
         case Storage() | Body():
-            return Law(element, costate_name(port), port.law)
+            return Law(element, costate_name(port), port.law, written=_apart(iphs, port.state))
         case DissipativePort():
             jumps = bool(getattr(iphs.model.elements[element], "discontinuous", False))
-            return Law(element, port.output, port.law, port.letter, jumps, written=port.written)
+            written = (port.written,) if port.written else ()
+            return Law(element, port.output, port.law, port.letter, jumps, written=written)
         case Coupling():
             return Law(element, port.name, port.ratio)
         case Exchange() | Conductor():
             return Law(element, "conductance", port.conductance)
         case Source() | HeatInput():
             return None
+
+
+def _apart(iphs: IPHS, state: str) -> tuple[Expr, ...]:
+    """Return the laws and energies of the stores that are joined into a state, each alone."""
+    joints = [j for j in iphs.junction.joints if j.kept[0].store.state == state]
+    stores = [member.store for joint in joints for member in joint.members]
+    return tuple(law for store in stores for law in (store.law, store.energy) if law is not None)
 
 
 def welldef(laws: tuple[Law, ...], assumptions: Assumptions) -> Obligation | None:
@@ -97,7 +105,7 @@ def welldef(laws: tuple[Law, ...], assumptions: Assumptions) -> Obligation | Non
     def questions() -> Iterator[Question]:
         for law in laws:
             yield from valued(law.tree, about)
-        for written in (law.written for law in laws if law.written):
+        for written in (written for law in laws for written in law.written):
             order = dict.fromkeys((*about.order, *names(written)))
             yield from valued(written, replace(about, order=tuple(order)))
 
