@@ -132,7 +132,7 @@ def test_the_command(tmp_path, capsys):
     found = json.loads(file.read_text())
     assert {row["group"] for row in found["rows"]} == {"run"}
     assert set(found["rows"][0]["ratio"]) == {"median", "low", "high"}
-    assert "benchmark of oscillator" in out
+    assert "benchmark of damped_oscillator" in out
     assert "errors of run: at the end" in out
 
 

@@ -103,7 +103,7 @@ def test_the_command(tmp_path, capsys):
     found = json.loads(files[0].read_text())
     assert {row["group"] for row in found["rows"]} == {"run", "rhs"}
     assert "discrete gradient in C" in files[1].read_text()
-    assert "# Benchmark of oscillator" in out
+    assert "# Benchmark of damped_oscillator" in out
 
 
 @pytest.mark.parametrize("words", [["--only", "rus"], ["--duration", "0"], ["no_such_spec"]])
