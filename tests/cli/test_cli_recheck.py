@@ -124,7 +124,7 @@ def test_junit_has_a_case_a_row(call, unproved, tmp_path):
         assert kinds["error"] == required[Verdict.OPEN]
     damper = next(c for c in found["mine"] if c.get("name") == "passive damper")
     fault = damper.find("failure")
-    assert fault.get("message") == "d*v*v = -1"
+    assert fault.get("message").startswith("d*v*v = -1; the condition 'd >= 0'")
     assert "at d = -1, v = 1" in fault.text
 
 
