@@ -126,8 +126,8 @@ class Store(Form):
 
     def fault(self, element: Any) -> tuple[str, str, str, str] | None:
         """Return that a rest belongs to a stiffness."""
-        alone = getattr(element, self.size) is None and "rest" in element.model_fields_set
-        if self.stiff and alone:
+        rest = type(element).model_fields["rest"].default if self.stiff else None
+        if self.stiff and getattr(element, self.size) is None and element.rest != rest:
             given = next(name for name in self.one_of if getattr(element, name) is not None)
             remedy = f"write {self.letter} - ({element.rest}) in the law, and leave rest out"
             return ".rest", f"rest is given beside {given}", f"rest beside {self.size}", remedy
