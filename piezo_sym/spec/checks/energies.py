@@ -6,11 +6,12 @@ entropy it is one of two states, which a `storage` says.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from piezo_sym.errors import SpecError, quote
 from piezo_sym.expressions.energies import antiderivative
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import names, replace
-from piezo_sym.spec.elements.base import Element
 from piezo_sym.spec.elements.ports import Body, Storage
 from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.tables import LawField, law_fields, temperatures
@@ -18,6 +19,8 @@ from piezo_sym.spec.tables import LawField, law_fields, temperatures
 
 def check_energies(spec: Tables) -> None:
     """Check what elements that store energy say of it."""
+    warm = temperatures(spec)
+    hot = {"T": next(iter(warm.values()), ""), **warm, **{f"T_{b}": b for b in warm.values()}}
     for name, element in spec.elements.items():
         for form in element.row.forms:
             if fault := form.fault(element):
@@ -25,17 +28,16 @@ def check_energies(spec: Tables) -> None:
                 raise SpecError(what, f"elements.{name}{field}", expected, remedy)
         for law in law_fields(name, element):
             if element.letter and law.letters == (element.letter,) and not element.is_body:
-                _check_law(spec, name, element, law)
+                _check_law(spec, name, law, hot)
 
 
-def _check_law(spec: Tables, name: str, element: Element, law: LawField) -> None:
-    """Refuse a law of a store that depends on a temperature."""
-    hot = {"T": next(iter(temperatures(spec).values()), ""), **temperatures(spec)}
-    hot |= {f"T_{body}": body for body in temperatures(spec).values()}
+def _check_law(spec: Tables, name: str, law: LawField, hot: Mapping[str, str]) -> None:
+    """Refuse a law of a store that depends on a temperature; `hot`: the body of each."""
     word = next((w for w in names(law.tree) if w in hot and w not in spec.parameters), "")
     if not word:
         return
-    what = f"the {law.field} depends on {quote(word)}, and then is no energy of {element.letter}"
+    letter = spec.elements[name].letter
+    what = f"the {law.field} depends on {quote(word)}, and then is no energy of {letter}"
     remedy = "let it depend on parameters and its own state"
     if hot[word]:
         body = hot[word]
