@@ -48,7 +48,8 @@ def heated(exact, fixed, x, above):
     for n, state in enumerate(exact.x):
         if exact.system.dS[n, 0] == 0:
             continue
-        law = exact.E[n].xreplace(fixed)
+        others = {other: sp.Float(x[k]) for k, other in enumerate(exact.x) if k != n}
+        law = exact.E[n].xreplace(fixed).xreplace(others)
         hot, slope = (sp.lambdify(state, f, "mpmath") for f in (law, sp.diff(law, state)))
         with mp.workdps(DIGITS):
             s = mp.mpf(0)
