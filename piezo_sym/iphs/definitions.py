@@ -113,19 +113,19 @@ def energies_of(circuit: Circuit) -> tuple[Energy, ...]:
     SpecError
         If a co-state law has no integral in closed form.
     """
-    rows: dict[tuple[Expr, str | None], tuple[int, ...]] = {}
-    for n, (placed, port) in enumerate(circuit.of(Storage, Body)):
-        key = port.energy or _integral(circuit, placed.element, port), placed.bank
-        rows[key] = (*rows.get(key, ()), n)
-    return tuple(Energy(law, found, bank) for (law, bank), found in rows.items())
-
-
-def _integral(circuit: Circuit, element: str, port: Storage | Body) -> Expr:
-    """Return the integral of a co-state law by its state."""
     above = (greater(condition.tree) for condition in conditions(circuit.model))
     positive = frozenset(
         c.left.name for c in above if c.op == ">" and c.right == ZERO and isinstance(c.left, Sym)
     )
+    rows: dict[tuple[Expr, str | None], tuple[int, ...]] = {}
+    for n, (placed, port) in enumerate(circuit.of(Storage, Body)):
+        key = port.energy or _integral(placed.element, port, positive), placed.bank
+        rows[key] = (*rows.get(key, ()), n)
+    return tuple(Energy(law, found, bank) for (law, bank), found in rows.items())
+
+
+def _integral(element: str, port: Storage | Body, positive: frozenset[str]) -> Expr:
+    """Return the integral of a co-state law by its state; `positive` names are > 0."""
     energy = antiderivative(
         port.law, port.state, lambda law, name: integral(law, name, positive), positive
     )

@@ -51,10 +51,10 @@ def motor(**pairs):
 @pytest.mark.parametrize(
     ("pairs", "said"),
     [
-        ({}, "exactly one of translation and rotation; neither given"),
+        ({}, "exactly one of translation, rotation; neither given"),
         (
             {"translation": 1, "rotation": 1},
-            "exactly one of translation and rotation; both translation and rotation given",
+            "exactly one of translation, rotation; both translation and rotation given",
         ),
     ],
 )
