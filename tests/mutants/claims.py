@@ -20,8 +20,8 @@ each branch agrees with itself
   + claim = Cmp("=", one.value, one.value)
   = d*v if v < v_1 else 2*d*v | d > 0; v_1 > 0
 no edge is one of states
-  - if law.jumps or not edges:
-  + if law.jumps or edges:
+  - if not law.jumps and _edges(law, assumptions)]
+  + if not law.jumps and not _edges(law, assumptions)]
   = d*v if v < v_1 else 2*d*v | d > 0; v_1 > 0
 only the first two branches meet
   - combinations(found, 2)
