@@ -56,7 +56,7 @@ def tableau(stages: int, nodes: int, *, lossy: bool = False, lanes: int = 0) -> 
             **_means("node", nodes, lagrange, b),
             **_means("fine", FINE, lagrange, b),
             "stage_basis": basis.tolist(),
-            "basis_stage": (basis**-1).tolist(),
+            "basis_inverse": (basis**-1).tolist(),
             "eigenvalue": values,
             **_between([mp.mpf(0), *c, mp.mpf(1)]),
         }
@@ -95,7 +95,7 @@ def _lanes(tables: dict[str, Any], lanes: int) -> dict[str, list[list[Any]]]:
     reach = {
         f"{n}_lanes": _in_lanes(tables[f"{n}_reach"], lanes) for n in ("stage", "node", "fine")
     }
-    others = ("node_mean", "fine_mean", "basis_stage", "stage_basis")
+    others = ("node_mean", "fine_mean", "basis_inverse", "stage_basis")
     return reach | {f"{name}_lanes": _in_lanes(tables[name], lanes) for name in others}
 
 

@@ -3,6 +3,7 @@
 import ctypes
 import gc
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -317,3 +318,15 @@ def test_an_engine_loads_nothing_of_the_derivation():
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONDONTWRITEBYTECODE": "1"}
     done = subprocess.run(words, env=environment, capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "[]"
+
+
+def test_no_model_is_called_what_makes_a_word_of_the_engine_its_own() -> None:
+    """Model `stage` with MODEL(reach) would be the table stage_reach, and would not compile."""
+    folder = Path(libraries.__file__).parent
+    text = "\n".join(path.read_text() for path in sorted(folder.rglob("*.[ch]")))
+    header = "\n".join(path.read_text() for path in sorted(FILES.glob("*.[ch]")))
+    own = {*re.findall(r"MODEL\((\w+)\)", text), *re.findall(r"\bpiezo_stack_(\w+)", header)}
+    words = re.findall(r"^static [^;(=]*?\b(?!MODEL\b)(\w+)(?=[\[(])", text, re.MULTILINE)
+    assert {"stage_reach", "node_mean"} <= set(words)
+    taken = {(word, end) for word in words for end in own if word.endswith(f"_{end}")}
+    assert taken == set()

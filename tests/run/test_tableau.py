@@ -55,7 +55,7 @@ def test_means_are_exact_for_polynomials(stages):
 def test_blocks_are_those_of_the_matrix(stages):
     t = tables(stages, stages + 2)
     a = t["stage_reach"].reshape(stages, stages)
-    basis, inverse = (t[n].reshape(stages, stages) for n in ("stage_basis", "basis_stage"))
+    basis, inverse = (t[n].reshape(stages, stages) for n in ("stage_basis", "basis_inverse"))
     values = t["eigenvalue"].reshape(-1, 2)
     blocks, n = np.zeros((stages, stages)), 0
     for real, imaginary in values:

@@ -52,7 +52,7 @@ static void MODEL(solved)(MODEL(batch) *b, MODEL(dispatch) *t)
     MODEL(predict)(b, t->behind, t->slope, t->known);
     t->found = MODEL(solve)(m, t->h, t->busy);
     t->good = t->found & MODEL(accepted)(m);
-    MODEL(reach)(m, t->h, stage_weight, m->reached);
+    MODEL(reach_of)(m, t->h, stage_weight, m->reached);
     MODEL(increments)(b, t->h, b->some_rows);
     if (any(t->resumed))
         MODEL(begin_at_runs)(b, t->resumed, over);

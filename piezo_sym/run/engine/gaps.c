@@ -8,7 +8,7 @@
  */
 #define NODE_REACH node_reach
 #define FINE_REACH fine_reach
-#define BASIS_STAGE basis_stage
+#define BASIS_STAGE basis_inverse
 #define STAGE_BASIS stage_basis
 
 /* Of the states at a point of the step, those that integrands read. */
@@ -74,7 +74,7 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     for (long i = 0; i < STAGES; ++i) {
         real *gap = m->gap + i * m->n, *mean = m->mean + i * m->given;
         real *side = m->side + i * m->branches, *branch = m->branch + i * m->branches;
-        MODEL(reach)(m, h, stage_reach[i], m->reached);
+        MODEL(reach_of)(m, h, stage_reach[i], m->reached);
         for (int again = 0; again < 3; ++again) {
             MODEL(stage)(m->reached, mean, branch, m->u + i * m->inputs, &m->p, gap,
                          m->rows + i * m->booked, side, m->margin + i * MODEL(limits));

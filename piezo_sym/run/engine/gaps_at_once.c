@@ -9,7 +9,7 @@
  */
 #define NODE_REACH node_lanes
 #define FINE_REACH fine_lanes
-#define BASIS_STAGE basis_stage_lanes
+#define BASIS_STAGE basis_inverse_lanes
 #define STAGE_BASIS stage_basis_lanes
 
 typedef double lanes __attribute__((vector_size(8 * LANES), aligned(8), may_alias));

@@ -232,7 +232,7 @@ static inline real MODEL(reached_row)(const MODEL(block) *m, real h, const doubl
 }
 
 /* All states at a point of the step. */
-static void MODEL(reach)(const MODEL(block) *m, real h, const double *weight, real *restrict out)
+static void MODEL(reach_of)(const MODEL(block) *m, real h, const double *weight, real *restrict out)
 {
     for (long i = 0; i < m->n; ++i)
         out[i] = MODEL(reached_row)(m, h, weight, i);

@@ -87,7 +87,7 @@ static void MODEL(change)(const MODEL(block) *m, real h)
 static void MODEL(prepare)(const MODEL(block) *m, real h, mask where)
 {
     const long middle = STAGES / 2;
-    MODEL(reach)(m, h, stage_reach[middle], m->reached);
+    MODEL(reach_of)(m, h, stage_reach[middle], m->reached);
     MODEL(slopes)(m->reached, m->mean + middle * m->given, m->branch + middle * m->branches,
                   m->u + middle * m->inputs, &m->p, m->fresh);
 #if defined(BENDS)

@@ -21,7 +21,7 @@ static int MODEL(solve_again)(MODEL(batch) *b, const MODEL(segment) *segment, do
     const int found = MODEL(solve)(m, h, 1) && MODEL(accepted)(m);
     m->most = before.most, m->late = before.late, m->stays = before.stays, m->over = before.over;
     m->largest = before.largest;
-    MODEL(reach)(m, h, stage_weight, m->end);
+    MODEL(reach_of)(m, h, stage_weight, m->end);
     return found;
 }
 

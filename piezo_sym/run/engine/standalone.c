@@ -36,7 +36,7 @@ int MODEL(step)(double *x, const double *u, double h, const MODEL(parameters) *p
         return 0;
     for (long k = 0; k < m->booked; ++k)
         booked[k] = h * m->rows[k];
-    MODEL(reach)(m, h, stage_weight, m->end);
+    MODEL(reach_of)(m, h, stage_weight, m->end);
     MODEL(at_point)(m, m->end, m->branch, m->u, NULL, m->gap, m->rows, m->side, m->margin);
     int good = MODEL(within)(m->margin);
     for (long k = 0; k < m->n; ++k)

@@ -58,7 +58,7 @@ static const double fine_mean[2][16] = {
 static const double stage_basis[2][2] = {
     {1.0, 0.0},
     {9.2089356067571558e-41, -3.7320508075688773}};
-static const double basis_stage[2][2] = {
+static const double basis_inverse[2][2] = {
     {1.0, 0.0},
     {2.4675268589807909e-41, -2.6794919243112271e-1}};
 static const double eigenvalue[1][2] = {

@@ -45,7 +45,7 @@ static const double fine_mean_lanes[16][2] = {
     {-2.3757141906321233e-2, 1.1891565358881402e-1},
     {-1.9798237072657089e-2, 8.2051761011304982e-2},
     {-9.6892558779608425e-3, 3.6841715289714937e-2}};
-static const double basis_stage_lanes[2][2] = {
+static const double basis_inverse_lanes[2][2] = {
     {1.0, 2.4675268589807909e-41},
     {0.0, -2.6794919243112271e-1}};
 static const double stage_basis_lanes[2][2] = {
