@@ -8,6 +8,8 @@ and F_2 + F_1(e) - F_2(e) on the other, which is continuous.
 from collections.abc import Callable, Collection
 from fractions import Fraction
 from functools import reduce
+from itertools import islice
+from math import prod
 
 from piezo_sym.expressions.calculus import add, compared, derivative, div, inserted, mul, neg
 from piezo_sym.expressions.integrals import MAX_PARTS, by_rules, divided, slope_of
@@ -34,6 +36,8 @@ from piezo_sym.expressions.tree import (
 
 #: Of higher powers no factors are taken apart.
 MOST_FACTORS = 8
+#: Of more pieces, or pieces of more than MAX_PARTS, no energy is written: it is asked for.
+MOST_PIECES = 128
 Otherwise = Callable[[Expr, str], Expr | None]
 
 
@@ -85,11 +89,11 @@ def _by_branches(
     node: Expr, condition: Cmp, name: str, otherwise: Otherwise, positive: Collection[str]
 ) -> Expr | None:
     """Return the antiderivative of a choice from those of what it chooses between."""
-    if sum(1 for _ in walk(node)) > MAX_PARTS:
+    if sum(1 for _ in walk(node)) > MAX_PARTS or _pieces(node) > MOST_PIECES:
         return None
     parts = (_decided(node, condition, holds=holds) for holds in (True, False))
     then, other = (antiderivative(part, name, otherwise, positive) for part in parts)
-    if then is None or other is None:
+    if then is None or other is None or _is_long(then) or _is_long(other):
         return None
     if name not in names(condition):
         return If(then, condition, other)
@@ -100,6 +104,17 @@ def _by_branches(
     edge = {name: divided(neg(inserted(difference, {name: ZERO})), slope)}
     shift = add(*(_settled(inserted(part, edge), positive) for part in (then, neg(other))))
     return If(then, condition, add(other, shift))
+
+
+def _pieces(node: Node) -> int:
+    """Return how many branches the choices of a tree make together, at most."""
+    if isinstance(node, If):
+        return _pieces(node.condition) * (_pieces(node.then) + _pieces(node.other))
+    return prod(map(_pieces, children(node)))
+
+
+def _is_long(node: Node) -> bool:
+    return next(islice(walk(node), MAX_PARTS, None), None) is not None
 
 
 def _choice(node: Node) -> Cmp | None:

@@ -14,7 +14,7 @@ import numpy as np
 from kinds import KINDS
 from law_values import value
 from precise import DIGITS, measured
-from tableau import Tableau, pairs_of, state
+from network_tableau import Tableau, pairs_of, state
 
 from piezo_sym import Model, PiezoError, derive
 from piezo_sym.build import render

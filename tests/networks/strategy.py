@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from hypothesis import HealthCheck, given, reject, seed, settings
 from hypothesis import strategies as st
 from kinds import KINDS
-from tableau import state
+from network_tableau import state
 
 from piezo_sym import Model, PiezoError, derive
 

@@ -6,7 +6,7 @@ import pytest
 from agreement import DERIVED, check
 from kinds import KINDS
 from strategy import explore
-from tableau import state
+from network_tableau import state
 
 from piezo_sym import Model, PiezoError, derive
 from piezo_sym.spec import elements

@@ -15,3 +15,10 @@ def test_every_test_file_is_collected(pytestconfig):
     for path in files:
         for part in path.relative_to(TESTS).parts[:-1]:
             assert not any(fnmatch(part, pattern) for pattern in passed_over), path
+
+
+def test_no_two_modules_have_one_name():
+    """Folders that are no packages stand side by side on the path: of two the first is found."""
+    loose = (p for p in TESTS.rglob("*.py") if not p.with_name("__init__.py").exists())
+    names = [p.name for p in loose if p.name != "conftest.py"]
+    assert sorted(names) == sorted(set(names))
