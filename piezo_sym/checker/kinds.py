@@ -37,6 +37,7 @@ pump           | coupling | RH  | rotation hydraulic                  | - | disp
 thermal_mass   | body       | | | + | temperature K S:J/K | state? | temperature
 conduction     | conduction | | | + | conductance W/K T_1:K T_2:K | between |
 ambient        | ambient    | | | + | conductance W/K T:K T_e:K   | body input |
+thermoelectric | coupling   | E | between | + | seebeck V/K T_1:K T_2:K | bodies |
 heat_source    | heat       | | | + |                             | into input |
 """  # noqa: E501
 

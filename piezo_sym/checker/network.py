@@ -73,7 +73,7 @@ def flows(spec: Spec, counts: Mapping[str, int], algebra: Any) -> Flows:
         if branch.role in ("law", "linear"):
             found.letters[slot] = answer(branch)
             found.outputs[slot] = algebra.law(element, "law", branch.lane, found.letters[slot])
-        elif branch.role == "store":
+        elif branch.role in ("store", "body"):
             found.rates[slot] = answer(branch)
         elif branch.role == "source":
             y = -answer(branch) if branch.across else answer(branch)
@@ -90,15 +90,14 @@ def relations(spec: Spec, counts: Mapping[str, int], algebra: Any) -> list[Form]
 
 def _all_branches(spec: Spec, counts: Mapping[str, int]) -> list[Branch]:
     found = list[Branch]()
-    for e in spec.of("store", "law", "source", "coupling", "hysteron"):
+    for e in spec.of("store", "law", "source", "coupling", "hysteron", "body"):
         found += _branches(e, range(1, counts[e.name] + 1) if e.lanes is not None else (0,))
     return found
 
 
 def _heat(spec: Spec, algebra: Any, found: Flows) -> None:
-    """Add the rates of entropies, and what comes in: lam*(T_e/T - 1) or P/T."""
+    """Add to the rates of entropies what heats, and what comes in: lam*(T_e/T - 1) or P/T."""
     T = {body.name: algebra.given("T", body.name, 0) for body in spec.of("body")}
-    found.rates.update({(body, 0): algebra.one - algebra.one for body in T})
     for slot, W in found.outputs.items():
         (body,) = spec.elements[slot[0]].bodies
         found.rates[body, 0] += algebra.like(slot) * W * found.letters[slot] / T[body]
@@ -152,7 +151,7 @@ def _law(element: Element, branch: Branch, algebra: Any) -> Form:
         return {imposed: one, other: -ratio if branch == first else ratio}
     if branch.role == "linear":
         return {imposed: one, answer: -algebra.law(element, "law", branch.lane, one)}
-    roles = {"store": "E", "follower": "R", "law": "W", "source": "u"}
+    roles = {"store": "E", "follower": "R", "law": "W", "source": "u", "body": "T"}
     given = roles[branch.role], element.name, branch.lane
     return {imposed: one, given: one if branch.role == "source" and not branch.across else -one}
 

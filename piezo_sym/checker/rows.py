@@ -172,6 +172,8 @@ class _Audit:
         floors = [c for c in self.spec.conditions if c.args[0 if c.value == ">" else 1] == T]
         strict = any(c.value in "<>" for c in floors) and any(e.input for e in around)
         strict = strict and all(body not in e.bodies for e in self.spec.of("heat"))
+        ends = [end for e in self.spec.of("coupling") for pair in e.pairs for end in pair]
+        strict = strict and ("T", body) not in ends  # a current may take entropy out of it
         need(strict, "no floor of T, or no environment")
 
 

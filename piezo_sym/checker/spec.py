@@ -27,7 +27,7 @@ class Element(NamedTuple):
     """An element: `laws` by field, `costate` dU/dx, a dissipative `law` of what it calls `letter`.
 
     What it imposes is `across` or not, or as its store `follows` another the opposite; `bodies` it
-    heats, reads T of, or conducts between.
+    heats, reads T of, or conducts between.  Nodes ("T", body) are at T, and draw entropy from it.
     """
 
     name: str
@@ -37,7 +37,7 @@ class Element(NamedTuple):
     costate: Node | None
     law: Node | None
     letter: str
-    pairs: tuple[tuple[str, str], ...]
+    pairs: tuple[tuple[Any, Any], ...]
     across: bool
     bodies: tuple[str, ...]
     input: str
@@ -138,11 +138,12 @@ class _Reader:
         known = needed <= entry.keys() <= kind.fields.keys() and name.isidentifier()
         need(known, f"elements.{name[:60]} has a wrong key, or no name")
         heats = [entry[f] for f in ("heats", "body", "into", "temperature") if f in entry]
-        heats = entry["between"] if kind.form == "conduction" else heats
+        heats = entry["between"] if kind.form == "conduction" else entry.get("bodies", heats)
         bodies = () if kind.form == "body" else tuple(heats)
         good = set(bodies) <= set(self.bodies) and len(set(bodies)) == len(bodies)
         need(good, f"elements.{name} names what is no thermal_mass")
-        ends, coupled = [end for end in kind.ends if end[0] in entry], kind.form == "coupling"
+        ends = [end for end in kind.ends if end[0] in entry]
+        coupled = kind.form == "coupling" and "bodies" not in kind.fields
         need(len(ends) == 2 or not coupled, f"elements.{name} needs two pairs of nodes")
         ratio = f"{UNITS[ends[0][1]][kind.across]}/({UNITS[ends[1][1]][1]})" if coupled else ""
         own = {f: self._law(name, f, bodies, ratio) for f in kind.laws if f in entry}
@@ -163,8 +164,10 @@ class _Reader:
         for (_, d), (a, b) in zip(ends, pairs, strict=True):
             same = self.domains.setdefault(a, d) == d == self.domains.setdefault(b, d)
             need(same, f"a node of {name} is in two domains")
+        hot = [(("T", b), ("T", a)) for a, b in [bodies] * ("bodies" in kind.fields)]
+        hot += [(("T", name), REFERENCES["E"])] * (kind.form == "body")  # where T would be zero
         state = next((word for word, owner in self.states.items() if owner == name), "")
-        others = (pairs, across, bodies, source, count, entry.get("discontinuous", False))
+        others = ((*pairs, *hot), across, bodies, source, count, entry.get("discontinuous", False))
         return Element(name, kind, own, state, costate, law, letter, *others)
 
     def _law(self, name: str, field: str, bodies: tuple[str, ...], ratio: str) -> Node:

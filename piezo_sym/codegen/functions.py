@@ -15,7 +15,7 @@ from piezo_sym.expressions.calculus import add, div, mul, neg
 from piezo_sym.expressions.text import signed
 from piezo_sym.expressions.tree import ONE, Expr, Sym
 from piezo_sym.iphs import IPHS
-from piezo_sym.spec.elements.ports import Body, Exchange, HeatInput
+from piezo_sym.spec.elements.ports import Body, Exchange, HeatInput, Port
 
 STATE_INPUT, STATE = ("x", "u", "p"), ("x", "p")
 #: What each function returns, and its arguments.
@@ -86,15 +86,16 @@ def _arranged(terms: list[Expr], q: Quantities) -> list[Expr]:
 
 
 def _entropy_rate(n: int, q: Quantities) -> Expr:
-    """Return a body's heats over its temperature, and what its environments bring."""
+    """Return a body's heats over its temperature, what currents carry and environments bring."""
     slots = q.iphs.system.processes
     heats = [
         q.total(q.heats[k], slots[k].bank) for k, row in enumerate(q.iphs.system.heats) if row == n
     ]
     terms = [div(add(*heats), q.costates[n])] if heats else []
+    terms += [*q.product(q.iphs.system.J0, n, q.costates)]
     terms += [neg(term) for term in q.product(q.iphs.system.B, n, q.outputs)]
-    body = q.stores[n][0].element
-    return add(*terms, *(row.value for row in exchanges_of(q) if row.slot.label == body))
+    brought = [_brought(placed.port, u, q) for placed, u in zip(q.ports, q.inputs, strict=True)]
+    return add(*terms, *q.product(q.iphs.system.G, n, brought))
 
 
 def exchanges_of(q: Quantities) -> Iterator[OutputRow]:
@@ -102,10 +103,15 @@ def exchanges_of(q: Quantities) -> Iterator[OutputRow]:
     for entry in q.ports:
         port = entry.port
         if isinstance(port, Exchange | HeatInput):
-            ratio = div(Sym(port.input), Sym(q.bodies[port.body].temperature))
-            if isinstance(port, Exchange):
-                ratio = mul(port.conductance, add(ratio, neg(ONE)))
-            yield OutputRow(Slot(port.body), ratio)
+            yield OutputRow(Slot(port.body), _brought(port, Sym(port.input), q))
+
+
+def _brought(port: Port, u: Expr, q: Quantities) -> Expr:
+    """Return the input of Definition 1 behind a port: its own, P/T or lam*(T_e/T - 1)."""
+    if not isinstance(port, Exchange | HeatInput):
+        return u
+    ratio = div(u, Sym(q.bodies[port.body].temperature))
+    return mul(port.conductance, add(ratio, neg(ONE))) if isinstance(port, Exchange) else ratio
 
 
 def _outputs(q: Quantities) -> tuple[OutputRow, ...]:

@@ -110,6 +110,8 @@ class Laws:
         for n, (placed, port) in enumerate(self.states):
             if isinstance(port, Storage):
                 yield Edge(placed, port.branch, port.imposes, ("E", n), 1)
+            elif branch := self.circuit.pumped.get(placed.element):
+                yield Edge(placed, branch, port.imposes, ("E", n), 1)
         for n, (placed, store) in enumerate(self.followers):
             yield Edge(placed, store.branch, store.imposes.other, ("R", n), 1)
         for n, (placed, process) in enumerate(self.processes):

@@ -10,7 +10,14 @@ from collections.abc import Iterator
 from piezo_sym.errors import NetworkError, listing, nearest, with_article
 from piezo_sym.spec.circuit import Circuit
 from piezo_sym.spec.elements.domains import REFERENCES, PhysicalDomain
-from piezo_sym.spec.elements.ports import Branch, Coupling, DissipativePort, Source, Storage
+from piezo_sym.spec.elements.ports import (
+    Body,
+    Branch,
+    Coupling,
+    DissipativePort,
+    Source,
+    Storage,
+)
 
 
 def is_reference(node: str) -> bool:
@@ -27,6 +34,8 @@ def branches(circuit: Circuit) -> Iterator[tuple[str, Branch, PhysicalDomain]]:
                 yield placed.element, port.second, port.second_domain
             case Storage() | DissipativePort() | Source() as port:
                 yield placed.element, port.branch, port.domain
+            case Body() as port if placed.element in circuit.pumped:
+                yield placed.element, circuit.pumped[placed.element], port.domain
 
 
 def is_inner(node: str) -> bool:

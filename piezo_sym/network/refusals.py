@@ -15,10 +15,11 @@ from piezo_sym.network.kirchhoff import Edge, Laws
 from piezo_sym.network.nodes import branches, is_inner, is_reference
 from piezo_sym.spec.circuit import Placed
 from piezo_sym.spec.elements import kind_of
-from piezo_sym.spec.elements.domains import PhysicalDomain, PowerVariable
+from piezo_sym.spec.elements.domains import THERMAL, PhysicalDomain, PowerVariable
 from piezo_sym.spec.elements.forms import Dissipation, Store
-from piezo_sym.spec.elements.ports import Coupling, DissipativePort, Source, Storage
+from piezo_sym.spec.elements.ports import Body, Coupling, DissipativePort, Source, Storage
 
+Imposing = Storage | DissipativePort | Source | Body
 ACROSS, THROUGH = PowerVariable.ACROSS, PowerVariable.THROUGH
 
 MIXED = "variables"
@@ -57,6 +58,10 @@ def _contradiction(laws: Laws, relation: Form, edges: list[Edge], why: str) -> N
         expected, remedy = _inverse(*fixed[0])
         remedy = f"{remedy}; or {_apart(ports, word == MIXED)}" if len(fixed) > 1 else remedy
         return NetworkError(what, "network", expected, remedy)
+    if THERMAL in [port.domain for port in ports]:
+        pumps = [p for p, port in laws.circuit.of(Coupling) if port.second_domain == THERMAL]
+        remedy = f"put a resistor in series with {_listed([p.element for p in pumps])}"
+        return NetworkError(what, "network", "a current that is free", remedy)
     remedy = _apart(ports, word == MIXED or bool(couplings))
     return NetworkError(what, "network", "independent storage and sources", remedy)
 
@@ -65,17 +70,17 @@ def _listed(names: list[str]) -> str:
     return ", ".join(f"'{name}'" for name in names)
 
 
-def _port(edge: Edge) -> Storage | DissipativePort | Source:
+def _port(edge: Edge) -> Imposing:
     match edge.placed.port:
-        case Storage() | DissipativePort() | Source() as port:
+        case Storage() | DissipativePort() | Source() | Body() as port:
             return port
     msg = f"{edge.placed.element} has no branch of its own"
     raise TypeError(msg)
 
 
-def _apart(ports: list[Storage | DissipativePort | Source], mixed: bool) -> str:
+def _apart(ports: list[Imposing], mixed: bool) -> str:
     """Return what to put between givens of one variable of a domain, or of several."""
-    domains = list(dict.fromkeys(port.domain for port in ports))
+    domains = list(dict.fromkeys(port.domain for port in ports if port.domain != THERMAL))
     if mixed:
         loose, stores = _kinds(Dissipation, domains), _kinds(Store, domains, ACROSS)
         return f"put {loose} between two of them, or {stores} at a node"

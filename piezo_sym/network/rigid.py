@@ -15,6 +15,7 @@ from piezo_sym.expressions.tree import names
 from piezo_sym.network.inverse import constant_slope, vanishes
 from piezo_sym.network.kirchhoff import Laws
 from piezo_sym.network.refusals import couplings_in, refusal
+from piezo_sym.spec.elements.ports import Body
 
 
 def dependent(laws: Laws, singular: SingularError) -> set[str]:
@@ -65,6 +66,8 @@ def _hindrance(laws: Laws, row: Form) -> str:
     known = laws.circuit.model.parameters.keys()
     for placed, store in stores:
         name = quote(placed.element)
+        if isinstance(store, Body):
+            return f", and {name} is a body, whose temperature nothing else can impose"
         if placed.bank:
             return f", and {name} is a bank, which is not joined to others"
         slope = constant_slope(store.law, store.state)

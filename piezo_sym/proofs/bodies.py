@@ -70,7 +70,8 @@ def invariant(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
         others = {slot.label for slot in iphs.system.states} - {port.state}
         worked = not others.isdisjoint(names(port.law))  # work changes its temperature, too
         heated = any(p.body == placed.element for _, p in iphs.circuit.of(HeatInput))
-        if floor is None or not exchanges or worked or heated:
+        pumped = placed.element in iphs.circuit.pumped  # a current takes entropy out of it
+        if floor is None or not exchanges or worked or heated or pumped:
             continue
         contacts = tuple(_contacts(iphs, placed.element))
         neighbours = ", no neighbour colder" if contacts else ""

@@ -13,7 +13,14 @@ from piezo_sym.algebra.coefficients import coefficient
 from piezo_sym.expressions.calculus import derivative
 from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Div, Expr, Sym, names, replace
 from piezo_sym.iphs import IPHS
-from piezo_sym.spec.elements.ports import Conductor, Coupling, DissipativePort, Source, Storage
+from piezo_sym.spec.elements.ports import (
+    Body,
+    Conductor,
+    Coupling,
+    DissipativePort,
+    Source,
+    Storage,
+)
 from piezo_sym.spec.tables import conditions
 
 
@@ -36,10 +43,10 @@ def ties(iphs: IPHS) -> Mapping[str, Cmp | None]:
 
 
 def _bounded(iphs: IPHS) -> Iterator[sp.Symbol]:
-    """Yield the inputs that the domain speaks of, and the co-states that may not take every value.
+    """Yield the inputs that the domain speaks of, and co-states that may not take every value.
 
     A current phi/L takes every value if L > 0, unless the domain speaks of phi; that of a softening
-    inductor, or of one that moves, may not.
+    inductor, or of one that moves, may not, nor do temperatures.
     """
     trees = [condition.tree for condition in conditions(iphs.model)]
     used = {name for tree in trees for name in names(tree)}
@@ -53,6 +60,8 @@ def _bounded(iphs: IPHS) -> Iterator[sp.Symbol]:
     for _, source in iphs.circuit.of(Source):
         if source.input in used:
             yield iphs.symbols[source.input]
+    for element in iphs.circuit.pumped:
+        yield iphs.symbols[iphs.circuit.body(element).temperature]
 
 
 def _symbols(iphs: IPHS, drive: sp.Expr) -> set[sp.Symbol]:
@@ -73,6 +82,8 @@ def _words(iphs: IPHS) -> Iterator[tuple[sp.Symbol, Expr]]:
         yield iphs.symbols[store.costate], store.law
     for _, source in iphs.circuit.of(Source):
         yield iphs.symbols[source.input], Sym(source.input)
+    for _, body in iphs.circuit.of(Body):
+        yield iphs.symbols[body.temperature], Sym(body.temperature)
     for _, coupling in iphs.circuit.of(Coupling):
         yield iphs.symbols[coupling.name], coupling.ratio
 

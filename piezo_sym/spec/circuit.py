@@ -12,8 +12,10 @@ from functools import cached_property
 from typing import Any, TypeVar, final, overload
 
 from piezo_sym.expressions.tree import Expr, rename
+from piezo_sym.spec.elements.domains import THERMAL
 from piezo_sym.spec.elements.ports import (
     Body,
+    Branch,
     Conductor,
     Coupling,
     DissipativePort,
@@ -22,6 +24,7 @@ from piezo_sym.spec.elements.ports import (
     Port,
     Source,
     Storage,
+    body_node,
 )
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.names import fresh
@@ -77,6 +80,14 @@ class Circuit:
     def body(self, element: str) -> Body:
         """Return the body of a thermal mass."""
         return self._bodies[element]
+
+    @cached_property
+    def pumped(self) -> dict[str, Branch]:
+        """The branches of bodies that couplings carry entropy in and out of, by element."""
+        pairs = (p.second for _, p in self.of(Coupling) if p.second_domain == THERMAL)
+        nodes = {node for pair in pairs for node in pair}
+        branches = {name: (body_node(name), THERMAL.reference) for name in self._bodies}
+        return {name: branch for name, branch in branches.items() if branch[0] in nodes}
 
     @cached_property
     def _bodies(self) -> dict[str, Body]:

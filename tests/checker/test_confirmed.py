@@ -7,6 +7,7 @@ SOME = {
     "heater",
     "hydraulic_cylinder",
     "output_resistance_of_a_bank",
+    "seebeck_generator",
     "series_across_a_capacitor",
     "transducer_between_moving_nodes",
     "two_sources_on_one_input",

@@ -13,8 +13,8 @@ import mpmath as mp
 import numpy as np
 from kinds import KINDS
 from law_values import value
-from precise import DIGITS, measured
 from network_tableau import Tableau, pairs_of, state
+from precise import DIGITS, measured
 
 from piezo_sym import Model, PiezoError, derive
 from piezo_sym.build import render

@@ -223,6 +223,14 @@ def heat_source(draft):
     return {"into": draft.body(), "input": draft.input("W")}
 
 
+def thermoelectric(draft):
+    cold = draft.body()
+    hot = draft.pick([name for name in draft.bodies if name != cold])
+    s = draft.parameter("s", "V/K", 0.3, 2)
+    seebeck = draft.pick((s, f"{s}*(T_1 + T_2)/{draft.bodies[hot]}", seeing(draft, s)))
+    return {"between": draft.pair("e"), "bodies": [cold, hot], "seebeck": seebeck}
+
+
 def storage(draft):
     """Return an energy of a flux and an extension."""
     L, k = draft.parameter("L", "H"), draft.parameter("k", "N/m")
@@ -450,4 +458,5 @@ KINDS = {
     "conduction": Kind(conduction),
     "ambient": Kind(ambient),
     "heat_source": Kind(heat_source),
+    "thermoelectric": Kind(thermoelectric, "e", "coupling", ratio="seebeck"),
 }

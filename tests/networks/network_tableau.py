@@ -13,7 +13,7 @@ import numpy as np
 from kinds import KINDS
 from law_values import value
 
-REFERENCES = {"e": "gnd", "m": "wall", "r": "frame", "h": "tank"}
+REFERENCES = {"e": "gnd", "m": "wall", "r": "frame", "h": "tank", "": ":zero"}
 SLOPE_STEP, ENERGY_STEP = 1e-6, 2e-5
 CLOSE = 1e-12
 MOST_STEPS = 60
@@ -67,6 +67,7 @@ class Tableau:
             if element["kind"] == "thermal_mass":
                 words = {**self.words(), "S": states[state(name, element)]}
                 self.temperatures[name] = value(element["temperature"], words)
+        self.pumped = {body for _, element in elements for body in element.get("bodies", ())}
         for name, element in elements:
             self._add(name, element)
         names = dict.fromkeys(n for pair in self._all_nodes() for n in pair)
@@ -103,6 +104,9 @@ class Tableau:
             self._resistor(name, 0, element, nodes_of(element), name)
         elif kind.form == "coupling":
             self.couplings.append((name, element))
+        elif element["kind"] == "thermal_mass" and name in self.pumped:
+            given = self.temperatures[name]
+            self.branches.append(Branch(name, (f"{name}:body", ":zero"), across=True, given=given))
 
     def _store(self, label, lane, element, nodes, name):
         kind = KINDS[element["kind"]]
@@ -218,6 +222,8 @@ class Tableau:
         self._balance(matrix, second, row + 1)
         kind = KINDS[element["kind"]]
         hot = {"T": self.temperatures[element["temperature"]]} if "temperature" in element else {}
+        ends = zip(("T_1", "T_2"), element.get("bodies", ()), strict=False)
+        hot |= {letter: self.temperatures[body] for letter, body in ends}
         ratio = value(element[kind.ratio], {**self.seen(), **hot})
         if not kind.across:
             matrix[row, row], matrix[row + 1, row + 1] = 1, 1
@@ -312,6 +318,8 @@ class Tableau:
             temperature = self.temperatures[element["heats"]]
             found.productions[branch.element] = heat / temperature
             flows[element["heats"]] += heat / temperature
+        elif name in flows:
+            flows[name] += t
         elif branch.state:
             found.rates[branch.state] = t if branch.across else e
         elif KINDS[element["kind"]].form == "source":
@@ -366,8 +374,10 @@ def nodes_of(element):
 
 
 def pairs_of(element):
-    """Return the two pairs of nodes of a coupling."""
-    return tuple(tuple(element[n]) for n in KINDS[element["kind"]].nodes if n in element)
+    """Return the two pairs of nodes of a coupling; each body is a node, too."""
+    pairs = tuple(tuple(element[n]) for n in KINDS[element["kind"]].nodes if n in element)
+    bodies = tuple(f"{body}:body" for body in reversed(element.get("bodies", ())))
+    return (*pairs, bodies) if bodies else pairs
 
 
 def law_of(element):

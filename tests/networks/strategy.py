@@ -112,6 +112,8 @@ class Draft:
 
         The first domain of a kind goes with any of its others.
         """
+        if kind == "thermoelectric":
+            return len(self.bodies) > 1
         first, *others = KINDS[kind].domains
         there = [d for d in KINDS[kind].domains if len(self.nodes[d]) > 1]
         if not others:
@@ -213,7 +215,8 @@ def _tied(draft):
         domain, node = draft.pick(there), f"tied{n}"
         springs, held = _inside(domain, "store", False), _inside(domain, "store", True)
         ways = [(springs, springs), (held, held, springs)]
-        ways += [(held, levers) for levers in [_inside(domain, "coupling", True)] if levers]
+        levers = [k for k in _inside(domain, "coupling", True) if draft.can_couple(k, domain)]
+        ways += [(held, levers)] if levers else []
         shared = draft.pick(draft.nodes[domain])
         for kinds in draft.pick(ways):
             kind = draft.pick(kinds)

@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from piezo_sym import linearize, load, operating_point, simulate
+from piezo_sym import Model, PiezoError, derive, linearize, load, operating_point, simulate
+from piezo_sym.proofs import obligations
 
 
 def value(model, *names):
@@ -97,3 +99,73 @@ def test_cylinder_presses_and_moves_as_merritt_says():
     assert speed == pytest.approx(flow, rel=1e-5)
     resting = simulate("hydraulic_cylinder", inputs=given, duration=20.0, rtol=1e-6)
     assert float(resting.q[-1]) == pytest.approx(0.05 + (1e7 * A - 4000) / 1e7, rel=1e-4)
+
+
+def cooler():
+    """Return s, R, lam, c_c, c_h, T_0 of the Peltier cooler."""
+    return value("peltier_cooler", "s", "R", "lam", "c_c", "c_h", "T_0")
+
+
+def test_peltier_cooler_is_as_cold_as_ioffe_says_it_can_be():
+    (s, R, lam, c_c, _, T_0), hot = cooler(), 320.0
+    cold = brentq(lambda T: hot - T - s**2 / (R * lam) * T**2 / 2, 100.0, hot, xtol=1e-12)
+    current = s * cold / R
+    found = []
+    for i in (0.9 * current, current, 1.1 * current):
+        T = (lam * hot + R * i**2 / 2) / (lam + s * i)  # where the plate gains no heat
+        rest = operating_point(
+            "peltier_cooler",
+            inputs={"V_in": R * i + s * (hot - T), "T_e": hot},
+            parameters={"h": 1e7},
+        )
+        found.append(T_0 * np.exp(rest.initial["S_c"] / c_c))
+        assert found[-1] == pytest.approx(T, rel=1e-7)
+    assert found[1] == pytest.approx(cold, rel=1e-7)
+    assert found[1] < min(found[0], found[2])
+
+
+def test_peltier_cooler_runs_as_a_hand_written_right_hand_side():
+    s, R, lam, c_c, c_h, T_0 = cooler()
+    L, h, V, P, T_e = 1e-3, 50.0, 12.0, 3.0, 300.0
+
+    def rates(_, x):
+        i, T_c, T_h = x
+        through, joule = lam * (T_h - T_c), R * i**2 / 2
+        cold = joule + through + P - s * T_c * i
+        warm = joule - through + s * T_h * i + h * (T_e - T_h)
+        return (V - R * i - s * (T_h - T_c)) / L, cold / c_c, warm / c_h
+
+    times = np.linspace(0.0, 5.0, 11)
+    wanted = solve_ivp(
+        rates, (0, 5), (0.0, T_0, T_0), "Radau", t_eval=times, rtol=1e-10, atol=1e-10
+    ).y
+    inputs = {"V_in": V, "P": P, "T_e": T_e}
+    run = simulate("peltier_cooler", inputs=inputs, duration=5.0, rtol=1e-8, times=times)
+    for found, exact in zip((run.phi / L, run.T_plate, run.T_sink), wanted, strict=True):
+        assert np.allclose(found, exact, rtol=1e-6)
+    assert np.abs(run.energy_residual).max() < 1e-12 * float(run.energy.max()) + 1e-9
+    entropies = run.S_c + run.S_h
+    brought = run.entropy_exchanged_load + run.entropy_exchanged_air
+    made = run.produced_warm + run.produced_cool + run.produced_legs
+    assert np.abs(entropies - made - brought).max() < 1e-11
+
+
+def changed(couples=None, wire=None):
+    """Return the Peltier cooler with a floor of its sink, and other elements."""
+    spec = load("peltier_cooler").model_dump(exclude_none=True)
+    spec["domain"]["assume"] = [*spec["domain"]["assume"], "T_sink > 0.5*T_0"]
+    spec["elements"] |= {"couples": couples or spec["elements"]["couples"]}
+    spec["elements"] |= {"wire": wire} if wire else {}
+    return derive(Model(**spec))
+
+
+def test_no_floor_is_claimed_of_a_body_from_which_a_current_may_take_entropy():
+    plain = {"kind": "resistor", "between": ["b", "gnd"], "voltage": "R*i", "heats": "sink"}
+    assert "invariant" in {row.id for row in obligations(changed(couples=plain))}
+    assert "invariant" not in {row.id for row in obligations(changed())}
+
+
+def test_current_that_a_thermoelectric_does_not_leave_free_is_refused():
+    wire = {"kind": "capacitor", "between": ["b", "gnd"], "capacitance": "c_c"}
+    with pytest.raises(PiezoError, match="put a resistor in series with 'couples'"):
+        changed(wire=wire)

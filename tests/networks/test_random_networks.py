@@ -5,8 +5,8 @@ import ast
 import pytest
 from agreement import DERIVED, check
 from kinds import KINDS
-from strategy import explore
 from network_tableau import state
+from strategy import explore
 
 from piezo_sym import Model, PiezoError, derive
 from piezo_sym.spec import elements

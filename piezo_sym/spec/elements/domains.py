@@ -112,4 +112,13 @@ HYDRAULIC = PhysicalDomain(
 )
 
 DOMAINS = (TRANSLATION, ELECTRICAL, ROTATION, HYDRAULIC)
-REFERENCES = {domain.reference: domain for domain in DOMAINS}
+#: Where entropy flows between bodies; no spec has its nodes, so nothing stands between them but
+#: what names bodies.
+THERMAL = PhysicalDomain(
+    "thermal",
+    ":zero",
+    ":body",
+    PhysicalVariable("temperature", "K", "T", "T", _RELATIVE, "entropy", "J/K", "S"),
+    PhysicalVariable("entropy_flow", "W/K", "s", "s", _FLOWS, "thermal impulse", "K*s", "T"),
+)
+REFERENCES = {domain.reference: domain for domain in (*DOMAINS, THERMAL)}

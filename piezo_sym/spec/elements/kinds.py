@@ -15,7 +15,13 @@ from piezo_sym.spec.elements.domains import (
 )
 from piezo_sym.spec.elements.forms import Dissipation, Imposed, Store
 from piezo_sym.spec.elements.storage import SharedEnergy
-from piezo_sym.spec.elements.thermal import Ambient, Conduction, HeatSource, ThermalMass
+from piezo_sym.spec.elements.thermal import (
+    Ambient,
+    Conduction,
+    HeatSource,
+    ThermalMass,
+    Thermocouple,
+)
 
 ACROSS, THROUGH = PowerVariable.ACROSS, PowerVariable.THROUGH
 _INDUCTOR = Store(ELECTRICAL, THROUGH, "inductance", "H", "L")
@@ -197,6 +203,11 @@ TABLE = (
     ),
     Kind("thermal_mass", (ThermalMass(),), "A body with a temperature, eqs. (8), (13)."),
     Kind("conduction", (Conduction(),), "Heat conduction between two bodies, a heat exchanger."),
+    Kind(
+        "thermoelectric",
+        (Thermocouple(),),
+        "Thermoelectric couples, a Peltier cooler or a generator, without resistance.",
+    ),
     Kind(
         "ambient",
         (Ambient(),),

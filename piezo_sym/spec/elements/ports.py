@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import ClassVar, final
 
 from piezo_sym.expressions.tree import Expr
-from piezo_sym.spec.elements.domains import PhysicalDomain, PowerVariable
+from piezo_sym.spec.elements.domains import THERMAL, PhysicalDomain, PowerVariable
 
 Branch = tuple[str, str]
 
@@ -115,13 +115,24 @@ class Source:
 @final
 @dataclass(frozen=True)
 class Body:
-    """A body: entropy S as its state, its temperature dU/dS = law; `energy` as of `Storage`."""
+    """A body: entropy S as its state, its temperature dU/dS = law; `energy` as of `Storage`.
+
+    Where couplings carry entropy in and out of it, it has a branch with T across, S' through.
+    """
+
+    domain: ClassVar[PhysicalDomain] = THERMAL
+    imposes: ClassVar[PowerVariable] = PowerVariable.ACROSS
 
     state: str
     law: Expr
     temperature: str
     doc: str
     energy: Expr | None = None
+
+
+def body_node(element: str) -> str:
+    """Return the node of a body in the thermal domain (no spec can write the colon)."""
+    return f"{element}:body"
 
 
 @final

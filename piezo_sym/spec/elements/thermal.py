@@ -1,12 +1,21 @@
-"""The thermal forms: a body, conduction between two, exchange with the environment, heat."""
+"""The thermal forms: a body; between two conduction and current; environment, heat."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar, final
 
 from piezo_sym.expressions.tree import Cmp, Sym, names, rename
 from piezo_sym.spec.elements.base import Form, State, positive, state_symbol
-from piezo_sym.spec.elements.marks import BodyName, BodyPair, Fields, InputName, law_field
-from piezo_sym.spec.elements.ports import Body, Branch, Conductor, Exchange, HeatInput
+from piezo_sym.spec.elements.domains import ELECTRICAL, THERMAL
+from piezo_sym.spec.elements.marks import BodyName, BodyPair, Fields, InputName, Pair, law_field
+from piezo_sym.spec.elements.ports import (
+    Body,
+    Branch,
+    Conductor,
+    Coupling,
+    Exchange,
+    HeatInput,
+    body_node,
+)
 
 
 @final
@@ -76,6 +85,45 @@ class Conduction(Form):
         del branch
         first, second = element.between
         return Conductor(first, second, element.law("conductance"), f"s_{name}")
+
+
+@final
+@dataclass(frozen=True)
+class Thermocouple(Form):
+    """A current that carries entropy between two bodies: the effects of Seebeck and Peltier."""
+
+    @property
+    def fields(self) -> Fields:
+        """Its nodes, bodies and Seebeck coefficient."""
+        return {
+            "between": (Pair, ..., [ELECTRICAL.node, ELECTRICAL.reference]),
+            "bodies": (BodyPair, ..., ["cold", "hot"]),
+            "seebeck": law_field("V/K", {"T_1": "K", "T_2": "K"}, "s", sees=True),
+        }
+
+    @property
+    def doc(self) -> str:
+        """Its two equations."""
+        return (
+            "The voltage of its first node relative to its second is seebeck*(T_2 - T_1) [V]; a "
+            "current i from its first to its second node takes the entropy seebeck*i [W/K] out of "
+            "body 1 and brings it into body 2. It is reversible: resistance and conduction are "
+            "elements of their own."
+        )
+
+    def port(self, element: Any, name: str, branch: Branch) -> Coupling:
+        """Return the coupling: a transformer between the branch and the temperatures."""
+        first, second = map(body_node, element.bodies)
+        return Coupling(
+            first=branch,
+            first_domain=ELECTRICAL,
+            second=(second, first),
+            second_domain=THERMAL,
+            ratio=element.law("seebeck"),
+            field="seebeck",
+            name=f"seebeck_{name}",
+            gyrates=False,
+        )
 
 
 @final
