@@ -164,8 +164,8 @@ class _Reader:
         for (_, d), (a, b) in zip(ends, pairs, strict=True):
             same = self.domains.setdefault(a, d) == d == self.domains.setdefault(b, d)
             need(same, f"a node of {name} is in two domains")
-        hot = [(("T", b), ("T", a)) for a, b in [bodies] * ("bodies" in kind.fields)]
-        hot += [(("T", name), REFERENCES["E"])] * (kind.form == "body")  # where T would be zero
+        hot: list[tuple[Any, Any]] = [(("T", name), REFERENCES["E"])] * (kind.form == "body")
+        hot += [(("T", b), ("T", a)) for a, b in [bodies] * ("bodies" in kind.fields)]
         state = next((word for word, owner in self.states.items() if owner == name), "")
         others = ((*pairs, *hot), across, bodies, source, count, entry.get("discontinuous", False))
         return Element(name, kind, own, state, costate, law, letter, *others)
