@@ -365,7 +365,7 @@ static const double fine_mean[1][16] = {
     {1.3576229705877047e-2, 3.1126761969323946e-2, 4.7579255841246392e-2, 6.2314485627766936e-2, 7.4797994408288366e-2, 8.4578259697501269e-2, 9.1301707522461794e-2, 9.4725305227534248e-2, 9.4725305227534248e-2, 9.1301707522461794e-2, 8.4578259697501269e-2, 7.4797994408288366e-2, 6.2314485627766936e-2, 4.7579255841246392e-2, 3.1126761969323946e-2, 1.3576229705877047e-2}};
 static const double stage_basis[1][1] = {
     {1.0}};
-static const double basis_stage[1][1] = {
+static const double basis_inverse[1][1] = {
     {1.0}};
 
 /*
@@ -659,7 +659,7 @@ static inline real MODEL(reached_row)(const MODEL(block) *m, real h, const doubl
 }
 
 /* All states at a point of the step. */
-static void MODEL(reach)(const MODEL(block) *m, real h, const double *weight, real *restrict out)
+static void MODEL(reach_of)(const MODEL(block) *m, real h, const double *weight, real *restrict out)
 {
     for (long i = 0; i < m->n; ++i)
         out[i] = MODEL(reached_row)(m, h, weight, i);
@@ -691,7 +691,7 @@ static mask MODEL(choose)(long branches, const real *side, real *branch, mask wh
  */
 #define NODE_REACH node_reach
 #define FINE_REACH fine_reach
-#define BASIS_STAGE basis_stage
+#define BASIS_STAGE basis_inverse
 #define STAGE_BASIS stage_basis
 
 /* Of the states at a point of the step, those that integrands read. */
@@ -748,7 +748,7 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     for (long i = 0; i < STAGES; ++i) {
         real *gap = m->gap + i * m->n, *mean = m->mean + i * m->given;
         real *side = m->side + i * m->branches, *branch = m->branch + i * m->branches;
-        MODEL(reach)(m, h, stage_reach[i], m->reached);
+        MODEL(reach_of)(m, h, stage_reach[i], m->reached);
         for (int again = 0; again < 3; ++again) {
             MODEL(stage)(m->reached, mean, branch, m->u + i * m->inputs, &m->p, gap,
                          m->rows + i * m->booked, side, m->margin + i * MODEL(limits));
@@ -832,7 +832,7 @@ static void MODEL(change)(const MODEL(block) *m, real h)
 static void MODEL(prepare)(const MODEL(block) *m, real h, mask where)
 {
     const long middle = STAGES / 2;
-    MODEL(reach)(m, h, stage_reach[middle], m->reached);
+    MODEL(reach_of)(m, h, stage_reach[middle], m->reached);
     MODEL(slopes)(m->reached, m->mean + middle * m->given, m->branch + middle * m->branches,
                   m->u + middle * m->inputs, &m->p, m->fresh);
     for (long k = 0; k < m->slopes; ++k)
@@ -1146,7 +1146,7 @@ int MODEL(step)(double *x, const double *u, double h, const MODEL(parameters) *p
         return 0;
     for (long k = 0; k < m->booked; ++k)
         booked[k] = h * m->rows[k];
-    MODEL(reach)(m, h, stage_weight, m->end);
+    MODEL(reach_of)(m, h, stage_weight, m->end);
     MODEL(at_point)(m, m->end, m->branch, m->u, NULL, m->gap, m->rows, m->side, m->margin);
     int good = MODEL(within)(m->margin);
     for (long k = 0; k < m->n; ++k)
