@@ -112,7 +112,7 @@ def _quantities(port: Port) -> tuple[str, ...]:
         case Storage():
             return (port.costate,)
         case DissipativePort():
-            return (port.output, port.effort)
+            return (port.output, port.effort, *filter(None, (port.rate,)))
         case Coupling():
             return (port.name,)
         case Body():

@@ -18,8 +18,8 @@ R, frame, at, angular_velocity, omega, rad/s, torque, tau, N*m, inertia, inertia
 H, tank, between, pressure, dp, Pa, flow, flow, m**3/s, accumulator, capacitance, m**3/Pa V:m**3, inertance, inertance kg/m**4 G:Pa*s, x/inertance, orifice
 """  # noqa: E501
 _WITHIN = """
-{9}        | store  | {0} | {2}     | + | {10} {11} | state? | x/{10}
-{12}       | store  | {0} | between | - | {13}      | state? | {14}
+{9}        | store  | {0} | {2}     | + | {10} {11}{16} | state?{17} | x/{10}
+{12}       | store  | {0} | between | - | {13}{18}      | state?{19} | {14}
 {15}       | law    | {0} | between | + | {3}? {5} {7}:{8} T:K; {6}? {8} {4}:{5} T:K | heats discontinuous? |
 {3}_source | source | {0} | {2}     | + | | input |
 {6}_source | source | {0} | {2}     | - | | input |
@@ -66,7 +66,13 @@ def _kind(row: str) -> tuple[str, Kind]:
     return name, Kind(form, ends, across == "+", units, fields, costate)
 
 
+#: Of capacitors and springs: the law of a slip, in the co-state and the rate that drives it.
+_SLIPS = {"E": ("; slip? A v:V i:A T:K", ""), "M": ("", "; slip? m/s f:N v:m/s T:K")}
+_MORE = {text: " heats? discontinuous?" * bool(text) for own in _SLIPS.values() for text in own}
 _ROWS = [row.split(", ") for row in _DOMAINS.strip().splitlines()]
+for _row in _ROWS:
+    for _text in _SLIPS.get(_row[0], ("", "")):
+        _row += [_text, _MORE[_text]]
 #: By domain its reference, and the units of its through and across variable.
 REFERENCES, UNITS = {r[0]: r[1] for r in _ROWS}, {r[0]: (r[8], r[5]) for r in _ROWS}
 _TEXT = "".join(_WITHIN.format(*row) for row in _ROWS) + _TABLE

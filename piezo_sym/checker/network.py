@@ -68,11 +68,17 @@ def flows(spec: Spec, counts: Mapping[str, int], algebra: Any) -> Flows:
             total += factor * (found.outputs[*slot,] if role == "W" else algebra.given(role, *slot))
         return total
 
-    for branch in sorted(branches, key=lambda b: b.role != "law"):  # others may depend on those
+    stores = {(b.element, b.lane): b for b in branches if b.role == "store"}
+    order = {"law": 0, "linear": 1, "slip": 2}  # others may depend on those before
+    for branch in sorted(branches, key=lambda b: order.get(b.role, 3)):
         element, slot = spec.elements[branch.element], (branch.element, branch.lane)
-        if branch.role in ("law", "linear"):
-            found.letters[slot] = answer(branch)
-            found.outputs[slot] = algebra.law(element, "law", branch.lane, found.letters[slot])
+        if branch.role in order:
+            letters = [answer(branch)]
+            if branch.role == "slip":
+                found.outputs[slot] = zero  # its rate is without it
+                letters.append(answer(stores[slot]))
+            found.letters[slot] = letters[0]
+            found.outputs[slot] = algebra.law(element, "law", branch.lane, *letters)
         elif branch.role in ("store", "body"):
             found.rates[slot] = answer(branch)
         elif branch.role == "source":
@@ -119,6 +125,10 @@ def _branches(e: Element, lanes: Iterable[int]) -> Iterator[Branch]:
             (a, b), inner = e.pairs[0], (e.name, lane)
             yield Branch(e.name, lane, store, (a, inner), e.follows)
             yield Branch(e.name, lane, law, (inner, b), True)
+        elif e.kind.form == "store" and e.law:
+            (a, b), inner = e.pairs[0], (e.name, lane)
+            yield Branch(e.name, lane, store, (a, b) if e.across else (a, inner), e.across)
+            yield Branch(e.name, lane, "slip", (a, b) if e.across else (inner, b), not e.across)
         else:
             roles = {"coupling": ("first", "second"), "law": (law,), "store": (store,)}
             for role, pair in zip(roles.get(e.kind.form, (e.kind.form,)), e.pairs, strict=True):
@@ -151,7 +161,7 @@ def _law(element: Element, branch: Branch, algebra: Any) -> Form:
         return {imposed: one, other: -ratio if branch == first else ratio}
     if branch.role == "linear":
         return {imposed: one, answer: -algebra.law(element, "law", branch.lane, one)}
-    roles = {"store": "E", "follower": "R", "law": "W", "source": "u", "body": "T"}
+    roles = {"store": "E", "follower": "R", "law": "W", "slip": "W", "source": "u", "body": "T"}
     given = roles[branch.role], element.name, branch.lane
     return {imposed: one, given: one if branch.role == "source" and not branch.across else -one}
 

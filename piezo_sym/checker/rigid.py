@@ -23,10 +23,10 @@ class _Laws:
     def __init__(self) -> None:
         self.one, self.field = ONE, Field()
 
-    def law(self, element: Element, field: str, _: int, letter: Ratio | None = None) -> Ratio:
+    def law(self, element: Element, field: str, _: int, *letters: Ratio) -> Ratio:
         """Return a law of an element, its letter being given."""
         tree = element.law if field == "law" else element.laws[field]
-        own = {("z", element.name): letter}
+        own = dict(zip((("z", element.name),), letters, strict=False))
         return self.field.of(tree or num(0), lambda n: own.get(n.value) or self.field.of(n))
 
     def like(self, _: tuple[str, int]) -> Ratio:
@@ -120,6 +120,7 @@ def _following(store: Element, spec: Spec) -> Element:
     used = any(("x", store.name) in symbols(tree) for tree in trees)
     need(not used, f"a law or condition uses the state of {store.name}, which is joined")
     laws = {} if store.kind.form == "store" else store.laws
+    need(store.law is None or store.kind.form != "store", f"{store.name} slips, and is joined")
     return store._replace(costate=None, laws=laws, follows=True)
 
 

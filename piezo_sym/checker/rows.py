@@ -20,7 +20,7 @@ from .system import Finding
 
 #: The row that has to be stated, and is not looked at; last, rows that are not stated.
 Key = tuple[str, str]
-STATED, MOST_PIECES, MOVING, OWN = "program", 400, ("z", "x", "T"), ("domain", "system")
+STATED, MOST_PIECES, MOVING, OWN = "program", 400, ("z", "r", "x", "T"), ("domain", "system")
 
 
 def audit(spec: Spec, proofs: Mapping[str, Any]) -> list[tuple[str, str, str]]:
@@ -150,6 +150,11 @@ class _Audit:
             turned = put(element.law, {("z", owner): made("-z", z=z)})
             claims = [*partial(turned), true(turned, "=", made("-x", x=element.law))]
             self._row(name, owner, claims, [("welldef", owner)])
+        elif name == "rate-independent" and element and element.law:
+            c, v = sym(("c", "")), ("r", owner)
+            faster = put(element.law, {v: made("c*v", c=c, v=sym(v))})
+            same = true(faster, "=", made("c*x", c=c, x=element.law), (compare(c, ">"),))
+            self._row(name, owner, [same], [("welldef", owner)])
         elif name == "invariant" and element and element.kind.form == "body":
             self._row(name, owner, self._invariant(owner), [("sigma", "")])
         else:

@@ -3,7 +3,7 @@
 Input: TOML.  Output: a `Spec`: elements with their laws in symbols that have an owner, the whole
 domain (what the spec assumes, what kinds require, widths that are not negative), values in SI.
 Symbols are pairs: ("p", parameter), ("u", input), ("x", element) its state, ("z", element) the
-letter of its dissipative law, ("T", body).
+letter of its dissipative law, ("r", element) the rate of its slip, ("T", body).
 """
 
 import re
@@ -148,7 +148,8 @@ class _Reader:
         ratio = f"{UNITS[ends[0][1]][kind.across]}/({UNITS[ends[1][1]][1]})" if coupled else ""
         own = {f: self._law(name, f, bodies, ratio) for f in kind.laws if f in entry}
         need(kind.form != "law" or len(own) == 1, f"elements.{name} needs exactly one law")
-        field, dissipates = next(reversed(own), ""), kind.form in ("law", "hysteron")
+        field = next(reversed(own), "")
+        dissipates = kind.form in ("law", "hysteron") or field == "slip"
         parts = {"rest": num(0), **own, "x": sym(("x", name))}
         costate = made(kind.costate, **parts) if kind.costate else None
         law, letter = (own[field], next(iter(kind.laws[field][1]))) if dissipates else (None, "")
@@ -173,14 +174,15 @@ class _Reader:
     def _law(self, name: str, field: str, bodies: tuple[str, ...], ratio: str) -> Node:
         entry, (needed, letters) = self.tables["elements"][name], self.kinds[name].laws[field]
         lanes, kind = self.lanes - {("x", name)}, self.kinds[name]
+        need(field != "slip" or bool(bodies), f"elements.{name} slips, and heats nothing")
         stored = field == "rest" or bool(kind.costate and field == next(iter(kind.laws)))
         roles = "p" if stored else "pxT"
         words = {w: s for w, s in self.words.items() if s[0] in roles and s not in lanes}
         warm = zip(bodies or self.bodies[: len(self.bodies) == 1], ("T T_1", "T_2"), strict=False)
         words |= {w: ("T", body) for body, own in warm for w in own.split() if w in letters}
         words |= {"T_e": ("u", entry["input"])} if "T_e" in letters else {}
-        for letter in (letter for letter in letters if letter[0] != "T"):
-            words[letter] = ("x" if stored else "z", name)
+        for role, letter in zip("zr", (x for x in letters if x[0] != "T"), strict=False):
+            words[letter] = ("x" if stored else role, name)
             self.units[words[letter]] = unit(letters[letter])[1]
         law = self._resolved(entry[field], words)
         self.faults += faults(law, self.units, unit(ratio or needed)[1], f"elements.{name}")
@@ -202,7 +204,7 @@ class _Reader:
                 yield compare(tree, ">")
         for part in (part for tree in trees for part in walk(tree)):
             if part.op in ("deadzone", "saturate"):
-                given = any(role == "z" for role, _ in symbols(part.args[1]))
+                given = any(role in "zr" for role, _ in symbols(part.args[1]))
                 need(not given, "a width depends on the law's letter")
                 yield compare(part.args[1], ">=")
 

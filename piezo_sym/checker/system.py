@@ -94,10 +94,10 @@ class Finding:
         need(lane > 0 or owner not in banks, f"{owner!r} is of a lane, and stands outside of lanes")
         return self.field.of(sym((role, owner, lane) if owner in banks else (role, owner)))
 
-    def law(self, element: Element, field: str, lane: int, letter: Ratio | None = None) -> Ratio:
-        """Return a law of an element, its letter being given."""
+    def law(self, element: Element, field: str, lane: int, *letters: Ratio) -> Ratio:
+        """Return a law of an element, its letter, and a slip's rate, being given."""
         tree = element.law if field == "law" else element.laws.get(field, element.costate)
-        own = {("z", element.name): letter}
+        own = dict(zip((("z", element.name), ("r", element.name)), letters, strict=False))
 
         def word(node: Node) -> Ratio:
             return own.get(node.value) or self.symbol(node.value, lane)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from dataclasses import replace as replaced
 from functools import cached_property
 from typing import final
 
@@ -131,7 +132,10 @@ def quantities_of(iphs: IPHS) -> Quantities:
     defined += _junction(iphs, laws)
     found = [*_processes(iphs, laws, costates, inputs, _by_value(defined))]
     forces, heats = tuple(force for _, force, _ in found), tuple(heat for *_, heat in found)
-    defined += [item for own, *_ in found for item in own]
+    slips = [getattr(port, "rate", "") for _, port in circuit.of(DissipativePort, Conductor)]
+    for last in (False, True):  # the rates of slips may use the outputs of the others
+        named = zip(found, slips, strict=True)
+        defined += [item for (own, *_), rate in named if bool(rate) is last for item in own]
     defined += _sums((system.B, system.D), outputs, new)
     defined += _totals(iphs, heats, _by_value(defined), new)
     return Quantities(
@@ -249,9 +253,32 @@ def _processes(
             if not isinstance(z, Sym):
                 defined.append(Quantity(port.effort, z, placed.bank, "driving forces"))
                 z = Sym(port.effort)
-            force, law = z, replace(laws[port.output], {port.letter: z})
+            letters: dict[str, Expr] = {port.letter: z}
+            if port.rate:
+                rate = add(*_rate(iphs, port.state, k, (costates, inputs), sums))
+                letters[port.rate_letter] = rate if isinstance(rate, Sym) else Sym(port.rate)
+                if not isinstance(rate, Sym):
+                    defined.append(Quantity(port.rate, rate, placed.bank, "rates of slips"))
+            force, law = z, replace(laws[port.output], letters)
         defined.append(Quantity(port.output, law, placed.bank, "dissipative laws"))
         yield tuple(defined), force, mul(Sym(port.output), z)
+
+
+def _rate(
+    iphs: IPHS,
+    state: str,
+    own: int,
+    given: tuple[Sequence[Sym], Sequence[Sym]],
+    sums: Mapping[Expr, Sym],
+) -> Iterator[Expr]:
+    """Yield the terms of a state's rate but for those of its own slip."""
+    system, (costates, inputs) = iphs.system, given
+    row = [slot.label for slot in system.states].index(state)
+    yield from _product(system.J0, row, costates, sums)
+    yield from _product(system.G, row, inputs, sums)
+    laws = [port.output for _, port in iphs.circuit.of(DissipativePort, Conductor)]
+    rest = replaced(system.B, full={key: b for key, b in system.B.full.items() if key[1] != own})
+    yield from (neg(term) for term in _product(rest, row, [*map(Sym, laws)], sums))
 
 
 def _totals(

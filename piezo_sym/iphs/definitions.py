@@ -144,10 +144,25 @@ def laws_of(circuit: Circuit, symbols: SymbolTable, system: System) -> Definitio
     """Yield each law output W and its law in z, temperatures and states."""
     for (_, port), z in zip(circuit.of(DissipativePort, Conductor), system.z, strict=True):
         if isinstance(port, DissipativePort):
-            yield symbols[port.output], symbols.law(port.law, {port.letter: z})
+            letters = {port.letter: z, port.rate_letter: symbols.symbols.get(port.rate, z)}
+            yield symbols[port.output], symbols.law(port.law, letters)
         else:
             first = symbols[circuit.body(port.first).temperature]
             yield symbols[port.output], symbols.law(port.conductance, {}) * z / first
+
+
+def rates_of(circuit: Circuit, symbols: SymbolTable, system: System) -> Definitions:
+    """Yield the rate that each slip goes by: that of its store's state, but for the slip itself.
+
+    The driving force of a slip is its store's co-state, so no other row has the slip in it: a rate
+    depends on co-states, inputs and outputs of processes that are no slips.
+    """
+    slips = {port.state: port for _, port in circuit.of(DissipativePort) if port.rate}
+    if slips:
+        rates = system.J0 @ system.E + system.G @ system.u - system.B @ system.W
+        for row, slot in enumerate(system.states):
+            if port := slips.get(slot.label):
+                yield symbols[port.rate], rates[row, 0] + symbols[port.output]
 
 
 def ratios_of(circuit: Circuit, symbols: SymbolTable) -> Definitions:

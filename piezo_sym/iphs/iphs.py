@@ -24,6 +24,7 @@ from piezo_sym.iphs.definitions import (
     costates_of,
     energies_of,
     laws_of,
+    rates_of,
     ratios_of,
     slopes_of,
     starts_of,
@@ -77,8 +78,8 @@ class IPHS:
     junction : the solved network, where the matrices of `system` come from.
     energies : what U is the sum of: of one store, or of several that share one.
     starts : the initial value of each state, one or one per lane.
-    laws, shares, slopes, ratios, costates : what the names in `system` stand for, as (symbol,
-        expression).
+    laws, rates, shares, slopes, ratios, costates : what the names in `system` stand for, as
+        (symbol, expression).
 
     Vectors and matrices are SymPy matrices, or `LaneMatrix` where a bank keeps its size a symbol;
     `expand` gives explicit ones.
@@ -92,6 +93,7 @@ class IPHS:
     energies: tuple[Energy, ...]
     starts: tuple[tuple[Expr, ...], ...]
     laws: Pairs
+    rates: Pairs
     shares: Pairs
     slopes: Pairs
     ratios: Pairs
@@ -187,10 +189,17 @@ class IPHS:
 
     def in_states(self, expr: sp.Expr) -> sp.Expr:
         """Return an expression of `system` as a function of states, inputs and parameters."""
-        named = (self.laws, self.shares, self.slopes, self.ratios, self.costates)
-        for definitions in named:
+        for definitions in (*self.named, self.costates):
             expr = expr.xreplace(dict(definitions))
         return expr
+
+    @property
+    def named(self) -> tuple[Pairs, ...]:
+        """The definitions in the order in which they are put in, but for co-states.
+
+        The rate of a slip may depend on laws, those of no slips.
+        """
+        return (self.laws, self.rates, self.laws, self.shares, self.slopes, self.ratios)
 
     def _shown(self, matrix: LaneMatrix) -> Matrix:
         matrix = matrix.map(self.in_states)
@@ -230,7 +239,8 @@ class IPHS:
         heat = tuple((s, e) for s, e in self.costates if s in hidden)
         whole = replace(self.symbols, whole=True)
         laws = laws_of(self.circuit, whole, self.system)
-        named = (*laws, *self.shares, *self.slopes, *ratios_of(self.circuit, whole), *heat)
+        ratios = ratios_of(self.circuit, whole)
+        named = (*laws, *self.rates, *self.shares, *self.slopes, *ratios, *heat)
         return Reading(self.system, self._stored, shown, named, self._spelled(dict(shown)))
 
     def _spelled(self, shown: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, str]:
@@ -241,7 +251,8 @@ class IPHS:
             if isinstance(port, Conductor):
                 continue
             effort = f"{port.letter} = {text(z.xreplace(shown))}"
-            found[self.symbols[port.output]] = f"{spell(port.law)}, {effort}"
+            rate = f", {port.rate_letter} = {port.rate}" if port.rate else ""
+            found[self.symbols[port.output]] = f"{spell(port.law)}, {effort}{rate}"
         return found
 
     def latex(self) -> str:
@@ -268,6 +279,7 @@ def iphs_of(symbols: SymbolTable, junction: Junction) -> IPHS:
         energies=energies_of(circuit),
         starts=tuple(starts_of(junction)),
         laws=tuple(laws_of(circuit, symbols, system)),
+        rates=tuple(rates_of(circuit, symbols, system)),
         shares=junction.shares,
         slopes=tuple(slopes_of(symbols, junction.slopes)),
         ratios=tuple(ratios_of(circuit, symbols)),

@@ -25,7 +25,7 @@ def turn(port: DissipativePort, taken: Collection[str]) -> DissipativePort | Non
     `taken` are the names in use, none of which its new letter is.
     """
     slope = slope_of(port.law, port.letter)
-    if slope is None or vanishes(slope):
+    if port.rate or slope is None or vanishes(slope):
         return None
     letter = fresh(port.domain.variable(port.imposes).letter, taken)
     return replace(

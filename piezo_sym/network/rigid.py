@@ -70,6 +70,8 @@ def _hindrance(laws: Laws, row: Form) -> str:
             return f", and {name} is a body, whose temperature nothing else can impose"
         if placed.bank:
             return f", and {name} is a bank, which is not joined to others"
+        if getattr(laws.circuit.model.elements[placed.element], "slip", None) is not None:
+            return f", and {name} slips"
         slope = constant_slope(store.law, store.state)
         used = {*names(store.law), *names(store.energy or store.law)} - {store.state}
         if slope is None or vanishes(slope) or not known >= used:

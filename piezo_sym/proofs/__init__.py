@@ -92,6 +92,7 @@ def _of_laws(
     yield from filter(None, (continuous(own, assumptions),))
     for law in own:
         if law.letter:
-            yield from (laws.passive(law, assumptions), laws.odd(law, assumptions))
+            information = laws.rate_independent if law.rate else laws.odd
+            yield from (laws.passive(law, assumptions), information(law, assumptions))
         elif any(placed.element == element for placed, _ in iphs.circuit.of(Conductor)):
             yield laws.conducts(law, assumptions)

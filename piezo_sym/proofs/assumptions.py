@@ -38,6 +38,7 @@ class Law:
     ties : what its letter is as a function of states, where not every value is taken; None if that
         is not known.
     written : what the spec writes in its place, where the network turns a law round, or joins it.
+    rate : of a slip, the letter of the rate that drives it.
     """
 
     element: str
@@ -47,6 +48,7 @@ class Law:
     jumps: bool = False
     ties: tuple[Cmp | None, ...] = ()
     written: tuple[Expr, ...] = ()
+    rate: str = ""
 
     @property
     def of_element(self) -> str:
@@ -76,7 +78,7 @@ class Assumptions:
 
     def about(self, *laws: Law) -> Assumptions:
         """Return the assumptions for questions about laws, whose letters are names too."""
-        letters = dict.fromkeys(law.letter for law in laws if law.letter)
+        letters = dict.fromkeys(x for law in laws for x in (law.letter, law.rate) if x)
         ties = [tie for law in laws for tie in law.ties if tie]
         return replace(self, order=(*self.order, *letters), where=(*self.where, *ties))
 

@@ -37,6 +37,7 @@ from piezo_sym.spec.elements.ports import (
     Source,
     Storage,
 )
+from piezo_sym.spec.names import fresh
 from piezo_sym.spec.tables import condition_text
 
 
@@ -78,8 +79,8 @@ def _law(iphs: IPHS, placed: Placed) -> Law | None:
             return Law(element, costate_name(port), port.law, written=_apart(iphs, port.state))
         case DissipativePort():
             jumps = bool(getattr(iphs.model.elements[element], "discontinuous", False))
-            written = (port.written,) if port.written else ()
-            return Law(element, port.output, port.law, port.letter, jumps, written=written)
+            written, rate = (port.written,) if port.written else (), port.rate_letter
+            return Law(element, port.output, port.law, port.letter, jumps, (), written, rate)
         case Coupling():
             return Law(element, port.name, port.ratio)
         case Exchange() | Conductor():
@@ -164,7 +165,7 @@ def passive(law: Law, assumptions: Assumptions) -> Obligation:
         r"W_k z_k \ge 0",
         assumptions.texts,
         rests_on=(("welldef", law.element),),
-        sign=SignOf(law.tree, law.letter, assumptions.where),
+        sign=SignOf(law.tree, law.letter, assumptions.where, law.rate),
     )
     claim = Cmp(">=", mul(law.tree, Sym(law.letter)), ZERO)
     question = assumptions.question(f"{power} >= 0", claim)
@@ -244,6 +245,27 @@ def odd(law: Law, assumptions: Assumptions) -> Obligation:
         yield from on_branches(total, question) if total != ZERO else ()
 
     return made.asking(questions, law.of_element)
+
+
+def rate_independent(law: Law, assumptions: Assumptions) -> Obligation:
+    """State that a slip goes with its rate alone, c times as fast where the rate is c times it."""
+    assumptions, c = assumptions.about(law), Sym(fresh("c", assumptions.order))
+    faster = substituted(law.tree, {law.rate: mul(c, Sym(law.rate))})
+    slip, other = f"{law.name}({law.letter}", mul(c, law.tree)
+    made = Obligation(
+        "rate-independent",
+        law.element,
+        f"{slip}, {c.name}*{law.rate}) = {c.name}*{slip}, {law.rate}) for {c.name} > 0",
+        r"\mathrm{slip}(f, c v) = c\,\mathrm{slip}(f, v)",
+        assumptions.texts,
+        rests_on=(("welldef", law.element),),
+        letter=law.rate,
+        required=False,
+    )
+    about = replace(assumptions, order=(*assumptions.order, c.name)).given(Cmp(">", c, ZERO))
+    difference = add(faster, neg(other))
+    question = about.question(made.statement, Cmp("=", difference, ZERO), Cmp("=", faster, other))
+    return made.asking(lambda: on_branches(difference, question), law.of_element)
 
 
 def _under(where: tuple[Cmp, ...]) -> str:

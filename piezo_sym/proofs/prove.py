@@ -16,7 +16,7 @@ import sympy as sp
 from piezo_sym.expressions.calculus import mul
 from piezo_sym.expressions.exact_eval import TooCloseError, all_hold, value_of
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import ZERO, Cmp, Expr, Sym
+from piezo_sym.expressions.tree import ZERO, Cmp, Expr, Sym, names
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.asked import Asked, tried
 from piezo_sym.proofs.continuity import jumps, needed
@@ -247,6 +247,7 @@ def _mended(sign: SignOf, question: Question, solver: Asks) -> str:
         return _asked(on_branches(law, asked, letter), solver) is None
 
     condition = mending(sign.law, sign.letter, shown)
+    condition = condition if sign.rate not in names(sign.law) else ""
     return f"; the condition '{condition}' in [domain] mends it" * bool(condition)
 
 

@@ -80,6 +80,11 @@ def _names(iphs: IPHS, tree: _Trees) -> Iterator[tuple[str, dict[str, str | None
     for placed, port in circuit.of(Coupling):
         yield entry(port.name, placed.element, "ratio", port.ratio)
     processes = tuple(circuit.of(DissipativePort, Conductor))
+    rates = dict(iphs.rates)
+    for placed, slip in circuit.of(DissipativePort):
+        if slip.rate:
+            rate = tree(rates[iphs.symbols[slip.rate]])
+            yield entry(slip.rate, placed.element, "rate", rate)
     for slope in iphs.junction.slopes:
         element = processes[slope.process][0].element
         yield entry(slope.symbol.name, element, "slope", slope.law)
@@ -90,7 +95,8 @@ def _names(iphs: IPHS, tree: _Trees) -> Iterator[tuple[str, dict[str, str | None
             first = Sym(circuit.body(process.first).temperature)
             law = div(mul(process.conductance, tree(z)), first)
         else:
-            law = replace(process.law, {process.letter: tree(z)})
+            letters = {process.letter: tree(z), process.rate_letter: Sym(process.rate)}
+            law = replace(process.law, letters)
         yield entry(process.output, placed.element, "output", law)
 
 

@@ -7,7 +7,7 @@ whole of ``sigma`` is evaluated, with one lane per bank and every co-state but o
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 
 import sympy as sp
@@ -59,7 +59,10 @@ def _in_lane(name: str, iphs: IPHS) -> str:
 
 
 def _driven(iphs: IPHS, element: str, given: Values, solver: Asks) -> Found | None:
-    """Return numbers at which sigma < 0 while all that drives the system drives one element."""
+    """Return numbers at which sigma < 0 while all that drives the system drives one element.
+
+    One co-state or input gives the driving force its value, of a slip another one the rate.
+    """
     processes = [
         (placed.element, port) for placed, port in iphs.circuit.of(DissipativePort, Conductor)
     ]
@@ -72,8 +75,11 @@ def _driven(iphs: IPHS, element: str, given: Values, solver: Asks) -> Found | No
     rest = dict.fromkeys(_drives(iphs), sp.S.Zero)
     named = {iphs.symbols[n]: sp.Rational(v.numerator, v.denominator) for n, v in known.items()}
     fixed = {symbol: value for symbol, value in named.items() if symbol not in rest}
-    z = _value(_named(iphs, iphs.system.z[k, 0]), fixed)
-    for drive in _one_drive(z, rest, given.get(getattr(port, "letter", ""))):
+    aims = [(iphs.system.z[k, 0], given.get(getattr(port, "letter", "")))]
+    if isinstance(port, DissipativePort) and port.rate:
+        aims.append((iphs.symbols[port.rate], given.get(port.rate_letter)))
+    wanted = [(_value(_named(iphs, z), fixed), v) for z, v in aims if v is not None]
+    for drive in _drive(wanted, rest, rest):
         values = {**fixed, **rest, **drive}
         value = _value(sigma, values)
         if value.is_Rational and value < 0 and _allowed(iphs, sigma, values):
@@ -90,8 +96,8 @@ def _value(expr: sp.Expr, values: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
 
 
 def _named(iphs: IPHS, expr: sp.Expr) -> sp.Expr:
-    """Return an expression with laws, shares, slopes and ratios written out; co-states stay."""
-    for definitions in (iphs.laws, iphs.shares, iphs.slopes, iphs.ratios):
+    """Return an expression in co-states and inputs: all that is defined by them is written out."""
+    for definitions in iphs.named:
         expr = expr.xreplace(dict(definitions))
     return expr
 
@@ -100,9 +106,10 @@ def _point(
     iphs: IPHS, port: DissipativePort | Conductor, given: Values, solver: Asks
 ) -> Values | None:
     """Return simple numbers of the domain, with those given, for parameters and temperatures."""
-    assumptions, letter = assumptions_of(iphs), getattr(port, "letter", "")
+    assumptions = assumptions_of(iphs)
+    letters = {getattr(port, "letter", ""), getattr(port, "rate_letter", "")}
     where = [*assumptions.where]
-    where += [Cmp("=", Sym(n), Num(v)) for n, v in given.items() if n != letter]
+    where += [Cmp("=", Sym(n), Num(v)) for n, v in given.items() if n not in letters]
     if isinstance(port, Conductor):
         hot, cold = (iphs.circuit.body(b).temperature for b in (port.first, port.second))
         where.append(Cmp("!=", Sym(hot), Sym(cold)))
@@ -122,17 +129,22 @@ def _drives(iphs: IPHS) -> Iterator[sp.Symbol]:
             yield iphs.symbols[port.input]
 
 
-def _one_drive(
-    z: sp.Expr, rest: Mapping[sp.Symbol, sp.Expr], value: Fraction | None
+def _drive(
+    wanted: Sequence[tuple[sp.Expr, Fraction]],
+    rest: Mapping[sp.Symbol, sp.Expr],
+    free: Iterable[sp.Symbol],
 ) -> Iterator[dict[sp.Symbol, sp.Expr]]:
-    """Yield the one co-state or input, and its value, that alone gives z the value of a witness."""
-    if value is None:  # conduction, driven by temperatures
+    """Yield co-states or inputs, one for each of what is wanted, that alone give it its value."""
+    if not wanted:
         yield {}
         return
-    for symbol in (symbol for symbol in rest if symbol in z.free_symbols):
+    z, value = wanted[0]
+    for symbol in (symbol for symbol in free if symbol in z.free_symbols):
         share = _value(z, {**rest, symbol: sp.S.One}) - _value(z, rest)
         if share.is_Rational and share != 0:
-            yield {symbol: sp.Rational(value.numerator, value.denominator) / share}
+            own = {symbol: sp.Rational(value.numerator, value.denominator) / share}
+            for others in _drive(wanted[1:], rest, [s for s in free if s != symbol]):
+                yield own | others
 
 
 def _allowed(iphs: IPHS, sigma: sp.Expr, values: Mapping[sp.Symbol, sp.Expr]) -> bool:

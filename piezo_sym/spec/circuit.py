@@ -133,10 +133,12 @@ def _named(
         case Storage() as port:
             return replace(port, costate=new(port.costate))
         case DissipativePort() as port:
-            letter = fresh(port.letter, taken)
-            law = rename(laws[port.field], {port.letter: letter})
+            letters = {word: fresh(word, taken) for word in (port.letter, port.rate_letter) if word}
+            port = replace(port, law=rename(laws[port.field], letters))
             output, effort = new(port.output), new(port.effort)
-            return replace(port, letter=letter, law=law, output=output, effort=effort)
+            port = replace(port, letter=letters[port.letter], output=output, effort=effort)
+            rate = port.rate and new(port.rate)
+            return replace(port, rate_letter=letters.get(port.rate_letter, ""), rate=rate)
         case Conductor() as port:
             return replace(port, output=new(port.output), conductance=laws["conductance"])
         case Coupling() as port:

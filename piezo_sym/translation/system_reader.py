@@ -55,7 +55,7 @@ class SystemReader:
         self.field.states = frozenset().union(*own)
         self._known = {symbols[name]: value for name, value in self.names.items()}
         self._known |= {s: self.field.count(bank) for bank, s in iphs.symbols.counts.items()}
-        groups = (iphs.laws, iphs.shares, iphs.slopes, iphs.ratios, iphs.costates)
+        groups = (*iphs.named, iphs.costates)
         self._definitions = {symbol: expr for group in groups for symbol, expr in group}
 
     def _name(self, name: str, symbol: sp.Symbol, bank: str | None = None) -> Value:

@@ -163,11 +163,11 @@ an exchange has another body's temperature
   +             ratio
   = two airs
 laws are of minus their letter
-  - symbols.law(port.law, {port.letter: z})
+  - symbols.law(port.law, letters)
   + symbols.law(port.law, {port.letter: -z})
   = output_resistance
 laws have another body's temperature
-  - symbols.law(port.law, {port.letter: z})
+  - symbols.law(port.law, letters)
   + symbols.law(
   +                 port.law,
   +                 {

@@ -23,7 +23,8 @@ ENTRY = {"id", "element", "statement", "required", "verdict", "witness", "reason
 ENTRY |= {"points", "certificate"}
 OF_AN_OBLIGATION = {"latex", "assumptions", "rests_on", "queries"}
 IDS = {"skew", "casimir", "energy", "entropy", "temperature", "welldef", "continuous", "passive",
-       "odd", "sigma", "exergy", "environment", "units", "invariant", "program"}  # fmt: skip
+       "odd", "rate-independent", "sigma", "exergy", "environment", "units", "invariant",
+       "program"}  # fmt: skip
 
 
 @cache

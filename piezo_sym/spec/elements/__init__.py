@@ -31,7 +31,7 @@ def kind_of(form: type[Form], domain: PhysicalDomain, imposes: PowerVariable | N
 
 def with_ratio_in(unit: Dimension, element: Element) -> Iterator[Kind]:
     """Yield the kinds that couple the same domains as an element, with a ratio of some unit."""
-    (port,) = element.ports("") if len(element.row.forms) == 1 else (None,)
+    port = element.ports("")[0] if len(element.row.forms) == 1 else None
     if not isinstance(port, Coupling):
         return
     for kind in TABLE:

@@ -9,6 +9,7 @@ from typing import Any, final
 from piezo_sym.expressions.calculus import add, neg
 from piezo_sym.expressions.energies import slope, without_common_factors
 from piezo_sym.expressions.tree import Cmp, Div, Expr, Mul, Sym, rename
+from piezo_sym.spec.elements import slips
 from piezo_sym.spec.elements.base import Form, State, positive, state_symbol
 from piezo_sym.spec.elements.domains import PhysicalDomain, PhysicalVariable, PowerVariable
 from piezo_sym.spec.elements.marks import (
@@ -20,7 +21,7 @@ from piezo_sym.spec.elements.marks import (
     Pair,
     law_field,
 )
-from piezo_sym.spec.elements.ports import Branch, DissipativePort, Source, Storage
+from piezo_sym.spec.elements.ports import Branch, DissipativePort, Port, Source, Storage
 
 
 @final
@@ -34,6 +35,7 @@ class Store(Form):
     symbol : a parameter for it, in the example.
     stiff : whether the co-state is the size times the extension beyond `rest`, not state over size.
     at : whether it stands at one node; the other is the reference.
+    slips : whether it may have a slip, in series with a spring, in parallel to a capacitor.
     """
 
     domain: PhysicalDomain
@@ -43,6 +45,7 @@ class Store(Form):
     symbol: str
     stiff: bool = False
     at: bool = False
+    slips: bool = False
 
     @property
     def costate(self) -> PhysicalVariable:
@@ -69,7 +72,8 @@ class Store(Form):
             "energy": law_field("J", letter, default=None),
         }
         rest = {"rest": law_field(self.costate.state_unit, {}, default="0")} if self.stiff else {}
-        return {**_places(self.domain, self.at), **laws, **rest}
+        more = slips.fields(self.domain, self.imposes) if self.slips else {}
+        return {**_places(self.domain, self.at), **laws, **rest, **more}
 
     @property
     def doc(self) -> str:
@@ -83,7 +87,15 @@ class Store(Form):
             f"{out.prefix} = {law} [{out.unit}]; energy the integral of {out.prefix} "
             f"over {self.letter}. Instead of `{self.size}`, `{out.name}` gives {out.prefix} or "
             f"`energy` the energy [J], as a law of {self.letter}."
+            f"{slips.about(self.domain, self.imposes) if self.slips else ''}"
         )
+
+    def ports(self, element: Any, name: str, branch: Branch) -> tuple[Port, ...]:
+        """Return the store, and its slip if it has one."""
+        if getattr(element, "slip", None) is None:
+            return (self.port(element, name, branch),)
+        own, slip = slips.beside(self.domain, self.imposes, element, name, branch)
+        return (self.port(element, name, own), slip)
 
     def port(self, element: Any, name: str, branch: Branch) -> Storage:
         """Return the store, whose state is the integral of the conjugate variable."""
@@ -125,7 +137,9 @@ class Store(Form):
         return (State(state_symbol(element, name), self.costate.state_unit),)
 
     def fault(self, element: Any) -> tuple[str, str, str, str] | None:
-        """Return that a rest belongs to a stiffness."""
+        """Return that a rest belongs to a stiffness, and what is heated to a slip."""
+        if self.slips and (fault := slips.fault(element)):
+            return fault
         rest = type(element).model_fields["rest"].default if self.stiff else None
         if self.stiff and getattr(element, self.size) is None and element.rest != rest:
             given = next(name for name in self.one_of if getattr(element, name) is not None)

@@ -40,7 +40,7 @@ def _pair(domain: PhysicalDomain, unit: str) -> tuple[str, PhysicalDomain, str]:
 TABLE = (
     Kind(
         "spring",
-        (Store(TRANSLATION, THROUGH, "stiffness", "N/m", "k", stiff=True),),
+        (Store(TRANSLATION, THROUGH, "stiffness", "N/m", "k", stiff=True, slips=True),),
         "A spring between two nodes, eqs. (9), (10) and the fourth term of (6).",
     ),
     Kind(
@@ -66,7 +66,7 @@ TABLE = (
     ),
     Kind(
         "capacitor",
-        (Store(ELECTRICAL, ACROSS, "capacitance", "F", "C"),),
+        (Store(ELECTRICAL, ACROSS, "capacitance", "F", "C", slips=True),),
         "A capacitor between two nodes, eq. (11) and the first term of (6).",
     ),
     Kind(

@@ -57,6 +57,8 @@ class DissipativePort:
     imposes : which variable W is; z is the other one.
     heats : the element whose body takes the heat.
     written : the law as the spec has it, in its own letter, where `law` is its inverse.
+    rate_letter, rate, state : of a slip, the letter of the rate in `law`, the rate's name, and the
+        state of the store that slips: its rate is this one less W.
     """
 
     letter: str
@@ -69,6 +71,9 @@ class DissipativePort:
     imposes: PowerVariable
     heats: str
     written: Expr | None = None
+    rate_letter: str = ""
+    rate: str = ""
+    state: str = ""
 
 
 @final
