@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from heapq import heappop, heappush
 from operator import attrgetter
 from typing import final
 
@@ -70,8 +71,7 @@ def jacobian_of(
     given : names that are no quantities, and depend on a state all the same.
     """
     before, _ = needed(quantities, (rate.value for rate in rates))
-    used = [(quantity, names(quantity.value)) for quantity in before]
-    rows = [(n, rate, names(rate.value)) for n, rate in enumerate(rates)]
+    users, rows = (_users(item.value for item in items) for items in (before, rates))
     sums: dict[Expr, Sym] = {
         item.value: Sym(item.name) for item in quantities if isinstance(item.value, LaneSum)
     }
@@ -79,14 +79,26 @@ def jacobian_of(
     for col, state in enumerate(states):
         chain = _Chain(state, made)
         chain.slopes |= {g.name: _Slope(g.slope) for g in given if g.state == state.name}
-        for quantity, words in used:
-            if not chain.slopes.keys().isdisjoint(words):
+        waiting = sorted({n for name in chain.slopes for n in users.get(name, ())})
+        while waiting:
+            quantity = before[n := heappop(waiting)]
+            if quantity.name not in chain.slopes:
                 chain.differentiate(quantity)
-        for n, rate, words in rows:
-            if not chain.slopes.keys().isdisjoint(words):
-                slope = chain.of(rate.value, rate.slot.bank)
-                entries += [Entry(n, col, slope.value, slope.outer)] if slope != _Slope() else []
+                for later in users.get(quantity.name, ()) if quantity.name in chain.slopes else ():
+                    heappush(waiting, later)
+        for n in sorted({n for name in chain.slopes for n in rows.get(name, ())}):
+            slope = chain.of(rates[n].value, rates[n].slot.bank)
+            entries += [Entry(n, col, slope.value, slope.outer)] if slope != _Slope() else []
     return tuple(sorted(entries, key=attrgetter("row", "col"))), tuple(made.defined)
+
+
+def _users(values: Iterable[Expr]) -> Mapping[str, list[int]]:
+    """Return for each name in which of some expressions it stands."""
+    found: dict[str, list[int]] = {}
+    for n, value in enumerate(values):
+        for name in names(value):
+            found.setdefault(name, []).append(n)
+    return found
 
 
 @final

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
@@ -36,10 +37,19 @@ class Places:
 
     def position(self, n: int) -> str:
         """Return the place of slot n's first row; that of n = len(slots) is the size."""
-        banks = [m for m in range(n) if self.slots[m].bank]
-        if not self.ends or not banks:
-            return _spelled(self.slots[:n])
-        return _sum(n - banks[-1] - 1, [self.ends[banks[-1]]])
+        return self._positions[n]
+
+    @cached_property
+    def _positions(self) -> tuple[str, ...]:
+        found, fixed, sizes = ["0"], 0, list[str]()
+        for n, slot in enumerate(self.slots):
+            if slot.bank and self.ends:
+                fixed, sizes = 0, [self.ends[n]]
+            else:
+                fixed += slot.bank is None
+                sizes += [f"{slot.bank}_count"] if slot.bank else []
+            found.append(_sum(fixed, sizes))
+        return tuple(found)
 
     def bounds(self, n: int) -> tuple[str, str]:
         """Return the places of slot n's first row, and of that after its last."""

@@ -280,6 +280,6 @@ def compared(node: Expr) -> Expr:
 
 def is_affine(law: Expr, variables: Iterable[str]) -> bool:
     """Return whether a law is affine in some variables together."""
-    known = set(variables)
+    known = {*variables} & {*names(law)}
     slopes = [derivative(law, name) for name in known]
     return all(known.isdisjoint(names(slope)) for slope in slopes)

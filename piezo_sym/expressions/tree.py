@@ -36,7 +36,9 @@ def _node(kind: type[Kind]) -> type[Kind]:
             object.__setattr__(self, "_hash", computed(self))
         return self._hash  # type: ignore[attr-defined, no-any-return]
 
+    parts = tuple(made.__dataclass_fields__)
     made.__hash__ = kept
+    made.__reduce__ = lambda self: (made, tuple(getattr(self, part) for part in parts))
     return cast(type[Kind], made)
 
 

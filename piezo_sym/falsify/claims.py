@@ -7,8 +7,9 @@ the value, so that value/scale tells rounding from a change of sign; it is 0 for
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Protocol, final
 
 from piezo_sym.iphs import IPHS
@@ -41,8 +42,11 @@ class View(Protocol):
         """Return a quantity, one pair per lane.
 
         It is the heat, production, temperature, slope or conductance of an element, the rate of a
-        state, or an input; without a name, the production of all elements.
+        state, or an input.
         """
+
+    def total(self, what: str) -> Pair:
+        """Return the sum of a quantity over all elements."""
 
 
 @final
@@ -82,38 +86,53 @@ class Claim:
                 for what in ("temperature", "slope"):
                     yield from ((what, *pair, True) for pair in view.get(what, self.element))
             case "sigma":
-                pairs = view.get("production", "")
-                yield "sigma", _sum(v for v, _ in pairs), _sum(size for _, size in pairs), False
+                yield "sigma", *view.total("production"), False
             case "exergy" | "environment" | "invariant":
                 yield BALANCES[self.id], *self._balance(view), False
         if self.id == "invariant":
-            for placed, port in self.circuit.of(Exchange):
-                if port.body == self.element:
-                    yield "conductance", *view.get("conductance", placed.element)[0], False
+            for element, _ in self.exchanges:
+                yield "conductance", *view.get("conductance", element)[0], False
 
-    def _balance(self, view: View) -> Pair:
-        """Return the exergy lost, the production, or what the coldest body gains, and its scale."""
+    @cached_property
+    def states(self) -> Mapping[str, str]:
+        """The entropy of each body that a balance is about."""
         alone = self.id == "invariant"
-        states = {
+        return {
             placed.element: body.state
             for placed, body in self.circuit.of(Body)
             if not alone or placed.element == self.element
         }
+
+    @cached_property
+    def exchanges(self) -> Sequence[tuple[str, Exchange]]:
+        """What takes heat from these bodies to the outside, and its element."""
+        own = self.circuit.of(Exchange)
+        return [(placed.element, port) for placed, port in own if port.body in self.states]
+
+    @cached_property
+    def neighbours(self) -> Sequence[str]:
+        """The bodies in contact with the row's own."""
+        pairs = [(c.first, c.second) for _, c in self.circuit.of(Conductor)]
+        ends = (two for pair in pairs for two in (pair, pair[::-1]))
+        return [other for own, other in ends if own == self.element]
+
+    def _balance(self, view: View) -> Pair:
+        """Return the exergy lost, the production, or what the coldest body gains, and its scale."""
+        states, exchanges = self.states, self.exchanges
         ((factor, _),) = view.get("temperature", next(iter(states)))[:1]
-        exchanges = [(p, x) for p, x in self.circuit.of(Exchange) if x.body in states]
         if self.id == "exergy":
             ((factor, _),) = view.get("input", exchanges[0][1].input)
         factor = 1 if self.id == "environment" else factor
         rates = [pair for state in states.values() for pair in view.get("rate", state)]
-        produced = _sum(size for _, size in view.get("production", ""))
+        produced = view.total("production")[1]
         total = factor * _sum(rate for rate, _ in rates)
         scale = abs(factor) * (_sum(size for _, size in rates) + produced)
-        for placed, port in exchanges:
+        for element, port in exchanges:
             ((outside, _),), ((hot, _),) = (
                 view.get("input", port.input),
                 view.get("temperature", port.body),
             )
-            ((lam, size),) = view.get("conductance", placed.element)
+            ((lam, size),) = view.get("conductance", element)
             share = 1 / outside if self.id == "environment" else 1
             total = total - share * (lam * (outside - hot))
             reach = size * (hot + abs(outside))
@@ -126,18 +145,15 @@ class Claim:
             return True
         ((hot, _),) = view.get("temperature", self.element)
         cold: Any = True
-        for _, port in self.circuit.of(Exchange):
-            if port.body == self.element:
-                cold = cold & (hot < view.get("input", port.input)[0][0])
-        for _, contact in self.circuit.of(Conductor):
-            ends = (contact.first, contact.second)
-            for own, other in (ends, ends[::-1]):
-                if own == self.element:
-                    cold = cold & (hot <= view.get("temperature", other)[0][0])
+        for _, port in self.exchanges:
+            cold = cold & (hot < view.get("input", port.input)[0][0])
+        for other in self.neighbours:
+            cold = cold & (hot <= view.get("temperature", other)[0][0])
         return cold
 
+    @cached_property
     def rest(self) -> tuple[tuple[str, ...], tuple[str, ...]] | None:
-        """Return for a balance the inputs that it sets to zero, and those that it sets equal."""
+        """For a balance the inputs that it sets to zero, and those that it sets equal."""
         heat = tuple(port.input for _, port in self.circuit.of(HeatInput))
         if self.id != "exergy":
             return (heat, ()) if heat and self.id == "environment" else None
@@ -158,6 +174,12 @@ def claim_of(iphs: IPHS, id_: str, element: str) -> Claim | None:
         case (("sigma" | "exergy" | "environment" | "welldef" | "continuous"), _):
             return claim
     return None
+
+
+def summed(pairs: Iterable[Pair]) -> Pair:
+    """Return a sum of quantities."""
+    found = list(pairs)
+    return _sum(value for value, _ in found), _sum(size for _, size in found)
 
 
 def _sum(parts: Iterator[Any]) -> Any:

@@ -16,7 +16,7 @@ from flint import arb, ctx, fmpq
 
 from piezo_sym.expressions.exact_eval import TooCloseError, evaluated, exact, holds
 from piezo_sym.expressions.tree import Cmp, Expr, LaneSum, names
-from piezo_sym.falsify.claims import Claim
+from piezo_sym.falsify.claims import Claim, summed
 from piezo_sym.falsify.probe import Probe
 from piezo_sym.falsify.space import Array, Space
 from piezo_sym.spec.tables import conditions
@@ -73,7 +73,7 @@ class Point:
         numbers = [exact(value) for value in values]
         self.system, self.probe, self.counts = system, system.probe, space.counts
         self.numbers = {name: numbers[columns] for name, columns in space.columns_of.items()}
-        self.banks = {field.name: field.bank for field in space.fields}
+        self.banks = space.banks
         self._lanes: dict[int, list[_Lane]] = {}
 
     def lanes(self, bank: str | None, bits: int) -> list[_Lane]:
@@ -93,6 +93,10 @@ class Point:
             if all(isinstance(value, fmpq) or value.is_finite() for value in found):
                 break
         return [(value, 0) for value in found or [NAN]]
+
+    def total(self, what: str) -> tuple[Any, Any]:
+        """Return the sum of a quantity over all elements."""
+        return summed(self.get(what, ""))
 
     @cached_property
     def inside(self) -> bool | None:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import chain
 from operator import itemgetter
 from types import ModuleType
@@ -18,7 +19,7 @@ from piezo_sym.errors import ContradictionError
 from piezo_sym.expressions.tree import names
 from piezo_sym.falsify.claims import TOLERANCE, Claim, claim_of
 from piezo_sym.falsify.exact import Exact
-from piezo_sym.falsify.jumps import jump
+from piezo_sym.falsify.jumps import Sides, jump, sides_of
 from piezo_sym.falsify.points import FEW, STAGES, Draw
 from piezo_sym.falsify.probe import probe_of
 from piezo_sym.falsify.space import Array, Mask, Seen, Space
@@ -67,7 +68,7 @@ class Track:
     def see(self, kind: str, seen: Seen) -> None:
         """Evaluate the claim at points inside the domain."""
         with np.errstate(all="ignore"):
-            says = np.broadcast_to(self.claim.says(seen), seen.x.shape[1:])
+            says = np.broadcast_to(self.claim.says(seen), seen.points.shape[1:])
             self.points += int(says.sum())
             if self.claim.id == "welldef":
                 key = np.where(seen.holed(self.claim.element), -1.0, 1.0)
@@ -123,12 +124,13 @@ class Hunt:
         claims: tuple[tuple[str, str], ...],
         points: int,
     ) -> None:
-        self.iphs, self.wanted = iphs, points
+        self.iphs = iphs
         spec, probe = module.Parameters(), probe_of(iphs)
         sizes = {bank: getattr(spec, f"{bank}_count") for bank in module.BANKS}
         self.spec = Space(module, probe, sizes)
         self.space = Space(module, probe, dict.fromkeys(sizes, LANES))
         found = (claim_of(iphs, *row) for row in claims)
+        self.wanted = min(points, self.space.most)
         self.tracks = [Track(claim) for claim in found if claim]
         trees = [condition.tree for condition in conditions(iphs.model)]
         self.conditioned = {name for tree in trees for name in names(tree)}
@@ -153,7 +155,7 @@ class Hunt:
     def _see(self, kind: str, space: Space, points: Array) -> None:
         seen = space.at(points)
         for track in self.tracks:
-            rest = track.claim.rest()
+            rest = track.claim.rest
             if rest is None:
                 track.see(kind, seen)
                 continue
@@ -191,17 +193,16 @@ class Hunt:
     def _descended(self) -> Iterator[tuple[str, Space, Array]]:
         """Yield steps from the worst points of each row, repeatedly."""
         for n in range(DESCENTS):
-            starts = [
-                point
-                for track in self.tracks
-                if track.claim.climbs
-                for _, space, point in sorted(chain(*track.worst.values()), key=itemgetter(0))[
-                    :KEPT
-                ]
-                if space is self.space
-            ]
+            climbing = (track for track in self.tracks if track.claim.climbs)
+            worst = (
+                sorted(chain(*track.worst.values()), key=itemgetter(0))[:KEPT] for track in climbing
+            )
+            starts = [found for own in worst for found in own if found[1] is self.space]
+            if len(starts) > (most := self.space.most // (4 * CHILDREN)):
+                starts = sorted(starts, key=itemgetter(0))[:most]
             if starts:
-                moved = self.draw.moved(np.array(starts).T, CHILDREN, 1.0 + n)
+                points = np.array([point for _, _, point in starts]).T
+                moved = self.draw.moved(points, CHILDREN, 1.0 + n)
                 yield "descended", self.space, self.draw.inside(moved)
 
     def _judged(self, track: Track, exact: Exact) -> Attack:
@@ -212,19 +213,23 @@ class Hunt:
             value = exact.broken(claim, space, point) if key < 0 else None
             if value:
                 raise self._contradiction(claim, value, space.words(point))
-            here = space.at(point[:, None])
-            plain = not here.out_of_range[0]  # else it is an underflow, which is not reported
-            told = key < ZERO and claim.numbers and plain
-            rounding = rounding or ((space, point) if told else None)
+            if key < ZERO and claim.numbers and not rounding:
+                plain = not space.at(point[:, None]).out_of_range[0]
+                rounding = (space, point) if plain else None  # an underflow is not reported
         if track.lost and rounding is None and exact.has_value(claim, *track.lost):
             rounding = track.lost
         if claim.id == "continuous":
-            found = jump(claim, self.space, self.draw.roots, exact)
+            found = jump(claim, self.space, self.sides, exact)
             if found:
                 raise self._contradiction(claim, found[0], self.space.words(found[1]))
         worst = rounding[0].words(rounding[1]) if rounding else None
         points = int(str(track.points)[0]) * 10 ** (len(str(track.points)) - 1)
         return Attack(claim.id, claim.element, points, worst, rounding is not None)
+
+    @cached_property
+    def sides(self) -> list[Sides]:
+        """Both sides of the kinks found."""
+        return [sides_of(self.space, roots) for roots in self.draw.roots]
 
     def _contradiction(
         self, claim: Claim, value: str, words: Mapping[str, str]

@@ -7,8 +7,9 @@ text, shown by exact arithmetic on two sides that are brought together.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, final
 
 import numpy as np
 from flint import ctx, fmpq
@@ -16,7 +17,7 @@ from flint import ctx, fmpq
 from piezo_sym.falsify.claims import Claim
 from piezo_sym.falsify.exact import BITS, Exact, Point, text
 from piezo_sym.falsify.points import Roots
-from piezo_sym.falsify.space import EXTREME, LARGEST, LEAST, Array, Seen, Space
+from piezo_sym.falsify.space import EXTREME, LARGEST, LEAST, Array, Mask, Seen, Space
 
 #: Between neighbouring floats a law may change by this part of its size.
 JUMP = 1e-6
@@ -32,44 +33,70 @@ Values = list[Any] | None
 
 
 def jump(
-    claim: Claim, space: Space, found: Iterable[Roots], exact: Exact
+    claim: Claim, space: Space, found: Iterable[Sides], exact: Exact
 ) -> tuple[str, Array] | None:
     """Return a jump of a law at one of the kinks found, and a point beside it; or None."""
-    for roots in found:
-        for low, high, leap in _suspects(claim, space, roots):
+    for sides in found:
+        for low, high, leap in _suspects(claim, space, sides):
             value = _confirmed(claim, space, low, high, leap, exact)
             if value:
                 return value, high
     return None
 
 
-def _suspects(claim: Claim, space: Space, roots: Roots) -> Iterator[tuple[Array, Array, float]]:
+def _suspects(claim: Claim, space: Space, sides: Sides) -> Iterator[tuple[Array, Array, float]]:
     """Yield pairs of points beside kinks in states and inputs, and by how much the law changes."""
-    near = space.kinks[roots.edge] & (roots.column >= space.inputs_at)
-    near &= np.abs(roots.high) < EXTREME
-    beyond = roots.high + (roots.high - roots.low)  # on an edge itself either branch may be
-    ends = [space.at(roots.at(value)) for value in (roots.low, beyond)]
-    near &= ends[0].inside & ends[1].inside & ~space.at(roots.base).extreme
-    laws = space.probe.laws
-    for what in (w for w, name in laws if name == claim.element and w not in {"effort", "slope"}):
-        leap, size = _leap((what, claim.element), roots, ends)
-        big = np.where(near, leap / size, 0)
+    ends = sides.ends
+    for what in space.probe.kinds.get(claim.element, ()):
+        leap, size = _leap((what, claim.element), sides)
+        big = np.where(sides.near, leap / size, 0)
         for n in np.argsort(-big, kind="stable")[:2]:
             if big[n] > JUMP:
                 change = float(leap[n]) if leap[n] < LARGEST else 0.0
                 yield ends[0].points[:, n], ends[1].points[:, n], change
 
 
-def _leap(law: tuple[str, str], roots: Roots, ends: list[Seen]) -> tuple[Array, Array]:
+@final
+@dataclass(frozen=True)
+class Sides:
+    """Both sides of kinks.
+
+    Attributes
+    ----------
+    near : which kinks are in states and inputs, and inside the domain.
+    ends : next to the kinks.
+    off : farther off, on either side.
+    """
+
+    near: Mask
+    ends: tuple[Seen, Seen]
+    off: tuple[tuple[Seen, Seen], ...]
+
+
+def sides_of(space: Space, roots: Roots) -> Sides:
+    """Return both sides of kinks; they are the same for all rows."""
+    step = roots.high - roots.low
+    # on an edge itself either branch may be
+    low, high = (space.at(roots.at(value)) for value in (roots.low, roots.high + step))
+    near = space.kinks[roots.edge] & (roots.column >= space.inputs_at)
+    near &= np.abs(roots.high) < EXTREME
+    near &= low.inside & high.inside & ~space.at(roots.base).extreme
+    off = (
+        (space.at(roots.at(roots.low - n * step)), space.at(roots.at(roots.high + n * step)))
+        for n in OFF_A_JUMP
+    )
+    return Sides(near, (low, high), tuple(off))
+
+
+def _leap(law: tuple[str, str], sides: Sides) -> tuple[Array, Array]:
     """Return by how much a law changes, 0 if farther off it changes more, and its size."""
-    low, high = (end.law(*law) for end in ends)
+    low, high = (end.law(*law) for end in sides.ends)
     with np.errstate(all="ignore"):
         leap = np.nan_to_num(np.abs(high.value - low.value), nan=0, posinf=LARGEST)
         size = np.minimum(low.size + high.size, LARGEST)
-        for off in OFF_A_JUMP:
-            step = off * (roots.high - roots.low)
-            for value, other in ((roots.low - step, high), (roots.high + step, low)):
-                there = ends[0].space.at(roots.at(value)).law(*law).value
+        for off in sides.off:
+            for seen, other in zip(off, (high, low), strict=True):
+                there = seen.law(*law).value
                 far = np.nan_to_num(np.abs(there - other.value), nan=LARGEST, posinf=LARGEST)
                 leap = np.where(far > 1.25 * leap, 0, leap)
     most = leap.max(axis=0, initial=0)

@@ -15,6 +15,7 @@ from typing import final
 
 import numpy as np
 
+from piezo_sym.falsify.edges import Edges
 from piezo_sym.falsify.space import LARGEST, LEAST, Array, Index, Space
 
 #: With fewer points than these, drawn ones are added to those that walks start from.
@@ -23,6 +24,8 @@ WALKS = 40
 #: A root at zero is bracketed by these values, as products of smaller ones may underflow.
 TINY = 1e-280
 TABLE = 8192
+#: So many points are tried beside a root.
+BESIDE = 24
 #: Edges are solved for from known points, then from points on edges; at most so often each.
 STAGES = (("kinks", 16), ("corners", 12))
 FAR = (-290, -100, -30, -15, -9, -6)
@@ -72,6 +75,7 @@ class Draw:
         scales = [[1.0, *row] for row in np.abs(self.known).tolist()]
         for one, other in self.space.pairs.tolist():
             scales[one] += np.abs(self.known[other]).tolist()
+        self.edges = Edges(self.space)
         self.scales = [sorted({s for s in row if s > 0})[:24] for row in scales]
 
     def inside(self, points: Array) -> Array:
@@ -107,32 +111,36 @@ class Draw:
         ]
         found: list[tuple[Index, Index, Index, Array, Array]] = []
         for column, ladder in enumerate(steps):
-            points = np.repeat(bases, len(ladder), axis=1)
-            points[column] = np.tile(ladder, count)
-            signs = np.sign(self.space.at(points).edges).reshape(-1, count, len(ladder))
+            rows = self.edges.on[self.space.columns[column][0]]
+            signs = np.sign(self.edges.along(bases, column, ladder, rows))
+            signs = signs.reshape(-1, count, len(ladder))
             first, second = signs[..., :-1], signs[..., 1:]
             edge, base, step = np.nonzero((first != second) & np.isfinite(first * second))
             rising = first[edge, base, step] != 0
             low = np.where(rising, ladder[step], ladder[step + 1])
             high = np.where(rising, ladder[step + 1], ladder[step])
+            edge = rows[edge]
             found.append((edge, np.full_like(edge, column), base, low, high))
         edges, columns, at, lows, highs = map(np.concatenate, zip(*found, strict=True))
         order = np.argsort(self.rng.random(len(edges)) - 0.5 * (columns >= self.space.inputs_at))
         order = order[np.argsort(edges[order], kind="stable")]
         rank = np.arange(len(order)) - np.searchsorted(edges[order], edges[order])
-        kept = order[rank < most]
+        share = 2 * self.space.most // (BESIDE * (1 + int(edges.max(initial=0))))
+        kept = order[rank < min(most, max(1, share))]
         return Roots(edges[kept], columns[kept], bases[:, at[kept]], lows[kept], highs[kept])
 
     def _bisected(self, roots: Roots) -> Roots:
         """Return brackets narrowed to neighbouring floats."""
         here, needed = np.arange(len(roots.edge)), frozenset(roots.edge.tolist())
         low, high = _key(roots.low), _key(roots.high)
-        sign = np.sign(self.space.at(roots.at(roots.low)).edges_of(needed)[roots.edge, here])
+        given = self.space.at(roots.at(roots.low)).given
+        sign = np.sign(self.edges.values(given, needed, len(here))[roots.edge, here])
         for _ in range(64):
             middle = _middle(low, high)
             if ((middle == low) | (middle == high)).all():
                 break
-            seen = self.space.at(roots.at(_float(middle))).edges_of(needed)
+            given = self.space.at(roots.at(_float(middle))).given
+            seen = self.edges.values(given, needed, len(here))
             same = np.sign(seen[roots.edge, here]) == sign
             low, high = np.where(same, middle, low), np.where(same, high, middle)
         ends = np.array([_float(low), _float(high)])
@@ -162,11 +170,14 @@ class Draw:
 
     def _one_sided(self, bases: Array) -> list[bool]:
         """Return for each column whether no point stays in the domain if its sign changes."""
-        found = []
-        for column in range(len(bases)):
-            turned = bases.copy()
-            turned[column] *= -1
-            found.append(not self.space.at(turned).inside.any())
+        (columns, count), found = bases.shape, list[bool]()
+        together = max(1, self.space.block // count)
+        for first in range(0, columns, together):
+            own = np.arange(first, min(first + together, columns))
+            turned = np.tile(bases, len(own)).reshape(columns, len(own), count)
+            turned[own, own - first] *= -1
+            inside = self.space.at(turned.reshape(columns, -1)).inside
+            found += [not one.any() for one in inside.reshape(len(own), count)]
         return found
 
     def _values(self, column: int, fixed: bool) -> Array:

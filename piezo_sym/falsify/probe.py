@@ -10,8 +10,10 @@ from __future__ import annotations
 
 import importlib.abc
 import importlib.util
-from collections.abc import Iterator, Mapping
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from types import ModuleType
 from typing import final
 
@@ -32,6 +34,8 @@ from piezo_sym.expressions.tree import (
     Num,
     Pow,
     Sym,
+    names,
+    rename,
     walk,
 )
 from piezo_sym.expressions.units import parse_unit
@@ -48,6 +52,7 @@ from piezo_sym.spec.elements.ports import (
     Storage,
 )
 
+#: Of more edges, those whose form was seen less often come first; fewer of large systems.
 MOST_EDGES = 400
 
 
@@ -91,8 +96,31 @@ class Probe:
 
     def of_element(self, element: str) -> list[Row]:
         """Return the laws of an element, written out: what a name stands for, not the name."""
-        rows = (row for (what, n), row in self.laws.items() if n == element and what != "effort")
-        return list(map(self.written, rows))
+        return self._of_elements.get(element, [])
+
+    @cached_property
+    def kinds(self) -> Mapping[str, list[str]]:
+        """The laws of each element that may jump."""
+        found: dict[str, list[str]] = {}
+        for what, element in self.laws:
+            found.setdefault(element, []).extend([what] if what not in {"effort", "slope"} else [])
+        return found
+
+    @cached_property
+    def _of_elements(self) -> Mapping[str, list[Row]]:
+        found: dict[str, list[Row]] = {}
+        for (what, element), row in self.laws.items():
+            found.setdefault(element, []).extend([self.written(row)] if what != "effort" else [])
+        return found
+
+    def reach(self, tree: Expr) -> frozenset[str]:
+        """Return all names that a tree depends on, directly or by way of others."""
+        found, left = set[str](), {*names(tree)}
+        while left:
+            found |= left
+            defined = (self.defined[name][0] for name in left if name in self.defined)
+            left = {name for tree in defined for name in names(tree)} - found
+        return frozenset(found)
 
     def written(self, row: Row) -> Row:
         """Return what a name stands for; others as they are."""
@@ -135,9 +163,22 @@ def probe_of(iphs: IPHS) -> Probe:
     laws |= {(name, ""): defined[name] for name in shares}
     found = [edge for tree in trees for edge in _edges(tree)]
     found += [Edge(limit.margin) for limit in q.limits] + [Edge(tree) for tree in _equal(iphs, q)]
-    edges = tuple(dict.fromkeys(e for e in found if not isinstance(e.tree, Num)))[:MOST_EDGES]
+    most = max(100, MOST_EDGES * 100 // max(100, len(defined)))
+    edges = _varied(dict.fromkeys(e for e in found if not isinstance(e.tree, Num)), most)
     edges = tuple(Edge(e.tree, e.kink, bank_of(e.tree, q.lanes)) for e in edges)
     return Probe(iphs, defined, laws, dict(_rows(q)), edges)
+
+
+def _varied(found: Iterable[Edge], most: int) -> tuple[Edge, ...]:
+    """Return some edges: the first ones of each form, if there are too many."""
+    seen, ranked = Counter[Expr](), list[tuple[int, Edge]]()
+    for edge in found:
+        form = rename(edge.tree, {name: str(n) for n, name in enumerate(names(edge.tree))})
+        seen[form] += 1
+        ranked.append((seen[form], edge))
+    last = sorted(rank for rank, _ in ranked)[:most][-1:]
+    kept = [edge for rank, edge in ranked if [rank] <= last]
+    return tuple(kept[:most])
 
 
 #: What the rows of a function of the module are.

@@ -6,7 +6,7 @@ Input: a module, a probe, bank sizes.  Output: a `Space`.  Its n points are an a
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate, pairwise, starmap
@@ -18,6 +18,7 @@ import numpy.typing as npt
 
 from piezo_sym.expressions.tree import Cmp, Num, Sym
 from piezo_sym.expressions.units import parse_unit
+from piezo_sym.falsify.claims import summed
 from piezo_sym.falsify.floats import Approx, Floats
 from piezo_sym.falsify.probe import Probe
 from piezo_sym.spec.tables import conditions, greater
@@ -29,8 +30,10 @@ Key = TypeVar("Key")
 
 #: Bounds on the absolute values of a point other than 0; beyond EXTREME products overflow.
 LEAST, LARGEST, EXTREME = 1e-300, 1e300, 1e30
-#: States times points that are evaluated together; the module's `rhs` splits larger arrays.
+#: States times points that the module evaluates together; its `rhs` splits larger arrays.
 BLOCK = 100_000
+#: Of large systems fewer points together would cost as much; and points times columns squared.
+FEWEST, MOST = 1024, 10**9
 
 
 @final
@@ -58,6 +61,11 @@ class Space:
         return self._slices((field.name, field.bank) for field in self.fields)
 
     @cached_property
+    def banks(self) -> Mapping[str, str | None]:
+        """The bank of each parameter, input and state that has a value per lane."""
+        return {field.name: field.bank for field in self.fields}
+
+    @cached_property
     def inputs_at(self) -> int:
         """The first column of the inputs."""
         return sum(self.lanes(field.bank) for field in self.module.PARAMETERS)
@@ -81,14 +89,22 @@ class Space:
     def pairs(self) -> Index:
         """Pairs of columns of equal dimension, shape (pairs, 2)."""
         units = {field.name: parse_unit(field.unit).dimension for field in self.fields}
-        columns = [(n, units[name]) for n, (name, _) in enumerate(self.columns)]
-        pairs = [(a, b) for a, one in columns for b, other in columns if a != b and one == other]
+        columns = [units[name] for name, _ in self.columns]
+        alike: dict[Any, list[int]] = {}
+        for n, unit in enumerate(columns):
+            alike.setdefault(unit, []).append(n)
+        pairs = [(a, b) for a, unit in enumerate(columns) for b in alike[unit] if a != b]
         return np.array(pairs, dtype=np.int64).reshape(-1, 2)
 
     @cached_property
     def block(self) -> int:
         """How many points are evaluated together."""
-        return max(1, min(8192, BLOCK // max(1, len(self.columns) - self.states_at)))
+        return max(FEWEST, min(8192, BLOCK // max(1, len(self.columns) - self.states_at)))
+
+    @cached_property
+    def most(self) -> int:
+        """How many points are tried at most: fewer of systems with more than 100 columns."""
+        return max(2 * FEWEST, MOST // len(self.columns) ** 2)
 
     def lanes(self, bank: str | None) -> int:
         """Return how many lanes a bank has, 1 for none."""
@@ -160,27 +176,32 @@ class Seen:
     def __init__(self, space: Space, points: Array) -> None:
         self.space = space
         self.points = points
-        self.x, self.u, self.p = space.split(points)
+        self._totals: dict[str, tuple[Any, Any]] = {}
         self._laws: dict[tuple[str, str], Approx] = {}
 
     def __getattr__(self, name: str) -> Array:
         """Return the result of a function of the module, computed once."""
-        arguments = (self.x, self.p) if name == "temperatures" else (self.x, self.u, self.p)
+        step = max(1, BLOCK // max(1, self.points.shape[0] - self.space.states_at))
+        parts = (self.points[:, n : n + step] for n in range(0, max(1, self.points.shape[1]), step))
+        function, found = getattr(self.space.module, name), list[Array]()
         with np.errstate(all="ignore"):
-            value: Array = getattr(self.space.module, name)(*arguments)
+            for x, u, p in map(self.space.split, parts):
+                found.append(function(x, p) if name == "temperatures" else function(x, u, p))
+        value = found[0] if len(found) == 1 else np.concatenate(found, axis=-1)
         setattr(self, name, value)
         return value
 
     @cached_property
     def values(self) -> Floats:
         """Trees at the points."""
-        return self._floats(sized=True)
+        return Floats(self.given, self.space.probe.defined, self.space.counts)
 
-    def _floats(self, *, sized: bool) -> Floats:
-        space, points = self.space, self.points
-        fields = ((f.name, f.bank, space.columns_of[f.name]) for f in space.fields)
-        given = {name: points[at] if bank else points[at.start] for name, bank, at in fields}
-        return Floats(given, space.probe.defined, space.counts, sized=sized)
+    @cached_property
+    def given(self) -> Mapping[str, Array]:
+        """The values of parameters, inputs and states, by name."""
+        at = self.space.columns_of
+        banks = self.space.banks
+        return {n: self.points[at[n] if bank else at[n].start] for n, bank in banks.items()}
 
     def law(self, what: str, element: str) -> Approx:
         """Return a law, of shape (lanes, points)."""
@@ -193,23 +214,6 @@ class Seen:
             value, size = (np.broadcast_to(part, shape) for part in (found.value, found.size))
             self._laws[key] = Approx(value, size, found.lost)
         return self._laws[key]
-
-    @cached_property
-    def edges(self) -> Array:
-        """The values of all edges, of shape (rows, points)."""
-        return self.edges_of(range(len(self.space.kinks)))
-
-    def edges_of(self, rows: Container[int]) -> Array:
-        """Return the values of edges of which at least some rows are needed; others are not set."""
-        found, n = np.empty((len(self.space.kinks), self.points.shape[1])), 0
-        values = self._floats(sized=False)
-        with np.errstate(all="ignore"):
-            for edge in self.space.probe.edges:
-                own = range(n, n + self.space.lanes(edge.bank))
-                if any(row in rows for row in own):
-                    found[own.start : own.stop] = values[edge.tree].value
-                n = own.stop
-        return found
 
     def get(self, what: str, name: str) -> list[tuple[Any, Any]]:
         """Return a quantity as (value, size) pairs of rows, see `View`."""
@@ -228,6 +232,12 @@ class Seen:
         hot = what == "temperature"
         values = self.temperatures[space.rows["BODIES"][name]] if hot else law.value
         return [*zip(values, law.size, strict=True)]
+
+    def total(self, what: str) -> tuple[Any, Any]:
+        """Return the sum of a quantity over all elements."""
+        if what not in self._totals:
+            self._totals[what] = summed(self.get(what, ""))
+        return self._totals[what]
 
     @property
     def inside(self) -> Mask:

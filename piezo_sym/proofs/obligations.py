@@ -87,7 +87,7 @@ class Question:
     @cached_property
     def kept(self) -> tuple[Cmp, ...]:
         """What of `where` goes into the query."""
-        return self.where if self.whole else binding(self.where, tuple(self._about()))
+        return self.where if self.whole else binding(self.where, frozenset(self._about()))
 
     @cached_property
     def words(self) -> frozenset[str]:

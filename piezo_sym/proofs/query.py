@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from typing import final
 
 from piezo_sym.expressions.tree import Add, Cmp, Expr, If, Mul, Neg, Num, Pow, Sym, names
@@ -53,33 +54,41 @@ def connected(conditions: Iterable[Cmp], words: Iterable[str]) -> tuple[Cmp, ...
     Leaving out the others can only make a claim harder to prove; a counterexample has to keep them.
     """
     near = set(words)
-    found = [(condition, {*names(condition)}) for condition in conditions]
-    while grown := set().union(*(own for _, own in found if own & near)) - near:
+    found = [(condition, names(condition)) for condition in conditions]
+    while grown := {n for _, own in found if not near.isdisjoint(own) for n in own} - near:
         near |= grown
-    return tuple(condition for condition, own in found if own & near or not own)
+    return tuple(c for c, own in found if not own or not near.isdisjoint(own))
 
 
-def binding(conditions: Iterable[Cmp], words: Iterable[str]) -> tuple[Cmp, ...]:
+@lru_cache(256)
+def binding(conditions: tuple[Cmp, ...], words: frozenset[str]) -> tuple[Cmp, ...]:
     """Return the connected conditions, without those that some value of a name keeps in any case.
 
     So it is where all conditions on a name, which is none of `words`, bound it from the same side:
     the temperatures of other bodies, say, of which is said that they are above a common one.
     """
-    kept, about = dict.fromkeys(connected(conditions, words)), {*words}
-    users: dict[str, set[Cmp]] = {}
-    for condition in kept:
-        for name in {*names(condition)} - about:
-            users.setdefault(name, set()).add(condition)
-    waiting = list(users)
+    found = tuple(dict.fromkeys(connected(conditions, words)))
+    others = [[(n, side) for n, side in _sides(c) if n not in words] for c in found]
+    users: dict[str, dict[int, str]] = {}
+    for n, sides in enumerate(others):
+        for name, side in sides:
+            users.setdefault(name, {})[n] = side
+    waiting, kept = dict.fromkeys(users), set(range(len(found)))
     while waiting:
-        bounded = users[name := waiting.pop()]
-        if len(sides := {_side(name, condition) for condition in bounded}) == 1 and all(sides):
-            for condition in tuple(bounded):
-                del kept[condition]
-                for other in {*names(condition)} - about:
-                    users[other].remove(condition)
-                    waiting.append(other)
-    return tuple(kept)
+        bounded = users[waiting.popitem()[0]]
+        if len(about := {*bounded.values()}) == 1 and all(about):
+            for n in tuple(bounded):
+                kept.remove(n)
+                for other, _ in others[n]:
+                    del users[other][n]
+                    waiting[other] = None
+    return tuple(condition for n, condition in enumerate(found) if n in kept)
+
+
+@lru_cache(1 << 14)
+def _sides(condition: Cmp) -> tuple[tuple[str, str], ...]:
+    """Return each name of a comparison, and from which side it is bounded, if it stands alone."""
+    return tuple((name, _side(name, condition)) for name in names(condition))
 
 
 def _side(name: str, condition: Cmp) -> str:

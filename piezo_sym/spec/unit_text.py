@@ -40,6 +40,7 @@ QUANTITIES: Mapping[str, str] = {
     "H": "an inductance",
     "ohm": "a resistance",
     "C/m": "a transducer ratio",
+    "V/K": "a Seebeck coefficient",
     "W/K": "a heat conductance",
     "W": "a power",
     "1": "a number without unit",

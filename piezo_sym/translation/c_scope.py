@@ -143,11 +143,12 @@ class Scope:
 
     def defer(self, node: ast.expr) -> Deferred:
         """Return an expression that is written here; refuse names that stand for nothing yet."""
-        callable_ = {*self.file.calls, *self.file.helpers, "chosen", *COMPARISONS}
-        functions = [part.func for part in ast.walk(node) if isinstance(part, ast.Call)]
-        if not {ast.unparse(function) for function in functions} <= callable_:
+        callable_ = (self.file.calls, self.file.helpers, {"chosen"}, COMPARISONS)
+        parts = list(ast.walk(node))
+        functions = [part.func for part in parts if isinstance(part, ast.Call)]
+        if not all(any(ast.unparse(f) in table for table in callable_) for f in functions):
             raise refused(node, "a call")
-        for part in ast.walk(node):
+        for part in parts:
             if isinstance(part, ast.Name) and part not in functions:
                 found = self.names.get(part.id)
                 if found is None and part.id not in {*self.roles, "NAN"}:

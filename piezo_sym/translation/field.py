@@ -215,7 +215,7 @@ class GeneratorField:
         terms: dict[Mono, Exponent] = {}
         for value in values:
             for mono, c in value.terms.items():
-                terms[mono] = terms.get(mono, 0) + c
+                terms[mono] = terms[mono] + c if mono in terms else c
         return Value(self, terms)
 
     def times(self, left: Value, right: Value) -> Value:

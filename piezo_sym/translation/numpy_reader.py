@@ -114,25 +114,17 @@ class _Function:
         checks = {self.x: ("x", f"_states({self.x}, {p})"), u: ("u", f"_inputs({u})")}
         role, checked = checks.get(name, ("", ""))
         role = role if role and ast.unparse(value) == checked else ""
-        kept = {
-            "np",
-            "_states",
-            "_inputs",
-            "_lanes",
-            *CALLS,
-            *self.words.values(),
-            *self.values,
-            *self.roles,
-        }
+        words = {"np", "_states", "_inputs", "_lanes", *self.words.values()}
+        kept = any(name in table for table in (words, CALLS, self.values, self.roles))
         if role in self.unchecked:
             self.unchecked.remove(role)
             self.roles[name] = role
         elif isinstance(value, ast.Call) and ast.unparse(value.func) == "np.arange":
-            if name in kept or len(value.args) != 2 or value.keywords:
+            if kept or len(value.args) != 2 or value.keywords:
                 raise refused(value, "an index array")
             first, last = value.args
             self.lanes[name] = self.read.whole(first), self.read.whole(last)
-        elif name in kept or name in self.lanes:
+        elif kept or name in self.lanes:
             raise NotShownError(f"{name} is assigned twice")
         elif isinstance(value, ast.Call) and ast.unparse(value.func) in {"np.empty", "np.zeros"}:
             self._allocate(value)

@@ -17,7 +17,7 @@ from piezo_sym.algebra.lanes import LaneMatrix
 from piezo_sym.algebra.sums import SymbolicLaneSum
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.parse import parse_law
-from piezo_sym.expressions.tree import Cmp, Expr, Num, walk
+from piezo_sym.expressions.tree import Cmp, Expr, Num, names, walk
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.elements.ports import Body
 from piezo_sym.spec.tables import conditions, lane_parameters, law_fields, states
@@ -53,6 +53,7 @@ class SystemReader:
         self.names = {name: self._name(name, symbol) for name, symbol in symbols.items()}
         own = (self.names[slot.label].parts for slot in system.states)
         self.field.states = frozenset().union(*own)
+        self._read = list[sp.Symbol]()  # definitions among what is known
         self._known = {symbols[name]: value for name, value in self.names.items()}
         self._known |= {s: self.field.count(bank) for bank, s in iphs.symbols.counts.items()}
         groups = (*iphs.named, iphs.costates)
@@ -88,20 +89,22 @@ class SystemReader:
 
     def margins(self, given: Iterable[Cmp]) -> list[Value]:
         """Return the margins of some conditions, of which nothing is taken as true."""
-        with self._outside() as letters:
+        given = list(given)
+        with self._outside(*given) as letters:
             return [self._margin(condition, letters) for condition in given]
 
     def law(self, law: Expr) -> Value:
         """Return a law, nothing taken as true."""
-        with self._outside() as letters:
+        with self._outside(law) as letters:
             return self(self.iphs.symbols.law(law, letters))
 
     @contextmanager
-    def _outside(self) -> Iterator[Mapping[str, sp.Symbol]]:
+    def _outside(self, *trees: Expr | Cmp) -> Iterator[Mapping[str, sp.Symbol]]:
         """Give letters for names of which nothing is known, and forget what is known of signs."""
-        names = {**self.names, **self.costates}
-        unsigned = {name: sp.Dummy(name, real=True) for name in names}
-        self._known |= {letter: names[name] for name, letter in unsigned.items()}
+        used = dict.fromkeys(name for tree in trees for name in names(tree))
+        found = {name: self.costates.get(name, self.names.get(name)) for name in used}
+        unsigned = {name: sp.Dummy(name, real=True) for name, value in found.items() if value}
+        self._known |= {letter: found[name] for name, letter in unsigned.items()}
         with reading(self.field, "margins"):
             yield unsigned
         self._forget()
@@ -114,7 +117,9 @@ class SystemReader:
 
     def _forget(self) -> None:
         """Forget definitions that were read when less, or more, was known of signs."""
-        self._known = {s: v for s, v in self._known.items() if s not in self._definitions}
+        for symbol in self._read:
+            del self._known[symbol]
+        self._read.clear()
 
     # Expressions
 
@@ -129,6 +134,7 @@ class SystemReader:
             if expr not in self._known:
                 with on_path(field, field.one):
                     self._known[expr] = field.letter(self(self._definitions[expr]))
+                self._read.append(expr)
             return self._known[expr]
         if isinstance(expr, sp.Rational):
             return field.number(Fraction(int(expr.p), int(expr.q)))

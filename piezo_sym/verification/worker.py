@@ -25,6 +25,7 @@ def main() -> None:
     _, most = resource.getrlimit(resource.RLIMIT_AS)
     limit = MEMORY if most == resource.RLIM_INFINITY else min(MEMORY, most)
     resource.setrlimit(resource.RLIMIT_AS, (limit, most))
+    gc.set_threshold(100_000, 50, 100)  # what is made of a large system is not garbage
     given, out = sys.stdin.buffer, sys.stdout.buffer
     sys.stdout = sys.stderr
     for number in count():

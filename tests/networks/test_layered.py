@@ -1,11 +1,15 @@
 """A stack layer by layer: the shipped spec, its equations typed by hand, and the whole stack."""
 
+from time import process_time
+
 import numpy as np
 import pytest
 
-from piezo_sym import layered, load, operating_point, simulate, sine
+from piezo_sym import derive, layered, load, operating_point, simulate, sine
 from piezo_sym.errors import UsageError
 from piezo_sym.modules import module_of
+from piezo_sym.proofs import Verdict
+from piezo_sym.verification.examine import ATTACKED, examine
 
 
 def by_hand(x, u, n):
@@ -46,6 +50,15 @@ def test_it_is_hottest_inside():
     ds = simulate("layered_stack", inputs={"V_in": sine(100, 100)}, duration=0.05, step=1e-4)
     T = [float(ds[f"T_body_{j}"][-1]) for j in (1, 2, 3)]
     assert T[1] > max(T[0], T[2]) > 298.15
+
+
+@pytest.mark.parametrize(("n", "most"), [(20, 15), pytest.param(200, 60, marks=pytest.mark.long)])
+def test_time_to_prove_it_grows_with_its_layers(n, most):
+    model, begun = layered(n), process_time()
+    *_, report = examine(derive(model))
+    assert process_time() - begun < most
+    assert {row.verdict for row in report.rows} == {Verdict.PROVED}
+    assert {row.points > 0 for row in report.rows if row.id in ATTACKED} == {True}
 
 
 @pytest.mark.parametrize("n", [0, -1, 2.0, True, "3", None])

@@ -172,4 +172,5 @@ def precise(text, values):
     exact = NUMBER.sub(r"real('\1')", text)
     with mpmath.workdps(80):
         scope = {name: mpmath.mpf(value) for name, value in values.items()}
-        return mpmath.mpf(eval(exact, namespace(mpmath, mpmath.mpf) | {"real": mpmath.mpf}, scope))
+        own = {"real": mpmath.mpf, "abs": lambda z: abs(mpmath.mpf(z))}  # of a root below 0: none
+        return mpmath.mpf(eval(exact, namespace(mpmath, mpmath.mpf) | own, scope))
