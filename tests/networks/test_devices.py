@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from piezo_sym import Model, PiezoError, derive, linearize, load, operating_point, simulate
+from piezo_sym import Model, PiezoError, derive, linearize, load, operating_point, simulate, sine
 from piezo_sym.proofs import obligations
 
 
@@ -99,6 +99,46 @@ def test_cylinder_presses_and_moves_as_merritt_says():
     assert speed == pytest.approx(flow, rel=1e-5)
     resting = simulate("hydraulic_cylinder", inputs=given, duration=20.0, rtol=1e-6)
     assert float(resting.q[-1]) == pytest.approx(0.05 + (1e7 * A - 4000) / 1e7, rel=1e-4)
+
+
+def fill(x, y):
+    """Return the part of its box that a closed loop fills."""
+    area = abs(np.sum(np.roll(x, -1) * y - np.roll(y, -1) * x)) / 2
+    return area / (np.ptp(x) * np.ptp(y))
+
+
+@pytest.mark.parametrize("frequency", [1.0, 20.0])
+def test_loop_of_the_stack_is_that_of_a_measured_one_at_any_rate(frequency):
+    drive = {"V_in": lambda t: 150 * np.sin(np.pi * frequency * t) ** 2}
+    times = np.linspace(1, 3, 2001) / frequency
+    run = simulate("stack_bouc_wen", inputs=drive, duration=3 / frequency, rtol=1e-6, times=times)
+    x, V = (values[1000:2000] for values in (run.q.values, run.V_in.values))
+    assert np.ptp(x) == pytest.approx(40.4e-6, rel=5e-3)
+    assert fill(V, x) == pytest.approx(0.1054, abs=4e-3)
+    assert x[0] == pytest.approx(run.q.values[0], rel=1e-4)  # it closes from the first period on
+
+
+def test_stack_runs_as_a_hand_written_right_hand_side():
+    names = ("m", "k", "d", "a", "C", "C_h", "V_h", "beta", "gam", "R", "c_0", "lam", "T_0")
+    m, k, d, a, C, C_h, V_h, beta, gam, R, c_0, lam, T_0 = value("stack_bouc_wen", *names)
+
+    def rates(t, x):
+        q, p, Q, Q_h, S = x
+        v, V, W, T = p / m, Q / C, Q_h / C_h, T_0 * np.exp(S / c_0)
+        i = (150 * np.sin(2 * np.pi * 200 * t) - V - W) / R
+        slip = (beta * abs(i) * np.sign(W) + gam * i) * abs(W / V_h)
+        heat = R * i**2 + W * slip + d * v**2
+        return v, a * V - k * q - d * v, i - a * v, i - slip, heat / T + lam * (300.0 / T - 1)
+
+    times, signal = np.linspace(0, 0.01, 101), {"V_in": sine(150, 200), "T_e": 300.0}
+    run = simulate("stack_bouc_wen", inputs=signal, duration=0.01, rtol=1e-9, times=times)
+    short = {"rtol": 1e-12, "atol": 1e-16, "max_step": 2e-6}
+    exact = solve_ivp(rates, (0, 0.01), [0.0] * 5, "DOP853", times, **short).y
+    for name, values in zip(("q", "p", "Q", "Q_h", "S"), exact, strict=True):
+        assert np.max(abs(run[name] - values)) < 1e-7 * np.max(abs(values)), name
+    assert np.abs(run.energy_residual).max() < 1e-12
+    slips = run.produced_hysteresis.values
+    assert np.all(np.diff(slips) >= 0)
 
 
 def cooler():

@@ -167,3 +167,15 @@ def test_a_slip_goes_by_the_rate_that_a_resistor_lets_through():
     expected = symbols["i_amplifier"] - symbols["alpha_transducer"] * symbols["v_mass"]
     assert (rate - expected).expand() == 0
     assert iphs.rhs.has(symbols["R"])
+
+
+def test_a_run_begins_at_rest_where_all_kinks_meet_and_the_drive_is_no_more_than_noise():
+    """Near t = 0 the drive is a series whose noise, of either sign, is larger than its value."""
+    run = simulate(
+        load("stack_bouc_wen"),
+        inputs={"V_in": lambda t: 150 * np.sin(np.pi * t) ** 2},
+        duration=0.02,
+        rtol=1e-8,
+    )
+    assert float(run.q[-1]) > 0
+    assert np.max(abs(run.energy_residual.values)) < 1e-12

@@ -19,6 +19,28 @@ static void MODEL(end_run)(MODEL(batch) *b, int lane, int failed)
     l->phase = IDLE;
 }
 
+/*
+ * A run does not go on: it ends, unless steps over kinks are left to try.  Where states begin at rest, and
+ * kinks meet, switching functions may be no more than the noise of an input.  Not where laws jump: such
+ * a law may hold the state.
+ */
+static void MODEL(stuck)(MODEL(batch) *b, int lane)
+{
+    MODEL(lane) *l = b->lane + lane;
+    if (LOSSY || MODEL(jumps) || b->fixed > 0.0 || b->m.branches == 0 || IN(b->m.over, lane)) {
+        MODEL(end_run)(b, lane, 1);
+        return;
+    }
+    SET(b->m.over, lane, 1);
+    l->stuck = 1;
+    l->solves = 0;
+    l->refused = 0;
+    l->known = 0.0;
+    l->h = b->first;
+    l->which = -1;
+    l->phase = STEP;
+}
+
 /* Refuse a step: a shorter one is tried. */
 static void MODEL(refuse)(MODEL(batch) *b, int lane, double h)
 {
@@ -28,7 +50,7 @@ static void MODEL(refuse)(MODEL(batch) *b, int lane, double h)
     l->settled = 0;
     l->phase = STEP;
     if (LOSSY || ++l->refused > MOST_REFUSED || l->t + h <= l->t || h < SHORTEST_PART * b->fixed)
-        MODEL(end_run)(b, lane, 1);
+        MODEL(stuck)(b, lane);
 }
 
 /* Refuse a fixed step: it is repeated without a prediction, and then halved. */
@@ -60,8 +82,14 @@ static int MODEL(choose_kinks)(MODEL(batch) *b, int lane)
 {
     MODEL(lane) *l = b->lane + lane;
     const int over = IN(b->m.over, lane) != 0;
-    if (!b->either || l->solves < TRIED)
+    if (!(b->either || l->stuck) || l->solves < TRIED)
         return 0;
+    if (!b->either) {
+        SET(b->m.over, lane, 0);
+        l->stuck = 0;
+        l->known = 0.0;
+        return 1;
+    }
     l->pace[over] = (l->t - l->since) / l->solves;
     l->since = l->t;
     l->solves = 0;
@@ -113,7 +141,7 @@ static int MODEL(go_on)(MODEL(batch) *b, int lane)
     if (l->t >= b->stop)
         MODEL(end_run)(b, lane, 0);
     else if (l->refused > MOST_REFUSED)
-        MODEL(end_run)(b, lane, 1);
+        MODEL(stuck)(b, lane);
     else if (l->t >= l->segment->stop) {
         ++l->segment;
         l->phase = BEGIN;
@@ -133,7 +161,7 @@ static int MODEL(cut)(MODEL(batch) *b, int lane, const MODEL(crossing) *c, doubl
             l->known = 0.0;
             l->phase = STEP;
             if (++l->refused > MOST_REFUSED)
-                MODEL(end_run)(b, lane, 1);
+                MODEL(stuck)(b, lane);
             return 0;
         }
         if (1.0 - part < b->beyond)

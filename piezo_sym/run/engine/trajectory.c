@@ -59,6 +59,7 @@ typedef struct {
     int written;   /* whether the current sample is written, though its step is repeated */
     double steady; /* the length that the error of the step before allows */
     int phase, behind, predicted, fresh, last, cuts, refused, halved;
+    int stuck;   /* whether it goes over kinks since it could not end at them */
     int settled; /* whether no switch was located after all: the step is solved to full accuracy */
     long which; /* the switch at the end of the step; -1 if none */
     double since, pace[2]; /* when the mode at kinks was chosen; time covered per solve in each mode */

@@ -1,0 +1,489 @@
+"""Piezoelectric stack with a Bouc-Wen hysteresis of its voltage: irreversible port-Hamiltonian system.
+
+Source:  Goldfarb, Celanovic (1997), IEEE Control Systems 17 (3), 69-79; Low, Guo (1995), J. Microelectromech. Syst. 4 (4), 230-237; PiezoDrive SA050536
+Model:   stack_bouc_wen, spec sha256 6d1fa97b1e1ae2b0b12c6c21f4a293f798dc842b64329e1d3cc5bd2fe646a47f
+Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, continuous, rate-independent, sigma, exergy, environment, units, program PROVED
+
+Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
+Arrays have shape (n, *batch); values are in SI units.
+
+x = (q, p, Q, Q_h, S)
+u = (F_ext, V_in, T_e)
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+NAME = "stack_bouc_wen"
+SPEC_SHA256 = "6d1fa97b1e1ae2b0b12c6c21f4a293f798dc842b64329e1d3cc5bd2fe646a47f"
+
+
+class Record(NamedTuple):
+    """One row of an array, or of a bank one row per lane: its name, SI unit and meaning."""
+
+    name: str
+    unit: str
+    doc: str
+    bank: str | None = None
+
+
+class Condition(NamedTuple):
+    """A condition of the domain: its margin is > 0 inside, or >= 0 if it is not strict."""
+
+    text: str
+    strict: bool
+
+
+STATES = (
+    Record("q", "m", "extension of spring 'spring'"),
+    Record("p", "kg*m/s", "momentum of mass 'mass'"),
+    Record("Q", "C", "charge of capacitor 'ceramic'"),
+    Record("Q_h", "C", "charge of capacitor 'hysteresis'"),
+    Record("S", "J/K", "entropy of thermal_mass 'body'"),
+)
+INPUTS = (
+    Record("F_ext", "N", "external force on the tip"),
+    Record("V_in", "V", "voltage of the amplifier"),
+    Record("T_e", "K", "temperature of the air"),
+)
+INPUT_DEFAULTS = (0.0, 0.0, 293.15)
+OUTPUTS = (
+    Record("load", "m/s", "velocity at force_source 'load'"),
+    Record("supply", "A", "current given by voltage_source 'supply'"),
+    Record("ambient", "K", "temperature of thermal_mass 'body'"),
+)
+PROCESSES = (
+    Record("damper", "W/K", "damper 'damper'"),
+    Record("hysteresis", "W/K", "capacitor 'hysteresis'"),
+    Record("leads", "W/K", "resistor 'leads'"),
+)
+BODIES = (
+    Record("body", "K", "temperature of thermal_mass 'body'"),
+)
+PARAMETERS = (
+    Record("m", "kg", "moving mass, 4/pi^2 of the stack's"),
+    Record("k", "N/m", "stiffness"),
+    Record("d", "N*s/m", "damping, a quality of about 30"),
+    Record("a", "C/m", "transducer ratio, 28 N/um times 56 um over 180 V"),
+    Record("C", "F", "capacitance of the clamped ceramic: 8 uF in large signals, less a^2/k"),
+    Record("C_h", "F", "capacitance of what slips: in series with 8 uF, 4.3 uF in small signals"),
+    Record("V_h", "V", "voltage at which it slips as fast as charge comes"),
+    Record("beta", "1", "share of the slip that opposes its voltage"),
+    Record("gam", "1", "share of the slip that goes with the current"),
+    Record("R", "ohm", "resistance of leads and electrodes"),
+    Record("c_0", "J/K", "heat capacity, 7.1 g of 370 J/(kg K)"),
+    Record("lam", "W/K", "heat conductance to the air"),
+    Record("T_0", "K", "temperature at the start"),
+)
+BANKS = ()
+DOMAIN = (
+    Condition("beta >= abs(gam)", False),
+    Condition("V_h > 0", True),
+    Condition("d >= 0", False),
+    Condition("R > 0", True),
+    Condition("lam >= 0", False),
+    Condition("T_e > 0", True),
+    Condition("k > 0", True),
+    Condition("m > 0", True),
+    Condition("C > 0", True),
+    Condition("C_h > 0", True),
+    Condition("T_0 > 0", True),
+    Condition("c_0 > 0", True),
+)
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """Parameters of stack_bouc_wen in SI units; defaults are the values of the spec."""
+
+    m: float = 0.0029
+    k: float = 28000000.0
+    d: float = 10.0
+    a: float = 8.7
+    C: float = 5.3e-06
+    C_h: float = 9.3e-06
+    V_h: float = 10.0
+    beta: float = 0.6
+    gam: float = 0.4
+    R: float = 2.0
+    c_0: float = 2.6
+    lam: float = 0.02
+    T_0: float = 293.15
+
+
+def _states(x, p):
+    """Return states x, shape (n, *batch), as floats."""
+    x = np.asarray(x, dtype=float)
+    n = 5
+    if x.shape[:1] != (n,):
+        raise ValueError(f"x has shape {x.shape}, but there are {n} states")
+    return x
+
+
+def _inputs(u):
+    """Return inputs u, shape (3, *batch), as floats."""
+    u = np.asarray(u, dtype=float)
+    if u.shape[:1] != (3,):
+        raise ValueError(f"u has shape {u.shape}, but there are 3 inputs")
+    return u
+
+
+def initial_state(u, p_, /):
+    """State at t = 0 [SI], for the inputs u at t = 0; shape (n,)."""
+    out = np.zeros(5)
+    return out
+
+
+_BLOCK = 150_000  # numbers in one part of a large batch: they fit in the cache
+
+
+def rhs(x, u, p, /):
+    """Rates dx/dt = J_ir dU/dx + g u; shape (n, *batch)."""
+    x, u = _states(x, p), _inputs(u)
+    out = np.empty(x.shape)
+    if x.ndim != 2 or x.size <= _BLOCK:
+        _rates(x, u, p, out)
+        return out
+    step = max(1, _BLOCK // len(x))
+    for first in range(0, x.shape[1], step):
+        part = slice(first, first + step)
+        _rates(x[:, part], u[:, part] if u.ndim == 2 else u, p, out[:, part])
+    return out
+
+
+def _rates(x, u, p_, out, /):
+    """Write the rates dx/dt into `out`."""
+    m = p_.m
+    k = p_.k
+    d = p_.d
+    a = p_.a
+    C = p_.C
+    C_h = p_.C_h
+    V_h = p_.V_h
+    beta = p_.beta
+    gam = p_.gam
+    R = p_.R
+    c_0 = p_.c_0
+    lam = p_.lam
+    T_0 = p_.T_0
+    q = x[0]
+    p = x[1]
+    Q = x[2]
+    Q_h = x[3]
+    S = x[4]
+    F_ext = u[0]
+    V_in = u[1]
+    T_e = u[2]
+    # co-states dU/dx
+    F_spring = k*q
+    v_mass = p/m
+    V_ceramic = Q/C
+    V_hysteresis = Q_h/C_h
+    T = T_0*np.exp(S/c_0)
+    # transducer ratios
+    alpha_transducer = a
+    # dissipative laws
+    F_damper = d*v_mass
+    # driving forces
+    V_leads = -V_ceramic - V_hysteresis + V_in
+    # dissipative laws
+    i_leads = V_leads/R
+    slip_hysteresis = (beta*np.abs(i_leads)*V_hysteresis + gam*i_leads*np.abs(V_hysteresis))/V_h
+    # heats
+    heat_damper = F_damper*v_mass
+    heat_hysteresis = slip_hysteresis*V_hysteresis
+    heat_leads = i_leads*V_leads
+    # result
+    out[0] = v_mass
+    out[1] = alpha_transducer*V_ceramic - F_spring - F_damper + F_ext
+    out[2] = i_leads - alpha_transducer*v_mass
+    out[3] = i_leads - slip_hysteresis
+    out[4] = (heat_damper + heat_hysteresis + heat_leads)/T + lam*(T_e/T - 1)
+
+
+def outputs(x, u, p_, /):
+    """Outputs y, one per port, conjugate to its input; shape (3, *batch)."""
+    x = _states(x, p_)
+    u = _inputs(u)
+    m = p_.m
+    C = p_.C
+    C_h = p_.C_h
+    R = p_.R
+    c_0 = p_.c_0
+    T_0 = p_.T_0
+    p = x[1]
+    Q = x[2]
+    Q_h = x[3]
+    S = x[4]
+    V_in = u[1]
+    # co-states dU/dx
+    v_mass = p/m
+    V_ceramic = Q/C
+    V_hysteresis = Q_h/C_h
+    T = T_0*np.exp(S/c_0)
+    # driving forces
+    V_leads = -V_ceramic - V_hysteresis + V_in
+    # dissipative laws
+    i_leads = V_leads/R
+    # result
+    out = np.empty((3, *x.shape[1:]))
+    out[0] = v_mass
+    out[1] = i_leads
+    out[2] = T
+    return out
+
+
+def supply(x, u, p_, /):
+    """Power supplied through each port [W]; the sum is dU/dt; shape (3, *batch)."""
+    x = _states(x, p_)
+    u = _inputs(u)
+    m = p_.m
+    C = p_.C
+    C_h = p_.C_h
+    R = p_.R
+    c_0 = p_.c_0
+    lam = p_.lam
+    T_0 = p_.T_0
+    p = x[1]
+    Q = x[2]
+    Q_h = x[3]
+    S = x[4]
+    F_ext = u[0]
+    V_in = u[1]
+    T_e = u[2]
+    # co-states dU/dx
+    v_mass = p/m
+    V_ceramic = Q/C
+    V_hysteresis = Q_h/C_h
+    T = T_0*np.exp(S/c_0)
+    # driving forces
+    V_leads = -V_ceramic - V_hysteresis + V_in
+    # dissipative laws
+    i_leads = V_leads/R
+    # result
+    out = np.empty((3, *x.shape[1:]))
+    out[0] = v_mass*F_ext
+    out[1] = i_leads*V_in
+    out[2] = lam*(T_e - T)
+    return out
+
+
+def energy(x, p_, /):
+    """Hamiltonian U [J]; shape (*batch)."""
+    x = _states(x, p_)
+    m = p_.m
+    k = p_.k
+    C = p_.C
+    C_h = p_.C_h
+    c_0 = p_.c_0
+    T_0 = p_.T_0
+    q = x[0]
+    p = x[1]
+    Q = x[2]
+    Q_h = x[3]
+    S = x[4]
+    return k*q**2/2 + p**2/(2*m) + Q**2/(2*C) + Q_h**2/(2*C_h) + T_0*c_0*np.exp(S/c_0)
+
+
+def entropy(x, p_, /):
+    """Total entropy S [J/K]; shape (*batch)."""
+    x = _states(x, p_)
+    S = x[4]
+    return S.copy()
+
+
+def temperatures(x, p_, /):
+    """Temperature of each body [K]; shape (1, *batch)."""
+    x = _states(x, p_)
+    c_0 = p_.c_0
+    T_0 = p_.T_0
+    S = x[4]
+    # co-states dU/dx
+    T = T_0*np.exp(S/c_0)
+    # result
+    out = np.empty((1, *x.shape[1:]))
+    out[0] = T
+    return out
+
+
+def heat(x, u, p_, /):
+    """Power that each process turns into heat [W]; of a bank, one row per lane; shape (3, *batch)."""
+    x = _states(x, p_)
+    u = _inputs(u)
+    m = p_.m
+    d = p_.d
+    C = p_.C
+    C_h = p_.C_h
+    V_h = p_.V_h
+    beta = p_.beta
+    gam = p_.gam
+    R = p_.R
+    p = x[1]
+    Q = x[2]
+    Q_h = x[3]
+    V_in = u[1]
+    # co-states dU/dx
+    v_mass = p/m
+    V_ceramic = Q/C
+    V_hysteresis = Q_h/C_h
+    # dissipative laws
+    F_damper = d*v_mass
+    # driving forces
+    V_leads = -V_ceramic - V_hysteresis + V_in
+    # dissipative laws
+    i_leads = V_leads/R
+    slip_hysteresis = (beta*np.abs(i_leads)*V_hysteresis + gam*i_leads*np.abs(V_hysteresis))/V_h
+    # result
+    out = np.empty((3, *x.shape[1:]))
+    out[0] = F_damper*v_mass
+    out[1] = slip_hysteresis*V_hysteresis
+    out[2] = i_leads*V_leads
+    return out
+
+
+def entropy_production(x, u, p_, /):
+    """Entropy that each process produces [W/K]; of a bank, one row per lane; shape (3, *batch)."""
+    x = _states(x, p_)
+    u = _inputs(u)
+    m = p_.m
+    d = p_.d
+    C = p_.C
+    C_h = p_.C_h
+    V_h = p_.V_h
+    beta = p_.beta
+    gam = p_.gam
+    R = p_.R
+    c_0 = p_.c_0
+    T_0 = p_.T_0
+    p = x[1]
+    Q = x[2]
+    Q_h = x[3]
+    S = x[4]
+    V_in = u[1]
+    # co-states dU/dx
+    v_mass = p/m
+    V_ceramic = Q/C
+    V_hysteresis = Q_h/C_h
+    T = T_0*np.exp(S/c_0)
+    # dissipative laws
+    F_damper = d*v_mass
+    # driving forces
+    V_leads = -V_ceramic - V_hysteresis + V_in
+    # dissipative laws
+    i_leads = V_leads/R
+    slip_hysteresis = (beta*np.abs(i_leads)*V_hysteresis + gam*i_leads*np.abs(V_hysteresis))/V_h
+    # result
+    out = np.empty((3, *x.shape[1:]))
+    out[0] = F_damper*v_mass/T
+    out[1] = slip_hysteresis*V_hysteresis/T
+    out[2] = i_leads*V_leads/T
+    return out
+
+
+def jacobian(x, u, p_, /):
+    """Derivative of rhs by the state; shape (n, n, *batch)."""
+    x = _states(x, p_)
+    u = _inputs(u)
+    m = p_.m
+    k = p_.k
+    d = p_.d
+    a = p_.a
+    C = p_.C
+    C_h = p_.C_h
+    V_h = p_.V_h
+    beta = p_.beta
+    gam = p_.gam
+    R = p_.R
+    c_0 = p_.c_0
+    lam = p_.lam
+    T_0 = p_.T_0
+    p = x[1]
+    Q = x[2]
+    Q_h = x[3]
+    S = x[4]
+    V_in = u[1]
+    T_e = u[2]
+    # co-states dU/dx
+    v_mass = p/m
+    V_ceramic = Q/C
+    V_hysteresis = Q_h/C_h
+    T = T_0*np.exp(S/c_0)
+    # transducer ratios
+    alpha_transducer = a
+    # dissipative laws
+    F_damper = d*v_mass
+    # driving forces
+    V_leads = -V_ceramic - V_hysteresis + V_in
+    # dissipative laws
+    i_leads = V_leads/R
+    slip_hysteresis = (beta*np.abs(i_leads)*V_hysteresis + gam*i_leads*np.abs(V_hysteresis))/V_h
+    # heats
+    heat_damper = F_damper*v_mass
+    heat_hysteresis = slip_hysteresis*V_hysteresis
+    heat_leads = i_leads*V_leads
+    # derivatives
+    dF_damper_dp = d/m
+    dheat_damper_dp = v_mass*dF_damper_dp + F_damper/m
+    di_leads_dQ = -1/R/C
+    dslip_hysteresis_dQ = (beta*np.sign(i_leads)*V_hysteresis + gam*np.abs(V_hysteresis))/V_h*di_leads_dQ
+    dheat_hysteresis_dQ = V_hysteresis*dslip_hysteresis_dQ
+    dheat_leads_dQ = V_leads*di_leads_dQ - i_leads/C
+    di_leads_dQ_h = -1/R/C_h
+    dslip_hysteresis_dQ_h = (
+        (beta*np.sign(i_leads)*V_hysteresis + gam*np.abs(V_hysteresis))/V_h*di_leads_dQ_h
+        + (beta*np.abs(i_leads) + gam*i_leads*np.sign(V_hysteresis))/V_h/C_h
+    )
+    dheat_hysteresis_dQ_h = V_hysteresis*dslip_hysteresis_dQ_h + slip_hysteresis/C_h
+    dheat_leads_dQ_h = V_leads*di_leads_dQ_h - i_leads/C_h
+    dT_dS = T/c_0
+    # result
+    out = np.zeros((x.shape[0], *x.shape))
+    out[0, 1] = 1/m
+    out[1, 0] = -k
+    out[1, 1] = -dF_damper_dp
+    out[1, 2] = alpha_transducer/C
+    out[2, 1] = -alpha_transducer/m
+    out[2, 2] = di_leads_dQ
+    out[2, 3] = di_leads_dQ_h
+    out[3, 2] = di_leads_dQ - dslip_hysteresis_dQ
+    out[3, 3] = di_leads_dQ_h - dslip_hysteresis_dQ_h
+    out[4, 1] = dheat_damper_dp/T
+    out[4, 2] = dheat_hysteresis_dQ/T + dheat_leads_dQ/T
+    out[4, 3] = dheat_hysteresis_dQ_h/T + dheat_leads_dQ_h/T
+    out[4, 4] = (-(heat_damper + heat_hysteresis + heat_leads)/T**2 - lam*T_e/T**2)*dT_dS
+    return out
+
+
+def margins(x, u, p_, /):
+    """Margin of each condition of DOMAIN; of a bank, the least over its lanes; shape (len(DOMAIN), *batch)."""
+    x = _states(x, p_)
+    u = _inputs(u)
+    m = p_.m
+    k = p_.k
+    d = p_.d
+    C = p_.C
+    C_h = p_.C_h
+    V_h = p_.V_h
+    beta = p_.beta
+    gam = p_.gam
+    R = p_.R
+    c_0 = p_.c_0
+    lam = p_.lam
+    T_0 = p_.T_0
+    T_e = u[2]
+    out = np.empty((12, *x.shape[1:]))
+    out[0] = beta - np.abs(gam)
+    out[1] = V_h
+    out[2] = d
+    out[3] = R
+    out[4] = lam
+    out[5] = T_e
+    out[6] = k
+    out[7] = m
+    out[8] = C
+    out[9] = C_h
+    out[10] = T_0
+    out[11] = c_0
+    return out
