@@ -3,10 +3,11 @@
 Input: nothing; this is data.  A row of `_TABLE` has the form (a hysteron is a store and a law in
 series), the domain of each field that names nodes, these fields, + if what it imposes (co-state,
 input) is an across variable (a coupling gyrates if not), law fields with unit and letters, a state
-first, other fields, and the co-state of a store as a law of its state x.  ``?`` marks what may be
-left out; of the second pairs of a coupling one is given, its ratio has the unit of its domains.  A
-row of `_DOMAINS` has its reference, where its inertia and sources stand, its across and through
-variables with letter and unit, and what else `_WITHIN` says of the kinds that each domain has.
+first, other fields, and the co-state of a store as a law of its state x.  A state of a `storage` is
+a store by the ``=`` of its rate.  ``?`` marks what may be left out; of the second pairs of a
+coupling one is given, its ratio has the unit of its domains.  A row of `_DOMAINS` has its
+reference, where its inertia and sources stand, its across and through variables with letter and
+unit, and what else `_WITHIN` says of the kinds that each domain has.
 """
 
 from typing import NamedTuple
@@ -23,6 +24,8 @@ _WITHIN = """
 {15}       | law    | {0} | between | + | {3}? {5} {7}:{8} T:K; {6}? {8} {4}:{5} T:K | heats discontinuous? |
 {3}_source | source | {0} | {2}     | + | | input |
 {6}_source | source | {0} | {2}     | - | | input |
+={3}       | store  | {0} | between | - | energy J @:{5}*s | state | energy
+={6}       | store  | {0} | between | + | energy J @:{8}*s | state | energy
 """  # noqa: E501
 _TABLE = """
 hysteron       | hysteron | E   | between             | - | inductance H phi:Wb; voltage V i:A T:K | state? count? heats discontinuous? | x/inductance
@@ -35,6 +38,7 @@ rack           | coupling | MR  | translation rotation                | + | radi
 cylinder       | coupling | HM  | hydraulic translation               | - | area 1                 | |
 pump           | coupling | RH  | rotation hydraulic                  | - | displacement 1         | |
 thermal_mass   | body       | | | + | temperature K S:J/K | state? | temperature
+=entropy       | body       | | | + | energy J @:J/K      | state  | energy
 conduction     | conduction | | | + | conductance W/K T_1:K T_2:K | between |
 ambient        | ambient    | | | + | conductance W/K T:K T_e:K   | body input |
 thermoelectric | coupling   | E | between | + | seebeck V/K T_1:K T_2:K | bodies |
@@ -63,6 +67,11 @@ def _kind(row: str) -> tuple[str, Kind]:
     ends = [*zip(nodes.replace("?", "").split(), domains, strict=True)]
     units = {f.rstrip("?"): (u, dict(x.split(":") for x in own)) for f, u, *own in table}
     fields = {word.rstrip("?"): word[-1] != "?" for word in words}
+    if form == "store" and name[0] != "=":  # or its co-state, or the energy, as a law of its state
+        first, (_, own) = next(iter(units.items()))
+        also = {_COSTATES[domains + across]: own, ("energy", "J"): own}
+        units = {first: units[first]} | {f: (u, x) for (f, u), x in also.items()} | units
+        fields |= dict.fromkeys((first, *(f for f, _ in also)), False)
     return name, Kind(form, ends, across == "+", units, fields, costate)
 
 
@@ -73,6 +82,7 @@ _ROWS = [row.split(", ") for row in _DOMAINS.strip().splitlines()]
 for _row in _ROWS:
     for _text in _SLIPS.get(_row[0], ("", "")):
         _row += [_text, _MORE[_text]]
+_COSTATES = {r[0] + "+": (r[3], r[5]) for r in _ROWS} | {r[0] + "-": (r[6], r[8]) for r in _ROWS}
 #: By domain its reference, and the units of its through and across variable.
 REFERENCES, UNITS = {r[0]: r[1] for r in _ROWS}, {r[0]: (r[8], r[5]) for r in _ROWS}
 _TEXT = "".join(_WITHIN.format(*row) for row in _ROWS) + _TABLE

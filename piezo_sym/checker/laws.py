@@ -210,7 +210,10 @@ def _tree(node: ast.AST, text: str) -> Node:
         case ast.Name(name):
             return sym(name)
         case ast.BinOp(base, ast.Pow(), exponent):
-            power = _value(*of(exponent))
+            (given,) = of(exponent)
+            if symbols(given):
+                return Node("exp", (Node("*", (given, Node("log", of(base)))),))
+            power = _value(given)
             need(max(abs(power.numerator), power.denominator) <= MAX_POWER, "a power is too large")
             return Node("**", of(base), power)
         case ast.BinOp(_, ast.Add() | ast.Sub()):

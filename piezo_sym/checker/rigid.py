@@ -109,7 +109,9 @@ def _compliance(store: Element, field: Field) -> tuple[Ratio, Ratio]:
     plain = all(n.op in AFFINE for n in walk(law) if x in symbols(n))
     slope = field.of(derivative(law, x))
     quadratic = plain and x not in symbols(field.tree(slope))
-    need(quadratic, f"the energy of {store.name} is not quadratic")
+    need(
+        quadratic and store.kind.costate != "energy", f"the energy of {store.name} is not quadratic"
+    )
     return ONE / slope, field.of(put(law, {x: num(0)}))
 
 

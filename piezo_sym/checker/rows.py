@@ -15,7 +15,7 @@ from .field import ZERO, Field
 from .functions import KINKS
 from .laws import InputError, Node, compare, made, need, negated, num, put, sym, symbols
 from .prover import Claim, Prover, needed, partial, taken, true
-from .spec import Element, Spec
+from .spec import Element, Spec, whole
 from .system import Finding
 
 #: The row that has to be stated, and is not looked at; last, rows that are not stated.
@@ -60,13 +60,14 @@ class _Audit:
             self.prover = Prover((*spec.conditions, *warm), self.ties)
         for name in ("skew", "casimir", "energy", "entropy"):
             why = reasons.get("energy", "") if name in ("skew", "energy") else ""
-            claims = self.found.values if name in ("skew", "energy") else []
+            claims = [*self.found.values] if name in ("skew", "energy") else []
+            claims += _continuous(self._bent(self.found.terms)) if name == "energy" else []
             self._row(name, "", claims, system, why)
         domain = [claim for tree in spec.conditions for claim in partial(tree)]
         if domain or ("welldef", "") in self.stated:
             self._row("welldef", "", domain, system)
-        for element in spec.elements.values():
-            self._element(element)
+        for name in dict.fromkeys(map(whole, spec.elements)):
+            self._element(*(e for e in spec.elements.values() if whole(e.name) == name))
         heat = [key for key in self.done if key[0] in ("domain", "temperature", "passive")]
         self._row("sigma", "", (), heat)
         cooled = list[Claim]()
@@ -115,16 +116,23 @@ class _Audit:
             here = [compare(sym(n), "=", found[lane % len(found)]) for n, found in own.items()]
             yield from (Claim(tree, tuple(here)) for tree in spec.conditions)
 
-    def _element(self, element: Element) -> None:
-        own, name = [tree for tree in (element.costate, element.law) if tree], element.name
+    @staticmethod
+    def _bent(trees: list[Node]) -> list[Node]:
+        """Return the trees that choose branches by what moves."""
+        kinks = [(t, n) for t in trees for n in laws.walk(t) if n.op in ("if", *KINKS)]
+        # 5: of two knots, a line
+        kinks = [(t, n) for t, n in kinks if n.op != "table" or len(n.args) > 5]
+        choosers = [(t, n.args[0] if n.op in ("if", "table") else n) for t, n in kinks]
+        return [t for t, n in choosers if any(s[0] in MOVING for s in symbols(n))]
+
+    def _element(self, *parts: Element) -> None:
+        element, name = parts[0], whole(parts[0].name)
+        own = [tree for e in parts for tree in (e.costate, e.law, e.laws.get("energy")) if tree]
         trees, z = own or list(element.laws.values()), ("z", name)
         claims = [claim for tree in trees for claim in partial(tree)]
         if claims or element.law:
             self._row("welldef", name, claims)
-        kinks = [n for tree in trees for n in laws.walk(tree) if n.op in ("if", *KINKS)]
-        kinks = [n for n in kinks if n.op != "table" or len(n.args) > 5]  # 5: of two knots, a line
-        choosers = (n.args[0] if n.op in ("if", "table") else n for n in kinks)
-        if any(s[0] in MOVING for n in choosers for s in symbols(n)) and not element.jumps:
+        if self._bent(trees) and not element.jumps:
             self._row("continuous", name, _continuous(trees))
         if element.law:
             self._row("passive", name, self._passive(element, z), [("welldef", name)])

@@ -15,7 +15,20 @@ from typing import Any, NamedTuple
 from . import laws
 from .field import Field
 from .kinds import KINDS, REFERENCES, UNITS, Kind
-from .laws import InputError, Node, compare, made, need, num, parse, put, sym, symbols, walk
+from .laws import (
+    InputError,
+    Node,
+    compare,
+    derivative,
+    made,
+    need,
+    num,
+    parse,
+    put,
+    sym,
+    symbols,
+    walk,
+)
 from .units import Dimension, faults, unit
 
 DOTTED, MAX_BYTES = re.compile(r"(\s*\.\s*[\w\"'-]+){9}"), 500_000
@@ -79,11 +92,34 @@ def read_spec(text: str) -> Spec:
         raise InputError(f"the spec cannot be read: {str(error)[:100]}") from None
 
 
+def whole(name: str) -> str:
+    """Return the element of the spec that an element, perhaps a state of a storage, is of."""
+    return name.partition(".")[0]
+
+
+def _parts(elements: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield the elements, and for a storage a store of each of its states, or a body."""
+    for name, entry in elements.items():
+        named = name.isidentifier() and not entry["kind"].startswith("=")
+        need(named, f"elements.{name[:60]} has a wrong key, or no name")
+        if entry["kind"] != "storage":
+            yield name, entry
+            continue
+        rates = [own["rate"] for own in entry["states"].values()]
+        good = set(entry) == {"kind", "energy", "states"} and rates.count("entropy") < 2 and rates
+        need(good, f"elements.{name} has a wrong key, or two entropies")
+        for state, own in entry["states"].items():
+            part = {**own, "kind": f"={own['rate']}", "energy": entry["energy"], "state": state}
+            del part["rate"]
+            yield name if own["rate"] == "entropy" else f"{name}.{state}", part
+
+
 class _Reader:
     def __init__(self, tables: dict[str, dict[str, Any]]) -> None:
         self.tables, self.faults, self.units = tables, list[str](), dict[Symbol, Dimension]()
         self.parameters = self._values("parameters", "value", "p")
         self.inputs = self._values("inputs", "default", "u")
+        tables["elements"] = dict(_parts(tables["elements"]))
         for name, entry in tables["elements"].items():
             need(entry["kind"] in KINDS, f"{entry['kind']!r} of {name} is a kind it does not know")
         self.kinds = {name: KINDS[entry["kind"]] for name, entry in tables["elements"].items()}
@@ -135,7 +171,7 @@ class _Reader:
     def _element(self, name: str) -> Element:
         entry, kind = self.tables["elements"][name], self.kinds[name]
         needed = {field for field, must in kind.fields.items() if must}
-        known = needed <= entry.keys() <= kind.fields.keys() and name.isidentifier()
+        known = needed <= entry.keys() <= kind.fields.keys()
         need(known, f"elements.{name[:60]} has a wrong key, or no name")
         heats = [entry[f] for f in ("heats", "body", "into", "temperature") if f in entry]
         heats = entry["between"] if kind.form == "conduction" else entry.get("bodies", heats)
@@ -147,11 +183,18 @@ class _Reader:
         need(len(ends) == 2 or not coupled, f"elements.{name} needs two pairs of nodes")
         ratio = f"{UNITS[ends[0][1]][kind.across]}/({UNITS[ends[1][1]][1]})" if coupled else ""
         own = {f: self._law(name, f, bodies, ratio) for f in kind.laws if f in entry}
-        need(kind.form != "law" or len(own) == 1, f"elements.{name} needs exactly one law")
+        given = [f for f in own if f not in ("rest", "slip")]
+        single = len(given) == 1 and ("rest" not in own or given[0] == next(iter(kind.laws)))
+        need(kind.form not in ("law", "store") or single, f"elements.{name} needs exactly one law")
         field = next(reversed(own), "")
         dissipates = kind.form in ("law", "hysteron") or field == "slip"
         parts = {"rest": num(0), **own, "x": sym(("x", name))}
         costate = made(kind.costate, **parts) if kind.costate else None
+        if kind.form in ("store", "body") and given[0] != next(iter(kind.laws)):
+            costate = own[given[0]]
+        if "energy" in own:
+            costate = derivative(own["energy"], ("x", name))
+            own |= {"temperature": costate} if kind.form == "body" else {}
         law, letter = (own[field], next(iter(kind.laws[field][1]))) if dissipates else (None, "")
         across = kind.across and (kind.form != "law" or field == next(iter(kind.laws)))
         source, count = entry.get("input", ""), entry.get("count")
@@ -159,8 +202,8 @@ class _Reader:
         row = UNITS[ends[0][1]][kind.across] if kind.form == "source" else "KW"[kind.form == "heat"]
         if "input" in kind.fields and self.units["u", source] != unit(row)[1]:
             self.faults.append(f"elements.{name}.input is not in {row}")
-        given = ((entry[key], REFERENCES[d]) if key == "at" else entry[key] for key, d in ends)
-        pairs = tuple((a, b) for a, b in given)
+        nodes = ((entry[key], REFERENCES[d]) if key == "at" else entry[key] for key, d in ends)
+        pairs = tuple((a, b) for a, b in nodes)
         need(all(a != b and isinstance(a + b, str) for a, b in pairs), "no pair of nodes")
         for (_, d), (a, b) in zip(ends, pairs, strict=True):
             same = self.domains.setdefault(a, d) == d == self.domains.setdefault(b, d)
@@ -175,11 +218,16 @@ class _Reader:
         entry, (needed, letters) = self.tables["elements"][name], self.kinds[name].laws[field]
         lanes, kind = self.lanes - {("x", name)}, self.kinds[name]
         need(field != "slip" or bool(bodies), f"elements.{name} slips, and heats nothing")
-        stored = field == "rest" or bool(kind.costate and field == next(iter(kind.laws)))
+        stored = bool(kind.costate) and (kind.form, field) != ("hysteron", "voltage")
+        stored = stored and field != "slip"
         roles = "p" if stored else "pxT"
         words = {w: s for w, s in self.words.items() if s[0] in roles and s not in lanes}
         warm = zip(bodies or self.bodies[: len(self.bodies) == 1], ("T T_1", "T_2"), strict=False)
         words |= {w: ("T", body) for body, own in warm for w in own.split() if w in letters}
+        if field == "energy":
+            words |= {
+                w: s for w, s in self.words.items() if s[0] == "x" and whole(s[1]) == whole(name)
+            }
         words |= {"T_e": ("u", entry["input"])} if "T_e" in letters else {}
         for role, letter in zip("zr", (x for x in letters if x[0] != "T"), strict=False):
             words[letter] = ("x" if stored else role, name)
@@ -198,10 +246,11 @@ class _Reader:
             yield trees[-1]
         for element in self.elements.values():
             trees += element.laws.values()
-            first = next(iter(element.laws.values()), num(1))
-            own = [sym(symbol) for symbol in symbols(first) if symbol[0] == "p"]
-            for tree in own if element.kind.form == "body" else [first] * bool(element.costate):
-                yield compare(tree, ">")
+            first = element.laws.get(next(iter(element.kind.laws), ""))
+            if first and element.costate and "energy" not in element.laws:
+                own = [sym(symbol) for symbol in symbols(first) if symbol[0] == "p"]
+                for tree in own if element.kind.form == "body" else [first]:
+                    yield compare(tree, ">")
         for part in (part for tree in trees for part in walk(tree)):
             if part.op in ("deadzone", "saturate"):
                 given = any(role in "zr" for role, _ in symbols(part.args[1]))

@@ -18,7 +18,7 @@ from .functions import KINKS
 from .laws import InputError, Node, need, num, parse, put, sym, symbols, walk
 from .network import Flows, SingularError, Slot, flows
 from .prover import Claim, partial
-from .spec import Element, Spec
+from .spec import Element, Spec, whole
 
 MAX_TEXT, MOST_SUMS, LANES, MAX_NAMES, MAX_CHAIN = 100_000, 2, 3, 1000, 50
 
@@ -41,7 +41,8 @@ class _Published:
             for tree in table.values():
                 self.sums(tree, 0)
         banks = {e.name for e in spec.elements.values() if e.lanes}
-        expected = [(s, name, name if name in banks else None) for s, name in spec.states.items()]
+        owners = [(s, name, name in banks) for s, name in spec.states.items()]
+        expected = [(s, whole(name), name if banked else None) for s, name, banked in owners]
         ports = {e.name for e in spec.of("source", "ambient", "heat")}
         tables = set(self.rates) == set(spec.states) and set(self.outputs) == ports
         need(self.states == expected and tables, "states or ports are not those of the spec")
@@ -71,7 +72,7 @@ class Finding:
     """What is found of a published system, and the laws and symbols of its network.
 
     `reasons` by subject ("system", "energy"); `divisors` must not be zero, `values` must hold for
-    the energy to have a value; `letters` are those that are functions of states.
+    the energy, the sum of `terms`, to have a value; `letters` are functions of states.
     """
 
     def __init__(self, spec: Spec, system: Any) -> None:
@@ -79,6 +80,7 @@ class Finding:
         self.divisors, self.letters = dict[Node, None](), dict[str, Node]()
         self.counts = {e.name: LANES for e in spec.of("hysteron") if e.lanes is not None}
         self.field, self.known, self.values = Field(), dict[Any, Ratio](), list[Claim]()
+        self.terms = list[Node]()
         try:
             self.text = _Published(spec, system)
             self._check()
@@ -140,9 +142,11 @@ class Finding:
         """Return what a name is by its text; a co-state is itself, once it is compared."""
         owner, role, bank = self.text.names[name]
         found = self.published(self.text.laws[name], {bank: lane} if bank else {})
-        store = self.spec.elements.get(owner)
-        if role not in ("costate", "temperature") or store is None or not store.costate:
+        stores = [e for e in self.spec.elements.values() if whole(e.name) == owner and e.costate]
+        if role not in ("costate", "temperature") or not stores:
             return found
+        same = (e for e in stores if self.field.is_zero(found - self.law(e, "costate", lane)))
+        store = next(same, stores[0])
         self._equal("system", found, self.law(store, "costate", lane), name)
         return self._costate(store, lane)
 
@@ -190,12 +194,14 @@ class Finding:
         known = all(role in ("p", "x") for role, _ in words.values())
         need(known, "the energy has other names than states and parameters")
         for part in walk(energy):
-            names = symbols(part.args[0] if part.op == "if" else part)
-            owners = {states[name] for name in names if name in states}
-            single = owners <= {part.value} and sum(inner.op == "sum" for inner in walk(part)) == 1
-            need(part.op != "sum" or single, "a bank's energy has other states")
-            need(not owners or part.op not in ("if", *KINKS), "the energy has choices of states")
-        self.values.extend(partial(put(energy, {name: sym(words[name]) for name in words})))
+            owners = {states[name] for name in symbols(part) if name in states}
+            inside = [inner.op for inner in walk(part)]
+            single = owners <= {part.value} and inside.count("sum") == 1
+            single = single and not {"if", *KINKS} & {*inside}
+            need(part.op != "sum" or single, "a bank's energy has other states, or choices")
+        terms = energy.args if energy.op == "+" else (energy,)
+        self.terms = [put(term, {name: sym(words[name]) for name in words}) for term in terms]
+        self.values.extend(claim for term in self.terms for claim in partial(term))
         for state, name in states.items():
             lane = int(name in self.counts)
             given = self.published(laws.derivative(energy, state), {name: lane})
