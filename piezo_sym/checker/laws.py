@@ -210,12 +210,7 @@ def _tree(node: ast.AST, text: str) -> Node:
         case ast.Name(name):
             return sym(name)
         case ast.BinOp(base, ast.Pow(), exponent):
-            (given,) = of(exponent)
-            if symbols(given):
-                return Node("exp", (Node("*", (given, Node("log", of(base)))),))
-            power = _value(given)
-            need(max(abs(power.numerator), power.denominator) <= MAX_POWER, "a power is too large")
-            return Node("**", of(base), power)
+            return _power(*of(base, exponent))
         case ast.BinOp(_, ast.Add() | ast.Sub()):
             terms = list[Node]()
             while isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
@@ -239,6 +234,15 @@ def _tree(node: ast.AST, text: str) -> Node:
         case ast.Call(ast.Name(name), args, []) if ARGUMENTS.get(name) == len(args):
             return Node(name, of(*args))
     raise ValueError(node)
+
+
+def _power(base: Node, exponent: Node) -> Node:
+    """Return a power; with a parameter in its exponent it is exp and log."""
+    if symbols(exponent):
+        return Node("exp", (Node("*", (exponent, Node("log", (base,)))),))
+    power = _value(exponent)
+    need(max(abs(power.numerator), power.denominator) <= MAX_POWER, "a power is too large")
+    return Node("**", (base,), power)
 
 
 def _value(node: Node) -> Fraction:

@@ -183,18 +183,9 @@ class _Reader:
         need(len(ends) == 2 or not coupled, f"elements.{name} needs two pairs of nodes")
         ratio = f"{UNITS[ends[0][1]][kind.across]}/({UNITS[ends[1][1]][1]})" if coupled else ""
         own = {f: self._law(name, f, bodies, ratio) for f in kind.laws if f in entry}
-        given = [f for f in own if f not in ("rest", "slip")]
-        single = len(given) == 1 and ("rest" not in own or given[0] == next(iter(kind.laws)))
-        need(kind.form not in ("law", "store") or single, f"elements.{name} needs exactly one law")
         field = next(reversed(own), "")
         dissipates = kind.form in ("law", "hysteron") or field == "slip"
-        parts = {"rest": num(0), **own, "x": sym(("x", name))}
-        costate = made(kind.costate, **parts) if kind.costate else None
-        if kind.form in ("store", "body") and given[0] != next(iter(kind.laws)):
-            costate = own[given[0]]
-        if "energy" in own:
-            costate = derivative(own["energy"], ("x", name))
-            own |= {"temperature": costate} if kind.form == "body" else {}
+        costate = self._costate(name, own)
         law, letter = (own[field], next(iter(kind.laws[field][1]))) if dissipates else (None, "")
         across = kind.across and (kind.form != "law" or field == next(iter(kind.laws)))
         source, count = entry.get("input", ""), entry.get("count")
@@ -202,17 +193,38 @@ class _Reader:
         row = UNITS[ends[0][1]][kind.across] if kind.form == "source" else "KW"[kind.form == "heat"]
         if "input" in kind.fields and self.units["u", source] != unit(row)[1]:
             self.faults.append(f"elements.{name}.input is not in {row}")
-        nodes = ((entry[key], REFERENCES[d]) if key == "at" else entry[key] for key, d in ends)
-        pairs = tuple((a, b) for a, b in nodes)
-        need(all(a != b and isinstance(a + b, str) for a, b in pairs), "no pair of nodes")
-        for (_, d), (a, b) in zip(ends, pairs, strict=True):
-            same = self.domains.setdefault(a, d) == d == self.domains.setdefault(b, d)
-            need(same, f"a node of {name} is in two domains")
+        pairs = self._pairs(name, ends)
         hot: list[tuple[Any, Any]] = [(("T", name), REFERENCES["E"])] * (kind.form == "body")
         hot += [(("T", b), ("T", a)) for a, b in [bodies] * ("bodies" in kind.fields)]
         state = next((word for word, owner in self.states.items() if owner == name), "")
         others = ((*pairs, *hot), across, bodies, source, count, entry.get("discontinuous", False))
         return Element(name, kind, own, state, costate, law, letter, *others)
+
+    def _costate(self, name: str, own: dict[str, Node]) -> Node | None:
+        """Return dU/dx by the one law that a store has, or by its energy."""
+        kind, first = self.kinds[name], next(iter(self.kinds[name].laws), "")
+        given = [field for field in own if field not in ("rest", "slip")]
+        single = len(given) == 1 and ("rest" not in own or given[0] == first)
+        need(kind.form not in ("law", "store") or single, f"elements.{name} needs exactly one law")
+        if "energy" in own:
+            found = derivative(own["energy"], ("x", name))
+            own |= {"temperature": found} if kind.form == "body" else {}
+            return found
+        if kind.form == "store" and given[0] != first:
+            return own[given[0]]
+        parts = {"rest": num(0), **own, "x": sym(("x", name))}
+        return made(kind.costate, **parts) if kind.costate else None
+
+    def _pairs(self, name: str, ends: list[tuple[str, str]]) -> tuple[tuple[Any, Any], ...]:
+        """Return the nodes of an element, each of which is in one domain."""
+        entry = self.tables["elements"][name]
+        given = ((entry[key], REFERENCES[d]) if key == "at" else entry[key] for key, d in ends)
+        pairs = tuple((a, b) for a, b in given)
+        need(all(a != b and isinstance(a + b, str) for a, b in pairs), "no pair of nodes")
+        for (_, d), (a, b) in zip(ends, pairs, strict=True):
+            same = self.domains.setdefault(a, d) == d == self.domains.setdefault(b, d)
+            need(same, f"a node of {name} is in two domains")
+        return pairs
 
     def _law(self, name: str, field: str, bodies: tuple[str, ...], ratio: str) -> Node:
         entry, (needed, letters) = self.tables["elements"][name], self.kinds[name].laws[field]
