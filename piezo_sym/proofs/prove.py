@@ -16,12 +16,12 @@ import sympy as sp
 from piezo_sym.expressions.calculus import mul
 from piezo_sym.expressions.exact_eval import TooCloseError, all_hold, value_of
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import ZERO, Cmp, Expr, Sym, names
+from piezo_sym.expressions.tree import ZERO, Cmp, Expr, Sym
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.asked import Asked, tried
 from piezo_sym.proofs.continuity import jumps, needed
 from piezo_sym.proofs.laws import on_branches
-from piezo_sym.proofs.mending import mending
+from piezo_sym.proofs.mending import as_text, branchwise, mending
 from piezo_sym.proofs.obligations import Obligation, Question, Residual, SignOf
 from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.proofs.sigma_counterexample import negative_total
@@ -64,7 +64,7 @@ def prove(
         values = {(row.id, row.element) for row in known} & {("welldef", obligation.element)}
         verdict, witness, reason = _not_proved(values, known) or (verdict, witness, reason)
     if verdict is Verdict.REFUTED and obligation.sign:
-        reason += _mended(obligation.sign, obligation.questions[0], asked)
+        reason += _mended(obligation.sign, obligation.questions, iphs, asked)
     return Row(
         obligation.id,
         obligation.element,
@@ -238,17 +238,22 @@ def _broken(question: Question, values: Mapping[str, Fraction]) -> Found:
     return Verdict.REFUTED, {name: str(value) for name, value in values.items()}, reason
 
 
-def _mended(sign: SignOf, question: Question, solver: Asks) -> str:
+def _mended(sign: SignOf, questions: tuple[Question, ...], iphs: IPHS, solver: Asks) -> str:
     """Return the condition that mends a refuted law, as the end of a reason."""
 
-    def shown(law: Expr, letter: str) -> bool:
+    def shown(law: Expr, letter: str, *given: Cmp) -> bool:
         claim = Cmp(">=", mul(law, Sym(letter)) if letter else law, ZERO)
-        asked = Question("", question.order, sign.where, claim, claim)
+        asked = Question("", questions[0].order, (*sign.where, *given), claim, claim)
         return _asked(on_branches(law, asked, letter), solver) is None
 
-    condition = mending(sign.law, sign.letter, shown)
-    condition = condition if sign.rate not in names(sign.law) else ""
-    return f"; the condition '{condition}' in [domain] mends it" * bool(condition)
+    if not sign.rate:
+        condition = mending(sign.law, sign.letter, shown)
+        return f"; the condition '{condition}' in [domain] mends it" * bool(condition)
+    asked = (q for q in questions if q.original == questions[0].original)
+    found = branchwise(asked, iphs.model.parameters, lambda q: _asked((q,), solver) is None)
+    given = (Cmp(">=", law, ZERO) for law in found)
+    mends = found and shown(sign.law, sign.letter, *given)
+    return f"; '{as_text(found)}' in [domain] mends it" if mends else ""
 
 
 def _value(law: Expr, values: Mapping[str, Fraction]) -> str:

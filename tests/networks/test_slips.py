@@ -101,6 +101,7 @@ def test_bouc_wen_is_refuted_beyond_its_condition_with_numbers():
     assert row.verdict.value == "REFUTED"
     assert power < 0 <= beta < abs(gam)
     assert row.reason.split("= ")[1].split(";")[0] == str(power)
+    assert row.reason.endswith("; 'beta >= abs(gam)' in [domain] mends it")
     assert rows["rate-independent", "wen"].verdict.value == "PROVED"
     total = rows["sigma", ""]
     at = {name: Fraction(value) for name, value in total.witness.items()}

@@ -1,0 +1,39 @@
+"""The second program on slips: it confirms what is true of them, and nothing that is forged."""
+
+import pytest
+from stated import SPECS, forged, refused, stated
+
+(TEXT,) = (p.read_text(encoding="utf-8") for p in SPECS if p.stem == "slips")
+WEN = "(beta*abs(v)*sign(f) + gam*v)*abs(f/f_0)**2"
+
+
+def test_slips_are_confirmed():
+    assert refused(TEXT, stated(TEXT)) == {}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "row"),
+    [
+        ("beta >= abs(gam)", "beta >= gam", "passive"),
+        (WEN, "v*f/f_0", "passive"),
+        (WEN, "v*abs(v)*f/(f_0*V_0)", "rate-independent"),
+        (WEN, "f/m", "rate-independent"),
+    ],
+)
+def test_what_is_false_of_a_slip_is_not_confirmed(old, new, row):
+    text = TEXT.replace(old, new)
+    proofs = forged(text)
+    claimed = {"id": "rate-independent", "element": "wen", "verdict": "PROVED", "required": False}
+    proofs["obligations"].append(claimed)
+    found = refused(text, proofs)
+    assert "does not follow" in found[row, "wen"]
+
+
+@pytest.mark.parametrize(
+    ("name", "law"),
+    [("v_wen", "-v_mass"), ("i_stack", "-alpha_transducer*v_mass"), ("slip_dahl", "0")],
+)
+def test_a_published_system_with_another_slip_is_not_confirmed(name, law):
+    proofs = stated(TEXT)
+    proofs["system"]["names"][name]["law"] = law
+    assert "is not that of the network" in refused(TEXT, proofs)["system", ""]
