@@ -180,3 +180,46 @@ def test_a_run_begins_at_rest_where_all_kinks_meet_and_the_drive_is_no_more_than
     )
     assert float(run.q[-1]) > 0
     assert np.max(abs(run.energy_residual.values)) < 1e-12
+
+
+MORE = """s_1 = { value = 3.0, unit = "N*s/m" }
+v_s = { value = 0.1, unit = "m/s" }
+F_d = { value = 1.0, unit = "N" }
+[inputs]"""
+NAMED = {  # a law, and whether it goes with the rate alone
+    "Dahl": ("abs(v)*f/f_0", "PROVED"),
+    "Karnopp, smooth: it holds below f_0": ("max(v*f, 0)*deadzone(f, f_0)/f_0**2", "PROVED"),
+    "Dupont, elastic before it slips": ("max(v*f, 0)*f*abs(f)/f_0**3", "PROVED"),
+    "LuGre: bristles of Stribeck's curve": (
+        "abs(v)*f/(f_0 + F_d*exp(-(v/v_s)**2))",
+        "REFUTED",
+    ),
+}
+
+
+def with_more(text):
+    return text.replace("[inputs]", MORE).replace(
+        '"f_0 > 0"', '"f_0 > 0", "v_s > 0", "F_d >= 0", "s_1 >= 0"'
+    )
+
+
+@pytest.mark.parametrize("name", NAMED)
+def test_known_models_of_friction_are_passive(name):
+    law, by_rate = NAMED[name]
+    rows = rows_of(with_more(TEXT.replace(WEN, law)))
+    for row in ("welldef", "continuous", "passive"):
+        assert rows[row, "wen"].verdict.value == "PROVED"
+    assert rows["rate-independent", "wen"].verdict.value == by_rate
+    assert rows["sigma", ""].verdict.value == "PROVED"
+
+
+def test_damping_of_bristles_as_lugre_has_it_is_refuted_and_of_the_velocity_proved():
+    """With s_1*dz/dt as a force on v the product may be negative: the known fault of LuGre."""
+    bristle = "abs(v)*k*z/(f_0 + F_d*exp(-(v/v_s)**2))"
+    damper = '[elements.loss]\nkind = "damper"\nbetween = ["tip", "wall"]\nheats = "body"\n'
+    for force, verdict in ((f"s_1*(v - {bristle})", "REFUTED"), ("s_1*v", "PROVED")):
+        text = with_more(TEXT.replace(WEN, NAMED["LuGre: bristles of Stribeck's curve"][0]))
+        rows = rows_of(f'{text}\n{damper}force = "{force}"\n')
+        assert rows["passive", "loss"].verdict.value == verdict
+        assert rows["passive", "wen"].verdict.value == "PROVED"
+    assert rows["sigma", ""].verdict.value == "PROVED"
