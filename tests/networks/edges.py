@@ -82,4 +82,5 @@ def _size(term, values):
             for branch in branches
             for part in sp.Add.make_args(sp.expand(branch))
         )
-    return abs(measured(term.xreplace(names), {**values, **sizes})[0])
+    # branches in a divisor make a term less, not more
+    return max(abs(measured(t, {**values, **sizes})[0]) for t in (term, term.xreplace(names)))

@@ -24,6 +24,8 @@ from piezo_sym.spec.load import parse
 
 SPECS = sorted(Path(__file__).with_name("specs").glob("*.toml"))
 MODELS = [*(model.name for model in shipped_models()), *SPECS]
+#: So far inside their domain networks are tried.
+CLEAR = 1e-9
 SIZES = {"q": 1e-3, "p": 5e-3, "Q_C": 1e-4}
 
 
@@ -135,16 +137,25 @@ def test_where_laws_jump_and_bend(rubbing, p):
     assert found == pytest.approx(7.0 - friction - 0.5 * v * abs(v) - 0.5 * min(v, 1.0), rel=1e-15)
 
 
+def inside(both, seed):
+    """Return inputs, and states on edges that are inside the domain."""
+    _, u = both.base(seed)
+    u = np.where(u > 200, 4.0, u / 10)
+    x = np.random.default_rng(seed).uniform(0.2, 0.9, len(both.names))
+    margins, p = both.module.margins, both.module.Parameters()
+    # at S = 0 a body is at its T_0, where laws divide by T - T_0
+    found = on_edges(both.exact, both.fixed(u), x)
+    return u, [state for state in found if (margins(state, u, p) > CLEAR).all()]
+
+
 def check(spec, seed):
     """Check a network on the edges of its laws; return at how many states."""
     assume(not jumps(spec))
     iphs = derivable(spec)
     assume(edges(iphs.expand()))
     both = Compared(iphs.model)
-    _, u = both.base(seed)
-    u = np.where(u > 200, 4.0, u / 10)
-    x = np.random.default_rng(seed).uniform(0.2, 0.9, len(both.names))
-    states = list(on_edges(both.exact, both.fixed(u), x))
+    u, states = inside(both, seed)
+    assume(states)
     for state in states:
         both.check(state, u)
     return len(states)
@@ -152,6 +163,39 @@ def check(spec, seed):
 
 def test_edges_of_networks():
     assert sum(explore(3, check)) >= 9
+
+
+AT_ITS_REFERENCE = """
+[model]
+name = "network"
+[parameters]
+r   = { value = 2.0, unit = "ohm*K" }
+w   = { value = 0.3, unit = "A" }
+d   = { value = 1.0, unit = "N*s/m" }
+m   = { value = 1.0, unit = "kg" }
+L   = { value = 1.0, unit = "H" }
+T_0 = { value = 1.5, unit = "K" }
+c   = { value = 1.2, unit = "J/K" }
+[domain]
+assume = ["T > T_0", "r > 0", "w > 0", "d > 0"]
+[initial]
+S = 0.1
+[elements]
+body   = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }
+mass   = { kind = "mass", at = "a", mass = "m" }
+coil   = { kind = "inductor", between = ["b", "gnd"], inductance = "L" }
+losses = { kind = "resistor", between = ["b", "gnd"], voltage = "r/(T - T_0)*deadzone(i, w)", heats = "body" }
+damper = { kind = "damper", between = ["a", "wall"], force = "d*v*(1 if S > 0 else 2)", heats = "body" }
+"""  # noqa: E501
+
+
+def test_an_edge_at_a_reference_temperature_is_outside_of_the_domain():
+    both = Compared(parse(AT_ITS_REFERENCE))
+    u, states = inside(both, 5)
+    assert len(edges(both.exact)) == 3
+    assert len(states) == 6  # of the dead zone, not of S = 0
+    for state in states:
+        both.check(state, u)
 
 
 @pytest.mark.long
