@@ -39,16 +39,6 @@ class _Slope:
     outer: tuple[Outer, ...] = ()
 
 
-@final
-@dataclass(frozen=True)
-class Given:
-    """A name that stands for no expression, and its derivative by a state."""
-
-    name: str
-    state: str
-    slope: Expr
-
-
 def jacobian_of(
     rates: tuple[OutputRow, ...],
     states: tuple[Described, ...],
@@ -56,7 +46,6 @@ def jacobian_of(
     lanes: Mapping[str, str],
     new: Names,
     known: Mapping[Expr, Sym],
-    given: Iterable[Given] = (),
 ) -> tuple[tuple[Entry, ...], tuple[Quantity, ...]]:
     """Return the derivative of rates by states, and the named derivatives in it.
 
@@ -68,7 +57,6 @@ def jacobian_of(
     lanes : the bank of every name that has a value per lane.
     new : gives names to derivatives.
     known : expressions that have a name, and are written by it.
-    given : names that are no quantities, and depend on a state all the same.
     """
     before, _ = needed(quantities, (rate.value for rate in rates))
     users, rows = (_users(item.value for item in items) for items in (before, rates))
@@ -78,7 +66,6 @@ def jacobian_of(
     made, entries = _Named(dict(lanes), sums, known, new, []), list[Entry]()
     for col, state in enumerate(states):
         chain = _Chain(state, made)
-        chain.slopes |= {g.name: _Slope(g.slope) for g in given if g.state == state.name}
         waiting = sorted({n for name in chain.slopes for n in users.get(name, ())})
         while waiting:
             quantity = before[n := heappop(waiting)]

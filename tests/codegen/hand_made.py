@@ -15,7 +15,7 @@ from piezo_sym.codegen.collocation import Collocation, Slopes, Stage
 from piezo_sym.codegen.differences import sharp_program, sharp_quantity
 from piezo_sym.codegen.jacobian import jacobian_of
 from piezo_sym.codegen.paths import Path as Stop
-from piezo_sym.codegen.paths import in_motion, slopes_of
+from piezo_sym.codegen.paths import in_motion
 from piezo_sym.codegen.program import (
     Described,
     Limit,
@@ -26,9 +26,9 @@ from piezo_sym.codegen.program import (
     Quantity,
 )
 from piezo_sym.codegen.switches import switched
-from piezo_sym.expressions.calculus import add, compared, derivative, div, is_affine, mul, neg
+from piezo_sym.expressions.calculus import add, compared, derivative, div, is_affine, mul
 from piezo_sym.expressions.parse import parse_rule
-from piezo_sym.expressions.tree import ZERO, Call, Cmp, If, LaneSum, Num, Sym, rebuild
+from piezo_sym.expressions.tree import ZERO, Call, Cmp, If, LaneSum, Num, Sym, names, rebuild
 from piezo_sym.expressions.tree import replace as put
 from piezo_sym.modules import load_module
 from piezo_sym.run.engine.c_sources import standalone_step
@@ -52,8 +52,8 @@ class HandMade:
     heats : process -> (power turned into heat, the entropy that takes it).
     counts : bank -> lanes.
     limits : what must be positive, in states and laws.
-    paths : name -> (coordinate, inner state, stiffness, limit of the inner state), stops; what
-        one gives are `<name>_effort`, `_rate`, `_heat`.
+    paths : name -> (rate of the coordinate, inner state, stiffness, limit of the inner state),
+        stops; what one gives are `<name>_effort`, `_slip`, `_heat`.
     """
 
     name: str
@@ -156,16 +156,15 @@ class HandMade:
         free = {c.name for c in self.costates() if not self._affine(c)}
         rates = self._rows(self.rates, q)
         found = switched(q.defined, rates, q.lanes(), q.new, compared_names=free)
-        mean = in_motion(self._paths(), {row.slot.label: row.value for row in found.rows})
+        mean = in_motion(self._paths())
         rates = tuple(replace(row, value=put(row.value, mean)) for row in found.rows)
         defined = tuple(replace(d, value=put(d.value, mean)) for d in found.quantities)
-        given = [*slopes_of(self._paths())]
-        entries, derivatives = self._jacobian(rates, defined, found.lanes, q.new, given)
+        entries, derivatives = self._jacobian(rates, defined, found.lanes, q.new)
         quantities = tuple(map(sharp_quantity, (*defined, *derivatives)))
         return Slopes(quantities, entries, found.switches, frozenset(q.new.taken))
 
-    def _jacobian(self, rates, quantities, lanes, new, given=()):
-        return jacobian_of(rates, self.fields(), tuple(quantities), lanes, new, {}, given)
+    def _jacobian(self, rates, quantities, lanes, new):
+        return jacobian_of(rates, self.fields(), tuple(quantities), lanes, new, {})
 
     def costates(self):
         """Return the energy's derivatives, each one per lane if its state is."""
@@ -191,20 +190,23 @@ class HandMade:
 
     def _paths(self):
         found = []
-        for name, (coordinate, inner, stiffness, limit) in self.paths.items():
-            given = (f"{name}_{what}" for what in ("effort", "rate", "heat", "share"))
+        for name, (drive, inner, stiffness, limit) in self.paths.items():
+            drive, bank = read(drive), self.states[inner][1]
+            own = any(word in names(drive) for word, (_, b) in self._parameters() if b)
+            own |= any(f"E_{word}" in names(drive) for word, (_, b) in self.states.items() if b)
             taken = read(stiffness), compared(read(limit))
-            found.append(Stop(coordinate, inner, self.states[inner][1], *taken, *given))
+            given = (f"{name}_{what}" for what in ("effort", "slip", "heat", "share"))
+            found.append(Stop(inner, bank, drive, own, *taken, *given))
         return tuple(found)
 
     def _standing(self):
         """Yield what paths are at a point: a stop yields where it would leave its limit."""
         for path in self._paths():
-            rate, force = read(self.rates[path.coordinate]), mul(path.stiffness, Sym(path.inner))
-            inside = If(rate, Cmp("<", Call("abs", (Sym(path.inner),)), path.limit), ZERO)
-            moved = If(rate, Cmp("<=", mul(Sym(path.inner), rate), ZERO), inside)
-            heat = mul(Sym(path.effort), add(rate, neg(Sym(path.rate))))
-            for name, value in ((path.effort, force), (path.rate, moved), (path.heat, heat)):
+            force, effort = mul(path.stiffness, Sym(path.inner)), Sym(path.effort)
+            slips = If(path.drive, Cmp(">", mul(Sym(path.inner), path.drive), ZERO), ZERO)
+            slip = If(ZERO, Cmp("<", Call("abs", (Sym(path.inner),)), path.limit), slips)
+            found = {path.effort: force, path.slip: slip, path.heat: mul(effort, Sym(path.slip))}
+            for name, value in found.items():
                 yield Quantity(name, value, path.bank, "paths")
 
     def _affine(self, costate):

@@ -22,13 +22,13 @@ MASS = HandMade(
     rates={
         "q": "E_p",
         "p": "F - E_q - d*E_p - stop_effort",
-        "z": "stop_rate",
+        "z": "E_p - stop_slip",
         "S": "(d*E_p*E_p + stop_heat)/E_S",
     },
     inputs={"F": 0.0},
     supply={"pull": "F*E_p"},
     heats={"damper": ("d*E_p*E_p", "S"), "stop": ("stop_heat", "S")},
-    paths={"stop": ("q", "z", "k_s", "r")},
+    paths={"stop": ("E_p", "z", "k_s", "r")},
 )
 #: The same on Maxwell's slips: stops side by side, with limits that fall as the body becomes warm.
 SLIPS = tuple(2e-4 * (1 + n) for n in range(8))
@@ -41,12 +41,12 @@ MAXWELL = HandMade(
     states={"q": (0.0, None), "p": (0.0, None), "z": (0.0, "slip"), "S": (0.01, None)},
     energies=["p**2/(2*m)", "k*q**2/2", ("k_s*z**2/2", "slip"), HEAT],
     laws={"force": total("slips_effort", "slip"), "lost": total("slips_heat", "slip")},
-    rates={"q": "E_p", "p": "F - E_q - force", "z": "slips_rate", "S": "lost/E_S"},
+    rates={"q": "E_p", "p": "F - E_q - force", "z": "E_p - slips_slip", "S": "lost/E_S"},
     inputs={"F": 0.0},
     supply={"pull": "F*E_p"},
     heats={"slips": (("slips_heat", "slip"), "S")},
     counts={"slip": 8},
-    paths={"slips": ("q", "z", "k_s", "r/(1 + a*abs(S - 0.01))")},
+    paths={"slips": ("E_p", "z", "k_s", "r/(1 + a*abs(S - 0.01))")},
 )
 #: Stops whose coordinates move as they are told, each in a ratio of its own.
 RATIOS = (1.0, -0.4, 2.0)
@@ -56,12 +56,12 @@ LED = HandMade(
     states={"q": (0.0, "leaf"), "z": (0.0, "leaf"), "S": (0.01, None)},
     energies=[("k_s*z**2/2", "leaf"), HEAT],
     laws={"pulled": total("w*stop_effort", "leaf"), "lost": total("stop_heat", "leaf")},
-    rates={"q": "w*v", "z": "stop_rate", "S": "lost/E_S"},
+    rates={"q": "w*v", "z": "w*v - stop_slip", "S": "lost/E_S"},
     inputs={"v": 0.0},
     supply={"drive": "pulled*v"},
     heats={"stop": (("stop_heat", "leaf"), "S")},
     counts={"leaf": 3},
-    paths={"stop": ("q", "z", "k_s", "r")},
+    paths={"stop": ("w*v", "z", "k_s", "r")},
 )
 #: Rubbing of Coulomb's kind, rounded off, with a factor that reads another co-state.
 RUBBING = HandMade(

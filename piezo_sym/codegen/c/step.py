@@ -18,7 +18,7 @@ from piezo_sym.codegen.c.head import comment, opening
 from piezo_sym.codegen.c.lines import Words, indented, used_only
 from piezo_sym.codegen.c.names import added, c_names
 from piezo_sym.codegen.c.order import Write, least_over_lanes
-from piezo_sym.codegen.c.paths import path_rows, path_table
+from piezo_sym.codegen.c.paths import drive_rows, path_rows, path_table
 from piezo_sym.codegen.c.record import give_text, place_text, record_text
 from piezo_sym.codegen.c.style import powers
 from piezo_sym.codegen.collocation import Collocation
@@ -121,6 +121,11 @@ class _Printer:
             yield path_table(self.program, self.made.paths)
             doc = "Stiffness and limit of each path functional"
             yield self._of_state("path_parameters", doc, path_rows(self.made.paths))
+            writes, local = self.frame.writes("out", drive_rows(self.made.paths))
+            body = self.frame.computed(self.made.stage.quantities, writes)
+            doc = "Drives of path functionals: the rates of their coordinates"
+            words = ("x", "g", "b", "u", "p", "out")
+            yield self.frame.function("drives", words, doc, body, local=local)
 
     def _of_state(self, name: str, doc: str, rows: Sequence[OutputRow]) -> str:
         writes, local = self.frame.writes("out", rows)

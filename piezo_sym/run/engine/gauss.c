@@ -47,12 +47,11 @@ typedef struct {
 
 #if defined(PATHS)
 /*
- * Columns of a path functional's row: its bank (-1: none), the state that is its coordinate,
- * whether each lane of the bank has a coordinate of its own, its inner state. Then what it gives to
- * a stage, and what its parameters are.
+ * Columns of a path functional's row: its bank (-1: none), whether each lane of the bank has a drive
+ * of its own, its inner state. Then what it gives to a stage, and what its parameters are.
  */
-enum { BANK, COORDINATE, OWN, INNER };
-enum { EFFORT, RATE, HEAT, SHARE, GIVEN };
+enum { BANK, OWN, INNER };
+enum { EFFORT, SLIP, HEAT, SHARE, GIVEN };
 enum { STIFFNESS, LIMIT, PARAMETERS };
 #endif /* PATHS */
 
@@ -69,7 +68,11 @@ typedef struct {
     real *u;                   /* STAGES*inputs */
     real *largest;             /* n: largest magnitude of each state, the scale of its errors */
     real *reached, *gap, *prior, *node, *mean, *side, *margin, *rows, *slope, *fresh, *real_factor;
-    real *path, *yield;        /* parameters of path functionals; where one first yields in a step */
+#if defined(PATHS)
+    long drives;
+    real *path, *drive; /* parameters of path functionals; drives at stages and at a point */
+    real *yield;        /* where one first yields in a step */
+#endif /* PATHS */
 #if defined(BENDS)
     long bends;
     real *bend, *look, *cut, *piece_slope; /* see bends.c */
@@ -168,8 +171,11 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     m->given = m->means;
 #if defined(PATHS)
     long paths = 0;
-    for (long k = 0; k < PATHS; ++k)
-        paths += MODEL(path)[k][BANK] < 0 ? 1 : m->lanes[MODEL(path)[k][BANK]];
+    m->drives = 0;
+    for (long k = 0; k < PATHS; ++k) {
+        const long lanes = MODEL(path)[k][BANK] < 0 ? 1 : m->lanes[MODEL(path)[k][BANK]];
+        paths += lanes, m->drives += MODEL(path)[k][OWN] ? lanes : 1;
+    }
     m->given += GIVEN * paths;
 #endif /* PATHS */
 #define PLACE(array, size) (m->array = at, at += (size))
@@ -190,6 +196,7 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     PLACE(slope, m->slopes);
 #if defined(PATHS)
     PLACE(path, PARAMETERS * paths);
+    PLACE(drive, (STAGES + 1) * m->drives);
     PLACE(yield, 1);
 #endif /* PATHS */
     PLACE(fresh, m->slopes);

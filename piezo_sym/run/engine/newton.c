@@ -11,11 +11,7 @@ static void MODEL(at_point)(const MODEL(block) *m, const real *x, const real *br
     (void)weight;
     MODEL(integrands)(x, &m->p, m->node);
 #if defined(PATHS)
-    MODEL(standing)(m, x, weight, NULL);
-    if (!weight) {
-        MODEL(stage)(x, m->node, branch, u, &m->p, rate, rows, side, margin);
-        MODEL(standing)(m, x, NULL, rate);
-    }
+    MODEL(standing)(m, x, branch, u, weight);
 #endif /* PATHS */
     MODEL(stage)(x, m->node, branch, u, &m->p, rate, rows, side, margin);
 }

@@ -1,10 +1,11 @@
 /*
- * Path functionals: what an element with an inner state z does while its coordinate C follows the
- * polynomial of a step; computed lane by lane. Comes after gauss.c, for models that have PATHS.
+ * Path functionals: what an element with an inner state z does while its coordinate C, whose rates
+ * at the stages are its drive, follows a polynomial; computed lane by lane. Comes after gauss.c,
+ * for models that have PATHS.
  *
- * Stage i is given the means int_0^1 (l_i/b_i) ... dtau of the effort F, of dz/dt and of the heat.
- * So h sum_i b_i F_i K_i is the work int F dC, and z ends where its path ends, wherever it begins
- * or ceases to yield.
+ * Stage i is given the means int_0^1 (l_i/b_i) ... dtau of the effort F, of the slip's rate
+ * dC/dt - dz/dt and of the heat. So h sum_i b_i F_i C'_i is the work int F dC, and z ends where its
+ * path ends, wherever it begins or ceases to yield.
  */
 
 /* At a single point, an inner state so near to its limit, relative to it, has reached it. */
@@ -23,7 +24,7 @@ typedef struct {
     long pieces;
 } MODEL(way);
 
-/* Means for the stages: effort, rate and heat. */
+/* Means for the stages: effort, rate of the slip and heat. */
 typedef double MODEL(means)[SHARE][STAGES];
 
 static double MODEL(polynomial)(const double *a, long degree, double at)
@@ -87,7 +88,7 @@ static void MODEL(find_turns)(MODEL(way) *w)
     }
 }
 
-/* The path of a coordinate, which is state i, in one lane's step. */
+/* The path of a coordinate that has drive number i, in one lane's step. */
 static void MODEL(find_way)(const MODEL(block) *m, double h, long i, int lane, MODEL(way) *w)
 {
     double square = 0.0;
@@ -95,7 +96,7 @@ static void MODEL(find_way)(const MODEL(block) *m, double h, long i, int lane, M
     w->h = h;
     w->gone[0] = 0.0;
     for (long j = 0; j < STAGES; ++j) {
-        w->rate[j] = LANE(m->rates, j * m->n + i, lane);
+        w->rate[j] = LANE(m->drive, j * m->drives + i, lane);
         square += stage_weight[j] * w->rate[j] * w->rate[j];
     }
     w->most = h * sqrt(square); /* the mean of |dC/dt| is at most its root mean square */
@@ -128,7 +129,10 @@ static void MODEL(add_piece)(const MODEL(way) *w, double low, double high, doubl
             for (long j = 0; j < STAGES; ++j)
                 part *= j == i ? 1.0 : at - stage_at[j];
             mean[EFFORT][i] += part * effort;
-            mean[yields ? HEAT : RATE][i] += part * (yields ? effort * rate : rate);
+            if (yields) {
+                mean[SLIP][i] += part * rate;
+                mean[HEAT][i] += part * effort * rate;
+            }
         }
     }
 }
@@ -141,14 +145,12 @@ static double MODEL(stop)(MODEL(way) *w, double z, double k, double r, MODEL(mea
 {
     const double begin = fmin(fmax(z, -r), r); /* r may have become less */
     double now = begin, heat = 0.5 * k * (z - begin) * (z + begin), moving = 0.0;
-    double yielded = 0.0, moved = 0.0;
+    double yielded = 0.0, slipped = 0.0;
     int yielding = 0;
     memset(mean, 0, sizeof(MODEL(means)));
     if (fabs(z) + w->most <= r) {
-        for (long i = 0; i < STAGES; ++i) {
+        for (long i = 0; i < STAGES; ++i)
             mean[EFFORT][i] = k * (z + w->at_stage[i]);
-            mean[RATE][i] = w->rate[i];
-        }
         return 1.0;
     }
     if (!w->pieces)
@@ -180,11 +182,12 @@ static double MODEL(stop)(MODEL(way) *w, double z, double k, double r, MODEL(mea
     for (long i = 0; i < STAGES; ++i) {
         mean[HEAT][i] = fmax(mean[HEAT][i], 0.0);
         yielded += stage_weight[i] * mean[HEAT][i];
-        moved += stage_weight[i] * mean[RATE][i];
+        slipped += stage_weight[i] * mean[SLIP][i];
     }
+    const double rest = (MODEL(polynomial)(w->gone, STAGES, 1.0) - (now - z)) / w->h - slipped;
     for (long i = 0; i < STAGES; ++i) {
         mean[HEAT][i] = heat / w->h * (yielded > 0.0 ? mean[HEAT][i] / yielded : 1.0);
-        mean[RATE][i] += (now - z) / w->h - moved;
+        mean[SLIP][i] += rest;
 #if LOSSY
         mean[EFFORT][i] = k * now; /* as all co-states of a dissipative step, at its end */
 #endif
@@ -192,12 +195,21 @@ static double MODEL(stop)(MODEL(way) *w, double z, double k, double r, MODEL(mea
     return moving;
 }
 
-/* What path functionals give to the stages. */
+/*
+ * What path functionals give to the stages. Rates of inner states are set, not solved for: efforts
+ * follow from the drives alone, and Newton's method takes them as stiffness * z.
+ */
 static void MODEL(along_paths)(const MODEL(block) *m, real h)
 {
     const real *parameter = m->path;
     real *given = m->mean + m->means;
+    long drive = 0;
     *m->yield = wide(1.0);
+    for (long i = 0; i < STAGES; ++i) {
+        MODEL(reach_of)(m, h, stage_reach[i], m->reached);
+        MODEL(drives)(m->reached, m->mean + i * m->given, m->branch + i * m->branches,
+                      m->u + i * m->inputs, &m->p, m->drive + i * m->drives);
+    }
     for (long n = 0; n < PATHS; ++n) {
         const int *path = MODEL(path)[n];
         const long lanes = path[BANK] < 0 ? 1 : m->lanes[path[BANK]];
@@ -210,49 +222,55 @@ static void MODEL(along_paths)(const MODEL(block) *m, real h)
                 const double k = LANE(parameter, STIFFNESS * lanes + j, lane);
                 const double limit = LANE(parameter, LIMIT * lanes + j, lane);
                 if (!j || path[OWN])
-                    MODEL(find_way)(m, OF(h, lane), m->first[path[COORDINATE]] + j, lane, &w);
+                    MODEL(find_way)(m, OF(h, lane), drive + j, lane, &w);
                 const double share = MODEL(stop)(&w, z, k, limit, mean);
                 for (long i = 0; i < STAGES; ++i) {
                     for (long what = 0; what < SHARE; ++what)
                         LANE(given + i * m->given, what * lanes + j, lane) = mean[what][i];
                     LANE(given + i * m->given, SHARE * lanes + j, lane) = share;
+                    LANE(m->rates, i * m->n + m->first[path[INNER]] + j, lane) =
+                        w.rate[i] - mean[SLIP][i];
                 }
                 LANE(m->yield, 0, lane) = fmin(LANE(m->yield, 0, lane), w.yields);
             }
         }
         given += GIVEN * lanes, parameter += PARAMETERS * lanes;
+        drive += path[OWN] ? lanes : 1;
     }
 }
 
 /*
- * What path functionals give at a point. At an end of a step, rates and heat are extrapolated from
- * the stages' means by `weight`; elsewhere they follow from the rates of coordinates there, if
- * known.
+ * What path functionals give at a point: at an end of a step (`weight`), rates of inner states and
+ * heat are extrapolated from the stages' means; elsewhere they follow from the drives there.
  */
-static void MODEL(standing)(const MODEL(block) *m, const real *x, const double *weight,
-                            const real *rates)
+static void MODEL(standing)(const MODEL(block) *m, const real *x, const real *branch, const real *u,
+                            const double *weight)
 {
     const real *parameter = m->path;
     real *given = m->node + m->means;
+    long drive = 0;
     MODEL(path_parameters)(x, &m->p, m->path);
+    MODEL(drives)(x, m->node, branch, u, &m->p, m->drive + STAGES * m->drives);
     for (long n = 0; n < PATHS; ++n) {
         const int *path = MODEL(path)[n];
         const long lanes = path[BANK] < 0 ? 1 : m->lanes[path[BANK]];
         for (long j = 0; j < lanes; ++j) {
             const real k = parameter[STIFFNESS * lanes + j], r = parameter[LIMIT * lanes + j];
             const real inner = x[m->first[path[INNER]] + j], z = least(largest_of(inner, -r), r);
-            const real rate = rates ? rates[m->first[path[COORDINATE]] + path[OWN] * j] : (real)zero;
+            const real *const drives = m->drive + drive + path[OWN] * j;
+            const real rate = drives[STAGES * m->drives];
             const mask yields = (size_of(z) >= r * (1.0 - AT_LIMIT)) & (z * rate > 0.0);
             given[EFFORT * lanes + j] = k * z;
-            given[RATE * lanes + j] = chosen(yields, zero, rate);
-            given[HEAT * lanes + j] = chosen(yields, k * z * rate, zero);
+            given[SLIP * lanes + j] = weight ? rate : chosen(yields, rate, zero);
+            given[HEAT * lanes + j] = weight ? (real)zero : chosen(yields, k * z * rate, zero);
             given[SHARE * lanes + j] = chosen(yields, zero, wide(1.0));
             for (long i = 0; weight && i < STAGES; ++i) {
                 const real *const mean = m->mean + i * m->given + (given - m->node) + j;
-                given[RATE * lanes + j] += weight[i] * mean[RATE * lanes];
+                given[SLIP * lanes + j] += weight[i] * (mean[SLIP * lanes] - drives[i * m->drives]);
                 given[HEAT * lanes + j] += weight[i] * mean[HEAT * lanes];
             }
         }
         given += GIVEN * lanes, parameter += PARAMETERS * lanes;
+        drive += path[OWN] ? lanes : 1;
     }
 }
