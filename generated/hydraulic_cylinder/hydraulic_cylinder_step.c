@@ -446,7 +446,6 @@ typedef struct {
     real *u;                   /* STAGES*inputs */
     real *largest;             /* n: largest magnitude of each state, the scale of its errors */
     real *reached, *gap, *prior, *node, *mean, *side, *margin, *rows, *slope, *fresh, *real_factor;
-    real *path, *yield;        /* parameters of path functionals; where one first yields in a step */
 #if defined(BENDS)
     long bends;
     real *bend, *look, *cut, *piece_slope; /* see bends.c */

@@ -405,7 +405,6 @@ typedef struct {
     real *u;                   /* STAGES*inputs */
     real *largest;             /* n: largest magnitude of each state, the scale of its errors */
     real *reached, *gap, *prior, *node, *mean, *side, *margin, *rows, *slope, *fresh, *real_factor;
-    real *path, *yield;        /* parameters of path functionals; where one first yields in a step */
     mask fine;                 /* lanes whose means are taken at FINE nodes */
     mask over;                 /* lanes that step over kinks: each stage chooses its branches */
     mask sketch, sketched;     /* lanes that may stop early, beyond a switch; lanes that did */

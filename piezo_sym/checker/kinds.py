@@ -77,7 +77,9 @@ def _kind(row: str) -> tuple[str, Kind]:
 
 #: Of capacitors and springs: the law of a slip, in the co-state and the rate that drives it.
 _SLIPS = {"E": ("; slip? A v:V i:A T:K", ""), "M": ("", "; slip? m/s f:N v:m/s T:K")}
-_MORE = {text: " heats? discontinuous?" * bool(text) for own in _SLIPS.values() for text in own}
+_MORE = {
+    text: " heats? discontinuous? count?" * bool(text) for own in _SLIPS.values() for text in own
+}
 _ROWS = [row.split(", ") for row in _DOMAINS.strip().splitlines()]
 for _row in _ROWS:
     for _text in _SLIPS.get(_row[0], ("", "")):

@@ -34,6 +34,8 @@ from .units import Dimension, faults, unit
 DOTTED, MAX_BYTES = re.compile(r"(\s*\.\s*[\w\"'-]+){9}"), 500_000
 TABLES = ("model", "parameters", "inputs", "domain", "initial", "elements")
 Symbol = tuple[str, str]
+#: What a stop of this size is a kind of, and the letters of its effort and its rate.
+SIZES = {"stiffness": ("spring", "f", "v"), "capacitance": ("capacitor", "v", "i")}
 
 
 class Element(NamedTuple):
@@ -114,9 +116,25 @@ def _parts(elements: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
             yield name if own["rate"] == "entropy" else f"{name}.{state}", part
 
 
+def _slipping(name: str, entry: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a stop as a spring or capacitor with a slip, that of the rate it is projected on."""
+    (size,) = (field for field in SIZES if field in entry)
+    kind, f, v, limit = *SIZES[size], entry["limit"]
+    parse(limit)
+    slip = f"({v} if {f} >= ({limit}) else 0) if {v} > 0 else ({v} if {f} <= -({limit}) else 0)"
+    others = {field: value for field, value in entry.items() if field not in ("kind", "limit")}
+    given = {"kind": kind, "slip": slip, "discontinuous": True, "state": f"z_{name}"}
+    need(not {"slip", "discontinuous", "rest"} & set(others), f"elements.{name} has a wrong key")
+    return given | others
+
+
 class _Reader:
     def __init__(self, tables: dict[str, dict[str, Any]]) -> None:
         self.tables, self.faults, self.units = tables, list[str](), dict[Symbol, Dimension]()
+        entries, self.limits = tables["elements"], dict[str, str]()
+        for name in [name for name, entry in entries.items() if entry["kind"] == "stop"]:
+            self.limits[name] = entries[name]["limit"]
+            entries[name] = _slipping(name, entries[name])
         self.parameters = self._values("parameters", "value", "p")
         self.inputs = self._values("inputs", "default", "u")
         tables["elements"] = dict(_parts(tables["elements"]))
@@ -263,6 +281,9 @@ class _Reader:
                 own = [sym(symbol) for symbol in symbols(first) if symbol[0] == "p"]
                 for tree in own if element.kind.form == "body" else [first]:
                     yield compare(tree, ">")
+            if limit := self.limits.get(element.name):
+                words = {w: s for w, s in self.words.items() if s[0] == "p"}
+                yield compare(self._resolved(limit, words), ">=")
         for part in (part for tree in trees for part in walk(tree)):
             if part.op in ("deadzone", "saturate"):
                 given = any(role in "zr" for role, _ in symbols(part.args[1]))

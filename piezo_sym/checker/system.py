@@ -78,7 +78,7 @@ class Finding:
     def __init__(self, spec: Spec, system: Any) -> None:
         self.spec, self.one, self.reasons = spec, ONE, dict[str, str]()
         self.divisors, self.letters = dict[Node, None](), dict[str, Node]()
-        self.counts = {e.name: LANES for e in spec.of("hysteron") if e.lanes is not None}
+        self.counts = {e.name: LANES for e in spec.elements.values() if e.lanes is not None}
         self.field, self.known, self.values = Field(), dict[Any, Ratio](), list[Claim]()
         self.terms = list[Node]()
         try:

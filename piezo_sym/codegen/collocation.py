@@ -20,7 +20,7 @@ from typing import final
 from piezo_sym.codegen.differences import sharp_quantity
 from piezo_sym.codegen.functions import exchanges_of, heats_of, productions_of, rates_of, supply_of
 from piezo_sym.codegen.jacobian import jacobian_of
-from piezo_sym.codegen.paths import Path
+from piezo_sym.codegen.paths import Path, given_to, in_motion, paths_of
 from piezo_sym.codegen.program import Entry, Limit, Names, OutputRow, Quantity, needed
 from piezo_sym.codegen.quantities import COSTATES, Quantities, quantities_of
 from piezo_sym.codegen.switches import Switch, switched
@@ -92,6 +92,9 @@ class Collocation:
 def collocation_of(iphs: IPHS) -> Collocation:
     """Return the collocation step of a system."""
     q = quantities_of(iphs)
+    new = Names(q.taken)
+    paths = paths_of(q, new)
+    q = replace(q, taken=frozenset(new.taken))
     states = {state.name for state in q.states}
     means = tuple(
         item for item in q.defined if item.note == COSTATES and not is_affine(item.value, states)
@@ -99,10 +102,11 @@ def collocation_of(iphs: IPHS) -> Collocation:
     elements = iphs.model.elements.values()
     return Collocation(
         means=tuple(sharp_quantity(replace(m, value=compared(m.value))) for m in means),
-        stage=_stage(q, means),
-        slopes=_slopes(q, means),
+        stage=_stage(given_to(q, paths), means),
+        slopes=_slopes(in_motion(q, paths), means),
         heated=_heated(q),
         jumps=any(getattr(element, "discontinuous", False) for element in elements),
+        paths=paths,
     )
 
 

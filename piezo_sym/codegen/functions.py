@@ -15,7 +15,14 @@ from piezo_sym.expressions.calculus import add, div, mul, neg
 from piezo_sym.expressions.text import signed
 from piezo_sym.expressions.tree import ONE, Expr, Sym
 from piezo_sym.iphs import IPHS
-from piezo_sym.spec.elements.ports import Body, Exchange, HeatInput, Port
+from piezo_sym.spec.elements.ports import (
+    Body,
+    Conductor,
+    DissipativePort,
+    Exchange,
+    HeatInput,
+    Port,
+)
 
 STATE_INPUT, STATE = ("x", "u", "p"), ("x", "p")
 #: What each function returns, and its arguments.
@@ -149,8 +156,12 @@ def heats_of(q: Quantities) -> tuple[OutputRow, ...]:
 
 def productions_of(q: Quantities) -> tuple[OutputRow, ...]:
     """Return the entropy that each process produces."""
-    parts = zip(q.outputs, q.forces, q.iphs.system.heats, strict=True)
-    produced = (div(mul(output, force), q.costates[n]) for output, force, n in parts)
+    ports = q.iphs.circuit.of(DissipativePort, Conductor)
+    parts = zip(ports, q.outputs, q.forces, q.heats, q.iphs.system.heats, strict=True)
+    produced = (
+        div(mul(output, force) if isinstance(port, Conductor) else heat, q.costates[n])
+        for (_, port), output, force, heat, n in parts
+    )
     return _rows(q.iphs.system.processes, produced)
 
 

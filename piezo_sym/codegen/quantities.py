@@ -7,7 +7,7 @@ ones, and the products of Definition 1 as expressions in them.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from dataclasses import replace as replaced
 from functools import cached_property
 from typing import final
@@ -52,6 +52,7 @@ class Quantities:
     forces, outputs, heats : driving force z, output W and heat of each process.
     limits : the conditions of the domain.
     taken : every name in use.
+    given : of names that are no quantities, those that have a value per lane, and the bank.
     """
 
     iphs: IPHS
@@ -63,6 +64,7 @@ class Quantities:
     heats: tuple[Expr, ...]
     limits: tuple[Limit, ...]
     taken: frozenset[str]
+    given: Mapping[str, str] = field(default_factory=dict)
 
     @cached_property
     def stores(self) -> tuple[tuple[Placed, Storage | Body], ...]:
@@ -100,7 +102,7 @@ class Quantities:
         """The bank of every name that has a value per lane."""
         found = {port.state: placed.bank for placed, port in self.stores if placed.bank}
         found |= {item.name: item.bank for item in self.defined if item.bank}
-        return {**lane_parameters(self.iphs.model), **found}
+        return {**lane_parameters(self.iphs.model), **self.given, **found}
 
     @cached_property
     def _names(self) -> Mapping[Expr, Sym]:
@@ -108,7 +110,16 @@ class Quantities:
 
     def total(self, term: Expr, bank: str | None) -> Sym:
         """Return the name of a term, summed over the lanes of its bank if it has one."""
+        if isinstance(term, Sym) and not bank:
+            return term
         return self._names[LaneSum(term, bank) if bank else term]
+
+    def drive(self, k: int) -> Expr:
+        """Return the rate that drives the slip which is process k."""
+        _, port = tuple(self.iphs.circuit.of(DissipativePort, Conductor))[k]
+        given = self.costates, self.inputs
+        rate = add(*_rate(self.iphs, getattr(port, "state", ""), k, given, self._names))
+        return self._names.get(rate, rate)
 
     def product(self, block: LaneMatrix, row: int, factors: Sequence[Expr]) -> Iterator[Expr]:
         """Yield the terms of ``(block @ factors)[row]``, column by column."""
@@ -243,6 +254,7 @@ def _processes(
     """Yield what each process defines, its driving force and its heat."""
     states, driven = iphs.system.B.T, iphs.system.D.T
     T = {placed.element: Sym(body.temperature) for placed, body in iphs.circuit.of(Body)}
+    lanes = {c.name for c, slot in zip(costates, iphs.system.states, strict=True) if slot.bank}
     for k, (placed, port) in enumerate(iphs.circuit.of(DissipativePort, Conductor)):
         terms = [*_product(states, k, costates, sums), *_product(driven, k, inputs, sums)]
         z, defined = add(*terms), list[Quantity]()
@@ -258,7 +270,8 @@ def _processes(
                 rate = add(*_rate(iphs, port.state, k, (costates, inputs), sums))
                 letters[port.rate_letter] = rate if isinstance(rate, Sym) else Sym(port.rate)
                 if not isinstance(rate, Sym):
-                    defined.append(Quantity(port.rate, rate, placed.bank, "rates of slips"))
+                    bank = None if lanes.isdisjoint(names(rate)) else placed.bank
+                    defined.append(Quantity(port.rate, rate, bank, "rates of slips"))
             force, law = z, replace(laws[port.output], letters)
         defined.append(Quantity(port.output, law, placed.bank, "dissipative laws"))
         yield tuple(defined), force, mul(Sym(port.output), z)
@@ -277,7 +290,10 @@ def _rate(
     yield from _product(system.J0, row, costates, sums)
     yield from _product(system.G, row, inputs, sums)
     laws = [port.output for _, port in iphs.circuit.of(DissipativePort, Conductor)]
-    rest = replaced(system.B, full={key: b for key, b in system.B.full.items() if key[1] != own})
+    full, lanes = (
+        {at: b for at, b in part.items() if at[1] != own} for part in (system.B.full, system.B.own)
+    )
+    rest = replaced(system.B, full=full, own=lanes)
     yield from (neg(term) for term in _product(rest, row, [*map(Sym, laws)], sums))
 
 

@@ -15,13 +15,16 @@ import sympy as sp
 from piezo_sym.algebra.integrals import integral
 from piezo_sym.algebra.lanes import vector
 from piezo_sym.algebra.symbols import SymbolTable
-from piezo_sym.errors import SpecError, quote
+from piezo_sym.errors import NetworkError, SpecError, quote, with_article
 from piezo_sym.expressions.energies import antiderivative
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ZERO, Expr, Sym
 from piezo_sym.iphs.system import System
 from piezo_sym.network import Junction, Slope, port_order
 from piezo_sym.spec.circuit import Circuit
+from piezo_sym.spec.elements import kind_of
+from piezo_sym.spec.elements.domains import PowerVariable
+from piezo_sym.spec.elements.forms import Store
 from piezo_sym.spec.elements.ports import (
     Body,
     Conductor,
@@ -163,6 +166,35 @@ def rates_of(circuit: Circuit, symbols: SymbolTable, system: System) -> Definiti
         for row, slot in enumerate(system.states):
             if port := slips.get(slot.label):
                 yield symbols[port.rate], rates[row, 0] + symbols[port.output]
+
+
+def check_stops(
+    circuit: Circuit, symbols: SymbolTable, rates: Definitions, laws: Definitions
+) -> None:
+    """Refuse a stop whose rate depends on the effort of a stop: it would have to be found with it.
+
+    Raises
+    ------
+    NetworkError
+        Says what to put beside it.
+    """
+    stores = {port.state: port for _, port in circuit.of(Storage)}
+    stops = [(e, p) for e, p in circuit.of(DissipativePort) if p.limit is not None]
+    efforts = {symbols[stores[port.state].costate]: placed.element for placed, port in stops}
+    known, named = dict(laws), dict(rates)
+    for placed, port in stops:
+        rate = named[symbols[port.rate]].xreplace(known)
+        for other in sorted(efforts.keys() & rate.free_symbols, key=str):
+            given = port.domain.variable(port.imposes)
+            name = kind_of(Store, port.domain, port.imposes).name
+            where = "in series" if port.imposes is PowerVariable.THROUGH else "at its node"
+            raise NetworkError(
+                f"the {given.name} of stop {quote(placed.element)} depends on the "
+                f"{port.domain.variable(port.imposes.other).name} of {quote(efforts[other])}",
+                f"elements.{placed.element}",
+                f"a {given.name} that is a state's, or an input",
+                f"put {with_article(name)} {where}",
+            )
 
 
 def ratios_of(circuit: Circuit, symbols: SymbolTable) -> Definitions:

@@ -21,6 +21,7 @@ from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import Expr
 from piezo_sym.iphs.definitions import (
     Energy,
+    check_stops,
     costates_of,
     energies_of,
     laws_of,
@@ -267,9 +268,14 @@ def iphs_of(symbols: SymbolTable, junction: Junction) -> IPHS:
     ------
     SpecError
         If a storage law has no energy in closed form.
+    NetworkError
+        If a stop's rate depends on the effort of a stop.
     """
     circuit = junction.circuit
     system = system_of(circuit, symbols, junction)
+    laws = tuple(laws_of(circuit, symbols, system))
+    rates = tuple(rates_of(circuit, symbols, system))
+    check_stops(circuit, symbols, iter(rates), iter(laws))
     return IPHS(
         model=circuit.model,
         circuit=circuit,
@@ -278,8 +284,8 @@ def iphs_of(symbols: SymbolTable, junction: Junction) -> IPHS:
         system=system,
         energies=energies_of(circuit),
         starts=tuple(starts_of(junction)),
-        laws=tuple(laws_of(circuit, symbols, system)),
-        rates=tuple(rates_of(circuit, symbols, system)),
+        laws=laws,
+        rates=rates,
         shares=junction.shares,
         slopes=tuple(slopes_of(symbols, junction.slopes)),
         ratios=tuple(ratios_of(circuit, symbols)),

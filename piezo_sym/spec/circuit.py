@@ -134,7 +134,7 @@ def _named(
             return replace(port, costate=new(port.costate))
         case DissipativePort() as port:
             letters = {word: fresh(word, taken) for word in (port.letter, port.rate_letter) if word}
-            port = replace(port, law=rename(laws[port.field], letters))
+            port = replace(port, law=rename(laws.get(port.field, port.law), letters))
             output, effort = new(port.output), new(port.effort)
             port = replace(port, letter=letters[port.letter], output=output, effort=effort)
             rate = port.rate and new(port.rate)

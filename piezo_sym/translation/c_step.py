@@ -15,7 +15,9 @@ its integrand: a co-state and what is free of the state.  A branch is 1 where it
 is positive, else 0; a stage chooses by branches alone: ``chosen(NAME > 0.0, value, value)``.
 `slopes` and the tables behind it serve Newton's method alone, and `bends`, which a line ``#define
 BENDS`` announces, says where the engine splits means: of them nothing is said, but that they are in
-the grammar, and that what they write fills its array.
+the grammar, and that what they write fills its array.  Where the system has stops, a table tells of
+each the bank, whether its lanes have drives of their own, and its inner state; `path_parameters`
+are stiffness and limit of the inner state, `drives` the rates of coordinates.
 """
 
 import ast
@@ -71,6 +73,8 @@ _SIGNATURES = {
     "stage": "x g b u p out rows s m",
     "slopes": "x g b u p out",
     "bends": "x p out",
+    "path_parameters": "x p out",
+    "drives": "x g b u p out",
 }
 _RESULTS = {"stage out": "rhs", "stage rows": "ledger", "stage m": "margins"}
 _RESULTS |= {"slopes out": NOT_COMPARED, "bends out": NOT_COMPARED}
@@ -87,7 +91,21 @@ def read_step(text: str, known: Proved) -> dict[Key, Value]:
     lines = {line: name for line, name in lines.items() if line in text}
     spelled = _SPELLED | {f"{name}_of": name for name in lines.values()}
     macros = MACROS.replace("{functions}", "".join(lines))
-    return _Step(Tokens(text, known.iphs.model.name, macros, spelled), known).rows()
+    table = _path_table(known)
+    return _Step(Tokens(text, known.iphs.model.name, macros, spelled, table), known).rows()
+
+
+def _path_table(known: Proved) -> str:
+    """Return the lines by which a step tells of its stops, if the system has some."""
+    banks = [*known.sizes]
+    states = [slot.label for slot in known.iphs.system.states]
+    lines = [
+        f"    {{{banks.index(bank) if bank else -1}, {int(own)}, {states.index(inner)}}},\n"
+        for inner, bank, own in known.paths
+    ]
+    name = known.iphs.model.name
+    head = f"#define PATHS {len(lines)}\nstatic const int {name}_path[PATHS][3] = {{\n"
+    return f"{head}{''.join(lines)}}};\n" if lines else ""
 
 
 @final
@@ -108,6 +126,7 @@ class _Step:
         fields = take_record(tokens, model)
         parts = [self._integrands, *([self._bends] * tokens.bends), self._stage]
         parts += [self._slopes, self._sizes]
+        parts += [self._path_parameters, self._drives] * bool(self.file.known.paths)
         parts += [lambda: take_place(tokens, model, fields)]
         parts += [lambda: take_give(tokens, model, fields)]
         while tokens.peek():
@@ -180,6 +199,12 @@ class _Step:
     def _slopes(self) -> None:
         self.slopes = self._function("slopes").places
 
+    def _path_parameters(self) -> None:
+        self.found |= self._function("path_parameters").rows()
+
+    def _drives(self) -> None:
+        self.found |= self._function("drives", by_branches=True).rows()
+
     def _sizes(self) -> None:
         """Read the sizes of arrays."""
         tokens, known, name = self.tokens, self.file.known, self.iphs.model.name
@@ -202,7 +227,7 @@ class _Step:
                 found.append(scope.read.whole(tokens.expression()))
             tokens.take(";")
         places = known.layouts["rhs"].places
-        wanted = [places[-1], known.layouts["g"].places[-1], self._end(self.branches)]
+        wanted = [places[-1], known.layouts["integrands"].places[-1], self._end(self.branches)]
         processes = known.field.zero
         for slot in self.iphs.system.processes:
             processes = processes + (known.sizes[slot.bank] if slot.bank else known.field.one)

@@ -43,6 +43,7 @@ class Tokens:
     model : its name, which its header has.
     macros : what stands behind the headers and gives `spelled` their meaning.
     spelled : words that stand for others, or for nothing before what is in brackets.
+    table : lines that have to stand somewhere behind them, once.
 
     Attributes
     ----------
@@ -55,6 +56,7 @@ class Tokens:
         model: str,
         macros: str = "",
         spelled: Mapping[str, str] = MappingProxyType({}),
+        table: str = "",
     ) -> None:
         head = re.match(_HEAD.format(model=re.escape(model)), text)
         for line in (f'#include "{model}.h"\n', "#include <math.h>\n"):
@@ -70,6 +72,9 @@ class Tokens:
         self.found: list[str] = []
         self.bends = bool(macros) and BENDS in text
         text = text.replace(BENDS, "\n", int(self.bends))
+        if table and text.count(table) != 1:
+            raise NotShownError("the table of the step's paths is not the system's")
+        text = text.replace(table, "\n" * table.count("\n"), int(bool(table)))
         self.at = 0
         self.sums: dict[int, frozenset[str]] = {}
         place = 0

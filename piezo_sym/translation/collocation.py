@@ -8,24 +8,29 @@ at the state x = X(c) and the means Ebar of co-states over the step.  That is th
 right side with co-states as names.  A co-state that is affine in its state has its value at x as
 its mean, so it is a function of x.  The others are names independent of x: what holds for all their
 values holds for their means.  A stage is given g = Ebar + c, the means of co-states plus terms c
-that do not depend on the state.
+that do not depend on the state; and of each stop effort, slip and heat, which are effort times slip
+here, and a share that serves Newton's method alone.
 """
 
 from collections.abc import Iterator
+from typing import TypeAlias
 
 from piezo_sym.algebra.lanes import Slot
-from piezo_sym.expressions.calculus import is_affine
+from piezo_sym.expressions.calculus import derivative, div, is_affine
 from piezo_sym.expressions.tree import names
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name
 from piezo_sym.network import port_order
-from piezo_sym.spec.elements.ports import Body, Exchange, HeatInput, Storage
+from piezo_sym.spec.circuit import Placed
+from piezo_sym.spec.elements.ports import Body, DissipativePort, Exchange, HeatInput, Storage
 from piezo_sym.spec.tables import conditions
 from piezo_sym.translation.change import spelled
 from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import Key, Proved
 from piezo_sym.translation.reference import margins_of, of_system
 from piezo_sym.translation.system_reader import SystemReader
+
+Stop: TypeAlias = tuple[Placed, Storage, DissipativePort]
 
 
 def proved_step(iphs: IPHS) -> Proved:
@@ -39,6 +44,8 @@ def proved_step(iphs: IPHS) -> Proved:
     for costate, (slot, _) in means.items():
         read.names[slot.label] = read.free(costate, slot.label, slot.bank)
         read.banks |= {slot.label: slot.bank} if slot.bank else {}
+    stops = tuple(_stops(iphs))
+    given_paths = tuple(slot for stop in stops for slot in _given(read, *stop))
     domain = read.assume(given)
     read.assume_temperatures()
     moving = {slot.label for slot in iphs.system.states}
@@ -50,12 +57,59 @@ def proved_step(iphs: IPHS) -> Proved:
     slots |= dict.fromkeys(("margins", "strict"), tuple(Slot(str(n)) for n in range(len(limits))))
     listed = of_system(read)
     ledger = dict(_ledger(read, listed))
-    slots |= {"rhs": iphs.system.states, "ledger": tuple(ledger), "g": slots["integrands"]}
+    slots |= {"rhs": iphs.system.states, "ledger": tuple(ledger)}
+    slots["g"] = (*slots["integrands"], *given_paths)
+    paths = tuple(_paths(read, stops, slots, values))
     for function, rows in {"rhs": listed["rhs"], "ledger": ledger.values()}.items():
         values |= {(function, n): value for n, value in enumerate(rows)}
     functions = {slot.label: value for slot, value in means.values()}
     needs = tuple(read.field.needs)
-    return Proved(iphs, read.field, read.names, read.banks, slots, values, needs, domain, functions)
+    found = (iphs, read.field, read.names, read.banks, slots, values, needs, domain, functions)
+    return Proved(*found, paths)
+
+
+def _stops(iphs: IPHS) -> Iterator[Stop]:
+    """Yield where each stop stands, its store and its slip."""
+    stores = {port.state: port for _, port in iphs.circuit.of(Storage)}
+    for placed, port in iphs.circuit.of(DissipativePort):
+        if port.limit is not None:
+            yield placed, stores[port.state], port
+
+
+def _given(
+    read: SystemReader, placed: Placed, store: Storage, slip: DissipativePort
+) -> Iterator[Slot]:
+    """Yield what a stage is given of a stop."""
+    given = ("effort", "slip", "heat", "share")
+    slots = tuple(Slot(f"{what} of {placed.element}", placed.bank) for what in given)
+    effort, moved, heat, share = slots
+    read.names[effort.label] = read.free(store.costate, effort.label, placed.bank)
+    read.names[moved.label] = read.free(slip.output, moved.label, placed.bank)
+    read.names[heat.label] = read.names[effort.label] * read.names[moved.label]
+    read.names[share.label] = read.field.name(share.label, placed.bank, 0, 0)
+    for slot in slots:
+        read.banks |= {slot.label: slot.bank} if slot.bank else {}
+        yield slot
+
+
+def _paths(
+    read: SystemReader,
+    stops: tuple[Stop, ...],
+    slots: dict[str, tuple[Slot, ...]],
+    values: dict[Key, Value],
+) -> Iterator[tuple[str, str | None, bool]]:
+    """Yield the row of each stop's table; add the rows of what the engine asks of it."""
+    for n, (placed, store, slip) in enumerate(stops):
+        slope, drive = derivative(store.law, store.state), read(read.iphs.symbols[slip.rate])
+        assert slip.limit is not None
+        parts = read.law(slope), read.law(div(slip.limit, slope))
+        values |= {("path_parameters", 2 * n + k): value for k, value in enumerate(parts)}
+        values["drives", n] = drive
+        own = Slot(placed.element, placed.bank if drive.lanes else None)
+        slots["drives"] = (*slots.get("drives", ()), own)
+        both = (Slot(placed.element, placed.bank),) * 2
+        slots["path_parameters"] = (*slots.get("path_parameters", ()), *both)
+        yield store.state, placed.bank, bool(drive.lanes)
 
 
 def _means(read: SystemReader) -> Iterator[tuple[str, tuple[Slot, Value]]]:

@@ -60,6 +60,7 @@ class Proved:
     needs : what the laws divide by, and take roots and logarithms of.
     margins : of the conditions of the domain, and whether each is strict.
     means : of a stage, for each name that is a co-state's mean the co-state.
+    paths : of a stage, for each stop its inner state, its bank, and whether lanes differ in drives.
     """
 
     iphs: IPHS
@@ -71,6 +72,7 @@ class Proved:
     needs: tuple[Need, ...]
     margins: tuple[tuple[Value, bool], ...]
     means: Mapping[str, Value]
+    paths: tuple[tuple[str, str | None, bool], ...] = ()
 
     @cached_property
     def numbers(self) -> Mapping[float, Fraction]:

@@ -15,7 +15,6 @@ from piezo_sym.codegen.collocation import Collocation, Slopes, Stage
 from piezo_sym.codegen.differences import sharp_program, sharp_quantity
 from piezo_sym.codegen.jacobian import jacobian_of
 from piezo_sym.codegen.paths import Path as Stop
-from piezo_sym.codegen.paths import in_motion
 from piezo_sym.codegen.program import (
     Described,
     Limit,
@@ -156,7 +155,10 @@ class HandMade:
         free = {c.name for c in self.costates() if not self._affine(c)}
         rates = self._rows(self.rates, q)
         found = switched(q.defined, rates, q.lanes(), q.new, compared_names=free)
-        mean = in_motion(self._paths())
+        mean = {}
+        for path in self._paths():
+            force, slip = mul(path.stiffness, Sym(path.inner)), path.slip_in_motion
+            mean |= {path.effort: force, path.slip: slip, path.heat: mul(force, slip)}
         rates = tuple(replace(row, value=put(row.value, mean)) for row in found.rows)
         defined = tuple(replace(d, value=put(d.value, mean)) for d in found.quantities)
         entries, derivatives = self._jacobian(rates, defined, found.lanes, q.new)

@@ -150,6 +150,15 @@ def hysteron(draft):
     }
 
 
+def stop(draft):
+    body, count = draft.body(), draft.pick((None, 1, 2, 3))
+    k, limit = draft.parameter("k", "N/m", lanes=count), draft.parameter("F_c", "N", 0.1, 1)
+    draft.assume.append(f"{limit} >= 0")
+    bank = {} if count is None else {"count": count}
+    law = {"stiffness": k, "limit": limit, "heats": body}
+    return {"between": draft.pair("m"), **bank, **law, **draft.state()}
+
+
 def transducer(draft):
     ratio, body = draft.parameter("a", "C/m", 0.3, 2), draft.body()
     hot = {"ratio": f"{ratio}*T/{draft.bodies[body]}", "temperature": body}
@@ -262,7 +271,7 @@ class Kind:
     draw : draws the fields of its table.
     domains : letters of the domains of its pairs of nodes; "" for the thermal kinds.
     form : a "store", "storage" (of several states), "law" (of dissipation), "store, law" (in
-        series), "source" or "coupling".
+        series), "stop", "source" or "coupling".
     across : whether it gives an across variable, and so may be in a tree of the network; a coupling
         that does not, gyrates.
     nodes : the fields that name nodes.
@@ -319,6 +328,7 @@ def of_spring(q, law):
 PAIRS = ("first", "second")
 BOTH = ("electrical", "mechanical", "translation")
 KINDS = {
+    "stop": Kind(stop, "m", "stop", across=False, letter="z"),
     "capacitor": Kind(capacitor, "e", "store", letter="Q", costate=over("capacitance"), weight=2),
     "mass": Kind(
         inert,

@@ -61,7 +61,7 @@ class Tableau:
     def __init__(self, spec, states, inputs):
         self.spec, self.states, self.inputs = spec, states, inputs
         self.branches, self.temperatures = [], {}
-        self.couplings, self.costates = [], {}
+        self.couplings, self.costates, self.limits = [], {}, {}
         elements = spec["elements"].items()
         for name, element in elements:
             if element["kind"] == "thermal_mass":
@@ -95,6 +95,8 @@ class Tableau:
                 self._resistor(label, lane, element, (f"{label}:inner", b), name)
         elif kind.form == "store":
             self._store(name, 0, element, nodes_of(element), name)
+        elif kind.form == "stop":
+            self._stops(name, element)
         elif kind.form == "storage":
             self._storage(name, element)
         elif kind.form == "source":
@@ -122,6 +124,15 @@ class Tableau:
 
         self.costates[len(self.branches)] = symbol, costate
         self.branches.append(Branch(label, nodes, kind.across))
+
+    def _stops(self, name, element):
+        """Add a spring, or one in each lane; its limit counts when it is booked."""
+        for lane in range(element.get("count", 1)):
+            label = f"{name}_{lane + 1}" if "count" in element else name
+            symbol, words = state(name, element) + label.removeprefix(name), self.words(lane)
+            force = self.states[symbol] * value(element["stiffness"], words)
+            self.limits[label] = symbol, value(element["limit"], words)
+            self.branches.append(Branch(label, tuple(element["between"]), False, force))
 
     def _storage(self, name, element):
         """Add a branch for each state; co-states are differences of the energy."""
@@ -320,6 +331,13 @@ class Tableau:
             flows[element["heats"]] += heat / temperature
         elif name in flows:
             flows[name] += t
+        elif branch.element in self.limits:
+            symbol, limit = self.limits[branch.element]
+            slip = e if t * np.sign(e) >= limit and e != 0 else 0.0
+            found.rates[symbol] = e - slip
+            produced = t * slip / self.temperatures[element["heats"]]
+            found.productions[branch.element] = produced
+            flows[element["heats"]] += produced
         elif branch.state:
             found.rates[branch.state] = t if branch.across else e
         elif KINDS[element["kind"]].form == "source":

@@ -162,7 +162,8 @@ class _Printer:
         for place in self.coupling.places:
             target = self._at(place.shared, place.lanes, place.bank)
             writes.append(Write(f"{self.words['out']}[{target}]", place.value, place.bank))
-        means = {mean.name for mean in self.means}  # computed here from the state
+        computed = {quantity.name for quantity in self.made.slopes.quantities}
+        means = {field.name for field in self.given} & computed
         banks = {name: bank for name, bank in self.banks.items() if name not in means}
         lines = replace(self.frame.lines, arrays=banks)
         body = self.frame.computed(self.made.slopes.quantities, writes, lines=lines)

@@ -46,8 +46,14 @@ def check_values(spec: Tables) -> None:
         law = next(port.law for port in ports if isinstance(port, Body))
         values = _at(0, names(law), lanes)
         lanes[symbol] = (_value(law, values, f"elements.{body}.{field}"),)
-    for condition in conditions(spec):
+    for condition in (*conditions(spec), *_of_starts(spec)):
         _check_condition(condition, lanes)
+
+
+def _of_starts(spec: Tables) -> Iterator[Condition]:
+    """Yield the conditions on where states start."""
+    for name, element in spec.elements.items():
+        yield from (Condition(f"elements.{name}", test) for test in element.starts(name))
 
 
 def _exactly(value: float) -> Interval:

@@ -83,6 +83,11 @@ class Form(ABC):
         del element
         return ()
 
+    def starts(self, element: Any, name: str) -> tuple[Cmp, ...]:
+        """Return the conditions on where the states of an element called `name` start."""
+        del element, name
+        return ()
+
 
 @final
 @dataclass(frozen=True)
@@ -179,6 +184,10 @@ class Element(Frozen):
     def requires(self) -> tuple[Cmp, ...]:
         """Return the conditions that this element adds to the domain."""
         return tuple(condition for form in self.row.forms for condition in form.requires(self))
+
+    def starts(self, name: str) -> tuple[Cmp, ...]:
+        """Return the conditions on where the states of this element, called `name`, start."""
+        return tuple(condition for form in self.row.forms for condition in form.starts(self, name))
 
     @property
     def is_bank(self) -> bool:

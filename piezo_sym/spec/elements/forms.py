@@ -3,7 +3,7 @@
 A form says once, for all domains, its fields, its docstring and its port.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, final
 
 from piezo_sym.expressions.calculus import add, neg
@@ -99,18 +99,24 @@ class Store(Form):
 
     def port(self, element: Any, name: str, branch: Branch) -> Storage:
         """Return the store, whose state is the integral of the conjugate variable."""
-        costate, state = self.costate, state_symbol(element, name)
+        state = state_symbol(element, name)
         energy = self._given(element, "energy", state)
+        law = self._law(element, state) if energy is None else slope(energy, state)
+        branch = _placed(element, branch, self.domain)
+        return replace(self.storage(element, name, branch, state, law), energy=energy)
+
+    def storage(self, element: Any, name: str, branch: Branch, state: str, law: Expr) -> Storage:
+        """Return a store of this form with a co-state."""
+        costate = self.costate
         return Storage(
             state=state,
-            law=self._law(element, state) if energy is None else slope(energy, state),
+            law=law,
             costate=f"{costate.prefix}_{name}",
-            branch=_placed(element, branch, self.domain),
+            branch=branch,
             domain=self.domain,
             imposes=self.imposes,
             units=(costate.state_unit, costate.unit),
             doc=f"{costate.state} of {element.kind} '{name}'",
-            energy=energy,
         )
 
     def _given(self, element: Any, field: str, state: str) -> Expr | None:

@@ -22,8 +22,11 @@ from piezo_sym.spec.elements.thermal import (
     ThermalMass,
     Thermocouple,
 )
+from piezo_sym.spec.elements.yielding import Yielding
 
 ACROSS, THROUGH = PowerVariable.ACROSS, PowerVariable.THROUGH
+_SPRING = Store(TRANSLATION, THROUGH, "stiffness", "N/m", "k", stiff=True, slips=True)
+_CAPACITOR = Store(ELECTRICAL, ACROSS, "capacitance", "F", "C", slips=True)
 _INDUCTOR = Store(ELECTRICAL, THROUGH, "inductance", "H", "L")
 
 
@@ -40,8 +43,14 @@ def _pair(domain: PhysicalDomain, unit: str) -> tuple[str, PhysicalDomain, str]:
 TABLE = (
     Kind(
         "spring",
-        (Store(TRANSLATION, THROUGH, "stiffness", "N/m", "k", stiff=True, slips=True),),
+        (_SPRING,),
         "A spring between two nodes, eqs. (9), (10) and the fourth term of (6).",
+    ),
+    Kind(
+        "stop",
+        (Yielding((_SPRING, _CAPACITOR)),),
+        "An elastic-plastic element between two nodes, with hysteresis of any slowness.",
+        bank=True,
     ),
     Kind(
         "mass",
@@ -66,7 +75,7 @@ TABLE = (
     ),
     Kind(
         "capacitor",
-        (Store(ELECTRICAL, ACROSS, "capacitance", "F", "C", slips=True),),
+        (_CAPACITOR,),
         "A capacitor between two nodes, eq. (11) and the first term of (6).",
     ),
     Kind(

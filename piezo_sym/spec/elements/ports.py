@@ -59,6 +59,7 @@ class DissipativePort:
     written : the law as the spec has it, in its own letter, where `law` is its inverse.
     rate_letter, rate, state : of a slip, the letter of the rate in `law`, the rate's name, and the
         state of the store that slips: its rate is this one less W.
+    limit : of a stop, the largest effort; steps follow its path, and the law is what `rhs` knows.
     """
 
     letter: str
@@ -74,6 +75,7 @@ class DissipativePort:
     rate_letter: str = ""
     rate: str = ""
     state: str = ""
+    limit: Expr | None = None
 
 
 @final

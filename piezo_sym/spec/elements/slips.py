@@ -7,6 +7,7 @@ product of co-state and slip heats a body.
 
 from typing import Any
 
+from piezo_sym.expressions.tree import Expr
 from piezo_sym.spec.elements.base import state_symbol
 from piezo_sym.spec.elements.domains import PhysicalDomain, PowerVariable
 from piezo_sym.spec.elements.marks import Fields, Jumps, OptionalBody, law_field
@@ -42,16 +43,21 @@ def fault(element: Any) -> tuple[str, str, str, str] | None:
 
 
 def beside(
-    domain: PhysicalDomain, imposes: PowerVariable, element: Any, name: str, branch: Branch
+    domain: PhysicalDomain,
+    imposes: PowerVariable,
+    element: Any,
+    name: str,
+    branch: Branch,
+    stop: tuple[Expr, Expr] | None = None,
 ) -> tuple[Branch, DissipativePort]:
-    """Return the branch of a store that slips, and its slip."""
+    """Return the branch of a store that slips, and its slip; of a stop its law and its limit."""
     out, driven, inner = domain.variable(imposes), domain.variable(imposes.other), f"{name}:inner"
     series = imposes is PowerVariable.THROUGH
     own, other = ((inner, branch[1]), (branch[0], inner)) if series else (branch, branch)
     return own, DissipativePort(
         letter=out.letter,
-        law=element.law("slip"),
-        field="slip",
+        law=stop[0] if stop else element.law("slip"),
+        field="" if stop else "slip",
         output=f"slip_{name}",
         effort=f"{out.prefix}_{name}",
         branch=other,
@@ -61,4 +67,5 @@ def beside(
         rate_letter=driven.letter,
         rate=f"{driven.prefix}_{name}",
         state=state_symbol(element, name),
+        limit=stop[1] if stop else None,
     )

@@ -1,0 +1,196 @@
+/*
+ * Piezoelectric stack with Maxwell-slip: 40 um at 150 V: irreversible port-Hamiltonian system.
+ *
+ * Source:  Goldfarb, Celanovic (1997), Modeling piezoelectric stack actuators; loop measured by Chandra et al. (2023), doi 10.1063/5.0146134
+ * Model:   stack_maxwell, spec sha256 a4fac994b19a17a907de6d8bbc2fec285a640ebfd27501f5fec69ade7095faff
+ * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, rate-independent, sigma, exergy, environment, units, program PROVED
+ *
+ * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
+ * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
+ *
+ * x = (Q, p, q, z_1 ... z_slips_count, S)
+ * u = (F_ext, V_in, T_e)
+ * bank slips: lanes j = 1 ... slips_count
+ */
+#ifndef PIEZO_SYM_stack_maxwell_H
+#define PIEZO_SYM_stack_maxwell_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Parameters in SI units. The caller sets all; comments show the values of the spec. */
+typedef struct {
+    double m; /* moving mass [kg]; spec: 0.02 */
+    double d; /* damping [N*s/m]; spec: 100.0 */
+    double a; /* force constant: 50 N/um and 39 um at 150 V [N/V]; spec: 6.0 */
+    double C; /* capacitance, clamped [F]; spec: 6.4e-06 */
+    double R; /* resistance of the amplifier and leads [ohm]; spec: 10.0 */
+    double k; /* stiffness that never yields [N/m]; spec: 24560000.0 */
+    const double *k_s; /* stiffness of each slip [N/m], one per lane of slips; spec: a list */
+    const double *r; /* extension at which each yields [m], one per lane of slips; spec: a list */
+    double T_0; /* temperature at the start [K]; spec: 296.15 */
+    double c_0; /* heat capacity [J/K]; spec: 5.0 */
+    double lam; /* heat conductance to the air [W/K]; spec: 0.05 */
+    long slips_count; /* lanes of slips, at least 1; spec: 8 */
+} stack_maxwell_parameters;
+
+/* An initializer for parameters: the values of the spec. */
+#define stack_maxwell_DEFAULTS { \
+    .m = 0.02, \
+    .d = 100.0, \
+    .a = 6.0, \
+    .C = 6.4e-06, \
+    .R = 10.0, \
+    .k = 24560000.0, \
+    .k_s = (const double[]){11270000.0, 1056000.0, 4535000.0, 2234000.0, 744300.0, 4553000.0, 1170000.0, 12980000.0}, \
+    .r = (const double[]){2.35e-06, 4.7e-06, 7.05e-06, 9.4e-06, 1.175e-05, 1.41e-05, 1.645e-05, 1.88e-05}, \
+    .T_0 = 296.15, \
+    .c_0 = 5.0, \
+    .lam = 0.05, \
+    .slips_count = 8, \
+}
+
+/* Sizes that no bank changes: of inputs, outputs, bodies, conditions of the domain. */
+enum {
+    stack_maxwell_input_count = 3,
+    stack_maxwell_output_count = 3,
+    stack_maxwell_body_count = 1,
+    stack_maxwell_limit_count = 11,
+};
+
+/*
+ * Number of states n.
+ */
+long stack_maxwell_states(const stack_maxwell_parameters *p_);
+
+/*
+ * Number of processes; of a bank, one per lane.
+ */
+long stack_maxwell_processes(const stack_maxwell_parameters *p_);
+
+/*
+ * State at t = 0 [SI], for the inputs u at t = 0.
+ * u[stack_maxwell_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[n], written; must not overlap another argument: Q [C], p [kg*m/s], q [m], z_1 ...
+ *     z_slips_count [m], S [J/K]
+ */
+void stack_maxwell_initial_state(const double *u,
+                                 const stack_maxwell_parameters *p_,
+                                 double *out);
+
+/*
+ * Rates dx/dt = J_ir dU/dx + g u.
+ * x[n], read: Q [C], p [kg*m/s], q [m], z_1 ... z_slips_count [m], S [J/K]
+ * u[stack_maxwell_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[n], written; must not overlap another argument
+ */
+void stack_maxwell_rhs(const double *x,
+                       const double *u,
+                       const stack_maxwell_parameters *p_,
+                       double *out);
+
+/*
+ * Derivative of rhs by the state, n x n, row after row.
+ * x[n], read: Q [C], p [kg*m/s], q [m], z_1 ... z_slips_count [m], S [J/K]
+ * u[stack_maxwell_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[n*n], written; must not overlap another argument
+ */
+void stack_maxwell_jacobian(const double *x,
+                            const double *u,
+                            const stack_maxwell_parameters *p_,
+                            double *out);
+
+/*
+ * Outputs y, one per port, conjugate to its input.
+ * x[n], read: Q [C], p [kg*m/s], q [m], z_1 ... z_slips_count [m], S [J/K]
+ * u[stack_maxwell_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[stack_maxwell_output_count], written; must not overlap another argument: load [m/s],
+ *     amplifier [A], air [K]
+ */
+void stack_maxwell_outputs(const double *x,
+                           const double *u,
+                           const stack_maxwell_parameters *p_,
+                           double *out);
+
+/*
+ * Power supplied through each port [W]; the sum is dU/dt.
+ * x[n], read: Q [C], p [kg*m/s], q [m], z_1 ... z_slips_count [m], S [J/K]
+ * u[stack_maxwell_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[stack_maxwell_output_count], written; must not overlap another argument
+ */
+void stack_maxwell_supply(const double *x,
+                          const double *u,
+                          const stack_maxwell_parameters *p_,
+                          double *out);
+
+/*
+ * Hamiltonian U [J].
+ * x[n], read: Q [C], p [kg*m/s], q [m], z_1 ... z_slips_count [m], S [J/K]
+ */
+double stack_maxwell_energy(const double *x, const stack_maxwell_parameters *p_);
+
+/*
+ * Total entropy S [J/K].
+ * x[n], read: Q [C], p [kg*m/s], q [m], z_1 ... z_slips_count [m], S [J/K]
+ */
+double stack_maxwell_entropy(const double *x, const stack_maxwell_parameters *p_);
+
+/*
+ * Temperature of each body [K].
+ * x[n], read: Q [C], p [kg*m/s], q [m], z_1 ... z_slips_count [m], S [J/K]
+ * out[stack_maxwell_body_count], written; must not overlap another argument: body [K]
+ */
+void stack_maxwell_temperatures(const double *x,
+                                const stack_maxwell_parameters *p_,
+                                double *out);
+
+/*
+ * Power that each process turns into heat [W]; of a bank, one row per lane.
+ * x[n], read: Q [C], p [kg*m/s], q [m], z_1 ... z_slips_count [m], S [J/K]
+ * u[stack_maxwell_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[stack_maxwell_processes(p_)], written; must not overlap another argument
+ */
+void stack_maxwell_heat(const double *x,
+                        const double *u,
+                        const stack_maxwell_parameters *p_,
+                        double *out);
+
+/*
+ * Entropy that each process produces [W/K]; of a bank, one row per lane.
+ * x[n], read: Q [C], p [kg*m/s], q [m], z_1 ... z_slips_count [m], S [J/K]
+ * u[stack_maxwell_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[stack_maxwell_processes(p_)], written; must not overlap another argument
+ */
+void stack_maxwell_entropy_production(const double *x,
+                                      const double *u,
+                                      const stack_maxwell_parameters *p_,
+                                      double *out);
+
+/*
+ * Margin of each condition of the domain; of a bank, the least over its lanes.
+ * x[n], read: Q [C], p [kg*m/s], q [m], z_1 ... z_slips_count [m], S [J/K]
+ * u[stack_maxwell_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[stack_maxwell_limit_count], written; must not overlap another argument
+ * out[0]: T_e > 0; inside, > 0
+ * out[1]: R > 0; inside, > 0
+ * out[2]: d >= 0; inside, >= 0
+ * out[3]: lam >= 0; inside, >= 0
+ * out[4]: C > 0; inside, > 0
+ * out[5]: m > 0; inside, > 0
+ * out[6]: k > 0; inside, > 0
+ * out[7]: k_s > 0; inside, > 0
+ * out[8]: k_s*r >= 0; inside, >= 0
+ * out[9]: T_0 > 0; inside, > 0
+ * out[10]: c_0 > 0; inside, > 0
+ */
+void stack_maxwell_margins(const double *x,
+                           const double *u,
+                           const stack_maxwell_parameters *p_,
+                           double *out);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* PIEZO_SYM_stack_maxwell_H */

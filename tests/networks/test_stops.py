@@ -1,0 +1,227 @@
+"""Stops: exact along the path of a step, against the stop operator, and what is refused."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
+
+from piezo_sym import derive, simulate, sine, verify
+from piezo_sym.errors import NetworkError, SpecError
+from piezo_sym.modules import module_of
+from piezo_sym.proofs import Verdict
+from piezo_sym.spec.load import parse
+
+HEAD = """
+[model]
+name = "{name}"
+[parameters]
+m   = {{ value = 0.5,    unit = "kg" }}
+L   = {{ value = 0.1,    unit = "H" }}
+k   = {{ value = 3000.0, unit = "N/m" }}
+C   = {{ value = 1e-3,   unit = "F" }}
+d   = {{ value = 2.0,    unit = "N*s/m" }}
+V_c = {{ value = 3.0,    unit = "V" }}
+F_c = {{ value = {limits}, unit = "N" }}
+T_0 = {{ value = 300.0,  unit = "K" }}
+c   = {{ value = 0.8,    unit = "J/K" }}
+[inputs]
+{input} = {{ unit = "{unit}" }}
+[elements]
+body = {{ kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }}
+"""
+LIMITS = (3.0, 6.0, 12.0, 24.0, 48.0)
+STOP = 'stop = {{ kind = "stop", between = ["a", "wall"], {}, heats = "body", state = "z" }}\n'
+BANK = STOP.format('count = 5, stiffness = "k", limit = "F_c"')
+LED = 'lead = { kind = "velocity_source", at = "a", input = "v" }\n' + BANK
+MASS = (
+    'push = { kind = "force_source", at = "a", input = "F" }\n'
+    'block = { kind = "mass", at = "a", mass = "m", state = "p" }\n'
+) + STOP.format('stiffness = "k", limit = "F_c"')
+COIL = (
+    'feed = { kind = "voltage_source", between = ["a", "gnd"], input = "V" }\n'
+    'coil = { kind = "inductor", between = ["a", "b"], inductance = "L", state = "phi" }\n'
+    'stop = { kind = "stop", between = ["b", "gnd"], capacitance = "C", limit = "V_c",'
+    ' heats = "body", state = "z" }\n'
+)
+
+
+@cache
+def model(name):
+    elements, limits, driven = {
+        "led": (LED, list(LIMITS), ("v", "m/s")),
+        "mass": (MASS, 3.0, ("F", "N")),
+        "coil": (COIL, 3.0, ("V", "V")),
+    }[name]
+    names = {"name": f"stop_{name}", "limits": limits, "input": driven[0], "unit": driven[1]}
+    return parse(HEAD.format(**names) + elements)
+
+
+def stop_operator(path, r, z=0.0):
+    """Return z of a stop at places of its coordinate, between which it does not turn."""
+    found = [z]
+    for step in np.diff(path):
+        found.append(np.clip(found[-1] + step, -r, r))
+    return np.array(found)
+
+
+def balanced(run):
+    energy = run.energy.values
+    put_in = next(name for name in run if name.startswith("supplied_"))
+    scale = np.ptp(energy) + np.abs(run[put_in].values).max()
+    assert np.abs(run.energy_residual).max() <= 1e-12 * scale + 4 * np.spacing(energy.max())
+    assert np.abs(run.entropy_residual).max() <= 1e-12 * np.abs(run.S).max()
+    assert np.diff(run.heat_stop.values, axis=0).min() >= 0
+
+
+@pytest.mark.parametrize("name", ["led", "mass", "coil"])
+def test_every_row_is_proved(name):
+    rows = {(row.id, row.element): row.verdict for row in verify(derive(model(name))).rows}
+    assert rows["passive", "stop"] is rows["rate-independent", "stop"] is Verdict.PROVED
+    assert set(rows.values()) == {Verdict.PROVED}
+
+
+def led(t, speeds, **how):
+    return simulate(model("led"), inputs={"v": (t, speeds)}, duration=t[-1], **how)
+
+
+@settings(max_examples=8)
+@given(st.lists(st.floats(-1.0, 1.0), min_size=4, max_size=12), st.sampled_from([2, 4, 6, 10]))
+def test_a_stop_that_is_led_is_the_stop_operator(speeds, order):
+    """Speeds are joined by straight lines: steps have turns inside, at times that are known."""
+    t, v = 0.05 * np.arange(len(speeds)), np.array(speeds)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        turns = t[:-1] - v[:-1] * 0.05 / np.diff(v)
+    inside = turns[(turns > t[:-1]) & (turns < t[1:])]
+    times = np.union1d(t, inside)
+    gone = np.diff(times) * (np.interp(times[1:], t, v) + np.interp(times[:-1], t, v)) / 2
+    run = led(t, v, step=0.05, order=order, times=t)
+    for lane, F_c in enumerate(LIMITS):
+        wanted = stop_operator(np.cumsum([0.0, *gone]), F_c / 3000.0)[np.isin(times, t)]
+        assert np.abs(run.z.values[:, lane] - wanted).max() <= 1e-12
+    balanced(run)
+
+
+def test_a_cycle_dissipates_what_is_known():
+    """4 F_c (X - F_c/k) a cycle, and nothing where the limit is not reached."""
+    t = np.array([0.0, 0.5, 1.5, 2.5, 3.5, 4.5])
+    run = led(t, 0.04 * np.array([0.0, 1.0, -1.0, 1.0, -1.0, 1.0]), step=0.25, times=np.arange(5.0))
+    for lane, F_c in enumerate(LIMITS):
+        wanted = 4 * F_c * max(0.01 - F_c / 3000.0, 0.0)
+        lost = run.heat_stop.values[4, lane] - run.heat_stop.values[2, lane]
+        assert lost == pytest.approx(wanted, rel=1e-12, abs=1e-15)
+
+
+def triangle(turns):
+    """Return times and speeds of a path that goes from turn to turn at 1 m/s."""
+    lengths = np.abs(np.diff(turns))
+    ends = np.cumsum([0.0, *lengths])
+    short = 1e-9 * lengths.min()
+    t = np.sort(np.concatenate([ends[:-1] + short, ends[1:] - short]))
+    return ends, t, np.repeat(np.sign(np.diff(turns)), 2)
+
+
+def total(turns):
+    """Return the force of all stops at the turns of a path."""
+    return sum(3000.0 * stop_operator(turns, F_c / 3000.0) for F_c in LIMITS)
+
+
+def force_at(turns, rtol=1e-9):
+    times, t, v = triangle(np.array(turns))
+    t, v = np.array([0.0, *t, times[-1]]), np.array([v[0], *v, v[-1]])
+    run = led(t, v, rtol=rtol, times=times)
+    balanced(run)
+    return 3000.0 * run.z.values.sum(axis=1)
+
+
+def test_five_stops_under_a_decaying_triangle():
+    turns = [0.0] + [(-1) ** n * 0.03 * 0.8**n for n in range(12)]
+    assert force_at(turns) == pytest.approx(total(turns), abs=1e-6)
+
+
+def test_madelung():
+    """Minor loops close, larger ones wipe them out, and between equal turns they are congruent."""
+    inner = [0.004, 0.012, 0.004, 0.012]
+    up, down = force_at([0.0, 0.03, *inner, 0.03]), force_at([0.0, -0.03, *inner, -0.03])
+    assert up[3] == pytest.approx(up[5], abs=1e-6)
+    assert up[1] == pytest.approx(up[6], abs=1e-6)
+    assert up[4] - up[3] == pytest.approx(down[4] - down[3], abs=1e-6)
+    assert abs(up[3] - down[3]) > 1.0
+
+
+def by_events(times, given, stiff, limit):
+    """Return (momentum, z) by SciPy from bend to bend: between these the law is linear.
+
+    `given` : the drive; inertia is 0.5 kg or 0.1 H, `stiff` is dF/dz.
+    """
+    inertia, drive = given
+
+    def rates(t, x, yields):
+        speed = x[0] / inertia
+        return [drive(t) - stiff * x[1], 0.0 if yields else speed]
+
+    def bend(_t, x, yields):
+        return x[0] * np.sign(x[1]) if yields else limit / stiff - abs(x[1])
+
+    bend.terminal, bend.direction = True, -1
+    how = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-16, "max_step": 2e-3, "events": bend}
+    begin, x, yields, found = 0.0, [0.0, 0.0], False, [np.zeros(2)]
+    while begin < times[-1]:
+        one = solve_ivp(rates, (begin, times[-1]), x, args=(yields,), dense_output=True, **how)
+        found += [one.sol(t) for t in times[(times > begin) & (times <= one.t[-1])]]
+        begin, x, yields = one.t[-1], one.y[:, -1], not yields
+        x[1] = np.clip(x[1], -limit / stiff, limit / stiff)
+    return np.array(found)
+
+
+@pytest.mark.parametrize("rtol", [1e-4, 1e-8])
+@pytest.mark.parametrize("name", ["mass", "coil"])
+def test_a_mass_and_a_coil_follow_their_events(name, rtol):
+    inertia, stiff, word, state = {
+        "mass": (0.5, 3000.0, "F", "p"),
+        "coil": (0.1, 1e3, "V", "phi"),
+    }[name]
+    times = np.linspace(0.0, 0.4, 31)
+    how = {"duration": 0.4, "times": times, "rtol": rtol}
+    run = simulate(model(name), inputs={word: sine(20.0, 7.0)}, **how)
+    wanted = by_events(times, (inertia, lambda t: 20 * np.sin(14 * np.pi * t)), stiff, 3.0)
+    for n, name_of in enumerate((state, "z")):
+        error = np.abs(run[name_of].values - wanted[:, n]).max()
+        assert error <= 50 * rtol * np.abs(wanted[:, n]).max()
+    balanced(run)
+
+
+def test_rhs_at_the_limit_is_the_projected_rate():
+    """Beyond the limit nothing goes, back from it all goes."""
+    module = module_of(model("mass"))
+    for p, z, rate in ((0.5, 1e-3, 0.0), (-0.5, 1e-3, -1.0), (-0.5, -1e-3, 0.0), (0.5, 5e-4, 1.0)):
+        _, _, found = module.rhs(np.array([0.0, p, z]), np.array([0.0]), module.Parameters())
+        assert found == rate
+
+
+def test_ten_thousand_stops_run():
+    """After a large way they all stand at their limits, first at one, then at the other."""
+    limits = np.linspace(1.0, 50.0, 10_000)
+    given = {"stop_count": 10_000, "F_c": limits.tolist(), "k": 1e3}
+    inputs, times = {"v": sine(5.0, 5.0)}, [0.0, 0.1, 0.2]
+    how = {"duration": 0.2, "parameters": given, "times": times, "step": 1e-3}
+    run = simulate(model("led"), inputs=inputs, **how)
+    for n, sign in ((1, 1), (2, -1)):
+        assert run.z.values[n] == pytest.approx(sign * limits / 1e3, rel=1e-10)
+    balanced(run)
+
+
+def test_what_cannot_be_is_refused():
+    base = HEAD.format(name="stop_no", limits=3.0, input="F", unit="N")
+    loose = base + MASS.replace('between = ["a", "wall"]', 'between = ["a", "b"]')
+    pot = 'pot = { kind = "damper", between = ["b", "wall"], velocity = "f/d", heats = "body" }\n'
+    with pytest.raises(NetworkError, match="put a mass at its node"):
+        derive(parse(loose + pot))
+    with pytest.raises(SpecError, match="values given are outside the domain"):
+        parse(base + MASS + "[initial]\nz = 2e-3\n")
+    with pytest.raises(SpecError, match="exactly one of stiffness, capacitance"):
+        parse(base + MASS.replace('stiffness = "k"', 'stiffness = "k", capacitance = "C"'))
+    rows = verify(derive(parse(base + MASS.replace('limit = "F_c"', 'limit = "V_c"')))).rows
+    assert {row.id: row.verdict for row in rows}["units"] is Verdict.REFUTED
