@@ -120,21 +120,20 @@ def _slipping(name: str, entry: Mapping[str, Any]) -> dict[str, Any]:
     """Return a stop as a spring or capacitor with a slip, that of the rate it is projected on."""
     (size,) = (field for field in SIZES if field in entry)
     kind, f, v, limit = *SIZES[size], entry["limit"]
-    parse(limit)
+    parse(limit)  # it is put into brackets
     slip = f"({v} if {f} >= ({limit}) else 0) if {v} > 0 else ({v} if {f} <= -({limit}) else 0)"
-    others = {field: value for field, value in entry.items() if field not in ("kind", "limit")}
     given = {"kind": kind, "slip": slip, "discontinuous": True, "state": f"z_{name}"}
-    need(not {"slip", "discontinuous", "rest"} & set(others), f"elements.{name} has a wrong key")
+    others = {field: entry[field] for field in entry if field not in ("kind", "limit")}
+    need({"between", "count", "heats", "state", size} >= set(others), f"{name} has a wrong key")
     return given | others
 
 
 class _Reader:
     def __init__(self, tables: dict[str, dict[str, Any]]) -> None:
         self.tables, self.faults, self.units = tables, list[str](), dict[Symbol, Dimension]()
-        entries, self.limits = tables["elements"], dict[str, str]()
-        for name in [name for name, entry in entries.items() if entry["kind"] == "stop"]:
-            self.limits[name] = entries[name]["limit"]
-            entries[name] = _slipping(name, entries[name])
+        entries = tables["elements"]
+        self.limits = {n: e["limit"] for n, e in entries.items() if e["kind"] == "stop"}
+        entries |= {name: _slipping(name, entries[name]) for name in self.limits}
         self.parameters = self._values("parameters", "value", "p")
         self.inputs = self._values("inputs", "default", "u")
         tables["elements"] = dict(_parts(tables["elements"]))

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from dataclasses import replace as replaced
 from functools import cached_property
 from typing import final
 
 from piezo_sym.algebra.coefficients import coefficient
 from piezo_sym.algebra.lanes import LaneMatrix
 from piezo_sym.codegen.differences import with_excess
+from piezo_sym.codegen.products import SUMS, product, slip_rate, sums_in
 from piezo_sym.codegen.program import Described, Limit, Names, Quantity
 from piezo_sym.expressions.calculus import add, div, mul, neg
 from piezo_sym.expressions.tree import Call, Expr, LaneSum, Mul, Sym, names, replace
@@ -34,7 +34,7 @@ from piezo_sym.spec.elements.ports import (
 )
 from piezo_sym.spec.tables import condition_text, conditions, lane_parameters
 
-COSTATES, SUMS = "co-states dU/dx", "sums over lanes"
+COSTATES = "co-states dU/dx"
 #: Of a temperature and a constant: the quantity that is their difference.
 Excesses = Mapping[tuple[Sym, Sym], Quantity]
 
@@ -118,12 +118,12 @@ class Quantities:
         """Return the rate that drives the slip which is process k."""
         _, port = tuple(self.iphs.circuit.of(DissipativePort, Conductor))[k]
         given = self.costates, self.inputs
-        rate = add(*_rate(self.iphs, getattr(port, "state", ""), k, given, self._names))
+        rate = add(*slip_rate(self.iphs, getattr(port, "state", ""), k, given, self._names))
         return self._names.get(rate, rate)
 
     def product(self, block: LaneMatrix, row: int, factors: Sequence[Expr]) -> Iterator[Expr]:
         """Yield the terms of ``(block @ factors)[row]``, column by column."""
-        return _product(block, row, factors, self._names)
+        return product(block, row, factors, self._names)
 
 
 def quantities_of(iphs: IPHS) -> Quantities:
@@ -139,7 +139,7 @@ def quantities_of(iphs: IPHS) -> Quantities:
     used = {name for law in (*laws.values(), *(m.margin for m in limits)) for name in names(law)}
     excesses = {key: excess for key, excess in excesses.items() if excess.name in used}
     defined = [*_costates(iphs, excesses)]
-    defined += _sums((system.J0, system.B.T, system.G.T), costates, new)
+    defined += sums_in((system.J0, system.B.T, system.G.T), costates, new)
     defined += _junction(iphs, laws)
     found = [*_processes(iphs, laws, costates, inputs, _by_value(defined))]
     forces, heats = tuple(force for _, force, _ in found), tuple(heat for *_, heat in found)
@@ -147,7 +147,7 @@ def quantities_of(iphs: IPHS) -> Quantities:
     for last in (False, True):  # the rates of slips may use the outputs of the others
         named = zip(found, slips, strict=True)
         defined += [item for (own, *_), rate in named if bool(rate) is last for item in own]
-    defined += _sums((system.B, system.D), outputs, new)
+    defined += sums_in((system.B, system.D), outputs, new)
     defined += _totals(iphs, heats, _by_value(defined), new)
     return Quantities(
         *(iphs, tuple(defined), costates, inputs, forces, outputs, heats, limits),
@@ -164,26 +164,6 @@ def _input(placed: Placed) -> str:
         return placed.port.input
     msg = f"{placed.element} is no port of an input"
     raise TypeError(msg)
-
-
-def _product(
-    block: LaneMatrix, row: int, factors: Sequence[Expr], sums: Mapping[Expr, Sym]
-) -> Iterator[Expr]:
-    for c, full, own in block.by_row.get(row, ()):
-        bank, factor = block.cols[c].bank, factors[c]
-        if full != 0:
-            yield mul(coefficient(full), sums[LaneSum(factor, bank)] if bank else factor)
-        if own != 0:
-            yield mul(coefficient(own), factor)
-
-
-def _sums(blocks: Sequence[LaneMatrix], factors: Sequence[Sym], new: Names) -> Iterator[Quantity]:
-    """Yield the sums over lanes in products of blocks and some factors."""
-    entries = ((b.cols[c], c, full) for b in blocks for (_, c), full, _ in b.entries())
-    columns = {c: slot.bank for slot, c, full in entries if full != 0}
-    for c, bank in sorted(columns.items()):
-        if bank:
-            yield Quantity(new(f"sum_{factors[c].name}"), LaneSum(factors[c], bank), None, SUMS)
 
 
 # Laws
@@ -256,7 +236,7 @@ def _processes(
     T = {placed.element: Sym(body.temperature) for placed, body in iphs.circuit.of(Body)}
     lanes = {c.name for c, slot in zip(costates, iphs.system.states, strict=True) if slot.bank}
     for k, (placed, port) in enumerate(iphs.circuit.of(DissipativePort, Conductor)):
-        terms = [*_product(states, k, costates, sums), *_product(driven, k, inputs, sums)]
+        terms = [*product(states, k, costates, sums), *product(driven, k, inputs, sums)]
         z, defined = add(*terms), list[Quantity]()
         if isinstance(port, Conductor):
             force: Expr = add(z, neg(T[port.second]))
@@ -267,7 +247,7 @@ def _processes(
                 z = Sym(port.effort)
             letters: dict[str, Expr] = {port.letter: z}
             if port.rate:
-                rate = add(*_rate(iphs, port.state, k, (costates, inputs), sums))
+                rate = add(*slip_rate(iphs, port.state, k, (costates, inputs), sums))
                 letters[port.rate_letter] = rate if isinstance(rate, Sym) else Sym(port.rate)
                 if not isinstance(rate, Sym):
                     bank = None if lanes.isdisjoint(names(rate)) else placed.bank
@@ -275,26 +255,6 @@ def _processes(
             force, law = z, replace(laws[port.output], letters)
         defined.append(Quantity(port.output, law, placed.bank, "dissipative laws"))
         yield tuple(defined), force, mul(Sym(port.output), z)
-
-
-def _rate(
-    iphs: IPHS,
-    state: str,
-    own: int,
-    given: tuple[Sequence[Sym], Sequence[Sym]],
-    sums: Mapping[Expr, Sym],
-) -> Iterator[Expr]:
-    """Yield the terms of a state's rate but for those of its own slip."""
-    system, (costates, inputs) = iphs.system, given
-    row = [slot.label for slot in system.states].index(state)
-    yield from _product(system.J0, row, costates, sums)
-    yield from _product(system.G, row, inputs, sums)
-    laws = [port.output for _, port in iphs.circuit.of(DissipativePort, Conductor)]
-    full, lanes = (
-        {at: b for at, b in part.items() if at[1] != own} for part in (system.B.full, system.B.own)
-    )
-    rest = replaced(system.B, full=full, own=lanes)
-    yield from (neg(term) for term in _product(rest, row, [*map(Sym, laws)], sums))
 
 
 def _totals(

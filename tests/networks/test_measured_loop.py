@@ -46,7 +46,7 @@ def measured():
 
 
 def test_weights_are_those_of_one_second_and_hold_in_the_next(measured):
-    """Least squares on seconds 5 to 6, judged on 6 to 7: published sparse regression has 0.033 %."""
+    """Least squares on seconds 5 to 6, judged on 6 to 7; published sparse regression: 0.033 %."""
     t, V, x = measured
     limits = STEP * np.arange(1, STOPS + 1)
     table = np.column_stack([stops(x, limits), x])

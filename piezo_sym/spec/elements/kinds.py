@@ -47,12 +47,6 @@ TABLE = (
         "A spring between two nodes, eqs. (9), (10) and the fourth term of (6).",
     ),
     Kind(
-        "stop",
-        (Yielding((_SPRING, _CAPACITOR)),),
-        "An elastic-plastic element between two nodes, with hysteresis of any slowness.",
-        bank=True,
-    ),
-    Kind(
         "mass",
         (Store(TRANSLATION, ACROSS, "mass", "kg", "M", at=True),),
         "A mass at a node, eq. (10) and the third term of (6).",
@@ -61,6 +55,12 @@ TABLE = (
         "damper",
         (Dissipation(TRANSLATION, (THROUGH, ACROSS), "d*v"),),
         "A damper between two nodes, the damping term of eq. (10).",
+    ),
+    Kind(
+        "stop",
+        (Yielding((_SPRING, _CAPACITOR)),),
+        "An elastic-plastic element between two nodes, with hysteresis of any slowness.",
+        bank=True,
     ),
     Kind("lever", _within(TRANSLATION), "An ideal lever between two pairs of nodes."),
     Kind(
