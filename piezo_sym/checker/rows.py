@@ -14,8 +14,9 @@ from .certificate import check_certificate
 from .field import ZERO, Field
 from .functions import KINKS
 from .laws import InputError, Node, compare, made, need, negated, num, put, sym, symbols
+from .parts import whole
 from .prover import Claim, Prover, needed, partial, taken, true
-from .spec import Element, Spec, whole
+from .spec import Element, Spec
 from .system import Finding
 
 #: The row that has to be stated, and is not looked at; last, rows that are not stated.

@@ -29,13 +29,12 @@ from .laws import (
     symbols,
     walk,
 )
+from .parts import parts, slipping, whole
 from .units import Dimension, faults, unit
 
 DOTTED, MAX_BYTES = re.compile(r"(\s*\.\s*[\w\"'-]+){9}"), 500_000
 TABLES = ("model", "parameters", "inputs", "domain", "initial", "elements")
 Symbol = tuple[str, str]
-#: What a stop of this size is a kind of, and the letters of its effort and its rate.
-SIZES = {"stiffness": ("spring", "f", "v"), "capacitance": ("capacitor", "v", "i")}
 
 
 class Element(NamedTuple):
@@ -94,49 +93,15 @@ def read_spec(text: str) -> Spec:
         raise InputError(f"the spec cannot be read: {str(error)[:100]}") from None
 
 
-def whole(name: str) -> str:
-    """Return the element of the spec that an element, perhaps a state of a storage, is of."""
-    return name.partition(".")[0]
-
-
-def _parts(elements: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Yield the elements, and for a storage a store of each of its states, or a body."""
-    for name, entry in elements.items():
-        named = name.isidentifier() and not entry["kind"].startswith("=")
-        need(named, f"elements.{name[:60]} has a wrong key, or no name")
-        if entry["kind"] != "storage":
-            yield name, entry
-            continue
-        rates = [own["rate"] for own in entry["states"].values()]
-        good = set(entry) == {"kind", "energy", "states"} and rates.count("entropy") < 2 and rates
-        need(good, f"elements.{name} has a wrong key, or two entropies")
-        for state, own in entry["states"].items():
-            part = {**own, "kind": f"={own['rate']}", "energy": entry["energy"], "state": state}
-            del part["rate"]
-            yield name if own["rate"] == "entropy" else f"{name}.{state}", part
-
-
-def _slipping(name: str, entry: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a stop as a spring or capacitor with a slip, that of the rate it is projected on."""
-    (size,) = (field for field in SIZES if field in entry)
-    kind, f, v, limit = *SIZES[size], entry["limit"]
-    parse(limit)  # it is put into brackets
-    slip = f"({v} if {f} >= ({limit}) else 0) if {v} > 0 else ({v} if {f} <= -({limit}) else 0)"
-    given = {"kind": kind, "slip": slip, "discontinuous": True, "state": f"z_{name}"}
-    others = {field: entry[field] for field in entry if field not in ("kind", "limit")}
-    need({"between", "count", "heats", "state", size} >= set(others), f"{name} has a wrong key")
-    return given | others
-
-
 class _Reader:
     def __init__(self, tables: dict[str, dict[str, Any]]) -> None:
         self.tables, self.faults, self.units = tables, list[str](), dict[Symbol, Dimension]()
         entries = tables["elements"]
         self.limits = {n: e["limit"] for n, e in entries.items() if e["kind"] == "stop"}
-        entries |= {name: _slipping(name, entries[name]) for name in self.limits}
+        entries |= {name: slipping(name, entries[name]) for name in self.limits}
         self.parameters = self._values("parameters", "value", "p")
         self.inputs = self._values("inputs", "default", "u")
-        tables["elements"] = dict(_parts(tables["elements"]))
+        tables["elements"] = dict(parts(tables["elements"]))
         for name, entry in tables["elements"].items():
             need(entry["kind"] in KINDS, f"{entry['kind']!r} of {name} is a kind it does not know")
         self.kinds = {name: KINDS[entry["kind"]] for name, entry in tables["elements"].items()}

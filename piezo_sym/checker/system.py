@@ -17,8 +17,9 @@ from .field import ONE, ZERO, Field, Ratio
 from .functions import KINKS
 from .laws import InputError, Node, need, num, parse, put, sym, symbols, walk
 from .network import Flows, SingularError, Slot, flows
+from .parts import whole
 from .prover import Claim, partial
-from .spec import Element, Spec, whole
+from .spec import Element, Spec
 
 MAX_TEXT, MOST_SUMS, LANES, MAX_NAMES, MAX_CHAIN = 100_000, 2, 3, 1000, 50
 
