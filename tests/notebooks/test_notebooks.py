@@ -18,9 +18,9 @@ FOLDER = ROOT / "notebooks"
 EXECUTE = FOLDER / "execute.py"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
 #: Not executed in the fast tier, where their data have tests of their own: `reproduce` draws the
-#: figures, banks of any size are compared with NumPy, sweeps with single runs, devices with closed
-#: forms.
-LONG = {"04-figures", "05-many-hysterons", "07-sweeps", "09-devices"}
+#: figures, banks of any size are compared with NumPy, sweeps with single runs, devices and
+#: hysteresis with closed forms.
+LONG = {"04-figures", "05-many-hysterons", "07-sweeps", "09-devices", "10-hysteresis"}
 
 
 def execute(*words, script=EXECUTE):
