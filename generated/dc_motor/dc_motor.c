@@ -251,6 +251,93 @@ void dc_motor_entropy_production(const double *restrict x,
     out[1] = tau_bearing*omega_rotor/T;
 }
 
+/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+void dc_motor_elements(const double *restrict x,
+                       const double *restrict u,
+                       const dc_motor_parameters *restrict p,
+                       double *restrict out)
+{
+    const double R_0 = p->R_0;
+    const double al = p->al;
+    const double L = p->L;
+    const double K = p->K;
+    const double J_m = p->J_m;
+    const double b = p->b;
+    const double n = p->n;
+    const double J_l = p->J_l;
+    const double c = p->c;
+    const double lam = p->lam;
+    const double T_0 = p->T_0;
+    const double phi = x[0];
+    const double H = x[1];
+    const double S = x[2];
+    const double V_in = u[0];
+    const double tau = u[1];
+    const double T_e = u[2];
+    /* co-states dU/dx */
+    const double i_armature = phi/L;
+    const double omega_rotor = H/(J_m + J_l/power_2(n));
+    const double T_minus_T_0 = T_0*expm1(S/c);
+    const double T = T_0 + T_minus_T_0;
+    /* transducer ratios */
+    const double n_machine = K;
+    const double n_gear = n;
+    /* dissipative laws */
+    const double V_winding = R_0*(1.0 + al*T_minus_T_0)*i_armature;
+    const double tau_bearing = b*omega_rotor;
+    /* heats */
+    const double heat_winding = V_winding*i_armature;
+    const double heat_bearing = tau_bearing*omega_rotor;
+    /* rates */
+    const double rate_phi = V_in - n_machine*omega_rotor - V_winding;
+    const double rate_H = n_machine*i_armature - tau_bearing + tau/n_gear;
+    const double rate_S = (heat_winding + heat_bearing)/T + lam*(T_e/T - 1.0);
+    /* result */
+    out[0] = V_in;
+    out[1] = -i_armature;
+    out[2] = -i_armature*V_in;
+    out[3] = V_winding;
+    out[4] = i_armature;
+    out[5] = V_winding*i_armature;
+    out[6] = V_winding*i_armature;
+    out[7] = rate_phi;
+    out[8] = i_armature;
+    out[9] = rate_phi*i_armature;
+    out[10] = power_2(phi)/(2.0*L);
+    out[11] = n_machine*omega_rotor;
+    out[12] = i_armature;
+    out[13] = -n_machine*i_armature;
+    out[14] = omega_rotor;
+    out[15] = n_machine*omega_rotor*i_armature;
+    out[16] = J_m/(J_m + J_l/power_2(n))*rate_H;
+    out[17] = omega_rotor;
+    out[18] = J_m/(J_m + J_l/power_2(n))*rate_H*omega_rotor;
+    out[19] = 0.5*(J_m*power_2(omega_rotor));
+    out[20] = tau_bearing;
+    out[21] = omega_rotor;
+    out[22] = tau_bearing*omega_rotor;
+    out[23] = tau_bearing*omega_rotor;
+    out[24] = -tau/n_gear + J_l/n/(J_m + J_l/power_2(n))*rate_H/n_gear;
+    out[25] = n_gear*omega_rotor/n_gear;
+    out[26] = -n_gear*(-tau/n_gear + J_l/n/(J_m + J_l/power_2(n))*rate_H/n_gear);
+    out[27] = omega_rotor/n_gear;
+    out[28] = n_gear*omega_rotor/n_gear*(-tau/n_gear + J_l/n/(J_m + J_l/power_2(n))*rate_H/n_gear);
+    out[29] = J_l/n/(J_m + J_l/power_2(n))*rate_H;
+    out[30] = omega_rotor/n;
+    out[31] = J_l/n/(J_m + J_l/power_2(n))*rate_H*omega_rotor/n;
+    out[32] = 0.5*(J_l*power_2(omega_rotor/n));
+    out[33] = -tau;
+    out[34] = omega_rotor/n_gear;
+    out[35] = -omega_rotor/n_gear*tau;
+    out[36] = T;
+    out[37] = rate_S;
+    out[38] = T*rate_S;
+    out[39] = T_0*c*exp(S/c);
+    out[40] = T;
+    out[41] = -lam*(T_e/T - 1.0);
+    out[42] = -lam*(T_e - T);
+}
+
 /* Derivative of rhs by the state, n x n, row after row. */
 void dc_motor_jacobian(const double *restrict x,
                        const double *restrict u,

@@ -154,6 +154,27 @@ void dc_motor_entropy_production(const double *x,
                                  double *out);
 
 /*
+ * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * x[n], read: phi [Wb], H [N*m*s], S [J/K]
+ * u[dc_motor_input_count], read: V_in [V], tau [N*m], T_e [K]
+ * out[43], written; must not overlap another argument: supply.effort [V], supply.flow [A],
+ *     supply.power [W], winding.effort [V], winding.flow [A], winding.power [W], winding.heat
+ *     [W], armature.effort [V], armature.flow [A], armature.power [W], armature.energy [J],
+ *     machine.effort_1 [V], machine.flow_1 [A], machine.effort_2 [N*m], machine.flow_2
+ *     [rad/s], machine.power [W], rotor.effort [N*m], rotor.flow [rad/s], rotor.power [W],
+ *     rotor.energy [J], bearing.effort [N*m], bearing.flow [rad/s], bearing.power [W],
+ *     bearing.heat [W], gear.effort_1 [N*m], gear.flow_1 [rad/s], gear.effort_2 [N*m],
+ *     gear.flow_2 [rad/s], gear.power [W], load.effort [N*m], load.flow [rad/s], load.power
+ *     [W], load.energy [J], torque.effort [N*m], torque.flow [rad/s], torque.power [W],
+ *     body.effort [K], body.flow [W/K], body.power [W], body.energy [J], air.effort [K],
+ *     air.flow [W/K], air.power [W]
+ */
+void dc_motor_elements(const double *x,
+                       const double *u,
+                       const dc_motor_parameters *p,
+                       double *out);
+
+/*
  * Margin of each condition of the domain; of a bank, the least over its lanes.
  * x[n], read: phi [Wb], H [N*m*s], S [J/K]
  * u[dc_motor_input_count], read: V_in [V], tau [N*m], T_e [K]

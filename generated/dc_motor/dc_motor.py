@@ -59,6 +59,51 @@ PROCESSES = (
 BODIES = (
     Record("body", "K", "temperature of thermal_mass 'body'"),
 )
+ELEMENTS = (
+    Record("supply.effort", "V", "voltage of voltage_source 'supply'"),
+    Record("supply.flow", "A", "current of voltage_source 'supply'"),
+    Record("supply.power", "W", "power into voltage_source 'supply'"),
+    Record("winding.effort", "V", "voltage of resistor 'winding'"),
+    Record("winding.flow", "A", "current of resistor 'winding'"),
+    Record("winding.power", "W", "power into resistor 'winding'"),
+    Record("winding.heat", "W", "heat of resistor 'winding'"),
+    Record("armature.effort", "V", "voltage of inductor 'armature'"),
+    Record("armature.flow", "A", "current of inductor 'armature'"),
+    Record("armature.power", "W", "power into inductor 'armature'"),
+    Record("armature.energy", "J", "energy of inductor 'armature'"),
+    Record("machine.effort_1", "V", "voltage in branch 1 of motor 'machine'"),
+    Record("machine.flow_1", "A", "current in branch 1 of motor 'machine'"),
+    Record("machine.effort_2", "N*m", "torque in branch 2 of motor 'machine'"),
+    Record("machine.flow_2", "rad/s", "angular velocity in branch 2 of motor 'machine'"),
+    Record("machine.power", "W", "power from branch 1 to branch 2 of motor 'machine'"),
+    Record("rotor.effort", "N*m", "torque of inertia 'rotor'"),
+    Record("rotor.flow", "rad/s", "angular velocity of inertia 'rotor'"),
+    Record("rotor.power", "W", "power into inertia 'rotor'"),
+    Record("rotor.energy", "J", "energy of inertia 'rotor'"),
+    Record("bearing.effort", "N*m", "torque of rotational_damper 'bearing'"),
+    Record("bearing.flow", "rad/s", "angular velocity of rotational_damper 'bearing'"),
+    Record("bearing.power", "W", "power into rotational_damper 'bearing'"),
+    Record("bearing.heat", "W", "heat of rotational_damper 'bearing'"),
+    Record("gear.effort_1", "N*m", "torque in branch 1 of gear 'gear'"),
+    Record("gear.flow_1", "rad/s", "angular velocity in branch 1 of gear 'gear'"),
+    Record("gear.effort_2", "N*m", "torque in branch 2 of gear 'gear'"),
+    Record("gear.flow_2", "rad/s", "angular velocity in branch 2 of gear 'gear'"),
+    Record("gear.power", "W", "power from branch 1 to branch 2 of gear 'gear'"),
+    Record("load.effort", "N*m", "torque of inertia 'load'"),
+    Record("load.flow", "rad/s", "angular velocity of inertia 'load'"),
+    Record("load.power", "W", "power into inertia 'load'"),
+    Record("load.energy", "J", "energy of inertia 'load'"),
+    Record("torque.effort", "N*m", "torque of torque_source 'torque'"),
+    Record("torque.flow", "rad/s", "angular velocity of torque_source 'torque'"),
+    Record("torque.power", "W", "power into torque_source 'torque'"),
+    Record("body.effort", "K", "temperature of thermal_mass 'body'"),
+    Record("body.flow", "W/K", "entropy flow of thermal_mass 'body'"),
+    Record("body.power", "W", "power into thermal_mass 'body'"),
+    Record("body.energy", "J", "energy of thermal_mass 'body'"),
+    Record("air.effort", "K", "temperature at ambient 'air'"),
+    Record("air.flow", "W/K", "entropy flow at ambient 'air'"),
+    Record("air.power", "W", "power into ambient 'air'"),
+)
 PARAMETERS = (
     Record("R_0", "ohm", "resistance of the armature at T_0"),
     Record("al", "1/K", "temperature coefficient of copper"),
@@ -337,6 +382,93 @@ def entropy_production(x, u, p, /):
     out = np.empty((2, *x.shape[1:]))
     out[0] = V_winding*i_armature/T
     out[1] = tau_bearing*omega_rotor/T
+    return out
+
+
+def elements(x, u, p, /):
+    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (43, *batch)."""
+    x = _states(x, p)
+    u = _inputs(u)
+    R_0 = p.R_0
+    al = p.al
+    L = p.L
+    K = p.K
+    J_m = p.J_m
+    b = p.b
+    n = p.n
+    J_l = p.J_l
+    c = p.c
+    lam = p.lam
+    T_0 = p.T_0
+    phi = x[0]
+    H = x[1]
+    S = x[2]
+    V_in = u[0]
+    tau = u[1]
+    T_e = u[2]
+    # co-states dU/dx
+    i_armature = phi/L
+    omega_rotor = H/(J_m + J_l/n**2)
+    T_minus_T_0 = T_0*np.expm1(S/c)
+    T = T_0 + T_minus_T_0
+    # transducer ratios
+    n_machine = K
+    n_gear = n
+    # dissipative laws
+    V_winding = R_0*(1 + al*T_minus_T_0)*i_armature
+    tau_bearing = b*omega_rotor
+    # heats
+    heat_winding = V_winding*i_armature
+    heat_bearing = tau_bearing*omega_rotor
+    # rates
+    rate_phi = V_in - n_machine*omega_rotor - V_winding
+    rate_H = n_machine*i_armature - tau_bearing + tau/n_gear
+    rate_S = (heat_winding + heat_bearing)/T + lam*(T_e/T - 1)
+    # result
+    out = np.empty((43, *x.shape[1:]))
+    out[0] = V_in
+    out[1] = -i_armature
+    out[2] = -i_armature*V_in
+    out[3] = V_winding
+    out[4] = i_armature
+    out[5] = V_winding*i_armature
+    out[6] = V_winding*i_armature
+    out[7] = rate_phi
+    out[8] = i_armature
+    out[9] = rate_phi*i_armature
+    out[10] = phi**2/(2*L)
+    out[11] = n_machine*omega_rotor
+    out[12] = i_armature
+    out[13] = -n_machine*i_armature
+    out[14] = omega_rotor
+    out[15] = n_machine*omega_rotor*i_armature
+    out[16] = J_m/(J_m + J_l/n**2)*rate_H
+    out[17] = omega_rotor
+    out[18] = J_m/(J_m + J_l/n**2)*rate_H*omega_rotor
+    out[19] = 0.5*(J_m*omega_rotor**2)
+    out[20] = tau_bearing
+    out[21] = omega_rotor
+    out[22] = tau_bearing*omega_rotor
+    out[23] = tau_bearing*omega_rotor
+    out[24] = -tau/n_gear + J_l/n/(J_m + J_l/n**2)*rate_H/n_gear
+    out[25] = n_gear*omega_rotor/n_gear
+    out[26] = -n_gear*(-tau/n_gear + J_l/n/(J_m + J_l/n**2)*rate_H/n_gear)
+    out[27] = omega_rotor/n_gear
+    out[28] = n_gear*omega_rotor/n_gear*(-tau/n_gear + J_l/n/(J_m + J_l/n**2)*rate_H/n_gear)
+    out[29] = J_l/n/(J_m + J_l/n**2)*rate_H
+    out[30] = omega_rotor/n
+    out[31] = J_l/n/(J_m + J_l/n**2)*rate_H*omega_rotor/n
+    out[32] = 0.5*(J_l*(omega_rotor/n)**2)
+    out[33] = -tau
+    out[34] = omega_rotor/n_gear
+    out[35] = -omega_rotor/n_gear*tau
+    out[36] = T
+    out[37] = rate_S
+    out[38] = T*rate_S
+    out[39] = T_0*c*np.exp(S/c)
+    out[40] = T
+    out[41] = -lam*(T_e/T - 1)
+    out[42] = -lam*(T_e - T)
     return out
 
 

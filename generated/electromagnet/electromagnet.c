@@ -248,6 +248,81 @@ void electromagnet_entropy_production(const double *restrict x_,
     out[1] = F_friction*v_armature/T;
 }
 
+/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+void electromagnet_elements(const double *restrict x_,
+                            const double *restrict u,
+                            const electromagnet_parameters *restrict p_,
+                            double *restrict out)
+{
+    const double g = p_->g;
+    const double A = p_->A;
+    const double N = p_->N;
+    const double mu = p_->mu;
+    const double m = p_->m;
+    const double k = p_->k;
+    const double d = p_->d;
+    const double R = p_->R;
+    const double c = p_->c;
+    const double lam = p_->lam;
+    const double T_0 = p_->T_0;
+    const double q = x_[0];
+    const double p = x_[1];
+    const double S = x_[2];
+    const double phi = x_[3];
+    const double x = x_[4];
+    const double V_in = u[0];
+    const double T_e = u[1];
+    /* co-states dU/dx */
+    const double F_spring = k*q;
+    const double v_armature = p/m;
+    const double T = T_0*exp(S/c);
+    const double i_phi = 2.0*(phi*(g + x))/(2.0*mu*A*power_2(N));
+    const double F_x = power_2(phi)/(2.0*mu*A*power_2(N));
+    /* dissipative laws */
+    const double V_copper = R*i_phi;
+    const double F_friction = d*v_armature;
+    /* heats */
+    const double heat_copper = V_copper*i_phi;
+    const double heat_friction = F_friction*v_armature;
+    /* rates */
+    const double rate_p = -F_spring - F_x - F_friction;
+    const double rate_S = (heat_copper + heat_friction)/T + lam*(T_e/T - 1.0);
+    const double rate_phi = V_in - V_copper;
+    /* result */
+    out[0] = V_in;
+    out[1] = -i_phi;
+    out[2] = -i_phi*V_in;
+    out[3] = V_copper;
+    out[4] = i_phi;
+    out[5] = V_copper*i_phi;
+    out[6] = V_copper*i_phi;
+    out[7] = F_spring;
+    out[8] = v_armature;
+    out[9] = F_spring*v_armature;
+    out[10] = k*power_2(q)/2.0;
+    out[11] = rate_p;
+    out[12] = v_armature;
+    out[13] = rate_p*v_armature;
+    out[14] = power_2(p)/(2.0*m);
+    out[15] = F_friction;
+    out[16] = v_armature;
+    out[17] = F_friction*v_armature;
+    out[18] = F_friction*v_armature;
+    out[19] = T;
+    out[20] = rate_S;
+    out[21] = T*rate_S;
+    out[22] = T_0*c*exp(S/c);
+    out[23] = T;
+    out[24] = -lam*(T_e/T - 1.0);
+    out[25] = -lam*(T_e - T);
+    out[26] = rate_phi;
+    out[27] = i_phi;
+    out[28] = F_x;
+    out[29] = v_armature;
+    out[30] = i_phi*rate_phi + F_x*v_armature;
+    out[31] = power_2(phi)*(g + x)/(2.0*mu*A*power_2(N));
+}
+
 /* Derivative of rhs by the state, n x n, row after row. */
 void electromagnet_jacobian(const double *restrict x_,
                             const double *restrict u,

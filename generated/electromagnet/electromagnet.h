@@ -165,6 +165,24 @@ void electromagnet_entropy_production(const double *x_,
                                       double *out);
 
 /*
+ * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * x_[n], read: q [m], p [kg*m/s], S [J/K], phi [Wb], x [m]
+ * u[electromagnet_input_count], read: V_in [V], T_e [K]
+ * out[32], written; must not overlap another argument: supply.effort [V], supply.flow [A],
+ *     supply.power [W], copper.effort [V], copper.flow [A], copper.power [W], copper.heat [W],
+ *     spring.effort [N], spring.flow [m/s], spring.power [W], spring.energy [J],
+ *     armature.effort [N], armature.flow [m/s], armature.power [W], armature.energy [J],
+ *     friction.effort [N], friction.flow [m/s], friction.power [W], friction.heat [W],
+ *     winding.effort [K], winding.flow [W/K], winding.power [W], winding.energy [J],
+ *     air.effort [K], air.flow [W/K], air.power [W], magnet.effort_phi [V], magnet.flow_phi
+ *     [A], magnet.effort_x [N], magnet.flow_x [m/s], magnet.power [W], magnet.energy [J]
+ */
+void electromagnet_elements(const double *x_,
+                            const double *u,
+                            const electromagnet_parameters *p_,
+                            double *out);
+
+/*
  * Margin of each condition of the domain; of a bank, the least over its lanes.
  * x_[n], read: q [m], p [kg*m/s], S [J/K], phi [Wb], x [m]
  * u[electromagnet_input_count], read: V_in [V], T_e [K]

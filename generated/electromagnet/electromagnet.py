@@ -59,6 +59,40 @@ PROCESSES = (
 BODIES = (
     Record("winding", "K", "temperature of thermal_mass 'winding'"),
 )
+ELEMENTS = (
+    Record("supply.effort", "V", "voltage of voltage_source 'supply'"),
+    Record("supply.flow", "A", "current of voltage_source 'supply'"),
+    Record("supply.power", "W", "power into voltage_source 'supply'"),
+    Record("copper.effort", "V", "voltage of resistor 'copper'"),
+    Record("copper.flow", "A", "current of resistor 'copper'"),
+    Record("copper.power", "W", "power into resistor 'copper'"),
+    Record("copper.heat", "W", "heat of resistor 'copper'"),
+    Record("spring.effort", "N", "force of spring 'spring'"),
+    Record("spring.flow", "m/s", "velocity of spring 'spring'"),
+    Record("spring.power", "W", "power into spring 'spring'"),
+    Record("spring.energy", "J", "energy of spring 'spring'"),
+    Record("armature.effort", "N", "force of mass 'armature'"),
+    Record("armature.flow", "m/s", "velocity of mass 'armature'"),
+    Record("armature.power", "W", "power into mass 'armature'"),
+    Record("armature.energy", "J", "energy of mass 'armature'"),
+    Record("friction.effort", "N", "force of damper 'friction'"),
+    Record("friction.flow", "m/s", "velocity of damper 'friction'"),
+    Record("friction.power", "W", "power into damper 'friction'"),
+    Record("friction.heat", "W", "heat of damper 'friction'"),
+    Record("winding.effort", "K", "temperature of thermal_mass 'winding'"),
+    Record("winding.flow", "W/K", "entropy flow of thermal_mass 'winding'"),
+    Record("winding.power", "W", "power into thermal_mass 'winding'"),
+    Record("winding.energy", "J", "energy of thermal_mass 'winding'"),
+    Record("air.effort", "K", "temperature at ambient 'air'"),
+    Record("air.flow", "W/K", "entropy flow at ambient 'air'"),
+    Record("air.power", "W", "power into ambient 'air'"),
+    Record("magnet.effort_phi", "V", "voltage of storage 'magnet'"),
+    Record("magnet.flow_phi", "A", "current of storage 'magnet'"),
+    Record("magnet.effort_x", "N", "force of storage 'magnet'"),
+    Record("magnet.flow_x", "m/s", "velocity of storage 'magnet'"),
+    Record("magnet.power", "W", "power into storage 'magnet'"),
+    Record("magnet.energy", "J", "energy of storage 'magnet'"),
+)
 PARAMETERS = (
     Record("g", "m", "gap at rest"),
     Record("A", "m**2", "area of the pole"),
@@ -327,6 +361,81 @@ def entropy_production(x_, u, p_, /):
     out = np.empty((2, *x_.shape[1:]))
     out[0] = V_copper*i_phi/T
     out[1] = F_friction*v_armature/T
+    return out
+
+
+def elements(x_, u, p_, /):
+    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (32, *batch)."""
+    x_ = _states(x_, p_)
+    u = _inputs(u)
+    g = p_.g
+    A = p_.A
+    N = p_.N
+    mu = p_.mu
+    m = p_.m
+    k = p_.k
+    d = p_.d
+    R = p_.R
+    c = p_.c
+    lam = p_.lam
+    T_0 = p_.T_0
+    q = x_[0]
+    p = x_[1]
+    S = x_[2]
+    phi = x_[3]
+    x = x_[4]
+    V_in = u[0]
+    T_e = u[1]
+    # co-states dU/dx
+    F_spring = k*q
+    v_armature = p/m
+    T = T_0*np.exp(S/c)
+    i_phi = 2*(phi*(g + x))/(2*mu*A*N**2)
+    F_x = phi**2/(2*mu*A*N**2)
+    # dissipative laws
+    V_copper = R*i_phi
+    F_friction = d*v_armature
+    # heats
+    heat_copper = V_copper*i_phi
+    heat_friction = F_friction*v_armature
+    # rates
+    rate_p = -F_spring - F_x - F_friction
+    rate_S = (heat_copper + heat_friction)/T + lam*(T_e/T - 1)
+    rate_phi = V_in - V_copper
+    # result
+    out = np.empty((32, *x_.shape[1:]))
+    out[0] = V_in
+    out[1] = -i_phi
+    out[2] = -i_phi*V_in
+    out[3] = V_copper
+    out[4] = i_phi
+    out[5] = V_copper*i_phi
+    out[6] = V_copper*i_phi
+    out[7] = F_spring
+    out[8] = v_armature
+    out[9] = F_spring*v_armature
+    out[10] = k*q**2/2
+    out[11] = rate_p
+    out[12] = v_armature
+    out[13] = rate_p*v_armature
+    out[14] = p**2/(2*m)
+    out[15] = F_friction
+    out[16] = v_armature
+    out[17] = F_friction*v_armature
+    out[18] = F_friction*v_armature
+    out[19] = T
+    out[20] = rate_S
+    out[21] = T*rate_S
+    out[22] = T_0*c*np.exp(S/c)
+    out[23] = T
+    out[24] = -lam*(T_e/T - 1)
+    out[25] = -lam*(T_e - T)
+    out[26] = rate_phi
+    out[27] = i_phi
+    out[28] = F_x
+    out[29] = v_armature
+    out[30] = i_phi*rate_phi + F_x*v_armature
+    out[31] = phi**2*(g + x)/(2*mu*A*N**2)
     return out
 
 

@@ -220,6 +220,60 @@ void gas_piston_entropy_production(const double *restrict x,
     out[0] = F_friction*v_piston/T;
 }
 
+/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+void gas_piston_elements(const double *restrict x,
+                         const double *restrict u,
+                         const gas_piston_parameters *restrict p_,
+                         double *restrict out)
+{
+    const double V_0 = p_->V_0;
+    const double A = p_->A;
+    const double N = p_->N;
+    const double c_v = p_->c_v;
+    const double R = p_->R;
+    const double T_0 = p_->T_0;
+    const double m = p_->m;
+    const double d = p_->d;
+    const double lam = p_->lam;
+    const double p = x[0];
+    const double q = x[1];
+    const double S = x[2];
+    const double F = u[0];
+    const double T_e = u[1];
+    /* co-states dU/dx */
+    const double v_piston = p/m;
+    const double F_q = -N*c_v*T_0*exp(S/(N*c_v))*exp((-R)/c_v*log(1.0 + A*q/V_0))*R/c_v*A/(1.0 + A*q/V_0)/V_0;
+    const double T = N*c_v*T_0*exp(S/(N*c_v))/(N*c_v)*exp((-R)/c_v*log(1.0 + A*q/V_0));
+    /* dissipative laws */
+    const double F_friction = d*v_piston;
+    /* heats */
+    const double heat_friction = F_friction*v_piston;
+    /* rates */
+    const double rate_p = F - F_q - F_friction;
+    const double rate_S = heat_friction/T + lam*(T_e/T - 1.0);
+    /* result */
+    out[0] = rate_p;
+    out[1] = v_piston;
+    out[2] = rate_p*v_piston;
+    out[3] = power_2(p)/(2.0*m);
+    out[4] = F_friction;
+    out[5] = v_piston;
+    out[6] = F_friction*v_piston;
+    out[7] = F_friction*v_piston;
+    out[8] = -F;
+    out[9] = v_piston;
+    out[10] = -v_piston*F;
+    out[11] = T;
+    out[12] = -lam*(T_e/T - 1.0);
+    out[13] = -lam*(T_e - T);
+    out[14] = F_q;
+    out[15] = v_piston;
+    out[16] = T;
+    out[17] = rate_S;
+    out[18] = F_q*v_piston + T*rate_S;
+    out[19] = N*c_v*T_0*exp(S/(N*c_v))*exp((-R)/c_v*log(1.0 + A*q/V_0));
+}
+
 /* Derivative of rhs by the state, n x n, row after row. */
 void gas_piston_jacobian(const double *restrict x,
                          const double *restrict u,

@@ -156,6 +156,21 @@ void gas_piston_entropy_production(const double *x,
                                    double *out);
 
 /*
+ * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * x[n], read: p [kg*m/s], q [m], S [J/K]
+ * u[gas_piston_input_count], read: F [N], T_e [K]
+ * out[20], written; must not overlap another argument: piston.effort [N], piston.flow [m/s],
+ *     piston.power [W], piston.energy [J], friction.effort [N], friction.flow [m/s],
+ *     friction.power [W], friction.heat [W], load.effort [N], load.flow [m/s], load.power [W],
+ *     vessel.effort [K], vessel.flow [W/K], vessel.power [W], gas.effort_q [N], gas.flow_q
+ *     [m/s], gas.effort_S [K], gas.flow_S [W/K], gas.power [W], gas.energy [J]
+ */
+void gas_piston_elements(const double *x,
+                         const double *u,
+                         const gas_piston_parameters *p_,
+                         double *out);
+
+/*
  * Margin of each condition of the domain; of a bank, the least over its lanes.
  * x[n], read: p [kg*m/s], q [m], S [J/K]
  * u[gas_piston_input_count], read: F [N], T_e [K]

@@ -56,6 +56,28 @@ PROCESSES = (
 BODIES = (
     Record("gas", "K", "temperature of thermal_mass 'gas'"),
 )
+ELEMENTS = (
+    Record("piston.effort", "N", "force of mass 'piston'"),
+    Record("piston.flow", "m/s", "velocity of mass 'piston'"),
+    Record("piston.power", "W", "power into mass 'piston'"),
+    Record("piston.energy", "J", "energy of mass 'piston'"),
+    Record("friction.effort", "N", "force of damper 'friction'"),
+    Record("friction.flow", "m/s", "velocity of damper 'friction'"),
+    Record("friction.power", "W", "power into damper 'friction'"),
+    Record("friction.heat", "W", "heat of damper 'friction'"),
+    Record("load.effort", "N", "force of force_source 'load'"),
+    Record("load.flow", "m/s", "velocity of force_source 'load'"),
+    Record("load.power", "W", "power into force_source 'load'"),
+    Record("vessel.effort", "K", "temperature at ambient 'vessel'"),
+    Record("vessel.flow", "W/K", "entropy flow at ambient 'vessel'"),
+    Record("vessel.power", "W", "power into ambient 'vessel'"),
+    Record("gas.effort_q", "N", "force of storage 'gas'"),
+    Record("gas.flow_q", "m/s", "velocity of storage 'gas'"),
+    Record("gas.effort_S", "K", "temperature of storage 'gas'"),
+    Record("gas.flow_S", "W/K", "entropy flow of storage 'gas'"),
+    Record("gas.power", "W", "power into storage 'gas'"),
+    Record("gas.energy", "J", "energy of storage 'gas'"),
+)
 PARAMETERS = (
     Record("V_0", "m**3", "volume at q = 0"),
     Record("A", "m**2", "area of the piston"),
@@ -298,6 +320,60 @@ def entropy_production(x, u, p_, /):
     # result
     out = np.empty((1, *x.shape[1:]))
     out[0] = F_friction*v_piston/T
+    return out
+
+
+def elements(x, u, p_, /):
+    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (20, *batch)."""
+    x = _states(x, p_)
+    u = _inputs(u)
+    V_0 = p_.V_0
+    A = p_.A
+    N = p_.N
+    c_v = p_.c_v
+    R = p_.R
+    T_0 = p_.T_0
+    m = p_.m
+    d = p_.d
+    lam = p_.lam
+    p = x[0]
+    q = x[1]
+    S = x[2]
+    F = u[0]
+    T_e = u[1]
+    # co-states dU/dx
+    v_piston = p/m
+    F_q = -N*c_v*T_0*np.exp(S/(N*c_v))*np.exp((-R)/c_v*np.log(1 + A*q/V_0))*R/c_v*A/(1 + A*q/V_0)/V_0
+    T = N*c_v*T_0*np.exp(S/(N*c_v))/(N*c_v)*np.exp((-R)/c_v*np.log(1 + A*q/V_0))
+    # dissipative laws
+    F_friction = d*v_piston
+    # heats
+    heat_friction = F_friction*v_piston
+    # rates
+    rate_p = F - F_q - F_friction
+    rate_S = heat_friction/T + lam*(T_e/T - 1)
+    # result
+    out = np.empty((20, *x.shape[1:]))
+    out[0] = rate_p
+    out[1] = v_piston
+    out[2] = rate_p*v_piston
+    out[3] = p**2/(2*m)
+    out[4] = F_friction
+    out[5] = v_piston
+    out[6] = F_friction*v_piston
+    out[7] = F_friction*v_piston
+    out[8] = -F
+    out[9] = v_piston
+    out[10] = -v_piston*F
+    out[11] = T
+    out[12] = -lam*(T_e/T - 1)
+    out[13] = -lam*(T_e - T)
+    out[14] = F_q
+    out[15] = v_piston
+    out[16] = T
+    out[17] = rate_S
+    out[18] = F_q*v_piston + T*rate_S
+    out[19] = N*c_v*T_0*np.exp(S/(N*c_v))*np.exp((-R)/c_v*np.log(1 + A*q/V_0))
     return out
 
 

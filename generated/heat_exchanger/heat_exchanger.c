@@ -182,6 +182,42 @@ void heat_exchanger_entropy_production(const double *restrict x,
     out[0] = s_contact*(T_hot - T_cold)/T_cold;
 }
 
+/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+void heat_exchanger_elements(const double *restrict x,
+                             const double *restrict u,
+                             const heat_exchanger_parameters *restrict p,
+                             double *restrict out)
+{
+    (void)u;
+    const double c_1 = p->c_1;
+    const double c_2 = p->c_2;
+    const double lam = p->lam;
+    const double T_0 = p->T_0;
+    const double S_hot = x[0];
+    const double S_cold = x[1];
+    /* co-states dU/dx */
+    const double T_hot = T_0*exp(S_hot/c_1);
+    const double T_cold = T_0*exp(S_cold/c_2);
+    /* dissipative laws */
+    const double s_contact = lam*(T_hot - T_cold)/T_hot;
+    /* heats */
+    const double heat_contact = s_contact*T_hot;
+    /* rates */
+    const double rate_S_hot = -s_contact;
+    const double rate_S_cold = heat_contact/T_cold;
+    /* result */
+    out[0] = T_hot;
+    out[1] = rate_S_hot;
+    out[2] = T_hot*rate_S_hot;
+    out[3] = T_0*c_1*exp(S_hot/c_1);
+    out[4] = T_cold;
+    out[5] = rate_S_cold;
+    out[6] = T_cold*rate_S_cold;
+    out[7] = T_0*c_2*exp(S_cold/c_2);
+    out[8] = T_hot - T_cold;
+    out[9] = s_contact*T_hot;
+}
+
 /* Derivative of rhs by the state, n x n, row after row. */
 void heat_exchanger_jacobian(const double *restrict x,
                              const double *restrict u,

@@ -154,6 +154,19 @@ void heat_exchanger_entropy_production(const double *x,
                                        double *out);
 
 /*
+ * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * x[n], read: S_hot [J/K], S_cold [J/K]
+ * u[heat_exchanger_input_count], read
+ * out[10], written; must not overlap another argument: hot.effort [K], hot.flow [W/K],
+ *     hot.power [W], hot.energy [J], cold.effort [K], cold.flow [W/K], cold.power [W],
+ *     cold.energy [J], contact.effort [K], contact.power [W]
+ */
+void heat_exchanger_elements(const double *x,
+                             const double *u,
+                             const heat_exchanger_parameters *p,
+                             double *out);
+
+/*
  * Margin of each condition of the domain; of a bank, the least over its lanes.
  * x[n], read: S_hot [J/K], S_cold [J/K]
  * u[heat_exchanger_input_count], read

@@ -50,6 +50,18 @@ BODIES = (
     Record("hot", "K", "temperature of thermal_mass 'hot'"),
     Record("cold", "K", "temperature of thermal_mass 'cold'"),
 )
+ELEMENTS = (
+    Record("hot.effort", "K", "temperature of thermal_mass 'hot'"),
+    Record("hot.flow", "W/K", "entropy flow of thermal_mass 'hot'"),
+    Record("hot.power", "W", "power into thermal_mass 'hot'"),
+    Record("hot.energy", "J", "energy of thermal_mass 'hot'"),
+    Record("cold.effort", "K", "temperature of thermal_mass 'cold'"),
+    Record("cold.flow", "W/K", "entropy flow of thermal_mass 'cold'"),
+    Record("cold.power", "W", "power into thermal_mass 'cold'"),
+    Record("cold.energy", "J", "energy of thermal_mass 'cold'"),
+    Record("contact.effort", "K", "temperature difference over conduction 'contact'"),
+    Record("contact.power", "W", "heat from first to second body by conduction 'contact'"),
+)
 PARAMETERS = (
     Record("c_1", "J/K", "heat capacity of the hot body"),
     Record("c_2", "J/K", "heat capacity of the cold body"),
@@ -236,6 +248,40 @@ def entropy_production(x, u, p, /):
     # result
     out = np.empty((1, *x.shape[1:]))
     out[0] = s_contact*(T_hot - T_cold)/T_cold
+    return out
+
+
+def elements(x, u, p, /):
+    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (10, *batch)."""
+    x = _states(x, p)
+    c_1 = p.c_1
+    c_2 = p.c_2
+    lam = p.lam
+    T_0 = p.T_0
+    S_hot = x[0]
+    S_cold = x[1]
+    # co-states dU/dx
+    T_hot = T_0*np.exp(S_hot/c_1)
+    T_cold = T_0*np.exp(S_cold/c_2)
+    # dissipative laws
+    s_contact = lam*(T_hot - T_cold)/T_hot
+    # heats
+    heat_contact = s_contact*T_hot
+    # rates
+    rate_S_hot = -s_contact
+    rate_S_cold = heat_contact/T_cold
+    # result
+    out = np.empty((10, *x.shape[1:]))
+    out[0] = T_hot
+    out[1] = rate_S_hot
+    out[2] = T_hot*rate_S_hot
+    out[3] = T_0*c_1*np.exp(S_hot/c_1)
+    out[4] = T_cold
+    out[5] = rate_S_cold
+    out[6] = T_cold*rate_S_cold
+    out[7] = T_0*c_2*np.exp(S_cold/c_2)
+    out[8] = T_hot - T_cold
+    out[9] = s_contact*T_hot
     return out
 
 

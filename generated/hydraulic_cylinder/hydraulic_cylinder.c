@@ -277,6 +277,92 @@ void hydraulic_cylinder_entropy_production(const double *restrict x,
     out[1] = F_friction*v_load/T;
 }
 
+/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+void hydraulic_cylinder_elements(const double *restrict x,
+                                 const double *restrict u,
+                                 const hydraulic_cylinder_parameters *restrict p_,
+                                 double *restrict out)
+{
+    const double C_d = p_->C_d;
+    const double a = p_->a;
+    const double rho = p_->rho;
+    const double p_t = p_->p_t;
+    const double A = p_->A;
+    const double C_h = p_->C_h;
+    const double m = p_->m;
+    const double d = p_->d;
+    const double k_s = p_->k_s;
+    const double x_s = p_->x_s;
+    const double c = p_->c;
+    const double lam = p_->lam;
+    const double T_0 = p_->T_0;
+    const double V = x[0];
+    const double p = x[1];
+    const double q = x[2];
+    const double S = x[3];
+    const double p_in = u[0];
+    const double F = u[1];
+    const double T_e = u[2];
+    /* co-states dU/dx */
+    const double dp_chamber = V/C_h;
+    const double v_load = p/m;
+    const double F_stop = k_s*max(q - x_s, 0.0);
+    const double T = T_0*exp(S/c);
+    /* transducer ratios */
+    const double alpha_cylinder = A;
+    /* driving forces */
+    const double dp_orifice = -dp_chamber + p_in;
+    /* dissipative laws */
+    const double flow_orifice = C_d*a*sqrt(2.0/rho)*dp_orifice/pow(power_2(dp_orifice) + power_2(p_t), 0.25);
+    const double F_friction = d*v_load;
+    /* heats */
+    const double heat_orifice = flow_orifice*dp_orifice;
+    const double heat_friction = F_friction*v_load;
+    /* rates */
+    const double rate_V = flow_orifice - alpha_cylinder*v_load;
+    const double rate_p = alpha_cylinder*dp_chamber - F_stop - F_friction + F;
+    const double rate_S = (heat_orifice + heat_friction)/T + lam*(T_e/T - 1.0);
+    /* result */
+    out[0] = p_in;
+    out[1] = -flow_orifice;
+    out[2] = -flow_orifice*p_in;
+    out[3] = dp_orifice;
+    out[4] = flow_orifice;
+    out[5] = flow_orifice*dp_orifice;
+    out[6] = flow_orifice*dp_orifice;
+    out[7] = dp_chamber;
+    out[8] = rate_V;
+    out[9] = dp_chamber*rate_V;
+    out[10] = power_2(V)/(2.0*C_h);
+    out[11] = dp_chamber;
+    out[12] = alpha_cylinder*v_load;
+    out[13] = -alpha_cylinder*dp_chamber;
+    out[14] = v_load;
+    out[15] = dp_chamber*alpha_cylinder*v_load;
+    out[16] = rate_p;
+    out[17] = v_load;
+    out[18] = rate_p*v_load;
+    out[19] = power_2(p)/(2.0*m);
+    out[20] = F_friction;
+    out[21] = v_load;
+    out[22] = F_friction*v_load;
+    out[23] = F_friction*v_load;
+    out[24] = F_stop;
+    out[25] = v_load;
+    out[26] = F_stop*v_load;
+    out[27] = 0.5*(k_s*power_2(max(q - x_s, 0.0)));
+    out[28] = -F;
+    out[29] = v_load;
+    out[30] = -v_load*F;
+    out[31] = T;
+    out[32] = rate_S;
+    out[33] = T*rate_S;
+    out[34] = T_0*c*exp(S/c);
+    out[35] = T;
+    out[36] = -lam*(T_e/T - 1.0);
+    out[37] = -lam*(T_e - T);
+}
+
 /* Derivative of rhs by the state, n x n, row after row. */
 void hydraulic_cylinder_jacobian(const double *restrict x,
                                  const double *restrict u,

@@ -168,6 +168,26 @@ void hydraulic_cylinder_entropy_production(const double *x,
                                            double *out);
 
 /*
+ * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * x[n], read: V [m**3], p [kg*m/s], q [m], S [J/K]
+ * u[hydraulic_cylinder_input_count], read: p_in [Pa], F [N], T_e [K]
+ * out[38], written; must not overlap another argument: supply.effort [Pa], supply.flow
+ *     [m**3/s], supply.power [W], orifice.effort [Pa], orifice.flow [m**3/s], orifice.power
+ *     [W], orifice.heat [W], chamber.effort [Pa], chamber.flow [m**3/s], chamber.power [W],
+ *     chamber.energy [J], cylinder.effort_1 [Pa], cylinder.flow_1 [m**3/s], cylinder.effort_2
+ *     [N], cylinder.flow_2 [m/s], cylinder.power [W], load.effort [N], load.flow [m/s],
+ *     load.power [W], load.energy [J], friction.effort [N], friction.flow [m/s],
+ *     friction.power [W], friction.heat [W], stop.effort [N], stop.flow [m/s], stop.power [W],
+ *     stop.energy [J], push.effort [N], push.flow [m/s], push.power [W], oil.effort [K],
+ *     oil.flow [W/K], oil.power [W], oil.energy [J], air.effort [K], air.flow [W/K], air.power
+ *     [W]
+ */
+void hydraulic_cylinder_elements(const double *x,
+                                 const double *u,
+                                 const hydraulic_cylinder_parameters *p_,
+                                 double *out);
+
+/*
  * Margin of each condition of the domain; of a bank, the least over its lanes.
  * x[n], read: V [m**3], p [kg*m/s], q [m], S [J/K]
  * u[hydraulic_cylinder_input_count], read: p_in [Pa], F [N], T_e [K]

@@ -60,6 +60,46 @@ PROCESSES = (
 BODIES = (
     Record("oil", "K", "temperature of thermal_mass 'oil'"),
 )
+ELEMENTS = (
+    Record("supply.effort", "Pa", "pressure of pressure_source 'supply'"),
+    Record("supply.flow", "m**3/s", "flow of pressure_source 'supply'"),
+    Record("supply.power", "W", "power into pressure_source 'supply'"),
+    Record("orifice.effort", "Pa", "pressure of orifice 'orifice'"),
+    Record("orifice.flow", "m**3/s", "flow of orifice 'orifice'"),
+    Record("orifice.power", "W", "power into orifice 'orifice'"),
+    Record("orifice.heat", "W", "heat of orifice 'orifice'"),
+    Record("chamber.effort", "Pa", "pressure of accumulator 'chamber'"),
+    Record("chamber.flow", "m**3/s", "flow of accumulator 'chamber'"),
+    Record("chamber.power", "W", "power into accumulator 'chamber'"),
+    Record("chamber.energy", "J", "energy of accumulator 'chamber'"),
+    Record("cylinder.effort_1", "Pa", "pressure in branch 1 of cylinder 'cylinder'"),
+    Record("cylinder.flow_1", "m**3/s", "flow in branch 1 of cylinder 'cylinder'"),
+    Record("cylinder.effort_2", "N", "force in branch 2 of cylinder 'cylinder'"),
+    Record("cylinder.flow_2", "m/s", "velocity in branch 2 of cylinder 'cylinder'"),
+    Record("cylinder.power", "W", "power from branch 1 to branch 2 of cylinder 'cylinder'"),
+    Record("load.effort", "N", "force of mass 'load'"),
+    Record("load.flow", "m/s", "velocity of mass 'load'"),
+    Record("load.power", "W", "power into mass 'load'"),
+    Record("load.energy", "J", "energy of mass 'load'"),
+    Record("friction.effort", "N", "force of damper 'friction'"),
+    Record("friction.flow", "m/s", "velocity of damper 'friction'"),
+    Record("friction.power", "W", "power into damper 'friction'"),
+    Record("friction.heat", "W", "heat of damper 'friction'"),
+    Record("stop.effort", "N", "force of spring 'stop'"),
+    Record("stop.flow", "m/s", "velocity of spring 'stop'"),
+    Record("stop.power", "W", "power into spring 'stop'"),
+    Record("stop.energy", "J", "energy of spring 'stop'"),
+    Record("push.effort", "N", "force of force_source 'push'"),
+    Record("push.flow", "m/s", "velocity of force_source 'push'"),
+    Record("push.power", "W", "power into force_source 'push'"),
+    Record("oil.effort", "K", "temperature of thermal_mass 'oil'"),
+    Record("oil.flow", "W/K", "entropy flow of thermal_mass 'oil'"),
+    Record("oil.power", "W", "power into thermal_mass 'oil'"),
+    Record("oil.energy", "J", "energy of thermal_mass 'oil'"),
+    Record("air.effort", "K", "temperature at ambient 'air'"),
+    Record("air.flow", "W/K", "entropy flow at ambient 'air'"),
+    Record("air.power", "W", "power into ambient 'air'"),
+)
 PARAMETERS = (
     Record("C_d", "1", "discharge coefficient"),
     Record("a", "m**2", "area of the orifice"),
@@ -359,6 +399,92 @@ def entropy_production(x, u, p_, /):
     out = np.empty((2, *x.shape[1:]))
     out[0] = flow_orifice*dp_orifice/T
     out[1] = F_friction*v_load/T
+    return out
+
+
+def elements(x, u, p_, /):
+    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (38, *batch)."""
+    x = _states(x, p_)
+    u = _inputs(u)
+    C_d = p_.C_d
+    a = p_.a
+    rho = p_.rho
+    p_t = p_.p_t
+    A = p_.A
+    C_h = p_.C_h
+    m = p_.m
+    d = p_.d
+    k_s = p_.k_s
+    x_s = p_.x_s
+    c = p_.c
+    lam = p_.lam
+    T_0 = p_.T_0
+    V = x[0]
+    p = x[1]
+    q = x[2]
+    S = x[3]
+    p_in = u[0]
+    F = u[1]
+    T_e = u[2]
+    # co-states dU/dx
+    dp_chamber = V/C_h
+    v_load = p/m
+    F_stop = k_s*np.maximum(q - x_s, 0)
+    T = T_0*np.exp(S/c)
+    # transducer ratios
+    alpha_cylinder = A
+    # driving forces
+    dp_orifice = -dp_chamber + p_in
+    # dissipative laws
+    flow_orifice = C_d*a*np.sqrt(2/rho)*dp_orifice/(dp_orifice**2 + p_t**2)**(0.25)
+    F_friction = d*v_load
+    # heats
+    heat_orifice = flow_orifice*dp_orifice
+    heat_friction = F_friction*v_load
+    # rates
+    rate_V = flow_orifice - alpha_cylinder*v_load
+    rate_p = alpha_cylinder*dp_chamber - F_stop - F_friction + F
+    rate_S = (heat_orifice + heat_friction)/T + lam*(T_e/T - 1)
+    # result
+    out = np.empty((38, *x.shape[1:]))
+    out[0] = p_in
+    out[1] = -flow_orifice
+    out[2] = -flow_orifice*p_in
+    out[3] = dp_orifice
+    out[4] = flow_orifice
+    out[5] = flow_orifice*dp_orifice
+    out[6] = flow_orifice*dp_orifice
+    out[7] = dp_chamber
+    out[8] = rate_V
+    out[9] = dp_chamber*rate_V
+    out[10] = V**2/(2*C_h)
+    out[11] = dp_chamber
+    out[12] = alpha_cylinder*v_load
+    out[13] = -alpha_cylinder*dp_chamber
+    out[14] = v_load
+    out[15] = dp_chamber*alpha_cylinder*v_load
+    out[16] = rate_p
+    out[17] = v_load
+    out[18] = rate_p*v_load
+    out[19] = p**2/(2*m)
+    out[20] = F_friction
+    out[21] = v_load
+    out[22] = F_friction*v_load
+    out[23] = F_friction*v_load
+    out[24] = F_stop
+    out[25] = v_load
+    out[26] = F_stop*v_load
+    out[27] = 0.5*(k_s*np.maximum(q - x_s, 0)**2)
+    out[28] = -F
+    out[29] = v_load
+    out[30] = -v_load*F
+    out[31] = T
+    out[32] = rate_S
+    out[33] = T*rate_S
+    out[34] = T_0*c*np.exp(S/c)
+    out[35] = T
+    out[36] = -lam*(T_e/T - 1)
+    out[37] = -lam*(T_e - T)
     return out
 
 

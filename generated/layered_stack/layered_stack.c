@@ -476,6 +476,243 @@ void layered_stack_entropy_production(const double *restrict x,
     out[7] = s_contact_2*(T_body_2 - T_body_3)/T_body_3;
 }
 
+/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+void layered_stack_elements(const double *restrict x,
+                            const double *restrict u,
+                            const layered_stack_parameters *restrict p,
+                            double *restrict out)
+{
+    const double M = p->M;
+    const double k = p->k;
+    const double d = p->d;
+    const double C = p->C;
+    const double L = p->L;
+    const double rho = p->rho;
+    const double i_0 = p->i_0;
+    const double a = p->a;
+    const double T_0 = p->T_0;
+    const double c_0 = p->c_0;
+    const double lam = p->lam;
+    const double lam_l = p->lam_l;
+    const double q_1 = x[0];
+    const double p_1 = x[1];
+    const double Q_1 = x[2];
+    const double phi_1 = x[3];
+    const double S_1 = x[4];
+    const double q_2 = x[5];
+    const double p_2 = x[6];
+    const double Q_2 = x[7];
+    const double phi_2 = x[8];
+    const double S_2 = x[9];
+    const double q_3 = x[10];
+    const double p_3 = x[11];
+    const double Q_3 = x[12];
+    const double phi_3 = x[13];
+    const double S_3 = x[14];
+    const double F_ext = u[0];
+    const double V_in = u[1];
+    const double T_e = u[2];
+    /* co-states dU/dx */
+    const double F_spring_1 = k*q_1;
+    const double v_mass_1 = p_1/M;
+    const double V_capacitor_1 = Q_1/C;
+    const double i_hysteron_1 = phi_1/L;
+    const double T_body_1_minus_T_0 = T_0*expm1(S_1/c_0);
+    const double T_body_1 = T_0 + T_body_1_minus_T_0;
+    const double F_spring_2 = k*q_2;
+    const double v_mass_2 = p_2/M;
+    const double V_capacitor_2 = Q_2/C;
+    const double i_hysteron_2 = phi_2/L;
+    const double T_body_2_minus_T_0 = T_0*expm1(S_2/c_0);
+    const double T_body_2 = T_0 + T_body_2_minus_T_0;
+    const double F_spring_3 = k*q_3;
+    const double v_mass_3 = p_3/M;
+    const double V_capacitor_3 = Q_3/C;
+    const double i_hysteron_3 = phi_3/L;
+    const double T_body_3_minus_T_0 = T_0*expm1(S_3/c_0);
+    const double T_body_3 = T_0 + T_body_3_minus_T_0;
+    /* transducer ratios */
+    const double alpha_transducer_1 = a*T_body_1/T_0;
+    const double alpha_transducer_2 = a*T_body_2/T_0;
+    const double alpha_transducer_3 = a*T_body_3/T_0;
+    /* dissipative laws */
+    const double V_hysteron_1 = pick(
+        fabs(i_hysteron_1) <= i_0,
+        0.0,
+        rho/T_body_1_minus_T_0*(i_hysteron_1 - copysign(i_0, i_hysteron_1)));
+    const double F_damper_1 = d*v_mass_1;
+    const double V_hysteron_2 = pick(
+        fabs(i_hysteron_2) <= i_0,
+        0.0,
+        rho/T_body_2_minus_T_0*(i_hysteron_2 - copysign(i_0, i_hysteron_2)));
+    /* driving forces */
+    const double v_damper_2 = -v_mass_1 + v_mass_2;
+    /* dissipative laws */
+    const double F_damper_2 = d*v_damper_2;
+    const double V_hysteron_3 = pick(
+        fabs(i_hysteron_3) <= i_0,
+        0.0,
+        rho/T_body_3_minus_T_0*(i_hysteron_3 - copysign(i_0, i_hysteron_3)));
+    /* driving forces */
+    const double v_damper_3 = -v_mass_2 + v_mass_3;
+    /* dissipative laws */
+    const double F_damper_3 = d*v_damper_3;
+    const double s_contact_1 = lam_l*(T_body_1 - T_body_2)/T_body_1;
+    const double s_contact_2 = lam_l*(T_body_2 - T_body_3)/T_body_2;
+    /* heats */
+    const double heat_hysteron_1 = V_hysteron_1*i_hysteron_1;
+    const double heat_damper_1 = F_damper_1*v_mass_1;
+    const double heat_hysteron_2 = V_hysteron_2*i_hysteron_2;
+    const double heat_damper_2 = F_damper_2*v_damper_2;
+    const double heat_hysteron_3 = V_hysteron_3*i_hysteron_3;
+    const double heat_damper_3 = F_damper_3*v_damper_3;
+    const double heat_contact_1 = s_contact_1*T_body_1;
+    const double heat_contact_2 = s_contact_2*T_body_2;
+    /* rates */
+    const double rate_p_1 = alpha_transducer_1*V_capacitor_1
+        - F_spring_1
+        + F_spring_2
+        - alpha_transducer_2*V_capacitor_2
+        - F_damper_1
+        + F_damper_2;
+    const double rate_Q_1 = i_hysteron_1 - alpha_transducer_1*v_mass_1;
+    const double rate_phi_1 = V_in - V_capacitor_1 - V_hysteron_1;
+    const double rate_S_1 = (heat_hysteron_1 + heat_damper_1)/T_body_1
+        - s_contact_1
+        + lam*(T_e/T_body_1 - 1.0);
+    const double rate_q_2 = v_mass_2 - v_mass_1;
+    const double rate_p_2 = alpha_transducer_2*V_capacitor_2
+        - F_spring_2
+        + F_spring_3
+        - alpha_transducer_3*V_capacitor_3
+        - F_damper_2
+        + F_damper_3;
+    const double rate_Q_2 = alpha_transducer_2*v_mass_1
+        - alpha_transducer_2*v_mass_2
+        + i_hysteron_2;
+    const double rate_phi_2 = V_in - V_capacitor_2 - V_hysteron_2;
+    const double rate_S_2 = (heat_hysteron_2 + heat_damper_2 + heat_contact_1)/T_body_2
+        - s_contact_2;
+    const double rate_q_3 = v_mass_3 - v_mass_2;
+    const double rate_p_3 = alpha_transducer_3*V_capacitor_3
+        - F_spring_3
+        - F_damper_3
+        + F_ext;
+    const double rate_Q_3 = alpha_transducer_3*v_mass_2
+        - alpha_transducer_3*v_mass_3
+        + i_hysteron_3;
+    const double rate_phi_3 = V_in - V_capacitor_3 - V_hysteron_3;
+    const double rate_S_3 = (heat_hysteron_3 + heat_damper_3 + heat_contact_2)/T_body_3
+        + lam*(T_e/T_body_3 - 1.0);
+    /* result */
+    out[0] = F_spring_1;
+    out[1] = v_mass_1;
+    out[2] = F_spring_1*v_mass_1;
+    out[3] = k*power_2(q_1)/2.0;
+    out[4] = rate_p_1;
+    out[5] = v_mass_1;
+    out[6] = rate_p_1*v_mass_1;
+    out[7] = power_2(p_1)/(2.0*M);
+    out[8] = V_capacitor_1;
+    out[9] = rate_Q_1;
+    out[10] = V_capacitor_1*rate_Q_1;
+    out[11] = power_2(Q_1)/(2.0*C);
+    out[12] = rate_phi_1 + V_hysteron_1;
+    out[13] = i_hysteron_1;
+    out[14] = (rate_phi_1 + V_hysteron_1)*i_hysteron_1;
+    out[15] = power_2(phi_1)/(2.0*L);
+    out[16] = V_hysteron_1*i_hysteron_1;
+    out[17] = F_damper_1;
+    out[18] = v_mass_1;
+    out[19] = F_damper_1*v_mass_1;
+    out[20] = F_damper_1*v_mass_1;
+    out[21] = V_capacitor_1;
+    out[22] = alpha_transducer_1*v_mass_1;
+    out[23] = -alpha_transducer_1*V_capacitor_1;
+    out[24] = v_mass_1;
+    out[25] = V_capacitor_1*alpha_transducer_1*v_mass_1;
+    out[26] = T_body_1;
+    out[27] = rate_S_1;
+    out[28] = T_body_1*rate_S_1;
+    out[29] = T_0*c_0*exp(S_1/c_0);
+    out[30] = F_spring_2;
+    out[31] = rate_q_2;
+    out[32] = F_spring_2*rate_q_2;
+    out[33] = k*power_2(q_2)/2.0;
+    out[34] = rate_p_2;
+    out[35] = v_mass_2;
+    out[36] = rate_p_2*v_mass_2;
+    out[37] = power_2(p_2)/(2.0*M);
+    out[38] = V_capacitor_2;
+    out[39] = rate_Q_2;
+    out[40] = V_capacitor_2*rate_Q_2;
+    out[41] = power_2(Q_2)/(2.0*C);
+    out[42] = rate_phi_2 + V_hysteron_2;
+    out[43] = i_hysteron_2;
+    out[44] = (rate_phi_2 + V_hysteron_2)*i_hysteron_2;
+    out[45] = power_2(phi_2)/(2.0*L);
+    out[46] = V_hysteron_2*i_hysteron_2;
+    out[47] = F_damper_2;
+    out[48] = v_damper_2;
+    out[49] = F_damper_2*v_damper_2;
+    out[50] = F_damper_2*v_damper_2;
+    out[51] = V_capacitor_2;
+    out[52] = alpha_transducer_2*(-v_mass_1 + v_mass_2);
+    out[53] = -alpha_transducer_2*V_capacitor_2;
+    out[54] = -v_mass_1 + v_mass_2;
+    out[55] = V_capacitor_2*alpha_transducer_2*(-v_mass_1 + v_mass_2);
+    out[56] = T_body_2;
+    out[57] = rate_S_2;
+    out[58] = T_body_2*rate_S_2;
+    out[59] = T_0*c_0*exp(S_2/c_0);
+    out[60] = F_spring_3;
+    out[61] = rate_q_3;
+    out[62] = F_spring_3*rate_q_3;
+    out[63] = k*power_2(q_3)/2.0;
+    out[64] = rate_p_3;
+    out[65] = v_mass_3;
+    out[66] = rate_p_3*v_mass_3;
+    out[67] = power_2(p_3)/(2.0*M);
+    out[68] = V_capacitor_3;
+    out[69] = rate_Q_3;
+    out[70] = V_capacitor_3*rate_Q_3;
+    out[71] = power_2(Q_3)/(2.0*C);
+    out[72] = rate_phi_3 + V_hysteron_3;
+    out[73] = i_hysteron_3;
+    out[74] = (rate_phi_3 + V_hysteron_3)*i_hysteron_3;
+    out[75] = power_2(phi_3)/(2.0*L);
+    out[76] = V_hysteron_3*i_hysteron_3;
+    out[77] = F_damper_3;
+    out[78] = v_damper_3;
+    out[79] = F_damper_3*v_damper_3;
+    out[80] = F_damper_3*v_damper_3;
+    out[81] = V_capacitor_3;
+    out[82] = alpha_transducer_3*(-v_mass_2 + v_mass_3);
+    out[83] = -alpha_transducer_3*V_capacitor_3;
+    out[84] = -v_mass_2 + v_mass_3;
+    out[85] = V_capacitor_3*alpha_transducer_3*(-v_mass_2 + v_mass_3);
+    out[86] = T_body_3;
+    out[87] = rate_S_3;
+    out[88] = T_body_3*rate_S_3;
+    out[89] = T_0*c_0*exp(S_3/c_0);
+    out[90] = T_body_1 - T_body_2;
+    out[91] = s_contact_1*T_body_1;
+    out[92] = T_body_2 - T_body_3;
+    out[93] = s_contact_2*T_body_2;
+    out[94] = T_body_1;
+    out[95] = -lam*(T_e/T_body_1 - 1.0);
+    out[96] = -lam*(T_e - T_body_1);
+    out[97] = T_body_3;
+    out[98] = -lam*(T_e/T_body_3 - 1.0);
+    out[99] = -lam*(T_e - T_body_3);
+    out[100] = -F_ext;
+    out[101] = v_mass_3;
+    out[102] = -v_mass_3*F_ext;
+    out[103] = V_in;
+    out[104] = -(i_hysteron_1 + i_hysteron_2 + i_hysteron_3);
+    out[105] = -(i_hysteron_1 + i_hysteron_2 + i_hysteron_3)*V_in;
+}
+
 /* Derivative of rhs by the state, n x n, row after row. */
 void layered_stack_jacobian(const double *restrict x,
                             const double *restrict u,

@@ -176,6 +176,45 @@ void layered_stack_entropy_production(const double *x,
                                       double *out);
 
 /*
+ * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * x[n], read: q_1 [m], p_1 [kg*m/s], Q_1 [C], phi_1 [Wb], S_1 [J/K], q_2 [m], p_2 [kg*m/s],
+ *     Q_2 [C], phi_2 [Wb], S_2 [J/K], q_3 [m], p_3 [kg*m/s], Q_3 [C], phi_3 [Wb], S_3 [J/K]
+ * u[layered_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[106], written; must not overlap another argument: spring_1.effort [N], spring_1.flow
+ *     [m/s], spring_1.power [W], spring_1.energy [J], mass_1.effort [N], mass_1.flow [m/s],
+ *     mass_1.power [W], mass_1.energy [J], capacitor_1.effort [V], capacitor_1.flow [A],
+ *     capacitor_1.power [W], capacitor_1.energy [J], hysteron_1.effort [V], hysteron_1.flow
+ *     [A], hysteron_1.power [W], hysteron_1.energy [J], hysteron_1.heat [W], damper_1.effort
+ *     [N], damper_1.flow [m/s], damper_1.power [W], damper_1.heat [W], transducer_1.effort_1
+ *     [V], transducer_1.flow_1 [A], transducer_1.effort_2 [N], transducer_1.flow_2 [m/s],
+ *     transducer_1.power [W], body_1.effort [K], body_1.flow [W/K], body_1.power [W],
+ *     body_1.energy [J], spring_2.effort [N], spring_2.flow [m/s], spring_2.power [W],
+ *     spring_2.energy [J], mass_2.effort [N], mass_2.flow [m/s], mass_2.power [W],
+ *     mass_2.energy [J], capacitor_2.effort [V], capacitor_2.flow [A], capacitor_2.power [W],
+ *     capacitor_2.energy [J], hysteron_2.effort [V], hysteron_2.flow [A], hysteron_2.power
+ *     [W], hysteron_2.energy [J], hysteron_2.heat [W], damper_2.effort [N], damper_2.flow
+ *     [m/s], damper_2.power [W], damper_2.heat [W], transducer_2.effort_1 [V],
+ *     transducer_2.flow_1 [A], transducer_2.effort_2 [N], transducer_2.flow_2 [m/s],
+ *     transducer_2.power [W], body_2.effort [K], body_2.flow [W/K], body_2.power [W],
+ *     body_2.energy [J], spring_3.effort [N], spring_3.flow [m/s], spring_3.power [W],
+ *     spring_3.energy [J], mass_3.effort [N], mass_3.flow [m/s], mass_3.power [W],
+ *     mass_3.energy [J], capacitor_3.effort [V], capacitor_3.flow [A], capacitor_3.power [W],
+ *     capacitor_3.energy [J], hysteron_3.effort [V], hysteron_3.flow [A], hysteron_3.power
+ *     [W], hysteron_3.energy [J], hysteron_3.heat [W], damper_3.effort [N], damper_3.flow
+ *     [m/s], damper_3.power [W], damper_3.heat [W], transducer_3.effort_1 [V],
+ *     transducer_3.flow_1 [A], transducer_3.effort_2 [N], transducer_3.flow_2 [m/s],
+ *     transducer_3.power [W], body_3.effort [K], body_3.flow [W/K], body_3.power [W],
+ *     body_3.energy [J], contact_1.effort [K], contact_1.power [W], contact_2.effort [K],
+ *     contact_2.power [W], base.effort [K], base.flow [W/K], base.power [W], top.effort [K],
+ *     top.flow [W/K], top.power [W], load.effort [N], load.flow [m/s], load.power [W],
+ *     supply.effort [V], supply.flow [A], supply.power [W]
+ */
+void layered_stack_elements(const double *x,
+                            const double *u,
+                            const layered_stack_parameters *p,
+                            double *out);
+
+/*
  * Margin of each condition of the domain; of a bank, the least over its lanes.
  * x[n], read: q_1 [m], p_1 [kg*m/s], Q_1 [C], phi_1 [Wb], S_1 [J/K], q_2 [m], p_2 [kg*m/s],
  *     Q_2 [C], phi_2 [Wb], S_2 [J/K], q_3 [m], p_3 [kg*m/s], Q_3 [C], phi_3 [Wb], S_3 [J/K]

@@ -80,6 +80,114 @@ BODIES = (
     Record("body_2", "K", "temperature of thermal_mass 'body_2'"),
     Record("body_3", "K", "temperature of thermal_mass 'body_3'"),
 )
+ELEMENTS = (
+    Record("spring_1.effort", "N", "force of spring 'spring_1'"),
+    Record("spring_1.flow", "m/s", "velocity of spring 'spring_1'"),
+    Record("spring_1.power", "W", "power into spring 'spring_1'"),
+    Record("spring_1.energy", "J", "energy of spring 'spring_1'"),
+    Record("mass_1.effort", "N", "force of mass 'mass_1'"),
+    Record("mass_1.flow", "m/s", "velocity of mass 'mass_1'"),
+    Record("mass_1.power", "W", "power into mass 'mass_1'"),
+    Record("mass_1.energy", "J", "energy of mass 'mass_1'"),
+    Record("capacitor_1.effort", "V", "voltage of capacitor 'capacitor_1'"),
+    Record("capacitor_1.flow", "A", "current of capacitor 'capacitor_1'"),
+    Record("capacitor_1.power", "W", "power into capacitor 'capacitor_1'"),
+    Record("capacitor_1.energy", "J", "energy of capacitor 'capacitor_1'"),
+    Record("hysteron_1.effort", "V", "voltage of hysteron 'hysteron_1'"),
+    Record("hysteron_1.flow", "A", "current of hysteron 'hysteron_1'"),
+    Record("hysteron_1.power", "W", "power into hysteron 'hysteron_1'"),
+    Record("hysteron_1.energy", "J", "energy of hysteron 'hysteron_1'"),
+    Record("hysteron_1.heat", "W", "heat of hysteron 'hysteron_1'"),
+    Record("damper_1.effort", "N", "force of damper 'damper_1'"),
+    Record("damper_1.flow", "m/s", "velocity of damper 'damper_1'"),
+    Record("damper_1.power", "W", "power into damper 'damper_1'"),
+    Record("damper_1.heat", "W", "heat of damper 'damper_1'"),
+    Record("transducer_1.effort_1", "V", "voltage in branch 1 of transducer 'transducer_1'"),
+    Record("transducer_1.flow_1", "A", "current in branch 1 of transducer 'transducer_1'"),
+    Record("transducer_1.effort_2", "N", "force in branch 2 of transducer 'transducer_1'"),
+    Record("transducer_1.flow_2", "m/s", "velocity in branch 2 of transducer 'transducer_1'"),
+    Record("transducer_1.power", "W", "power from branch 1 to branch 2 of transducer 'transducer_1'"),
+    Record("body_1.effort", "K", "temperature of thermal_mass 'body_1'"),
+    Record("body_1.flow", "W/K", "entropy flow of thermal_mass 'body_1'"),
+    Record("body_1.power", "W", "power into thermal_mass 'body_1'"),
+    Record("body_1.energy", "J", "energy of thermal_mass 'body_1'"),
+    Record("spring_2.effort", "N", "force of spring 'spring_2'"),
+    Record("spring_2.flow", "m/s", "velocity of spring 'spring_2'"),
+    Record("spring_2.power", "W", "power into spring 'spring_2'"),
+    Record("spring_2.energy", "J", "energy of spring 'spring_2'"),
+    Record("mass_2.effort", "N", "force of mass 'mass_2'"),
+    Record("mass_2.flow", "m/s", "velocity of mass 'mass_2'"),
+    Record("mass_2.power", "W", "power into mass 'mass_2'"),
+    Record("mass_2.energy", "J", "energy of mass 'mass_2'"),
+    Record("capacitor_2.effort", "V", "voltage of capacitor 'capacitor_2'"),
+    Record("capacitor_2.flow", "A", "current of capacitor 'capacitor_2'"),
+    Record("capacitor_2.power", "W", "power into capacitor 'capacitor_2'"),
+    Record("capacitor_2.energy", "J", "energy of capacitor 'capacitor_2'"),
+    Record("hysteron_2.effort", "V", "voltage of hysteron 'hysteron_2'"),
+    Record("hysteron_2.flow", "A", "current of hysteron 'hysteron_2'"),
+    Record("hysteron_2.power", "W", "power into hysteron 'hysteron_2'"),
+    Record("hysteron_2.energy", "J", "energy of hysteron 'hysteron_2'"),
+    Record("hysteron_2.heat", "W", "heat of hysteron 'hysteron_2'"),
+    Record("damper_2.effort", "N", "force of damper 'damper_2'"),
+    Record("damper_2.flow", "m/s", "velocity of damper 'damper_2'"),
+    Record("damper_2.power", "W", "power into damper 'damper_2'"),
+    Record("damper_2.heat", "W", "heat of damper 'damper_2'"),
+    Record("transducer_2.effort_1", "V", "voltage in branch 1 of transducer 'transducer_2'"),
+    Record("transducer_2.flow_1", "A", "current in branch 1 of transducer 'transducer_2'"),
+    Record("transducer_2.effort_2", "N", "force in branch 2 of transducer 'transducer_2'"),
+    Record("transducer_2.flow_2", "m/s", "velocity in branch 2 of transducer 'transducer_2'"),
+    Record("transducer_2.power", "W", "power from branch 1 to branch 2 of transducer 'transducer_2'"),
+    Record("body_2.effort", "K", "temperature of thermal_mass 'body_2'"),
+    Record("body_2.flow", "W/K", "entropy flow of thermal_mass 'body_2'"),
+    Record("body_2.power", "W", "power into thermal_mass 'body_2'"),
+    Record("body_2.energy", "J", "energy of thermal_mass 'body_2'"),
+    Record("spring_3.effort", "N", "force of spring 'spring_3'"),
+    Record("spring_3.flow", "m/s", "velocity of spring 'spring_3'"),
+    Record("spring_3.power", "W", "power into spring 'spring_3'"),
+    Record("spring_3.energy", "J", "energy of spring 'spring_3'"),
+    Record("mass_3.effort", "N", "force of mass 'mass_3'"),
+    Record("mass_3.flow", "m/s", "velocity of mass 'mass_3'"),
+    Record("mass_3.power", "W", "power into mass 'mass_3'"),
+    Record("mass_3.energy", "J", "energy of mass 'mass_3'"),
+    Record("capacitor_3.effort", "V", "voltage of capacitor 'capacitor_3'"),
+    Record("capacitor_3.flow", "A", "current of capacitor 'capacitor_3'"),
+    Record("capacitor_3.power", "W", "power into capacitor 'capacitor_3'"),
+    Record("capacitor_3.energy", "J", "energy of capacitor 'capacitor_3'"),
+    Record("hysteron_3.effort", "V", "voltage of hysteron 'hysteron_3'"),
+    Record("hysteron_3.flow", "A", "current of hysteron 'hysteron_3'"),
+    Record("hysteron_3.power", "W", "power into hysteron 'hysteron_3'"),
+    Record("hysteron_3.energy", "J", "energy of hysteron 'hysteron_3'"),
+    Record("hysteron_3.heat", "W", "heat of hysteron 'hysteron_3'"),
+    Record("damper_3.effort", "N", "force of damper 'damper_3'"),
+    Record("damper_3.flow", "m/s", "velocity of damper 'damper_3'"),
+    Record("damper_3.power", "W", "power into damper 'damper_3'"),
+    Record("damper_3.heat", "W", "heat of damper 'damper_3'"),
+    Record("transducer_3.effort_1", "V", "voltage in branch 1 of transducer 'transducer_3'"),
+    Record("transducer_3.flow_1", "A", "current in branch 1 of transducer 'transducer_3'"),
+    Record("transducer_3.effort_2", "N", "force in branch 2 of transducer 'transducer_3'"),
+    Record("transducer_3.flow_2", "m/s", "velocity in branch 2 of transducer 'transducer_3'"),
+    Record("transducer_3.power", "W", "power from branch 1 to branch 2 of transducer 'transducer_3'"),
+    Record("body_3.effort", "K", "temperature of thermal_mass 'body_3'"),
+    Record("body_3.flow", "W/K", "entropy flow of thermal_mass 'body_3'"),
+    Record("body_3.power", "W", "power into thermal_mass 'body_3'"),
+    Record("body_3.energy", "J", "energy of thermal_mass 'body_3'"),
+    Record("contact_1.effort", "K", "temperature difference over conduction 'contact_1'"),
+    Record("contact_1.power", "W", "heat from first to second body by conduction 'contact_1'"),
+    Record("contact_2.effort", "K", "temperature difference over conduction 'contact_2'"),
+    Record("contact_2.power", "W", "heat from first to second body by conduction 'contact_2'"),
+    Record("base.effort", "K", "temperature at ambient 'base'"),
+    Record("base.flow", "W/K", "entropy flow at ambient 'base'"),
+    Record("base.power", "W", "power into ambient 'base'"),
+    Record("top.effort", "K", "temperature at ambient 'top'"),
+    Record("top.flow", "W/K", "entropy flow at ambient 'top'"),
+    Record("top.power", "W", "power into ambient 'top'"),
+    Record("load.effort", "N", "force of force_source 'load'"),
+    Record("load.flow", "m/s", "velocity of force_source 'load'"),
+    Record("load.power", "W", "power into force_source 'load'"),
+    Record("supply.effort", "V", "voltage of voltage_source 'supply'"),
+    Record("supply.flow", "A", "current of voltage_source 'supply'"),
+    Record("supply.power", "W", "power into voltage_source 'supply'"),
+)
 PARAMETERS = (
     Record("M", "kg", "mass of a layer"),
     Record("k", "N/m", "stiffness of a layer"),
@@ -538,6 +646,230 @@ def entropy_production(x, u, p, /):
     out[5] = F_damper_3*v_damper_3/T_body_3
     out[6] = s_contact_1*(T_body_1 - T_body_2)/T_body_2
     out[7] = s_contact_2*(T_body_2 - T_body_3)/T_body_3
+    return out
+
+
+def elements(x, u, p, /):
+    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (106, *batch)."""
+    x = _states(x, p)
+    u = _inputs(u)
+    M = p.M
+    k = p.k
+    d = p.d
+    C = p.C
+    L = p.L
+    rho = p.rho
+    i_0 = p.i_0
+    a = p.a
+    T_0 = p.T_0
+    c_0 = p.c_0
+    lam = p.lam
+    lam_l = p.lam_l
+    q_1 = x[0]
+    p_1 = x[1]
+    Q_1 = x[2]
+    phi_1 = x[3]
+    S_1 = x[4]
+    q_2 = x[5]
+    p_2 = x[6]
+    Q_2 = x[7]
+    phi_2 = x[8]
+    S_2 = x[9]
+    q_3 = x[10]
+    p_3 = x[11]
+    Q_3 = x[12]
+    phi_3 = x[13]
+    S_3 = x[14]
+    F_ext = u[0]
+    V_in = u[1]
+    T_e = u[2]
+    # co-states dU/dx
+    F_spring_1 = k*q_1
+    v_mass_1 = p_1/M
+    V_capacitor_1 = Q_1/C
+    i_hysteron_1 = phi_1/L
+    T_body_1_minus_T_0 = T_0*np.expm1(S_1/c_0)
+    T_body_1 = T_0 + T_body_1_minus_T_0
+    F_spring_2 = k*q_2
+    v_mass_2 = p_2/M
+    V_capacitor_2 = Q_2/C
+    i_hysteron_2 = phi_2/L
+    T_body_2_minus_T_0 = T_0*np.expm1(S_2/c_0)
+    T_body_2 = T_0 + T_body_2_minus_T_0
+    F_spring_3 = k*q_3
+    v_mass_3 = p_3/M
+    V_capacitor_3 = Q_3/C
+    i_hysteron_3 = phi_3/L
+    T_body_3_minus_T_0 = T_0*np.expm1(S_3/c_0)
+    T_body_3 = T_0 + T_body_3_minus_T_0
+    # transducer ratios
+    alpha_transducer_1 = a*T_body_1/T_0
+    alpha_transducer_2 = a*T_body_2/T_0
+    alpha_transducer_3 = a*T_body_3/T_0
+    # dissipative laws
+    V_hysteron_1 = rho/T_body_1_minus_T_0*(i_hysteron_1 - np.clip(i_hysteron_1, -i_0, i_0))
+    F_damper_1 = d*v_mass_1
+    V_hysteron_2 = rho/T_body_2_minus_T_0*(i_hysteron_2 - np.clip(i_hysteron_2, -i_0, i_0))
+    # driving forces
+    v_damper_2 = -v_mass_1 + v_mass_2
+    # dissipative laws
+    F_damper_2 = d*v_damper_2
+    V_hysteron_3 = rho/T_body_3_minus_T_0*(i_hysteron_3 - np.clip(i_hysteron_3, -i_0, i_0))
+    # driving forces
+    v_damper_3 = -v_mass_2 + v_mass_3
+    # dissipative laws
+    F_damper_3 = d*v_damper_3
+    s_contact_1 = lam_l*(T_body_1 - T_body_2)/T_body_1
+    s_contact_2 = lam_l*(T_body_2 - T_body_3)/T_body_2
+    # heats
+    heat_hysteron_1 = V_hysteron_1*i_hysteron_1
+    heat_damper_1 = F_damper_1*v_mass_1
+    heat_hysteron_2 = V_hysteron_2*i_hysteron_2
+    heat_damper_2 = F_damper_2*v_damper_2
+    heat_hysteron_3 = V_hysteron_3*i_hysteron_3
+    heat_damper_3 = F_damper_3*v_damper_3
+    heat_contact_1 = s_contact_1*T_body_1
+    heat_contact_2 = s_contact_2*T_body_2
+    # rates
+    rate_p_1 = (
+        alpha_transducer_1*V_capacitor_1
+        - F_spring_1
+        + F_spring_2
+        - alpha_transducer_2*V_capacitor_2
+        - F_damper_1
+        + F_damper_2
+    )
+    rate_Q_1 = i_hysteron_1 - alpha_transducer_1*v_mass_1
+    rate_phi_1 = V_in - V_capacitor_1 - V_hysteron_1
+    rate_S_1 = (heat_hysteron_1 + heat_damper_1)/T_body_1 - s_contact_1 + lam*(T_e/T_body_1 - 1)
+    rate_q_2 = v_mass_2 - v_mass_1
+    rate_p_2 = (
+        alpha_transducer_2*V_capacitor_2
+        - F_spring_2
+        + F_spring_3
+        - alpha_transducer_3*V_capacitor_3
+        - F_damper_2
+        + F_damper_3
+    )
+    rate_Q_2 = alpha_transducer_2*v_mass_1 - alpha_transducer_2*v_mass_2 + i_hysteron_2
+    rate_phi_2 = V_in - V_capacitor_2 - V_hysteron_2
+    rate_S_2 = (heat_hysteron_2 + heat_damper_2 + heat_contact_1)/T_body_2 - s_contact_2
+    rate_q_3 = v_mass_3 - v_mass_2
+    rate_p_3 = alpha_transducer_3*V_capacitor_3 - F_spring_3 - F_damper_3 + F_ext
+    rate_Q_3 = alpha_transducer_3*v_mass_2 - alpha_transducer_3*v_mass_3 + i_hysteron_3
+    rate_phi_3 = V_in - V_capacitor_3 - V_hysteron_3
+    rate_S_3 = (
+        (heat_hysteron_3 + heat_damper_3 + heat_contact_2)/T_body_3
+        + lam*(T_e/T_body_3 - 1)
+    )
+    # result
+    out = np.empty((106, *x.shape[1:]))
+    out[0] = F_spring_1
+    out[1] = v_mass_1
+    out[2] = F_spring_1*v_mass_1
+    out[3] = k*q_1**2/2
+    out[4] = rate_p_1
+    out[5] = v_mass_1
+    out[6] = rate_p_1*v_mass_1
+    out[7] = p_1**2/(2*M)
+    out[8] = V_capacitor_1
+    out[9] = rate_Q_1
+    out[10] = V_capacitor_1*rate_Q_1
+    out[11] = Q_1**2/(2*C)
+    out[12] = rate_phi_1 + V_hysteron_1
+    out[13] = i_hysteron_1
+    out[14] = (rate_phi_1 + V_hysteron_1)*i_hysteron_1
+    out[15] = phi_1**2/(2*L)
+    out[16] = V_hysteron_1*i_hysteron_1
+    out[17] = F_damper_1
+    out[18] = v_mass_1
+    out[19] = F_damper_1*v_mass_1
+    out[20] = F_damper_1*v_mass_1
+    out[21] = V_capacitor_1
+    out[22] = alpha_transducer_1*v_mass_1
+    out[23] = -alpha_transducer_1*V_capacitor_1
+    out[24] = v_mass_1
+    out[25] = V_capacitor_1*alpha_transducer_1*v_mass_1
+    out[26] = T_body_1
+    out[27] = rate_S_1
+    out[28] = T_body_1*rate_S_1
+    out[29] = T_0*c_0*np.exp(S_1/c_0)
+    out[30] = F_spring_2
+    out[31] = rate_q_2
+    out[32] = F_spring_2*rate_q_2
+    out[33] = k*q_2**2/2
+    out[34] = rate_p_2
+    out[35] = v_mass_2
+    out[36] = rate_p_2*v_mass_2
+    out[37] = p_2**2/(2*M)
+    out[38] = V_capacitor_2
+    out[39] = rate_Q_2
+    out[40] = V_capacitor_2*rate_Q_2
+    out[41] = Q_2**2/(2*C)
+    out[42] = rate_phi_2 + V_hysteron_2
+    out[43] = i_hysteron_2
+    out[44] = (rate_phi_2 + V_hysteron_2)*i_hysteron_2
+    out[45] = phi_2**2/(2*L)
+    out[46] = V_hysteron_2*i_hysteron_2
+    out[47] = F_damper_2
+    out[48] = v_damper_2
+    out[49] = F_damper_2*v_damper_2
+    out[50] = F_damper_2*v_damper_2
+    out[51] = V_capacitor_2
+    out[52] = alpha_transducer_2*(-v_mass_1 + v_mass_2)
+    out[53] = -alpha_transducer_2*V_capacitor_2
+    out[54] = -v_mass_1 + v_mass_2
+    out[55] = V_capacitor_2*alpha_transducer_2*(-v_mass_1 + v_mass_2)
+    out[56] = T_body_2
+    out[57] = rate_S_2
+    out[58] = T_body_2*rate_S_2
+    out[59] = T_0*c_0*np.exp(S_2/c_0)
+    out[60] = F_spring_3
+    out[61] = rate_q_3
+    out[62] = F_spring_3*rate_q_3
+    out[63] = k*q_3**2/2
+    out[64] = rate_p_3
+    out[65] = v_mass_3
+    out[66] = rate_p_3*v_mass_3
+    out[67] = p_3**2/(2*M)
+    out[68] = V_capacitor_3
+    out[69] = rate_Q_3
+    out[70] = V_capacitor_3*rate_Q_3
+    out[71] = Q_3**2/(2*C)
+    out[72] = rate_phi_3 + V_hysteron_3
+    out[73] = i_hysteron_3
+    out[74] = (rate_phi_3 + V_hysteron_3)*i_hysteron_3
+    out[75] = phi_3**2/(2*L)
+    out[76] = V_hysteron_3*i_hysteron_3
+    out[77] = F_damper_3
+    out[78] = v_damper_3
+    out[79] = F_damper_3*v_damper_3
+    out[80] = F_damper_3*v_damper_3
+    out[81] = V_capacitor_3
+    out[82] = alpha_transducer_3*(-v_mass_2 + v_mass_3)
+    out[83] = -alpha_transducer_3*V_capacitor_3
+    out[84] = -v_mass_2 + v_mass_3
+    out[85] = V_capacitor_3*alpha_transducer_3*(-v_mass_2 + v_mass_3)
+    out[86] = T_body_3
+    out[87] = rate_S_3
+    out[88] = T_body_3*rate_S_3
+    out[89] = T_0*c_0*np.exp(S_3/c_0)
+    out[90] = T_body_1 - T_body_2
+    out[91] = s_contact_1*T_body_1
+    out[92] = T_body_2 - T_body_3
+    out[93] = s_contact_2*T_body_2
+    out[94] = T_body_1
+    out[95] = -lam*(T_e/T_body_1 - 1)
+    out[96] = -lam*(T_e - T_body_1)
+    out[97] = T_body_3
+    out[98] = -lam*(T_e/T_body_3 - 1)
+    out[99] = -lam*(T_e - T_body_3)
+    out[100] = -F_ext
+    out[101] = v_mass_3
+    out[102] = -v_mass_3*F_ext
+    out[103] = V_in
+    out[104] = -(i_hysteron_1 + i_hysteron_2 + i_hysteron_3)
+    out[105] = -(i_hysteron_1 + i_hysteron_2 + i_hysteron_3)*V_in
     return out
 
 

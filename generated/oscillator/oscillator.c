@@ -180,6 +180,54 @@ void oscillator_entropy_production(const double *restrict x,
     out[0] = F_damper*v_mass/T;
 }
 
+/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+void oscillator_elements(const double *restrict x,
+                         const double *restrict u,
+                         const oscillator_parameters *restrict p_,
+                         double *restrict out)
+{
+    const double m = p_->m;
+    const double k = p_->k;
+    const double d = p_->d;
+    const double T_0 = p_->T_0;
+    const double c = p_->c;
+    const double q = x[0];
+    const double p = x[1];
+    const double S = x[2];
+    const double F = u[0];
+    /* co-states dU/dx */
+    const double F_spring = k*q;
+    const double v_mass = p/m;
+    const double T = T_0*exp(S/c);
+    /* dissipative laws */
+    const double F_damper = d*v_mass;
+    /* heats */
+    const double heat_damper = F_damper*v_mass;
+    /* rates */
+    const double rate_p = F - F_spring - F_damper;
+    const double rate_S = heat_damper/T;
+    /* result */
+    out[0] = F_spring;
+    out[1] = v_mass;
+    out[2] = F_spring*v_mass;
+    out[3] = k*power_2(q)/2.0;
+    out[4] = rate_p;
+    out[5] = v_mass;
+    out[6] = rate_p*v_mass;
+    out[7] = power_2(p)/(2.0*m);
+    out[8] = F_damper;
+    out[9] = v_mass;
+    out[10] = F_damper*v_mass;
+    out[11] = F_damper*v_mass;
+    out[12] = T;
+    out[13] = rate_S;
+    out[14] = T*rate_S;
+    out[15] = T_0*c*exp(S/c);
+    out[16] = -F;
+    out[17] = v_mass;
+    out[18] = -v_mass*F;
+}
+
 /* Derivative of rhs by the state, n x n, row after row. */
 void oscillator_jacobian(const double *restrict x,
                          const double *restrict u,

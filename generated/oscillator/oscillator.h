@@ -147,6 +147,21 @@ void oscillator_entropy_production(const double *x,
                                    double *out);
 
 /*
+ * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * x[n], read: q [m], p [kg*m/s], S [J/K]
+ * u[oscillator_input_count], read: F [N]
+ * out[19], written; must not overlap another argument: spring.effort [N], spring.flow [m/s],
+ *     spring.power [W], spring.energy [J], mass.effort [N], mass.flow [m/s], mass.power [W],
+ *     mass.energy [J], damper.effort [N], damper.flow [m/s], damper.power [W], damper.heat
+ *     [W], body.effort [K], body.flow [W/K], body.power [W], body.energy [J], hand.effort [N],
+ *     hand.flow [m/s], hand.power [W]
+ */
+void oscillator_elements(const double *x,
+                         const double *u,
+                         const oscillator_parameters *p_,
+                         double *out);
+
+/*
  * Margin of each condition of the domain; of a bank, the least over its lanes.
  * x[n], read: q [m], p [kg*m/s], S [J/K]
  * u[oscillator_input_count], read: F [N]

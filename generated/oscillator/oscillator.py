@@ -54,6 +54,27 @@ PROCESSES = (
 BODIES = (
     Record("body", "K", "temperature of thermal_mass 'body'"),
 )
+ELEMENTS = (
+    Record("spring.effort", "N", "force of spring 'spring'"),
+    Record("spring.flow", "m/s", "velocity of spring 'spring'"),
+    Record("spring.power", "W", "power into spring 'spring'"),
+    Record("spring.energy", "J", "energy of spring 'spring'"),
+    Record("mass.effort", "N", "force of mass 'mass'"),
+    Record("mass.flow", "m/s", "velocity of mass 'mass'"),
+    Record("mass.power", "W", "power into mass 'mass'"),
+    Record("mass.energy", "J", "energy of mass 'mass'"),
+    Record("damper.effort", "N", "force of damper 'damper'"),
+    Record("damper.flow", "m/s", "velocity of damper 'damper'"),
+    Record("damper.power", "W", "power into damper 'damper'"),
+    Record("damper.heat", "W", "heat of damper 'damper'"),
+    Record("body.effort", "K", "temperature of thermal_mass 'body'"),
+    Record("body.flow", "W/K", "entropy flow of thermal_mass 'body'"),
+    Record("body.power", "W", "power into thermal_mass 'body'"),
+    Record("body.energy", "J", "energy of thermal_mass 'body'"),
+    Record("hand.effort", "N", "force of force_source 'hand'"),
+    Record("hand.flow", "m/s", "velocity of force_source 'hand'"),
+    Record("hand.power", "W", "power into force_source 'hand'"),
+)
 PARAMETERS = (
     Record("m", "kg", "mass"),
     Record("k", "N/m", "stiffness"),
@@ -243,6 +264,54 @@ def entropy_production(x, u, p_, /):
     # result
     out = np.empty((1, *x.shape[1:]))
     out[0] = F_damper*v_mass/T
+    return out
+
+
+def elements(x, u, p_, /):
+    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (19, *batch)."""
+    x = _states(x, p_)
+    u = _inputs(u)
+    m = p_.m
+    k = p_.k
+    d = p_.d
+    T_0 = p_.T_0
+    c = p_.c
+    q = x[0]
+    p = x[1]
+    S = x[2]
+    F = u[0]
+    # co-states dU/dx
+    F_spring = k*q
+    v_mass = p/m
+    T = T_0*np.exp(S/c)
+    # dissipative laws
+    F_damper = d*v_mass
+    # heats
+    heat_damper = F_damper*v_mass
+    # rates
+    rate_p = F - F_spring - F_damper
+    rate_S = heat_damper/T
+    # result
+    out = np.empty((19, *x.shape[1:]))
+    out[0] = F_spring
+    out[1] = v_mass
+    out[2] = F_spring*v_mass
+    out[3] = k*q**2/2
+    out[4] = rate_p
+    out[5] = v_mass
+    out[6] = rate_p*v_mass
+    out[7] = p**2/(2*m)
+    out[8] = F_damper
+    out[9] = v_mass
+    out[10] = F_damper*v_mass
+    out[11] = F_damper*v_mass
+    out[12] = T
+    out[13] = rate_S
+    out[14] = T*rate_S
+    out[15] = T_0*c*np.exp(S/c)
+    out[16] = -F
+    out[17] = v_mass
+    out[18] = -v_mass*F
     return out
 
 

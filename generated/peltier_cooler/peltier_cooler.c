@@ -238,6 +238,92 @@ void peltier_cooler_entropy_production(const double *restrict x,
     out[2] = s_legs*(T_plate - T_sink)/T_sink;
 }
 
+/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+void peltier_cooler_elements(const double *restrict x,
+                             const double *restrict u,
+                             const peltier_cooler_parameters *restrict p,
+                             double *restrict out)
+{
+    const double s = p->s;
+    const double R = p->R;
+    const double lam = p->lam;
+    const double L = p->L;
+    const double c_c = p->c_c;
+    const double c_h = p->c_h;
+    const double h = p->h;
+    const double T_0 = p->T_0;
+    const double phi = x[0];
+    const double S_c = x[1];
+    const double S_h = x[2];
+    const double V_in = u[0];
+    const double P = u[1];
+    const double T_e = u[2];
+    /* co-states dU/dx */
+    const double i_leads = phi/L;
+    const double T_plate = T_0*exp(S_c/c_c);
+    const double T_sink = T_0*exp(S_h/c_h);
+    /* transducer ratios */
+    const double seebeck_couples = s;
+    /* dissipative laws */
+    const double V_warm = R/2.0*i_leads;
+    const double V_cool = R/2.0*i_leads;
+    const double s_legs = lam*(T_plate - T_sink)/T_plate;
+    /* heats */
+    const double heat_warm = V_warm*i_leads;
+    const double heat_cool = V_cool*i_leads;
+    const double heat_legs = s_legs*T_plate;
+    /* rates */
+    const double rate_phi = seebeck_couples*T_plate
+        - seebeck_couples*T_sink
+        - V_warm
+        - V_cool
+        + V_in;
+    const double rate_S_c = heat_cool/T_plate
+        - seebeck_couples*i_leads
+        - s_legs
+        + P/T_plate;
+    const double rate_S_h = (heat_warm + heat_legs)/T_sink
+        + seebeck_couples*i_leads
+        + h*(T_e/T_sink - 1.0);
+    /* result */
+    out[0] = V_in;
+    out[1] = -i_leads;
+    out[2] = -i_leads*V_in;
+    out[3] = rate_phi;
+    out[4] = i_leads;
+    out[5] = rate_phi*i_leads;
+    out[6] = power_2(phi)/(2.0*L);
+    out[7] = V_warm;
+    out[8] = i_leads;
+    out[9] = V_warm*i_leads;
+    out[10] = V_warm*i_leads;
+    out[11] = V_cool;
+    out[12] = i_leads;
+    out[13] = V_cool*i_leads;
+    out[14] = V_cool*i_leads;
+    out[15] = seebeck_couples*(-T_plate + T_sink);
+    out[16] = i_leads;
+    out[17] = -T_plate + T_sink;
+    out[18] = -seebeck_couples*i_leads;
+    out[19] = seebeck_couples*(-T_plate + T_sink)*i_leads;
+    out[20] = T_plate - T_sink;
+    out[21] = s_legs*T_plate;
+    out[22] = T_plate;
+    out[23] = rate_S_c;
+    out[24] = T_plate*rate_S_c;
+    out[25] = T_0*c_c*exp(S_c/c_c);
+    out[26] = T_sink;
+    out[27] = rate_S_h;
+    out[28] = T_sink*rate_S_h;
+    out[29] = T_0*c_h*exp(S_h/c_h);
+    out[30] = T_plate;
+    out[31] = -P/T_plate;
+    out[32] = -P;
+    out[33] = T_sink;
+    out[34] = -h*(T_e/T_sink - 1.0);
+    out[35] = -h*(T_e - T_sink);
+}
+
 /* Derivative of rhs by the state, n x n, row after row. */
 void peltier_cooler_jacobian(const double *restrict x,
                              const double *restrict u,

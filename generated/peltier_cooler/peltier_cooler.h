@@ -159,6 +159,24 @@ void peltier_cooler_entropy_production(const double *x,
                                        double *out);
 
 /*
+ * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * x[n], read: phi [Wb], S_c [J/K], S_h [J/K]
+ * u[peltier_cooler_input_count], read: V_in [V], P [W], T_e [K]
+ * out[36], written; must not overlap another argument: supply.effort [V], supply.flow [A],
+ *     supply.power [W], leads.effort [V], leads.flow [A], leads.power [W], leads.energy [J],
+ *     warm.effort [V], warm.flow [A], warm.power [W], warm.heat [W], cool.effort [V],
+ *     cool.flow [A], cool.power [W], cool.heat [W], couples.effort_1 [V], couples.flow_1 [A],
+ *     couples.effort_2 [K], couples.flow_2 [W/K], couples.power [W], legs.effort [K],
+ *     legs.power [W], plate.effort [K], plate.flow [W/K], plate.power [W], plate.energy [J],
+ *     sink.effort [K], sink.flow [W/K], sink.power [W], sink.energy [J], load.effort [K],
+ *     load.flow [W/K], load.power [W], air.effort [K], air.flow [W/K], air.power [W]
+ */
+void peltier_cooler_elements(const double *x,
+                             const double *u,
+                             const peltier_cooler_parameters *p,
+                             double *out);
+
+/*
  * Margin of each condition of the domain; of a bank, the least over its lanes.
  * x[n], read: phi [Wb], S_c [J/K], S_h [J/K]
  * u[peltier_cooler_input_count], read: V_in [V], P [W], T_e [K]

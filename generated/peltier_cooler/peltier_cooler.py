@@ -61,6 +61,44 @@ BODIES = (
     Record("plate", "K", "temperature of thermal_mass 'plate'"),
     Record("sink", "K", "temperature of thermal_mass 'sink'"),
 )
+ELEMENTS = (
+    Record("supply.effort", "V", "voltage of voltage_source 'supply'"),
+    Record("supply.flow", "A", "current of voltage_source 'supply'"),
+    Record("supply.power", "W", "power into voltage_source 'supply'"),
+    Record("leads.effort", "V", "voltage of inductor 'leads'"),
+    Record("leads.flow", "A", "current of inductor 'leads'"),
+    Record("leads.power", "W", "power into inductor 'leads'"),
+    Record("leads.energy", "J", "energy of inductor 'leads'"),
+    Record("warm.effort", "V", "voltage of resistor 'warm'"),
+    Record("warm.flow", "A", "current of resistor 'warm'"),
+    Record("warm.power", "W", "power into resistor 'warm'"),
+    Record("warm.heat", "W", "heat of resistor 'warm'"),
+    Record("cool.effort", "V", "voltage of resistor 'cool'"),
+    Record("cool.flow", "A", "current of resistor 'cool'"),
+    Record("cool.power", "W", "power into resistor 'cool'"),
+    Record("cool.heat", "W", "heat of resistor 'cool'"),
+    Record("couples.effort_1", "V", "voltage in branch 1 of thermoelectric 'couples'"),
+    Record("couples.flow_1", "A", "current in branch 1 of thermoelectric 'couples'"),
+    Record("couples.effort_2", "K", "temperature in branch 2 of thermoelectric 'couples'"),
+    Record("couples.flow_2", "W/K", "entropy flow in branch 2 of thermoelectric 'couples'"),
+    Record("couples.power", "W", "power from branch 1 to branch 2 of thermoelectric 'couples'"),
+    Record("legs.effort", "K", "temperature difference over conduction 'legs'"),
+    Record("legs.power", "W", "heat from first to second body by conduction 'legs'"),
+    Record("plate.effort", "K", "temperature of thermal_mass 'plate'"),
+    Record("plate.flow", "W/K", "entropy flow of thermal_mass 'plate'"),
+    Record("plate.power", "W", "power into thermal_mass 'plate'"),
+    Record("plate.energy", "J", "energy of thermal_mass 'plate'"),
+    Record("sink.effort", "K", "temperature of thermal_mass 'sink'"),
+    Record("sink.flow", "W/K", "entropy flow of thermal_mass 'sink'"),
+    Record("sink.power", "W", "power into thermal_mass 'sink'"),
+    Record("sink.energy", "J", "energy of thermal_mass 'sink'"),
+    Record("load.effort", "K", "temperature at heat_source 'load'"),
+    Record("load.flow", "W/K", "entropy flow at heat_source 'load'"),
+    Record("load.power", "W", "power into heat_source 'load'"),
+    Record("air.effort", "K", "temperature at ambient 'air'"),
+    Record("air.flow", "W/K", "entropy flow at ambient 'air'"),
+    Record("air.power", "W", "power into ambient 'air'"),
+)
 PARAMETERS = (
     Record("s", "V/K", "Seebeck coefficient of the module"),
     Record("R", "ohm", "resistance of the module"),
@@ -312,6 +350,83 @@ def entropy_production(x, u, p, /):
     out[0] = V_warm*i_leads/T_sink
     out[1] = V_cool*i_leads/T_plate
     out[2] = s_legs*(T_plate - T_sink)/T_sink
+    return out
+
+
+def elements(x, u, p, /):
+    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (36, *batch)."""
+    x = _states(x, p)
+    u = _inputs(u)
+    s = p.s
+    R = p.R
+    lam = p.lam
+    L = p.L
+    c_c = p.c_c
+    c_h = p.c_h
+    h = p.h
+    T_0 = p.T_0
+    phi = x[0]
+    S_c = x[1]
+    S_h = x[2]
+    V_in = u[0]
+    P = u[1]
+    T_e = u[2]
+    # co-states dU/dx
+    i_leads = phi/L
+    T_plate = T_0*np.exp(S_c/c_c)
+    T_sink = T_0*np.exp(S_h/c_h)
+    # transducer ratios
+    seebeck_couples = s
+    # dissipative laws
+    V_warm = R/2*i_leads
+    V_cool = R/2*i_leads
+    s_legs = lam*(T_plate - T_sink)/T_plate
+    # heats
+    heat_warm = V_warm*i_leads
+    heat_cool = V_cool*i_leads
+    heat_legs = s_legs*T_plate
+    # rates
+    rate_phi = seebeck_couples*T_plate - seebeck_couples*T_sink - V_warm - V_cool + V_in
+    rate_S_c = heat_cool/T_plate - seebeck_couples*i_leads - s_legs + P/T_plate
+    rate_S_h = (heat_warm + heat_legs)/T_sink + seebeck_couples*i_leads + h*(T_e/T_sink - 1)
+    # result
+    out = np.empty((36, *x.shape[1:]))
+    out[0] = V_in
+    out[1] = -i_leads
+    out[2] = -i_leads*V_in
+    out[3] = rate_phi
+    out[4] = i_leads
+    out[5] = rate_phi*i_leads
+    out[6] = phi**2/(2*L)
+    out[7] = V_warm
+    out[8] = i_leads
+    out[9] = V_warm*i_leads
+    out[10] = V_warm*i_leads
+    out[11] = V_cool
+    out[12] = i_leads
+    out[13] = V_cool*i_leads
+    out[14] = V_cool*i_leads
+    out[15] = seebeck_couples*(-T_plate + T_sink)
+    out[16] = i_leads
+    out[17] = -T_plate + T_sink
+    out[18] = -seebeck_couples*i_leads
+    out[19] = seebeck_couples*(-T_plate + T_sink)*i_leads
+    out[20] = T_plate - T_sink
+    out[21] = s_legs*T_plate
+    out[22] = T_plate
+    out[23] = rate_S_c
+    out[24] = T_plate*rate_S_c
+    out[25] = T_0*c_c*np.exp(S_c/c_c)
+    out[26] = T_sink
+    out[27] = rate_S_h
+    out[28] = T_sink*rate_S_h
+    out[29] = T_0*c_h*np.exp(S_h/c_h)
+    out[30] = T_plate
+    out[31] = -P/T_plate
+    out[32] = -P
+    out[33] = T_sink
+    out[34] = -h*(T_e/T_sink - 1)
+    out[35] = -h*(T_e - T_sink)
     return out
 
 

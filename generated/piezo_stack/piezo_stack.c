@@ -321,6 +321,111 @@ void piezo_stack_entropy_production(const double *restrict x,
     out[hysteron_count] = F_damper*v_mass/T;
 }
 
+/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+void piezo_stack_elements(const double *restrict x,
+                          const double *restrict u,
+                          const piezo_stack_parameters *restrict p_,
+                          double *restrict out)
+{
+    const long hysteron_count = p_->hysteron_count;
+    const long end_out_hysteron_effort = 12 + hysteron_count;
+    const long end_out_hysteron_flow = end_out_hysteron_effort + hysteron_count;
+    const long end_out_hysteron_power = end_out_hysteron_flow + hysteron_count;
+    const long end_out_hysteron_energy = end_out_hysteron_power + hysteron_count;
+    const long end_out_hysteron_heat = end_out_hysteron_energy + hysteron_count;
+    const double M = p_->M;
+    const double k = p_->k;
+    const double q_l = p_->q_l;
+    const double d = p_->d;
+    const double C = p_->C;
+    const double *restrict L = p_->L;
+    const double *restrict rho = p_->rho;
+    const double *restrict i_0 = p_->i_0;
+    const double a = p_->a;
+    const double T_0 = p_->T_0;
+    const double c_0 = p_->c_0;
+    const double lam = p_->lam;
+    const double q = x[0];
+    const double p = x[1];
+    const double Q_C = x[2];
+    const double *restrict phi = x + 3;
+    const double S = x[3 + hysteron_count];
+    const double F_ext = u[0];
+    const double V_in = u[1];
+    const double T_e = u[2];
+    /* co-states dU/dx */
+    const double F_spring = k*(q - q_l);
+    const double v_mass = p/M;
+    const double V_capacitor = Q_C/C;
+    const double T_minus_T_0 = T_0*expm1(S/c_0);
+    const double T = T_0 + T_minus_T_0;
+    /* transducer ratios */
+    const double alpha_transducer = a*T/T_0;
+    /* dissipative laws */
+    const double F_damper = d*v_mass;
+    /* heats */
+    const double heat_damper = F_damper*v_mass;
+    /* rates */
+    const double rate_p = alpha_transducer*V_capacitor - F_spring - F_damper + F_ext;
+    /* each lane of hysteron: sums over lanes and result */
+    double sum_i_hysteron = 0.0;
+    double heat_hysteron = 0.0;
+#pragma omp simd reduction(+:sum_i_hysteron, heat_hysteron)
+    for (long j = 0; j < hysteron_count; ++j) {
+        const double i_hysteron = phi[j]/L[j];
+        const double V_hysteron = pick(
+            fabs(i_hysteron) <= i_0[j],
+            0.0,
+            rho[j]/T_minus_T_0*(i_hysteron - copysign(i_0[j], i_hysteron)));
+        const double rate_phi = V_in - V_capacitor - V_hysteron;
+        sum_i_hysteron += i_hysteron;
+        heat_hysteron += V_hysteron*i_hysteron;
+        out[12 + j] = rate_phi + V_hysteron;
+        out[end_out_hysteron_effort + j] = i_hysteron;
+        out[end_out_hysteron_flow + j] = (rate_phi + V_hysteron)*i_hysteron;
+        out[end_out_hysteron_power + j] = power_2(phi[j])/(2.0*L[j]);
+        out[end_out_hysteron_energy + j] = V_hysteron*i_hysteron;
+    }
+    /* rates */
+    const double rate_Q_C = sum_i_hysteron - alpha_transducer*v_mass;
+    const double rate_S = (heat_hysteron + heat_damper)/T + lam*(T_e/T - 1.0);
+    /* result */
+    out[0] = F_spring;
+    out[1] = v_mass;
+    out[2] = F_spring*v_mass;
+    out[3] = k*power_2(q - q_l)/2.0;
+    out[4] = rate_p;
+    out[5] = v_mass;
+    out[6] = rate_p*v_mass;
+    out[7] = power_2(p)/(2.0*M);
+    out[8] = V_capacitor;
+    out[9] = rate_Q_C;
+    out[10] = V_capacitor*rate_Q_C;
+    out[11] = power_2(Q_C)/(2.0*C);
+    out[end_out_hysteron_heat] = F_damper;
+    out[1 + end_out_hysteron_heat] = v_mass;
+    out[2 + end_out_hysteron_heat] = F_damper*v_mass;
+    out[3 + end_out_hysteron_heat] = F_damper*v_mass;
+    out[4 + end_out_hysteron_heat] = V_capacitor;
+    out[5 + end_out_hysteron_heat] = alpha_transducer*v_mass;
+    out[6 + end_out_hysteron_heat] = -alpha_transducer*V_capacitor;
+    out[7 + end_out_hysteron_heat] = v_mass;
+    out[8 + end_out_hysteron_heat] = V_capacitor*alpha_transducer*v_mass;
+    out[9 + end_out_hysteron_heat] = T;
+    out[10 + end_out_hysteron_heat] = rate_S;
+    out[11 + end_out_hysteron_heat] = T*rate_S;
+    out[12 + end_out_hysteron_heat] = T_0*c_0*exp(S/c_0);
+    out[13 + end_out_hysteron_heat] = T;
+    out[14 + end_out_hysteron_heat] = -lam*(T_e/T - 1.0);
+    out[15 + end_out_hysteron_heat] = -lam*(T_e - T);
+    out[16 + end_out_hysteron_heat] = -F_ext;
+    out[17 + end_out_hysteron_heat] = v_mass;
+    out[18 + end_out_hysteron_heat] = -v_mass*F_ext;
+    out[19 + end_out_hysteron_heat] = V_in;
+    out[20 + end_out_hysteron_heat] = -sum_i_hysteron;
+    out[21 + end_out_hysteron_heat] = -sum_i_hysteron*V_in;
+}
+
 /* Derivative of rhs by the state, n x n, row after row. */
 void piezo_stack_jacobian(const double *restrict x,
                           const double *restrict u,

@@ -166,6 +166,29 @@ void piezo_stack_entropy_production(const double *x,
                                     double *out);
 
 /*
+ * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
+ * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[34 + 5*hysteron_count], written; must not overlap another argument: spring.effort [N],
+ *     spring.flow [m/s], spring.power [W], spring.energy [J], mass.effort [N], mass.flow
+ *     [m/s], mass.power [W], mass.energy [J], capacitor.effort [V], capacitor.flow [A],
+ *     capacitor.power [W], capacitor.energy [J], hysteron.effort_1 ...
+ *     hysteron.effort_hysteron_count [V], hysteron.flow_1 ... hysteron.flow_hysteron_count
+ *     [A], hysteron.power_1 ... hysteron.power_hysteron_count [W], hysteron.energy_1 ...
+ *     hysteron.energy_hysteron_count [J], hysteron.heat_1 ... hysteron.heat_hysteron_count
+ *     [W], damper.effort [N], damper.flow [m/s], damper.power [W], damper.heat [W],
+ *     transducer.effort_1 [V], transducer.flow_1 [A], transducer.effort_2 [N],
+ *     transducer.flow_2 [m/s], transducer.power [W], body.effort [K], body.flow [W/K],
+ *     body.power [W], body.energy [J], ambient.effort [K], ambient.flow [W/K], ambient.power
+ *     [W], load.effort [N], load.flow [m/s], load.power [W], supply.effort [V], supply.flow
+ *     [A], supply.power [W]
+ */
+void piezo_stack_elements(const double *x,
+                          const double *u,
+                          const piezo_stack_parameters *p_,
+                          double *out);
+
+/*
  * Margin of each condition of the domain; of a bank, the least over its lanes.
  * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
  * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]

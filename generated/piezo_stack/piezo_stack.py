@@ -62,6 +62,47 @@ PROCESSES = (
 BODIES = (
     Record("body", "K", "temperature of thermal_mass 'body'"),
 )
+ELEMENTS = (
+    Record("spring.effort", "N", "force of spring 'spring'"),
+    Record("spring.flow", "m/s", "velocity of spring 'spring'"),
+    Record("spring.power", "W", "power into spring 'spring'"),
+    Record("spring.energy", "J", "energy of spring 'spring'"),
+    Record("mass.effort", "N", "force of mass 'mass'"),
+    Record("mass.flow", "m/s", "velocity of mass 'mass'"),
+    Record("mass.power", "W", "power into mass 'mass'"),
+    Record("mass.energy", "J", "energy of mass 'mass'"),
+    Record("capacitor.effort", "V", "voltage of capacitor 'capacitor'"),
+    Record("capacitor.flow", "A", "current of capacitor 'capacitor'"),
+    Record("capacitor.power", "W", "power into capacitor 'capacitor'"),
+    Record("capacitor.energy", "J", "energy of capacitor 'capacitor'"),
+    Record("hysteron.effort", "V", "voltage of hysteron 'hysteron'", "hysteron"),
+    Record("hysteron.flow", "A", "current of hysteron 'hysteron'", "hysteron"),
+    Record("hysteron.power", "W", "power into hysteron 'hysteron'", "hysteron"),
+    Record("hysteron.energy", "J", "energy of hysteron 'hysteron'", "hysteron"),
+    Record("hysteron.heat", "W", "heat of hysteron 'hysteron'", "hysteron"),
+    Record("damper.effort", "N", "force of damper 'damper'"),
+    Record("damper.flow", "m/s", "velocity of damper 'damper'"),
+    Record("damper.power", "W", "power into damper 'damper'"),
+    Record("damper.heat", "W", "heat of damper 'damper'"),
+    Record("transducer.effort_1", "V", "voltage in branch 1 of transducer 'transducer'"),
+    Record("transducer.flow_1", "A", "current in branch 1 of transducer 'transducer'"),
+    Record("transducer.effort_2", "N", "force in branch 2 of transducer 'transducer'"),
+    Record("transducer.flow_2", "m/s", "velocity in branch 2 of transducer 'transducer'"),
+    Record("transducer.power", "W", "power from branch 1 to branch 2 of transducer 'transducer'"),
+    Record("body.effort", "K", "temperature of thermal_mass 'body'"),
+    Record("body.flow", "W/K", "entropy flow of thermal_mass 'body'"),
+    Record("body.power", "W", "power into thermal_mass 'body'"),
+    Record("body.energy", "J", "energy of thermal_mass 'body'"),
+    Record("ambient.effort", "K", "temperature at ambient 'ambient'"),
+    Record("ambient.flow", "W/K", "entropy flow at ambient 'ambient'"),
+    Record("ambient.power", "W", "power into ambient 'ambient'"),
+    Record("load.effort", "N", "force of force_source 'load'"),
+    Record("load.flow", "m/s", "velocity of force_source 'load'"),
+    Record("load.power", "W", "power into force_source 'load'"),
+    Record("supply.effort", "V", "voltage of voltage_source 'supply'"),
+    Record("supply.flow", "A", "current of voltage_source 'supply'"),
+    Record("supply.power", "W", "power into voltage_source 'supply'"),
+)
 PARAMETERS = (
     Record("M", "kg", "moving mass"),
     Record("k", "N/m", "stiffness"),
@@ -376,6 +417,103 @@ def entropy_production(x, u, p_, /):
     out = np.empty((1 + hysteron_count, *x.shape[1:]))
     out[0 : hysteron_count] = V_hysteron*i_hysteron/T
     out[hysteron_count] = F_damper*v_mass/T
+    return out
+
+
+def elements(x, u, p_, /):
+    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (34 + 5*hysteron_count, *batch)."""
+    x = _states(x, p_)
+    u = _inputs(u)
+    hysteron_count = p_.hysteron_count
+    M = p_.M
+    k = p_.k
+    q_l = p_.q_l
+    d = p_.d
+    C = p_.C
+    L = _lanes(p_.L, hysteron_count, x.ndim)
+    rho = _lanes(p_.rho, hysteron_count, x.ndim)
+    i_0 = _lanes(p_.i_0, hysteron_count, x.ndim)
+    a = p_.a
+    T_0 = p_.T_0
+    c_0 = p_.c_0
+    lam = p_.lam
+    q = x[0]
+    p = x[1]
+    Q_C = x[2]
+    phi = x[3 : 3 + hysteron_count]
+    S = x[3 + hysteron_count]
+    F_ext = u[0]
+    V_in = u[1]
+    T_e = u[2]
+    # co-states dU/dx
+    F_spring = k*(q - q_l)
+    v_mass = p/M
+    V_capacitor = Q_C/C
+    i_hysteron = phi/L
+    T_minus_T_0 = T_0*np.expm1(S/c_0)
+    T = T_0 + T_minus_T_0
+    # sums over lanes
+    sum_i_hysteron = np.sum(i_hysteron, axis=0)
+    # transducer ratios
+    alpha_transducer = a*T/T_0
+    # dissipative laws
+    V_hysteron = rho/T_minus_T_0*(i_hysteron - np.clip(i_hysteron, -i_0, i_0))
+    F_damper = d*v_mass
+    # sums over lanes
+    heat_hysteron = np.sum(V_hysteron*i_hysteron, axis=0)
+    # heats
+    heat_damper = F_damper*v_mass
+    # rates
+    rate_p = alpha_transducer*V_capacitor - F_spring - F_damper + F_ext
+    rate_Q_C = sum_i_hysteron - alpha_transducer*v_mass
+    rate_phi = V_in - V_capacitor - V_hysteron
+    rate_S = (heat_hysteron + heat_damper)/T + lam*(T_e/T - 1)
+    # result
+    row_hysteron_effort = 12 + hysteron_count
+    row_hysteron_flow = row_hysteron_effort + hysteron_count
+    row_hysteron_power = row_hysteron_flow + hysteron_count
+    row_hysteron_energy = row_hysteron_power + hysteron_count
+    row_hysteron_heat = row_hysteron_energy + hysteron_count
+    out = np.empty((22 + row_hysteron_heat, *x.shape[1:]))
+    out[0] = F_spring
+    out[1] = v_mass
+    out[2] = F_spring*v_mass
+    out[3] = k*(q - q_l)**2/2
+    out[4] = rate_p
+    out[5] = v_mass
+    out[6] = rate_p*v_mass
+    out[7] = p**2/(2*M)
+    out[8] = V_capacitor
+    out[9] = rate_Q_C
+    out[10] = V_capacitor*rate_Q_C
+    out[11] = Q_C**2/(2*C)
+    out[12 : row_hysteron_effort] = rate_phi + V_hysteron
+    out[row_hysteron_effort : row_hysteron_flow] = i_hysteron
+    out[row_hysteron_flow : row_hysteron_power] = (rate_phi + V_hysteron)*i_hysteron
+    out[row_hysteron_power : row_hysteron_energy] = phi**2/(2*L)
+    out[row_hysteron_energy : row_hysteron_heat] = V_hysteron*i_hysteron
+    out[row_hysteron_heat] = F_damper
+    out[1 + row_hysteron_heat] = v_mass
+    out[2 + row_hysteron_heat] = F_damper*v_mass
+    out[3 + row_hysteron_heat] = F_damper*v_mass
+    out[4 + row_hysteron_heat] = V_capacitor
+    out[5 + row_hysteron_heat] = alpha_transducer*v_mass
+    out[6 + row_hysteron_heat] = -alpha_transducer*V_capacitor
+    out[7 + row_hysteron_heat] = v_mass
+    out[8 + row_hysteron_heat] = V_capacitor*alpha_transducer*v_mass
+    out[9 + row_hysteron_heat] = T
+    out[10 + row_hysteron_heat] = rate_S
+    out[11 + row_hysteron_heat] = T*rate_S
+    out[12 + row_hysteron_heat] = T_0*c_0*np.exp(S/c_0)
+    out[13 + row_hysteron_heat] = T
+    out[14 + row_hysteron_heat] = -lam*(T_e/T - 1)
+    out[15 + row_hysteron_heat] = -lam*(T_e - T)
+    out[16 + row_hysteron_heat] = -F_ext
+    out[17 + row_hysteron_heat] = v_mass
+    out[18 + row_hysteron_heat] = -v_mass*F_ext
+    out[19 + row_hysteron_heat] = V_in
+    out[20 + row_hysteron_heat] = -sum_i_hysteron
+    out[21 + row_hysteron_heat] = -sum_i_hysteron*V_in
     return out
 
 

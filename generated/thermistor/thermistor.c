@@ -181,6 +181,53 @@ void thermistor_entropy_production(const double *restrict x,
     out[0] = V_bead*i_coil/T;
 }
 
+/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+void thermistor_elements(const double *restrict x,
+                         const double *restrict u,
+                         const thermistor_parameters *restrict p,
+                         double *restrict out)
+{
+    (void)u;
+    const double L = p->L;
+    const double C = p->C;
+    const double R_0 = p->R_0;
+    const double B = p->B;
+    const double c = p->c;
+    const double T_0 = p->T_0;
+    const double phi = x[0];
+    const double Q = x[1];
+    const double S = x[2];
+    /* co-states dU/dx */
+    const double i_coil = phi/L;
+    const double V_cap = Q/C;
+    const double T = T_0*exp(S/c);
+    /* dissipative laws */
+    const double V_bead = R_0*exp(B*(1.0/T - 1.0/T_0))*i_coil;
+    /* heats */
+    const double heat_bead = V_bead*i_coil;
+    /* rates */
+    const double rate_phi = V_cap - V_bead;
+    const double rate_Q = -i_coil;
+    const double rate_S = heat_bead/T;
+    /* result */
+    out[0] = rate_phi;
+    out[1] = i_coil;
+    out[2] = rate_phi*i_coil;
+    out[3] = power_2(phi)/(2.0*L);
+    out[4] = V_cap;
+    out[5] = rate_Q;
+    out[6] = V_cap*rate_Q;
+    out[7] = power_2(Q)/(2.0*C);
+    out[8] = V_bead;
+    out[9] = i_coil;
+    out[10] = V_bead*i_coil;
+    out[11] = V_bead*i_coil;
+    out[12] = T;
+    out[13] = rate_S;
+    out[14] = T*rate_S;
+    out[15] = T_0*c*exp(S/c);
+}
+
 /* Derivative of rhs by the state, n x n, row after row. */
 void thermistor_jacobian(const double *restrict x,
                          const double *restrict u,

@@ -149,6 +149,20 @@ void thermistor_entropy_production(const double *x,
                                    double *out);
 
 /*
+ * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * x[n], read: phi [Wb], Q [C], S [J/K]
+ * u[thermistor_input_count], read
+ * out[16], written; must not overlap another argument: coil.effort [V], coil.flow [A],
+ *     coil.power [W], coil.energy [J], cap.effort [V], cap.flow [A], cap.power [W], cap.energy
+ *     [J], bead.effort [V], bead.flow [A], bead.power [W], bead.heat [W], body.effort [K],
+ *     body.flow [W/K], body.power [W], body.energy [J]
+ */
+void thermistor_elements(const double *x,
+                         const double *u,
+                         const thermistor_parameters *p,
+                         double *out);
+
+/*
  * Margin of each condition of the domain; of a bank, the least over its lanes.
  * x[n], read: phi [Wb], Q [C], S [J/K]
  * u[thermistor_input_count], read

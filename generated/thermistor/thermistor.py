@@ -50,6 +50,24 @@ PROCESSES = (
 BODIES = (
     Record("body", "K", "temperature of thermal_mass 'body'"),
 )
+ELEMENTS = (
+    Record("coil.effort", "V", "voltage of inductor 'coil'"),
+    Record("coil.flow", "A", "current of inductor 'coil'"),
+    Record("coil.power", "W", "power into inductor 'coil'"),
+    Record("coil.energy", "J", "energy of inductor 'coil'"),
+    Record("cap.effort", "V", "voltage of capacitor 'cap'"),
+    Record("cap.flow", "A", "current of capacitor 'cap'"),
+    Record("cap.power", "W", "power into capacitor 'cap'"),
+    Record("cap.energy", "J", "energy of capacitor 'cap'"),
+    Record("bead.effort", "V", "voltage of resistor 'bead'"),
+    Record("bead.flow", "A", "current of resistor 'bead'"),
+    Record("bead.power", "W", "power into resistor 'bead'"),
+    Record("bead.heat", "W", "heat of resistor 'bead'"),
+    Record("body.effort", "K", "temperature of thermal_mass 'body'"),
+    Record("body.flow", "W/K", "entropy flow of thermal_mass 'body'"),
+    Record("body.power", "W", "power into thermal_mass 'body'"),
+    Record("body.energy", "J", "energy of thermal_mass 'body'"),
+)
 PARAMETERS = (
     Record("L", "H", "inductance"),
     Record("C", "F", "capacitance"),
@@ -233,6 +251,51 @@ def entropy_production(x, u, p, /):
     # result
     out = np.empty((1, *x.shape[1:]))
     out[0] = V_bead*i_coil/T
+    return out
+
+
+def elements(x, u, p, /):
+    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (16, *batch)."""
+    x = _states(x, p)
+    L = p.L
+    C = p.C
+    R_0 = p.R_0
+    B = p.B
+    c = p.c
+    T_0 = p.T_0
+    phi = x[0]
+    Q = x[1]
+    S = x[2]
+    # co-states dU/dx
+    i_coil = phi/L
+    V_cap = Q/C
+    T = T_0*np.exp(S/c)
+    # dissipative laws
+    V_bead = R_0*np.exp(B*(1/T - 1/T_0))*i_coil
+    # heats
+    heat_bead = V_bead*i_coil
+    # rates
+    rate_phi = V_cap - V_bead
+    rate_Q = -i_coil
+    rate_S = heat_bead/T
+    # result
+    out = np.empty((16, *x.shape[1:]))
+    out[0] = rate_phi
+    out[1] = i_coil
+    out[2] = rate_phi*i_coil
+    out[3] = phi**2/(2*L)
+    out[4] = V_cap
+    out[5] = rate_Q
+    out[6] = V_cap*rate_Q
+    out[7] = Q**2/(2*C)
+    out[8] = V_bead
+    out[9] = i_coil
+    out[10] = V_bead*i_coil
+    out[11] = V_bead*i_coil
+    out[12] = T
+    out[13] = rate_S
+    out[14] = T*rate_S
+    out[15] = T_0*c*np.exp(S/c)
     return out
 
 

@@ -261,6 +261,97 @@ void voice_coil_entropy_production(const double *restrict x,
     out[2] = s_contact*(T_winding - T_magnet)/T_magnet;
 }
 
+/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+void voice_coil_elements(const double *restrict x,
+                         const double *restrict u,
+                         const voice_coil_parameters *restrict p_,
+                         double *restrict out)
+{
+    const double m = p_->m;
+    const double k = p_->k;
+    const double d = p_->d;
+    const double Bl = p_->Bl;
+    const double R_0 = p_->R_0;
+    const double al = p_->al;
+    const double L = p_->L;
+    const double c_w = p_->c_w;
+    const double c_m = p_->c_m;
+    const double lam = p_->lam;
+    const double h = p_->h;
+    const double T_0 = p_->T_0;
+    const double q = x[0];
+    const double p = x[1];
+    const double phi = x[2];
+    const double S_w = x[3];
+    const double S_m = x[4];
+    const double V_in = u[0];
+    const double T_e = u[1];
+    /* co-states dU/dx */
+    const double F_suspension = k*q;
+    const double v_cone = p/m;
+    const double i_coil = phi/L;
+    const double T_winding_minus_T_0 = T_0*expm1(S_w/c_w);
+    const double T_winding = T_0 + T_winding_minus_T_0;
+    const double T_magnet = T_0*exp(S_m/c_m);
+    /* transducer ratios */
+    const double n_gap = Bl;
+    /* dissipative laws */
+    const double F_losses = d*v_cone;
+    const double V_copper = R_0*(1.0 + al*T_winding_minus_T_0)*i_coil;
+    const double s_contact = lam*(T_winding - T_magnet)/T_winding;
+    /* heats */
+    const double heat_losses = F_losses*v_cone;
+    const double heat_copper = V_copper*i_coil;
+    const double heat_contact = s_contact*T_winding;
+    /* rates */
+    const double rate_p = n_gap*i_coil - F_suspension - F_losses;
+    const double rate_phi = V_in - n_gap*v_cone - V_copper;
+    const double rate_S_w = heat_copper/T_winding - s_contact;
+    const double rate_S_m = (heat_losses + heat_contact)/T_magnet + h*(T_e/T_magnet - 1.0);
+    /* result */
+    out[0] = F_suspension;
+    out[1] = v_cone;
+    out[2] = F_suspension*v_cone;
+    out[3] = k*power_2(q)/2.0;
+    out[4] = rate_p;
+    out[5] = v_cone;
+    out[6] = rate_p*v_cone;
+    out[7] = power_2(p)/(2.0*m);
+    out[8] = F_losses;
+    out[9] = v_cone;
+    out[10] = F_losses*v_cone;
+    out[11] = F_losses*v_cone;
+    out[12] = rate_phi;
+    out[13] = i_coil;
+    out[14] = rate_phi*i_coil;
+    out[15] = power_2(phi)/(2.0*L);
+    out[16] = V_copper;
+    out[17] = i_coil;
+    out[18] = V_copper*i_coil;
+    out[19] = V_copper*i_coil;
+    out[20] = n_gap*v_cone;
+    out[21] = i_coil;
+    out[22] = -n_gap*i_coil;
+    out[23] = v_cone;
+    out[24] = n_gap*v_cone*i_coil;
+    out[25] = T_winding;
+    out[26] = rate_S_w;
+    out[27] = T_winding*rate_S_w;
+    out[28] = T_0*c_w*exp(S_w/c_w);
+    out[29] = T_magnet;
+    out[30] = rate_S_m;
+    out[31] = T_magnet*rate_S_m;
+    out[32] = T_0*c_m*exp(S_m/c_m);
+    out[33] = T_winding - T_magnet;
+    out[34] = s_contact*T_winding;
+    out[35] = T_magnet;
+    out[36] = -h*(T_e/T_magnet - 1.0);
+    out[37] = -h*(T_e - T_magnet);
+    out[38] = V_in;
+    out[39] = -i_coil;
+    out[40] = -i_coil*V_in;
+}
+
 /* Derivative of rhs by the state, n x n, row after row. */
 void voice_coil_jacobian(const double *restrict x,
                          const double *restrict u,

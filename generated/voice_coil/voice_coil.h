@@ -164,6 +164,26 @@ void voice_coil_entropy_production(const double *x,
                                    double *out);
 
 /*
+ * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * x[n], read: q [m], p [kg*m/s], phi [Wb], S_w [J/K], S_m [J/K]
+ * u[voice_coil_input_count], read: V_in [V], T_e [K]
+ * out[41], written; must not overlap another argument: suspension.effort [N], suspension.flow
+ *     [m/s], suspension.power [W], suspension.energy [J], cone.effort [N], cone.flow [m/s],
+ *     cone.power [W], cone.energy [J], losses.effort [N], losses.flow [m/s], losses.power [W],
+ *     losses.heat [W], coil.effort [V], coil.flow [A], coil.power [W], coil.energy [J],
+ *     copper.effort [V], copper.flow [A], copper.power [W], copper.heat [W], gap.effort_1 [V],
+ *     gap.flow_1 [A], gap.effort_2 [N], gap.flow_2 [m/s], gap.power [W], winding.effort [K],
+ *     winding.flow [W/K], winding.power [W], winding.energy [J], magnet.effort [K],
+ *     magnet.flow [W/K], magnet.power [W], magnet.energy [J], contact.effort [K],
+ *     contact.power [W], air.effort [K], air.flow [W/K], air.power [W], amplifier.effort [V],
+ *     amplifier.flow [A], amplifier.power [W]
+ */
+void voice_coil_elements(const double *x,
+                         const double *u,
+                         const voice_coil_parameters *p_,
+                         double *out);
+
+/*
  * Margin of each condition of the domain; of a bank, the least over its lanes.
  * x[n], read: q [m], p [kg*m/s], phi [Wb], S_w [J/K], S_m [J/K]
  * u[voice_coil_input_count], read: V_in [V], T_e [K]

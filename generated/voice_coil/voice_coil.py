@@ -61,6 +61,49 @@ BODIES = (
     Record("winding", "K", "temperature of thermal_mass 'winding'"),
     Record("magnet", "K", "temperature of thermal_mass 'magnet'"),
 )
+ELEMENTS = (
+    Record("suspension.effort", "N", "force of spring 'suspension'"),
+    Record("suspension.flow", "m/s", "velocity of spring 'suspension'"),
+    Record("suspension.power", "W", "power into spring 'suspension'"),
+    Record("suspension.energy", "J", "energy of spring 'suspension'"),
+    Record("cone.effort", "N", "force of mass 'cone'"),
+    Record("cone.flow", "m/s", "velocity of mass 'cone'"),
+    Record("cone.power", "W", "power into mass 'cone'"),
+    Record("cone.energy", "J", "energy of mass 'cone'"),
+    Record("losses.effort", "N", "force of damper 'losses'"),
+    Record("losses.flow", "m/s", "velocity of damper 'losses'"),
+    Record("losses.power", "W", "power into damper 'losses'"),
+    Record("losses.heat", "W", "heat of damper 'losses'"),
+    Record("coil.effort", "V", "voltage of inductor 'coil'"),
+    Record("coil.flow", "A", "current of inductor 'coil'"),
+    Record("coil.power", "W", "power into inductor 'coil'"),
+    Record("coil.energy", "J", "energy of inductor 'coil'"),
+    Record("copper.effort", "V", "voltage of resistor 'copper'"),
+    Record("copper.flow", "A", "current of resistor 'copper'"),
+    Record("copper.power", "W", "power into resistor 'copper'"),
+    Record("copper.heat", "W", "heat of resistor 'copper'"),
+    Record("gap.effort_1", "V", "voltage in branch 1 of motor 'gap'"),
+    Record("gap.flow_1", "A", "current in branch 1 of motor 'gap'"),
+    Record("gap.effort_2", "N", "force in branch 2 of motor 'gap'"),
+    Record("gap.flow_2", "m/s", "velocity in branch 2 of motor 'gap'"),
+    Record("gap.power", "W", "power from branch 1 to branch 2 of motor 'gap'"),
+    Record("winding.effort", "K", "temperature of thermal_mass 'winding'"),
+    Record("winding.flow", "W/K", "entropy flow of thermal_mass 'winding'"),
+    Record("winding.power", "W", "power into thermal_mass 'winding'"),
+    Record("winding.energy", "J", "energy of thermal_mass 'winding'"),
+    Record("magnet.effort", "K", "temperature of thermal_mass 'magnet'"),
+    Record("magnet.flow", "W/K", "entropy flow of thermal_mass 'magnet'"),
+    Record("magnet.power", "W", "power into thermal_mass 'magnet'"),
+    Record("magnet.energy", "J", "energy of thermal_mass 'magnet'"),
+    Record("contact.effort", "K", "temperature difference over conduction 'contact'"),
+    Record("contact.power", "W", "heat from first to second body by conduction 'contact'"),
+    Record("air.effort", "K", "temperature at ambient 'air'"),
+    Record("air.flow", "W/K", "entropy flow at ambient 'air'"),
+    Record("air.power", "W", "power into ambient 'air'"),
+    Record("amplifier.effort", "V", "voltage of voltage_source 'amplifier'"),
+    Record("amplifier.flow", "A", "current of voltage_source 'amplifier'"),
+    Record("amplifier.power", "W", "power into voltage_source 'amplifier'"),
+)
 PARAMETERS = (
     Record("m", "kg", "moving mass"),
     Record("k", "N/m", "stiffness of the suspension"),
@@ -346,6 +389,97 @@ def entropy_production(x, u, p_, /):
     out[0] = F_losses*v_cone/T_magnet
     out[1] = V_copper*i_coil/T_winding
     out[2] = s_contact*(T_winding - T_magnet)/T_magnet
+    return out
+
+
+def elements(x, u, p_, /):
+    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (41, *batch)."""
+    x = _states(x, p_)
+    u = _inputs(u)
+    m = p_.m
+    k = p_.k
+    d = p_.d
+    Bl = p_.Bl
+    R_0 = p_.R_0
+    al = p_.al
+    L = p_.L
+    c_w = p_.c_w
+    c_m = p_.c_m
+    lam = p_.lam
+    h = p_.h
+    T_0 = p_.T_0
+    q = x[0]
+    p = x[1]
+    phi = x[2]
+    S_w = x[3]
+    S_m = x[4]
+    V_in = u[0]
+    T_e = u[1]
+    # co-states dU/dx
+    F_suspension = k*q
+    v_cone = p/m
+    i_coil = phi/L
+    T_winding_minus_T_0 = T_0*np.expm1(S_w/c_w)
+    T_winding = T_0 + T_winding_minus_T_0
+    T_magnet = T_0*np.exp(S_m/c_m)
+    # transducer ratios
+    n_gap = Bl
+    # dissipative laws
+    F_losses = d*v_cone
+    V_copper = R_0*(1 + al*T_winding_minus_T_0)*i_coil
+    s_contact = lam*(T_winding - T_magnet)/T_winding
+    # heats
+    heat_losses = F_losses*v_cone
+    heat_copper = V_copper*i_coil
+    heat_contact = s_contact*T_winding
+    # rates
+    rate_p = n_gap*i_coil - F_suspension - F_losses
+    rate_phi = V_in - n_gap*v_cone - V_copper
+    rate_S_w = heat_copper/T_winding - s_contact
+    rate_S_m = (heat_losses + heat_contact)/T_magnet + h*(T_e/T_magnet - 1)
+    # result
+    out = np.empty((41, *x.shape[1:]))
+    out[0] = F_suspension
+    out[1] = v_cone
+    out[2] = F_suspension*v_cone
+    out[3] = k*q**2/2
+    out[4] = rate_p
+    out[5] = v_cone
+    out[6] = rate_p*v_cone
+    out[7] = p**2/(2*m)
+    out[8] = F_losses
+    out[9] = v_cone
+    out[10] = F_losses*v_cone
+    out[11] = F_losses*v_cone
+    out[12] = rate_phi
+    out[13] = i_coil
+    out[14] = rate_phi*i_coil
+    out[15] = phi**2/(2*L)
+    out[16] = V_copper
+    out[17] = i_coil
+    out[18] = V_copper*i_coil
+    out[19] = V_copper*i_coil
+    out[20] = n_gap*v_cone
+    out[21] = i_coil
+    out[22] = -n_gap*i_coil
+    out[23] = v_cone
+    out[24] = n_gap*v_cone*i_coil
+    out[25] = T_winding
+    out[26] = rate_S_w
+    out[27] = T_winding*rate_S_w
+    out[28] = T_0*c_w*np.exp(S_w/c_w)
+    out[29] = T_magnet
+    out[30] = rate_S_m
+    out[31] = T_magnet*rate_S_m
+    out[32] = T_0*c_m*np.exp(S_m/c_m)
+    out[33] = T_winding - T_magnet
+    out[34] = s_contact*T_winding
+    out[35] = T_magnet
+    out[36] = -h*(T_e/T_magnet - 1)
+    out[37] = -h*(T_e - T_magnet)
+    out[38] = V_in
+    out[39] = -i_coil
+    out[40] = -i_coil*V_in
     return out
 
 

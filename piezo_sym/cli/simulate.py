@@ -34,6 +34,7 @@ TIMES = "Number of samples; 1001, or ends of steps, if left out."
 EVENTS = "NAME=EXPRESSION, located where its sign changes; repeat."
 STOP = "A comparison, such as 'T_body > 350', that ends the run."
 T0 = "When the run starts [s]; 0, or where it goes on."
+OUTPUTS = "Quantities of elements: all, or spring,damper.heat,..."
 SIGNALS = "NAME=NUMBER, NAME=sine(100,100) or NAME=@FILE.csv; SI; repeat."
 
 Number: TypeAlias = float | None
@@ -66,6 +67,7 @@ def simulate(
     every: Annotated[Count, option("With --step: a sample every so many steps.")] = None,
     events: Annotated[Words, option(EVENTS, "--event")] = None,
     stop: Annotated[Word, option(STOP)] = None,
+    outputs: Annotated[Word, option(OUTPUTS)] = None,
     dissipative_start: Annotated[
         bool, option("Damp what rings after a jump of an input.", "--dissipative-start")
     ] = False,
@@ -81,7 +83,7 @@ def simulate(
     _check_ending(out, events)
     signals = dict(pairs(inputs or (), "--input", signal))
     when = {"duration": duration, "t0": t0, "times": times, "every": every, "stop": stop}
-    how = {"rtol": rtol, "step": step, "order": order, "method": method}
+    how = {"rtol": rtol, "step": step, "order": order, "method": method, "outputs": outputs}
     result = _run(
         spec,
         out,
@@ -99,6 +101,8 @@ def simulate(
 def _run(spec: str, out: Path | None, **options: Any) -> xarray.Dataset:
     from piezo_sym.api import simulate as run
 
+    asked = options["outputs"]
+    options["outputs"] = asked if asked in (None, "all") else asked.split(",")
     of_spec = about(spec, SpecError, NetworkError, ProofError)
     with warnings_as_lines(), keeping(out), of_spec:
         return run(spec, **options, progress=sys.stderr.isatty())

@@ -6,15 +6,16 @@ ports and processes.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from piezo_sym.algebra.lanes import Slot
-from piezo_sym.codegen.program import ModuleFunction, OutputRow, bank_of
+from piezo_sym.codegen.program import ModuleFunction, Names, OutputRow, Quantity, bank_of
 from piezo_sym.codegen.quantities import Quantities
 from piezo_sym.expressions.calculus import add, div, mul, neg
 from piezo_sym.expressions.text import signed
 from piezo_sym.expressions.tree import ONE, Expr, Sym
 from piezo_sym.iphs import IPHS
+from piezo_sym.iphs.elements import ElementRow, Parts, element_rows
 from piezo_sym.spec.elements.ports import (
     Body,
     Conductor,
@@ -34,6 +35,10 @@ FUNCTIONS = {
     "energy": ("Hamiltonian U [J]", STATE),
     "entropy": ("Total entropy S [J/K]", STATE),
     "temperatures": ("Temperature of each body [K]", STATE),
+    "elements": (
+        "Effort, flow, power, energy, heat of each element; of a bank, one row per lane",
+        STATE_INPUT,
+    ),
     "heat": (
         "Power that each process turns into heat [W]; of a bank, one row per lane",
         STATE_INPUT,
@@ -65,6 +70,49 @@ def functions_of(q: Quantities) -> tuple[ModuleFunction, ...]:
     return tuple(
         ModuleFunction(name, *FUNCTIONS[name], rows, name in scalars) for name, rows in made
     )
+
+
+def elements_of(
+    q: Quantities, rates: tuple[OutputRow, ...], new: Names
+) -> tuple[tuple[ElementRow[Expr], ...], tuple[Quantity, ...]]:
+    """Return the quantities of all elements, and the rates that they name."""
+    iphs, named, values = q.iphs, list[Quantity](), list[Expr]()
+    for row in rates:
+        if not isinstance(row.value, Sym):
+            named.append(Quantity(new(f"rate_{row.slot.label}"), row.value, row.slot.bank, "rates"))
+        values.append(row.value if isinstance(row.value, Sym) else Sym(named[-1].name))
+
+    def couplings(followers: Sequence[Expr]) -> list[Expr]:
+        blocks = zip("EWuR", (q.costates, q.outputs, q.inputs, followers), strict=True)
+        given = [(iphs.junction.couplings[kind], factors) for kind, factors in blocks]
+        count = len(given[0][0].rows)
+        return [
+            add(*(t for block, factors in given for t in q.product(block, n, factors)))
+            for n in range(count)
+        ]
+
+    parts = Parts(
+        costates=q.costates,
+        rates=values,
+        outputs=q.outputs,
+        drives=q.drives,
+        heats=q.heats,
+        inputs=[_brought(p.port, u, q) for p, u in zip(q.ports, q.inputs, strict=True)],
+        ports=[row.value for row in _outputs(q)],
+        supplies=[row.value for row in supply_of(q)],
+        couplings=couplings,
+        law=lambda tree: tree,
+        total=add,
+        product=mul,
+        negative=neg,
+    )
+    return element_rows(iphs, parts), tuple(named)
+
+
+def element_function(elements: Iterable[ElementRow[Expr]]) -> ModuleFunction:
+    """Return the function of the quantities of all elements."""
+    rows = tuple(OutputRow(Slot(row.name, row.bank), row.value) for row in elements)
+    return ModuleFunction("elements", *FUNCTIONS["elements"], rows)
 
 
 def rates_of(q: Quantities) -> tuple[OutputRow, ...]:

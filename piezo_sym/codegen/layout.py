@@ -7,6 +7,7 @@ then grows with the number of banks, not with its square.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -80,14 +81,19 @@ def places(slots: Sequence[Slot], word: str, taken: Collection[str]) -> Places:
     if len(banks) <= SPELLED:
         return Places(slots)
     new = Names(taken)
-    return Places(slots, {n: new(f"{word}_{slot.label}") for n, slot in banks.items()})
+    return Places(
+        slots, {n: new(f"{word}_{slot.label.replace('.', '_')}") for n, slot in banks.items()}
+    )
 
 
 def size_in_words(slots: Sequence[Slot]) -> str:
     """Return the number of rows, for a docstring."""
-    banks = sum(slot.bank is not None for slot in slots)
-    text = f"{len(slots) - banks} + the sizes of {banks} banks"
-    return _spelled(slots) if banks <= SPELLED else text
+    banks = Counter(slot.bank for slot in slots if slot.bank)
+    sizes = [f"{n}*{bank}_count" if n > 1 else f"{bank}_count" for bank, n in banks.items()]
+    fixed = len(slots) - banks.total()
+    if len(banks) <= SPELLED:
+        return _sum(fixed, sizes)
+    return f"{fixed} + the sizes of {banks.total()} banks"
 
 
 def terms(value: Add, write: Callable[[Expr], Piece]) -> Iterator[str]:

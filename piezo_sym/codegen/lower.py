@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from piezo_sym.codegen.differences import sharp_program
-from piezo_sym.codegen.functions import functions_of
+from piezo_sym.codegen.functions import element_function, elements_of, functions_of
 from piezo_sym.codegen.jacobian import jacobian_of
 from piezo_sym.codegen.program import Described, ModuleFunction, Names, Program
 from piezo_sym.codegen.quantities import Quantities, quantities_of
@@ -33,11 +33,14 @@ def lower(iphs: IPHS, verdict: str) -> Program:
     functions = functions_of(q)
     rates = next(function for function in functions if function.name == "rhs").rows
     names = Names(q.taken)
+    elements, named = elements_of(q, rates, names)
     entries, derivatives = jacobian_of(rates, q.states, q.defined, q.lanes, names, q.temperatures)
     found = replace(
         program_of(q, functions),
         verdict=verdict,
-        quantities=(*q.defined, *derivatives),
+        functions=(*functions, element_function(elements)),
+        elements=tuple(Described(*row[:4]) for row in elements),
+        quantities=(*q.defined, *named, *derivatives),
         jacobian=entries,
         limits=q.limits,
         taken=frozenset(names.taken),
@@ -64,6 +67,7 @@ def program_of(q: Quantities, functions: tuple[ModuleFunction, ...]) -> Program:
             **{name: entry.si for name, entry in model.parameters.items()},
             **{name: entry.si for name, entry in model.inputs.items()},
         },
+        elements=(),
         counts=banks(model),
         quantities=q.defined,
         functions=functions,

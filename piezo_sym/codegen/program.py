@@ -132,7 +132,7 @@ class Program:
     Attributes
     ----------
     name, title, source, sha256, verdict : for the head.
-    parameters, inputs, states, outputs, processes, bodies : fields in their order.
+    parameters, inputs, states, outputs, processes, bodies, elements : fields in their order.
     defaults : values of parameters (a tuple: one per lane), inputs and bank sizes.
     banks : names, in order.
     quantities : in an order in which they can be computed.
@@ -152,6 +152,7 @@ class Program:
     outputs: tuple[Described, ...]
     processes: tuple[Described, ...]
     bodies: tuple[Described, ...]
+    elements: tuple[Described, ...]
     defaults: Mapping[str, float | tuple[float, ...]]
     counts: Mapping[str, int]
     quantities: tuple[Quantity, ...]

@@ -49,7 +49,8 @@ class Quantities:
     defined : in an order in which they can be computed.
     costates : of each state; a body's is its temperature.
     inputs : of each port.
-    forces, outputs, heats : driving force z, output W and heat of each process.
+    forces, drives, outputs, heats : of each process its driving force, z that W is conjugate to,
+        output W, and heat W z.
     limits : the conditions of the domain.
     taken : every name in use.
     given : of names that are no quantities, those that have a value per lane, and the bank.
@@ -60,6 +61,7 @@ class Quantities:
     costates: tuple[Sym, ...]
     inputs: tuple[Sym, ...]
     forces: tuple[Expr, ...]
+    drives: tuple[Expr, ...]
     outputs: tuple[Sym, ...]
     heats: tuple[Expr, ...]
     limits: tuple[Limit, ...]
@@ -139,18 +141,20 @@ def quantities_of(iphs: IPHS) -> Quantities:
     used = {name for law in (*laws.values(), *(m.margin for m in limits)) for name in names(law)}
     excesses = {key: excess for key, excess in excesses.items() if excess.name in used}
     defined = [*_costates(iphs, excesses)]
-    defined += sums_in((system.J0, system.B.T, system.G.T), costates, new)
+    couplings = iphs.junction.couplings
+    defined += sums_in((system.J0, system.B.T, system.G.T, couplings["E"]), costates, new)
     defined += _junction(iphs, laws)
     found = [*_processes(iphs, laws, costates, inputs, _by_value(defined))]
-    forces, heats = tuple(force for _, force, _ in found), tuple(heat for *_, heat in found)
+    forces, drives = tuple(force for _, force, _ in found), tuple(z for *_, z in found)
+    heats = tuple(map(mul, outputs, drives))
     slips = [getattr(port, "rate", "") for _, port in circuit.of(DissipativePort, Conductor)]
     for last in (False, True):  # the rates of slips may use the outputs of the others
         named = zip(found, slips, strict=True)
         defined += [item for (own, *_), rate in named if bool(rate) is last for item in own]
-    defined += sums_in((system.B, system.D), outputs, new)
+    defined += sums_in((system.B, system.D, couplings["W"]), outputs, new)
     defined += _totals(iphs, heats, _by_value(defined), new)
     return Quantities(
-        *(iphs, tuple(defined), costates, inputs, forces, outputs, heats, limits),
+        *(iphs, tuple(defined), costates, inputs, forces, drives, outputs, heats, limits),
         frozenset(new.taken),
     )
 
@@ -231,7 +235,7 @@ def _processes(
     inputs: Sequence[Sym],
     sums: Mapping[Expr, Sym],
 ) -> Iterator[tuple[tuple[Quantity, ...], Expr, Expr]]:
-    """Yield what each process defines, its driving force and its heat."""
+    """Yield what each process defines, its driving force and what W is conjugate to."""
     states, driven = iphs.system.B.T, iphs.system.D.T
     T = {placed.element: Sym(body.temperature) for placed, body in iphs.circuit.of(Body)}
     lanes = {c.name for c, slot in zip(costates, iphs.system.states, strict=True) if slot.bank}
@@ -254,7 +258,7 @@ def _processes(
                     defined.append(Quantity(port.rate, rate, bank, "rates of slips"))
             force, law = z, replace(laws[port.output], letters)
         defined.append(Quantity(port.output, law, placed.bank, "dissipative laws"))
-        yield tuple(defined), force, mul(Sym(port.output), z)
+        yield tuple(defined), force, z
 
 
 def _totals(

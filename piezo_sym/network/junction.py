@@ -45,6 +45,8 @@ class Junction:
     J0, B, D, g, N : matrices over them, their entries rational in the ratios, slopes and shares.
     slopes, shares : the symbols that resistive loops bring, see `Loops`.
     joints : what was joined into the states of others.
+    couplings : across_1 (of a transformer: through_1) and across_2 of each, over the co-states E,
+        the law outputs W, the inputs u, and the rates "R" of those that were joined.
     divisors : what the solution divides by; the structure exists where none is zero.
     """
 
@@ -60,6 +62,7 @@ class Junction:
     slopes: tuple[Slope, ...]
     shares: tuple[Definition, ...]
     joints: tuple[Joint, ...]
+    couplings: Mapping[str, LaneMatrix]
     divisors: tuple[sp.Expr, ...]
 
 
@@ -93,6 +96,7 @@ class _Blocks:
             "W": tuple(Slot(placed.element, placed.bank) for placed, _ in laws.processes),
             "u": tuple(Slot(placed.element) for placed in laws.ports),
             "R": tuple(Slot(placed.element) for placed, _ in laws.followers),
+            "C": tuple(Slot(port.name) for port in laws.ratio for _ in range(2)),
         }
         bodies = (n for n, (_, port) in enumerate(laws.states) if isinstance(port, Body))
         self.rows = {laws.states[n][0].element: n for n in bodies}  # each body's entropy
@@ -131,6 +135,7 @@ class _Blocks:
             slopes=loops.slopes,
             shares=tuple(share for share in loops.shares if share[0] in used),
             joints=joints,
+            couplings={kind: self._block("C", kind) for kind in "EWuR"},
             divisors=tuple(dict.fromkeys((*divisors, *loops.divisors))),
         )
 

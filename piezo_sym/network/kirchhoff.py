@@ -1,14 +1,14 @@
 """Kirchhoff's and Newton's laws as exact equations, solved for banks of any size.
 
-Input: a `Circuit`.  Output: for each branch, the variable that it does not impose, as a combination
-of the co-states E, the law outputs W and the inputs u.  No element's matrices are known here: each
-branch imposes its across or its through variable, and the laws say the rest.  A bank is one
-representative lane, whose own unknowns are eliminated first.
+Input: a `Circuit`.  Output: for each branch, the variable it does not impose, as a combination of
+co-states E, law outputs W and inputs u.  No element's matrices are known here: each branch imposes
+its across or through variable, and the laws say the rest.  A bank is one representative lane, whose
+own unknowns are eliminated first.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import Any, final
@@ -124,7 +124,9 @@ class Laws:
 
     @cached_property
     def answers(self) -> dict[tuple[str, int], Answer]:
-        """Return each branch's answer, by the given that it imposes.
+        """Return each branch's answer, by the given that it imposes; and two for coupling n.
+
+        These are ("C", 2*n), its across_1 (of a transformer: through_1), and its across_2.
 
         Raises
         ------
@@ -135,7 +137,13 @@ class Laws:
         """
         lanes = {bank: self._solve_lane(bank) for bank in self.banks}
         shared = self._solve_shared(lanes)
-        return {edge.key: self._answer(edge, lanes, shared) for edge in self.edges}
+        found = {edge.key: self._answer(edge, lanes, shared) for edge in self.edges}
+        for n, port in enumerate(self.ratio):
+            one = self.field.one
+            first = _across(port.first, one) if port.gyrates else {("t", port.name): one}
+            found["C", 2 * n] = self._solution(first, {}, shared)
+            found["C", 2 * n + 1] = self._solution(_across(port.second, one), {}, shared)
+        return found
 
     def expression(self, coefficient: Any) -> sp.Expr:
         """Return a coefficient as an expression in the ratios' own symbols."""
@@ -230,9 +238,8 @@ class Laws:
         except LongError as error:
             what = f"the laws of {len(self.edges)} branches and {len(self.ratio)} couplings"
             remedy = "leave elements out, or put masses and capacitors between levers and the like"
-            raise NetworkError(
-                f"{what} take too long to solve", "network", remedy=remedy
-            ) from error
+            what = f"{what} take too long to solve"
+            raise NetworkError(what, "network", remedy=remedy) from error
 
     def _summed(self, bank: str, row: Equation, solution: dict[Any, Form]) -> Form:
         """Return what all lanes together draw from a shared node, as sums of their givens."""
@@ -247,13 +254,14 @@ class Laws:
 
     # The answers
 
-    def _answer(
-        self, edge: Edge, lanes: dict[str, dict[Any, Form]], shared: dict[Any, Form]
-    ) -> tuple[Form, Form]:
+    def _answer(self, edge: Edge, lanes: Mapping[str, Any], shared: dict[Any, Form]) -> Answer:
         """Return a branch's answer, the variable it does not impose: (every lane, own lane)."""
         across = edge.imposes is PowerVariable.THROUGH
         asked = _across(edge.branch, self.field.one) if across else {edge.unknown: self.field.one}
-        own = lanes[edge.placed.bank] if edge.placed.bank else {}
+        return self._solution(asked, lanes.get(edge.placed.bank or "", {}), shared)
+
+    def _solution(self, asked: Form, own: dict[Any, Form], shared: dict[Any, Form]) -> Answer:
+        """Return a combination of unknowns in what is given: (every lane, own lane)."""
         mine: Form = {}
         for label, coefficient in asked.items():
             combine(mine, own.get(label, {label: self.field.one}), coefficient)

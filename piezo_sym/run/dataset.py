@@ -7,7 +7,7 @@ quantities of many runs by the same functions.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias, final
@@ -115,15 +115,19 @@ def spread(
 
 
 def to_dataset(
-    system: DrivenModule, times: FloatArray, trajectory: Trajectory, attrs: Mapping[str, Any]
+    system: DrivenModule,
+    times: FloatArray,
+    trajectory: Trajectory,
+    attrs: Mapping[str, Any],
+    asked: Iterable[Named] = (),
 ) -> xarray.Dataset:
-    """Return a run as a Dataset; `attrs` are added to its own attributes."""
+    """Return a run as a Dataset; `attrs` are added to its own, `asked` to its quantities."""
     import xarray
 
     known = Known.of(system, trajectory)
     coords = dict(coordinates(system, times))
     data: dict[str, Variable] = {}
-    for name, variable in (*known.instants(), *known.ledger()):
+    for name, variable in (*known.instants(), *known.ledger(), *asked):
         if name in data or name in coords:
             what = f"two quantities are named '{name}'"
             raise UsageError(what, f"model '{system.module.NAME}'", remedy="rename one in the spec")

@@ -42,6 +42,7 @@ class GeneratedModule(Protocol):
     OUTPUTS: Sequence[Record]
     PROCESSES: Sequence[Record]
     BODIES: Sequence[Record]
+    ELEMENTS: Sequence[Record]
     BANKS: Sequence[str]
     PARAMETERS: Sequence[Record]
     DOMAIN: Sequence[Condition]
@@ -56,6 +57,7 @@ class GeneratedModule(Protocol):
     temperatures: Callable[[ArrayLike, Any], FloatArray]
     heat: Callable[[ArrayLike, ArrayLike, Any], FloatArray]
     entropy_production: Callable[[ArrayLike, ArrayLike, Any], FloatArray]
+    elements: Callable[[ArrayLike, ArrayLike, Any], FloatArray]
     margins: Callable[[ArrayLike, ArrayLike, Any], FloatArray]
 
 

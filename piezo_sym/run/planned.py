@@ -17,6 +17,7 @@ from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.collocation import METHOD, FixedStep, Watch, choice, collocate
 from piezo_sym.run.dataset import to_dataset
+from piezo_sym.run.elements import element_variables
 from piezo_sym.run.engine.batch import is_lossy
 from piezo_sym.run.engine.engine import Engine
 from piezo_sym.run.events import Watched, event_variables, look
@@ -51,6 +52,7 @@ class Request:
     step: FixedStep | None
     starts: bool  # whether the first step after a jump of the inputs is dissipative
     watch: Watch | None
+    outputs: tuple[str, ...] = ()  # quantities of elements
 
     def planned(
         self, start: float, duration: float, state: Mapping[str, LaneValue] | None
@@ -98,7 +100,8 @@ class PlannedRun:
     ) -> xarray.Dataset:
         chosen = self.request.chosen
         told = {"method": chosen.method, **attrs, "engine": chosen.note}
-        return to_dataset(self.system, times, trajectory, told)
+        asked = element_variables(self.system, trajectory, self.request.outputs)
+        return to_dataset(self.system, times, trajectory, told, asked)
 
     def _watched(self, samples: FloatArray, watched: Watched) -> xarray.Dataset:
         """Return the run with its events, until it stops."""

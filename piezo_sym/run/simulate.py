@@ -9,7 +9,7 @@ Output: an `xarray.Dataset`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from typing import TYPE_CHECKING
 
@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.run.checks import number, positive
 from piezo_sym.run.collocation import METHOD, FixedStep, read_order
+from piezo_sym.run.elements import read_outputs
 from piezo_sym.run.events import read_watched
 from piezo_sym.run.inputs import InputValue
 from piezo_sym.run.method import checked_method, choose_method
@@ -49,6 +50,7 @@ def simulate(
     every: int | None = None,
     events: Mapping[str, str] | None = None,
     stop: str | None = None,
+    outputs: str | Sequence[str] | None = None,
     store: str | PathLike[str] | None = None,
     dissipative_start: bool = False,
     progress: bool | Callable[[float], object] | None = None,
@@ -118,6 +120,11 @@ def simulate(
         time that is looked at.
     stop : a comparison, such as ``"T_body > 350"``: the run ends when it first holds, which is its
         last sample; the attribute `stopped` says so.
+    outputs : "all", or a list such as ``["spring", "damper.heat"]``: quantities of elements beside
+        the rest, named ``<element>.effort``, `.flow`, `.power` (into the element: of a source, the
+        negative of what it supplies), `.energy` of what stores and `.heat` of what dissipates it.
+        Efforts are voltages, forces, torques, pressures and temperatures. Couplings have
+        `.effort_1` ... `.flow_2`, and the power from branch 1 to 2; a storage, `.effort_<state>`.
     store : a path, ``"run.zarr"``: the run goes into a new Zarr store, window after window, and the
         Dataset is read from there when it is asked for. Steps end where windows of some 100,000
         samples do. An existing store is refused. Needs `piezo_sym[store]`.
@@ -166,12 +173,10 @@ def simulate(
     samples = sample_times(times, every, step, length, start)
     values = read_parameters(module, given)
     chosen = choose_method(module, named, step)
-    request = Request(module, values, inputs, chosen, tolerance, fixed, dissipative_start, progress)
+    asked, how = read_outputs(module, outputs), (dissipative_start, progress)
+    request = Request(module, values, inputs, chosen, tolerance, fixed, *how, asked)
     if store is not None:
-        if events:
-            what = "events of a run into a store are not kept"
-            raise UsageError(what, "simulate.events", "none", "leave out store, or take stop")
-        return streamed(request, start, samples, state, stop, store)
+        return streamed(request, start, samples, state, (events, stop), store)
     planned = request.planned(start, length, state)
     return planned.dataset(samples, read_watched(planned.system, events, stop, step))
 

@@ -40,12 +40,17 @@ def streamed(
     start: float,
     samples: FloatArray,
     state: Mapping[str, LaneValue] | None,
-    stop: str | None,
+    watched: tuple[Mapping[str, str] | None, str | None],
     store: str | PathLike[str],
 ) -> xarray.Dataset:
     """Run through all samples into a new store, and return what it holds."""
+    events, stop = watched
+    if events:
+        what = "events of a run into a store are not kept"
+        raise UsageError(what, "simulate.events", "none", "leave out store, or take stop")
     path = _new(store)
     rows = row_count(request.module.STATES, request.parameters) + len(request.module.OUTPUTS)
+    rows += row_count(request.module.ELEMENTS, request.parameters) if request.outputs else 0
     most = max(2, WINDOW // (PER_ROW * rows))
     edges = [*range(0, samples.size - 1, most), samples.size - 1]
     before: xarray.Dataset | None = None
@@ -91,7 +96,8 @@ def _added(found: xarray.Dataset, before: xarray.Dataset | None) -> xarray.Datas
     """Return a window's Dataset as one of the whole run, without the sample it begins with."""
     if before is None:
         return found
-    integrals = [n for n in found.data_vars if str(n).startswith(SUMS) or str(n).endswith(LEFT)]
+    names = [str(name) for name in found.data_vars if "." not in str(name)]
+    integrals = [name for name in names if name.startswith(SUMS) or name.endswith(LEFT)]
     last = before[integrals].isel(time=-1).drop_vars("time")
     whole = found.assign({name: found[name] + last[name] for name in integrals})
     for name in integrals:

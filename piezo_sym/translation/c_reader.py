@@ -20,8 +20,8 @@ from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import Key, Proved
 from piezo_sym.translation.signs import reading
 
-_STATE = ["rhs", "jacobian", "margins", "outputs", "supply", "heat", "entropy_production"]
-SIGNATURES = dict.fromkeys(_STATE, "x u p out")
+_STATE = ["rhs", "jacobian", "margins", "outputs", "supply", "elements"]
+SIGNATURES = dict.fromkeys([*_STATE, "heat", "entropy_production"], "x u p out")
 SIGNATURES |= {"initial_state": "u p out", "temperatures": "x p out"}
 SIGNATURES |= {"energy": "x p", "entropy": "x p", "states": "p", "processes": "p"}
 _HELPERS = r"pick|sign|min|max|saturate|deadzone|power_[2-8]"

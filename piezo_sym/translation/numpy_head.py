@@ -1,6 +1,6 @@
 """What surrounds the functions of a printed NumPy module: imports, tables, parameters, helpers.
 
-Input: the text of ``<model>.py`` and an `IPHS`.  Output: its functions as trees, if all else in it
+Input: the text of ``<model>.py`` and a `Proved`.  Output: its functions as trees, if all else in it
 is as expected: helpers as they stand here, tables with the names of the model, parameters with its
 values.  So a name such as ``np`` or ``_lanes`` means in every function what it should.
 """
@@ -17,6 +17,7 @@ from piezo_sym.iphs import IPHS
 from piezo_sym.spec.elements.ports import Body
 from piezo_sym.spec.tables import banks, condition_text, conditions, lane_parameters
 from piezo_sym.translation.field import NotShownError
+from piezo_sym.translation.known import Proved
 from piezo_sym.translation.numpy_reader import ARGUMENTS
 
 _HELPERS = """
@@ -65,7 +66,7 @@ def rhs(x, u, p, /):
 """
 
 
-def numpy_functions(text: str, iphs: IPHS) -> Mapping[str, ast.FunctionDef]:
+def numpy_functions(text: str, known: Proved) -> Mapping[str, ast.FunctionDef]:
     """Return the functions of a module that compute rows."""
     if re.search(r"coding[:=]", "\n".join(text.split("\n")[:2])):
         raise NotShownError("the NumPy module has another coding")
@@ -73,8 +74,9 @@ def numpy_functions(text: str, iphs: IPHS) -> Mapping[str, ast.FunctionDef]:
         module = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         raise NotShownError(f"the NumPy module cannot be parsed: {error}") from error
+    iphs = known.iphs
     called = (r.numpy_helper for r in RECORDS.values() if f"{r.numpy}(" in text)
-    left, tables = [*_helpers(iphs), *chain.from_iterable(called)], _tables(iphs)
+    left, tables = [*_helpers(iphs), *chain.from_iterable(called)], _tables(known)
     functions: dict[str, ast.FunctionDef] = {}
     for node in module.body[1:]:
         match node:
@@ -143,7 +145,8 @@ def _literal(node: ast.expr) -> object:
     raise NotShownError("a table of the NumPy module is no list of constants")
 
 
-def _tables(iphs: IPHS) -> dict[str, object]:
+def _tables(known: Proved) -> dict[str, object]:
+    iphs, slots = known.iphs, known.slots
     model, system = iphs.model, iphs.system
     owners = lane_parameters(model)
     return {
@@ -155,6 +158,7 @@ def _tables(iphs: IPHS) -> dict[str, object]:
         "OUTPUTS": tuple((s.label, None) for s in system.ports),
         "PROCESSES": tuple((s.label, s.bank) for s in system.processes),
         "BODIES": tuple((placed.element, None) for placed, _ in iphs.circuit.of(Body)),
+        "ELEMENTS": tuple((s.label, s.bank) for s in slots["elements"]),
         "PARAMETERS": tuple((name, owners.get(name)) for name in model.parameters),
         "BANKS": tuple(banks(model)),
         "DOMAIN": tuple((condition_text(c.tree), "=" not in c.tree.op) for c in conditions(model)),

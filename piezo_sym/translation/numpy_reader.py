@@ -19,7 +19,7 @@ from piezo_sym.translation.known import ALL, LEAST, SAME, Key, Layout, Proved, R
 from piezo_sym.translation.signs import reading
 
 ARGUMENTS = dict.fromkeys(
-    ["jacobian", "margins", "outputs", "supply", "heat", "entropy_production"], "x u p"
+    ["jacobian", "margins", "outputs", "supply", "elements", "heat", "entropy_production"], "x u p"
 ) | {"initial_state": "u p", "_rates": "x u p out", "temperatures": "x p"}
 ARGUMENTS |= {"energy": "x p", "entropy": "x p"}
 CALLS = {record.numpy: name for name, record in RECORDS.items() if record.smooth}

@@ -99,7 +99,7 @@ def _read(language: str, text: str, known: Proved) -> Mapping[Key, Value]:
         return read_step(text, known)
     if language == "C":
         return read_c(text, known)
-    return read_numpy(numpy_functions(text, known.iphs), known)
+    return read_numpy(numpy_functions(text, known), known)
 
 
 def _differences(language: str, rows: Mapping[Key, Value], known: Proved) -> Iterator[Row]:

@@ -14,6 +14,7 @@ import sympy as sp
 
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.iphs import IPHS
+from piezo_sym.iphs.elements import ElementRow, Parts, element_rows
 from piezo_sym.spec.elements.ports import Body
 from piezo_sym.spec.tables import conditions
 from piezo_sym.translation.change import across, derivative, in_exponentials
@@ -30,7 +31,10 @@ def proved(iphs: IPHS) -> Proved:
     domain = read.assume(condition.tree for condition in conditions(iphs.model))
     read.assume_temperatures()
     slots = _slots(iphs)
+    elements = elements_of(read)
+    slots["elements"] = tuple(Slot(row.name, row.bank) for row in elements)
     values = dict(_values(read, slots))
+    values |= {("elements", n): row.value for n, row in enumerate(elements)}
     needs = tuple(read.field.needs)
     return Proved(iphs, read.field, read.names, read.banks, slots, values, needs, domain, {})
 
@@ -57,6 +61,37 @@ def of_system(read: SystemReader) -> dict[str, list[Value]]:
         "heat": [w * z for w, z in heats],
         "entropy_production": [r * z for r, z in produced],
     }
+
+
+def elements_of(read: SystemReader) -> tuple[ElementRow[Value], ...]:
+    """Return the quantities of all elements."""
+    iphs, system, rows = read.iphs, read.iphs.system, of_system(read)
+    blocks = iphs.junction.couplings
+    given = (blocks["E"] @ system.E + blocks["W"] @ system.W, blocks["u"] @ system.u)
+    answers = [one + other for one, other in zip(*map(read.rows, given), strict=True)]
+
+    def couplings(followers: Sequence[Value]) -> list[Value]:
+        found = list(answers)
+        for (n, m), share, _ in blocks["R"].entries():
+            found[n] = found[n] + read(share) * followers[m]
+        return found
+
+    parts = Parts(
+        costates=read.rows(system.E),
+        rates=rows["rhs"],
+        outputs=read.rows(system.W),
+        drives=read.rows(system.drive),
+        heats=rows["heat"],
+        inputs=read.rows(system.u),
+        ports=rows["outputs"],
+        supplies=rows["supply"],
+        couplings=couplings,
+        law=lambda tree: read(iphs.symbols.law(tree, {})),
+        total=lambda *terms: read.field.total(terms),
+        product=lambda left, right: left * right,
+        negative=lambda value: read.field.zero - value,
+    )
+    return element_rows(iphs, parts)
 
 
 def margins_of(values: Sequence[Value]) -> Iterator[tuple[Key, Value]]:

@@ -95,6 +95,7 @@ class HandMade:
             ModuleFunction("rhs", "Rates", DRIVEN, rates),
             ModuleFunction("outputs", "Power put in", DRIVEN, ports),
             ModuleFunction("supply", "Power put in [W], one per port", DRIVEN, ports),
+            ModuleFunction("elements", "Quantities of elements", DRIVEN, ()),
             ModuleFunction(
                 "energy", "Hamiltonian U [J]", STATE, (OutputRow(Slot("U"), add(*total)),), True
             ),
@@ -115,6 +116,7 @@ class HandMade:
             states=self.fields(),
             outputs=tuple(Described(name, "W", "") for name in self.supply),
             processes=tuple(Described(r.slot.label, "W/K", "", r.slot.bank) for r, _ in heated),
+            elements=(),
             bodies=tuple(Described(name, "K", "") for name in entropies),
             defaults={**{n: v for n, (v, _) in self._parameters()}, **self.inputs, **counts},
             counts=self.counts,

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import mpmath as mp
 import numpy as np
+from element_balances import check_elements
 from kinds import KINDS
 from law_values import value
 from network_tableau import Tableau, pairs_of, state
@@ -60,6 +61,7 @@ def check(spec, seed=0):
             check_against_sympy(module, system, x, u)
         check_against_tableau(module, spec, x, u)
         check_entropy(module, spec, x, u)
+        check_elements(module, spec, x, u)
     check_batch(module, points)
     return DERIVED
 
@@ -291,7 +293,7 @@ def check_batch(module, points):
     """Check that states side by side give what single states give."""
     p = module.Parameters()
     x, u = (np.stack(parts, axis=1) for parts in zip(*points, strict=True))
-    for name in ("rhs", "outputs", "supply", "entropy_production", "jacobian"):
+    for name in ("rhs", "outputs", "supply", "entropy_production", "elements", "jacobian"):
         function = getattr(module, name)
         together = function(x, u, p)
         for n, (one, given) in enumerate(points):

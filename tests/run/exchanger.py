@@ -30,6 +30,7 @@ STATES = (Record("S_1", "J/K", "entropy of body 1"), Record("S_2", "J/K", "entro
 INPUTS = ()
 INPUT_DEFAULTS = ()
 OUTPUTS = ()
+ELEMENTS = ()
 PROCESSES = (Record("wall", "W/K", "conduction 'wall'"),)
 BODIES = (Record("1", "K", "body 1"), Record("2", "K", "body 2"))
 BANKS = ()
@@ -101,6 +102,10 @@ def energy(x, p, /):
 
 def entropy(x, p, /):
     return np.sum(x, axis=0)
+
+
+def elements(x, u, p, /):
+    return np.empty((0, *np.shape(x)[1:]))
 
 
 def margins(x, u, p, /):

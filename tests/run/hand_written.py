@@ -47,6 +47,7 @@ OUTPUTS = (  # one per port, conjugate to its input
     Record("supply", "A", "current out of voltage_source 'supply'"),
     Record("ambient", "K", "temperature of 'body'"),
 )
+ELEMENTS = ()
 PROCESSES = (
     Record("hysteron", "W/K", "hysteron 'hysteron' heats 'body'", "hysteron"),
     Record("damper", "W/K", "damper 'damper' heats 'body'"),
@@ -254,6 +255,12 @@ def heat(x, u, p_, /):
 def entropy_production(x, u, p_, /):
     """Entropy that each process produces [W/K], of a bank a row per lane; shape (r + 1, *batch)."""
     return heat(x, u, p_) / temperatures(x, p_)
+
+
+def elements(x, u, p_, /):
+    """No quantities of elements."""
+    del u, p_
+    return np.empty((0, *np.shape(x)[1:]))
 
 
 def margins(x, u, p_, /):

@@ -29,6 +29,7 @@ STATES = (Record("x", "J", "energy stored"),)
 INPUTS = (Record("power", "W", "power put in"), Record("other", "W", "more power"))
 INPUT_DEFAULTS = (0.0, 0.0)
 OUTPUTS = (Record("feed", "1", "1 at 'feed'"), Record("more", "1", "1 at 'more'"))
+ELEMENTS = ()
 PROCESSES = ()
 BODIES = ()
 BANKS = ()
@@ -78,6 +79,10 @@ def heat(x, u, p, /):
 
 
 entropy_production = heat
+
+
+def elements(x, u, p, /):
+    return np.empty((0, *np.shape(x)[1:]))
 
 
 def margins(x, u, p, /):

@@ -9,7 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from textwrap import wrap
 
+from piezo_sym.algebra.lanes import Slot
 from piezo_sym.codegen.c.names import added, c_names
+from piezo_sym.codegen.layout import size_in_words
 from piezo_sym.codegen.numpy.head import MARK
 from piezo_sym.codegen.program import Described, Program
 from piezo_sym.errors import one_line
@@ -26,7 +28,7 @@ FUNCTIONS = {
 }
 _ORDER = (
     "states processes initial_state rhs jacobian outputs supply energy entropy temperatures heat "
-    "entropy_production margins"
+    "entropy_production elements margins"
 )
 _ARGUMENTS = {"out": ("out",), "state": ("x", "u", "p", "out")}
 TAKES: Mapping[str, tuple[str, ...]] = {
@@ -176,7 +178,7 @@ def declaration(
 def _declarations(program: Program) -> Iterator[str]:
     docs = {**FUNCTIONS, **{function.name: function.doc for function in program.functions}}
     words = added(("x", "u", "p", "out", "n", "j", "l", "left"), program, c_names(program))
-    for name in _ORDER.split():
+    for name in filter(docs.__contains__, _ORDER.split()):
         arguments = TAKES.get(name, _ARGUMENTS["state"])
         lines = [*wrapped(f"{docs[name]}."), *_given(program, name, arguments, words)]
         head = declaration(program, name, arguments, words)
@@ -193,6 +195,7 @@ def _given(
 ) -> Iterator[str]:
     """Yield a line on each argument, with units."""
     processes = f"{program.name}_processes({words['p']})"
+    elements = size_in_words([Slot(field.name, field.bank) for field in program.elements])
     results = {
         "initial_state": ("n", program.states),
         "temperatures": (f"{program.name}_body_count", program.bodies),
@@ -202,6 +205,7 @@ def _given(
         "supply": (f"{program.name}_output_count", ()),
         "rhs": ("n", ()),
         "jacobian": ("n*n", ()),
+        "elements": (elements, program.elements),
         "margins": (f"{program.name}_limit_count", ()),
     }
     layouts: dict[str, tuple[str, Sequence[Described]]] = {

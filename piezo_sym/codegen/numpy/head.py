@@ -152,6 +152,7 @@ def _tables(program: Program) -> Iterable[str]:
     yield from _records("OUTPUTS", program.outputs)
     yield from _records("PROCESSES", program.processes)
     yield from _records("BODIES", program.bodies)
+    yield from _records("ELEMENTS", program.elements)
     yield from _records("PARAMETERS", program.parameters)
     yield f"BANKS = {_tuple([literal(bank) for bank in program.counts])}"
     yield "DOMAIN = ("

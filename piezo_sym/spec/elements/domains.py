@@ -60,6 +60,7 @@ class PhysicalDomain:
     reference : the node at which the across variable is zero.
     node : another node, for examples.
     across, through : its two variables.
+    effort : which of them bond graphs call the effort; the other is the flow.
     """
 
     name: str
@@ -67,6 +68,7 @@ class PhysicalDomain:
     node: str
     across: PhysicalVariable
     through: PhysicalVariable
+    effort: PowerVariable = PowerVariable.ACROSS
 
     def variable(self, which: PowerVariable) -> PhysicalVariable:
         """Return what the across or through variable is in this domain."""
@@ -91,6 +93,7 @@ TRANSLATION = PhysicalDomain(
     PhysicalVariable(
         "force", "N", "f", "F", "that pulls its first node back", "extension", "m", "q"
     ),
+    PowerVariable.THROUGH,
 )
 ROTATION = PhysicalDomain(
     "rotation",
@@ -102,6 +105,7 @@ ROTATION = PhysicalDomain(
     PhysicalVariable(
         "torque", "N*m", "tau", "tau", "that turns its first node back", "twist", "rad", "theta"
     ),
+    PowerVariable.THROUGH,
 )
 HYDRAULIC = PhysicalDomain(
     "hydraulic",
