@@ -293,6 +293,104 @@ void stack_bouc_wen_entropy_production(const double *restrict x,
     out[2] = i_leads*V_leads/T;
 }
 
+/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+void stack_bouc_wen_elements(const double *restrict x,
+                             const double *restrict u,
+                             const stack_bouc_wen_parameters *restrict p_,
+                             double *restrict out)
+{
+    const double m = p_->m;
+    const double k = p_->k;
+    const double d = p_->d;
+    const double a = p_->a;
+    const double C = p_->C;
+    const double C_h = p_->C_h;
+    const double V_h = p_->V_h;
+    const double beta = p_->beta;
+    const double gam = p_->gam;
+    const double R = p_->R;
+    const double c_0 = p_->c_0;
+    const double lam = p_->lam;
+    const double T_0 = p_->T_0;
+    const double q = x[0];
+    const double p = x[1];
+    const double Q = x[2];
+    const double Q_h = x[3];
+    const double S = x[4];
+    const double F_ext = u[0];
+    const double V_in = u[1];
+    const double T_e = u[2];
+    /* co-states dU/dx */
+    const double F_spring = k*q;
+    const double v_mass = p/m;
+    const double V_ceramic = Q/C;
+    const double V_hysteresis = Q_h/C_h;
+    const double T = T_0*exp(S/c_0);
+    /* transducer ratios */
+    const double alpha_transducer = a;
+    /* dissipative laws */
+    const double F_damper = d*v_mass;
+    /* driving forces */
+    const double V_leads = -V_ceramic - V_hysteresis + V_in;
+    /* dissipative laws */
+    const double i_leads = V_leads/R;
+    const double slip_hysteresis = (beta*fabs(i_leads)*V_hysteresis + gam*i_leads*fabs(V_hysteresis))/V_h;
+    /* heats */
+    const double heat_damper = F_damper*v_mass;
+    const double heat_hysteresis = slip_hysteresis*V_hysteresis;
+    const double heat_leads = i_leads*V_leads;
+    /* rates */
+    const double rate_p = alpha_transducer*V_ceramic - F_spring - F_damper + F_ext;
+    const double rate_Q = i_leads - alpha_transducer*v_mass;
+    const double rate_Q_h = i_leads - slip_hysteresis;
+    const double rate_S = (heat_damper + heat_hysteresis + heat_leads)/T
+        + lam*(T_e/T - 1.0);
+    /* result */
+    out[0] = F_spring;
+    out[1] = v_mass;
+    out[2] = F_spring*v_mass;
+    out[3] = k*power_2(q)/2.0;
+    out[4] = rate_p;
+    out[5] = v_mass;
+    out[6] = rate_p*v_mass;
+    out[7] = power_2(p)/(2.0*m);
+    out[8] = F_damper;
+    out[9] = v_mass;
+    out[10] = F_damper*v_mass;
+    out[11] = F_damper*v_mass;
+    out[12] = V_ceramic;
+    out[13] = rate_Q;
+    out[14] = V_ceramic*rate_Q;
+    out[15] = power_2(Q)/(2.0*C);
+    out[16] = V_hysteresis;
+    out[17] = rate_Q_h + slip_hysteresis;
+    out[18] = V_hysteresis*(rate_Q_h + slip_hysteresis);
+    out[19] = power_2(Q_h)/(2.0*C_h);
+    out[20] = slip_hysteresis*V_hysteresis;
+    out[21] = V_ceramic;
+    out[22] = alpha_transducer*v_mass;
+    out[23] = -alpha_transducer*V_ceramic;
+    out[24] = v_mass;
+    out[25] = V_ceramic*alpha_transducer*v_mass;
+    out[26] = V_leads;
+    out[27] = i_leads;
+    out[28] = i_leads*V_leads;
+    out[29] = i_leads*V_leads;
+    out[30] = T;
+    out[31] = rate_S;
+    out[32] = T*rate_S;
+    out[33] = T_0*c_0*exp(S/c_0);
+    out[34] = T;
+    out[35] = -lam*(T_e/T - 1.0);
+    out[36] = -lam*(T_e - T);
+    out[37] = -F_ext;
+    out[38] = v_mass;
+    out[39] = -v_mass*F_ext;
+    out[40] = V_in;
+    out[41] = -i_leads;
+    out[42] = -i_leads*V_in;
+}
+
 /* Derivative of rhs by the state, n x n, row after row. */
 void stack_bouc_wen_jacobian(const double *restrict x,
                              const double *restrict u,

@@ -169,6 +169,27 @@ void stack_bouc_wen_entropy_production(const double *x,
                                        double *out);
 
 /*
+ * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * x[n], read: q [m], p [kg*m/s], Q [C], Q_h [C], S [J/K]
+ * u[stack_bouc_wen_input_count], read: F_ext [N], V_in [V], T_e [K]
+ * out[43], written; must not overlap another argument: spring.effort [N], spring.flow [m/s],
+ *     spring.power [W], spring.energy [J], mass.effort [N], mass.flow [m/s], mass.power [W],
+ *     mass.energy [J], damper.effort [N], damper.flow [m/s], damper.power [W], damper.heat
+ *     [W], ceramic.effort [V], ceramic.flow [A], ceramic.power [W], ceramic.energy [J],
+ *     hysteresis.effort [V], hysteresis.flow [A], hysteresis.power [W], hysteresis.energy [J],
+ *     hysteresis.heat [W], transducer.effort_1 [V], transducer.flow_1 [A], transducer.effort_2
+ *     [N], transducer.flow_2 [m/s], transducer.power [W], leads.effort [V], leads.flow [A],
+ *     leads.power [W], leads.heat [W], body.effort [K], body.flow [W/K], body.power [W],
+ *     body.energy [J], ambient.effort [K], ambient.flow [W/K], ambient.power [W], load.effort
+ *     [N], load.flow [m/s], load.power [W], supply.effort [V], supply.flow [A], supply.power
+ *     [W]
+ */
+void stack_bouc_wen_elements(const double *x,
+                             const double *u,
+                             const stack_bouc_wen_parameters *p_,
+                             double *out);
+
+/*
  * Margin of each condition of the domain; of a bank, the least over its lanes.
  * x[n], read: q [m], p [kg*m/s], Q [C], Q_h [C], S [J/K]
  * u[stack_bouc_wen_input_count], read: F_ext [N], V_in [V], T_e [K]

@@ -62,6 +62,51 @@ PROCESSES = (
 BODIES = (
     Record("body", "K", "temperature of thermal_mass 'body'"),
 )
+ELEMENTS = (
+    Record("spring.effort", "N", "force of spring 'spring'"),
+    Record("spring.flow", "m/s", "velocity of spring 'spring'"),
+    Record("spring.power", "W", "power into spring 'spring'"),
+    Record("spring.energy", "J", "energy of spring 'spring'"),
+    Record("mass.effort", "N", "force of mass 'mass'"),
+    Record("mass.flow", "m/s", "velocity of mass 'mass'"),
+    Record("mass.power", "W", "power into mass 'mass'"),
+    Record("mass.energy", "J", "energy of mass 'mass'"),
+    Record("damper.effort", "N", "force of damper 'damper'"),
+    Record("damper.flow", "m/s", "velocity of damper 'damper'"),
+    Record("damper.power", "W", "power into damper 'damper'"),
+    Record("damper.heat", "W", "heat of damper 'damper'"),
+    Record("ceramic.effort", "V", "voltage of capacitor 'ceramic'"),
+    Record("ceramic.flow", "A", "current of capacitor 'ceramic'"),
+    Record("ceramic.power", "W", "power into capacitor 'ceramic'"),
+    Record("ceramic.energy", "J", "energy of capacitor 'ceramic'"),
+    Record("hysteresis.effort", "V", "voltage of capacitor 'hysteresis'"),
+    Record("hysteresis.flow", "A", "current of capacitor 'hysteresis'"),
+    Record("hysteresis.power", "W", "power into capacitor 'hysteresis'"),
+    Record("hysteresis.energy", "J", "energy of capacitor 'hysteresis'"),
+    Record("hysteresis.heat", "W", "heat of capacitor 'hysteresis'"),
+    Record("transducer.effort_1", "V", "voltage in branch 1 of transducer 'transducer'"),
+    Record("transducer.flow_1", "A", "current in branch 1 of transducer 'transducer'"),
+    Record("transducer.effort_2", "N", "force in branch 2 of transducer 'transducer'"),
+    Record("transducer.flow_2", "m/s", "velocity in branch 2 of transducer 'transducer'"),
+    Record("transducer.power", "W", "power from branch 1 to branch 2 of transducer 'transducer'"),
+    Record("leads.effort", "V", "voltage of resistor 'leads'"),
+    Record("leads.flow", "A", "current of resistor 'leads'"),
+    Record("leads.power", "W", "power into resistor 'leads'"),
+    Record("leads.heat", "W", "heat of resistor 'leads'"),
+    Record("body.effort", "K", "temperature of thermal_mass 'body'"),
+    Record("body.flow", "W/K", "entropy flow of thermal_mass 'body'"),
+    Record("body.power", "W", "power into thermal_mass 'body'"),
+    Record("body.energy", "J", "energy of thermal_mass 'body'"),
+    Record("ambient.effort", "K", "temperature at ambient 'ambient'"),
+    Record("ambient.flow", "W/K", "entropy flow at ambient 'ambient'"),
+    Record("ambient.power", "W", "power into ambient 'ambient'"),
+    Record("load.effort", "N", "force of force_source 'load'"),
+    Record("load.flow", "m/s", "velocity of force_source 'load'"),
+    Record("load.power", "W", "power into force_source 'load'"),
+    Record("supply.effort", "V", "voltage of voltage_source 'supply'"),
+    Record("supply.flow", "A", "current of voltage_source 'supply'"),
+    Record("supply.power", "W", "power into voltage_source 'supply'"),
+)
 PARAMETERS = (
     Record("m", "kg", "moving mass, 4/pi^2 of the stack's"),
     Record("k", "N/m", "stiffness"),
@@ -379,6 +424,103 @@ def entropy_production(x, u, p_, /):
     out[0] = F_damper*v_mass/T
     out[1] = slip_hysteresis*V_hysteresis/T
     out[2] = i_leads*V_leads/T
+    return out
+
+
+def elements(x, u, p_, /):
+    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (43, *batch)."""
+    x = _states(x, p_)
+    u = _inputs(u)
+    m = p_.m
+    k = p_.k
+    d = p_.d
+    a = p_.a
+    C = p_.C
+    C_h = p_.C_h
+    V_h = p_.V_h
+    beta = p_.beta
+    gam = p_.gam
+    R = p_.R
+    c_0 = p_.c_0
+    lam = p_.lam
+    T_0 = p_.T_0
+    q = x[0]
+    p = x[1]
+    Q = x[2]
+    Q_h = x[3]
+    S = x[4]
+    F_ext = u[0]
+    V_in = u[1]
+    T_e = u[2]
+    # co-states dU/dx
+    F_spring = k*q
+    v_mass = p/m
+    V_ceramic = Q/C
+    V_hysteresis = Q_h/C_h
+    T = T_0*np.exp(S/c_0)
+    # transducer ratios
+    alpha_transducer = a
+    # dissipative laws
+    F_damper = d*v_mass
+    # driving forces
+    V_leads = -V_ceramic - V_hysteresis + V_in
+    # dissipative laws
+    i_leads = V_leads/R
+    slip_hysteresis = (beta*np.abs(i_leads)*V_hysteresis + gam*i_leads*np.abs(V_hysteresis))/V_h
+    # heats
+    heat_damper = F_damper*v_mass
+    heat_hysteresis = slip_hysteresis*V_hysteresis
+    heat_leads = i_leads*V_leads
+    # rates
+    rate_p = alpha_transducer*V_ceramic - F_spring - F_damper + F_ext
+    rate_Q = i_leads - alpha_transducer*v_mass
+    rate_Q_h = i_leads - slip_hysteresis
+    rate_S = (heat_damper + heat_hysteresis + heat_leads)/T + lam*(T_e/T - 1)
+    # result
+    out = np.empty((43, *x.shape[1:]))
+    out[0] = F_spring
+    out[1] = v_mass
+    out[2] = F_spring*v_mass
+    out[3] = k*q**2/2
+    out[4] = rate_p
+    out[5] = v_mass
+    out[6] = rate_p*v_mass
+    out[7] = p**2/(2*m)
+    out[8] = F_damper
+    out[9] = v_mass
+    out[10] = F_damper*v_mass
+    out[11] = F_damper*v_mass
+    out[12] = V_ceramic
+    out[13] = rate_Q
+    out[14] = V_ceramic*rate_Q
+    out[15] = Q**2/(2*C)
+    out[16] = V_hysteresis
+    out[17] = rate_Q_h + slip_hysteresis
+    out[18] = V_hysteresis*(rate_Q_h + slip_hysteresis)
+    out[19] = Q_h**2/(2*C_h)
+    out[20] = slip_hysteresis*V_hysteresis
+    out[21] = V_ceramic
+    out[22] = alpha_transducer*v_mass
+    out[23] = -alpha_transducer*V_ceramic
+    out[24] = v_mass
+    out[25] = V_ceramic*alpha_transducer*v_mass
+    out[26] = V_leads
+    out[27] = i_leads
+    out[28] = i_leads*V_leads
+    out[29] = i_leads*V_leads
+    out[30] = T
+    out[31] = rate_S
+    out[32] = T*rate_S
+    out[33] = T_0*c_0*np.exp(S/c_0)
+    out[34] = T
+    out[35] = -lam*(T_e/T - 1)
+    out[36] = -lam*(T_e - T)
+    out[37] = -F_ext
+    out[38] = v_mass
+    out[39] = -v_mass*F_ext
+    out[40] = V_in
+    out[41] = -i_leads
+    out[42] = -i_leads*V_in
     return out
 
 
