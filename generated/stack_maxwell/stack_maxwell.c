@@ -328,6 +328,121 @@ void stack_maxwell_entropy_production(const double *restrict x,
     out[1 + slips_count] = F_damper*v_mass/T;
 }
 
+/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+void stack_maxwell_elements(const double *restrict x,
+                            const double *restrict u,
+                            const stack_maxwell_parameters *restrict p_,
+                            double *restrict out)
+{
+    const long slips_count = p_->slips_count;
+    const long end_out_slips_effort = 24 + slips_count;
+    const long end_out_slips_flow = end_out_slips_effort + slips_count;
+    const long end_out_slips_power = end_out_slips_flow + slips_count;
+    const long end_out_slips_energy = end_out_slips_power + slips_count;
+    const long end_out_slips_heat = end_out_slips_energy + slips_count;
+    const double m = p_->m;
+    const double d = p_->d;
+    const double a = p_->a;
+    const double C = p_->C;
+    const double R = p_->R;
+    const double k = p_->k;
+    const double *restrict k_s = p_->k_s;
+    const double *restrict r = p_->r;
+    const double T_0 = p_->T_0;
+    const double c_0 = p_->c_0;
+    const double lam = p_->lam;
+    const double Q = x[0];
+    const double p = x[1];
+    const double q = x[2];
+    const double *restrict z = x + 3;
+    const double S = x[3 + slips_count];
+    const double F_ext = u[0];
+    const double V_in = u[1];
+    const double T_e = u[2];
+    /* co-states dU/dx */
+    const double V_clamped = Q/C;
+    const double v_mass = p/m;
+    const double F_spring = k*q;
+    const double T = T_0*exp(S/c_0);
+    /* transducer ratios */
+    const double alpha_ceramic = a;
+    /* driving forces */
+    const double V_leads = -V_clamped + V_in;
+    /* dissipative laws */
+    const double i_leads = V_leads/R;
+    const double F_damper = d*v_mass;
+    /* heats */
+    const double heat_leads = i_leads*V_leads;
+    const double heat_damper = F_damper*v_mass;
+    /* rates */
+    const double rate_Q = i_leads - alpha_ceramic*v_mass;
+    /* each lane of slips: sums over lanes and result */
+    double sum_F_slips = 0.0;
+    double heat_slips = 0.0;
+#pragma omp simd reduction(+:sum_F_slips, heat_slips)
+    for (long j = 0; j < slips_count; ++j) {
+        const double F_slips = k_s[j]*z[j];
+        const double slip_slips = pick(
+            v_mass > 0.0,
+            pick(F_slips >= k_s[j]*r[j], v_mass, 0.0),
+            pick(F_slips <= -k_s[j]*r[j], v_mass, 0.0));
+        const double rate_z = v_mass - slip_slips;
+        sum_F_slips += F_slips;
+        heat_slips += slip_slips*F_slips;
+        out[24 + j] = F_slips;
+        out[end_out_slips_effort + j] = rate_z + slip_slips;
+        out[end_out_slips_flow + j] = F_slips*(rate_z + slip_slips);
+        out[end_out_slips_power + j] = k_s[j]*power_2(z[j])/2.0;
+        out[end_out_slips_energy + j] = slip_slips*F_slips;
+    }
+    /* rates */
+    const double rate_p = alpha_ceramic*V_clamped
+        - F_spring
+        - sum_F_slips
+        - F_damper
+        + F_ext;
+    const double rate_S = (heat_leads + heat_slips + heat_damper)/T + lam*(T_e/T - 1.0);
+    /* result */
+    out[0] = V_in;
+    out[1] = -i_leads;
+    out[2] = -i_leads*V_in;
+    out[3] = V_leads;
+    out[4] = i_leads;
+    out[5] = i_leads*V_leads;
+    out[6] = i_leads*V_leads;
+    out[7] = V_clamped;
+    out[8] = rate_Q;
+    out[9] = V_clamped*rate_Q;
+    out[10] = power_2(Q)/(2.0*C);
+    out[11] = V_clamped;
+    out[12] = alpha_ceramic*v_mass;
+    out[13] = -alpha_ceramic*V_clamped;
+    out[14] = v_mass;
+    out[15] = V_clamped*alpha_ceramic*v_mass;
+    out[16] = rate_p;
+    out[17] = v_mass;
+    out[18] = rate_p*v_mass;
+    out[19] = power_2(p)/(2.0*m);
+    out[20] = F_spring;
+    out[21] = v_mass;
+    out[22] = F_spring*v_mass;
+    out[23] = k*power_2(q)/2.0;
+    out[end_out_slips_heat] = F_damper;
+    out[1 + end_out_slips_heat] = v_mass;
+    out[2 + end_out_slips_heat] = F_damper*v_mass;
+    out[3 + end_out_slips_heat] = F_damper*v_mass;
+    out[4 + end_out_slips_heat] = -F_ext;
+    out[5 + end_out_slips_heat] = v_mass;
+    out[6 + end_out_slips_heat] = -v_mass*F_ext;
+    out[7 + end_out_slips_heat] = T;
+    out[8 + end_out_slips_heat] = rate_S;
+    out[9 + end_out_slips_heat] = T*rate_S;
+    out[10 + end_out_slips_heat] = T_0*c_0*exp(S/c_0);
+    out[11 + end_out_slips_heat] = T;
+    out[12 + end_out_slips_heat] = -lam*(T_e/T - 1.0);
+    out[13 + end_out_slips_heat] = -lam*(T_e - T);
+}
+
 /* Derivative of rhs by the state, n x n, row after row. */
 void stack_maxwell_jacobian(const double *restrict x,
                             const double *restrict u,

@@ -63,6 +63,51 @@ PROCESSES = (
 BODIES = (
     Record("body", "K", "temperature of thermal_mass 'body'"),
 )
+ELEMENTS = (
+    Record("amplifier.effort", "V", "voltage of voltage_source 'amplifier'"),
+    Record("amplifier.flow", "A", "current of voltage_source 'amplifier'"),
+    Record("amplifier.power", "W", "power into voltage_source 'amplifier'"),
+    Record("leads.effort", "V", "voltage of resistor 'leads'"),
+    Record("leads.flow", "A", "current of resistor 'leads'"),
+    Record("leads.power", "W", "power into resistor 'leads'"),
+    Record("leads.heat", "W", "heat of resistor 'leads'"),
+    Record("clamped.effort", "V", "voltage of capacitor 'clamped'"),
+    Record("clamped.flow", "A", "current of capacitor 'clamped'"),
+    Record("clamped.power", "W", "power into capacitor 'clamped'"),
+    Record("clamped.energy", "J", "energy of capacitor 'clamped'"),
+    Record("ceramic.effort_1", "V", "voltage in branch 1 of transducer 'ceramic'"),
+    Record("ceramic.flow_1", "A", "current in branch 1 of transducer 'ceramic'"),
+    Record("ceramic.effort_2", "N", "force in branch 2 of transducer 'ceramic'"),
+    Record("ceramic.flow_2", "m/s", "velocity in branch 2 of transducer 'ceramic'"),
+    Record("ceramic.power", "W", "power from branch 1 to branch 2 of transducer 'ceramic'"),
+    Record("mass.effort", "N", "force of mass 'mass'"),
+    Record("mass.flow", "m/s", "velocity of mass 'mass'"),
+    Record("mass.power", "W", "power into mass 'mass'"),
+    Record("mass.energy", "J", "energy of mass 'mass'"),
+    Record("spring.effort", "N", "force of spring 'spring'"),
+    Record("spring.flow", "m/s", "velocity of spring 'spring'"),
+    Record("spring.power", "W", "power into spring 'spring'"),
+    Record("spring.energy", "J", "energy of spring 'spring'"),
+    Record("slips.effort", "N", "force of stop 'slips'", "slips"),
+    Record("slips.flow", "m/s", "velocity of stop 'slips'", "slips"),
+    Record("slips.power", "W", "power into stop 'slips'", "slips"),
+    Record("slips.energy", "J", "energy of stop 'slips'", "slips"),
+    Record("slips.heat", "W", "heat of stop 'slips'", "slips"),
+    Record("damper.effort", "N", "force of damper 'damper'"),
+    Record("damper.flow", "m/s", "velocity of damper 'damper'"),
+    Record("damper.power", "W", "power into damper 'damper'"),
+    Record("damper.heat", "W", "heat of damper 'damper'"),
+    Record("load.effort", "N", "force of force_source 'load'"),
+    Record("load.flow", "m/s", "velocity of force_source 'load'"),
+    Record("load.power", "W", "power into force_source 'load'"),
+    Record("body.effort", "K", "temperature of thermal_mass 'body'"),
+    Record("body.flow", "W/K", "entropy flow of thermal_mass 'body'"),
+    Record("body.power", "W", "power into thermal_mass 'body'"),
+    Record("body.energy", "J", "energy of thermal_mass 'body'"),
+    Record("air.effort", "K", "temperature at ambient 'air'"),
+    Record("air.flow", "W/K", "entropy flow at ambient 'air'"),
+    Record("air.power", "W", "power into ambient 'air'"),
+)
 PARAMETERS = (
     Record("m", "kg", "moving mass"),
     Record("d", "N*s/m", "damping"),
@@ -394,6 +439,110 @@ def entropy_production(x, u, p_, /):
     out[0] = i_leads*V_leads/T
     out[1 : 1 + slips_count] = slip_slips*F_slips/T
     out[1 + slips_count] = F_damper*v_mass/T
+    return out
+
+
+def elements(x, u, p_, /):
+    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (38 + 5*slips_count, *batch)."""
+    x = _states(x, p_)
+    u = _inputs(u)
+    slips_count = p_.slips_count
+    m = p_.m
+    d = p_.d
+    a = p_.a
+    C = p_.C
+    R = p_.R
+    k = p_.k
+    k_s = _lanes(p_.k_s, slips_count, x.ndim)
+    r = _lanes(p_.r, slips_count, x.ndim)
+    T_0 = p_.T_0
+    c_0 = p_.c_0
+    lam = p_.lam
+    Q = x[0]
+    p = x[1]
+    q = x[2]
+    z = x[3 : 3 + slips_count]
+    S = x[3 + slips_count]
+    F_ext = u[0]
+    V_in = u[1]
+    T_e = u[2]
+    # co-states dU/dx
+    V_clamped = Q/C
+    v_mass = p/m
+    F_spring = k*q
+    F_slips = k_s*z
+    T = T_0*np.exp(S/c_0)
+    # sums over lanes
+    sum_F_slips = np.sum(F_slips, axis=0)
+    # transducer ratios
+    alpha_ceramic = a
+    # driving forces
+    V_leads = -V_clamped + V_in
+    # dissipative laws
+    i_leads = V_leads/R
+    F_damper = d*v_mass
+    slip_slips = np.where(v_mass > 0, np.where(F_slips >= k_s*r, v_mass, 0), np.where(F_slips <= -k_s*r, v_mass, 0))
+    # heats
+    heat_leads = i_leads*V_leads
+    # sums over lanes
+    heat_slips = np.sum(slip_slips*F_slips, axis=0)
+    # heats
+    heat_damper = F_damper*v_mass
+    # rates
+    rate_Q = i_leads - alpha_ceramic*v_mass
+    rate_p = alpha_ceramic*V_clamped - F_spring - sum_F_slips - F_damper + F_ext
+    rate_z = v_mass - slip_slips
+    rate_S = (heat_leads + heat_slips + heat_damper)/T + lam*(T_e/T - 1)
+    # result
+    row_slips_effort = 24 + slips_count
+    row_slips_flow = row_slips_effort + slips_count
+    row_slips_power = row_slips_flow + slips_count
+    row_slips_energy = row_slips_power + slips_count
+    row_slips_heat = row_slips_energy + slips_count
+    out = np.empty((14 + row_slips_heat, *x.shape[1:]))
+    out[0] = V_in
+    out[1] = -i_leads
+    out[2] = -i_leads*V_in
+    out[3] = V_leads
+    out[4] = i_leads
+    out[5] = i_leads*V_leads
+    out[6] = i_leads*V_leads
+    out[7] = V_clamped
+    out[8] = rate_Q
+    out[9] = V_clamped*rate_Q
+    out[10] = Q**2/(2*C)
+    out[11] = V_clamped
+    out[12] = alpha_ceramic*v_mass
+    out[13] = -alpha_ceramic*V_clamped
+    out[14] = v_mass
+    out[15] = V_clamped*alpha_ceramic*v_mass
+    out[16] = rate_p
+    out[17] = v_mass
+    out[18] = rate_p*v_mass
+    out[19] = p**2/(2*m)
+    out[20] = F_spring
+    out[21] = v_mass
+    out[22] = F_spring*v_mass
+    out[23] = k*q**2/2
+    out[24 : row_slips_effort] = F_slips
+    out[row_slips_effort : row_slips_flow] = rate_z + slip_slips
+    out[row_slips_flow : row_slips_power] = F_slips*(rate_z + slip_slips)
+    out[row_slips_power : row_slips_energy] = k_s*z**2/2
+    out[row_slips_energy : row_slips_heat] = slip_slips*F_slips
+    out[row_slips_heat] = F_damper
+    out[1 + row_slips_heat] = v_mass
+    out[2 + row_slips_heat] = F_damper*v_mass
+    out[3 + row_slips_heat] = F_damper*v_mass
+    out[4 + row_slips_heat] = -F_ext
+    out[5 + row_slips_heat] = v_mass
+    out[6 + row_slips_heat] = -v_mass*F_ext
+    out[7 + row_slips_heat] = T
+    out[8 + row_slips_heat] = rate_S
+    out[9 + row_slips_heat] = T*rate_S
+    out[10 + row_slips_heat] = T_0*c_0*np.exp(S/c_0)
+    out[11 + row_slips_heat] = T
+    out[12 + row_slips_heat] = -lam*(T_e/T - 1)
+    out[13 + row_slips_heat] = -lam*(T_e - T)
     return out
 
 
