@@ -14,15 +14,20 @@ REFERENCES = {"wall", "gnd", "frame", "tank", ":zero"}
 MECHANICAL = {"N", "N*m"}  # units of efforts that are forces: these add up at nodes
 
 
-def quantities(module, x, u, p):
-    """Return {element: {quantity: value}}, a bank's lanes summed, but for efforts."""
+def quantities(module, spec, x, u, p):
+    """Return {element: {quantity: value}}, a bank's lanes summed, but for what they share.
+
+    Lanes are in parallel, and share voltage, velocity, pressure; those of capacitors are in series.
+    """
     values, found, row = module.elements(x, u, p), defaultdict(dict), 0
     for record in module.ELEMENTS:
         element, _, word = record.name.rpartition(".")
         count = getattr(p, f"{record.bank}_count") if record.bank else 1
         lanes = values[row : row + count]
         row += count
-        found[element][word] = lanes[0] if word.startswith("effort") else lanes.sum(axis=0)
+        series = spec["elements"][element]["kind"] == "capacitor"
+        shared = record.unit in ({"A"} if series else {"V", "m/s", "rad/s", "Pa", "K"})
+        found[element][word] = lanes[0] if shared else lanes.sum(axis=0)
         found[element][f"unit of {word}"] = record.unit
     assert row == len(values)
     return found
@@ -31,7 +36,7 @@ def quantities(module, x, u, p):
 def check_elements(module, spec, x, u, share=1e-11):
     """Check the quantities of all elements at one state."""
     p = module.Parameters()
-    found = quantities(module, x, u, p)
+    found = quantities(module, spec, x, u, p)
     assert found.keys() == spec["elements"].keys()
     energies = [q["energy"] for q in found.values() if "energy" in q]
     size = sum(map(abs, energies))
@@ -43,7 +48,7 @@ def check_elements(module, spec, x, u, share=1e-11):
     check_nodes(spec, found, share)
     speed = module.rhs(x, u, p)
     scale = 1e-6 * np.abs(x).max(initial=1e-9) / np.abs(speed).max(initial=1e-30)
-    ahead, behind = (quantities(module, x + s * scale * speed, u, p) for s in (1, -1))
+    ahead, behind = (quantities(module, spec, x + s * scale * speed, u, p) for s in (1, -1))
     total = sum(abs(one["power"]) for one in found.values())
     for name, one in found.items():
         if "energy" in one and "heat" not in one:
