@@ -69,5 +69,7 @@ def _holds(condition, values, known):
     if isinstance(condition, sp.ITE):
         test, then, other = condition.args
         return _holds(then if _holds(test, values, known) else other, values, known)
+    if condition in (sp.true, sp.false):
+        return bool(condition)
     left, right = (_measured(side, values, known)[0] for side in condition.args)
     return RELATIONS[condition.func](left, right)

@@ -26,6 +26,7 @@ SPECS = sorted(Path(__file__).with_name("specs").glob("*.toml"))
 MODELS = [*(model.name for model in shipped_models()), *SPECS]
 #: So far inside their domain networks are tried.
 CLEAR = 1e-9
+FUNCTIONS = (sp.exp, sp.log, sp.sin, sp.cos, sp.sinh, sp.cosh, sp.tanh)
 SIZES = {"q": 1e-3, "p": 5e-3, "Q_C": 1e-4}
 
 
@@ -150,9 +151,12 @@ def inside(both, seed):
 
 def check(spec, seed):
     """Check a network on the edges of its laws; return at how many states."""
-    assume(not jumps(spec))
+    kinds = {element["kind"] for element in spec["elements"].values()}
+    assume(not jumps(spec) and "stop" not in kinds)  # a stop yields at once
     iphs = derivable(spec)
-    assume(edges(iphs.expand()))
+    found = edges(iphs.expand())
+    # NumPy and C round functions differently, and so may take two sides of an edge with one
+    assume(found and not any(edge.has(*FUNCTIONS) for edge in found))
     both = Compared(iphs.model)
     u, states = inside(both, seed)
     assume(states)
