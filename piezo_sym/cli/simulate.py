@@ -113,6 +113,12 @@ def _report(result: xarray.Dataset, inputs: Mapping[str, Any], out: Path | None)
     if out is not None:
         _write(result, out)
     _print(result)
+    for name, hits in result.coords.items():
+        if str(hits.attrs.get("long_name", "")).startswith("times of event"):
+            found = ", ".join(f"{t:.9g}" for t in hits.values[:4]) + ", ..." * (hits.size > 4)
+            typer.echo(f"event {name}, {hits.size} in all: t = {found or 'never'}")
+    if "stopped" in result.attrs:
+        typer.echo(f"stopped: {result.attrs['stopped']}")
     for name, value in inputs.items():
         if assumed := getattr(value, "assumed", ""):
             typer.echo(f"{name}: its file names no units; read {assumed}")

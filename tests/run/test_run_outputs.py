@@ -168,3 +168,11 @@ def test_c_says_the_same():
         x = np.ascontiguousarray(x)
         engine.function("elements")(at(x), at(u), ctypes.byref(record.value), at(found))
         assert np.allclose(found, wanted, rtol=1e-12, atol=1e-12 * np.abs(wanted).max())
+
+
+def test_the_command_tells_when_events_were_and_why_a_run_stopped():
+    command = ["simulate", "piezo_stack", "--duration", "1e-3", "--input", "V_in=100"]
+    result = CliRunner().invoke(app, [*command, "--event", "hit=q - 1e-5", "--stop", "q > 2e-5"])
+    assert result.exit_code == 0
+    assert re.search(r"^event hit, 1 in all: t = \d\.\d+", result.stdout, re.MULTILINE)
+    assert re.search(r"^stopped: q > 2e-5 at t = ", result.stdout, re.MULTILINE)
