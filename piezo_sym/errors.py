@@ -128,9 +128,14 @@ def with_article(noun: str) -> str:
     return f"{'an' if noun[0] in 'aeiou' else 'a'} {noun}"
 
 
+#: Names so short are alike only if they begin alike: F_0 is not meant to be T_0.
+SHORT = 3
+
+
 def nearest(word: str, known: Iterable[str]) -> str:
     """Return "did you mean 'x'?" for the known name nearest to `word`, or the known names."""
     names, short = list(known), word[:MAX_QUOTE]
     match = [name for name in names if name.lower() == short.lower()]
-    match = match or get_close_matches(short, names, n=1, cutoff=0.6)
+    like = [name for name in names if len(short) > SHORT or name[:1] == short[:1]]
+    match = match or get_close_matches(short, like, n=1, cutoff=0.6)
     return f"did you mean '{match[0]}'?" if match else f"known: {listing(names, MOST_KNOWN)}"

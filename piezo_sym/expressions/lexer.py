@@ -8,6 +8,14 @@ import re
 from piezo_sym.errors import quote
 
 LANGUAGE = "numbers, names, + - * / **, (), 'a if x < y else b', or a function as in exp(x)"
+#: What to write instead of characters that are in other languages.
+REMEDIES = {
+    "^": "write ** for a power",
+    "=": "write >= or <= in a condition",
+    ".": "write a function by its name alone, as in tanh(v)",
+    "|": "write abs(v)",
+    "&": "write each condition as one of its own",
+}
 MAX_DEPTH = 40
 MAX_DIGITS = 40
 MAX_LENGTH = 1000
@@ -51,8 +59,7 @@ def check_tokens(text: str) -> None:
         match = TOKEN.match(text, position)
         if match is None:
             what = f"has {quote(text[position])} at column {position + 1}"
-            remedy = "write ** for a power" if text[position] == "^" else ""
-            raise RefusedError(what, LANGUAGE, remedy)
+            raise RefusedError(what, LANGUAGE, REMEDIES.get(text[position], ""))
         token = match.group()
         depth += (token == "(") - (token == ")")
         prefixes = _prefixes(prefixes, match)

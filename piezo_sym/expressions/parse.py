@@ -7,6 +7,7 @@ taken from the source text as exact rationals.  Python evaluates none of it.
 """
 
 import ast
+import re
 from collections.abc import Callable
 from fractions import Fraction
 from functools import cache, lru_cache
@@ -117,7 +118,8 @@ def _law(text: str) -> Expr:
 def _condition(text: str) -> Cmp:
     body = _parsed(text)
     if not isinstance(body, ast.Compare):
-        raise RefusedError("is not a comparison", "one of < <= > >=, as in 'T > T_0'")
+        remedy = "write each condition as one of its own" * isinstance(body, ast.BoolOp)
+        raise RefusedError("is not a comparison", "one of < <= > >=, as in 'T > T_0'", remedy)
     tree = _comparison(body, text)
     for side in (tree.left, tree.right):
         check_size(side)
@@ -132,7 +134,11 @@ def _parsed(text: str) -> ast.expr:
     try:
         return ast.parse(text.strip(), mode="eval").body
     except (SyntaxError, ValueError, MemoryError, RecursionError):
-        raise RefusedError("is not a complete law", LANGUAGE) from None
+        beside = re.search(r"[\w)] +[\w(]", text) and not re.search(
+            r"\b(if|else|and|or|not)\b", text
+        )
+        remedy = "write * between factors, as in d*v" * bool(beside)
+        raise RefusedError("is not a complete law", LANGUAGE, remedy) from None
 
 
 def _expression(node: ast.expr, text: str, depth: int = 0) -> Expr:

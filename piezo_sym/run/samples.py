@@ -23,6 +23,8 @@ from piezo_sym.run.checks import FloatArray, increasing, vector
 from piezo_sym.run.signals import MOST_CORNERS, Signal
 
 DELIMITERS = ",;\t"
+#: Units of temperatures in headers that have an offset, and where their zero is [K].
+CELSIUS, ZERO_CELSIUS = ("degC", "\N{DEGREE SIGN}C"), 273.15
 HEADER = re.compile(r"(?P<name>.*?)\s*\[(?P<unit>[^\[\]]*)\]")  # a name and its unit, t [ms]
 OTHERWISE = re.compile(  # t (ms), t/ms
     r"(?P<name>.*?)\s*(?:\((?P<unit>[^()]+)\)|/\s*(?P<over>[^/()]+))"
@@ -126,9 +128,10 @@ def samples_from_csv(
     times, values = _columns(Path(path), t, x)
     seconds, _ = _factor(headers[t], f"{path}, header", "s")
     factor, unit = _factor(headers[x], f"{path}, header")
+    values = values * factor + (ZERO_CELSIUS if headers[x][1] in CELSIUS else 0.0)
     words = (t, "s"), (x, "the input's SI unit")
     taken = [f"{headers[n][0]} in {unit}" for n, unit in words if not headers[n][1]]
-    found = read_samples(times * seconds, values * factor, str(path))
+    found = read_samples(times * seconds, values, str(path))
     return replace(found, unit=unit, assumed=" and ".join(taken))
 
 
@@ -221,6 +224,8 @@ def _factor(header: tuple[str, str], where: str, expected: str = "") -> tuple[fl
     name, text = header
     if not text:
         return 1.0, ""
+    if text in CELSIUS and not expected:
+        return 1.0, "K"
     try:
         unit = parse_unit(text, where)
     except PiezoError as error:

@@ -109,6 +109,10 @@ class Stepper:
         lock = threading.Lock()
         self._begin, self._end = lock.acquire, lock.release
 
+    def __repr__(self) -> str:
+        """Return the model, the step and the time."""
+        return f"<Stepper of {self._system.module.NAME}: step {self._h:g} s, time {self.time:g} s>"
+
     def _made(self, outputs: Any, margins: Any) -> Any:
         """Return what a call needs, all in one place; functions are those of ``<model>.c``."""
         batch, limits = self._batch, self._limits

@@ -53,7 +53,7 @@ def test_columns_by_name(write):
         ("t [ms],V [vlot]\n0,1\n1,1\n", {}, UsageError, "header: unknown unit 'vlot'"),
         ("0,1\n1,2\n2,3\n", {}, FileError, "line 1 has numbers where names are expected"),
         ("t,V\nms,V\n0,1\n", {}, FileError, "units go into the header: t [ms]"),
-        ("t (ms),T (degC)\n0,1\n1,1\n", {}, UsageError, "unit 'degC' has an offset"),
+        ("t (degC),T (K)\n0,1\n1,1\n", {}, UsageError, "unit 'degC' has an offset"),
         ("t (µs),V\n0,1\n1,1\n", {}, UsageError, "write 'us'"),
         ("t,V [V],V [A]\n0,1,2\n", {"column": "V"}, UsageError, "two columns are named 'V'"),
     ],
@@ -126,3 +126,12 @@ def test_numbers_are_read_to_round_off(numbers, tmp_path_factory):
     path = tmp_path_factory.mktemp("csv") / "drive.csv"
     path.write_text("t,V\n" + "".join(f"{n},{x!r}\n" for n, x in enumerate(numbers)))
     assert samples_from_csv(path).values.tolist() == pytest.approx(numbers, rel=1e-15)
+
+
+@pytest.mark.parametrize("header", ["T_e [degC]", "T_e (degC)", "T_e [\N{DEGREE SIGN}C]"])
+def test_temperatures_in_celsius_are_read(header, tmp_path):
+    path = tmp_path / "room.csv"
+    path.write_text(f"t [s],{header}\n0,20\n1,25.5\n", encoding="utf-8")
+    read = samples_from_csv(path)
+    assert np.array_equal(read.values, [293.15, 298.65])
+    assert read.unit == "K"

@@ -157,7 +157,10 @@ def _check_words(
             if not element:
                 remedy = _states_of_letter(spec, word, words)
             raise SpecError(f"{quote(word)} has no meaning here", where, expected, remedy)
-        remedy = remedy or nearest(word, [*letters, *words])
+        near = nearest(word, [*letters, *words])
+        if not near.startswith("did you mean"):
+            near = f"declare it in [parameters] with its value and unit; {near}"
+        remedy = remedy or near
         raise SpecError(f"unknown name {quote(word)}", where, remedy=remedy)
 
 
