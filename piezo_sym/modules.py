@@ -67,7 +67,10 @@ def module_of(spec: str | Path | Model) -> ModuleType:
         warnings.warn(text, ModuleWarning, stacklevel=3)
     elif not _is_current(module):
         path, again = path_text(GENERATED / module.NAME), _command(spec)
-        text = f"{path} is not what the spec generates and is not used; run `{again}`"
+        text = (
+            f"{path} is not what the spec generates and is not used; replace it by `{again}`, "
+            "or give the spec another name"
+        )
         warnings.warn(text, ModuleWarning, stacklevel=3)
     return module
 

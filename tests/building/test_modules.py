@@ -73,7 +73,7 @@ def test_an_edited_text_of_c_is_not_compiled(model, ending):
     path, *_ = generate(model)
     edited = path.with_name(f"piezo_stack{ending}")
     edited.write_text(f"{edited.read_text()}\n/* edited */\n")
-    with pytest.warns(ModuleWarning, match="run `piezo-sym generate piezo_stack`"):
+    with pytest.warns(ModuleWarning, match="replace it by `piezo-sym generate piezo_stack`"):
         module = module_of("piezo_stack")
     assert Path(module.__file__) == COMMITTED
 
@@ -93,7 +93,7 @@ def test_an_edit_runs_without_generate_and_says_what_is_out_of_date(mine, cache)
     assert Path(module.__file__).is_relative_to(cache)
     assert [str(one.message) for one in caught] == [
         "'generated/mine' is not what the spec generates and is not used; "
-        "run `piezo-sym generate mine.toml`"
+        "replace it by `piezo-sym generate mine.toml`, or give the spec another name"
     ]
 
 

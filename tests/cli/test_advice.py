@@ -59,3 +59,8 @@ def test_a_stepper_says_what_it_is():
     stepper = Stepper("oscillator", step=1e-3)
     stepper.step([0.0])
     assert repr(stepper) == "<Stepper of oscillator: step 0.001 s, time 0.001 s>"
+
+
+def test_a_sweep_is_made_in_python(capsys):
+    assert run(["sweep", "oscillator"]) == 2
+    assert "help(piezo_sym.sweep)" in capsys.readouterr().err

@@ -215,7 +215,7 @@ def test_an_edited_spec_runs_and_its_old_module_is_named(spec_file, tmp_path, mo
     path = spec_file("3.5e-3", "4e-3")
     answer = call("simulate", path, "--duration", "1e-3")
     assert answer.code == 0
-    assert f"is not used; run `piezo-sym generate {path}`" in answer.err
+    assert f"is not used; replace it by `piezo-sym generate {path}`" in answer.err
 
 
 def last(path):
