@@ -260,7 +260,8 @@ static void hydraulic_cylinder_give(hydraulic_cylinder_reals *to, const hydrauli
     OF(to->T_0, lane) = from->T_0;
 }
 
-#define BENDS /* integrands have kinks: see run/engine */
+/* Integrands have kinks: see run/engine. */
+#define BENDS
 enum {
     hydraulic_cylinder_limits = 0, /* margins of a stage */
     hydraulic_cylinder_reads = 2, /* states that integrands read */

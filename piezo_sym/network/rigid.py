@@ -15,7 +15,7 @@ from piezo_sym.expressions.tree import names
 from piezo_sym.network.inverse import constant_slope, vanishes
 from piezo_sym.network.kirchhoff import Laws
 from piezo_sym.network.refusals import couplings_in, refusal
-from piezo_sym.spec.elements.ports import Body
+from piezo_sym.spec.elements.ports import Body, DissipativePort
 
 
 def dependent(laws: Laws, singular: SingularError) -> set[str]:
@@ -64,13 +64,14 @@ def _hindrance(laws: Laws, row: Form) -> str:
     if len(stores) < len(row):
         return ""
     known = laws.circuit.model.parameters.keys()
+    slips = {port.state for _, port in laws.circuit.of(DissipativePort) if port.rate}
     for placed, store in stores:
         name = quote(placed.element)
         if isinstance(store, Body):
             return f", and {name} is a body, whose temperature nothing else can impose"
         if placed.bank:
             return f", and {name} is a bank, which is not joined to others"
-        if getattr(laws.circuit.model.elements[placed.element], "slip", None) is not None:
+        if store.state in slips:
             return f", and {name} slips"
         slope = constant_slope(store.law, store.state)
         used = {*names(store.law), *names(store.energy or store.law)} - {store.state}

@@ -13,7 +13,7 @@ by function and row.  The grammar:
 MACROS say what a word means where ``real`` is one number.  A mean that a stage is given is that of
 its integrand: a co-state and what is free of the state.  A branch is 1 where its switching function
 is positive, else 0; a stage chooses by branches alone: ``chosen(NAME > 0.0, value, value)``.
-`slopes` and the tables behind it serve Newton's method alone, and `bends`, which a line ``#define
+`slopes` and most tables behind it serve Newton's method alone, and `bends`, which a line ``#define
 BENDS`` announces, says where the engine splits means: of them nothing is said, but that they are in
 the grammar, and that what they write fills its array.  Where the system has stops, a table tells of
 each the bank, whether its lanes have drives of their own, and its inner state; `path_parameters`
@@ -26,6 +26,7 @@ from dataclasses import replace
 from typing import final
 
 from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.spec.elements.ports import Body, Storage
 from piezo_sym.translation.c_data import (
     Tables,
     strict,
@@ -104,7 +105,9 @@ def _path_table(known: Proved) -> str:
         for inner, bank, own in known.paths
     ]
     name = known.iphs.model.name
-    head = f"#define PATHS {len(lines)}\nstatic const int {name}_path[PATHS][3] = {{\n"
+    # no comment is open where one ends
+    comment = "/* Path functionals: bank or -1, whether each lane has a drive, inner state. */\n"
+    head = f"{comment}#define PATHS {len(lines)}\nstatic const int {name}_path[PATHS][3] = {{\n"
     return f"{head}{''.join(lines)}}};\n" if lines else ""
 
 
@@ -147,8 +150,24 @@ class _Step:
             tables |= more
         if parts:
             raise NotShownError("the step lacks a function")
+        self._told(tables)
         of_margins = enumerate(strict(tables, model.name))
         return self.found | {("strict", n): self.field.number(s) for n, s in of_margins}
+
+    def _told(self, tables: Tables) -> None:
+        """Check what tables tell the engine: who takes losses, jumps, what integrands read."""
+        iphs, name = self.iphs, self.iphs.model.name
+        ports = [port for _, port in iphs.circuit.of(Storage, Body)]
+        body = next((n for n, port in enumerate(ports) if isinstance(port, Body)), -1)
+        lossy = any(isinstance(port, Storage) for port in ports)
+        jumps = any(getattr(e, "discontinuous", False) for e in iphs.model.elements.values())
+        used = {g for (row, _), v in self.found.items() if row == "integrands" for g in v.parts}
+        states = [self.file.known.names[slot.label] for slot in iphs.system.states]
+        read = [n for n, value in enumerate(states) if not used.isdisjoint(value.parts)]
+        wanted = {"heated": [body if lossy else -1], "jumps": [int(jumps)], "reads": [len(read)]}
+        found = {word: tables.get(f"{name}_{word}") for word in wanted}
+        if found != wanted or tables.get(f"{name}_read", [])[: len(read)] != read:
+            raise NotShownError("the step does not say which states it reads, heats, or jumps with")
 
     def _power(self) -> None:
         """Take a function that is a whole power."""

@@ -29,8 +29,8 @@ _TOKEN = re.compile(
 _HEAD = r'\s*(?:/\*(?:(?!\*/)[^\\])*\*/\s*)*(?:#include (?:"{model}\.h"|<math\.h>)\n\s*){{2}}'
 _SPELLED, _CLOSING = {"||": "or", "->": "."}, {"(": ")", "[": "]"}
 MOST_DIGITS = 9
-#: The line by which a step says that integrands have kinks.
-BENDS = "\n#define BENDS /* integrands have kinks: see run/engine */\n"
+#: How a step says that integrands have kinks; behind the end of a comment none is open.
+BENDS = "\n/* Integrands have kinks: see run/engine. */\n#define BENDS\n"
 
 
 @final
@@ -71,7 +71,7 @@ class Tokens:
         )
         self.found: list[str] = []
         self.bends = bool(macros) and BENDS in text
-        text = text.replace(BENDS, "\n", int(self.bends))
+        text = text.replace(BENDS, "\n\n\n", int(self.bends))
         if table and text.count(table) != 1:
             raise NotShownError("the table of the step's paths is not the system's")
         text = text.replace(table, "\n" * table.count("\n"), int(bool(table)))

@@ -219,6 +219,11 @@ def test_what_cannot_be_is_refused():
     pot = 'pot = { kind = "damper", between = ["b", "wall"], velocity = "f/d", heats = "body" }\n'
     with pytest.raises(NetworkError, match="put a mass at its node"):
         derive(parse(loose + pot))
+    near = 'near = { kind = "spring", between = ["b", "wall"], stiffness = "k" }\n'
+    between = MASS.replace('between = ["a", "wall"]', 'between = ["a", "b"]')
+    for elements in (near + between, between + near):
+        with pytest.raises(NetworkError, match="'stop' slips"):
+            derive(parse(base + elements))
     with pytest.raises(SpecError, match="values given are outside the domain"):
         parse(base + MASS + "[initial]\nz = 2e-3\n")
     with pytest.raises(SpecError, match="exactly one of stiffness, capacitance"):

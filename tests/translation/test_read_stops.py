@@ -19,6 +19,16 @@ WRONG = {
     "own drives": ("    {0, 0, 3},", "    {0, 1, 3},"),
     "an inner state": ("    {0, 0, 3},", "    {0, 0, 2},"),
     "how many": ("#define PATHS 1", "#define PATHS 2"),
+    "a product of means": ("+= heat_slip_slips[j];", "+= F_slips[j]*slip_slips[j];"),
+    "an entropy of means": ("= heat_slip_slips[j]/T;", "= F_slips[j]*slip_slips[j]/T;"),
+    "a table in a comment": ("#define PATHS 1", "/*\n#define PATHS 1 */"),
+    "a table behind a comment's begin": (
+        "/* Path functionals:",
+        "/*\n/* Path functionals: of old:",
+    ),
+    "who takes losses": ("stack_maxwell_heated = 4,", "stack_maxwell_heated = 3,"),
+    "jumps": ("stack_maxwell_jumps = 0", "stack_maxwell_jumps = 1"),
+    "what is read": ("stack_maxwell_reads = 1,", "stack_maxwell_reads = 0,"),
     "how many are given": ("; /* means */", " + 1; /* means */"),
 }
 

@@ -209,7 +209,7 @@ class _Printer:
     def tables(self) -> str:
         """Return the tables by which the equations of a step are solved."""
         limits = [int(limit.strict) for limit in self.made.stage.limits]
-        head = ["#define BENDS /* integrands have kinks: see run/engine */"]
+        head = ["/* Integrands have kinks: see run/engine. */", "#define BENDS"]
         head = head if self.made.stage.bends else []
         head += ["enum {", f"    {self.name}_limits = {len(limits)}, /* margins of a stage */"]
         records = len(self.program.states)
