@@ -161,7 +161,7 @@ class _Step:
         body = next((n for n, port in enumerate(ports) if isinstance(port, Body)), -1)
         lossy = any(isinstance(port, Storage) for port in ports)
         jumps = any(getattr(e, "discontinuous", False) for e in iphs.model.elements.values())
-        used = {g for (row, _), v in self.found.items() if row == "integrands" for g in v.parts}
+        used = {g for value in self.file.known.means.values() for g in value.parts}
         states = [self.file.known.names[slot.label] for slot in iphs.system.states]
         read = [n for n, value in enumerate(states) if not used.isdisjoint(value.parts)]
         wanted = {"heated": [body if lossy else -1], "jumps": [int(jumps)], "reads": [len(read)]}

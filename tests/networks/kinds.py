@@ -243,6 +243,7 @@ def thermoelectric(draft):
 def storage(draft):
     """Return an energy of a flux and an extension."""
     L, k = draft.parameter("L", "H"), draft.parameter("k", "N/m")
+    draft.assume.append(f"{L} > 0")
     phi, x = f"phi_{draft.name}", f"x_{draft.name}"
     coupled = (f"{phi}**2*(2 + {x}**2)/{L}", f"{phi}**2/{L}*exp({x}/3)", f"{phi}**2/{L}")
     alone = (f"{k}*{x}**2/2", f"{k}*{x}*abs({x})**2", f"{k}/2*max({x} - 0.3, 0)**2 + {k}*{x}")

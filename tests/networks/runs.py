@@ -44,9 +44,10 @@ def rounded(steps, size):
 
 
 def check_energy(found):
-    """Check the energy balance at all samples."""
+    """Check the energy balance at all samples, by what went through ports or became heat."""
     energy = found.energy.values
-    bound = 1e-12 * (np.ptp(energy) + gross(found))
+    heat = sum(float(found[n].values[-1].sum()) for n in found if n.startswith("heat_"))
+    bound = 1e-12 * (np.ptp(energy) + gross(found) + heat)
     bound += rounded(found.attrs["accepted_steps"], np.abs(energy).max())
     assert np.abs(found.energy_residual.values).max() <= bound
 
