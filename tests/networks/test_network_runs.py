@@ -52,7 +52,7 @@ def attempted(run):
 
 def check(spec, seed):
     """Run a network from some state with every accuracy, and return how that came out."""
-    # stops and storages have tests of their own; currents that pump heat may leave all scales, or slide on jumps
+    # these have tests of their own; currents that pump heat may slide along jumps
     assume(
         {"stop", "storage", "thermoelectric"}.isdisjoint(
             e["kind"] for e in spec["elements"].values()
