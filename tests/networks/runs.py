@@ -46,7 +46,7 @@ def rounded(steps, size):
 def check_energy(found):
     """Check the energy balance at all samples, by what went through ports or became heat."""
     energy = found.energy.values
-    heat = sum(float(found[n].values[-1].sum()) for n in found if n.startswith("heat_"))
+    heat = sum(float(np.abs(found[n].values[-1]).sum()) for n in found if n.startswith("heat_"))
     bound = 1e-12 * (np.ptp(energy) + gross(found) + heat)
     bound += rounded(found.attrs["accepted_steps"], np.abs(energy).max())
     assert np.abs(found.energy_residual.values).max() <= bound
