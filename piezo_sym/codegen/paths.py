@@ -33,7 +33,7 @@ class Path:
     drive : the rate of the coordinate, of quantities of a stage that no path gives.
     own : whether each lane has a drive of its own.
     stiffness : in parameters.
-    limit : of the inner state, positive, in parameters and states as they are where a step begins.
+    limit : of the inner state, >= 0, as it is where a step begins.
     effort, slip, heat, share : the names of what stages are given.
     """
 

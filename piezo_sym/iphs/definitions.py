@@ -6,7 +6,7 @@ each name the expression behind it, stated once.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import final
 
@@ -169,9 +169,14 @@ def rates_of(circuit: Circuit, symbols: SymbolTable, system: System) -> Definiti
 
 
 def check_stops(
-    circuit: Circuit, symbols: SymbolTable, rates: Definitions, laws: Definitions
+    circuit: Circuit,
+    symbols: SymbolTable,
+    rates: Iterable[tuple[sp.Symbol, sp.Expr]],
+    laws: Iterable[tuple[sp.Symbol, sp.Expr]],
 ) -> None:
     """Refuse a stop whose rate depends on the effort of a stop: it would have to be found with it.
+
+    Laws are of co-states, inputs and states alone, so that putting them in once is enough.
 
     Raises
     ------

@@ -275,7 +275,7 @@ def iphs_of(symbols: SymbolTable, junction: Junction) -> IPHS:
     system = system_of(circuit, symbols, junction)
     laws = tuple(laws_of(circuit, symbols, system))
     rates = tuple(rates_of(circuit, symbols, system))
-    check_stops(circuit, symbols, iter(rates), iter(laws))
+    check_stops(circuit, symbols, rates, laws)
     return IPHS(
         model=circuit.model,
         circuit=circuit,

@@ -78,7 +78,8 @@ def _law(iphs: IPHS, placed: Placed) -> Law | None:
         case Storage() | Body():
             return Law(element, costate_name(port), port.law, written=_apart(iphs, port.state))
         case DissipativePort():
-            jumps = bool(getattr(iphs.model.elements[element], "discontinuous", port.limit))
+            jumps = port.limit is not None
+            jumps |= bool(getattr(iphs.model.elements[element], "discontinuous", False))
             written, rate = (port.written,) if port.written else (), port.rate_letter
             return Law(element, port.output, port.law, port.letter, jumps, (), written, rate)
         case Coupling():

@@ -201,6 +201,15 @@ def test_rhs_at_the_limit_is_the_projected_rate():
         assert found == rate
 
 
+def test_without_a_limit_there_is_no_force():
+    """A limit of 0: the mass goes as if it were free, and nothing is lost."""
+    how = {"duration": 0.1, "times": [0.0, 0.1], "step": 1e-3}
+    run = simulate(model("mass"), inputs={"F": 2.0}, parameters={"F_c": 0.0}, **how)
+    assert run.p.values[-1] == pytest.approx(0.2, rel=1e-12)
+    assert np.abs(run.z.values).max() <= 1e-18
+    assert np.abs(run.heat_stop.values).max() <= 1e-30
+
+
 def test_ten_thousand_stops_run():
     """After a large way they all stand at their limits, first at one, then at the other."""
     limits = np.linspace(1.0, 50.0, 10_000)
@@ -228,5 +237,8 @@ def test_what_cannot_be_is_refused():
         parse(base + MASS + "[initial]\nz = 2e-3\n")
     with pytest.raises(SpecError, match="exactly one of stiffness, capacitance"):
         parse(base + MASS.replace('stiffness = "k"', 'stiffness = "k", capacitance = "C"'))
+    chain = 'between = ["b", "gnd"], count = 3'
+    with pytest.raises(SpecError, match="count is given beside capacitance"):
+        parse(base + COIL.replace('between = ["b", "gnd"]', chain).replace('"V"', '"F"'))
     rows = verify(derive(parse(base + MASS.replace('limit = "F_c"', 'limit = "V_c"')))).rows
     assert {row.id: row.verdict for row in rows}["units"] is Verdict.REFUTED

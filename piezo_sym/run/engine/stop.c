@@ -259,7 +259,7 @@ static void MODEL(standing)(const MODEL(block) *m, const real *x, const real *br
             const real inner = x[m->first[path[INNER]] + j], z = least(largest_of(inner, -r), r);
             const real *const drives = m->drive + drive + path[OWN] * j;
             const real rate = drives[STAGES * m->drives];
-            const mask yields = (size_of(z) >= r * (1.0 - AT_LIMIT)) & (z * rate > 0.0);
+            const mask yields = (size_of(z) >= r * (1.0 - AT_LIMIT)) & ((z * rate > 0.0) | (r <= 0.0));
             given[EFFORT * lanes + j] = k * z;
             given[SLIP * lanes + j] = weight ? rate : chosen(yields, rate, zero);
             given[HEAT * lanes + j] = weight ? (real)zero : chosen(yields, k * z * rate, zero);

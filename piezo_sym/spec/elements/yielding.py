@@ -12,6 +12,7 @@ from piezo_sym.expressions.calculus import neg
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, Div, Expr, If, Mul, Sym
 from piezo_sym.spec.elements import slips
 from piezo_sym.spec.elements.base import Form, State, positive, state_symbol
+from piezo_sym.spec.elements.domains import PowerVariable
 from piezo_sym.spec.elements.forms import Store
 from piezo_sym.spec.elements.marks import BodyName, Fields, Pair, law_field
 from piezo_sym.spec.elements.ports import Branch, Port
@@ -40,7 +41,7 @@ class Yielding(Form):
         first = self.stores[0]
         between = [first.domain.node, first.domain.reference]
         sizes = {
-            store.size: law_field(store.unit, {}, store.symbol * (store is first), None)
+            store.size: law_field(store.unit, {}, store.symbol if store is first else "", None)
             for store in self.stores
         }
         others: dict[str, Any] = {s.size: s.costate.unit for s in self.stores[1:]}
@@ -95,6 +96,19 @@ class Yielding(Form):
     def states(self, element: Any, name: str) -> tuple[State, ...]:
         """Return its state."""
         return (State(state_symbol(element, name), self._store(element).costate.state_unit),)
+
+    def fault(self, element: Any) -> tuple[str, str, str, str] | None:
+        """Return that stops that impose an across variable do not stand in parallel."""
+        store = self._store(element)
+        if element.count is None or store.imposes is PowerVariable.THROUGH:
+            return None
+        what = f"count is given beside {store.size}"
+        return (
+            ".count",
+            what,
+            "one stop",
+            "write stops in series one by one, between nodes of a chain",
+        )
 
     def requires(self, element: Any) -> tuple[Cmp, ...]:
         """Return that its size is positive, and its limit not negative."""
