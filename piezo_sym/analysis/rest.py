@@ -78,7 +78,9 @@ class RestSearch:
             matrix = eye - step * self.slope(x)
             move = np.asarray(np.linalg.solve(matrix, step * self.rates(x)), dtype=float)
             ahead = self.moved(x, move)
-            reached = np.maximum(size, np.maximum(np.abs(ahead[self.free]), np.abs(move)))
+            reached = np.maximum.reduce(
+                [size, np.abs(ahead[self.free]), np.abs(move), self._told(x, matrix, step)]
+            )
             if not self.inside(ahead) or not self._contracts(matrix, step, move, ahead, reached):
                 step /= GROWTH
                 continue
@@ -87,6 +89,12 @@ class RestSearch:
                 return x, size
             step *= GROWTH
         raise self._none(move / step, size)
+
+    def _told(self, x: FloatArray, matrix: FloatArray, step: float) -> FloatArray:
+        """Return the sizes of which moves by round-off in the rates' terms are `ROUND_OFF`."""
+        terms = step * np.abs(self.slope(x)) @ np.abs(x[self.free])
+        found: FloatArray = np.abs(np.linalg.inv(matrix)) @ terms
+        return found * np.finfo(float).eps / ROUND_OFF
 
     def _that_heats(self, x: FloatArray) -> FloatArray:
         """Return by how much the free states change a temperature by `COUNTS`; 0 if they do not."""

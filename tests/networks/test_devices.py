@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
@@ -209,3 +211,88 @@ def test_current_that_a_thermoelectric_does_not_leave_free_is_refused():
     wire = {"kind": "capacitor", "between": ["b", "gnd"], "capacitance": "c_c"}
     with pytest.raises(PiezoError, match="put a resistor in series with 'couples'"):
         changed(wire=wire)
+
+
+def laminate(given, V_u, V_l, F):
+    """Return deflection and charges of a bender: the strain of each slice, and sums along it."""
+    length, w, h, s, d, eps = (given[name] for name in ("l", "w", "h", "s", "d", "eps"))
+    along, weight = np.polynomial.legendre.leggauss(3)
+    rest, part = length * (1 - along) / 2, weight * length / 2  # up to the tip
+    free = d * np.array([V_u, V_l]) / h  # by which a layer of its own would shorten
+    stretch = -free.mean()
+    # moment of the stresses (stretch - curvature*y + free)/s about the middle, against that of F
+    curvature = (F * rest + w * h**2 / (2 * s) * (free[0] - free[1])) * 3 * s / (2 * w * h**3)
+    strain = stretch - curvature * np.array([[h / 2], [-h / 2]])
+    field = np.array([[V_u], [V_l]]) / h
+    charge = w * (eps * field - d * (strain + d * field) / s) @ part
+    return curvature * rest @ part, charge
+
+
+SIZES = {"l": (0.01, 0.1), "w": (1e-3, 0.03), "h": (1e-4, 1e-3), "s": (1e-11, 3e-11)}
+
+
+@settings(max_examples=20)
+@given(
+    st.fixed_dictionaries({name: st.floats(*range_) for name, range_ in SIZES.items()}),
+    st.tuples(st.floats(0.1, 0.9), st.floats(1e-8, 5e-8)),
+    st.tuples(*[st.floats(-100.0, 100.0)] * 2, st.floats(-0.5, 0.5)),
+)
+def test_bender_rests_as_a_laminated_beam(sizes, coupling, drive):
+    (k_31, eps), (V_b, V, F) = coupling, drive
+    changed = sizes | {"eps": eps, "d": k_31 * np.sqrt(sizes["s"] * eps)}
+    inputs = {"V_b": V_b, "V": V, "F": F}
+    rest = operating_point("bimorph", inputs=inputs, parameters=changed).initial
+    x, charges = laminate(changed, V_b - V, V, F)
+    alpha = 3 * changed["w"] * changed["h"] * changed["d"] / (4 * changed["s"] * changed["l"])
+    found = rest["Q_u"] + alpha * rest["x"], rest["Q_l"] - alpha * rest["x"]
+    scale = laminate(changed, 200.0, -100.0, 0.5)
+    assert rest["x"] == pytest.approx(x, rel=1e-8, abs=1e-9 * scale[0])
+    assert found == pytest.approx(charges, rel=1e-8, abs=1e-9 * scale[1][0])
+
+
+def test_bender_is_that_of_its_data_sheet():
+    """1.3 mm and 0.3 N by 150 V across one layer, 300 nF in parallel, 60 Hz."""
+    at = {"V_b": 150.0, "V": 0.0}
+    assert operating_point("bimorph", inputs=at).initial["x"] == pytest.approx(1.3e-3, rel=1e-3)
+    held = operating_point("bimorph", inputs=at | {"F": -0.3}).initial["x"]
+    assert abs(held) < 0.01e-3
+    A, B, C, D = (np.asarray(part) for part in linearize("bimorph", inputs={"V_b": 0.0, "V": 0.0}))
+    s, V = 2j * np.pi * 0.01, [*load("bimorph").inputs].index("V")
+    current = (C @ np.linalg.solve(s * np.eye(len(A)) - A, B) + D)[V, V]
+    assert current / s == pytest.approx(300e-9, rel=2e-3)
+    ringing = [root for root in np.linalg.eigvals(A) if root.imag > 0]
+    assert abs(ringing[0]) / (2 * np.pi) == pytest.approx(60.0, rel=5e-3)
+
+
+def lever():
+    """Return force per volt, stiffness, way to the end stop and its stiffness, at the load."""
+    k, a, n, k_l, g, k_e = value("amplified_stack", "k", "a", "n", "k_l", "g", "k_e")
+    return a / n, k / n**2 + k_l, g * 1e-3, k_e
+
+
+@pytest.mark.parametrize(("V", "F", "reach"), [(50.0, 0, 0), (110.0, -20, 0), (150.0, 0, 1)])
+def test_lever_moves_its_load_as_the_stiffnesses_say(V, F, reach):
+    given, (a, k, g, k_e) = {"V": V, "F": F}, lever()
+    rest = operating_point("amplified_stack", inputs=given).initial
+    assert (rest["x"] > g) == reach
+    wanted = (a * V + F + reach * k_e * g) / (k + reach * k_e)
+    assert rest["x"] == pytest.approx(wanted, rel=1e-6)
+    assert rest["x"] == pytest.approx(8 * rest["q"], rel=1e-6)
+    run = simulate("amplified_stack", inputs=given, duration=0.1, rtol=1e-7, times=[0.0, 0.1])
+    assert run.x.values[-1] == pytest.approx(rest["x"], rel=1e-5)
+
+
+def test_load_is_stopped_and_both_laws_hold_over_the_contact():
+    """It bounces, and goes no further than where a constant force would have it without losses."""
+    run = simulate("amplified_stack", inputs={"V": 150.0}, duration=0.02, rtol=1e-8)
+    a, k, g, k_e = lever()
+    most = brentq(lambda x: a * 150 * x - k * x**2 / 2 - k_e * (x - g) ** 2 / 2, g, 1e-3)
+    inside = run.x.values - g
+    assert (inside[1:] * inside[:-1] < 0).sum() >= 3
+    assert 0.7 * (most - g) < inside.max() < most - g
+    assert np.abs(run.x_e - run.x).max() < 1e-15
+    put_in = float(run.supplied_amplifier.max())
+    lost = np.abs(run.energy_residual.values).max()
+    assert lost <= 1e-12 * put_in + 4 * np.spacing(run.energy.values.max())
+    assert np.diff(run.heat_bumper).min() >= 0
+    assert float(run.heat_bumper[-1]) > 1e-3

@@ -1,0 +1,1547 @@
+/*
+ * Piezoelectric stack with a lever, a load and an end stop: irreversible port-Hamiltonian system.
+ *
+ * Source:  Scire, Teague (1978), Rev. Sci. Instrum. 49 (12), 1735-1740 (levers); Hunt, Crossley (1975), J. Appl. Mech. 42 (2), 440-445 (end stop); PiezoDrive SA050536
+ * Model:   amplified_stack, spec sha256 f97db543e4f43ea0e60de47bf6de8bd925540145e93c475ce6262cae7eb13898
+ * Proofs:  skew, casimir, temperature, welldef, energy, entropy, passive, odd, continuous, sigma, exergy, environment, units, program PROVED
+ *
+ * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
+ * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
+ *
+ * x = (Q, q, p, x, x_e, S)
+ * u = (F, V, T_e)
+ */
+/*
+ * One step of energy-preserving Gauss collocation. The row `program` of the proofs covers the
+ * functions `integrands` and `stage`; the others and the tables serve Newton's method.
+ */
+#include "amplified_stack.h"
+
+#include <math.h>
+
+#if !defined(REAL_WIDTH) /* numbers of one run; run/engine has vectors of many */
+#define REAL_WIDTH 1
+#define ALONE
+#if !defined(REAL)
+#define REAL double /* or float */
+#endif
+typedef REAL real;
+#define zero 0.0
+#define wide(value) (value)
+#define chosen(condition, then, other) ((condition) ? (then) : (other))
+#define exp_of exp
+#define is_above(a, b) ((a) > (b))
+#define is_at_least(a, b) ((a) >= (b))
+#define least(a, b) ((a) < (b) || (a) != (a) ? (a) : (b))
+#define OF(value, lane) (value)
+#endif
+
+/* The parameters as `real`: of one run, or in vectors of one run per lane. */
+typedef struct {
+    real k;
+    real m_s;
+    real a;
+    real C;
+    real R;
+    real n;
+    real m;
+    real k_l;
+    real d;
+    real g;
+    real k_e;
+    real d_e;
+    real T_0;
+    real c_0;
+    real lam;
+} amplified_stack_reals;
+
+static inline real power_2_of(real z)
+{
+    return z*z;
+}
+
+/* Functions of the state whose weighted means over a step are the means g of a stage. */
+static void amplified_stack_integrands(const real *restrict x_,
+                                       const amplified_stack_reals *restrict p_,
+                                       real *restrict out)
+{
+    const real g = p_->g;
+    const real k_e = p_->k_e;
+    const real T_0 = p_->T_0;
+    const real c_0 = p_->c_0;
+    const real x_e = x_[4];
+    const real S = x_[5];
+    out[0] = k_e*chosen(is_at_least(x_e - g, 0.0), x_e - g, wide(0.0));
+    out[1] = T_0*exp_of(S/c_0);
+}
+
+/* Functions of the state that change their sign where integrands have kinks. */
+static void amplified_stack_bends(const real *restrict x_,
+                                  const amplified_stack_reals *restrict p_,
+                                  real *restrict out)
+{
+    const real g = p_->g;
+    const real x_e = x_[4];
+    out[0] = x_e - g;
+}
+
+/*
+ * A stage, for the state x, means g, branches b of laws, and inputs u. Writes the rates of the
+ * state to out; to rows, for the ledger, the power of ports, heat and entropy production of
+ * processes, and entropy rate of heat exchanges; to s the switching functions, whose signs
+ * decide the branches; to m the margins of those conditions of the domain that depend on the
+ * state.
+ */
+static void amplified_stack_stage(const real *restrict x_,
+                                  const real *restrict g_,
+                                  const real *restrict b,
+                                  const real *restrict u,
+                                  const amplified_stack_reals *restrict p_,
+                                  real *restrict out,
+                                  real *restrict rows,
+                                  real *restrict s,
+                                  real *restrict m_)
+{
+    (void)m_;
+    const real k = p_->k;
+    const real m_s = p_->m_s;
+    const real a = p_->a;
+    const real C = p_->C;
+    const real R = p_->R;
+    const real n = p_->n;
+    const real m = p_->m;
+    const real k_l = p_->k_l;
+    const real d = p_->d;
+    const real g = p_->g;
+    const real d_e = p_->d_e;
+    const real lam = p_->lam;
+    const real Q = x_[0];
+    const real q = x_[1];
+    const real p = x_[2];
+    const real x = x_[3];
+    const real x_e = x_[4];
+    const real F_end_stop = g_[0];
+    const real T = g_[1];
+    const real branch_1 = b[0];
+    const real F = u[0];
+    const real V = u[1];
+    const real T_e = u[2];
+    /* co-states dU/dx */
+    const real V_clamped = Q/C;
+    const real F_stack = k*q;
+    const real v_load = p/(m + m_s/power_2_of(n));
+    const real F_spring = k_l*x;
+    /* transducer ratios */
+    const real alpha_ceramic = a;
+    const real n_lever = n;
+    /* driving forces */
+    const real V_leads = -V_clamped + V;
+    /* dissipative laws */
+    const real i_leads = V_leads/R;
+    const real F_losses = d*v_load;
+    /* switching functions */
+    const real switch_1 = x_e - g;
+    /* dissipative laws */
+    const real chosen_F_bumper = chosen(is_above(branch_1, 0.0), x_e - g, wide(0.0));
+    const real F_bumper = d_e*chosen_F_bumper*v_load;
+    /* heats */
+    const real heat_leads = i_leads*V_leads;
+    const real heat_losses = F_losses*v_load;
+    const real heat_bumper = F_bumper*v_load;
+    /* switching functions */
+    const real switch_2 = x_e - g;
+    /* result */
+    s[0] = switch_1;
+    s[1] = switch_2;
+    out[0] = i_leads - alpha_ceramic/n_lever*v_load;
+    out[1] = v_load/n_lever;
+    out[2] = alpha_ceramic/n_lever*V_clamped
+        - F_stack/n_lever
+        - F_spring
+        - F_end_stop
+        - F_losses
+        - F_bumper
+        + F;
+    out[3] = v_load;
+    out[4] = v_load;
+    out[5] = (heat_leads + heat_losses + heat_bumper)/T + lam*(T_e/T - 1.0);
+    rows[0] = v_load*F;
+    rows[1] = i_leads*V;
+    rows[2] = lam*(T_e - T);
+    rows[3] = i_leads*V_leads;
+    rows[4] = F_losses*v_load;
+    rows[5] = F_bumper*v_load;
+    rows[6] = i_leads*V_leads/T;
+    rows[7] = F_losses*v_load/T;
+    rows[8] = F_bumper*v_load/T;
+    rows[9] = lam*(T_e/T - 1.0);
+}
+
+/* Derivative of the rates by the state, on branches b; the tables tell its entries. */
+static void amplified_stack_slopes(const real *restrict x_,
+                                   const real *restrict g_,
+                                   const real *restrict b,
+                                   const real *restrict u,
+                                   const amplified_stack_reals *restrict p_,
+                                   real *restrict out)
+{
+    (void)g_;
+    const real k = p_->k;
+    const real m_s = p_->m_s;
+    const real a = p_->a;
+    const real C = p_->C;
+    const real R = p_->R;
+    const real n = p_->n;
+    const real m = p_->m;
+    const real k_l = p_->k_l;
+    const real d = p_->d;
+    const real g = p_->g;
+    const real k_e = p_->k_e;
+    const real d_e = p_->d_e;
+    const real T_0 = p_->T_0;
+    const real c_0 = p_->c_0;
+    const real lam = p_->lam;
+    const real Q = x_[0];
+    const real p = x_[2];
+    const real x_e = x_[4];
+    const real S = x_[5];
+    const real branch_1 = b[0];
+    const real V = u[1];
+    const real T_e = u[2];
+    /* co-states dU/dx */
+    const real V_clamped = Q/C;
+    const real v_load = p/(m + m_s/power_2_of(n));
+    const real T = T_0*exp_of(S/c_0);
+    /* transducer ratios */
+    const real alpha_ceramic = a;
+    const real n_lever = n;
+    /* driving forces */
+    const real V_leads = -V_clamped + V;
+    /* dissipative laws */
+    const real i_leads = V_leads/R;
+    const real F_losses = d*v_load;
+    const real chosen_F_bumper = chosen(is_above(branch_1, 0.0), x_e - g, wide(0.0));
+    const real F_bumper = d_e*chosen_F_bumper*v_load;
+    /* heats */
+    const real heat_leads = i_leads*V_leads;
+    const real heat_losses = F_losses*v_load;
+    const real heat_bumper = F_bumper*v_load;
+    /* derivatives */
+    const real di_leads_dQ = -1.0/R/C;
+    const real dheat_leads_dQ = V_leads*di_leads_dQ - i_leads/C;
+    const real dv_load_dp = 1.0/(m + m_s/power_2_of(n));
+    const real dF_losses_dp = d*dv_load_dp;
+    const real dF_bumper_dp = d_e*chosen_F_bumper*dv_load_dp;
+    const real dheat_losses_dp = v_load*dF_losses_dp + F_losses*dv_load_dp;
+    const real dheat_bumper_dp = v_load*dF_bumper_dp + F_bumper*dv_load_dp;
+    const real dF_end_stop_dx_e = chosen(is_at_least(x_e - g, 0.0), k_e, wide(0.0));
+    const real dF_bumper_dx_e = chosen(is_above(branch_1, 0.0), d_e*v_load, wide(0.0));
+    const real dheat_bumper_dx_e = v_load*dF_bumper_dx_e;
+    const real dT_dS = T/c_0;
+    /* result */
+    out[0] = di_leads_dQ;
+    out[1] = -alpha_ceramic/n_lever*dv_load_dp;
+    out[2] = dv_load_dp/n_lever;
+    out[3] = alpha_ceramic/n_lever/C;
+    out[4] = -k/n_lever;
+    out[5] = -dF_losses_dp - dF_bumper_dp;
+    out[6] = -k_l;
+    out[7] = -dF_end_stop_dx_e - dF_bumper_dx_e;
+    out[8] = dv_load_dp;
+    out[9] = dv_load_dp;
+    out[10] = dheat_leads_dQ/T;
+    out[11] = dheat_losses_dp/T + dheat_bumper_dp/T;
+    out[12] = dheat_bumper_dx_e/T;
+    out[13] = (-(heat_leads + heat_losses + heat_bumper)/power_2_of(T) - lam*T_e/power_2_of(T))*dT_dS;
+}
+
+/* How many numbers there are of each kind; lanes of each bank; first row of each state. */
+static void amplified_stack_sizes(const amplified_stack_reals *p_, long *out)
+{
+    (void)p_;
+    out[0] = 6; /* states */
+    out[1] = 2; /* means */
+    out[2] = 2; /* branches */
+    out[3] = 10; /* booked */
+    out[4] = 3; /* processes */
+    out[5] = 14; /* slopes */
+    out[6] = 0; /* first row */
+    out[7] = 1; /* first row */
+    out[8] = 2; /* first row */
+    out[9] = 3; /* first row */
+    out[10] = 4; /* first row */
+    out[11] = 5; /* first row */
+    out[12] = 1; /* bends */
+}
+
+/* Copy the sizes of banks; place arrays for their parameters from `at` on, return their size. */
+static long amplified_stack_place_reals(amplified_stack_reals *to, const amplified_stack_parameters *from, real *at)
+{
+    (void)to;
+    (void)from;
+    real *const begin = at;
+    return at - begin;
+}
+
+/* Copy the parameters of a run into one lane of the vectors. */
+static void amplified_stack_give(amplified_stack_reals *to, const amplified_stack_parameters *from, int lane)
+{
+    (void)lane;
+    OF(to->k, lane) = from->k;
+    OF(to->m_s, lane) = from->m_s;
+    OF(to->a, lane) = from->a;
+    OF(to->C, lane) = from->C;
+    OF(to->R, lane) = from->R;
+    OF(to->n, lane) = from->n;
+    OF(to->m, lane) = from->m;
+    OF(to->k_l, lane) = from->k_l;
+    OF(to->d, lane) = from->d;
+    OF(to->g, lane) = from->g;
+    OF(to->k_e, lane) = from->k_e;
+    OF(to->d_e, lane) = from->d_e;
+    OF(to->T_0, lane) = from->T_0;
+    OF(to->c_0, lane) = from->c_0;
+    OF(to->lam, lane) = from->lam;
+}
+
+/* Integrands have kinks: see run/engine. */
+#define BENDS
+enum {
+    amplified_stack_limits = 0, /* margins of a stage */
+    amplified_stack_reads = 2, /* states that integrands read */
+    amplified_stack_records = 6, /* states, a bank's counted once */
+    amplified_stack_heated = 5, /* the state that takes a dissipative step's loss */
+    amplified_stack_jumps = 0 /* whether a law jumps */
+};
+static const int amplified_stack_strict[] = {
+    0,
+};
+static const int amplified_stack_read[] = {
+    4, 5,
+};
+/* The equations of a step: shared unknowns, those of lanes, their elimination. */
+enum {
+    amplified_stack_shared = 6, /* shared states */
+    amplified_stack_unknowns = 6, /* and sums between lanes */
+    amplified_stack_slots = 17, /* entries between them, fill-in included */
+    amplified_stack_entries = 14, /* slopes between shared states */
+    amplified_stack_banks = 0,
+    amplified_stack_most_states = 1 /* that a lane has */
+};
+static const int amplified_stack_place[] = {
+    0, 1, 3, 4, 5, 6, 7, 8, 9, 11, 13, 14, 15, 16,
+};
+static const int amplified_stack_state[] = {
+    0, 1, 2, 3, 4, 5,
+};
+static const int amplified_stack_order[] = {
+    5, 0, 1, 3, 2, 4,
+};
+static const int amplified_stack_pivot[] = {
+    16, 0, 2, 10, 6, 12,
+};
+static const int amplified_stack_below_at[] = {
+    0, 0, 2, 4, 6, 8, 8,
+};
+static const int amplified_stack_below[] = {
+    2, 4, 2, 5, 2, 7, 4, 11,
+};
+static const int amplified_stack_right_at[] = {
+    0, 6, 8, 10, 12, 14, 14,
+};
+static const int amplified_stack_right[] = {
+    0, 13, 2, 14, 4, 15, 2, 1, 2, 3, 2, 9, 4, 8,
+};
+static const int amplified_stack_update[] = {
+    6, 6, 6, 12,
+};
+static const int amplified_stack_lane_states_at[] = {
+    0,
+};
+static const int amplified_stack_lane_states[] = {
+    0,
+};
+static const int amplified_stack_lane_columns_at[] = {
+    0,
+};
+static const int amplified_stack_lane_columns[] = {
+    0,
+};
+static const int amplified_stack_lane_rows_at[] = {
+    0,
+};
+static const int amplified_stack_lane_rows[] = {
+    0,
+};
+static const int amplified_stack_first[] = {
+    0,
+};
+static const int amplified_stack_meet[] = {
+    0,
+};
+
+#if defined(ALONE) /* the engine has a step of its own, of any order and for vectors */
+#include "amplified_stack_step.h"
+
+#include <string.h>
+
+#define MODEL(name) amplified_stack_##name
+#define LANE(array, k, lane) ((array)[(k) + (lane)])
+#define any(where) (where)
+#define none_of(where) (!(where))
+#define size_of fabs
+#define nowhere 0
+typedef int mask; /* 0 or 1 */
+
+static inline real largest_of(real a, real b)
+{
+    return a > b || a != a ? a : b;
+}
+
+#define STAGES 1
+#define NODES 3
+#define PAIRS 0
+#define PARTS 3
+#define FINE 16
+#define LOSSY 0
+static const double filter = 5.0e-1;
+#define COARSE 1.0e-5
+#define TOO_COARSE 9.3057204092969898e-8
+static const double stage_at[1] = {5.0e-1};
+static const double stage_weight[1] = {1.0};
+static const double stage_lead[1] = {1.0};
+static const double along[1][1] = {
+    {1.0}};
+static const double stage_reach[1][1] = {
+    {5.0e-1}};
+static const double node_last[2][3] = {
+    {5.5555555555555556e-1, -1.1111111111111111, 5.5555555555555556e-1},
+    {-2.0412414523193151e-5, 0.0, 2.0412414523193151e-5}};
+static const double fine_last[2][16] = {
+    {-3.2781304863961739e-2, 1.122209124505884e-1, -2.1159853063188444e-1, 3.1691961779722083e-1, -4.1664037702596137e-1, 5.0089334971596444e-1, -5.6174614482927911e-1, 5.9361592894280181e-1, -5.9361592894280181e-1, 5.6174614482927911e-1, -5.0089334971596444e-1, 4.1664037702596137e-1, -3.1691961779722083e-1, 2.1159853063188444e-1, -1.122209124505884e-1, 3.2781304863961739e-2},
+    {2.1308618399989913e-4, -6.9641319632671669e-4, 1.2033786136163721e-3, -1.5728430124492439e-3, 1.6912958862630305e-3, -1.5072434022893198e-3, 1.0392857343763955e-3, -3.705468071904169e-4, -3.705468071904169e-4, 1.0392857343763955e-3, -1.5072434022893198e-3, 1.6912958862630305e-3, -1.5728430124492439e-3, 1.2033786136163721e-3, -6.9641319632671669e-4, 2.1308618399989913e-4}};
+static const double node_at[3] = {1.1270166537925831e-1, 5.0e-1, 8.8729833462074169e-1};
+static const double node_weight[3] = {2.7777777777777778e-1, 4.4444444444444444e-1, 2.7777777777777778e-1};
+static const double node_reach[3][1] = {
+    {1.1270166537925831e-1},
+    {5.0e-1},
+    {8.8729833462074169e-1}};
+static const double node_mean[1][3] = {
+    {2.7777777777777778e-1, 4.4444444444444444e-1, 2.7777777777777778e-1}};
+static const double fine_at[16] = {5.2995325041750337e-3, 2.7712488463383712e-2, 6.7184398806084128e-2, 1.2229779582249848e-1, 1.9106187779867813e-1, 2.7099161117138631e-1, 3.5919822461037054e-1, 4.5249374508118128e-1, 5.4750625491881872e-1, 6.4080177538962946e-1, 7.2900838882861369e-1, 8.0893812220132187e-1, 8.7770220417750152e-1, 9.3281560119391587e-1, 9.7228751153661629e-1, 9.9470046749582497e-1};
+static const double fine_weight[16] = {1.3576229705877047e-2, 3.1126761969323946e-2, 4.7579255841246392e-2, 6.2314485627766936e-2, 7.4797994408288366e-2, 8.4578259697501269e-2, 9.1301707522461794e-2, 9.4725305227534248e-2, 9.4725305227534248e-2, 9.1301707522461794e-2, 8.4578259697501269e-2, 7.4797994408288366e-2, 6.2314485627766936e-2, 4.7579255841246392e-2, 3.1126761969323946e-2, 1.3576229705877047e-2};
+static const double fine_reach[16][1] = {
+    {5.2995325041750337e-3},
+    {2.7712488463383712e-2},
+    {6.7184398806084128e-2},
+    {1.2229779582249848e-1},
+    {1.9106187779867813e-1},
+    {2.7099161117138631e-1},
+    {3.5919822461037054e-1},
+    {4.5249374508118128e-1},
+    {5.4750625491881872e-1},
+    {6.4080177538962946e-1},
+    {7.2900838882861369e-1},
+    {8.0893812220132187e-1},
+    {8.7770220417750152e-1},
+    {9.3281560119391587e-1},
+    {9.7228751153661629e-1},
+    {9.9470046749582497e-1}};
+static const double fine_mean[1][16] = {
+    {1.3576229705877047e-2, 3.1126761969323946e-2, 4.7579255841246392e-2, 6.2314485627766936e-2, 7.4797994408288366e-2, 8.4578259697501269e-2, 9.1301707522461794e-2, 9.4725305227534248e-2, 9.4725305227534248e-2, 9.1301707522461794e-2, 8.4578259697501269e-2, 7.4797994408288366e-2, 6.2314485627766936e-2, 4.7579255841246392e-2, 3.1126761969323946e-2, 1.3576229705877047e-2}};
+static const double stage_basis[1][1] = {
+    {1.0}};
+static const double basis_inverse[1][1] = {
+    {1.0}};
+
+/*
+ * Steps of Gauss collocation that keep both balances: their work space, and states within them.
+ * newton.c solves for the rates at the stages, in all lanes at once.
+ *
+ * Comes after real.h, a generated <model>_step.c and the tables for a number of stages. With rates
+ * K_j at the stages, the state follows X(tau) = x + h sum_j K_j int_0^tau l_j. Stage i uses means
+ * of the co-states, int_0^1 (l_i/b_i) dU/dx(X) dtau, by Gauss quadrature with NODES nodes, or with
+ * FINE where these are too few, and piece by piece where energies have kinks. A root is accepted
+ * only if it solves the equations, the quadrature is accurate, all numbers are finite, each stage
+ * lies in the domain and no process consumes entropy.
+ */
+
+#include <stddef.h>
+
+/*
+ * NOISE is the round-off of a change, relative to the size of a state; up to MOST_NOISE times as
+ * much is accepted where rates are sums of much larger numbers. NO_SIZE keeps divisors above 0.
+ */
+#define NOISE (sizeof(real) < sizeof(double) ? 1e-7 : 1e-16)
+#define MOST_NOISE (sizeof(real) < sizeof(double) ? 1e5 : 1e4)
+#define NO_SIZE (sizeof(real) < sizeof(double) ? 1e-30 : 1e-300)
+
+
+
+/* The work space of a step in all lanes: sizes, states, and intermediate results. */
+typedef struct {
+    MODEL(reals) p;
+    const MODEL(parameters) *own; /* the parameters that were loaded last into a lane of p */
+    long n, inputs, means, branches, booked, slopes, processes;
+    long given; /* values given to a stage: means, and those of path functionals */
+    const long *lanes, *first; /* lanes of each bank; first row of each state */
+    real *x, *end;             /* n: states at the begin and the end of the step */
+    real *rates;               /* STAGES*n */
+    real *branch;              /* STAGES*branches */
+    real *u;                   /* STAGES*inputs */
+    real *largest;             /* n: largest magnitude of each state, the scale of its errors */
+    real *reached, *gap, *prior, *node, *mean, *side, *margin, *rows, *slope, *fresh, *real_factor;
+#if defined(BENDS)
+    long bends;
+    real *bend, *look, *cut, *piece_slope; /* see bends.c */
+#endif /* BENDS */
+    mask fine;                 /* lanes whose means are taken at FINE nodes */
+    mask over;                 /* lanes that step over kinks: each stage chooses its branches */
+    mask sketch, sketched;     /* lanes that may stop early, beyond a switch; lanes that did */
+    double enough;             /* in units of noise: they stop when a change is below this */
+    real iterations;           /* of Newton's method */
+    int most, late;            /* of them in a step; after so many it may be given up */
+    double stays;              /* changes that shrink by no more than this factor stagnate */
+} MODEL(block);
+
+#define NUMBER real
+#define NAMED(name) MODEL(name##_real)
+#define ONE wide(1.0)
+#define NONE zero
+#define PER(a) (1.0 / (a))
+#define TIMES(a, b) ((a) * (b))
+#define BY(a, b) ((a) * (b))
+#define MORE(a, b) ((a) + (b))
+#define LESS(a, b) ((a) - (b))
+/*
+ * Solution of (1 - gamma J) d = r: the states of each bank, lane by lane, are eliminated first,
+ * then the shared unknowns in the order of the model's tables. Included twice: NUMBER is `real`, or
+ * a complex number of reals, and NAMED(name) tells the two apart.
+ */
+
+/* How many numbers a factorisation has. */
+static long NAMED(factor_size)(const MODEL(block) *m)
+{
+    long size = MODEL(slots) + MODEL(unknowns);
+    for (long k = 0; k < MODEL(banks); ++k) {
+        const long states = MODEL(lane_states_at)[k + 1] - MODEL(lane_states_at)[k];
+        const long columns = MODEL(lane_columns_at)[k + 1] - MODEL(lane_columns_at)[k];
+        size += states * (states + columns) * m->lanes[k];
+    }
+    return size;
+}
+
+/* Invert the block of each lane in place: its entry (a, b) is m[(a*states + b)*lanes + j]. */
+static void NAMED(invert)(NUMBER *restrict m, long states, long lanes)
+{
+    for (long k = 0; k < states; ++k)
+        for (long j = 0; j < lanes; ++j) {
+            NUMBER *const pivot = m + (k * states + k) * lanes + j;
+            const NUMBER per = PER(*pivot);
+            *pivot = ONE;
+            for (long b = 0; b < states; ++b)
+                m[(k * states + b) * lanes + j] = TIMES(m[(k * states + b) * lanes + j], per);
+            for (long a = 0; a < states; ++a) {
+                NUMBER *const entry = m + (a * states + k) * lanes + j;
+                const NUMBER share = *entry;
+                if (a == k)
+                    continue;
+                *entry = NONE;
+                for (long b = 0; b < states; ++b) {
+                    NUMBER *const other = m + (a * states + b) * lanes + j;
+                    *other = LESS(*other, TIMES(share, m[(k * states + b) * lanes + j]));
+                }
+            }
+        }
+}
+
+/* Factorise 1 - gamma J. */
+static void NAMED(factorise)(const MODEL(block) *m, NUMBER gamma, const real *slopes,
+                             NUMBER *restrict f)
+{
+    NUMBER *restrict const slot = f;
+    const real *lane = slopes + MODEL(entries);
+    NUMBER *part = f + MODEL(slots) + MODEL(unknowns);
+    const int *update = MODEL(update);
+    for (long k = 0; k < MODEL(slots); ++k)
+        slot[k] = NONE;
+    for (long k = 0; k < MODEL(unknowns); ++k)
+        slot[MODEL(pivot)[k]] = ONE;
+    for (long k = 0; k < MODEL(entries); ++k)
+        slot[MODEL(place)[k]] = LESS(slot[MODEL(place)[k]], BY(gamma, slopes[k]));
+    for (long k = 0; k < MODEL(banks); ++k) {
+        const long lanes = m->lanes[k];
+        const long states = MODEL(lane_states_at)[k + 1] - MODEL(lane_states_at)[k];
+        const long columns = MODEL(lane_columns_at)[k + 1] - MODEL(lane_columns_at)[k];
+        const long rows = MODEL(lane_rows_at)[k + 1] - MODEL(lane_rows_at)[k];
+        const int *const column = MODEL(lane_columns) + MODEL(lane_columns_at)[k];
+        const real *const by = lane + states * states * lanes;
+        const real *const into = by + states * columns * lanes;
+        NUMBER *const reaction = part + states * states * lanes;
+        for (long a = 0; a < states; ++a)
+            for (long b = 0; b < states; ++b)
+                for (long j = 0; j < lanes; ++j) {
+                    const long at = (a * states + b) * lanes + j;
+                    part[at] = LESS(a == b ? ONE : NONE, BY(gamma, lane[at]));
+                }
+        NAMED(invert)(part, states, lanes);
+        for (long a = 0; a < states; ++a)
+            for (long c = 0; c < columns; ++c) {
+                const NUMBER factor = column[c] < MODEL(shared) ? gamma : ONE; /* borders: 1 */
+                for (long j = 0; j < lanes; ++j) {
+                    NUMBER sum = NONE;
+                    for (long b = 0; b < states; ++b)
+                        sum = MORE(sum, BY(part[(a * states + b) * lanes + j],
+                                           by[(b * columns + c) * lanes + j]));
+                    reaction[(a * columns + c) * lanes + j] = TIMES(factor, sum);
+                }
+            }
+        for (long r = 0; r < rows; ++r)
+            for (long c = 0; c < columns; ++c) {
+                NUMBER *const meet = slot + MODEL(meet)[MODEL(first)[k] + r * columns + c];
+                NUMBER sum = NONE;
+                for (long b = 0; b < states; ++b)
+                    for (long j = 0; j < lanes; ++j)
+                        sum = MORE(sum, BY(reaction[(b * columns + c) * lanes + j],
+                                           into[(r * states + b) * lanes + j]));
+                *meet = LESS(*meet, TIMES(gamma, sum));
+            }
+        lane = into + rows * states * lanes;
+        part = reaction + states * columns * lanes;
+    }
+    for (long k = 0; k < MODEL(unknowns); ++k) {
+        const NUMBER per = PER(slot[MODEL(pivot)[k]]);
+        f[MODEL(slots) + k] = per;
+        for (long i = MODEL(below_at)[k]; i < MODEL(below_at)[k + 1]; i += 2) {
+            NUMBER *const share = slot + MODEL(below)[i + 1];
+            *share = TIMES(*share, per);
+            for (long c = MODEL(right_at)[k]; c < MODEL(right_at)[k + 1]; c += 2, ++update)
+                slot[*update] = LESS(slot[*update], TIMES(*share, slot[MODEL(right)[c + 1]]));
+        }
+    }
+}
+
+/* Replace the right-hand side r (n) by the solution. */
+static void NAMED(solve)(const MODEL(block) *m, NUMBER gamma, const real *slopes,
+                         const NUMBER *restrict f, NUMBER *restrict r)
+{
+    NUMBER y[MODEL(unknowns) + 1];
+    const real *lane = slopes + MODEL(entries);
+    const NUMBER *part = f + MODEL(slots) + MODEL(unknowns);
+    for (long k = 0; k < MODEL(unknowns); ++k)
+        y[k] = k < MODEL(shared) ? r[m->first[MODEL(state)[k]]] : NONE;
+    for (long k = 0; k < MODEL(banks); ++k) {
+        const long lanes = m->lanes[k];
+        const long states = MODEL(lane_states_at)[k + 1] - MODEL(lane_states_at)[k];
+        const long columns = MODEL(lane_columns_at)[k + 1] - MODEL(lane_columns_at)[k];
+        const long rows = MODEL(lane_rows_at)[k + 1] - MODEL(lane_rows_at)[k];
+        const int *const state = MODEL(lane_states) + MODEL(lane_states_at)[k];
+        const int *const row = MODEL(lane_rows) + MODEL(lane_rows_at)[k];
+        const real *const into = lane + states * (states + columns) * lanes;
+        for (long j = 0; j < lanes; ++j) {
+            NUMBER free[MODEL(most_states)];
+            for (long a = 0; a < states; ++a) {
+                free[a] = NONE;
+                for (long b = 0; b < states; ++b)
+                    free[a] = MORE(free[a], TIMES(part[(a * states + b) * lanes + j],
+                                                  r[m->first[state[b]] + j]));
+            }
+            for (long a = 0; a < states; ++a)
+                r[m->first[state[a]] + j] = free[a];
+        }
+        for (long i = 0; i < rows; ++i) {
+            NUMBER sum = NONE;
+            for (long b = 0; b < states; ++b)
+                for (long j = 0; j < lanes; ++j)
+                    sum = MORE(sum, BY(r[m->first[state[b]] + j], into[(i * states + b) * lanes + j]));
+            y[row[i]] = MORE(y[row[i]], TIMES(gamma, sum));
+        }
+        lane = into + rows * states * lanes;
+        part += states * (states + columns) * lanes;
+    }
+    for (long k = 0; k < MODEL(unknowns); ++k)
+        for (long i = MODEL(below_at)[k]; i < MODEL(below_at)[k + 1]; i += 2)
+            y[MODEL(below)[i]] = LESS(y[MODEL(below)[i]],
+                                      TIMES(f[MODEL(below)[i + 1]], y[MODEL(order)[k]]));
+    for (long k = MODEL(unknowns) - 1; k >= 0; --k) {
+        NUMBER sum = y[MODEL(order)[k]];
+        for (long c = MODEL(right_at)[k]; c < MODEL(right_at)[k + 1]; c += 2)
+            sum = LESS(sum, TIMES(f[MODEL(right)[c + 1]], y[MODEL(right)[c]]));
+        y[MODEL(order)[k]] = TIMES(sum, f[MODEL(slots) + k]);
+    }
+    for (long k = 0; k < MODEL(shared); ++k)
+        r[m->first[MODEL(state)[k]]] = y[k];
+    part = f + MODEL(slots) + MODEL(unknowns);
+    for (long k = 0; k < MODEL(banks); ++k) {
+        const long lanes = m->lanes[k];
+        const long states = MODEL(lane_states_at)[k + 1] - MODEL(lane_states_at)[k];
+        const long columns = MODEL(lane_columns_at)[k + 1] - MODEL(lane_columns_at)[k];
+        const int *const state = MODEL(lane_states) + MODEL(lane_states_at)[k];
+        const int *const column = MODEL(lane_columns) + MODEL(lane_columns_at)[k];
+        const NUMBER *const reaction = part + states * states * lanes;
+        for (long a = 0; a < states; ++a)
+            for (long c = 0; c < columns; ++c)
+                for (long j = 0; j < lanes; ++j) {
+                    NUMBER *const d = r + m->first[state[a]] + j;
+                    *d = MORE(*d, TIMES(reaction[(a * columns + c) * lanes + j], y[column[c]]));
+                }
+        part += states * (states + columns) * lanes;
+    }
+}
+#undef NUMBER
+#undef NAMED
+#undef ONE
+#undef NONE
+#undef PER
+#undef TIMES
+#undef BY
+#undef MORE
+#undef LESS
+
+/* Entries of `sizes`: counts, lanes of banks, first rows of states, and bend functions. */
+enum { SIZES = 7 + MODEL(banks) + MODEL(records) };
+#if defined(BENDS)
+/* Points at which bend functions are sampled; three neighbours make a parabola, see bends.c. */
+enum { BEND_LOOKS = 4 * STAGES + 3 };
+#endif /* BENDS */
+
+/*
+ * Set up the work space of runs with the sizes of p, in the memory from `at` on; returns how many
+ * numbers it takes. Ledgers have `more` rows behind the model's own.
+ */
+static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, long *sizes, real *at)
+{
+    real *const begin = at;
+    at += MODEL(place_reals)(&m->p, p, at);
+    MODEL(sizes)(&m->p, sizes);
+    const long n = m->n = sizes[0];
+    m->means = sizes[1], m->branches = sizes[2], m->booked = sizes[3] + more;
+    m->processes = sizes[4], m->slopes = sizes[5];
+    m->inputs = MODEL(input_count);
+    m->lanes = sizes + 6, m->first = sizes + 6 + MODEL(banks);
+    m->given = m->means;
+#define PLACE(array, size) (m->array = at, at += (size))
+    PLACE(x, n);
+    PLACE(end, n);
+    PLACE(rates, STAGES * n);
+    PLACE(branch, STAGES * m->branches);
+    PLACE(u, STAGES * m->inputs);
+    PLACE(largest, n);
+    PLACE(reached, n);
+    PLACE(gap, STAGES * n);
+    PLACE(prior, STAGES * n);
+    PLACE(node, FINE * m->means + m->given - m->means);
+    PLACE(mean, STAGES * m->given);
+    PLACE(side, STAGES * m->branches);
+    PLACE(margin, STAGES * MODEL(limits));
+    PLACE(rows, STAGES * m->booked);
+    PLACE(slope, m->slopes);
+    PLACE(fresh, m->slopes);
+    PLACE(real_factor, MODEL(factor_size_real)(m));
+#if defined(BENDS)
+    m->bends = sizes[SIZES - 1];
+    PLACE(bend, m->bends);
+    PLACE(piece_slope, m->slopes);
+    PLACE(look, BEND_LOOKS * m->bends);
+    PLACE(cut, (BEND_LOOKS - 1) * m->bends + 1);
+#endif /* BENDS */
+#undef PLACE
+    return at - begin;
+}
+
+/* State i at a point of the step, which weights of the stages' rates say. */
+static inline real MODEL(reached_row)(const MODEL(block) *m, real h, const double *weight, long i)
+{
+    real sum = zero;
+    for (long j = 0; j < STAGES; ++j)
+        sum += weight[j] * m->rates[j * m->n + i];
+    return m->x[i] + h * sum;
+}
+
+/* All states at a point of the step. */
+static void MODEL(reach_of)(const MODEL(block) *m, real h, const double *weight, real *restrict out)
+{
+    for (long i = 0; i < m->n; ++i)
+        out[i] = MODEL(reached_row)(m, h, weight, i);
+}
+
+/*
+ * Set branches by the signs of their switching functions, in some lanes; returns the lanes with
+ * changes.
+ */
+static mask MODEL(choose)(long branches, const real *side, real *branch, mask where)
+{
+    mask changed = nowhere;
+    for (long k = 0; k < branches; ++k) {
+        const mask positive = side[k] > 0.0;
+        const real old = branch[k], new = chosen(positive, wide(1.0), zero);
+        changed |= where & (new != old);
+        branch[k] = chosen(where, new, old);
+    }
+    return changed;
+}
+
+/*
+ * Rates and states at a part of a step, and means over a step whose integrands have kinks. Comes
+ * after gauss.c.
+ *
+ * Gauss quadrature is exact to round-off only where integrands are smooth. A bend function is one
+ * whose sign decides on which side of an energy's kink a state is. Where one changes its sign on
+ * X(tau), the step is split, and each piece has nodes of its own. Each lane is searched by itself
+ * and has its own pieces, so that its numbers do not depend on other lanes.
+ */
+
+/* Weights of the stages' rates for the rate at a part of the step. */
+static inline void MODEL(rate_weights)(real at, real *weight)
+{
+    for (long j = 0; j < STAGES; ++j) {
+        weight[j] = wide(stage_lead[j]);
+        for (long k = 0; k < STAGES; ++k)
+            if (k != j)
+                weight[j] *= at - stage_at[k];
+    }
+}
+
+/* The same for the change of the state from the begin of the step, per length of the step. */
+static inline void MODEL(state_weights)(real at, real *weight)
+{
+    for (long j = 0; j < STAGES; ++j) {
+        weight[j] = zero;
+        for (long n = STAGES; n-- > 0;)
+            weight[j] = (weight[j] + along[j][n]) * at;
+    }
+}
+
+/* All states at a part of the step, by the rates at its stages. */
+static void MODEL(reach_part)(const MODEL(block) *m, real h, const real *rates, real at)
+{
+    real weight[STAGES];
+    MODEL(state_weights)(at, weight);
+    for (long k = 0; k < m->n; ++k) {
+        real sum = zero;
+        for (long j = 0; j < STAGES; ++j)
+            sum += weight[j] * rates[j * m->n + k];
+        m->reached[k] = m->x[k] + h * sum;
+    }
+}
+
+#if defined(BENDS)
+/* Most iterations of a search; a mean is off by the square of what a place is off. */
+enum { MOST_TRIES = 60, DIPS = 6 };
+
+/* Bend function k of one lane at a part of the step. */
+static double MODEL(bend_at)(const MODEL(block) *m, real h, long k, int lane, double at)
+{
+    MODEL(reach_part)(m, h, m->rates, wide(at));
+    MODEL(bends)(m->reached, &m->p, m->bend);
+    return LANE(m->bend, k, lane);
+}
+
+/*
+ * A bend function has one sign at three points, and is nearest to zero in the middle: search
+ * between them for the other sign, at the vertices of parabolas. The middle point becomes the
+ * nearest to zero that is found.
+ */
+static void MODEL(dip)(const MODEL(block) *m, real h, long k, int lane, double *place, double *value)
+{
+    const double turn = value[1] > 0.0 ? 1.0 : -1.0;
+    double a = place[0], b = place[1], c = place[2];
+    double at_a = turn * value[0], at_b = turn * value[1], at_c = turn * value[2];
+    for (int again = 0; again < DIPS && at_b < at_a - at_b + (at_c - at_b); ++again) {
+        const double p = (b - a) * (at_b - at_c), q = (c - b) * (at_b - at_a);
+        const double vertex = b - 0.5 * (((b - a) * p - (c - b) * q) / (p + q));
+        if (!(vertex > a && vertex < c) || vertex == b)
+            break;
+        const double there = MODEL(bend_at)(m, h, k, lane, vertex);
+        const double size = turn * there;
+        if (size < at_b) {
+            if (vertex < b)
+                c = b, at_c = at_b;
+            else
+                a = b, at_a = at_b;
+            b = place[1] = vertex, at_b = size;
+            value[1] = there;
+        } else if (vertex < b)
+            a = vertex, at_a = size;
+        else
+            c = vertex, at_c = size;
+        if ((there > 0.0) != (turn > 0.0))
+            break;
+    }
+}
+
+/* Where a bend function of a lane changes its sign between two points. */
+static double MODEL(turning)(const MODEL(block) *m, real h, long k, int lane, const double *place,
+                             const double *value)
+{
+    double low = place[0], high = place[1], at_low = value[0], at_high = value[1], part = high;
+    const int on = at_low > 0.0;
+    for (int again = 0, before = 0; again < MOST_TRIES; ++again) {
+        const double last = part;
+        part = low + (high - low) * (at_low / (at_low - at_high));
+        const double there = MODEL(bend_at)(m, h, k, lane, part);
+        if (there == 0.0 || fabs(part - last) <= 1e-14)
+            break;
+        if ((there > 0.0) == on) { /* Illinois method: halve the value at an end that stays twice */
+            low = part, at_low = there;
+            at_high *= before < 0 ? 0.5 : 1.0;
+            before = -1;
+        } else {
+            high = part, at_high = there;
+            at_low *= before > 0 ? 0.5 : 1.0;
+            before = 1;
+        }
+    }
+    return part;
+}
+
+/*
+ * Insert a place where a lane's step is split, in order. Equal ones count once; 1 is behind the
+ * last.
+ */
+static void MODEL(keep_place)(const MODEL(block) *m, int lane, double at)
+{
+    long j = 0;
+    if (!(at > 0.0 && at < 1.0)) /* outside of the step, where bend functions are sampled, too */
+        return;
+    while (LANE(m->cut, j, lane) < at)
+        ++j;
+    for (double next = LANE(m->cut, j, lane); at < next; ++j) {
+        LANE(m->cut, j, lane) = at;
+        at = next;
+        next = next < 1.0 ? LANE(m->cut, j + 1, lane) : 1.0;
+    }
+}
+
+/* Sampled parts of the step, one beyond each end: for functions that turn back near there. */
+static double MODEL(look_at)(long i)
+{
+    return (double)(i - 1) / (BEND_LOOKS - 3);
+}
+
+/* Find where a bend function of a lane changes its sign along the step. */
+static void MODEL(find)(const MODEL(block) *m, real h, long k, int lane)
+{
+    double place[BEND_LOOKS], value[BEND_LOOKS];
+    for (long i = 0; i < BEND_LOOKS; ++i) {
+        place[i] = MODEL(look_at)(i);
+        value[i] = LANE(m->look, i * m->bends + k, lane);
+    }
+    for (long i = 1; i + 1 < BEND_LOOKS; ++i) {
+        const int on = value[i] > 0.0, before = value[i - 1] > 0.0, after = value[i + 1] > 0.0;
+        const double size = fabs(value[i]);
+        if (on == before && on == after && size <= fabs(value[i - 1]) && size <= fabs(value[i + 1]))
+            MODEL(dip)(m, h, k, lane, place + i - 1, value + i - 1);
+    }
+    for (long i = 1; i < BEND_LOOKS; ++i)
+        if (place[i] > 0.0 && place[i - 1] < 1.0 && (value[i - 1] > 0.0) != (value[i] > 0.0))
+            MODEL(keep_place)(m, lane, MODEL(turning)(m, h, k, lane, place + i - 1, value + i - 1));
+}
+
+/* Find where the step of each lane is split; returns the lanes with splits. */
+static mask MODEL(split)(const MODEL(block) *m, real h)
+{
+    for (long i = 0; i < BEND_LOOKS; ++i) {
+        MODEL(reach_part)(m, h, m->rates, wide(MODEL(look_at)(i)));
+        MODEL(bends)(m->reached, &m->p, m->look + i * m->bends);
+    }
+    for (long j = 0; j <= (BEND_LOOKS - 1) * m->bends; ++j)
+        m->cut[j] = wide(1.0);
+    for (long k = 0; k < m->bends; ++k) {
+        real low = m->look[k], high = low;
+        for (long i = 1; i < BEND_LOOKS; ++i) {
+            low = least(m->look[i * m->bends + k], low);
+            high = largest_of(m->look[i * m->bends + k], high);
+        }
+        /* else it is too far from zero */
+        const real near = chosen((low <= high - low) & (-high <= high - low), wide(1.0), zero);
+        for (int lane = 0; lane < REAL_WIDTH; ++lane)
+            if (LANE(&near, 0, lane) > 0.0)
+                MODEL(find)(m, h, k, lane);
+    }
+    return m->cut[0] < 1.0;
+}
+
+/* The integrands of the means, at nodes of the piece that begins at `low`. */
+static void MODEL(integrate_piece)(const MODEL(block) *m, real h, real low, real length,
+                                   const double *at, long nodes)
+{
+    for (long q = 0; q < nodes; ++q) {
+        MODEL(reach_part)(m, h, m->rates, low + length * at[q]);
+        MODEL(integrands)(m->reached, &m->p, m->node + q * m->means);
+    }
+}
+
+/* Means over split steps in some lanes, with so many nodes per piece. */
+static void MODEL(average_by)(const MODEL(block) *m, real h, mask where, const double *at,
+                              const double *weight, long nodes)
+{
+    real low = zero;
+    for (long k = 0; k < STAGES * m->given; ++k)
+        m->mean[k] = chosen(where, zero, m->mean[k]);
+    for (long j = 0; any(low < 1.0); low = m->cut[j++]) {
+        const real length = m->cut[j] - low;
+        const mask there = where & (length > 0.0);
+        MODEL(integrate_piece)(m, h, low, length, at, nodes);
+        for (long q = 0; q < nodes; ++q) {
+            real share[STAGES];
+            MODEL(rate_weights)(low + length * at[q], share);
+            for (long i = 0; i < STAGES; ++i) {
+                const real part = length * (weight[q] / stage_weight[i]) * share[i];
+                for (long k = 0; k < m->means; ++k)
+                    m->mean[i * m->given + k] +=
+                        chosen(there, part * m->node[q * m->means + k], zero);
+            }
+        }
+    }
+}
+
+/* Means in the lanes whose integrands have kinks within the step; returns these lanes. */
+static mask MODEL(average_split)(const MODEL(block) *m, real h)
+{
+    if (LOSSY) /* a dissipative step has no means */
+        return nowhere;
+    const mask where = MODEL(split)(m, h);
+    if (any(where & none_of(m->fine)))
+        MODEL(average_by)(m, h, where & none_of(m->fine), node_at, node_weight, NODES);
+    if (any(where & m->fine))
+        MODEL(average_by)(m, h, where & m->fine, fine_at, fine_weight, FINE);
+    return where;
+}
+
+/*
+ * The weight of slopes up to a part of the step. With slopes U'' that differ along the step, the
+ * derivative of mean i by rate j is h int (l_i/b_i) U'' A_j dtau, A_j = int_0^tau l_j; Newton's
+ * method has h a_ij times one slope in its place. So slopes are averaged with the trace of l_i
+ * A_j/b_i as weight, and this is its integral. With one stage the derivative is exact.
+ */
+static real MODEL(until_part)(real at)
+{
+    real weight[STAGES], sum = zero;
+    MODEL(state_weights)(at, weight);
+    for (long j = 0; j < STAGES; ++j)
+        sum += weight[j] * weight[j] / stage_weight[j];
+    return sum;
+}
+
+/* Slopes for split steps: those in the middle of each piece, averaged, on a stage's branches. */
+static void MODEL(slopes_split)(const MODEL(block) *m, real h, long stage)
+{
+    const mask where = m->cut[0] < 1.0;
+    real low = any(where) ? zero : (real)wide(1.0);
+    for (long j = 0; any(low < 1.0); low = m->cut[j++]) {
+        const real length = m->cut[j] - low;
+        const real part = MODEL(until_part)(m->cut[j]) - MODEL(until_part)(low);
+        MODEL(reach_part)(m, h, m->rates, low + 0.5 * length);
+        MODEL(slopes)(m->reached, m->mean + stage * m->given, m->branch + stage * m->branches,
+                      m->u + stage * m->inputs, &m->p, m->piece_slope);
+        for (long k = 0; k < m->slopes; ++k) {
+            const real before = j ? m->fresh[k] : zero;
+            const real more = chosen(length > 0.0, part * m->piece_slope[k], zero);
+            m->fresh[k] = chosen(where, before + more, m->fresh[k]);
+        }
+    }
+}
+#endif /* BENDS */
+
+/*
+ * The residuals (gaps) of a step's equations, stage by stage, and the means in them. Comes after
+ * gauss.c.
+ */
+
+/*
+ * Tables: weights for the states at nodes; into the basis in which the stages decouple, and back.
+ */
+#define NODE_REACH node_reach
+#define FINE_REACH fine_reach
+#define BASIS_STAGE basis_inverse
+#define STAGE_BASIS stage_basis
+
+/* Of the states at a point of the step, those that integrands read. */
+static void MODEL(reach_read)(const MODEL(block) *m, real h, const double *weight)
+{
+    for (long r = 0; r < MODEL(reads); ++r) {
+        const long record = MODEL(read)[r];
+        const long end = record + 1 < MODEL(records) ? m->first[record + 1] : m->n;
+        for (long i = m->first[record]; i < end; ++i)
+            m->reached[i] = MODEL(reached_row)(m, h, weight, i);
+    }
+}
+
+/* The integrands of the means, at nodes of a step. */
+static void MODEL(integrate)(const MODEL(block) *m, real h, const double reach[][STAGES], long nodes)
+{
+    for (long q = 0; q < nodes; ++q) {
+        MODEL(reach_read)(m, h, reach[q]);
+        MODEL(integrands)(m->reached, &m->p, m->node + q * m->means);
+    }
+}
+
+/* Means over the step, with as many nodes as each lane needs. */
+static void MODEL(average)(const MODEL(block) *m, real h)
+{
+    MODEL(integrate)(m, h, node_reach, NODES);
+    for (long i = 0; i < STAGES; ++i)
+        for (long k = 0; k < m->means; ++k) {
+            real *const mean = m->mean + i * m->given + k;
+            *mean = zero;
+            for (long q = 0; q < NODES; ++q)
+                *mean += node_mean[i][q] * m->node[q * m->means + k];
+        }
+    if (!any(m->fine))
+        return;
+    MODEL(integrate)(m, h, fine_reach, FINE);
+    for (long i = 0; i < STAGES; ++i)
+        for (long k = 0; k < m->means; ++k) {
+            real *const mean = m->mean + i * m->given + k, sum = zero;
+            for (long q = 0; q < FINE; ++q)
+                sum += fine_mean[i][q] * m->node[q * m->means + k];
+            *mean = chosen(m->fine, sum, *mean);
+        }
+}
+
+
+/* Residuals: the rates by the laws at the stages less `rates`; returns where branches change. */
+static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
+{
+    const mask over = m->over & going;
+    mask changed = nowhere;
+    if (m->means)
+        MODEL(average)(m, h);
+#if defined(BENDS)
+    MODEL(average_split)(m, h);
+#endif /* BENDS */
+    for (long i = 0; i < STAGES; ++i) {
+        real *gap = m->gap + i * m->n, *mean = m->mean + i * m->given;
+        real *side = m->side + i * m->branches, *branch = m->branch + i * m->branches;
+        MODEL(reach_of)(m, h, stage_reach[i], m->reached);
+        for (int again = 0; again < 3; ++again) {
+            MODEL(stage)(m->reached, mean, branch, m->u + i * m->inputs, &m->p, gap,
+                         m->rows + i * m->booked, side, m->margin + i * MODEL(limits));
+            if (!any(over))
+                break;
+            const mask other = MODEL(choose)(m->branches, side, branch, over);
+            if (!any(other))
+                break;
+            changed |= other;
+        }
+        for (long k = 0; k < m->n; ++k)
+            gap[k] -= m->rates[i * m->n + k];
+    }
+    return changed;
+}
+
+/* Multiply the residuals of each state, a vector over the stages, by a matrix. */
+static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES])
+{
+    for (long k = 0; k < m->n; ++k) {
+        real one[STAGES];
+        for (long i = 0; i < STAGES; ++i) {
+            one[i] = zero;
+            for (long j = 0; j < STAGES; ++j)
+                one[i] += matrix[i][j] * m->gap[j * m->n + k];
+        }
+        for (long i = 0; i < STAGES; ++i)
+            m->gap[i * m->n + k] = one[i];
+    }
+}
+
+/* Newton's method for the rates at the stages of a step. Comes after gauss.c. */
+
+/*
+ * The rates at a single point, with its own co-states in place of means. Path functionals may jump
+ * within a step, which knows only their means: at an end of it (`weight`), their rates are
+ * extrapolated from those of its stages.
+ */
+static void MODEL(at_point)(const MODEL(block) *m, const real *x, const real *branch, const real *u,
+                            const double *weight, real *rate, real *rows, real *side, real *margin)
+{
+    (void)weight;
+    MODEL(integrands)(x, &m->p, m->node);
+    MODEL(stage)(x, m->node, branch, u, &m->p, rate, rows, side, margin);
+}
+
+/* Most iterations of a step, and after how many it is given up if changes stagnate. */
+enum { MOST_ITERATIONS = 12, SOON = 1 };
+/*
+ * The same for a fixed step, which may start far from its root: on the steep side of an exponential
+ * law an iteration moves by one width of it, however short the step. After NOISY iterations,
+ * changes that stagnate may be as large as MOST_NOISE.
+ */
+enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
+/* Slopes are computed anew where a change is more than this part of the one before. */
+#define SLOW 0.1
+/* Below this change, in units of noise, the next one is expected to shrink by the same factor. */
+#define NEAR 1e8
+/* Largest residual of a root, relative to the state: round-off of a stiff state leaves as much. */
+#define LEFT 0.01
+/* If the second change is more than this, in units of noise, more nodes are considered at once. */
+#define FAR 1e9
+/* Changes oscillate where at least this part of one comes back with the other sign. */
+#define TO_AND_FRO 0.5
+
+
+/* Newton's change of the rates, which replaces the residuals in `gap`. */
+static void MODEL(change)(const MODEL(block) *m, real h)
+{
+    MODEL(transform)(m, BASIS_STAGE);
+#if STAGES % 2
+    MODEL(solve_real)(m, h * filter, m->slope, m->real_factor, m->gap);
+#endif
+    MODEL(transform)(m, STAGE_BASIS);
+}
+
+/*
+ * Slopes in the middle of the step, on the branches of its middle stage, and their factorisations;
+ * lanes that are not in `where` keep their slopes.
+ */
+static void MODEL(prepare)(const MODEL(block) *m, real h, mask where)
+{
+    const long middle = STAGES / 2;
+    MODEL(reach_of)(m, h, stage_reach[middle], m->reached);
+    MODEL(slopes)(m->reached, m->mean + middle * m->given, m->branch + middle * m->branches,
+                  m->u + middle * m->inputs, &m->p, m->fresh);
+#if defined(BENDS)
+    if (!LOSSY)
+        MODEL(slopes_split)(m, h, middle);
+#endif /* BENDS */
+    for (long k = 0; k < m->slopes; ++k)
+        m->slope[k] = chosen(where, m->fresh[k], m->slope[k]);
+    MODEL(factorise_real)(m, h * filter, m->slope, m->real_factor);
+}
+
+/* The lanes in which all conditions of the domain hold. */
+static mask MODEL(within)(const real *margin)
+{
+    mask good = none_of(nowhere);
+    for (long k = 0; k < MODEL(limits); ++k) {
+        const mask inside = margin[k] > 0.0, edge = margin[k] == 0.0;
+        good &= MODEL(strict)[k] ? inside : (mask)(inside | edge);
+    }
+    return good;
+}
+
+/* The lanes whose stages all lie in the domain, and in which no process consumes entropy. */
+static mask MODEL(accepted)(const MODEL(block) *m)
+{
+    const long processes = m->processes, ports = MODEL(output_count);
+    mask good = none_of(nowhere);
+    for (long i = 0; i < STAGES; ++i) {
+        const real *rows = m->rows + i * m->booked + ports + processes;
+        real total = zero, lowest = zero;
+        good &= MODEL(within)(m->margin + i * MODEL(limits));
+        for (long k = 0; k < processes; ++k) {
+            const mask less = rows[k] < lowest;
+            total += size_of(rows[k]);
+            lowest = chosen(less, rows[k], lowest);
+        }
+        good &= lowest >= -1e-14 * total;
+    }
+    return good;
+}
+
+/*
+ * The part of a change to take where changes oscillate. Slopes are those at one point of a step,
+ * and differ along a long one, so that changes overshoot. The component of the new change along the
+ * last one says by how much.
+ */
+static real MODEL(damping)(const MODEL(block) *m)
+{
+    real both = zero, prior = NO_SIZE + zero;
+    for (long k = 0; k < m->n; ++k) {
+        const real size = m->largest[k] + size_of(m->x[k]) + NO_SIZE;
+        for (long j = 0; j < STAGES; ++j) {
+            const real last = m->prior[j * m->n + k] / size;
+            both += last * (m->gap[j * m->n + k] / size);
+            prior += last * last;
+        }
+    }
+    const real left = both / prior;
+    const mask fro = left < -TO_AND_FRO;
+    return chosen(fro, 1.0 / (1.0 - left), wide(1.0));
+}
+
+/*
+ * The lanes whose rates solve the equations. A small change does not show that: changes are small,
+ * too, where slopes are far too large.
+ */
+static mask MODEL(solves)(const MODEL(block) *m, real h)
+{
+    mask good = none_of(nowhere);
+    for (long k = 0; k < m->n; ++k) {
+        real moved = zero, left = zero;
+        for (long j = 0; j < STAGES; ++j) {
+            moved = largest_of(moved, size_of(m->rates[j * m->n + k]));
+            left = largest_of(left, size_of(m->gap[j * m->n + k]));
+        }
+        good &= h * left <= LEFT * (m->largest[k] + size_of(m->x[k]) + h * moved);
+    }
+    return good;
+}
+
+/* The lanes whose means need more nodes, by the rates at hand; see nodes.c. */
+static mask MODEL(coarse_by_now)(MODEL(block) *m, real h);
+
+/*
+ * The lanes in which a stage lies beyond a switch, by the rates at hand. Their steps will be cut
+ * there, and to locate that place rates need not be exact to round-off.
+ */
+static mask MODEL(strayed)(const MODEL(block) *m)
+{
+    mask found = nowhere;
+    for (long k = 0; k < STAGES * m->branches; ++k) {
+        const mask above = m->side[k] > 0.0, on = m->branch[k] > 0.0;
+        found |= (above & none_of(on)) | (on & none_of(above));
+    }
+    return found;
+}
+
+/* Add part of the change to the rates; returns the largest change of a state, in units of noise. */
+static real MODEL(changed)(const MODEL(block) *m, real h, real part, mask where)
+{
+    real worst = zero;
+    for (long k = 0; k < m->n; ++k) {
+        real moved = zero, sum = zero;
+        for (long j = 0; j < STAGES; ++j) {
+            real *const rate = m->rates + j * m->n + k;
+            const real change = chosen(where, part * m->gap[j * m->n + k], zero);
+            m->prior[j * m->n + k] = change;
+            *rate += change;
+            moved = largest_of(moved, size_of(*rate));
+            sum += size_of(change);
+        }
+        const real size = NOISE * (m->largest[k] + size_of(m->x[k]) + h * moved) + NO_SIZE;
+        worst = largest_of(h * sum / size, worst);
+    }
+    return worst;
+}
+
+/*
+ * Newton's method for the rates in some lanes, from those at hand; returns the lanes that converge.
+ * A lane that has converged does not change while others go on.
+ */
+static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
+{
+    mask going = where, found = nowhere;
+    mask renewed = nowhere; /* lanes that got more nodes: earlier changes predict nothing */
+    /* with fixed steps the larger of two ratios counts: new slopes may help once, not again */
+    real before = zero, left_before = zero;
+    MODEL(gaps)(m, h, going);
+    MODEL(prepare)(m, h, going);
+    for (int iteration = 0; iteration < m->most && any(going); ++iteration) {
+        m->iterations += chosen(going, wide(1.0), zero);
+        MODEL(change)(m, h);
+        const real part = iteration && m->late > SOON ? MODEL(damping)(m) : (real)wide(1.0);
+        const real worst = MODEL(changed)(m, h, part, going);
+        const mask far = going & (worst > FAR) & none_of(m->fine);
+        if (iteration == 1 && !LOSSY && any(far))
+            m->fine |= renewed = far & MODEL(coarse_by_now)(m, h);
+        else if (iteration > 2)
+            renewed = nowhere;
+        const mask switched = MODEL(gaps)(m, h, going);
+        const mask smaller = worst < before, lost = none_of(worst < 1e300);
+        const mask near = smaller & (worst < NEAR);
+        const real left = worst / (before + NO_SIZE);
+        mask good = (worst <= 4.0) | (near & (worst * largest_of(left, left_before) <= 4.0));
+        if (iteration > 1) { /* stagnation: round-off, or no root */
+            const mask stays = (worst > m->stays * before) & none_of(good);
+            good |= stays & (worst < (m->late == SOON || iteration > NOISY ? MOST_NOISE : 100.0));
+            if (iteration > m->late)
+                going &= none_of(stays & none_of(good));
+        }
+        good &= none_of(lost | renewed);
+        if (any(good & going))
+            good &= MODEL(solves)(m, h);
+        const mask enough = m->sketch & (worst < m->enough) & going & none_of(good | lost);
+        if (any(enough)) {
+            m->sketched |= enough & MODEL(strayed)(m);
+            good |= m->sketched;
+        }
+        found |= going & good;
+        going &= none_of(good | lost);
+        const mask slow = (worst > SLOW * before) & (before > 0.0);
+        if (any((switched | slow) & going))
+            MODEL(prepare)(m, h, (switched | slow) & going);
+        before = worst;
+        left_before = iteration && m->late > SOON ? left : (real)zero;
+    }
+    return found;
+}
+
+/*
+ * The number of nodes that means over a step need, and a step solved with as many. Comes after
+ * newton.c.
+ */
+
+/*
+ * States are scaled by 1 + ASIDE to estimate the round-off of their co-states; what exceeds it by
+ * the factor MUCH_NOISE is no round-off.
+ */
+#define ASIDE 1e-3
+#define MUCH_NOISE 100.0
+/* A relative bound, but not below the round-off of sums over nodes. */
+#define ABOVE_NOISE(part) ((part) > MUCH_NOISE * NOISE ? (part) : MUCH_NOISE * NOISE)
+
+/* A quadrature rule, and how it tells that an integrand needs more nodes. */
+typedef struct {
+    long nodes;
+    const double *last, *other; /* weights for the last two Legendre coefficients */
+    double part;                /* how large these may be, relative to the integrand */
+} MODEL(rule);
+
+static const MODEL(rule) MODEL(few) = {NODES, node_last[0], node_last[1], ABOVE_NOISE(COARSE)};
+static const MODEL(rule) MODEL(many) = {FINE, fine_last[0], fine_last[1], ABOVE_NOISE(TOO_COARSE)};
+
+/*
+ * The lanes in which an integrand needs more nodes: the last two coefficients of its Legendre
+ * series are not small. Two of them, for every other one of an even or odd function is zero.
+ * Coefficients within `noise` of an integrand do not count.
+ */
+static mask MODEL(rough)(const MODEL(block) *m, const MODEL(rule) *rule, const real *noise)
+{
+    mask found = nowhere;
+    for (long k = 0; k < m->means; ++k) {
+        real last = zero, other = zero, size = NO_SIZE + zero;
+        for (long q = 0; q < rule->nodes; ++q) {
+            const real value = m->node[q * m->means + k];
+            last += rule->last[q] * value;
+            other += rule->other[q] * value;
+            size = largest_of(size_of(value), size);
+        }
+        const real left = largest_of(size_of(last), size_of(other));
+        mask bad = left > rule->part * size;
+        if (noise)
+            bad &= left > MUCH_NOISE * noise[k];
+        found |= bad;
+    }
+    return found;
+}
+
+/* The same for whole steps, and for each piece of those that are split. */
+static mask MODEL(rough_parts)(const MODEL(block) *m, real h, const MODEL(rule) *rule, const real *noise)
+{
+    MODEL(integrate)(m, h, rule->nodes == FINE ? FINE_REACH : NODE_REACH, rule->nodes);
+    mask found = MODEL(rough)(m, rule, noise);
+#if defined(BENDS)
+    const mask split = m->cut[0] < 1.0;
+    real low = any(split) ? zero : (real)wide(1.0);
+    found &= none_of(split);
+    for (long j = 0; any(low < 1.0); low = m->cut[j++]) {
+        const real length = m->cut[j] - low;
+        const double *const at = rule->nodes == FINE ? fine_at : node_at;
+        MODEL(integrate_piece)(m, h, low, length, at, rule->nodes);
+        found |= split & (length > 0.0) & MODEL(rough)(m, rule, noise);
+    }
+#endif /* BENDS */
+    return found;
+}
+
+static mask MODEL(coarse_by_now)(MODEL(block) *m, real h)
+{
+    return m->means ? MODEL(rough_parts)(m, h, &MODEL(few), NULL) : nowhere;
+}
+
+/* The lanes that need more than NODES nodes for balances exact to round-off. */
+static mask MODEL(coarse)(const MODEL(block) *m, real h)
+{
+    mask other = m->fine; /* lanes where `node` is not at the NODES of a whole step */
+#if defined(BENDS)
+    other |= m->cut[0] < 1.0;
+#endif /* BENDS */
+    if (m->means && any(other))
+        return MODEL(rough_parts)(m, h, &MODEL(few), NULL);
+    return MODEL(rough)(m, &MODEL(few), NULL);
+}
+
+/*
+ * The lanes in which FINE nodes are too few: the step is too long. An integrand that tends to zero
+ * as a difference of larger terms, such as a length and a rest length, ends as their round-off; how
+ * large they are shows when the states are scaled.
+ */
+static mask MODEL(too_coarse)(const MODEL(block) *m, real h)
+{
+    real *const noise = m->gap; /* no longer needed by Newton's method */
+    MODEL(integrands)(m->x, &m->p, noise);
+    for (long k = 0; k < m->n; ++k)
+        m->reached[k] = m->x[k] * (1.0 + ASIDE);
+    MODEL(integrands)(m->reached, &m->p, m->node);
+    for (long k = 0; k < m->means; ++k)
+        noise[k] = (NOISE / ASIDE) * size_of(m->node[k] - noise[k]);
+    return m->fine & MODEL(rough_parts)(m, h, &MODEL(many), noise);
+}
+
+/*
+ * Solve for the rates in some lanes, with as many nodes as they need; returns the lanes that
+ * succeed.
+ */
+static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
+{
+    m->fine &= none_of(where);
+    m->sketched = nowhere;
+    mask found = MODEL(iterate)(m, h, where);
+    if (LOSSY) /* a dissipative step has no means */
+        return found;
+    const mask more = MODEL(coarse)(m, h) & found & none_of(m->sketched | m->fine);
+    if (any(more)) {
+        m->fine |= more;
+        found &= none_of(more) | MODEL(iterate)(m, h, more);
+    }
+    const mask fine = m->fine & found & none_of(m->sketched);
+    if (any(fine))
+        found &= none_of(fine & MODEL(too_coarse)(m, h));
+    return found;
+}
+
+/*
+ * A step of order two by itself, for programs in C; see <model>_step.h.
+ */
+
+static long MODEL(made)(MODEL(block) *m, const MODEL(parameters) *p, long *sizes, real *space)
+{
+    m->over = 1, m->most = MOST_OF_FIXED, m->late = LATE, m->stays = 0.7;
+    return MODEL(make)(m, p, 0, sizes, (real *)space);
+}
+
+long MODEL(step_size)(const MODEL(parameters) *p)
+{
+    MODEL(block) block;
+    long sizes[SIZES];
+    real none[1];
+    const long size = MODEL(made)(&block, p, sizes, none);
+    return size + block.n; /* the largest magnitudes stay from step to step */
+}
+
+int MODEL(step)(double *x, const double *u, double h, const MODEL(parameters) *p, double *booked,
+                double *space)
+{
+    MODEL(block) block = {0}, *const m = &block;
+    long sizes[SIZES];
+    const long size = MODEL(made)(m, p, sizes, (real *)space);
+    real *const largest = (real *)space + size;
+    memset(space, 0, (size_t)size * sizeof(real));
+    MODEL(give)(&m->p, p, 0);
+    for (long k = 0; k < m->n; ++k) {
+        m->x[k] = x[k];
+        m->largest[k] = largest_of(size_of(x[k]), largest[k]);
+    }
+    for (long k = 0; k < m->inputs; ++k)
+        m->u[k] = u[k];
+    if (!MODEL(solve)(m, h, 1) || !MODEL(accepted)(m))
+        return 0;
+    for (long k = 0; k < m->booked; ++k)
+        booked[k] = h * m->rows[k];
+    MODEL(reach_of)(m, h, stage_weight, m->end);
+    MODEL(at_point)(m, m->end, m->branch, m->u, NULL, m->gap, m->rows, m->side, m->margin);
+    int good = MODEL(within)(m->margin);
+    for (long k = 0; k < m->n; ++k)
+        good &= size_of(m->gap[k]) < 1e300;
+    if (!good)
+        return 0;
+    for (long k = 0; k < m->n; ++k) {
+        x[k] = m->end[k];
+        largest[k] = m->largest[k];
+    }
+    return 1;
+}
+
+#endif /* ALONE */
