@@ -85,7 +85,7 @@ def _identified(spec: str | Path | Model) -> tuple[str, str, Model | None]:
             raise UsageError(f"{quote(spec)} is no model", "model", expected)
         return spec.name, spec.sha256, spec
     content = data(read(find(spec)))
-    if "components" in content:  # their files count too
+    if {"components", "banks"} & content.keys():  # as they are written out
         from piezo_sym.spec.load import load
 
         return _identified(load(spec))

@@ -39,7 +39,7 @@ from piezo_sym.expressions.tree import (
 from piezo_sym.spec.circuit import Circuit
 from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, DissipativePort, Port, Storage
 from piezo_sym.spec.model import Model
-from piezo_sym.spec.tables import banks, conditions, greater, lane_parameters, states
+from piezo_sym.spec.tables import bank_states, banks, conditions, greater, lane_parameters, states
 
 TABLE = sp.Function("table")
 
@@ -88,7 +88,7 @@ def symbol_table(circuit: Circuit) -> SymbolTable:
     model = circuit.model
     signs = _signs(model)
     sizes = banks(model)
-    per_lane: dict[str, str] = {s: e for s, e in states(model).items() if e in sizes}
+    per_lane = bank_states(model)
     owners = lane_parameters(model)
     per_lane |= {n: owners[n] for n, p in model.parameters.items() if isinstance(p.value, tuple)}
     names = [*model.parameters, *model.inputs, *states(model)]

@@ -95,10 +95,19 @@ def relations(spec: Spec, counts: Mapping[str, int], algebra: Any) -> list[Form]
 
 
 def _all_branches(spec: Spec, counts: Mapping[str, int]) -> list[Branch]:
-    found = list[Branch]()
+    found, users = list[Branch](), dict[Any, set[Any]]()
     for e in spec.of("store", "law", "source", "coupling", "hysteron", "body"):
-        found += _branches(e, range(1, counts[e.name] + 1) if e.lanes is not None else (0,))
-    return found
+        found += _branches(e, range(1, counts[e.lanes[0]] + 1) if e.lanes else (0,))
+        for node in (node for pair in e.pairs for node in pair):
+            users.setdefault(node, set()).add(e.lanes)
+    own = {node for node, lanes in users.items() if len(lanes) == 1 and None not in lanes}
+    own -= {*REFERENCES.values()}  # what elements of one bank alone name, each lane has for itself
+
+    def placed(nodes: tuple[Any, Any], lane: int) -> tuple[Any, Any]:
+        first, second = ((node, lane) if node in own else node for node in nodes)
+        return first, second
+
+    return [b._replace(nodes=placed(b.nodes, b.lane)) for b in found]
 
 
 def _heat(spec: Spec, algebra: Any, found: Flows) -> None:

@@ -42,5 +42,8 @@ def slipping(name: str, entry: Mapping[str, Any]) -> dict[str, Any]:
     slip = f"({v} if {f} >= ({limit}) else 0) if {v} > 0 else ({v} if {f} <= -({limit}) else 0)"
     given = {"kind": kind, "slip": slip, "discontinuous": True, "state": f"z_{name}"}
     others = {field: entry[field] for field in entry if field not in ("kind", "limit")}
-    need({"between", "count", "heats", "state", size} >= set(others), f"{name} has a wrong key")
+    need(
+        {"between", "count", "bank", "heats", "state", size} >= set(others),
+        f"{name} has a wrong key",
+    )
     return given | others

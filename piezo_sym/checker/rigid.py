@@ -37,7 +37,7 @@ class _Laws:
 def read_spec(text: str) -> Spec:
     """Return what a spec says; raises `InputError` if it is none that the checker knows."""
     spec, laws = read(text), _Laws()
-    counts = {e.name: 1 for e in spec.elements.values() if e.lanes is not None}
+    counts = {e.lanes[0]: 1 for e in spec.elements.values() if e.lanes}
     groups = list[dict[str, Row]]()
     for (_, last, _), row in _reduced(relations(spec, counts, laws), [*spec.elements]).items():
         stores = [spec.elements[name] for role, name, _ in row if role == "E"]

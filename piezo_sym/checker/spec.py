@@ -41,7 +41,8 @@ class Element(NamedTuple):
     """An element: `laws` by field, `costate` dU/dx, a dissipative `law` of what it calls `letter`.
 
     What it imposes is `across` or not, or as its store `follows` another the opposite; `bodies` it
-    heats, reads T of, or conducts between.  Nodes ("T", body) are at T, and draw entropy from it.
+    heats, reads T of, or conducts between; `lanes` a bank and its size.  Nodes ("T", body) are at
+    T, and draw entropy from it.
     """
 
     name: str
@@ -55,7 +56,7 @@ class Element(NamedTuple):
     across: bool
     bodies: tuple[str, ...]
     input: str
-    lanes: int | None
+    lanes: tuple[str, int] | None
     jumps: bool
     follows: bool = False
 
@@ -107,7 +108,11 @@ class _Reader:
         self.kinds = {name: KINDS[entry["kind"]] for name, entry in tables["elements"].items()}
         need(bool(self.kinds), "no elements")
         self.bodies = [name for name, kind in self.kinds.items() if kind.form == "body"]
-        self.lanes = {("x", n) for n, own in tables["elements"].items() if "count" in own}
+        banked = {n: e for n, e in tables["elements"].items() if "count" in e}
+        self.lanes = {("x", n): (e.get("bank", n), e["count"]) for n, e in banked.items()}
+        single = len({*self.lanes.values()}) == len(dict(self.lanes.values()))
+        single &= all(n == b or b not in self.kinds for (_, n), (b, _) in self.lanes.items())
+        need(single, "a bank has two sizes, or the name of an element")
         self.words, self.domains = self._words(), {b: a for a, b in REFERENCES.items()}
         self.states = {word: owner for word, (role, owner) in self.words.items() if role == "x"}
         self.elements = {name: self._element(name) for name in self.kinds}
@@ -170,8 +175,9 @@ class _Reader:
         costate = self._costate(name, own)
         law, letter = (own[field], next(iter(kind.laws[field][1]))) if dissipates else (None, "")
         across = kind.across and (kind.form != "law" or field == next(iter(kind.laws)))
-        source, count = entry.get("input", ""), entry.get("count")
-        need(count is None or count >= 1, f"elements.{name}.count is out of range")
+        source, lanes = entry.get("input", ""), self.lanes.get(("x", name))
+        known = "bank" not in entry if lanes is None else lanes[1] >= 1
+        need(known, f"elements.{name}.count is out of range")
         row = UNITS[ends[0][1]][kind.across] if kind.form == "source" else "KW"[kind.form == "heat"]
         if "input" in kind.fields and self.units["u", source] != unit(row)[1]:
             self.faults.append(f"elements.{name}.input is not in {row}")
@@ -179,7 +185,7 @@ class _Reader:
         hot: list[tuple[Any, Any]] = [(("T", name), REFERENCES["E"])] * (kind.form == "body")
         hot += [(("T", b), ("T", a)) for a, b in [bodies] * ("bodies" in kind.fields)]
         state = next((word for word, owner in self.states.items() if owner == name), "")
-        others = ((*pairs, *hot), across, bodies, source, count, entry.get("discontinuous", False))
+        others = ((*pairs, *hot), across, bodies, source, lanes, entry.get("discontinuous", False))
         return Element(name, kind, own, state, costate, law, letter, *others)
 
     def _costate(self, name: str, own: dict[str, Node]) -> Node | None:
@@ -210,7 +216,8 @@ class _Reader:
 
     def _law(self, name: str, field: str, bodies: tuple[str, ...], ratio: str) -> Node:
         entry, (needed, letters) = self.tables["elements"][name], self.kinds[name].laws[field]
-        lanes, kind = self.lanes - {("x", name)}, self.kinds[name]
+        mine, kind = self.lanes.get(("x", name)), self.kinds[name]
+        lanes = {s for s, own in self.lanes.items() if own != mine}
         need(field != "slip" or bool(bodies), f"elements.{name} slips, and heats nothing")
         stored = bool(kind.costate) and (kind.form, field) != ("hysteron", "voltage")
         stored = stored and field != "slip"
@@ -267,13 +274,14 @@ class _Reader:
 
     def _lists(self, conditions: tuple[Node, ...]) -> dict[str, str]:
         """Return the bank of each list of values, of which a condition has the lanes of one."""
-        banks, lists = {("x", n): n for n, e in self.elements.items() if e.lanes}, dict[str, str]()
+        banks, lists = {symbol: bank for symbol, (bank, _) in self.lanes.items()}, dict[str, str]()
         for name, values in self.parameters.items():
             if isinstance(self.tables["parameters"][name]["value"], list):
                 own = [(e, law) for e in self.elements.values() for law in e.laws.values()]
-                users = {e.name: e.lanes for e, law in own if ("p", name) in symbols(law)}
-                need([*users.values()] == [len(values)], f"parameters.{name} fits no bank")
-                lists[name] = banks["p", name] = next(iter(users))
+                users = {e.lanes for e, law in own if ("p", name) in symbols(law)}
+                bank, size = next(iter(users), None) or ("", 0)
+                need(len(users) == 1 and size == len(values), f"parameters.{name} fits no bank")
+                lists[name] = banks["p", name] = bank
         for tree in conditions:
             owners = {banks[symbol] for symbol in symbols(tree) if symbol in banks}
             need(len(owners) < 2, "a condition mixes lanes of two banks")

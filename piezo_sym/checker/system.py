@@ -41,9 +41,8 @@ class _Published:
         for table in (self.laws, self.rates, self.outputs, {"": self.energy}):
             for tree in table.values():
                 self.sums(tree, 0)
-        banks = {e.name for e in spec.elements.values() if e.lanes}
-        owners = [(s, name, name in banks) for s, name in spec.states.items()]
-        expected = [(s, whole(name), name if banked else None) for s, name, banked in owners]
+        owners = [(s, name, spec.elements[name].lanes) for s, name in spec.states.items()]
+        expected = [(s, whole(name), own[0] if own else None) for s, name, own in owners]
         ports = {e.name for e in spec.of("source", "ambient", "heat")}
         tables = set(self.rates) == set(spec.states) and set(self.outputs) == ports
         need(self.states == expected and tables, "states or ports are not those of the spec")
@@ -79,7 +78,8 @@ class Finding:
     def __init__(self, spec: Spec, system: Any) -> None:
         self.spec, self.one, self.reasons = spec, ONE, dict[str, str]()
         self.divisors, self.letters = dict[Node, None](), dict[str, Node]()
-        self.counts = {e.name: LANES for e in spec.elements.values() if e.lanes is not None}
+        self.banks = {e.name: e.lanes[0] for e in spec.elements.values() if e.lanes}
+        self.counts = dict.fromkeys(self.banks.values(), LANES)
         self.field, self.known, self.values = Field(), dict[Any, Ratio](), list[Claim]()
         self.terms = list[Node]()
         try:
@@ -93,7 +93,7 @@ class Finding:
     def symbol(self, meaning: tuple[str, str], lane: int) -> Ratio:
         """Return a symbol, with its lane if it has one."""
         role, owner = meaning
-        banks = {"p": self.spec.lists, "x": self.counts, "E": self.counts}.get(role, ())
+        banks = {"p": self.spec.lists, "x": self.banks, "E": self.banks}.get(role, ())
         need(lane > 0 or owner not in banks, f"{owner!r} is of a lane, and stands outside of lanes")
         return self.field.of(sym((role, owner, lane) if owner in banks else (role, owner)))
 
@@ -109,7 +109,8 @@ class Finding:
 
     def like(self, slot: Slot) -> Ratio:
         """Return how many lanes are like one, a symbol; 1 outside of banks."""
-        return self.field.of(sym(("N", *slot))) if slot[1] else ONE
+        bank = self.banks.get(slot[0], slot[0])
+        return self.field.of(sym(("N", bank, slot[1]))) if slot[1] else ONE
 
     def given(self, role: str, owner: str, lane: int) -> Ratio:
         """Return an input, a co-state or a temperature by its element."""
@@ -136,7 +137,7 @@ class Finding:
             return self.known[name, lane]
         role, owner = self.spec.words.get(name, ("T", ""))
         need(role != "T", f"unknown published name {name[:60]!r}")
-        bank = self.spec.lists.get(owner, "") if role == "p" else owner
+        bank = (self.spec.lists if role == "p" else self.banks).get(owner, "")
         return self.symbol((role, owner), bound.get(bank, 0))
 
     def _named(self, name: str, lane: int) -> Ratio:
@@ -164,7 +165,7 @@ class Finding:
             power += given * inflow
         for (name, lane), rate in own.rates.items():
             element = self.spec.elements[name]
-            given = self.published(self.text.rates[element.state], {name: lane})
+            given = self.published(self.text.rates[element.state], {self.banks.get(name, ""): lane})
             self._equal("system", given, rate, f"rate of {element.state}")
             power -= self.like((name, lane)) * self._costate(element, lane) * given
         self._equal("energy", power, ZERO, "dU/dt - y^T u")
@@ -177,14 +178,17 @@ class Finding:
     def _keep(self, own: Flows) -> None:
         """Keep the divisors, and each letter that is one of states of its own lane."""
         for pivot in own.pivots:
-            self.divisors[self.field.tree(pivot).args[0]] = None
+            tree = self.field.tree(pivot).args[0]
+            lanes = {key[2:]: {k: sym(k[:2]) for k in symbols(tree)} for key in symbols(tree)}
+            self.divisors[put(tree, *lanes.values()) if len(lanes) == 1 else tree] = None
             self.field.nonzero |= {Ratio(factor) for factor, _ in pivot.top.factor()[1]}
-        lists, elements = self.spec.lists, self.spec.elements
+        elements, owners = self.spec.elements, {"p": self.spec.lists, "E": self.banks}
         for (name, lane), letter in own.letters.items():
             tree = self.field.tree(letter)
             costates = {key: elements[key[1]].costate for key in symbols(tree) if key[0] == "E"}
             words = {key: costates.get(key) or sym(key[:2]) for key in symbols(tree)}
-            if {(lists.get(k[1], k[1]), k[2]) for k in words if k[2:]} <= {(name, lane)}:
+            used = {(owners[k[0]][k[1]], k[2]) for k in words if k[2:]}
+            if used <= {(self.banks.get(name), lane)}:
                 self.letters[name] = put(tree, words)
 
     def _gradient(self) -> None:
@@ -195,7 +199,7 @@ class Finding:
         known = all(role in ("p", "x") for role, _ in words.values())
         need(known, "the energy has other names than states and parameters")
         for part in walk(energy):
-            owners = {states[name] for name in symbols(part) if name in states}
+            owners = {self.banks.get(states[s]) for s in symbols(part) if s in states}
             inside = [inner.op for inner in walk(part)]
             single = owners <= {part.value} and inside.count("sum") == 1
             single = single and not {"if", *KINKS} & {*inside}
@@ -204,7 +208,8 @@ class Finding:
         self.terms = [put(term, {name: sym(words[name]) for name in words}) for term in terms]
         self.values.extend(claim for term in self.terms for claim in partial(term))
         for state, name in states.items():
-            lane = int(name in self.counts)
-            given = self.published(laws.derivative(energy, state), {name: lane})
+            lane = int(name in self.banks)
+            bound = {self.banks.get(name, ""): lane}
+            given = self.published(laws.derivative(energy, state), bound)
             own = self.law(self.spec.elements[name], "costate", lane)
             self._equal("energy", given, own, f"dU/d{state}")

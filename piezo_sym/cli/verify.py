@@ -94,7 +94,7 @@ def _rechecked(spec: str, report: Report) -> Recheck:
     from piezo_sym.verification.recheck import recheck
 
     model = load(spec)
-    text = model.flatten().to_toml() if model.components else read(find(spec))
+    text = model.flatten().to_toml() if model.flatten() is not model else read(find(spec))
     return recheck(text, proofs_json(report, model, ""))
 
 

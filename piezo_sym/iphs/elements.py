@@ -84,7 +84,7 @@ def element_rows(iphs: IPHS, parts: Parts[V]) -> tuple[ElementRow[V], ...]:
     """Return the quantities of all elements, in the order of their declaration."""
     reader, found = _Elements(iphs, parts), []
     for name, element in iphs.model.elements.items():
-        bank = name if element.is_bank else None
+        bank = element.bank_of(name)
         for part in reader.quantities(name):
             doc = f"{part.doc} {element.kind} '{name}'"
             found.append(ElementRow(f"{name}.{part.quantity}", part.unit, doc, bank, part.value))

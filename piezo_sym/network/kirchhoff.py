@@ -27,7 +27,7 @@ from piezo_sym.algebra.linear import (
 )
 from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import NetworkError
-from piezo_sym.network.nodes import is_inner, is_reference
+from piezo_sym.network.nodes import inner_nodes, is_reference
 from piezo_sym.spec.circuit import Circuit, Placed
 from piezo_sym.spec.elements.domains import PowerVariable
 from piezo_sym.spec.elements.ports import (
@@ -104,6 +104,7 @@ class Laws:
         self.processes = tuple(circuit.of(DissipativePort, Conductor))
         self.ports = port_order(circuit)
         self.edges = tuple(self._edges())
+        self.inner = inner_nodes(circuit)
         self.divisors: list[Any] = []
 
     def _edges(self) -> Iterator[Edge]:
@@ -198,7 +199,7 @@ class Laws:
     def _solve_lane(self, bank: str) -> dict[Any, Form]:
         """Return one lane's own unknowns in terms of its givens and the shared nodes."""
         balances = self._balances(bank)
-        inner = {node: row for node, row in balances.items() if is_inner(node)}
+        inner = {node: row for node, row in balances.items() if node in self.inner}
         equations = [Equation(row.left, _negated(row.right)) for row in inner.values()]
         equations += list(self._constraints(bank))
         unknowns = [("e", node) for node in inner]
@@ -217,7 +218,7 @@ class Laws:
         balances = self._balances(None)
         for bank, solution in lanes.items():
             for node, row in self._balances(bank).items():
-                if not is_inner(node):
+                if node not in self.inner:
                     total = balances.setdefault(node, Equation())
                     combine(total.right, self._summed(bank, row, solution), self.field.one)
         equations = [Equation(row.left, _negated(row.right)) for row in balances.values()]

@@ -148,8 +148,9 @@ def _slopes(laws: Laws, group: tuple[int, ...], taken: set[str]) -> Iterator[Slo
         if isinstance(port, DissipativePort) and not placed.bank:
             law = slope_of(port.law, port.letter)
         if law is None:
-            remedy = f"{between}, or make the law linear"
-            raise NetworkError(what, f"elements.{placed.element}", "linear laws", remedy)
+            remedy = between if placed.bank else f"{between}, or make the law linear"
+            expected = "linear laws, and none of a bank" if placed.bank else "linear laws"
+            raise NetworkError(what, f"elements.{placed.element}", expected, remedy)
         yield Slope(_symbol(f"slope_{placed.element}", taken), k, law)
 
 

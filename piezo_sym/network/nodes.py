@@ -43,6 +43,17 @@ def is_inner(node: str) -> bool:
     return ":" in node
 
 
+def inner_nodes(circuit: Circuit) -> frozenset[str]:
+    """Return the nodes that each lane of a bank has for itself: branches of one bank alone meet."""
+    owners = {placed.element: placed.bank for placed in circuit.ports}
+    users: dict[str, set[str | None]] = {}
+    for element, branch, _ in branches(circuit):
+        for node in branch:
+            users.setdefault(node, set()).add(owners[element])
+    found = (node for node, banks in users.items() if len(banks) == 1 and None not in banks)
+    return frozenset(found) - REFERENCES.keys()
+
+
 def check_nodes(circuit: Circuit) -> None:
     """Check that every node is of one domain, shared by two branches, and tied to its reference.
 

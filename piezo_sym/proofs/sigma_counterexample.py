@@ -29,7 +29,7 @@ from piezo_sym.spec.elements.ports import (
     Source,
     Storage,
 )
-from piezo_sym.spec.tables import banks, states
+from piezo_sym.spec.tables import bank_of, banks, states
 
 Values = Mapping[str, Fraction]
 Found = tuple[dict[str, str], sp.Rational]
@@ -44,7 +44,7 @@ def negative_total(iphs: IPHS, rows: Iterable[Row], solver: Asks) -> Found | Non
         return None
     for row in rows:
         if row.id == "passive" and row.verdict is Verdict.REFUTED and row.witness:
-            lane = "_1" if row.element in sizes else ""
+            lane = "_1" if row.element in bank_of(iphs.model) else ""
             given = {_in_lane(n, iphs): Fraction(v) for n, v in row.witness.items()}
             found = _driven(single, f"{row.element}{lane}", given, solver)
             if found:

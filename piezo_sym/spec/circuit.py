@@ -37,7 +37,7 @@ B = TypeVar("B", bound=Port)
 @final
 @dataclass(frozen=True)
 class Placed:
-    """A port where it stands: its element, and that element's bank if it is one lane of many."""
+    """A port where it stands: its element, and the bank of whose lanes this is in one, if any."""
 
     element: str
     bank: str | None
@@ -101,7 +101,7 @@ def circuit_of(model: Model) -> Circuit:
     taken = {*heat.values(), *model.parameters, *model.inputs, *model.elements}
     taken |= {f"{bank}_count" for bank in banks(model)}
     placed = [
-        Placed(name, name if element.is_bank else None, port)
+        Placed(name, element.bank_of(name), port)
         for name, element in model.elements.items()
         for port in element.ports(name)
     ]

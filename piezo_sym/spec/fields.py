@@ -1,7 +1,7 @@
 """The tables of a spec, field by field, as frozen pydantic types.
 
-Input: TOML data or Python arguments.  Output: `Header`, `Parameter`, `Input`, `Domain`, `Component`
-and the type of an element, each right in itself; what must hold between them is `check`'s.
+Input: TOML data or Python arguments.  Output: `Header`, `Parameter`, `Input`, `Domain`, `Bank`,
+`Component` and the type of an element, each right in itself; what holds between them is `check`'s.
 """
 
 import math
@@ -22,7 +22,7 @@ from pydantic import (
 from piezo_sym.expressions.units import Unit, parse_unit, to_si
 from piezo_sym.spec.elements import KINDS
 from piezo_sym.spec.elements.base import Frozen
-from piezo_sym.spec.elements.marks import Node
+from piezo_sym.spec.elements.marks import Count, Node
 from piezo_sym.spec.table import Table
 
 MAX_TEXT = 400
@@ -206,6 +206,17 @@ class Component(Frozen):
     ] = ()
 
 
+@final
+class Bank(Frozen):
+    """Cells of several elements, all alike but for parameters and states that are lists."""
+
+    count: Annotated[Count, Field(description="How many cells there are.")]
+    elements: Annotated[
+        Table[AnyElement],
+        Field(description="Of one cell, by name; nodes that stand in no other table are its own."),
+    ]
+
+
 class Tables(Frozen):
     """All tables of a spec, each right in itself."""
 
@@ -216,3 +227,4 @@ class Tables(Frozen):
     initial: Table[Start] = Table()
     components: Table[Component] = Table()
     elements: Table[AnyElement] = Table()
+    banks: Table[Bank] = Table()

@@ -1,4 +1,4 @@
-"""Models made of models, written out as one model of ordinary elements.
+"""Models made of models and of banks, written out as one model of ordinary elements.
 
 Input: the tables of a spec, and of the models of its components.  Output: the tables of a spec
 without components, in which all that was a component's has its name in front: ``left_q``,
@@ -17,6 +17,7 @@ from typing import Any, final
 from piezo_sym.errors import SpecError
 from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.tree import names
+from piezo_sym.spec.cells import cells, nodes_of
 from piezo_sym.spec.checks.components import check_component
 from piezo_sym.spec.elements.base import Element, state_symbol
 from piezo_sym.spec.elements.domains import REFERENCES
@@ -69,6 +70,7 @@ def flattened(spec: Tables, models: Iterable[Tables]) -> Flat:
     pairs = zip(spec.components.items(), models, strict=True)
     parts = [Part(name, component, model) for (name, component), model in pairs]
     count = len(spec.elements) + sum(len(part.model.elements) for part in parts)
+    count += sum(len(bank.elements) for bank in spec.banks.values())
     if count > MOST_ELEMENTS:
         expected = f"at most {MOST_ELEMENTS}"
         raise SpecError(f"would be {count} elements, written out", "components", expected)
@@ -81,6 +83,11 @@ def flattened(spec: Tables, models: Iterable[Tables]) -> Flat:
     for table in ("initial", "elements"):
         flat.add(table, chain.from_iterable(part.rows(table) for part in parts))
         flat.add(table, _own(spec, table), over=table == "initial")
+    outside = {node for element in spec.elements.values() for node in nodes_of(element)}
+    outside |= {
+        part.node(node) for part in parts for e in part.kept.values() for node in nodes_of(e)
+    }
+    flat.add("elements", cells(spec, outside))
     assumed = [*((text, "") for text in spec.domain.assume), *_all_assumed(parts)]
     flat.tables["domain"] = {"assume": [text for text, _ in assumed]}
     written = enumerate(where for _, where in assumed)
@@ -174,6 +181,8 @@ class Part:
     def _elements(self) -> Iterator[tuple[str, str, Any]]:
         for name, element in self.kept.items():
             made = renamed(element, self.words, lambda body: f"{self.name}_{body}", self.node)
+            if bank := made.get("bank"):
+                made["bank"] = f"{self.name}_{bank}"
             if element.letter:
                 made["state"] = self.words[state_symbol(element, name)]
             yield name, f"{self.name}_{name}", made

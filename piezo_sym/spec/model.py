@@ -1,8 +1,8 @@
 """The spec as one frozen value: what a user declares.
 
 Input: TOML data, or Python arguments of the same shape.  Output: a `Model`, immutable, hashable,
-and equal to another exactly if both say the same in the same order.  What its components are,
-written out, is `flatten`'s; the later stages know of no components.
+and equal to another exactly if both say the same in the same order.  What its components and banks
+are, written out, is `flatten`'s; the later stages know of neither.
 """
 
 from __future__ import annotations
@@ -35,6 +35,7 @@ class Model(Tables):
     initial : initial states by symbol, 0 where nothing is said.
     components : table of `Component`: other models as parts; their `spec` may be a `Model`, too.
     elements : table of elements by name; states and processes follow its order.
+    banks : table of `Bank`: cells of elements, many alike; after the elements in order.
 
     Raises
     ------
@@ -63,14 +64,14 @@ class Model(Tables):
         return self
 
     def flatten(self) -> Model:
-        """Return the model with its components written out as elements of its own.
+        """Return the model with its components and banks written out as elements of its own.
 
         Raises
         ------
         SpecError
             If they do not fit together; the message names things as they were written.
         """
-        if self.components and self._flat is None:
+        if (self.components or self.banks) and self._flat is None:
             self._flat = self._flattened()
         return self._flat or self
 
@@ -90,7 +91,7 @@ class Model(Tables):
 
     @property
     def sha256(self) -> str:
-        """SHA-256 of the canonical spec, components written out; generated modules carry it."""
+        """SHA-256 of the canonical spec, all written out; generated modules carry it."""
         return spec_hash(self.flatten().model_dump())
 
     def to_toml(self) -> str:
@@ -104,4 +105,8 @@ class Model(Tables):
         data = self.model_dump(exclude_defaults=True)
         for name, element in self.elements.items():
             data["elements"][name] = {"kind": element.kind} | data["elements"][name]
+        for name, bank in self.banks.items():
+            rows = data["banks"][name]["elements"]
+            for own, element in bank.elements.items():
+                rows[own] = {"kind": element.kind} | rows[own]
         return to_toml(data)

@@ -12,7 +12,7 @@ from pydantic_core import ErrorDetails
 
 from piezo_sym.errors import SpecError, listing, nearest, quote
 from piezo_sym.spec.elements import KINDS
-from piezo_sym.spec.fields import Component, Domain, Header, Input, Parameter, Tables
+from piezo_sym.spec.fields import Bank, Component, Domain, Header, Input, Parameter, Tables
 
 TABLES: Mapping[str, type[BaseModel]] = {
     "model": Header,
@@ -20,6 +20,7 @@ TABLES: Mapping[str, type[BaseModel]] = {
     "inputs": Input,
     "domain": Domain,
     "components": Component,
+    "banks": Bank,
 }
 
 ENTRIES = {  # what stands for a name in a table
@@ -47,8 +48,8 @@ def first_problem(error: ValidationError) -> SpecError:
 def _problem(detail: ErrorDetails) -> SpecError:
     place = [str(part) for part in detail["loc"]]
     known = _known(place)
-    if len(place) > 2 and place[0] == "elements":
-        del place[2]  # pydantic names the kind here
+    if "elements" in place[:3:2] and len(place) > (at := place.index("elements") + 2):
+        del place[at]  # pydantic names the kind here
     where = ".".join(place) or "spec"
     value = detail.get("input")
     match detail["type"]:
@@ -102,8 +103,8 @@ def _known(place: list[str]) -> Iterable[str]:
     """Return the keys that are known where `place` points."""
     if len(place) <= 1:
         return tuple(Tables.model_fields)
-    if place[0] == "elements" and len(place) > 2:
-        return _fields(KINDS.get(place[2]))
+    if "elements" in place[:3:2] and len(place) > (at := place.index("elements") + 2):
+        return _fields(KINDS.get(place[at]))
     return _fields(TABLES.get(place[0]))
 
 

@@ -24,6 +24,7 @@ TABLES = {
     "initial": "Initial states by symbol, in SI; 0 if not said; laws of parameters and inputs.",
     "components": "Other models as parts of this one, by name; see their fields.",
     "elements": "Elements by name; states and processes follow their order.",
+    "banks": "Cells of several elements, many alike, by name; see their fields.",
 }
 
 Schema = dict[str, Any]
@@ -41,6 +42,10 @@ def schema() -> Schema:
     for kind, element in KINDS.items():
         definitions[element.__name__] = _element(kind, element, definitions[element.__name__])
     made["properties"]["elements"]["additionalProperties"] = {"$ref": "#/$defs/Element"}
+    definitions["Bank"]["properties"]["elements"] |= {
+        "additionalProperties": {"$ref": "#/$defs/Element"},
+        "propertyNames": NAMES,
+    }
     definitions["Element"] = _union()
     return {"$schema": DIALECT, "title": "piezo_sym spec", **made, "$defs": definitions}
 

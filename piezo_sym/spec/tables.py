@@ -79,10 +79,21 @@ def bodies(spec: Tables) -> tuple[str, ...]:
     return tuple(name for name, e in spec.elements.items() if e.is_body)
 
 
+def bank_of(spec: Tables) -> dict[str, str]:
+    """Return the bank of each element that has one."""
+    found = ((name, e.bank_of(name)) for name, e in spec.elements.items())
+    return {name: bank for name, bank in found if bank is not None}
+
+
+def bank_states(spec: Tables) -> dict[str, str]:
+    """Return the bank of each state that has a value per lane."""
+    owners = bank_of(spec)
+    return {s: owners[name] for s, name in states(spec).items() if name in owners}
+
+
 def banks(spec: Tables) -> dict[str, int]:
     """Return the size of each bank."""
-    found = {name: getattr(e, "count", None) for name, e in spec.elements.items() if e.is_bank}
-    return {name: int(count) for name, count in found.items() if count is not None}
+    return {bank: spec.elements[name].count for name, bank in bank_of(spec).items()}
 
 
 def temperatures(spec: Tables) -> dict[str, str]:
@@ -101,8 +112,8 @@ def seen(spec: Tables) -> Iterator[str]:
     These are states, but for those of banks, which only laws in the same lane see, and
     ``T_<element>``.
     """
-    sizes = banks(spec)
-    yield from (symbol for symbol, owner in states(spec).items() if owner not in sizes)
+    lanes = bank_states(spec)
+    yield from (symbol for symbol in states(spec) if symbol not in lanes)
     yield from (f"T_{body}" for body in bodies(spec))
 
 
@@ -207,24 +218,18 @@ def condition_text(condition: Cmp) -> str:
 
 def lane_parameters(spec: Tables) -> dict[str, str]:
     """Return the bank of each parameter that only this bank uses: it may have a value per lane."""
-    users: dict[str, set[str]] = {}
+    users: dict[str, set[str | None]] = {}
+    owners, lanes = bank_of(spec), bank_states(spec)
     for name, element in spec.elements.items():
         for law in law_fields(name, element):
             for word in set(names(law.tree)) - set(law.letters):
-                users.setdefault(word, set()).add(name)
-    elements = states(spec)
+                users.setdefault(word, set()).add(owners.get(name))
     for where, tree in _starts(spec):
-        symbol = where.removeprefix("initial.")
         for word in names(tree):
-            users.setdefault(word, set()).add(elements.get(symbol, symbol))
-    single = {
-        word: next(iter(found))
-        for word, found in users.items()
-        if word in spec.parameters and len(found) == 1
-    }
-    sizes = banks(spec)
-    own = {word: single[word] for word in spec.parameters if single.get(word) in sizes}
-    lanes = own | {symbol: name for symbol, name in elements.items() if name in sizes}
+            users.setdefault(word, set()).add(lanes.get(where.removeprefix("initial.")))
+    single = {word: next(iter(found)) for word, found in users.items() if len(found) == 1}
+    own = {word: bank for word in spec.parameters if (bank := single.get(word))}
+    lanes |= own
     groups = [names(condition.tree) for condition in conditions(spec)]
     mixed = {word for group in groups for word in group if _mixes(group, lanes)}
     return {word: bank for word, bank in own.items() if word not in mixed}

@@ -12,14 +12,16 @@ from typing import Any
 from piezo_sym.errors import UsageError, nearest, quote
 from piezo_sym.expressions.parse import parse_condition
 from piezo_sym.expressions.tree import names
+from piezo_sym.spec.cells import nodes_of
 from piezo_sym.spec.elements.base import Element, state_symbol
+from piezo_sym.spec.elements.domains import REFERENCES
 from piezo_sym.spec.model import Model
-from piezo_sym.spec.rename import relawed, reworded, started
-from piezo_sym.spec.tables import banks, lane_parameters, states
+from piezo_sym.spec.rename import renamed, reworded, started
+from piezo_sym.spec.tables import bank_of, bank_states, banks, lane_parameters
 
 
 def unroll(model: Model, counts: Mapping[str, int]) -> Model:
-    """Return the model with each bank as elements ``<bank>_1`` ... ``<bank>_<count>``.
+    """Return the model with each lane as elements ``<element>_1`` ... ``<element>_<count>``.
 
     A parameter or initial value given as a list becomes one for each lane; if the list is of
     another length than asked for, its first value serves every lane.
@@ -77,18 +79,36 @@ def _parameters(model: Model, split: Mapping[str, int]) -> Any:
 
 
 def _elements(model: Model, sizes: Mapping[str, int], split: Mapping[str, int]) -> Any:
+    owners, symbols = bank_of(model), bank_states(model)
+    inner = _inner(model)
     for name, element in model.elements.items():
-        if name not in sizes:
+        if name not in owners:
             yield name, element
             continue
-        for lane in range(1, sizes[name] + 1):
-            yield f"{name}_{lane}", _lane(name, element, lane, split)
+        words = {*split, *(s for s, bank in symbols.items() if bank == owners[name])}
+        for lane in range(1, sizes[owners[name]] + 1):
+            yield f"{name}_{lane}", _lane(name, element, _words(lane, words), inner, lane)
 
 
-def _lane(name: str, element: Element, lane: int, split: Mapping[str, int]) -> Element:
-    symbol = state_symbol(element, name)
-    laws = relawed(element, _words(lane, {*split, symbol}))
-    return element.model_copy(update={**laws, "count": None, "state": f"{symbol}_{lane}"})
+def _lane(
+    name: str, element: Element, words: Mapping[str, str], inner: set[str], lane: int
+) -> dict[str, Any]:
+    """Return the fields of an element in one lane, which has nodes of its own."""
+
+    def node(given: str) -> str:
+        return f"{given}.{lane}" if given in inner else given
+
+    made = renamed(element, words, str, node) | {"count": None, "bank": None}
+    return made | ({"state": words[state_symbol(element, name)]} if element.letter else {})
+
+
+def _inner(model: Model) -> set[str]:
+    """Return the nodes that elements of one bank alone name."""
+    users: dict[str, set[str | None]] = {}
+    for name, element in model.elements.items():
+        for node in nodes_of(element):
+            users.setdefault(node, set()).add(element.bank_of(name))
+    return {n for n, own in users.items() if len(own) == 1 and None not in own} - {*REFERENCES}
 
 
 def _words(lane: int, split: Iterable[str]) -> dict[str, str]:
@@ -97,9 +117,9 @@ def _words(lane: int, split: Iterable[str]) -> dict[str, str]:
 
 
 def _initial(model: Model, sizes: Mapping[str, int], split: Mapping[str, int]) -> Any:
-    elements = states(model)
+    lanes = bank_states(model)
     for symbol, start in model.initial.items():
-        size = sizes.get(elements[symbol])
+        size = sizes.get(lanes.get(symbol, ""))
         if size is None:
             yield symbol, start
             continue
@@ -110,7 +130,7 @@ def _initial(model: Model, sizes: Mapping[str, int], split: Mapping[str, int]) -
 
 
 def _assumptions(model: Model, sizes: Mapping[str, int], split: Mapping[str, int]) -> Any:
-    lanes = {s: sizes[name] for s, name in states(model).items() if name in sizes}
+    lanes = {s: sizes[bank] for s, bank in bank_states(model).items()}
     lanes |= split
     for text in model.domain.assume:
         used = names(parse_condition(text, "domain.assume"))

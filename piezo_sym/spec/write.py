@@ -19,7 +19,7 @@ def to_toml(data: Mapping[str, Any]) -> str:
     blocks = [_table("model", data["model"])]
     blocks += [_lines(name, data[name]) for name in ("parameters", "inputs") if data.get(name)]
     blocks += [_table(name, data[name]) for name in ("domain", "initial") if data.get(name)]
-    for kind in ("components", "elements"):
+    for kind in ("components", "elements", "banks"):
         blocks += [_table(f"{kind}.{name}", row) for name, row in data.get(kind, {}).items()]
     return "\n".join(blocks)
 

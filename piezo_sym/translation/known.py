@@ -96,21 +96,18 @@ class Proved:
         A place is then a letter and a number, however many banks stand before it.
         """
         found, total = {}, self.field.zero
-        for slot in self.slots["rhs"]:
-            if slot.bank:
-                total = total + self.field.count(slot.bank)
-                (letter,) = self.field.name(f"end of {slot.bank}").generators()
-                found[letter] = total
+        for bank in self.iphs.symbols.counts:
+            total = total + self.field.count(bank)
+            (letter,) = self.field.name(f"end of {bank}").generators()
+            found[letter] = total
         return found
 
     @cached_property
     def sizes(self) -> dict[str, Value]:
         """The size of each bank, in the letters of places."""
-        banks = [slot.bank for slot in self.slots["rhs"] if slot.bank]
         ends = [self.field.zero, *(self.field.raised(letter, 1) for letter in self.ends)]
-        return {
-            bank: last - first for bank, (first, last) in zip(banks, pairwise(ends), strict=True)
-        }
+        banks = zip(self.iphs.symbols.counts, pairwise(ends), strict=True)
+        return {bank: last - first for bank, (first, last) in banks}
 
     @cached_property
     def bank_of_size(self) -> dict[Value, str]:

@@ -20,7 +20,7 @@ from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import Cmp, Expr, Num, names, walk
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.elements.ports import Body
-from piezo_sym.spec.tables import conditions, lane_parameters, law_fields, states
+from piezo_sym.spec.tables import bank_states, conditions, lane_parameters, law_fields, states
 from piezo_sym.translation.field import GeneratorField, NotShownError, Value
 from piezo_sym.translation.functions import call, power, size_of
 from piezo_sym.translation.signs import assume, compare, on_path, reading
@@ -43,8 +43,7 @@ class SystemReader:
     def __init__(self, iphs: IPHS) -> None:
         self.iphs, self.field = iphs, GeneratorField()
         model, system = iphs.model, iphs.system
-        owners = {n: e for n, e in states(model).items() if e in iphs.symbols.counts}
-        self.banks = {**lane_parameters(model), **owners}
+        self.banks = {**lane_parameters(model), **bank_states(model)}
         names = [*model.parameters, *model.inputs, *states(model)]
         symbols = {name: iphs.symbols[name] for name in names}
         if len({*iphs.symbols.symbols.values()}) < len(iphs.symbols.symbols):

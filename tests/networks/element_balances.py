@@ -25,7 +25,8 @@ def quantities(module, spec, x, u, p):
         count = getattr(p, f"{record.bank}_count") if record.bank else 1
         lanes = values[row : row + count]
         row += count
-        series = spec["elements"][element]["kind"] == "capacitor"
+        own = spec["elements"][element]
+        series = own["kind"] == "capacitor" and "bank" not in own
         shared = record.unit in ({"A"} if series else {"V", "m/s", "rad/s", "Pa", "K"})
         found[element][word] = lanes[0] if shared else lanes.sum(axis=0)
         found[element][f"unit of {word}"] = record.unit

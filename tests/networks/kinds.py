@@ -52,14 +52,14 @@ def seeing(draft, text, own=""):
     return f"({text})*T_{body}/{draft.bodies[body]}"
 
 
-def law(draft, letter, body, *, linear, lanes=None, own=""):
+def law(draft, letter, body, *, linear, own=""):
     """Return the text of a dissipative law in a letter, with parameters of its own."""
     forms = LINEAR if linear else (*KINKED, *SMOOTH)
     form = draft.pick(forms)
     words = {"z": letter, "low": draft.bodies[body]}
     for word, unit, low, high in (("r", "1", 0.5, 4), ("s", "1", 0.2, 2), ("w", "1", 0.1, 1)):
         if f"{{{word}}}" in form:
-            words[word] = draft.parameter(word, unit, low, high, lanes=lanes)
+            words[word] = draft.parameter(word, unit, low, high)
             draft.assume.append(f"{words[word]} > 0")
     return seeing(draft, form.format(**words), own)
 
@@ -119,9 +119,9 @@ def of_fluid(draft):
     return {"between": draft.pair("h"), field: draft.parameter("C", unit), **draft.state()}
 
 
-def inductance(draft, lanes=None, *, saturates=True):
+def inductance(draft, *, saturates=True):
     """Return an inductance; some saturate, and in a bank each lane by itself."""
-    linear = draft.parameter("L", "H", lanes=lanes)
+    linear = draft.parameter("L", "H")
     return f"{linear}/(1 + phi**2)" if saturates and draft.one_in(8) else linear
 
 
@@ -135,28 +135,24 @@ def inductor(draft):
 
 def hysteron(draft):
     body = draft.body()
-    count = None if draft.one_in(4) else draft.pick((1, 2, 3, 4))
-    bank = {} if count is None else {"count": count}
     linear = draft.one_in(2)  # row program stays open for a kink of a current that saturates
     state = draft.state()
     own = state.get("state", f"phi_{draft.name}")
     return {
         "between": draft.pair("e"),
-        **bank,
-        "inductance": inductance(draft, count, saturates=linear),
-        "voltage": law(draft, "i", body, linear=linear, lanes=count, own=own),
+        "inductance": inductance(draft, saturates=linear),
+        "voltage": law(draft, "i", body, linear=linear, own=own),
         "heats": body,
         **state,
     }
 
 
 def stop(draft):
-    body, count = draft.body(), draft.pick((None, 1, 2, 3))
-    k, limit = draft.parameter("k", "N/m", lanes=count), draft.parameter("F_c", "N", 0.1, 1)
+    body = draft.body()
+    k, limit = draft.parameter("k", "N/m"), draft.parameter("F_c", "N", 0.1, 1)
     draft.assume.append(f"{limit} >= 0")
-    bank = {} if count is None else {"count": count}
     law = {"stiffness": k, "limit": limit, "heats": body}
-    return {"between": draft.pair("m"), **bank, **law, **draft.state()}
+    return {"between": draft.pair("m"), **law, **draft.state()}
 
 
 def transducer(draft):

@@ -14,6 +14,7 @@ from kinds import KINDS
 from law_values import value
 
 REFERENCES = {"e": "gnd", "m": "wall", "r": "frame", "h": "tank", "": ":zero"}
+NODES = dict.fromkeys(name for kind in KINDS.values() for name in kind.nodes)
 SLOPE_STEP, ENERGY_STEP = 1e-6, 2e-5
 CLOSE = 1e-12
 MOST_STEPS = 60
@@ -62,6 +63,7 @@ class Tableau:
         self.spec, self.states, self.inputs = spec, states, inputs
         self.branches, self.temperatures = [], {}
         self.couplings, self.costates, self.limits = [], {}, {}
+        self.inner = self._inner()
         elements = spec["elements"].items()
         for name, element in elements:
             if element["kind"] == "thermal_mass":
@@ -74,6 +76,27 @@ class Tableau:
         self.nodes = {n: k for k, n in enumerate(n for n in names if n not in REFERENCES.values())}
         self.joint = self._joined()
         self._give()
+
+    def _lanes(self, name, element):
+        """Yield the lanes of an element, each with its label and its nodes, some its own."""
+        inner = self.inner.get(bank_of(name, element), set())
+        for lane in range(element.get("count", 1)):
+            own = {node: f"{node}:{lane}" for node in inner}
+            label = f"{name}_{lane + 1}" if "count" in element else name
+            yield lane, label, tuple(own.get(node, node) for node in nodes_of(element))
+
+    def _inner(self):
+        """Return the nodes that elements of one bank alone name, by their bank."""
+        users, found = {}, {}
+        for name, element in self.spec["elements"].items():
+            parts = [element, *element.get("states", {}).values()]
+            nodes = [n for part in parts for f in NODES for n in part.get(f, ()) if f != "at"]
+            for node in [*nodes, *([element["at"]] if "at" in element else [])]:
+                users.setdefault(node, set()).add(bank_of(name, element))
+        for node, banks in users.items():
+            if len(banks) == 1 and banks != {None} and node not in REFERENCES.values():
+                found.setdefault(*banks, set()).add(node)
+        return found
 
     def words(self, lane=0):
         """Return the values of the parameters, those of one lane where they are listed."""
@@ -88,13 +111,12 @@ class Tableau:
     def _add(self, name, element):
         kind = KINDS[element["kind"]]
         if kind.form == "store, law":
-            for lane in range(element.get("count", 1)):
-                label = f"{name}_{lane + 1}" if "count" in element else name
-                a, b = element["between"]
+            for lane, label, (a, b) in self._lanes(name, element):
                 self._store(label, lane, element, (a, f"{label}:inner"), name)
                 self._resistor(label, lane, element, (f"{label}:inner", b), name)
         elif kind.form == "store":
-            self._store(name, 0, element, nodes_of(element), name)
+            for lane, label, nodes in self._lanes(name, element):
+                self._store(label, lane, element, nodes, name)
         elif kind.form == "stop":
             self._stops(name, element)
         elif kind.form == "storage":
@@ -103,7 +125,8 @@ class Tableau:
             given = self.inputs[element["input"]] * (1 if kind.across else -1)
             self.branches.append(Branch(name, nodes_of(element), kind.across, given))
         elif kind.form == "law":
-            self._resistor(name, 0, element, nodes_of(element), name)
+            for lane, label, nodes in self._lanes(name, element):
+                self._resistor(label, lane, element, nodes, name)
         elif kind.form == "coupling":
             self.couplings.append((name, element))
         elif element["kind"] == "thermal_mass" and name in self.pumped:
@@ -127,12 +150,11 @@ class Tableau:
 
     def _stops(self, name, element):
         """Add a spring, or one in each lane; its limit counts when it is booked."""
-        for lane in range(element.get("count", 1)):
-            label = f"{name}_{lane + 1}" if "count" in element else name
+        for lane, label, nodes in self._lanes(name, element):
             symbol, words = state(name, element) + label.removeprefix(name), self.words(lane)
             force = self.states[symbol] * value(element["stiffness"], words)
             self.limits[label] = symbol, value(element["limit"], words)
-            self.branches.append(Branch(label, tuple(element["between"]), False, force))
+            self.branches.append(Branch(label, nodes, False, force))
 
     def _storage(self, name, element):
         """Add a branch for each state; co-states are differences of the energy."""
@@ -145,9 +167,13 @@ class Tableau:
     def _resistor(self, label, lane, element, nodes, name):
         text, letter, across = law_of(element)
         words = self.seen(lane)
-        if KINDS[element["kind"]].letter:
-            symbol = state(name, element)
-            words[symbol] = self.states[symbol + label.removeprefix(name)]
+        for other, part in self.spec["elements"].items():
+            same = other == name or (
+                "count" in part and bank_of(other, part) == element.get("bank")
+            )
+            if same and KINDS[part["kind"]].letter:
+                symbol = state(other, part)
+                words[symbol] = self.states[symbol + label.removeprefix(name)]
         words = {**words, "T": self.temperatures[element["heats"]]}
         law = lambda z: float(value(text, {**words, letter: z}))  # noqa: E731
         self.branches.append(Branch(label, nodes, across, law=law))
@@ -378,6 +404,11 @@ def slope(energy, words, name):
     steps = (ENERGY_STEP, -ENERGY_STEP)
     high, low = (value(energy, {**words, name: words[name] + step}) for step in steps)
     return (high - low) / (2 * ENERGY_STEP)
+
+
+def bank_of(name, element):
+    """Return the bank of an element: its own name, or that of its cell; None if it has none."""
+    return element.get("bank", name) if "count" in element else None
 
 
 def state(name, element):

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from hypothesis import HealthCheck, given, reject, seed, settings
 from hypothesis import strategies as st
 from kinds import KINDS
-from network_tableau import state
+from network_tableau import NODES, state
 
 from piezo_sym import Model, PiezoError, derive
 
@@ -25,7 +25,7 @@ COUNTS = ((1, 1), (2, 0), (0, 2), (2, 1), (1, 2), (3, 0), (0, 3), (1, 3), (3, 2)
 THREE = ((1, 1, 1), (2, 1, 1), (1, 2, 1))
 HEAT = ("ambient", "conduction", "heat_source")
 TWO_PAIRS = ("coupling", "storage")
-NODES = dict.fromkeys(name for kind in KINDS.values() for name in kind.nodes)
+LANED = ("store", "law", "store, law", "stop")
 WORDS = ("x", "u", "p", "h", "F", "J", "out", "n", "z", "W")
 
 
@@ -61,6 +61,7 @@ class Draft:
     ends: tuple = ()
     name: str = ""
     kind: str = ""
+    lanes: int | None = None  # of the next element
 
     def one_in(self, number):
         """Return whether a rare thing happens."""
@@ -70,16 +71,17 @@ class Draft:
         """Return one of some things."""
         return self.draw(st.sampled_from(list(items)))
 
-    def parameter(self, letter, unit, low=0.5, high=4.0, lanes=None):
-        """Return a parameter: new, a list of values for `lanes`, or one of another element."""
+    def parameter(self, letter, unit, low=0.5, high=4.0):
+        """Return a parameter: new, a list of values for lanes, or one of another element."""
         name = f"{letter}_{self.name}"
         shared = [n for n in self.parameters if n.startswith(f"{letter}_") and self._is_plain(n)]
         if shared and self.one_in(8):
             return self.pick(shared)
         step, odd = (high - low) / 1000, 3.71e-4  # no ratio is 1: generic networks are meant
         numbers = st.integers(0, 1000).map(lambda n: round(low + step * n + odd, 7))
-        listed = lanes is not None and self.one_in(2)
-        drawn = [self.draw(numbers) for _ in range(lanes)] if listed else self.draw(numbers)
+        listed = self.lanes is not None and self.one_in(2)
+        drawn = [self.draw(numbers) for _ in range(self.lanes or 1)]
+        drawn = drawn if listed else drawn[0]
         self.parameters[name] = {"value": drawn, "unit": unit}
         return name
 
@@ -135,13 +137,21 @@ class Draft:
             return {"state": self.words.pop(self.draw(st.integers(0, len(self.words) - 1)))}
         return {}
 
-    def add(self, kind, role, ends=()):
-        """Put an element into the spec."""
+    def add(self, kind, role, ends=(), cell=None):
+        """Put an element into the spec: one, a bank, or one of each cell of a bank."""
         self.name = f"{kind[:3]}{len(self.elements)}"
         self.kind, self.role, self.ends = kind, role, ends
-        name = self.name
-        self.elements[name] = {"kind": kind, **KINDS[kind].draw(self)}
+        name, bank = self.name, self._bank() if cell is None else cell
+        self.lanes = bank.get("count")
+        self.elements[name] = {"kind": kind, **bank, **KINDS[kind].draw(self)}
+        self.lanes = None
         return name
+
+    def _bank(self):
+        """Return the count of lanes in parallel, if the next element has some."""
+        form, often = KINDS[self.kind].form, KINDS[self.kind].form in ("store, law", "stop")
+        fit = form in LANED and self.role == "chord" and not KINDS[self.kind].across
+        return {"count": self.pick((1, 2, 3, 4))} if fit and self.one_in(2 if often else 6) else {}
 
 
 def _bodies(draft):
@@ -208,6 +218,18 @@ def _anywhere(draft):
     draft.add(draft.pick([k for k in fit if k not in lost]), draft.pick(("tree", "chord")))
 
 
+def _cells(draft):
+    """Put cells with a node of their own, at which a store or a law gives the across variable."""
+    domain = draft.pick(sorted(d for d, nodes in draft.nodes.items() if len(nodes) > 1))
+    cell = {"bank": f"cells{len(draft.elements)}", "count": draft.pick((1, 2, 3))}
+    for role, kinds in (("tree", TREE), ("chord", CHORD), ("chord", CHORD))[: draft.pick((2, 3))]:
+        kind = draft.pick([kind for kind in kinds[domain] if KINDS[kind].form in LANED])
+        at = KINDS[kind].nodes == ("at",)
+        other = REFERENCE[domain] if at else draft.pick(draft.nodes[domain])
+        ends = draft.draw(st.permutations([f"{cell['bank']}.inside", other]))
+        draft.add(kind, role, (domain, ends), cell)
+
+
 def _tied(draft):
     """Put stores whose co-states depend on others': two in series or in parallel, or on levers."""
     there = sorted(domain for domain, nodes in draft.nodes.items() if len(nodes) > 1)
@@ -256,6 +278,8 @@ def networks(draw):
         _tree(draft, domain, count)
     _chords(draft)
     _heat(draft)
+    if draft.one_in(5):
+        _cells(draft)
     if draft.one_in(5):
         _anywhere(draft)
     if draft.one_in(5):

@@ -15,6 +15,7 @@ MORE = (
     "a list of values",
     "a loop of resistors",
     "two banks",
+    "a cell of a bank",
     "joined stores",
     "a law of another's state",
     "a law of another's temperature",
@@ -43,6 +44,7 @@ def features(spec, _):
         "a list of values": any(isinstance(value, list) for value in values),
         "a loop of resistors": bool(iphs.junction.slopes),
         "joined stores": bool(iphs.junction.joints),
+        "a cell of a bank": any("bank" in element for element in elements),
         "two banks": sum("count" in element for element in elements) > 1,
     }
     return {element["kind"] for element in elements} | {

@@ -118,12 +118,17 @@ def test_good_sizes_of_banks(count):
     assert edited(("count = 2", f"count = {count}")).elements["hysteron"].count == int(count)
 
 
-def test_only_a_hysteron_has_a_size():
+def test_what_shares_a_velocity_is_one_mass():
     message = refused_edit(('kind = "mass"', 'kind = "mass"\ncount = 2'))
     assert message == (
-        "spec: elements.mass.count: unknown key 'count'; known: kind, at, mass, velocity, "
-        "energy, state"
+        "spec: elements.mass.count: count is given, and those in parallel have one velocity; "
+        "expected one mass; give the mass of all, their sum"
     )
+
+
+def test_a_source_has_no_size():
+    message = refused_edit(('kind = "force_source"', 'kind = "force_source"\ncount = 2'))
+    assert message == ("spec: elements.load.count: unknown key 'count'; known: kind, at, input")
 
 
 def test_a_list_is_a_value_a_lane():

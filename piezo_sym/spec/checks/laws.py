@@ -16,6 +16,8 @@ from piezo_sym.spec.names import NAME
 from piezo_sym.spec.tables import (
     Condition,
     LawField,
+    bank_of,
+    bank_states,
     banks,
     bodies,
     conditions,
@@ -26,6 +28,9 @@ from piezo_sym.spec.tables import (
     states,
     temperatures,
 )
+
+#: The states of each bank, which the laws of its own lanes see.
+Cells = dict[str, dict[str, None]]
 
 
 def check_references(spec: Tables) -> None:
@@ -72,9 +77,12 @@ def check_laws(spec: Tables) -> None:
     """Parse every law, initial value and condition, and check the names in them."""
     one_body = len(bodies(spec)) == 1
     hot = {body: word for word, body in temperatures(spec).items()}
-    every = dict.fromkeys((*spec.parameters, *seen(spec)))
+    every, owners, cells = dict.fromkeys((*spec.parameters, *seen(spec))), bank_of(spec), Cells()
+    for symbol, bank in bank_states(spec).items():
+        cells.setdefault(bank, {})[symbol] = None
     for name, element in spec.elements.items():
         own = {state_symbol(element, name): None} if element.letter else {}
+        own = own | cells.get(owners.get(name, ""), {})
         for law in law_fields(name, element):
             words: Collection[str] = ChainMap(own, every) if law.mark.sees else spec.parameters
             _check_words(spec, law.tree, law.where, law.letters, words, name)
@@ -86,8 +94,7 @@ def check_laws(spec: Tables) -> None:
         _check_words(spec, order.tree, f"a knot of a table in {order.where}", (), spec.parameters)
     hot_names = (*temperatures(spec), *(f"T_{body}" for body in bodies(spec)))
     words = dict.fromkeys([*spec.parameters, *spec.inputs, *states(spec), *hot_names])
-    sizes = banks(spec)
-    lanes = {symbol: name for symbol, name in states(spec).items() if name in sizes}
+    lanes = bank_states(spec)
     for condition in conditions(spec):
         _check_words(spec, condition.tree, condition.where, (), words)
         _check_banks(condition, lanes)
@@ -118,14 +125,14 @@ def _check_banks(condition: Condition, lanes: Mapping[str, str]) -> None:
 
 
 def _check_initial(spec: Tables) -> None:
-    known, sizes = states(spec), banks(spec)
+    known, sizes, lanes = states(spec), banks(spec), bank_states(spec)
     words = {**spec.parameters, **spec.inputs}
     for symbol, start in spec.initial.items():
         where = f"initial.{symbol}"
         if symbol not in known:
             what = f"{quote(symbol)} is no state of this spec"
             raise SpecError(what, where, remedy=_meant_state(spec, symbol))
-        count = sizes.get(known[symbol])
+        count = sizes.get(lanes.get(symbol, ""))
         if isinstance(start, tuple) and len(start) != count:
             expected = (
                 f"{count} values, one per lane" if count else "one value: no bank has this state"
@@ -172,8 +179,8 @@ def _meant_letter(spec: Tables, word: str, letters: tuple[str, ...], element: st
     letter = spec.elements[owner].letter
     if owner == element and letter in letters:
         return f"a law writes the state of its element as its letter, {quote(letter)}"
-    if owner in banks(spec):
-        return f"it is a state of bank {quote(owner)}, whose own laws alone have its lane"
+    if bank := bank_of(spec).get(owner):
+        return f"it is a state of bank {quote(bank)}, whose own laws alone have its lane"
     return f"it is the state of {quote(owner)}, which the law of a store cannot use"
 
 

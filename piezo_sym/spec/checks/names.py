@@ -9,7 +9,7 @@ from piezo_sym.errors import SpecError, quote
 from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.names import check_name, check_symbol
-from piezo_sym.spec.tables import banks, bodies, states
+from piezo_sym.spec.tables import bank_of, bank_states, banks, bodies
 
 #: Variables that every result has; see `run`.
 RESULTS = frozenset({"time", "energy", "entropy", "energy_residual", "entropy_residual"})
@@ -25,7 +25,8 @@ def check_names(spec: Tables) -> None:
     check_model_name(spec.model.name, "model.name")
     for name in spec.elements:
         check_name(name, f"elements.{name}")
-    _check_case(spec.elements)
+    _check_banks(spec)
+    _check_case((*spec.elements, *banks(spec)))
     symbols = list(_symbols(spec))
     for symbol, where in symbols:
         check_symbol(symbol, where)
@@ -79,6 +80,31 @@ def _check_case(elements: Iterable[str]) -> None:
             raise SpecError(what, f"elements.{name}", remedy="rename one: names become files")
 
 
+def _check_banks(spec: Tables) -> None:
+    """Check that banks have names of their own, and the elements of one the same count."""
+    sizes = banks(spec)
+    for name, bank in bank_of(spec).items():
+        where = f"elements.{name}"
+        check_name(bank, f"{where}.bank")
+        if bank != name and bank in spec.elements:
+            what = f"bank {quote(bank)} has the name of an element"
+            raise SpecError(what, where, remedy="rename one of them")
+        if (count := spec.elements[name].count) != sizes[bank]:
+            what = f"bank {quote(bank)} has {sizes[bank]} lanes in another element"
+            raise SpecError(what, f"{where}.count", f"{sizes[bank]}, not {count}")
+    for name, element in spec.elements.items():
+        if getattr(element, "bank", None) is not None and name not in bank_of(spec):
+            raise SpecError("bank is given without count", f"elements.{name}", "both or none")
+
+
+def _quantities(spec: Tables) -> Iterator[tuple[str, str]]:
+    """Yield the names that lanes of banks give to quantities, and their banks."""
+    for name, bank in bank_of(spec).items():
+        for port in spec.elements[name].ports(name):
+            found = (getattr(port, field, "") for field in ("costate", "output", "effort", "rate"))
+            yield from ((own, bank) for own in found if own)
+
+
 def _check_unique(symbols: list[tuple[str, str]]) -> None:
     seen: dict[str, str] = {}
     for symbol, where in symbols:
@@ -93,15 +119,15 @@ def _check_unique(symbols: list[tuple[str, str]]) -> None:
 
 def _check_kept(spec: Tables, symbols: list[tuple[str, str]]) -> None:
     """Refuse symbols that results, lanes, temperatures or bank sizes are called by."""
+    sizes = banks(spec)
     results = {f"{prefix}{name}" for prefix in PREFIXES for name in spec.elements}
     kept = dict.fromkeys(RESULTS | results, "a variable of every result")
-    kept |= {f"{name}_count": f"the size of bank '{name}'" for name in spec.elements}
-    kept |= dict.fromkeys(banks(spec), "the dimension of a bank")
+    kept |= {f"{name}_count": f"the size of bank '{name}'" for name in (*spec.elements, *sizes)}
+    kept |= dict.fromkeys(sizes, "the dimension of a bank")
     kept |= {f"T_{name}": f"the temperature of '{name}'" for name in bodies(spec)}
-    sizes = banks(spec)
-    lanes = {s: f"bank state '{s}'" for s, element in states(spec).items() if element in sizes}
+    lanes = {s: f"bank state '{s}'" for s in bank_states(spec)}
     lanes |= {p: f"'{p}'" for p, entry in spec.parameters.items() if isinstance(entry.value, tuple)}
-    lanes |= {f"{letter}_{name}": f"bank '{name}'" for name in sizes for letter in "iV"}
+    lanes |= {own: f"bank '{bank}'" for own, bank in _quantities(spec)}
     for symbol, where in symbols:
         use = kept.get(symbol)
         base, _, lane = symbol.rpartition("_")

@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, create_model, model_validator
 
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import ZERO, Cmp, Expr
-from piezo_sym.spec.elements.marks import Count, Fields, Letters, Refers, StateName
+from piezo_sym.spec.elements.marks import BankName, Count, Fields, Letters, Refers, StateName
 from piezo_sym.spec.elements.ports import Branch, Port
 
 #: Where types of elements are found by their names, when they are unpickled.
@@ -38,7 +38,12 @@ class State:
 
 
 class Form(ABC):
-    """A part of a kind: a store, a dissipation, a coupling, a source, a body ...; see `forms`."""
+    """A part of a kind: a store, a dissipation, a coupling, a source, a body ...; see `forms`.
+
+    What `has_lanes` may stand for many of its kind, a bank.
+    """
+
+    has_lanes: ClassVar[bool] = False
 
     @property
     def one_of(self) -> tuple[str, ...]:
@@ -99,13 +104,16 @@ class Kind:
     name : as a spec gives it.
     forms : its parts; two are in series.
     about : what it is, on one line.
-    bank : whether it takes `count`, and then stands for lanes in parallel.
     """
 
     name: str
     forms: tuple[Form, ...]
     about: str
-    bank: bool = False
+
+    @property
+    def has_lanes(self) -> bool:
+        """Whether its elements may stand for the lanes of a bank."""
+        return all(form.has_lanes for form in self.forms)
 
     @property
     def letter(self) -> str:
@@ -122,14 +130,15 @@ class Kind:
         """The fields of its elements."""
         found = {name: field for form in self.forms for name, field in form.fields.items()}
         first: Fields = {name: found.pop(name) for name in ("between", "at") if name in found}
-        count: Fields = {"count": (Count | None, None, None)} if self.bank else {}
+        count: Fields = {"count": (Count | None, None, None), "bank": (BankName, None, None)}
+        count = count if self.has_lanes else {}
         state: Fields = {"state": (StateName, None, None)} if self.letter else {}
         return {**first, **count, **found, **state}
 
     @property
     def doc(self) -> str:
         """The text of `piezo-sym kinds`, of the schema and of the type of its elements."""
-        lanes = ("With `count` it is a bank of lanes j = 1..count in parallel.",) * self.bank
+        lanes = ("With `count` it is a bank of lanes j = 1..count in parallel.",) * self.has_lanes
         parts = (self.about, *(form.doc for form in self.forms), *lanes)
         return "\n\n".join((*parts, f"Example: {self.example}"))
 
@@ -189,10 +198,13 @@ class Element(Frozen):
         """Return the conditions on where the states of this element, called `name`, start."""
         return tuple(condition for form in self.row.forms for condition in form.starts(self, name))
 
-    @property
-    def is_bank(self) -> bool:
-        """Whether the element is a bank of parallel lanes: `count` is given, be it 1."""
-        return getattr(self, "count", None) is not None
+    def bank_of(self, name: str) -> str | None:
+        """Return the bank that this element, called `name`, has one lane of: its own, or a cell's.
+
+        None where no `count` is given; a count of 1 is a bank, too.
+        """
+        given = getattr(self, "count", None) is not None
+        return (getattr(self, "bank", None) or name) if given else None
 
     @property
     def is_body(self) -> bool:

@@ -4,7 +4,7 @@ A form says once, for all domains, its fields, its docstring and its port.
 """
 
 from dataclasses import dataclass, replace
-from typing import Any, final
+from typing import Any, ClassVar, final
 
 from piezo_sym.expressions.calculus import add, neg
 from piezo_sym.expressions.energies import slope, without_common_factors
@@ -37,6 +37,8 @@ class Store(Form):
     at : whether it stands at one node; the other is the reference.
     slips : whether it may have a slip, in series with a spring, in parallel to a capacitor.
     """
+
+    has_lanes: ClassVar[bool] = True
 
     domain: PhysicalDomain
     imposes: PowerVariable
@@ -146,6 +148,10 @@ class Store(Form):
         """Return that a rest belongs to a stiffness, and what is heated to a slip."""
         if self.slips and (fault := slips.fault(element)):
             return fault
+        across = self.imposes is PowerVariable.ACROSS
+        if across and element.count is not None and element.bank is None:
+            what = f"count is given, and those in parallel have one {_word(self.costate)}"
+            return ".count", what, f"one {element.kind}", f"give the {self.size} of all, their sum"
         rest = type(element).model_fields["rest"].default if self.stiff else None
         if self.stiff and getattr(element, self.size) is None and element.rest != rest:
             given = next(name for name in self.one_of if getattr(element, name) is not None)
@@ -169,6 +175,8 @@ class Dissipation(Form):
 
     `gives` is what a law may give; `symbol` a law for the first of these, in the example.
     """
+
+    has_lanes: ClassVar[bool] = True
 
     domain: PhysicalDomain
     gives: tuple[PowerVariable, ...]

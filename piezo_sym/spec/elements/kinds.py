@@ -60,7 +60,6 @@ TABLE = (
         "stop",
         (Yielding((_SPRING, _CAPACITOR)),),
         "An elastic-plastic element between two nodes, with hysteresis of any slowness.",
-        bank=True,
     ),
     Kind("lever", _within(TRANSLATION), "An ideal lever between two pairs of nodes."),
     Kind(
@@ -92,7 +91,6 @@ TABLE = (
         "hysteron",
         (_INDUCTOR, Dissipation(ELECTRICAL, (ACROSS,), "rho/(T - T_0)*deadzone(i, i_0)")),
         "A hysteron, an inductor and a resistor in series: eq. (12), Assumption 2.",
-        bank=True,
     ),
     Kind("transformer", _within(ELECTRICAL), "An ideal transformer between two pairs of nodes."),
     Kind(

@@ -107,6 +107,10 @@ Count = Annotated[
     StrictInt,
     Field(ge=1, le=MAX_COUNT, description="Size of the bank; without it there is one lane."),
 ]
+BankName = Annotated[
+    StrictStr | None,
+    Field(description="Bank whose cell it is a part of, as [banks] writes it; else its own name."),
+]
 Jumps = Annotated[StrictBool, Field(description="Whether the law jumps on purpose.")]
 
 

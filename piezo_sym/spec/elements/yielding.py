@@ -6,7 +6,7 @@ limit.
 """
 
 from dataclasses import dataclass
-from typing import Any, final
+from typing import Any, ClassVar, final
 
 from piezo_sym.expressions.calculus import neg
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, Div, Expr, If, Mul, Sym
@@ -22,6 +22,8 @@ from piezo_sym.spec.elements.ports import Branch, Port
 @dataclass(frozen=True)
 class Yielding(Form):
     """A spring or capacitor, one of `stores`, that yields at a limit of its effort."""
+
+    has_lanes: ClassVar[bool] = True
 
     stores: tuple[Store, ...]
 

@@ -1,0 +1,184 @@
+"""Banks: `count` on an element and cells of several, against the network written out by hand."""
+
+import numpy as np
+import pytest
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from piezo_sym import PiezoError, derive, verify
+from piezo_sym.proofs import Verdict
+from piezo_sym.spec.load import parse
+
+COUNT = 3
+HEAD = """
+[model]
+name = "case"
+[parameters]
+m   = { value = 1.5, unit = "kg" }
+k   = { value = 2.0, unit = "N/m" }
+T_0 = { value = 300.0, unit = "K" }
+c   = { value = 2.0, unit = "J/K" }
+PARAMETERS
+[domain]
+assume = ["d_c > 0", "g >= 0", "v_0 > 0"]
+[inputs]
+F = { unit = "N" }
+[elements]
+spring = { kind = "spring", between = ["tip", "wall"], stiffness = "k", state = "q" }
+mass   = { kind = "mass", at = "tip", mass = "m", state = "p" }
+body   = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }
+load   = { kind = "force_source", at = "tip", input = "F" }
+"""
+#: Cells by their elements, `@` the lane; the state of a lane's store is in another's law.
+MAXWELL = {
+    "spring": 'kind = "spring", between = ["tip", "in@"], stiffness = "k_c@", state = "q_c@"',
+    "damper": 'kind = "damper", between = ["in@", "wall"], force = "d_c@*v", heats = "body"',
+}
+SEEN = {
+    "spring": 'kind = "spring", between = ["in@", "tip"], stiffness = "k_c@", state = "q_c@"',
+    "damper": 'kind = "damper", between = ["in@", "wall"], heats = "body", '
+    'force = "d_c@*(1 + g*q_c@**2)*v"',
+}
+ABSORBER = {
+    "spring": 'kind = "spring", between = ["tip", "in@"], stiffness = "k_c@", state = "q_c@"',
+    "damper": 'kind = "damper", between = ["in@", "tip"], heats = "body", '
+    'force = "d_c@*v*(1 + g*q_c@**2) + d_c@*v**3/v_0**2"',
+    "mass": 'kind = "mass", at = "in@", mass = "m_c@", state = "p_c@"',
+}
+STOPPED = {
+    "mass": ABSORBER["mass"],
+    "stop": 'kind = "stop", between = ["tip", "in@"], stiffness = "k_c@", limit = "f_c@", '
+    'heats = "body", state = "q_c@"',
+    "damper": MAXWELL["damper"],
+}
+DAMPERS = {
+    "damper": 'kind = "damper", between = ["tip", "wall"], force = "d_c@*v", heats = "body"',
+}
+CELLS = {"maxwell": MAXWELL, "seen": SEEN, "absorber": ABSORBER, "stop": STOPPED, "damper": DAMPERS}
+UNITS = {"k_c": "N/m", "d_c": "N*s/m", "m_c": "kg", "f_c": "N"}
+
+
+def parameters(values):
+    """Return the lines of parameters, lists or one of each lane."""
+    rows = [f'{name} = {{ value = {v}, unit = "{UNITS[name[:3]]}" }}' for name, v in values.items()]
+    more = 'g = { value = 0.3, unit = "1/m**2" }\nv_0 = { value = 1, unit = "m/s" }'
+    return "\n".join([*rows, more])
+
+
+def banked_text(cell, values):
+    """Return the spec with the cell in a bank."""
+    rows = [f"{name} = {{ {text.replace('@', '')} }}" for name, text in cell.items()]
+    text = HEAD.replace("PARAMETERS", parameters(values))
+    return "\n".join([text, "[banks.cell]", f"count = {COUNT}", "[banks.cell.elements]", *rows])
+
+
+def banked(cell, values):
+    """Return the model with the cell in a bank."""
+    return parse(banked_text(cell, values))
+
+
+def written_out(cell, values):
+    """Return the model with each lane's elements written by hand."""
+    lanes = range(1, COUNT + 1)
+    rows = [
+        f"cell_{name}_{n} = {{ {text.replace('@', f'_{n}')} }}"
+        for name, text in cell.items()
+        for n in lanes
+    ]
+    single = {f"{name}_{n}": v[n - 1] for name, v in values.items() for n in lanes}
+    text = HEAD.replace("PARAMETERS", parameters(single))
+    text = text.replace('"d_c > 0"', ", ".join(f'"d_c_{n} > 0"' for n in lanes))
+    return parse("\n".join([text, *rows]))
+
+
+def numbers(iphs, sizes, point):
+    """Return the rates, outputs, brackets, energy and entropy production of a system at a point."""
+    lanes = iphs.system.E.lanes
+    rows = [part for name in ("x", "rhs", "y") for part in explicit(getattr(iphs, name), sizes)]
+    rows += [lanes.expand(part, sizes) for part in (iphs.U, iphs.S, iphs.sigma)]
+    names = {s: point(s.name) for row in rows for s in row.free_symbols}
+    return [float(sp.N(row.xreplace(names), 15)) for row in rows]
+
+
+def explicit(matrix, sizes):
+    return list(matrix.explicit(sizes) if hasattr(matrix, "explicit") else matrix)
+
+
+@pytest.mark.parametrize("cell", CELLS.values(), ids=CELLS)
+@given(seed=st.integers(0, 10**6))
+@settings(max_examples=5, deadline=None)
+def test_a_bank_is_the_network_written_out(cell, seed):
+    rng = np.random.default_rng(seed)
+    used = [name for name in UNITS if f"{name}@" in str(cell)]
+    values = {name: rng.uniform(0.2, 5, COUNT).round(4).tolist() for name in used}
+    bank, single = derive(banked(cell, values)), derive(written_out(cell, values))
+    states = {s.name: rng.uniform(-1, 1) for s in single.x}
+    known = {n: p.si for n, p in single.model.parameters.items()}
+
+    def point(name):
+        return sp.Float(known.get(name, states.get(name, 0.7)), 17)
+
+    found, wanted = numbers(bank, {"cell": COUNT}, point), numbers(single, {}, point)
+    assert np.allclose(found, wanted, rtol=1e-11, atol=1e-11)
+    assert [s.name for s in bank.expand().x] == [s.name for s in single.x]
+
+
+def values_of(cell):
+    return {name: [1.0, 2.0, 4.0] for name in UNITS if f"{name}@" in str(cell)}
+
+
+@pytest.mark.parametrize("cell", CELLS.values(), ids=CELLS)
+def test_every_row_of_a_bank_is_proved(cell):
+    report = verify(derive(banked(cell, values_of(cell))))
+    assert {row.verdict for row in report.rows if row.required} == {Verdict.PROVED}
+
+
+def test_a_bank_reads_as_the_elements_that_it_is_written_out_as():
+    model = banked(ABSORBER, values_of(ABSORBER))
+    text = model.flatten().to_toml()
+    assert '[elements.cell_mass]\nkind = "mass"\nat = "cell.in"\ncount = 3\nbank = "cell"' in text
+    assert parse(text) == model.flatten()
+    assert parse(model.to_toml()) == model
+    assert parse(text).sha256 == model.sha256
+
+
+FORCE = '[banks.cell.elements]\nload_2 = { kind = "force_source", at = "tip", input = "F" }'
+MASS = '{ kind = "mass", at = "tip", mass = "m" }\n[banks.cell]'
+ELEMENT = "banks.cell.elements"
+#: Edits of a spec with a bank of Maxwell's cells, and how its refusal begins.
+REFUSED = [
+    ("count = 3", "count = 0", "banks.cell.count: '0' does not fit; expected greater than or"),
+    ("count = 3", "count = 2.5", "banks.cell.count: '2.5' does not fit; expected a valid int"),
+    ("count = 3", "count = 2000000", "banks.cell.count: '2000000' does not fit; expected less"),
+    ("count = 3", "count = 4", "parameters.k_c.value: a list of 3 values is given; expected 4"),
+    ("count = 3", "conut = 3", "banks.cell.conut: unknown key 'conut'; did you mean 'count'?"),
+    ("[banks.cell.elements]", FORCE, f"{ELEMENT}.load_2: a force_source is in no cell of a bank"),
+    ("force =", "count = 3, force =", f"{ELEMENT}.damper.count: count is given in a cell; expec"),
+    ("force =", "forse =", f"{ELEMENT}.damper.forse: unknown key 'forse'; did you mean 'force'?"),
+    ("[banks.cell", "[banks.body", "banks.body.elements.spring: bank 'body' has the name of an"),
+    ("[banks.cell", "[banks.q", "elements.spring: symbol 'q' is the dimension of a bank; rename"),
+    ("[banks.cell", "[banks.1x", "banks.1x: '1x' is not a name; expected a letter, then letter"),
+    ("[banks.cell]", f"cell_spring = {MASS}", f"{ELEMENT}.spring: would be called 'cell_spring'"),
+    ("[banks.cell]", f"cell = {MASS}", f"{ELEMENT}.spring: bank 'cell' has the name of an elem"),
+    ('"in"', '"wall"', "elements.cell_damper: both ends are at node 'wall'; expected two differ"),
+    ('"in"', '"gnd"', "elements.cell_spring: 'gnd' is the electrical reference; expected 'wall'"),
+    ('"d_c*v"', '"d_c*v**3"', "network: elements 'cell_spring', 'cell_damper' fix each other's"),
+    ('stiffness = "k"', 'force = "k*q_c"', "elements.spring.force: unknown name 'q_c'; it is"),
+    ('stiffness = "k"', 'stiffness = "k_c"', "parameters.k_c.value: a list is given; expected"),
+    ("[2.0", "[-2.0", "domain.assume[0]: the values given are outside the domain: d_c = -2"),
+    ('mass = "m"', 'mass = "m", count = 2', "elements.mass.count: count is given, and those in"),
+    ('"k", st', '"k", bank = "x", st', "elements.spring: bank is given without count; expected"),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "message"), REFUSED)
+def test_what_is_no_bank_is_refused_in_one_line(old, new, message):
+    text = banked_text(MAXWELL, {"k_c": [1.0, 2.0, 3.0], "d_c": [2.0, 3.0, 4.0]})
+    assert old in text
+    with pytest.raises(PiezoError) as caught:
+        derive(parse(text.replace(old, new)))
+    found = str(caught.value).removeprefix("spec: ")
+    assert found.startswith(message)
+    assert found.isprintable()
+    assert caught.value.exit_code == 2
