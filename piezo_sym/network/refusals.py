@@ -53,10 +53,12 @@ def _contradiction(laws: Laws, relation: Form, edges: list[Edge], why: str) -> N
         what = f"the {word} of {_listed(names)} is forced to be zero{place}"
         return NetworkError(what, "network", f"a free {word}", "connect it to other nodes")
     fixed, taken = _fixed(laws, edges), laws.circuit.names
-    many = (e for e, p in zip(edges, ports, strict=True) if isinstance(p, DissipativePort))
-    many = (e.placed for e in many if e.placed.bank and turn(e.placed.port, taken))
-    if not why and not fixed and (placed := next(many, None)):
-        why = f", and '{placed.element}' is of a bank, which has no law for all lanes together"
+    both = ((e.placed, p) for e, p in zip(edges, ports, strict=True) if e.placed.bank)
+    many = (
+        p.element for p, port in both if isinstance(port, DissipativePort) and turn(port, taken)
+    )
+    if not why and not fixed and (name := next(many, None)):
+        why = f", and '{name}' is of a bank, which has no law for all lanes together"
     what = f"elements {_listed(names)} fix each other's {word}{place}{why}"
     if fixed:
         expected, remedy = _inverse(*fixed[0])
