@@ -19,6 +19,7 @@ from piezo_sym.progress import watch_of
 from piezo_sym.run import simulate as run
 from piezo_sym.run.parameters import LaneValue
 from piezo_sym.run.plant import Plant
+from piezo_sym.run.simulate import stages_of
 from piezo_sym.run.stepper import Stepper as Steps
 
 if TYPE_CHECKING:
@@ -29,11 +30,17 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 
-def of_spec(run: Callable[Concatenate[Any, P], R]) -> Callable[Concatenate[Spec, P], R]:
-    """Return a function of a generated module as one of a spec: a name, a path or a `Model`."""
+def of_spec(
+    run: Callable[Concatenate[Any, P], R],
+    stages: Callable[[Mapping[str, Any]], int | None] = lambda _: None,
+) -> Callable[Concatenate[Spec, P], R]:
+    """Return a function of a generated module as one of a spec: a name, a path or a `Model`.
+
+    `stages` returns those of the steps that it takes, from its options.
+    """
 
     def call(model: Spec, *args: P.args, **given: P.kwargs) -> R:
-        return run(module_of(model), *args, **given)
+        return run(module_of(model, stages(given)), *args, **given)
 
     made: Any = update_wrapper(call, run)
     first, *others = signature(run).parameters.values()
@@ -61,7 +68,7 @@ def _with_bar(run: Callable[P, R]) -> Callable[P, R]:
     return update_wrapper(call, run)
 
 
-simulate = of_spec(_with_bar(run))
+simulate = of_spec(_with_bar(run), stages_of)
 
 
 def Stepper(
@@ -131,7 +138,7 @@ def Stepper(
         If an option is wrong, there is no compiler, or the start is outside the domain.
     """
     given: Any = {"step": step, "order": order, "initial": initial, "inputs": inputs}
-    module: Any = module_of(model)
+    module: Any = module_of(model, stages_of({"step": step, "order": order}))
 
     def made(parameters: Mapping[str, LaneValue] | None) -> Steps:
         return Steps(module, parameters=parameters, **given)

@@ -8,19 +8,23 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Collection, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import final
 
 from piezo_sym.codegen import MARK, collocation_of, lower, printed
+from piezo_sym.codegen.program import blank
 from piezo_sym.derivation import derive
 from piezo_sym.errors import DriftError
 from piezo_sym.files import folder_entries, path_of, path_text, read_bytes, write_together
+from piezo_sym.iphs import IPHS
 from piezo_sym.proofs import Report, Verdict, proofs_json, smt2
 from piezo_sym.run.engine.c_sources import standalone_step
+from piezo_sym.spec.checks.values import are_all_margins
 from piezo_sym.spec.load import load
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.source import shipped
+from piezo_sym.spec.values import Template
 from piezo_sym.verification import verify
 from piezo_sym.version import VERSION
 
@@ -62,14 +66,23 @@ def render(
     report = report or verify(iphs)
     if not allow_unproved:
         report.raise_if_not_proved()
-    texts = printed(lower(iphs, verdict_line(report)), collocation_of(iphs))
-    texts["_step.c"] += standalone_step(model.name, texts["_step.c"])
+    found = replace(blank_texts(iphs), verdict=verdict_line(report))
+    texts = found.filled(model.flatten().model_dump())
     made = f"{MARK} {VERSION}; do not edit: change the spec, then run `piezo-sym generate`."
     return {
         **{f"{model.name}/{model.name}{ending}": text for ending, text in texts.items()},
         f"{model.name}/proofs.json": proofs_json(report, model, made),
         f"{model.name}/proofs.smt2": smt2(report, made),
     }
+
+
+def blank_texts(iphs: IPHS) -> Template:
+    """Return the texts of a system's module, with places for the values of its spec."""
+    texts = printed(blank(lower(iphs, "")), collocation_of(iphs))
+    texts["_step.c"] += standalone_step(iphs.model.name, texts["_step.c"])
+    tables = iphs.model.parameters, iphs.model.inputs
+    factors = {n: str(entry.dimension.factor) for table in tables for n, entry in table.items()}
+    return Template(texts, factors, quick=not iphs.junction.joints and are_all_margins(iphs.model))
 
 
 def verdict_line(report: Report) -> str:

@@ -8,43 +8,53 @@ Input: a shipped name, a path, or a `Model`.  Output: its generated module, load
 from __future__ import annotations
 
 import filecmp
-import hashlib
-import importlib.util
-import sys
 import warnings
-from collections.abc import Mapping
-from contextlib import suppress
-from functools import cache, lru_cache
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
+from threading import Thread
 from types import ModuleType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from piezo_sym.errors import FileError, ProofError, UsageError, quote
-from piezo_sym.files import path_text, read_text, temporary_folder, write_together
-from piezo_sym.run.module import UNPROVED, verdict_of
+import numpy as np
+
+from piezo_sym.errors import UsageError, quote
+from piezo_sym.files import path_text, temporary_folder
+from piezo_sym.module_cache import (
+    PACKAGE,
+    UNPROVED,
+    cached,
+    keep_template,
+    kept,
+    load_module,
+    template,
+    written,
+)
+from piezo_sym.run.module import UNPROVED as NOT_PROVED
+from piezo_sym.run.module import held, verdict_of
 from piezo_sym.spec.names import MAX_NAME
 from piezo_sym.spec.source import data, find, read, shipped
+from piezo_sym.spec.values import shape_hash
 from piezo_sym.spec.write import spec_hash
-from piezo_sym.version import VERSION
 
 if TYPE_CHECKING:
     from piezo_sym.spec.model import Model
 
-PACKAGE = Path(__file__).parent
 GENERATED = Path("generated")  # of the working folder
-ALL_THE_SAME = "-unproved"  # of a module that was generated without being proved
 
 
 class ModuleWarning(UserWarning):
     """A generated module in the working folder that is not used, or one that is not proved."""
 
 
-def module_of(spec: str | Path | Model) -> ModuleType:
+def module_of(spec: str | Path | Model, stages: int | None = None) -> ModuleType:
     """Return the generated module of a spec, derived and proved if it is not known yet.
 
     Parameters
     ----------
     spec : the name of a shipped spec, the path of a spec file, or a `Model`.
+    stages : of the steps of a run that follows: they are compiled while the module is proved.
 
     Raises
     ------
@@ -54,15 +64,21 @@ def module_of(spec: str | Path | Model) -> ModuleType:
     UsageError
         If `spec` is none of these.
     """
-    name, sha256, model = _identified(spec)
+    name, sha256, content = _identified(spec)
     module = _known(name, sha256)
+    if module is None and isinstance(content, dict):
+        module = _with_values(name, sha256, content)
     if module is None:
-        from piezo_sym.spec.load import load
+        from piezo_sym.verification.process import started
 
-        model = model or load(spec)  # type: ignore[arg-type]  # a Model is known already
-        module = _known(model.name, model.sha256) or _generated(model)
+        started()
+        from piezo_sym.spec.load import load
+        from piezo_sym.spec.model import Model
+
+        model = content if isinstance(content, Model) else load(spec)  # type: ignore[arg-type]
+        module = _known(model.name, model.sha256) or _generated(model, stages)
     verdict = verdict_of(module)
-    if verdict.startswith(UNPROVED):
+    if verdict.startswith(NOT_PROVED):
         text = f"model '{module.NAME}' is {verdict}: its runs may break a law of thermodynamics"
         warnings.warn(text, ModuleWarning, stacklevel=3)
     elif not _is_current(module):
@@ -75,8 +91,11 @@ def module_of(spec: str | Path | Model) -> ModuleType:
     return module
 
 
-def _identified(spec: str | Path | Model) -> tuple[str, str, Model | None]:
-    """Return the name and the hash of a spec; the spec's types are loaded only in doubt."""
+def _identified(spec: str | Path | Model) -> tuple[str, str, Model | dict[str, Any] | None]:
+    """Return the name and the hash of a spec, and a model or plain data of a spec's shape.
+
+    The spec's types are loaded only in doubt.
+    """
     if not isinstance(spec, str | Path):
         from piezo_sym.spec.model import Model  # whoever has one has loaded its type
 
@@ -92,8 +111,9 @@ def _identified(spec: str | Path | Model) -> tuple[str, str, Model | None]:
     header = content.get("model")
     name = header.get("name") if isinstance(header, dict) else None
     known = isinstance(name, str) and name.isidentifier() and len(name) <= MAX_NAME
-    tables = all(isinstance(table, dict) for table in content.values())  # of a spec's shape
-    return (str(name) if known else ""), spec_hash(content) if tables else "", None
+    if not known or not all(isinstance(table, dict) for table in content.values()):
+        return "", "", None
+    return str(name), spec_hash(content), content
 
 
 def _command(spec: str | Path | Model) -> str:
@@ -115,13 +135,6 @@ def _own(name: str, sha256: str) -> ModuleType | None:
     return None
 
 
-def _cache_path(name: str, sha256: str, kind: str = "") -> Path:
-    import platformdirs
-
-    folder = Path(platformdirs.user_cache_dir("piezo_sym")) / "modules"
-    return folder / f"{sha256}-{_generator()}{kind}" / f"{name}.py"
-
-
 def _known(name: str, sha256: str) -> ModuleType | None:
     """Return the module of exactly this spec: the package's own, or from the user's cache.
 
@@ -129,46 +142,86 @@ def _known(name: str, sha256: str) -> ModuleType | None:
     """
     if not name:
         return None
-    own = _own(name, sha256)
-    return own or _cached(name, sha256) or _cached(name, sha256, ALL_THE_SAME)
+    if found := _own(name, sha256) or cached(name, sha256):
+        return found
+    found = cached(name, sha256, UNPROVED) if (GENERATED / name).is_dir() else None
+    return found if found and _is_current(found) else None
 
 
-def _cached(name: str, sha256: str, kind: str = "") -> ModuleType | None:
-    path = _cache_path(name, sha256, kind)
-    with suppress(FileError):  # what cannot be read or loaded is made again
-        if read_text(path) is not None:
-            module = load_module(path)
-            if not kind or ((GENERATED / name).is_dir() and _is_current(module)):
-                return module
-    return None
+def _with_values(name: str, sha256: str, data: Mapping[str, Any]) -> ModuleType | None:
+    """Return the module of a spec that differs by values from a known one; None if it is not so.
+
+    What else loading would say of the values, the module's conditions say: in doubt, None.
+    """
+    found = template(name, shape_hash(data))
+    if found is None or not found.quick:
+        return None
+    texts = found.filled(data)
+    trial = written(temporary_folder() / sha256, name, texts)
+    return kept(name, sha256, texts) if _starts_inside(trial) else None
 
 
-def _generated(model: Model) -> ModuleType:
-    """Return the module of a model, generated into the user's cache."""
-    from piezo_sym.build import render
-
-    try:
-        return _kept(model, render(model))
-    except ProofError:
-        if not (GENERATED / model.name).is_dir():
-            raise
-        module = _kept(model, render(model, allow_unproved=True), ALL_THE_SAME)
-        if not _is_current(module):
-            raise
-        return module
+def _starts_inside(module: Any) -> bool:
+    """Return whether the values of a module's spec lie surely inside its domain."""
+    p, u = module.Parameters(), np.array(module.INPUT_DEFAULTS)
+    with np.errstate(all="ignore"):
+        x = module.initial_state(u, p)
+        margins = module.margins(x, u, p)
+    return bool(np.isfinite(x).all() and held(module, margins).all())
 
 
-def _kept(model: Model, texts: Mapping[str, str], kind: str = "") -> ModuleType:
-    """Return a module from its texts, which go to the cache."""
-    path = _cache_path(model.name, model.sha256, kind)
-    files = {Path(name).name: text.encode() for name, text in texts.items()}
-    try:
-        write_together({path.parent / name: text for name, text in files.items()})
-        return load_module(path)
-    except FileError:  # a read-only cache: the module and its C live as long as the process
-        other = temporary_folder() / path.parent.name
-        write_together({other / name: text for name, text in files.items()})
-        return load_module(other / path.name)
+def _generated(model: Model, stages: int | None) -> ModuleType:
+    """Return the module of a model, generated into the user's cache, with its template."""
+    from piezo_sym.build import blank_texts, verdict_line
+    from piezo_sym.derivation import derive
+    from piezo_sym.verification import verify
+
+    data = model.flatten().model_dump()
+    shape, iphs = shape_hash(data), derive(model)
+    found = template(model.name, shape)
+    if found is None:
+        found = blank_texts(iphs)
+        with _meanwhile(model.name, found.filled(data), stages):
+            report = verify(iphs)
+        found = replace(found, verdict=verdict_line(report))
+        if report.failures and (module := _all_the_same(model, found.filled(data))):
+            return module
+        report.raise_if_not_proved()
+        keep_template(model.name, shape, found)
+    return kept(model.name, model.sha256, found.filled(data))
+
+
+@contextmanager
+def _meanwhile(name: str, texts: Mapping[str, str], stages: int | None) -> Iterator[None]:
+    """Compile what a run needs, and import what its result is, while a module is proved.
+
+    An error does not wait for it: it ends with the process.
+    """
+    if stages is None:
+        yield
+        return
+    from piezo_sym.run.collocation import compile_ahead
+
+    module = written(temporary_folder() / "ahead", name, texts)
+    compiling = Thread(target=compile_ahead, args=(module, stages), daemon=True)
+    threads = compiling, Thread(target=_import_results, daemon=True)
+    for thread in threads:
+        thread.start()
+    yield
+    for thread in threads:
+        thread.join()
+
+
+def _import_results() -> None:
+    import xarray  # noqa: F401
+
+
+def _all_the_same(model: Model, texts: Mapping[str, str]) -> ModuleType | None:
+    """Return a module that is not proved, if the working folder has the same."""
+    if not (GENERATED / model.name).is_dir():
+        return None
+    module = kept(model.name, model.sha256, texts, UNPROVED)
+    return module if _is_current(module) else None
 
 
 def _is_current(module: ModuleType) -> bool:
@@ -184,40 +237,3 @@ def _same(one: Path, other: Path) -> bool:
         return filecmp.cmp(one, other, shallow=False)
     except OSError:
         return not one.is_file() and not other.is_file()
-
-
-@cache
-def _generator() -> str:
-    """Return the hash of the package's own sources: another generator, another cached module."""
-    found = hashlib.sha256(VERSION.encode())
-    for path in sorted(PACKAGE.rglob("*.py")):
-        if PACKAGE / "generated" not in path.parents:
-            found.update(path.read_bytes())
-    return found.hexdigest()[:16]
-
-
-def load_module(path: Path) -> ModuleType:
-    """Return the module in a file, loaded again when the file has changed."""
-    return _loaded(path.resolve(), read_text(path))
-
-
-@lru_cache(maxsize=64)
-def _loaded(path: Path, text: str | None) -> ModuleType:
-    del text  # it tells one content of the file from another
-    name = f"piezo_sym_generated_{path.stem}"
-    spec = importlib.util.spec_from_file_location(name, path)
-    if spec is None or spec.loader is None:
-        raise FileError("is no Python module", path_text(path))
-    module = importlib.util.module_from_spec(spec)
-    before = sys.dont_write_bytecode
-    sys.dont_write_bytecode = True  # a generated folder holds nothing but what is committed
-    try:
-        spec.loader.exec_module(module)
-    except (SyntaxError, ImportError, NameError) as error:
-        remedy = "regenerate it with `piezo-sym generate`"
-        raise FileError("cannot be loaded", path_text(path), remedy=remedy) from error
-    finally:
-        sys.dont_write_bytecode = before
-    if not hasattr(module, "SPEC_SHA256"):
-        raise FileError("is no generated module", path_text(path), remedy="move it elsewhere")
-    return module

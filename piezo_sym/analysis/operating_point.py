@@ -18,7 +18,6 @@ from typing import Any, final
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from piezo_sym.analysis.rest import ROUND_OFF, RestSearch
 from piezo_sym.errors import RunError, UsageError
@@ -143,6 +142,7 @@ def _entropy_at(
     module: GeneratedModule, p: Any, x: FloatArray, body: int, row: int, T: float
 ) -> float:
     """Return the entropy [J/K] at which a body has the temperature T; it rises with the entropy."""
+    from scipy.optimize import brentq
 
     def excess(entropy: float) -> float:
         y = x.copy()

@@ -2,13 +2,15 @@
 
 from pathlib import Path
 from types import ModuleType
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from piezo_sym.analysis.figures import PaperFigure
 from piezo_sym.cli.output import said_at_the_end, warnings_as_lines
 from piezo_sym.progress import tracked
+
+if TYPE_CHECKING:
+    from piezo_sym.analysis.figures import PaperFigure
 
 
 def reproduce(

@@ -167,13 +167,12 @@ def keeping(out: Path | None) -> Iterator[None]:
 
 
 def _print(result: xarray.Dataset) -> None:
-    last = result.isel(time=-1)
-    columns = table(
-        f"{result.attrs['model']} at t = {float(last.time):.6g} s", "", "value", "unit", ""
-    )
-    for name, variable in last.data_vars.items():
-        value = ", ".join(f"{v:.6g}" for v in variable.values.reshape(-1)[:4])
-        more = ", ..." if variable.size > 4 else ""
+    end = float(result.time.values[-1])
+    columns = table(f"{result.attrs['model']} at t = {end:.6g} s", "", "value", "unit", "")
+    for name, variable in result.data_vars.items():
+        last = variable.values[-1].reshape(-1)
+        value = ", ".join(f"{v:.6g}" for v in last[:4])
+        more = ", ..." if last.size > 4 else ""
         unit, about = (str(variable.attrs.get(key, "")) for key in ("units", "long_name"))
         row(columns, str(name), value + more, unit, about)
     console().print(columns)

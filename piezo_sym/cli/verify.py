@@ -70,8 +70,10 @@ def _show(found: dict[str, Report], second: dict[str, Recheck], *, as_json: bool
 
 def _reports(specs: list[str]) -> tuple[dict[str, Report], list[PiezoError]]:
     """Return the reports of the specs that load, and the errors of the others."""
+    from piezo_sym.verification.process import examined_model, started
+
+    started()
     from piezo_sym.spec.load import load
-    from piezo_sym.verification.process import examined_model
 
     reports: dict[str, Report] = {}
     errors: list[PiezoError] = []

@@ -64,8 +64,8 @@ def program_of(q: Quantities, functions: tuple[ModuleFunction, ...]) -> Program:
         processes=tuple(_processes(q.iphs)),
         bodies=tuple(Described(n, "K", f"temperature of thermal_mass '{n}'") for n in q.bodies),
         defaults={
-            **{name: entry.si for name, entry in model.parameters.items()},
-            **{name: entry.si for name, entry in model.inputs.items()},
+            **{name: _printed(entry.si) for name, entry in model.parameters.items()},
+            **{name: _printed(entry.si) for name, entry in model.inputs.items()},
         },
         elements=(),
         counts=banks(model),
@@ -75,6 +75,10 @@ def program_of(q: Quantities, functions: tuple[ModuleFunction, ...]) -> Program:
         limits=(),
         taken=q.taken,
     )
+
+
+def _printed(value: float | tuple[float, ...]) -> str | tuple[str, ...]:
+    return tuple(map(repr, value)) if isinstance(value, tuple) else repr(value)
 
 
 def _parameters(model: Model) -> Iterator[Described]:

@@ -9,12 +9,13 @@ bank; a sum over lanes is always a quantity of its own.  There is no algebra bey
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.expressions.tree import Expr, LaneSum, Node, names
 from piezo_sym.spec.names import fresh
+from piezo_sym.spec.values import HASH, VERDICT, lane_name, place
 
 
 @final
@@ -133,7 +134,7 @@ class Program:
     ----------
     name, title, source, sha256, verdict : for the head.
     parameters, inputs, states, outputs, processes, bodies, elements : fields in their order.
-    defaults : values of parameters (a tuple: one per lane), inputs and bank sizes.
+    defaults : values of parameters (a tuple: one per lane) and inputs, as they are printed.
     banks : names, in order.
     quantities : in an order in which they can be computed.
     functions, limits : what the module offers.
@@ -153,7 +154,7 @@ class Program:
     processes: tuple[Described, ...]
     bodies: tuple[Described, ...]
     elements: tuple[Described, ...]
-    defaults: Mapping[str, float | tuple[float, ...]]
+    defaults: Mapping[str, str | tuple[str, ...]]
     counts: Mapping[str, int]
     quantities: tuple[Quantity, ...]
     functions: tuple[ModuleFunction, ...]
@@ -167,6 +168,17 @@ class Program:
         found = {field.name: field.bank for field in fields if field.bank}
         found |= {quantity.name: quantity.bank for quantity in self.quantities if quantity.bank}
         return found
+
+
+def blank(program: Program) -> Program:
+    """Return a program with places instead of values, hash and verdict, as templates have them."""
+    values = {
+        name: place(name)
+        if isinstance(value, str)
+        else tuple(place(lane_name(name, lane)) for lane in range(len(value)))
+        for name, value in program.defaults.items()
+    }
+    return replace(program, defaults=values, sha256=place(HASH), verdict=place(VERDICT))
 
 
 def needed(

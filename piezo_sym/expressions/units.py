@@ -25,6 +25,13 @@ ASCII = str.maketrans(
     | {"\u00b7": "*", "\u00b2": "**2", "\u00b3": "**3"}
 )
 COMMON = ("m", "kg", "s", "A", "K", "N", "J", "W", "V", "C", "F", "H", "Wb", "ohm", "Hz", "Pa")
+#: Powers of kg, m, s, A, K, as the SI defines its units; pint, which has the others, loads slowly.
+COHERENT = {
+    "1": (), "kg": (1,), "m": (0, 1), "s": (0, 0, 1), "A": (0, 0, 0, 1), "K": (0, 0, 0, 0, 1),
+    "N": (1, 1, -2), "Pa": (1, -1, -2), "J": (1, 2, -2), "W": (1, 2, -3), "Hz": (0, 0, -1),
+    "C": (0, 0, 1, 1), "V": (1, 2, -3, -1), "F": (-1, -2, 4, 2), "ohm": (1, 2, -3, -2),
+    "S": (-1, -2, 3, 2), "Wb": (1, 2, -2, -1), "T": (1, 0, -2, -1), "H": (1, 2, -2, -2),
+}  # fmt: skip
 #: The units known, by pint's long names; SI prefixes go with each.
 _UNITS = """meter gram second ampere kelvin mole candela hertz newton pascal joule watt coulomb volt
     farad ohm siemens weber tesla henry radian degree turn revolutions_per_minute minute hour day
@@ -209,8 +216,9 @@ def _named(name: str, where: str, value: float | None, alone: bool = True) -> Un
     One with an offset is a temperature if it stands alone; else it is a difference of them, as in
     W/degC.
     """
-    if name == "1":
-        return Unit(name, name, Fraction(1), (Fraction(0),) * len(BASES))
+    if name in COHERENT:
+        powers = (*COHERENT[name], *(0,) * len(BASES))[: len(BASES)]
+        return Unit(name, name, Fraction(1), tuple(map(Fraction, powers)))
     if not any(root in UNITS for _, root, _ in _registry().parse_unit_name(name)):
         raise SpecError(f"unknown unit {quote(name)}", where, remedy=nearest(name, COMMON))
     try:
@@ -225,9 +233,9 @@ def _named(name: str, where: str, value: float | None, alone: bool = True) -> Un
         raise SpecError(f"unit {quote(name)} has an offset", where, "a plain unit", remedy)
     if origin != 0:
         return Unit(name, "K", Fraction(factor), _known("K").dimension)
-    powers = dict(base.dimensionality)
-    dimension = tuple(Fraction(powers.pop(DIMENSIONS[unit], 0)) for unit in BASES)
-    if powers:
+    left = dict(base.dimensionality)
+    dimension = tuple(Fraction(left.pop(DIMENSIONS[unit], 0)) for unit in BASES)
+    if left:
         raise SpecError(f"unit {quote(name)} is not physical", where, remedy=nearest(name, COMMON))
     return Unit(name, _bare(name, Fraction(factor), dimension), Fraction(factor), dimension)
 
@@ -246,7 +254,12 @@ def _bare(name: str, factor: Fraction, dimension: tuple[Fraction, ...]) -> str:
 
 def to_si(value: float, unit: Unit) -> float:
     """Return `value` given in `unit` in coherent SI, rounded once."""
-    return value if unit.factor == 1 else float(Fraction(repr(value)) * unit.factor)
+    return scaled(value, unit.factor)
+
+
+def scaled(value: float, factor: Fraction) -> float:
+    """Return a value times an exact factor, rounded once."""
+    return value if factor == 1 else float(Fraction(repr(value)) * factor)
 
 
 def known_units() -> Iterator[tuple[str, str, str]]:

@@ -7,6 +7,7 @@ a tolerance or a `FixedStep`.  Output: `Runs`, whose states are those of their l
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import ceil
 from typing import Any, TypeAlias, final
@@ -14,13 +15,14 @@ from typing import Any, TypeAlias, final
 import numpy as np
 from numpy.typing import NDArray
 
-from piezo_sym.errors import RunError, UsageError, listing, quote
+from piezo_sym.errors import EngineError, RunError, UsageError, listing, quote
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.engine.batch import Batch, Stepping
-from piezo_sym.run.engine.engine import Engine
+from piezo_sym.run.engine.batch import Batch, Stepping, collocation_library
+from piezo_sym.run.engine.engine import Engine, engine_of
 from piezo_sym.run.engine.library import Layout
 from piezo_sym.run.inputs import Inputs, Segment
 from piezo_sym.run.ledger import Trajectory
+from piezo_sym.run.module import GeneratedModule, row_count
 from piezo_sym.run.system import DrivenModule, DrivenModules
 
 METHOD = "discrete_gradient"
@@ -115,7 +117,7 @@ def collocate(
     known = DrivenModules.of(systems)
     first = known[0]
     how = stepping(first, accuracy, stages)
-    lying, extra = layout_of(x, side_by_side=side_by_side), 2 if starts else 0
+    lying, extra = layout_of(*x.shape, side_by_side=side_by_side), 2 if starts else 0
     batch = Batch(engine, known.parameters, x, first.inputs, times, how, lying, extra=extra)
     try:
         if starts:
@@ -199,11 +201,18 @@ def choice(rtol: float) -> tuple[int, float]:
     return next((stages, part) for least, stages, part in CHOICE if rtol >= least)
 
 
-def layout_of(x: FloatArray, *, side_by_side: bool) -> Layout:
-    """Return what lies in vectors, for runs of states x (runs, n); results do not depend on it."""
-    if x.shape[1] > MOST_STATES:
+def layout_of(runs: int, states: int, *, side_by_side: bool) -> Layout:
+    """Return what lies in vectors, for runs of so many states; results do not depend on it."""
+    if states > MOST_STATES:
         return "lanes"
-    return "many" if len(x) > 1 and side_by_side else "one"
+    return "many" if runs > 1 and side_by_side else "one"
+
+
+def compile_ahead(module: GeneratedModule, stages: int) -> None:
+    """Compile what one run of a module needs with steps of so many stages, if that can be done."""
+    layout = layout_of(1, row_count(module.STATES, module.Parameters()), side_by_side=True)
+    with suppress(EngineError):
+        collocation_library(engine_of(module), stages, layout)
 
 
 def read_order(order: object, where: str) -> int:

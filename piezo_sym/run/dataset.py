@@ -126,12 +126,12 @@ def to_dataset(
 
     known = Known.of(system, trajectory)
     coords = dict(coordinates(system, times))
-    data: dict[str, Variable] = {}
+    data: dict[str, xarray.Variable] = {}
     for name, variable in (*known.instants(), *known.ledger(), *asked):
         if name in data or name in coords:
             what = f"two quantities are named '{name}'"
             raise UsageError(what, f"model '{system.module.NAME}'", remedy="rename one in the spec")
-        data[name] = variable
+        data[name] = xarray.Variable(*variable, fastpath=True)  # else xarray imports all of Dask
     return xarray.Dataset(data, coords, model_attrs(system) | dict(attrs))
 
 

@@ -10,14 +10,15 @@ Output: an `xarray.Dataset`.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from os import PathLike
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.run.checks import number, positive
-from piezo_sym.run.collocation import METHOD, FixedStep, read_order
+from piezo_sym.run.collocation import METHOD, FixedStep, choice, read_order
 from piezo_sym.run.elements import read_outputs
 from piezo_sym.run.events import read_watched
 from piezo_sym.run.inputs import InputValue
@@ -179,6 +180,17 @@ def simulate(
         return streamed(request, start, samples, state, (events, stop), store)
     planned = request.planned(start, length, state)
     return planned.dataset(samples, read_watched(planned.system, events, stop, step))
+
+
+def stages_of(options: Mapping[str, Any]) -> int | None:
+    """Return how many stages the steps of a run have; None if it has none, or options are wrong."""
+    method, rtol, step, order = map(options.get, ("method", "rtol", "step", "order"))
+    if method not in (None, METHOD):
+        return None
+    with suppress(UsageError):
+        fixed = read_step(step, order, METHOD, rtol)
+        return fixed.order // 2 if fixed else choice(read_rtol(rtol))[0]
+    return None
 
 
 def read_rtol(rtol: object) -> float:

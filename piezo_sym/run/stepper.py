@@ -93,7 +93,7 @@ class Stepper:
         self.outputs = tuple(record.name for record in module.OUTPUTS)
         self._start, self._taken = x, 0
         stepping = Stepping(stages, 0.0, self._h, self._h, fixed=self._h)
-        layout = layout_of(x[None], side_by_side=False)
+        layout = layout_of(1, x.size, side_by_side=False)
         self._batch = Batch(engine, [values], x[None], system.inputs, np.empty(0), stepping, layout)
         self._u, self._y = np.zeros(len(self.inputs)), np.zeros(len(self.outputs))
         self._kept = np.zeros(2 * x.size + self._batch.ledgers.size)

@@ -30,6 +30,11 @@ PATIENCE, MORE_PATIENCE, SMALL = 28.0, 1.0, 10
 LENGTH = struct.Struct(">Q")
 
 
+def started() -> None:
+    """Start the process of this interpreter, which imports what it needs meanwhile."""
+    _examiner().start()
+
+
 def examined(iphs: IPHS) -> Report:
     """Return the report on a system, made in the process of this interpreter."""
     return _report(iphs, iphs.model)
@@ -105,6 +110,11 @@ class Examiner:
             except BaseException:  # an answer that comes later would be taken for the next one's
                 self.close()
                 raise
+
+    def start(self) -> None:
+        """Start the process, unless it runs."""
+        with self._lock:
+            self._running()
 
     def close(self) -> None:
         """Stop the process; the next question starts another."""

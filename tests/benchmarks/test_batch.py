@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from piezo_sym.modules import load_module
+from piezo_sym.module_cache import load_module
 from piezo_sym.run.engine.compiler import FLAGS, build, compilers
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.engine.records import ParameterRecords

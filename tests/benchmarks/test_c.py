@@ -10,7 +10,7 @@ from time import perf_counter
 import numpy as np
 import pytest
 
-from piezo_sym.modules import load_module
+from piezo_sym.module_cache import load_module
 from piezo_sym.run.engine.compiler import FLAGS, build, compilers
 from piezo_sym.run.engine.records import ParameterRecords
 

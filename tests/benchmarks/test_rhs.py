@@ -12,7 +12,7 @@ import pytest
 
 from piezo_sym import Model, derive, load
 from piezo_sym.codegen import lower, numpy_module
-from piezo_sym.modules import load_module
+from piezo_sym.module_cache import load_module
 from piezo_sym.proofs import decide
 
 ROOT = Path(__file__).parents[2]

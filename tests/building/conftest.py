@@ -7,7 +7,7 @@ import pytest
 
 from piezo_sym import Model
 from piezo_sym.build import render
-from piezo_sym.modules import load_module
+from piezo_sym.module_cache import load_module
 
 SHIPPED = Path(__file__).parents[2] / "piezo_sym" / "models" / "piezo_stack.toml"
 

@@ -5,7 +5,7 @@ import pytest
 from test_letters import ONE, THREE, TWO, other_names, states_and_inputs, values
 
 from piezo_sym.build import render
-from piezo_sym.modules import load_module
+from piezo_sym.module_cache import load_module
 from piezo_sym.run.engine.engine import engine_of
 
 WORDS = {

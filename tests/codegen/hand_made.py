@@ -29,7 +29,7 @@ from piezo_sym.expressions.calculus import add, compared, derivative, div, is_af
 from piezo_sym.expressions.parse import parse_rule
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, If, LaneSum, Num, Sym, names, rebuild
 from piezo_sym.expressions.tree import replace as put
-from piezo_sym.modules import load_module
+from piezo_sym.module_cache import load_module
 from piezo_sym.run.engine.c_sources import standalone_step
 
 DRIVEN, STATE = ("x", "u", "p"), ("x", "p")

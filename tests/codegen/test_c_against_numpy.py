@@ -12,7 +12,7 @@ from hypothesis import assume, given, settings
 
 from piezo_sym import Model, load
 from piezo_sym.build import render
-from piezo_sym.modules import load_module
+from piezo_sym.module_cache import load_module
 from piezo_sym.run.engine import library as libraries
 from piezo_sym.run.engine.compiler import FLAGS, compilers
 from piezo_sym.run.engine.engine import OFFERED, engine_of

@@ -15,7 +15,7 @@ from piezo_sym.codegen.differences import sharp
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import Add, Call, Div, Mul, Neg, Num, Sym, rebuild, walk
-from piezo_sym.modules import load_module
+from piezo_sym.module_cache import load_module
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.spec.load import parse
 

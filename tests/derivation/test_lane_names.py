@@ -12,7 +12,7 @@ import sympy as sp
 
 from piezo_sym import derive, generate, verify
 from piezo_sym.errors import UsageError
-from piezo_sym.modules import load_module
+from piezo_sym.module_cache import load_module
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.spec.load import parse
 

@@ -20,7 +20,7 @@ from precise import DIGITS, measured
 from piezo_sym import Model, PiezoError, derive
 from piezo_sym.build import render
 from piezo_sym.errors import NetworkError
-from piezo_sym.modules import load_module
+from piezo_sym.module_cache import load_module
 from piezo_sym.proofs import Verdict, obligations, prove
 from piezo_sym.spec.load import parse
 from piezo_sym.spec.tables import banks

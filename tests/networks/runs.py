@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from piezo_sym.build import render
-from piezo_sym.modules import load_module
+from piezo_sym.module_cache import load_module
 from piezo_sym.run import simulate
 
 METHOD = "discrete_gradient"

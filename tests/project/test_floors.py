@@ -3,10 +3,10 @@
 The floors, two towers on one ground:
 
     errors < expressions < spec < algebra < network < iphs < derivation
-        < {proofs, codegen} < {translation, falsify} < verification < build < modules
-        < {sweeps, linearization} < api < bench < cli
+        < {proofs, codegen} < {translation, falsify} < verification < {build, module_cache}
+        < modules < {sweeps, linearization} < api < bench < cli
     the checker imports nothing of the package, and nothing imports it
-    errors < expressions < {run, progress} < {sweeps, analysis, build} < modules
+    errors < expressions < {run, progress} < {sweeps, analysis, build, module_cache} < modules
         < {linearization, api} < bench < cli
 """
 
@@ -33,7 +33,7 @@ PROVING = (
     {"proofs", "codegen", "checker"},
     {"translation", "falsify"},
     {"verification"},
-    {"build"},
+    {"build", "module_cache"},
     {"modules"},
     {"sweeps", "linearization"},
     {"api"},
@@ -44,7 +44,7 @@ RUNNING = (
     GROUND,
     {"expressions"},
     {"run", "progress"},
-    {"sweeps", "analysis", "build"},
+    {"sweeps", "analysis", "build", "module_cache"},
     {"modules"},
     {"linearization", "api"},
     {"bench"},

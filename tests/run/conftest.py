@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from piezo_sym.modules import load_module
+from piezo_sym.module_cache import load_module
 
 FILES = Path(__file__).parents[2] / "generated" / "piezo_stack"
 

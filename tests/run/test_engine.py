@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from piezo_sym.errors import EngineError
-from piezo_sym.modules import load_module
+from piezo_sym.module_cache import load_module
 from piezo_sym.run.engine import Engine, EngineWarning, compiler
 from piezo_sym.run.engine import library as libraries
 from piezo_sym.run.engine.compiler import compilers, processor
@@ -272,7 +272,7 @@ def test_a_source_of_another_spec_is_not_compiled(module, ending, cache):
 
 ASK = """
 import sys
-from piezo_sym.modules import load_module
+from piezo_sym.module_cache import load_module
 from piezo_sym.run.engine.engine import engine_of
 module = load_module(__import__("pathlib").Path(sys.argv[1]))
 engine = engine_of(module)

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from piezo_sym import load, sine
-from piezo_sym.modules import load_module, module_of
+from piezo_sym.module_cache import load_module, module_of
 from piezo_sym.run import simulate
 from piezo_sym.run.engine.library import Sources
 from tests.codegen.c_compilers import COMPILERS, SANITIZING, runtime
@@ -98,7 +98,7 @@ import numpy as np
 import platformdirs
 
 platformdirs.user_cache_dir = lambda name: sys.argv[2]
-from piezo_sym.modules import load_module
+from piezo_sym.module_cache import load_module
 from piezo_sym.run import simulate
 from piezo_sym.run.engine import library, records
 from piezo_sym.run.engine.engine import OFFERED, engine_of

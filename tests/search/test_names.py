@@ -11,7 +11,7 @@ import tomli_w
 from piezo_sym import derive
 from piezo_sym.codegen import lower, numpy_module
 from piezo_sym.errors import SpecError
-from piezo_sym.modules import load_module
+from piezo_sym.module_cache import load_module
 from piezo_sym.proofs import decide
 from piezo_sym.spec.load import parse
 from tests.search import names

@@ -73,7 +73,7 @@ def opening(program: Program) -> str:
         "",
         *([f"Source:  {text_of(program.source)}"] if program.source else []),
         f"Model:   {program.name}, spec sha256 {program.sha256}",
-        f"Proofs:  {text_of(program.verdict)}",
+        f"Proofs:  {program.verdict}",
         "",
         f"{MARK} {VERSION}; do not edit: change the spec, then run `piezo-sym generate`.",
         "C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.",
@@ -91,13 +91,13 @@ def _parameters(program: Program) -> Iterator[str]:
     yield "typedef struct {"
     for field in program.parameters:
         value = program.defaults[field.name]
-        spec = "a list" if isinstance(value, tuple) else repr(value)
+        spec = "a list" if isinstance(value, tuple) else value
         name = f"*{names[field.name]}" if field.bank else names[field.name]
         lane = f", one per lane of {field.bank}" if field.bank else ""
         renamed = f"{field.name}: " if names[field.name] != field.name else ""
         doc = f"{field.doc} " if field.doc else ""
-        note = text_of(f"{renamed}{doc}[{field.unit}]{lane}; spec: {spec}")
-        yield f"    {'const ' if field.bank else ''}double {name}; /* {note} */"
+        note = text_of(f"{renamed}{doc}[{field.unit}]{lane}")
+        yield f"    {'const ' if field.bank else ''}double {name}; /* {note}; spec: {spec} */"
     for bank, count in program.counts.items():
         yield f"    long {bank}_count; /* lanes of {bank}, at least 1; spec: {count} */"
     if not program.parameters and not program.counts:
@@ -112,11 +112,10 @@ def _defaults(program: Program, names: Mapping[str, str]) -> Iterator[str]:
         fields = []
         for field in program.parameters:
             value = program.defaults[field.name]
-            text = _c_number(value) if isinstance(value, float) else ""
             if field.bank:
-                lanes = value if isinstance(value, tuple) else [value] * program.counts[field.bank]
-                text = f"(const double[]){{{', '.join(map(_c_number, lanes))}}}"
-            fields.append(f".{names[field.name]} = {text}")
+                lanes = value if isinstance(value, tuple) else (value,) * program.counts[field.bank]
+                value = f"(const double[]){{{', '.join(lanes)}}}"
+            fields.append(f".{names[field.name]} = {value}")
         fields += [f".{bank}_count = {count}" for bank, count in program.counts.items()]
         fields += [] if fields else [".none = 0"]
         yield ""
@@ -129,10 +128,6 @@ def _defaults(program: Program, names: Mapping[str, str]) -> Iterator[str]:
 def has_defaults(program: Program) -> bool:
     """Return whether the header has the values of the spec: no bank of it is large."""
     return all(count <= MOST_LANES for count in program.counts.values())
-
-
-def _c_number(value: float) -> str:
-    return repr(float(value))
 
 
 def _numbers(program: Program) -> Iterator[str]:

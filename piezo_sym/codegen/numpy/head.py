@@ -147,7 +147,7 @@ def literal(text: str) -> str:
 def _tables(program: Program) -> Iterable[str]:
     yield from _records("STATES", program.states)
     yield from _records("INPUTS", program.inputs)
-    defaults = [repr(program.defaults[field.name]) for field in program.inputs]
+    defaults = [str(program.defaults[field.name]) for field in program.inputs]
     yield f"INPUT_DEFAULTS = {_tuple(defaults)}"
     yield from _records("OUTPUTS", program.outputs)
     yield from _records("PROCESSES", program.processes)
@@ -186,6 +186,8 @@ def _parameters(program: Program) -> str:
     ]
     for field in program.parameters:
         kind = "_Lanes" if field.bank else "float"
-        lines.append(f"    {field.name}: {kind} = {program.defaults[field.name]!r}")
+        value = program.defaults[field.name]
+        text = value if isinstance(value, str) else _tuple([*value])
+        lines.append(f"    {field.name}: {kind} = {text}")
     lines += [f"    {bank}_count: int = {count}" for bank, count in program.counts.items()]
     return "\n".join(lines)

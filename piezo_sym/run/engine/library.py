@@ -8,6 +8,7 @@ step: any number of processes may ask at once, and none ever sees half a file.
 import ctypes
 import hashlib
 import os
+import re
 import shutil
 import sys
 import tempfile
@@ -39,6 +40,9 @@ ENDING = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 #: Of the file with a library's digest; of folders in which one is compiled, and their age [s] where
 #: a killed compilation has left one.
 DIGEST, BUILD, LEFT_SECONDS = ".sha256", ".build-", 3600.0
+#: What says something of a spec's values in its texts of C: comments, and the initializer.
+_COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
+_VALUES = re.compile(r"^#define \w+_DEFAULTS \{ \\\n(?:.*\\\n)*\}$", re.MULTILINE)
 #: Which variable says where caches are.
 CACHE = {"win32": "LOCALAPPDATA", "darwin": "HOME"}.get(sys.platform, "XDG_CACHE_HOME")
 
@@ -67,8 +71,9 @@ class Sources:
     lossy: bool = False
 
     def files(self) -> dict[str, str]:
-        """Return what to compile, by file name."""
-        texts = {f"{self.name}.h": self.header, f"{self.name}.c": self.source}
+        """Return what to compile, by file name: without values, with which it would be the same."""
+        header = _VALUES.sub("", self.header)
+        texts = {f"{self.name}.h": header, f"{self.name}.c": self.source}
         if self.stages:
             texts[f"{self.name}_step.c"] = self.step
             texts["elimination.c"] = c_source("elimination.c")
@@ -78,7 +83,7 @@ class Sources:
                 texts["stages.c"] = stages_source(self.name, lanes)
         else:
             texts["driver.c"] = functions_source(self.name)
-        return texts
+        return {name: _COMMENT.sub(" ", text) for name, text in texts.items()}
 
 
 def read_source(module: GeneratedModule, ending: str) -> str:

@@ -50,6 +50,12 @@ def check_values(spec: Tables) -> None:
         _check_condition(condition, lanes)
 
 
+def are_all_margins(spec: Tables) -> bool:
+    """Return whether conditions of the domain are all that values must keep."""
+    ordered = any(names(condition.tree) for condition in orders(spec))
+    return not ordered and not any(_of_starts(spec))
+
+
 def _of_starts(spec: Tables) -> Iterator[Condition]:
     """Yield the conditions on where states start."""
     for name, element in spec.elements.items():

@@ -1,0 +1,108 @@
+"""The user's cache of generated modules, and of their templates; and how modules are loaded.
+
+Input: a model's name, and the hash of its spec or of its shape.  Output: a module, loaded, or a
+`Template`.  Another version of the package has another cache.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import sys
+from collections.abc import Mapping
+from contextlib import suppress
+from functools import cache, lru_cache
+from pathlib import Path
+from types import ModuleType
+
+from piezo_sym.errors import FileError
+from piezo_sym.files import path_text, read_text, temporary_folder, write_text, write_together
+from piezo_sym.spec.values import Template, from_json
+from piezo_sym.version import VERSION
+
+PACKAGE = Path(__file__).parent
+#: Of the package's own sources.
+SOURCES = (".py", ".c", ".h")
+#: What folders are called besides their hash: of a module that is not proved, and of a template.
+UNPROVED, SHAPE = "-unproved", "-shape"
+
+
+def cached(name: str, sha256: str, kind: str = "") -> ModuleType | None:
+    """Return a module from the cache; None if it is not there, or cannot be loaded."""
+    path = _path(name, sha256, kind)
+    with suppress(FileError):
+        return None if read_text(path) is None else load_module(path)
+    return None
+
+
+def kept(name: str, sha256: str, texts: Mapping[str, str], kind: str = "") -> ModuleType:
+    """Return a module from its texts, which go to the cache."""
+    folder = _path(name, sha256, kind).parent
+    try:
+        return written(folder, name, texts)
+    except FileError:  # a read-only cache: the module and its C live as long as the process
+        return written(temporary_folder() / folder.name, name, texts)
+
+
+def written(folder: Path, name: str, texts: Mapping[str, str]) -> ModuleType:
+    """Return a module from its texts, which are written to a folder."""
+    write_together({folder / f"{name}{ending}": text.encode() for ending, text in texts.items()})
+    return load_module(folder / f"{name}.py")
+
+
+def template(name: str, shape: str) -> Template | None:
+    """Return the proved texts of a spec's shape, if they are in the cache."""
+    with suppress(FileError):
+        text = read_text(_path(name, shape, SHAPE).with_suffix(".json"))
+        return None if text is None else from_json(text)
+    return None
+
+
+def keep_template(name: str, shape: str, made: Template) -> None:
+    """Put the proved texts of a spec's shape into the cache, if it can be written."""
+    with suppress(FileError):
+        write_text(_path(name, shape, SHAPE).with_suffix(".json"), made.to_json())
+
+
+def _path(name: str, sha256: str, kind: str = "") -> Path:
+    import platformdirs
+
+    folder = Path(platformdirs.user_cache_dir("piezo_sym")) / "modules"
+    return folder / f"{sha256}-{_generator()}{kind}" / f"{name}.py"
+
+
+@cache
+def _generator() -> str:
+    """Return the hash of the package's own sources: another generator, another cached module."""
+    found = hashlib.sha256(VERSION.encode())
+    for path in sorted(PACKAGE.rglob("*.[pch]*")):
+        if path.suffix in SOURCES and PACKAGE / "generated" not in path.parents:
+            found.update(path.read_bytes())
+    return found.hexdigest()[:16]
+
+
+def load_module(path: Path) -> ModuleType:
+    """Return the module in a file, loaded again when the file has changed."""
+    return _loaded(path.resolve(), read_text(path))
+
+
+@lru_cache(maxsize=64)
+def _loaded(path: Path, text: str | None) -> ModuleType:
+    del text  # it tells one content of the file from another
+    name = f"piezo_sym_generated_{path.stem}"
+    spec = importlib.util.spec_from_file_location(name, path)
+    if spec is None or spec.loader is None:
+        raise FileError("is no Python module", path_text(path))
+    module = importlib.util.module_from_spec(spec)
+    before = sys.dont_write_bytecode
+    sys.dont_write_bytecode = True  # a generated folder holds nothing but what is committed
+    try:
+        spec.loader.exec_module(module)
+    except (SyntaxError, ImportError, NameError) as error:
+        remedy = "regenerate it with `piezo-sym generate`"
+        raise FileError("cannot be loaded", path_text(path), remedy=remedy) from error
+    finally:
+        sys.dont_write_bytecode = before
+    if not hasattr(module, "SPEC_SHA256"):
+        raise FileError("is no generated module", path_text(path), remedy="move it elsewhere")
+    return module
