@@ -18,7 +18,8 @@ from test_specs import points
 
 from piezo_sym import derive, load
 from piezo_sym.codegen import collocation_of, lower, printed
-from piezo_sym.module_cache import load_module, module_of
+from piezo_sym.module_cache import load_module
+from piezo_sym.modules import module_of
 from piezo_sym.run.collocation import FixedStep, collocate
 from piezo_sym.run.engine.batch import is_lossy
 from piezo_sym.run.engine.engine import OFFERED, engine_of

@@ -15,7 +15,8 @@ import numpy as np
 import pytest
 
 from piezo_sym import load, sine
-from piezo_sym.module_cache import load_module, module_of
+from piezo_sym.module_cache import load_module
+from piezo_sym.modules import module_of
 from piezo_sym.run import simulate
 from piezo_sym.run.engine.library import Sources
 from tests.codegen.c_compilers import COMPILERS, SANITIZING, runtime
