@@ -20,10 +20,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from piezo_sym.analysis.rest import ROUND_OFF, RestSearch
-from piezo_sym.errors import RunError, UsageError
-from piezo_sym.run.checks import FloatArray, known_keys, number, positive
+from piezo_sym.errors import RunError
+from piezo_sym.run.checks import FloatArray, known_keys, number
 from piezo_sym.run.module import GeneratedModule, by_name, checked, row_name
 from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
+from piezo_sym.run.temperatures import entropy_row, put_temperature
 
 WHERE = "operating_point"
 
@@ -122,41 +123,11 @@ def _held(
     module: GeneratedModule, p: Any, x: FloatArray, given: Mapping[str, float] | None
 ) -> dict[str, int]:
     """Return the entropy's row of each held body, and put its value into x (n,)."""
-    bodies = [record.name for record in module.BODIES]
-    held = {}
-    for name, value in known_keys(given, bodies, f"{WHERE}.temperatures").items():
-        T = positive(value, f"{WHERE}.temperatures.{name}")
-        held[name] = _entropy_row(module, p, x, bodies.index(name))
-        x[held[name]] = _entropy_at(module, p, x, bodies.index(name), held[name], T)
-    return held
-
-
-def _entropy_row(module: GeneratedModule, p: Any, x: FloatArray, body: int) -> int:
-    """Return the row that moves a body's temperature most, for equal relative moves."""
-    step = 1e-6 * np.maximum(np.abs(x), 1.0)
-    moved = module.temperatures(x[:, None] + np.diag(step), p)[body]
-    return int(np.argmax(np.abs(moved - module.temperatures(x, p)[body])))
-
-
-def _entropy_at(
-    module: GeneratedModule, p: Any, x: FloatArray, body: int, row: int, T: float
-) -> float:
-    """Return the entropy [J/K] at which a body has the temperature T; it rises with the entropy."""
-    from scipy.optimize import brentq
-
-    def excess(entropy: float) -> float:
-        y = x.copy()
-        y[row] = entropy
-        with np.errstate(over="ignore"):
-            return float(np.log(module.temperatures(y, p)[body] / T))
-
-    middle, reach = float(x[row]), 1e-3 * max(1.0, abs(float(x[row])))
-    while excess(middle - reach) > 0 or excess(middle + reach) < 0:
-        reach *= 2
-        if not np.isfinite(reach):
-            where = f"{WHERE}.temperatures.{module.BODIES[body].name}"
-            raise UsageError(f"{T:g} K is out of the body's reach", where)
-    return float(brentq(excess, middle - reach, middle + reach, xtol=1e-300, rtol=1e-15))
+    bodies, where = [record.name for record in module.BODIES], f"{WHERE}.temperatures"
+    return {
+        name: put_temperature(module, p, x, bodies.index(name), value, f"{where}.{name}")
+        for name, value in known_keys(given, bodies, where).items()
+    }
 
 
 def _refuse_open_bodies(
@@ -189,7 +160,7 @@ def _described(
     holding = {}
     for name in held:
         body = [record.name for record in module.BODIES].index(name)
-        holding[name] = -temperatures[name] * float(rates[_entropy_row(module, p, x, body)])
+        holding[name] = -temperatures[name] * float(rates[entropy_row(module, p, x, body)])
     eigenvalues = np.linalg.eigvals(search.slope(x))
     margin = ROUND_OFF * float(np.max(np.abs(eigenvalues), initial=0.0))
     return OperatingPoint(

@@ -21,12 +21,13 @@ from piezo_sym.errors import (
     UsageError,
     listing,
 )
-from piezo_sym.files import path_text, write_bytes
+from piezo_sym.files import path_text, write_bytes, zarr_library
 
 if TYPE_CHECKING:
     import xarray
 
-ENDINGS = (".nc", ".csv")
+STORE = ".zarr"
+ENDINGS = (".nc", ".csv", STORE)
 METHODS = """discrete_gradient (compiled) if left out; or SciPy's RK23, RK45, DOP853, Radau, BDF or
 LSODA."""
 ORDER = "With --step: its order, 2 (if left out), 4, 6, 8 or 10."
@@ -35,6 +36,7 @@ EVENTS = "NAME=EXPRESSION, located where its sign changes; repeat."
 STOP = "A comparison, such as 'T_body > 350', that ends the run."
 T0 = "When the run starts [s]; 0, or where it goes on."
 OUTPUTS = "Quantities of elements: all, or spring,damper.heat,..."
+INITIAL = "STATE=NUMBER or T_<body>=KELVIN at t = 0; SI; repeat."
 SIGNALS = "NAME=NUMBER, NAME=sine(100,100) or NAME=@FILE.csv; SI; repeat."
 
 Number: TypeAlias = float | None
@@ -54,9 +56,9 @@ def simulate(
     duration: Annotated[float, option("Length of the run [s].")],
     inputs: Annotated[Words, option(SIGNALS, "--input", "-i")] = None,
     parameters: Annotated[Words, option("PARAMETER=NUMBER; SI; repeat.", "--set", "-p")] = None,
-    initial: Annotated[Words, option("STATE=NUMBER at t = 0; SI; repeat.", "--initial")] = None,
+    initial: Annotated[Words, option(INITIAL, "--initial")] = None,
     continued: Annotated[
-        File, option("Go on from the end of this run (.nc).", "--continue")
+        File, option("Go on from the end of this run (.nc or .zarr).", "--continue")
     ] = None,
     t0: Annotated[Number, option(T0, "--t0")] = None,
     rtol: Annotated[Number, option("Relative tolerance; 1e-5 if left out.")] = None,
@@ -71,7 +73,9 @@ def simulate(
     dissipative_start: Annotated[
         bool, option("Damp what rings after a jump of an input.", "--dissipative-start")
     ] = False,
-    out: Annotated[File, option("Result as .nc (NetCDF) or .csv; makes its folder.")] = None,
+    out: Annotated[
+        File, option("Result as .nc (NetCDF), .csv or .zarr (a store, written as it goes).")
+    ] = None,
 ) -> None:
     """Simulate a spec's generated module and print its last values.
 
@@ -104,13 +108,20 @@ def _run(spec: str, out: Path | None, **options: Any) -> xarray.Dataset:
     asked = options["outputs"]
     options["outputs"] = asked if asked in (None, "all") else asked.split(",")
     of_spec = about(spec, SpecError, NetworkError, ProofError)
+    if _is_store(out):
+        options["store"] = out
     with warnings_as_lines(), keeping(out), of_spec:
         return run(spec, **options, progress=sys.stderr.isatty())
 
 
+def _is_store(out: Path | None) -> bool:
+    """Return whether a result is a store, which the run itself writes as it goes."""
+    return out is not None and out.suffix == STORE
+
+
 def _report(result: xarray.Dataset, inputs: Mapping[str, Any], out: Path | None) -> None:
     """Write a result, and then print it: a closed pipe is no reason to lose it."""
-    if out is not None:
+    if out is not None and not _is_store(out):
         _write(result, out)
     _print(result)
     for name, hits in result.coords.items():
@@ -135,9 +146,12 @@ def _start(path: Path | None, initial: Mapping[str, Any]) -> Any:
     if initial:
         raise UsageError("--initial is given too", "--continue", "one of them")
     try:
+        if _is_store(path):
+            zarr_library("--continue")
+            return xarray.open_dataset(path, engine="zarr", consolidated=False)
         return xarray.load_dataset(path, engine="scipy")
     except (OSError, ValueError, TypeError) as cause:
-        remedy = "give what --out wrote as .nc"
+        remedy = "give what --out wrote as .nc or .zarr"
         raise FileError("is no run that can go on", path_text(path), remedy=remedy) from cause
 
 
@@ -157,7 +171,8 @@ def keeping(out: Path | None) -> Iterator[None]:
     except (RunError, KeyboardInterrupt) as stopped:
         partial = getattr(stopped, "partial", None)
         if out is not None and partial is not None:
-            _write(partial, out)
+            if not _is_store(out):
+                _write(partial, out)
             until = f"{path_text(out)} holds the run until t = {float(partial.time[-1]):.6g} s"
             if isinstance(stopped, RunError):
                 stopped.remedy = f"{stopped.remedy}; {until}" if stopped.remedy else until

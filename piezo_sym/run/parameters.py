@@ -24,7 +24,8 @@ from piezo_sym.run.checks import (
     vector,
     whole,
 )
-from piezo_sym.run.module import GeneratedModule, lanes, others, rows
+from piezo_sym.run.module import GeneratedModule, lanes, others, row_names, rows
+from piezo_sym.run.temperatures import put_temperature
 
 if TYPE_CHECKING:
     import xarray
@@ -91,13 +92,20 @@ def read_initial(
 ) -> FloatArray:
     """Return the state (n,) at t = 0, with inputs u (m,): the module's own, and what is given."""
     names, places = [record.name for record in module.STATES], others(module, "initial")
-    values = known_keys(given, names, "simulate.initial", places)
+    hot = {f"T_{record.name}": n for n, record in enumerate(module.BODIES)}
+    values = known_keys(given, [*names, *hot], "simulate.initial", places)
     x = own_initial(module, parameters, u)
     for record, part in zip(module.STATES, rows(module.STATES, parameters), strict=True):
         if record.name in values:
             size = lanes(parameters, record.bank) if record.bank else None
             where = f"simulate.initial.{record.name}"
             x[part] = lane_value(values[record.name], size, where)
+    for name in (word for word in hot if word in values and word not in names):
+        where = f"simulate.initial.{name}"
+        row = put_temperature(module, parameters, x, hot[name], values[name], where)
+        state = row_names(module.STATES, parameters)[row]
+        if state in values:
+            raise UsageError(f"{quote(state)} is given too", where, "one of them")
     return x
 
 

@@ -102,6 +102,7 @@ def simulate(
     parameters : name -> number, for a bank's parameter also a list of one number per lane; and
         `<bank>_count` -> number of lanes. SI units.
     initial : state -> number, for a bank's state also a list of one number per lane. SI units.
+        A body's temperature may stand for its entropy: {"T_body": 320.0}.
         Those left out keep the module's initial state. Stores that are joined have one state, as
         `show` says. Or a Dataset of this model: the run goes on from its last state, with its
         parameters but for those given; integrals begin at 0 again.

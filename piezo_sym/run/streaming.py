@@ -65,7 +65,7 @@ def streamed(
             partial = getattr(stopped, "partial", None)
             if partial is not None:
                 _append(path, _added(partial, before), first=before is None)
-                vars(stopped)["partial"] = _opened(path)
+                vars(stopped)["partial"] = _opened(path, partial)
             raise
         before = _added(found, before)
         _append(path, before, first=first == 0)
@@ -73,7 +73,7 @@ def streamed(
         state = {r.name: last_state[r.name].values for r in request.module.STATES}
         if "stopped" in found.attrs:
             break
-    return _opened(path)
+    return _opened(path, found)
 
 
 def _new(store: object) -> Path:
@@ -116,7 +116,9 @@ def _append(path: Path, part: xarray.Dataset, *, first: bool) -> None:
         raise FileError(f"cannot be written: {cause.strerror}", path_text(path)) from cause
 
 
-def _opened(path: Path) -> xarray.Dataset:
+def _opened(path: Path, part: xarray.Dataset) -> xarray.Dataset:
+    """Return what a store holds, in the order of a part of it: Zarr knows none."""
     import xarray
 
-    return xarray.open_dataset(path, engine="zarr", consolidated=False)
+    found = xarray.open_dataset(path, engine="zarr", consolidated=False)
+    return found[list(part.data_vars)]

@@ -410,3 +410,31 @@ def test_a_run_stops_and_another_goes_on(call, refused, tmp_path):
     assert "--initial is given too" in refused(*words, first, "--initial", "q=0")
     no_place = refused(*drive, "--duration", "0.1", *found, "--out", "run.csv")
     assert "'run.csv', a table over time, has no place for events" in no_place
+
+
+def test_a_run_into_a_store_goes_on_from_it(call, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    run = ("simulate", "piezo_stack", "--duration", "0.01", "-i", "V_in=sine(100,100)")
+    first = call(*run, "--out", "one.zarr")
+    assert first.code == 0
+    assert first.out.rstrip().endswith("one.zarr")
+    second = call(*run, "--continue", "one.zarr", "--out", "two.nc")
+    assert "at t = 0.02 s" in second.out
+    whole = xarray.load_dataset("two.nc", engine="scipy")
+    before = xarray.open_dataset("one.zarr", engine="zarr", consolidated=False)
+    assert float(whole.q[0]) == float(before.q[-1])
+    assert [*before.data_vars] != []
+    refused = call(*run, "--out", "one.zarr")
+    assert refused.code == 2
+    assert "exists already" in refused.err
+
+
+def test_a_run_begins_at_a_temperature(call, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    run = ("simulate", "piezo_stack", "--duration", "0.01", "--initial", "T_body=320")
+    assert call(*run, "--out", "run.nc").code == 0
+    found = xarray.load_dataset("run.nc", engine="scipy")
+    assert abs(float(found.T_body[0]) - 320.0) < 1e-10
+    twice = call(*run, "--initial", "S=0.1")
+    assert twice.code == 2
+    assert "'S' is given too; expected one of them" in twice.err
