@@ -43,6 +43,8 @@ FLAGS: tuple[tuple[str, ...], ...] = (
 )
 #: Bounds on a compiler that hangs: asked for its version, and at work.
 VERSION_SECONDS, MOST_SECONDS = 10.0, 120.0
+#: How much of what a compiler says is told: a path, and the reason after it.
+MOST_SAID = 400
 #: Lines of /proc/cpuinfo that name instructions, on x86, ARM, RISC-V and POWER.
 _INSTRUCTIONS = ("flags", "features", "isa", "cpu", "cpu part", "model name")
 
@@ -102,7 +104,7 @@ def build(compiler: Compiler, flags: Sequence[str], sources: Sequence[Path], lib
     done = _call(words, MOST_SECONDS)
     if done.returncode != 0 or not library.is_file():
         said = [line for line in done.stderr.splitlines() if "error" in line] or [done.stderr]
-        why = one_line(said[0].strip())[:120] or f"exit status {done.returncode}"
+        why = one_line(said[0].strip())[:MOST_SAID] or f"exit status {done.returncode}"
         raise EngineError(f"the compiler failed: {why}", compiler.command[0])
 
 
