@@ -164,10 +164,13 @@ def _with_values(name: str, sha256: str, data: Mapping[str, Any]) -> ModuleType 
 def _starts_inside(module: Any) -> bool:
     """Return whether the values of a module's spec lie surely inside its domain."""
     p, u = module.Parameters(), np.array(module.INPUT_DEFAULTS)
-    with np.errstate(all="ignore"):
-        x = module.initial_state(u, p)
-        margins = module.margins(x, u, p)
-    return bool(np.isfinite(x).all() and held(module, margins).all())
+    try:
+        with np.errstate(all="ignore"):
+            x = module.initial_state(u, p)
+            found = [x, module.temperatures(x, p), module.margins(x, u, p)]
+    except ArithmeticError:
+        return False
+    return all(np.isfinite(one).all() for one in found) and bool(held(module, found[-1]).all())
 
 
 def _generated(model: Model, stages: int | None) -> ModuleType:

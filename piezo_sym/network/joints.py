@@ -261,5 +261,9 @@ def _check_starts(model: Model, joint: Joint) -> None:
 def _start(model: Model, member: Member, values: Mapping[str, float]) -> float:
     """Return the co-state of a store at the initial value that is said of it."""
     (start,) = starts(model, member.store.state)
-    beyond = evaluate(start, values) - evaluate(member.rest, values)
-    return beyond / evaluate(member.compliance, values)
+    try:
+        beyond = evaluate(start, values) - evaluate(member.rest, values)
+        return beyond / evaluate(member.compliance, values)
+    except ArithmeticError as cause:
+        what, remedy = "has no finite co-state", "check the values of its parameters"
+        raise SpecError(what, f"initial.{member.store.state}", remedy=remedy) from cause

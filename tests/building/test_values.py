@@ -115,6 +115,7 @@ def test_a_list_of_values_is_edited_lane_by_lane(spec):
         ("value = 0.0035", "value = 0.0"),
         ("value = 5.0", "value = nan"),
         ("default = 298.15", "default = 290.0"),
+        ("value = 296.15", "value = 0.0"),
         ("value = 0.0035", "value = true"),
         ("value = 0.0035", 'value = "3e-3"'),
         ("value = 0.0035", "value = 1e301"),
