@@ -51,6 +51,10 @@ class SymbolicLaneSum(sp.Expr):  # type: ignore[misc]
         )
         return made
 
+    def has(self, *patterns: Any) -> bool:
+        """Return whether a pattern stands in it; no choice: SymPy would take it out of the sum."""
+        return bool(super().has(*(p for p in patterns if p is not sp.Piecewise)))
+
     def _latex(self, printer: Any, exp: Any = None) -> str:
         term = printer.parenthesize(self.args[0], PRECEDENCE["Mul"])
         text = rf"\sum_{{j=1}}^{{r}} {term}"

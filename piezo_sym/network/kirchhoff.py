@@ -28,7 +28,7 @@ from piezo_sym.algebra.linear import (
 from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import NetworkError
 from piezo_sym.network.nodes import inner_nodes, is_reference
-from piezo_sym.spec.circuit import Circuit, Placed
+from piezo_sym.spec.circuit import Circuit, Placed, lane_ends
 from piezo_sym.spec.elements.domains import PowerVariable
 from piezo_sym.spec.elements.ports import (
     Body,
@@ -158,8 +158,6 @@ class Laws:
             return singular
         return None
 
-    # The equations
-
     def _through(self, edge: Edge) -> Equation:
         """Return a branch's through variable as (unknowns, givens)."""
         if edge.imposes is PowerVariable.ACROSS:
@@ -196,18 +194,20 @@ class Laws:
                 combine(across, _across(port.second, ratio), -self.field.one)
                 yield Equation(across, {})
 
+    def _flows(self, bank: str | None) -> list[tuple[str, Any]]:
+        """Return what flows through the branches of a bank, or of none, where it is unknown."""
+        own = (e for e in self.edges if e.placed.bank == bank)
+        return [e.unknown for e in own if e.imposes is PowerVariable.ACROSS]
+
     def _solve_lane(self, bank: str) -> dict[Any, Form]:
         """Return one lane's own unknowns in terms of its givens and the shared nodes."""
         balances = self._balances(bank)
+        if bank in self.circuit.chains:
+            accumulate(balances[lane_ends(bank)[0]].right, ("s", bank), -self.field.one)
         inner = {node: row for node, row in balances.items() if node in self.inner}
         equations = [Equation(row.left, _negated(row.right)) for row in inner.values()]
         equations += list(self._constraints(bank))
-        unknowns = [("e", node) for node in inner]
-        unknowns += [
-            e.unknown
-            for e in self.edges
-            if e.placed.bank == bank and e.imposes is PowerVariable.ACROSS
-        ]
+        unknowns = [("e", node) for node in inner] + self._flows(bank)
         for equation in equations:  # shared nodes are given, for a lane
             for label in [label for label in equation.left if label not in unknowns]:
                 accumulate(equation.right, label, -equation.left.pop(label))
@@ -221,14 +221,16 @@ class Laws:
                 if node not in self.inner:
                     total = balances.setdefault(node, Equation())
                     combine(total.right, self._summed(bank, row, solution), self.field.one)
+        chained = []
+        for bank, ends in self.circuit.chains.items():
+            _draw(balances, ends, Equation({("s", bank): self.field.one}), self.field.one)
+            one = Equation({("e", lane_ends(bank)[0]): self.field.one})
+            fall = self._summed(bank, one, lanes[bank])
+            chained.append(Equation(_across(ends, self.field.one), fall))
         equations = [Equation(row.left, _negated(row.right)) for row in balances.values()]
-        equations += list(self._constraints(None))
-        unknowns: list[Any] = [("e", node) for node in balances]
-        unknowns += [
-            e.unknown
-            for e in self.edges
-            if e.placed.bank is None and e.imposes is PowerVariable.ACROSS
-        ]
+        equations += [*self._constraints(None), *chained]
+        unknowns = [("e", node) for node in balances] + self._flows(None)
+        unknowns += [("s", bank) for bank in self.circuit.chains]
         unknowns += [("t", port.name) for port in self.ratio if not port.gyrates]
         return self._solved(equations, unknowns)
 
@@ -243,17 +245,15 @@ class Laws:
             raise NetworkError(what, "network", remedy=remedy) from error
 
     def _summed(self, bank: str, row: Equation, solution: dict[Any, Form]) -> Form:
-        """Return what all lanes together draw from a shared node, as sums of their givens."""
+        """Return what all lanes together draw from a node, or are across, in sums of givens."""
         drawn = dict(row.right)
         for label, coefficient in row.left.items():
             combine(drawn, solution.get(label, {label: self.field.one}), coefficient)
-        if any(label[0] == "e" for label in drawn):
+        if any(label[0] in ("e", "s") for label in drawn):
             what = f"bank '{bank}' fixes a node that it shares"
             remedy = "put an inductor or a hysteron in each lane, so that its current is a state"
             raise NetworkError(what, f"elements.{bank}", remedy=remedy)
         return {("sum", label): coefficient for label, coefficient in drawn.items()}
-
-    # The answers
 
     def _answer(self, edge: Edge, lanes: Mapping[str, Any], shared: dict[Any, Form]) -> Answer:
         """Return a branch's answer, the variable it does not impose: (every lane, own lane)."""

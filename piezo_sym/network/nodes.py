@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from piezo_sym.errors import NetworkError, listing, nearest, with_article
-from piezo_sym.spec.circuit import Circuit
+from piezo_sym.errors import NetworkError, listing, nearest, quote, with_article
+from piezo_sym.spec.circuit import LAST, Circuit, lane_ends
 from piezo_sym.spec.elements.domains import REFERENCES, PhysicalDomain
 from piezo_sym.spec.elements.ports import (
     Body,
@@ -21,8 +21,8 @@ from piezo_sym.spec.elements.ports import (
 
 
 def is_reference(node: str) -> bool:
-    """Return whether a node is one at which the across variable is zero."""
-    return node in REFERENCES
+    """Return whether a node is one at which the across variable is zero, perhaps of a lane."""
+    return node in REFERENCES or node.endswith(LAST)
 
 
 def branches(circuit: Circuit) -> Iterator[tuple[str, Branch, PhysicalDomain]]:
@@ -38,6 +38,17 @@ def branches(circuit: Circuit) -> Iterator[tuple[str, Branch, PhysicalDomain]]:
                 yield placed.element, circuit.pumped[placed.element], port.domain
 
 
+def _chained(circuit: Circuit) -> Iterator[tuple[str, Branch, PhysicalDomain]]:
+    """Yield what joins the first and last lane of a chain to its ends, as `branches`."""
+    found = {placed.bank: (placed.element, placed.port) for placed in circuit.ports if placed.bank}
+    for bank, (first, last) in circuit.chains.items():
+        element, port = found[bank]
+        start, end = lane_ends(bank)
+        if isinstance(port, Storage | DissipativePort):
+            yield element, (first, start), port.domain
+            yield element, (end, last), port.domain
+
+
 def is_inner(node: str) -> bool:
     """Return whether a node is an element's own (no spec can write the colon)."""
     return ":" in node
@@ -50,8 +61,10 @@ def inner_nodes(circuit: Circuit) -> frozenset[str]:
     for element, branch, _ in branches(circuit):
         for node in branch:
             users.setdefault(node, set()).add(owners[element])
+    for node in (node for pair in circuit.chains.values() for node in pair):
+        users.setdefault(node, set()).add(None)
     found = (node for node, banks in users.items() if len(banks) == 1 and None not in banks)
-    return frozenset(found) - REFERENCES.keys()
+    return frozenset(node for node in found if not is_reference(node))
 
 
 def check_nodes(circuit: Circuit) -> None:
@@ -64,23 +77,25 @@ def check_nodes(circuit: Circuit) -> None:
     """
     domains: dict[str, tuple[PhysicalDomain, str]] = {}
     users: dict[str, list[str]] = {}
-    for element, branch, domain in branches(circuit):
+    found = [*branches(circuit), *_chained(circuit)]
+    for element, branch, domain in found:
         where = f"elements.{element}"
         if branch[0] == branch[1]:
             raise _short(circuit, element, branch[0])
         for node in branch:
             _check_domain(node, domain, where, domains)
             users.setdefault(node, []).append(element)
-    for node, found in users.items():
-        if len(found) < 2 and not is_reference(node):
-            raise _dangling(node, found[0], list(branches(circuit)))
-    _check_ground(circuit)
+    for node, own in users.items():
+        if len(own) < 2 and not is_reference(node):
+            raise _dangling(node, own[0], found)
+    _check_ground(found)
+    _check_chains(circuit)
 
 
 def _check_domain(
     node: str, domain: PhysicalDomain, where: str, domains: dict[str, tuple[PhysicalDomain, str]]
 ) -> None:
-    if is_reference(node):
+    if node in REFERENCES:
         other = REFERENCES[node]
         if other != domain:
             what = f"'{node}' is the {other.name} reference"
@@ -121,14 +136,28 @@ def _dangling(
     return NetworkError(what, f"elements.{element}", "two elements at a node", remedy)
 
 
-def _check_ground(circuit: Circuit) -> None:
+def _check_chains(circuit: Circuit) -> None:
+    """Check that what is in a chain meets nothing else than its lane, and its ends."""
+    inner = inner_nodes(circuit)
+    for placed in circuit.ports:
+        if (ends := circuit.chains.get(placed.bank or "")) is None:
+            continue
+        for node in getattr(placed.port, "branch", ()):
+            if node not in inner and not node.endswith(LAST):
+                what = f"connects to {quote(node)}, and is one of cells in series"
+                expected = f"nodes of its cell, or the ends {listing(map(quote, ends))}"
+                remedy = "name other nodes, or write the cells one by one"
+                raise NetworkError(what, f"elements.{placed.element}", expected, remedy)
+
+
+def _check_ground(found: list[tuple[str, Branch, PhysicalDomain]]) -> None:
     """Check that branches connect every node to the reference of its domain."""
     beside: dict[str, list[str]] = {}
-    for _, (one, other), _ in branches(circuit):
+    for _, (one, other), _ in found:
         beside.setdefault(one, []).append(other)
         beside.setdefault(other, []).append(one)
     tied = _reached(list(REFERENCES), beside)
-    for element, (node, _), domain in branches(circuit):
+    for element, (node, _), domain in found:
         if node not in tied:
             near = sorted(n for n in _reached([node], beside) if not is_inner(n))
             what = f"nothing connects node '{node}' to '{domain.reference}'"

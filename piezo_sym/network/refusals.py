@@ -29,9 +29,21 @@ def refusal(laws: Laws, singular: SingularError, why: str = "") -> NetworkError:
     """Return the first contradiction between givens, or else what nothing determines."""
     for relation in singular.relations:
         edges = _edges(laws, relation)
+        if chain := next((bank for kind, bank in relation if kind == "s"), None):
+            return _chain(chain, edges)
         if edges:
             return _contradiction(laws, relation, edges, why)
     return _undetermined(laws, singular)
+
+
+def _chain(bank: str, edges: list[Edge]) -> NetworkError:
+    """Return that cells in series fix what they share."""
+    port = _port(edges[0])
+    word = port.domain.through.name.replace("_", " ")
+    what = f"{_listed([e.placed.element for e in edges])} fix the {word} that cells in series share"
+    loose = kind_of(Dissipation, port.domain).name
+    remedy = f"put a {loose} in parallel to them in each cell, or write the cells one by one"
+    return NetworkError(what, f"banks.{bank}", f"a {port.domain.across.name} of each cell", remedy)
 
 
 def _edges(laws: Laws, relation: Form) -> list[Edge]:
@@ -57,7 +69,7 @@ def _contradiction(laws: Laws, relation: Form, edges: list[Edge], why: str) -> N
     many = (
         p.element for p, port in both if isinstance(port, DissipativePort) and turn(port, taken)
     )
-    if not why and not fixed and (name := next(many, None)):
+    if not why and (name := next(many, None)):
         why = f", and '{name}' is of a bank, which has no law for all lanes together"
     what = f"elements {_listed(names)} fix each other's {word}{place}{why}"
     if fixed:

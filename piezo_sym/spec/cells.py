@@ -40,9 +40,9 @@ def cells(spec: Tables, outside: set[str]) -> Iterator[tuple[str, dict[str, Any]
             place = f"{where}.elements.{name}"
             check_name(name, place)
             _check(element, place, where)
-            node = partial(_node, bank, outside, place)
-            made = renamed(element, {}, str, node) | {"bank": bank, "count": table.count}
-            yield f"{bank}_{name}", made, place
+            node = partial(_node, bank, outside | {*(table.series or ())}, place)
+            more = {"bank": bank, "count": table.count, "series": table.series}
+            yield f"{bank}_{name}", renamed(element, {}, str, node) | more, place
 
 
 def nodes_of(element: Element) -> Iterator[str]:
@@ -55,10 +55,11 @@ def _check(element: Element, place: str, where: str) -> None:
         what = f"a {element.kind} is in no cell of a bank"
         remedy = f"write it in [elements], with nodes that cells of {where} name, too"
         raise SpecError(what, place, "a store, a dissipative element, a stop or hysteron", remedy)
-    for field in ("count", "bank"):
+    for field in ("count", "bank", "series"):
         if getattr(element, field) is not None:
             what = f"{field} is given in a cell"
-            raise SpecError(what, f"{place}.{field}", f"count in [{where}]", "leave it out")
+            expected = f"count and series in [{where}]"
+            raise SpecError(what, f"{place}.{field}", expected, "leave it out")
 
 
 def _node(bank: str, outside: set[str], place: str, node: str) -> str:

@@ -11,7 +11,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, TypeVar, final, overload
 
+from piezo_sym.errors import SpecError, quote
 from piezo_sym.expressions.tree import Expr, rename
+from piezo_sym.spec.elements.base import Element
 from piezo_sym.spec.elements.domains import THERMAL
 from piezo_sym.spec.elements.ports import (
     Body,
@@ -28,8 +30,10 @@ from piezo_sym.spec.elements.ports import (
 )
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.names import fresh
-from piezo_sym.spec.tables import banks, in_words, law_fields, temperatures
+from piezo_sym.spec.tables import bank_of, banks, in_words, law_fields, temperatures
 
+#: How the last node of a lane in a chain ends (no spec can write the colon).
+LAST = ":last"
 A = TypeVar("A", bound=Port)
 B = TypeVar("B", bound=Port)
 
@@ -54,11 +58,13 @@ class Circuit:
     model : the spec they come from.
     ports : in declaration order.
     names : every name in use: parameters, inputs, states, bank sizes and the ports' quantities.
+    chains : of the banks whose lanes are in series, the ends of all together.
     """
 
     model: Model
     ports: tuple[Placed, ...]
     names: frozenset[str]
+    chains: Mapping[str, Branch]
 
     @overload
     def of(self, kind: type[A], /) -> Iterator[tuple[Placed, A]]: ...
@@ -101,7 +107,7 @@ def circuit_of(model: Model) -> Circuit:
     taken = {*heat.values(), *model.parameters, *model.inputs, *model.elements}
     taken |= {f"{bank}_count" for bank in banks(model)}
     placed = [
-        Placed(name, element.bank_of(name), port)
+        Placed(name, element.bank_of(name), _in_lane(name, element, port))
         for name, element in model.elements.items()
         for port in element.ports(name)
     ]
@@ -110,7 +116,27 @@ def circuit_of(model: Model) -> Circuit:
     for entry in placed:
         port = _named(entry, taken, heat, laws[entry.element])
         named.append(replace(entry, port=port))
-    return Circuit(model, tuple(named), frozenset(taken))
+    chains = {bank: model.elements[name].chain for name, bank in bank_of(model).items()}
+    ends = {bank: pair for bank, pair in chains.items() if pair}
+    return Circuit(model, tuple(named), frozenset(taken), ends)
+
+
+def lane_ends(bank: str) -> Branch:
+    """Return the ends of each lane in a chain; the second is where its across variables are 0."""
+    return f"{bank}:first", f"{bank}{LAST}"
+
+
+def _in_lane(name: str, element: Element, port: Port) -> Port:
+    """Return a port between its lane's own ends, if lanes are in series."""
+    if element.chain is None or not isinstance(port, Storage | DissipativePort):
+        return port
+    ends = dict(zip(element.chain, lane_ends(element.bank_of(name) or ""), strict=True))
+    if hasattr(element, "at"):
+        what = f"a {element.kind} moves relative to {quote(port.branch[1])}, not to its cell"
+        remedy = "leave it out, or write the cells one by one"
+        raise SpecError(what, f"elements.{name}", "cells between their two ends", remedy)
+    first, second = (ends.get(node, node) for node in port.branch)
+    return replace(port, branch=(first, second))
 
 
 def _laws(model: Model, name: str, heat: Mapping[str, str]) -> Iterator[tuple[str, Expr]]:

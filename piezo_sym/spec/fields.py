@@ -22,7 +22,7 @@ from pydantic import (
 from piezo_sym.expressions.units import Unit, parse_unit, to_si
 from piezo_sym.spec.elements import KINDS
 from piezo_sym.spec.elements.base import Frozen
-from piezo_sym.spec.elements.marks import Count, Node
+from piezo_sym.spec.elements.marks import Count, Ends, Node
 from piezo_sym.spec.table import Table
 
 MAX_TEXT = 400
@@ -211,6 +211,7 @@ class Bank(Frozen):
     """Cells of several elements, all alike but for parameters and states that are lists."""
 
     count: Annotated[Count, Field(description="How many cells there are.")]
+    series: Ends = None
     elements: Annotated[
         Table[AnyElement],
         Field(description="Of one cell, by name; nodes that stand in no other table are its own."),

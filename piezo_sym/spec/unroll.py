@@ -15,6 +15,7 @@ from piezo_sym.expressions.tree import names
 from piezo_sym.spec.cells import nodes_of
 from piezo_sym.spec.elements.base import Element, state_symbol
 from piezo_sym.spec.elements.domains import REFERENCES
+from piezo_sym.spec.elements.ports import Branch
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.rename import renamed, reworded, started
 from piezo_sym.spec.tables import bank_of, bank_states, banks, lane_parameters
@@ -87,19 +88,29 @@ def _elements(model: Model, sizes: Mapping[str, int], split: Mapping[str, int]) 
             continue
         words = {*split, *(s for s, bank in symbols.items() if bank == owners[name])}
         for lane in range(1, sizes[owners[name]] + 1):
-            yield f"{name}_{lane}", _lane(name, element, _words(lane, words), inner, lane)
+            nodes = {node: f"{node}.{lane}" for node in inner}
+            nodes |= _link(element.chain, owners[name], lane, sizes[owners[name]])
+            yield f"{name}_{lane}", _lane(name, element, _words(lane, words), nodes)
 
 
 def _lane(
-    name: str, element: Element, words: Mapping[str, str], inner: set[str], lane: int
+    name: str, element: Element, words: Mapping[str, str], nodes: Mapping[str, str]
 ) -> dict[str, Any]:
-    """Return the fields of an element in one lane, which has nodes of its own."""
-
-    def node(given: str) -> str:
-        return f"{given}.{lane}" if given in inner else given
-
-    made = renamed(element, words, str, node) | {"count": None, "bank": None}
+    """Return the fields of an element in one lane; `nodes` are those that the lane calls so."""
+    made = renamed(element, words, str, lambda node: nodes.get(node, node))
+    made |= {"count": None, "bank": None, "series": None}
     return made | ({"state": words[state_symbol(element, name)]} if element.letter else {})
+
+
+def _link(chain: Branch | None, bank: str, lane: int, size: int) -> dict[str, str]:
+    """Return what a lane calls the ends of a chain."""
+    if chain is None:
+        return {}
+    ends = f"{bank}.{lane - 1}", f"{bank}.{lane}"
+    return {
+        chain[0]: chain[0] if lane == 1 else ends[0],
+        chain[1]: chain[1] if lane == size else ends[1],
+    }
 
 
 def _inner(model: Model) -> set[str]:

@@ -108,8 +108,13 @@ def across(value: Value, state: int, lane: int) -> Value:
     bank = next(iter(field.gens[state].lanes))[0]
 
     def of_sum(gen: Generator) -> Value:
-        if gen.mark != bank or gen.arg is None:
+        if gen.arg is None:
             return field.zero
+        inside = across(gen.arg, state, lane)
+        if gen.mark != bank:
+            return field.lane_sum(inside, str(gen.mark))
+        if inside.terms:
+            raise NotShownError("terms of a sum over a bank depend on another sum over it")
         return moved(derivative(gen.arg, state), bank, lane)
 
     return _chain(value, state, field.zero, of_sum)

@@ -17,7 +17,7 @@ MECHANICAL = {"N", "N*m"}  # units of efforts that are forces: these add up at n
 def quantities(module, spec, x, u, p):
     """Return {element: {quantity: value}}, a bank's lanes summed, but for what they share.
 
-    Lanes are in parallel, and share voltage, velocity, pressure; those of capacitors are in series.
+    Lanes are in parallel, and share voltage, velocity, pressure; those in series share what flows.
     """
     values, found, row = module.elements(x, u, p), defaultdict(dict), 0
     for record in module.ELEMENTS:
@@ -26,8 +26,9 @@ def quantities(module, spec, x, u, p):
         lanes = values[row : row + count]
         row += count
         own = spec["elements"][element]
-        series = own["kind"] == "capacitor" and "bank" not in own
-        shared = record.unit in ({"A"} if series else {"V", "m/s", "rad/s", "Pa", "K"})
+        series = "series" in own or (own["kind"] == "capacitor" and "bank" not in own)
+        through, across = {"A", "N", "N*m", "m**3/s"}, {"V", "m/s", "rad/s", "Pa", "K"}
+        shared = record.unit in (through if series else across)
         found[element][word] = lanes[0] if shared else lanes.sum(axis=0)
         found[element][f"unit of {word}"] = record.unit
     assert row == len(values)

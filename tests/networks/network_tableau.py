@@ -82,6 +82,10 @@ class Tableau:
         inner = self.inner.get(bank_of(name, element), set())
         for lane in range(element.get("count", 1)):
             own = {node: f"{node}:{lane}" for node in inner}
+            if "series" in element:  # one lane after the other, from one end to the other
+                joints = [f"{element['bank']}:joint {n}" for n in range(1, element["count"])]
+                places = [element["series"][0], *joints, element["series"][1]]
+                own |= dict(zip(element["series"], places[lane : lane + 2], strict=True))
             label = f"{name}_{lane + 1}" if "count" in element else name
             yield lane, label, tuple(own.get(node, node) for node in nodes_of(element))
 
@@ -93,6 +97,8 @@ class Tableau:
             nodes = [n for part in parts for f in NODES for n in part.get(f, ()) if f != "at"]
             for node in [*nodes, *([element["at"]] if "at" in element else [])]:
                 users.setdefault(node, set()).add(bank_of(name, element))
+            for node in element.get("series", ()):
+                users.setdefault(node, set()).add(None)
         for node, banks in users.items():
             if len(banks) == 1 and banks != {None} and node not in REFERENCES.values():
                 found.setdefault(*banks, set()).add(node)

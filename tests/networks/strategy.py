@@ -222,12 +222,31 @@ def _cells(draft):
     """Put cells with a node of their own, at which a store or a law gives the across variable."""
     domain = draft.pick(sorted(d for d, nodes in draft.nodes.items() if len(nodes) > 1))
     cell = {"bank": f"cells{len(draft.elements)}", "count": draft.pick((1, 2, 3))}
+    inside, there = f"{cell['bank']}.inside", draft.nodes[domain]
+    if draft.one_in(3):
+        _chain(draft, domain, cell, inside)
+        return
     for role, kinds in (("tree", TREE), ("chord", CHORD), ("chord", CHORD))[: draft.pick((2, 3))]:
         kind = draft.pick([kind for kind in kinds[domain] if KINDS[kind].form in LANED])
-        at = KINDS[kind].nodes == ("at",)
-        other = REFERENCE[domain] if at else draft.pick(draft.nodes[domain])
-        ends = draft.draw(st.permutations([f"{cell['bank']}.inside", other]))
-        draft.add(kind, role, (domain, ends), cell)
+        other = REFERENCE[domain] if KINDS[kind].nodes == ("at",) else draft.pick(there)
+        draft.add(kind, role, (domain, draft.draw(st.permutations([inside, other]))), cell)
+
+
+def _chain(draft, domain, cell, inside):
+    """Put cells in series between a new node and another, and a chord that drives them."""
+    node, other = f"{cell['bank']}.end", draft.pick(draft.nodes[domain])
+    cell["series"] = draft.draw(st.permutations([node, other]))
+    places = (
+        ("tree", node, inside),
+        ("tree", inside, other),
+        ("chord", node, draft.pick((inside, other))),
+    )
+    for role, *ends in places[: draft.pick((2, 3))]:
+        kinds = TREE[domain] if role == "tree" else CHORD[domain]
+        fit = [k for k in kinds if KINDS[k].form in LANED and KINDS[k].nodes != ("at",)]
+        draft.add(draft.pick(fit), role, (domain, draft.draw(st.permutations(ends))), cell)
+    draft.nodes[domain] = [*draft.nodes[domain], node]
+    draft.add(CHORDS[domain], "chord", (domain, [node, draft.pick(draft.nodes[domain][:-1])]))
 
 
 def _tied(draft):

@@ -11,6 +11,11 @@ from piezo_sym.proofs import Verdict
 from piezo_sym.spec.load import parse
 
 COUNT = 3
+MORE = """
+g = { value = 0.3, unit = "1/m**2" }
+v_0 = { value = 1, unit = "m/s" }
+f_0 = { value = 2.0, unit = "N" }
+"""
 HEAD = """
 [model]
 name = "case"
@@ -21,7 +26,7 @@ T_0 = { value = 300.0, unit = "K" }
 c   = { value = 2.0, unit = "J/K" }
 PARAMETERS
 [domain]
-assume = ["d_c > 0", "g >= 0", "v_0 > 0"]
+assume = ["d_c > 0", "g >= 0", "v_0 > 0", "f_0 > 0"]
 [inputs]
 F = { unit = "N" }
 [elements]
@@ -55,22 +60,38 @@ STOPPED = {
 DAMPERS = {
     "damper": 'kind = "damper", between = ["tip", "wall"], force = "d_c@*v", heats = "body"',
 }
+#: In series behind a spring, which gives the force; the ends of a lane are `<` and `>`.
+LINK = 'link = { kind = "spring", between = ["tip", "a"], stiffness = "k", state = "q_l" }\n'
+KELVIN = {
+    "spring": 'kind = "spring", between = ["<", ">"], stiffness = "k_c@", state = "q_c@"',
+    "damper": 'kind = "damper", between = [">", "<"], heats = "body", '
+    'velocity = "f/d_c@*(1 + g*q_c@**2)"',
+}
+CHAINED = {
+    "spring": 'kind = "spring", between = ["<", "in@"], stiffness = "k_c@", state = "q_c@"',
+    "damper": 'kind = "damper", between = ["<", "in@"], force = "d_c@*v", heats = "body"',
+    "more": 'kind = "damper", between = ["in@", ">"], velocity = "f**3/(d_c@*f_0**2)", '
+    'heats = "body"',
+}
 CELLS = {"maxwell": MAXWELL, "seen": SEEN, "absorber": ABSORBER, "stop": STOPPED, "damper": DAMPERS}
+CELLS |= {"kelvin": KELVIN, "chained": CHAINED}
 UNITS = {"k_c": "N/m", "d_c": "N*s/m", "m_c": "kg", "f_c": "N"}
 
 
 def parameters(values):
     """Return the lines of parameters, lists or one of each lane."""
     rows = [f'{name} = {{ value = {v}, unit = "{UNITS[name[:3]]}" }}' for name, v in values.items()]
-    more = 'g = { value = 0.3, unit = "1/m**2" }\nv_0 = { value = 1, unit = "m/s" }'
-    return "\n".join([*rows, more])
+    return "\n".join([*rows, MORE])
 
 
 def banked_text(cell, values):
     """Return the spec with the cell in a bank."""
-    rows = [f"{name} = {{ {text.replace('@', '')} }}" for name, text in cell.items()]
-    text = HEAD.replace("PARAMETERS", parameters(values))
-    return "\n".join([text, "[banks.cell]", f"count = {COUNT}", "[banks.cell.elements]", *rows])
+    chained = "<" in str(cell)
+    ends = str.maketrans({"@": "", "<": "a", ">": "wall"})
+    rows = [f"{name} = {{ {text.translate(ends)} }}" for name, text in cell.items()]
+    text = HEAD.replace("PARAMETERS", parameters(values)) + LINK * chained
+    head = ["[banks.cell]", f"count = {COUNT}", *(['series = ["a", "wall"]'] * chained)]
+    return "\n".join([text, *head, "[banks.cell.elements]", *rows])
 
 
 def banked(cell, values):
@@ -80,14 +101,15 @@ def banked(cell, values):
 
 def written_out(cell, values):
     """Return the model with each lane's elements written by hand."""
-    lanes = range(1, COUNT + 1)
+    lanes, joints = range(1, COUNT + 1), ["a", *(f"j{n}" for n in range(1, COUNT)), "wall"]
+    ends = [str.maketrans({"@": f"_{n}", "<": joints[n - 1], ">": joints[n]}) for n in lanes]
     rows = [
-        f"cell_{name}_{n} = {{ {text.replace('@', f'_{n}')} }}"
+        f"cell_{name}_{n} = {{ {text.translate(ends[n - 1])} }}"
         for name, text in cell.items()
         for n in lanes
     ]
     single = {f"{name}_{n}": v[n - 1] for name, v in values.items() for n in lanes}
-    text = HEAD.replace("PARAMETERS", parameters(single))
+    text = HEAD.replace("PARAMETERS", parameters(single)) + LINK * ("<" in str(cell))
     text = text.replace('"d_c > 0"', ", ".join(f'"d_c_{n} > 0"' for n in lanes))
     return parse("\n".join([text, *rows]))
 
@@ -182,3 +204,22 @@ def test_what_is_no_bank_is_refused_in_one_line(old, new, message):
     assert found.startswith(message)
     assert found.isprintable()
     assert caught.value.exit_code == 2
+
+
+def test_a_chain_behind_a_bank_is_proved():
+    text = banked_text(KELVIN, values_of(KELVIN))
+    many = LINK.replace('"q_l"', '"q_l", count = 2')
+    report = verify(derive(parse(text.replace(LINK, many))))
+    assert {row.verdict for row in report.rows if row.required} == {Verdict.PROVED}
+
+
+def test_kinks_of_a_bank_stay_in_sums_over_its_lanes():
+    text = banked_text(CHAINED, values_of(CHAINED)).replace(
+        "f**3/(d_c*f_0**2)", "saturate(f, f_0)/d_c"
+    )
+    many = LINK.replace('stiffness = "k"', 'count = 2, force = "k*max(q - 0.1, 0)"')
+    iphs = derive(parse(text.replace(LINK, many)))
+    sizes = {"cell": COUNT, "link": 2}
+    free = {s.name for row in iphs.rhs.explicit(sizes) for s in row.free_symbols}
+    assert not {name for name in free if name.endswith("_j")}
+    assert {"q_l_1", "q_l_2"} <= free

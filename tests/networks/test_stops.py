@@ -46,6 +46,12 @@ COIL = (
     'stop = { kind = "stop", between = ["b", "gnd"], capacitance = "C", limit = "V_c",'
     ' heats = "body", state = "z" }\n'
 )
+#: Capacitors in series, Goldfarb and Celanovic's: they share the charge.
+CHARGED = (
+    'lead = { kind = "current_source", between = ["a", "gnd"], input = "i" }\n'
+    'stop = { kind = "stop", between = ["a", "gnd"], count = 5, capacitance = "C", limit = "F_c",'
+    ' heats = "body", state = "z" }\n'
+)
 
 
 @cache
@@ -54,9 +60,13 @@ def model(name):
         "led": (LED, list(LIMITS), ("v", "m/s")),
         "mass": (MASS, 3.0, ("F", "N")),
         "coil": (COIL, 3.0, ("V", "V")),
+        "charged": (CHARGED, list(LIMITS), ("i", "A")),
     }[name]
     names = {"name": f"stop_{name}", "limits": limits, "input": driven[0], "unit": driven[1]}
-    return parse(HEAD.format(**names) + elements)
+    head = (
+        HEAD.replace('{limits}, unit = "N"', '{limits}, unit = "V"') if name == "charged" else HEAD
+    )
+    return parse(head.format(**names) + elements)
 
 
 def stop_operator(path, r, z=0.0):
@@ -76,30 +86,38 @@ def balanced(run):
     assert np.diff(run.heat_stop.values, axis=0).min() >= 0
 
 
-@pytest.mark.parametrize("name", ["led", "mass", "coil"])
+@pytest.mark.parametrize("name", ["led", "mass", "coil", "charged"])
 def test_every_row_is_proved(name):
     rows = {(row.id, row.element): row.verdict for row in verify(derive(model(name))).rows}
     assert rows["passive", "stop"] is rows["rate-independent", "stop"] is Verdict.PROVED
     assert set(rows.values()) == {Verdict.PROVED}
 
 
-def led(t, speeds, **how):
-    return simulate(model("led"), inputs={"v": (t, speeds)}, duration=t[-1], **how)
+def led(t, speeds, name="led", **how):
+    (given,) = model(name).inputs
+    return simulate(model(name), inputs={given: (t, speeds)}, duration=t[-1], **how)
 
 
+@pytest.mark.parametrize(("name", "size"), [("led", 3000.0), ("charged", 1e3)])
 @settings(max_examples=8)
-@given(st.lists(st.floats(-1.0, 1.0), min_size=4, max_size=12), st.sampled_from([2, 4, 6, 10]))
-def test_a_stop_that_is_led_is_the_stop_operator(speeds, order):
-    """Speeds are joined by straight lines: steps have turns inside, at times that are known."""
+@given(
+    speeds=st.lists(st.floats(-1.0, 1.0), min_size=4, max_size=12),
+    order=st.sampled_from([4, 6, 10]),
+)
+def test_a_stop_that_is_led_is_the_stop_operator(name, size, speeds, order):
+    """Speeds are joined by straight lines: steps have turns inside, at times that are known.
+
+    A step of order 2 goes along a straight line, in which there is no turn.
+    """
     t, v = 0.05 * np.arange(len(speeds)), np.array(speeds)
     with np.errstate(divide="ignore", invalid="ignore"):
         turns = t[:-1] - v[:-1] * 0.05 / np.diff(v)
     inside = turns[(turns > t[:-1]) & (turns < t[1:])]
     times = np.union1d(t, inside)
     gone = np.diff(times) * (np.interp(times[1:], t, v) + np.interp(times[:-1], t, v)) / 2
-    run = led(t, v, step=0.05, order=order, times=t)
+    run = led(t, v, name, step=0.05, order=order, times=t)
     for lane, F_c in enumerate(LIMITS):
-        wanted = stop_operator(np.cumsum([0.0, *gone]), F_c / 3000.0)[np.isin(times, t)]
+        wanted = stop_operator(np.cumsum([0.0, *gone]), F_c / size)[np.isin(times, t)]
         assert np.abs(run.z.values[:, lane] - wanted).max() <= 1e-12
     balanced(run)
 
@@ -238,7 +256,11 @@ def test_what_cannot_be_is_refused():
     with pytest.raises(SpecError, match="exactly one of stiffness, capacitance"):
         parse(base + MASS.replace('stiffness = "k"', 'stiffness = "k", capacitance = "C"'))
     chain = 'between = ["b", "gnd"], count = 3'
-    with pytest.raises(SpecError, match="count is given beside capacitance"):
-        parse(base + COIL.replace('between = ["b", "gnd"]', chain).replace('"V"', '"F"'))
+    fed = COIL.replace("V_c", "F_c").replace('between = ["b", "gnd"]', chain)
+    ohm = fed.replace('kind = "inductor"', 'kind = "resistor"').replace(
+        'inductance = "L", state = "phi"', 'voltage = "d*i", heats = "body"'
+    )
+    with pytest.raises(NetworkError, match="put an inductor in series"):
+        derive(parse(base + ohm.replace('"V"', '"F"')))
     rows = verify(derive(parse(base + MASS.replace('limit = "F_c"', 'limit = "V_c"')))).rows
     assert {row.id: row.verdict for row in rows}["units"] is Verdict.REFUTED

@@ -82,19 +82,22 @@ def _check_case(elements: Iterable[str]) -> None:
 
 def _check_banks(spec: Tables) -> None:
     """Check that banks have names of their own, and the elements of one the same count."""
-    sizes = banks(spec)
+    same = {bank: name for name, bank in bank_of(spec).items()}
     for name, bank in bank_of(spec).items():
         where = f"elements.{name}"
         check_name(bank, f"{where}.bank")
         if bank != name and bank in spec.elements:
             what = f"bank {quote(bank)} has the name of an element"
             raise SpecError(what, where, remedy="rename one of them")
-        if (count := spec.elements[name].count) != sizes[bank]:
-            what = f"bank {quote(bank)} has {sizes[bank]} lanes in another element"
-            raise SpecError(what, f"{where}.count", f"{sizes[bank]}, not {count}")
+        for field in ("count", "series"):
+            given, other = (getattr(spec.elements[n], field) for n in (name, same[bank]))
+            if given != other:
+                what = f"bank {quote(bank)} has another {field} in {quote(same[bank])}"
+                raise SpecError(what, f"{where}.{field}", f"{other}, not {given}")
     for name, element in spec.elements.items():
-        if getattr(element, "bank", None) is not None and name not in bank_of(spec):
-            raise SpecError("bank is given without count", f"elements.{name}", "both or none")
+        for field in ("bank", "series"):
+            if getattr(element, field, None) is not None and element.bank_of(name) is None:
+                raise SpecError(f"{field} is given without count", f"elements.{name}", "both")
 
 
 def _quantities(spec: Tables) -> Iterator[tuple[str, str]]:

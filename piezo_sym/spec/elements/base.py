@@ -14,9 +14,21 @@ from pydantic import BaseModel, ConfigDict, create_model, model_validator
 
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import ZERO, Cmp, Expr
-from piezo_sym.spec.elements.marks import BankName, Count, Fields, Letters, Refers, StateName
+from piezo_sym.spec.elements.marks import (
+    BankName,
+    Count,
+    Ends,
+    Fields,
+    Letters,
+    Refers,
+    StateName,
+)
 from piezo_sym.spec.elements.ports import Branch, Port
 
+_LANES = (
+    "With `count` it is a bank of lanes j = 1..count: in parallel; in series if they give an "
+    "across variable, as capacitors that slip, or stand in a chain between the nodes `series`."
+)
 #: Where types of elements are found by their names, when they are unpickled.
 MODULE = "piezo_sym.spec.elements"
 
@@ -83,6 +95,10 @@ class Form(ABC):
         del element
         return None
 
+    def in_series(self, _: Any) -> bool:
+        """Return whether lanes of an element are in series, if it has some."""
+        return False
+
     def requires(self, element: Any) -> tuple[Cmp, ...]:
         """Return the conditions that this part of an element adds to the domain."""
         del element
@@ -130,15 +146,15 @@ class Kind:
         """The fields of its elements."""
         found = {name: field for form in self.forms for name, field in form.fields.items()}
         first: Fields = {name: found.pop(name) for name in ("between", "at") if name in found}
-        count: Fields = {"count": (Count | None, None, None), "bank": (BankName, None, None)}
-        count = count if self.has_lanes else {}
+        types = {"count": Count | None, "bank": BankName, "series": Ends} if self.has_lanes else {}
+        count: Fields = {name: (kind, None, None) for name, kind in types.items()}
         state: Fields = {"state": (StateName, None, None)} if self.letter else {}
         return {**first, **count, **found, **state}
 
     @property
     def doc(self) -> str:
         """The text of `piezo-sym kinds`, of the schema and of the type of its elements."""
-        lanes = ("With `count` it is a bank of lanes j = 1..count in parallel.",) * self.has_lanes
+        lanes = (_LANES,) * self.has_lanes
         parts = (self.about, *(form.doc for form in self.forms), *lanes)
         return "\n\n".join((*parts, f"Example: {self.example}"))
 
@@ -205,6 +221,15 @@ class Element(Frozen):
         """
         given = getattr(self, "count", None) is not None
         return (getattr(self, "bank", None) or name) if given else None
+
+    @property
+    def chain(self) -> Branch | None:
+        """The ends of the chain in which its lanes stand one after the other, if they do."""
+        if getattr(self, "count", None) is None:
+            return None
+        alone = getattr(self, "bank", None) is None
+        own = alone and any(form.in_series(self) for form in self.row.forms)
+        return getattr(self, "series", None) or (getattr(self, "between", None) if own else None)
 
     @property
     def is_body(self) -> bool:

@@ -81,8 +81,8 @@ class Store(Form):
     def doc(self) -> str:
         """State, co-state, energy."""
         out, driven = self.costate, self.domain.variable(self.imposes.other)
-        law = f"{self.letter}/{self.size}"
-        law = f"{self.size}*({self.letter} - rest)" if self.stiff else law
+        stiff = f"{self.size}*({self.letter} - rest)"
+        law = stiff if self.stiff else f"{self.letter}/{self.size}"
         return (
             f"State {self.letter} [{out.state_unit}], the {out.state}, is the integral of the "
             f"{_said(driven, self.at)}; co-state the {_said(out, self.at)}, "
@@ -148,16 +148,18 @@ class Store(Form):
         """Return that a rest belongs to a stiffness, and what is heated to a slip."""
         if self.slips and (fault := slips.fault(element)):
             return fault
-        across = self.imposes is PowerVariable.ACROSS
-        if across and element.count is not None and element.bank is None:
-            what = f"count is given, and those in parallel have one {_word(self.costate)}"
-            return ".count", what, f"one {element.kind}", f"give the {self.size} of all, their sum"
+        if self.in_series(element) and (fault := slips.alike(element, self.costate, self.size)):
+            return fault
         rest = type(element).model_fields["rest"].default if self.stiff else None
         if self.stiff and getattr(element, self.size) is None and element.rest != rest:
             given = next(name for name in self.one_of if getattr(element, name) is not None)
             remedy = f"write {self.letter} - ({element.rest}) in the law, and leave rest out"
             return ".rest", f"rest is given beside {given}", f"rest beside {self.size}", remedy
         return None
+
+    def in_series(self, _: Any) -> bool:
+        """Return whether lanes share what drives them: if each gives an across variable."""
+        return self.imposes is PowerVariable.ACROSS
 
     def requires(self, element: Any) -> tuple[Cmp, ...]:
         """Return that its size is positive, if it is given, and no quotient like sinh(q)/q."""
@@ -218,10 +220,8 @@ class Dissipation(Form):
 
     def port(self, element: Any, name: str, branch: Branch) -> DissipativePort:
         """Return the process, in the causality in which the law is given."""
-        given = (
-            v for v in self.gives if getattr(element, self.domain.variable(v).name) is not None
-        )
-        imposes = next(given)
+        field = {v: self.domain.variable(v).name for v in self.gives}
+        imposes = next(v for v in self.gives if getattr(element, field[v]) is not None)
         output, effort = self.domain.variable(imposes), self.domain.variable(imposes.other)
         return DissipativePort(
             letter=effort.letter,

@@ -111,6 +111,11 @@ BankName = Annotated[
     StrictStr | None,
     Field(description="Bank whose cell it is a part of, as [banks] writes it; else its own name."),
 ]
+Ends = Annotated[
+    Pair | None,
+    Refers("node"),
+    Field(description="Two nodes, the ends of the chain that lanes in series make."),
+]
 Jumps = Annotated[StrictBool, Field(description="Whether the law jumps on purpose.")]
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from piezo_sym.expressions.tree import Expr
 from piezo_sym.spec.elements.base import state_symbol
-from piezo_sym.spec.elements.domains import PhysicalDomain, PowerVariable
+from piezo_sym.spec.elements.domains import PhysicalDomain, PhysicalVariable, PowerVariable
 from piezo_sym.spec.elements.marks import Fields, Jumps, OptionalBody, law_field
 from piezo_sym.spec.elements.ports import Branch, DissipativePort
 
@@ -40,6 +40,14 @@ def fault(element: Any) -> tuple[str, str, str, str] | None:
     given, other = ("slip", "heats") if element.heats is None else ("heats", "slip")
     remedy = f"add {other} = '...', or leave {given} out"
     return f".{given}", f"{given} is given without {other}", "both or none", remedy
+
+
+def alike(element: Any, costate: PhysicalVariable, size: str) -> tuple[str, str, str, str] | None:
+    """Return that stores that do not slip, and give an across variable, are one."""
+    if element.count is None or element.bank or getattr(element, "slip", None):
+        return None
+    what = f"count is given, and those in parallel have one {costate.name.replace('_', ' ')}"
+    return ".count", what, f"one {element.kind}", f"give the {size} of all, their sum"
 
 
 def beside(

@@ -99,18 +99,9 @@ class Yielding(Form):
         """Return its state."""
         return (State(state_symbol(element, name), self._store(element).costate.state_unit),)
 
-    def fault(self, element: Any) -> tuple[str, str, str, str] | None:
-        """Return that stops that impose an across variable do not stand in parallel."""
-        store = self._store(element)
-        if element.count is None or store.imposes is PowerVariable.THROUGH:
-            return None
-        what = f"count is given beside {store.size}"
-        return (
-            ".count",
-            what,
-            "one stop",
-            "write stops in series one by one, between nodes of a chain",
-        )
+    def in_series(self, element: Any) -> bool:
+        """Return whether lanes are in series: those of capacitors."""
+        return self._store(element).imposes is PowerVariable.ACROSS
 
     def requires(self, element: Any) -> tuple[Cmp, ...]:
         """Return that its size is positive, and its limit not negative."""
