@@ -16,6 +16,8 @@ from piezo_sym.errors import UsageError, nearest, quote
 
 FloatArray: TypeAlias = NDArray[np.float64]
 
+#: A duration, a temperature or a frequency below it is as good as 0.
+LEAST = 1e-100
 #: Of lanes, samples or steps between them: what is stored of more fits into no memory.
 MOST = 100_000_000
 
@@ -40,11 +42,13 @@ def number(value: object, where: str) -> float:
 
 
 def positive(value: object, where: str) -> float:
-    """Return `value` as a finite float above 0; raise `UsageError` otherwise."""
+    """Return `value` as a finite float above 0, whose parts can be told from 0, too."""
     result = number(value, where)
     if result <= 0:
         what = f"{quote(value)} is not positive"
         raise UsageError(what, where, "a number above 0")
+    if result < LEAST:
+        raise UsageError(f"{quote(value)} is too small", where, f"at least {LEAST:g}")
     return result
 
 

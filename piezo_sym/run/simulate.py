@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     import xarray
 
 RTOL = 1e-5
+#: A run is longer than so much of the time at which it starts: that has 16 digits.
+RESOLVED = 1e-11
 RTOL_LEAST, RTOL_MOST = 1e-13, 0.1
 
 
@@ -172,6 +174,9 @@ def simulate(
     named = read_start(dissipative_start, named)
     length = positive(duration, "simulate.duration")
     start, state, given = start_of(module, t0, initial, parameters)
+    if not abs(start) * RESOLVED < length:
+        what = f"times from t0 = {start:g} s on cannot be told apart in a run of {length:g} s"
+        raise UsageError(what, "simulate.t0", remedy="begin nearer to 0")
     samples = sample_times(times, every, step, length, start)
     values = read_parameters(module, given)
     chosen = choose_method(module, named, step)

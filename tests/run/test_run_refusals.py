@@ -59,7 +59,7 @@ REFUSED = [
     ({"duration": inf}, "simulate.duration: 'inf' is not a finite number"),
     ({"duration": True}, "simulate.duration: 'True' is not a finite number"),
     ({"step": 1e-14}, "simulate.step: 1e-14 s is too short a step for 0.1 s"),
-    ({"step": 1e-320}, "a run of over 10^12 steps; expected at least 1e-13 s"),
+    ({"step": 1e-90}, "a run of over 10^12 steps; expected at least 1e-13 s"),
     ({"step": 0.2}, "simulate.step: 0.2 s is longer than the run; expected at most 0.1 s"),
     ({"step": 0.2, "times": 5}, "simulate.step: 0.2 s is longer than the run"),
     ({"rtol": 0}, "simulate.rtol: 0 is out of range; expected 1e-13 to 0.1"),
@@ -163,3 +163,10 @@ def test_a_hundred_thousand_hysterons_run():
     run = piezo_sym.simulate("piezo_stack", **given)
     assert run.phi.shape == (2, 100_000)
     assert sweep("piezo_stack", over={"d": [1.0, 2.0]}, **given).sizes["hysteron"] == 100_000
+
+
+def test_a_run_whose_times_cannot_be_told_apart_is_refused(piezo):
+    with pytest.raises(UsageError, match=r"simulate.duration: '5e-324' is too small"):
+        simulate(piezo, duration=5e-324)
+    with pytest.raises(UsageError, match=r"simulate.t0: times from t0 = 1e\+20 s on cannot be"):
+        simulate(piezo, duration=1e-3, t0=1e20)
