@@ -494,6 +494,8 @@ static const double basis_inverse[1][1] = {
 enum { BANK, OWN, INNER };
 enum { EFFORT, SLIP, HEAT, SHARE, GIVEN };
 enum { STIFFNESS, LIMIT, PARAMETERS };
+/* The part of a step at which a path functional first begins, or ceases, to yield; and how often some do. */
+enum { EARLIEST, HOW_OFTEN, YIELD };
 #endif /* PATHS */
 
 /* The work space of a step in all lanes: sizes, states, and intermediate results. */
@@ -512,7 +514,7 @@ typedef struct {
 #if defined(PATHS)
     long drives;
     real *path, *drive; /* parameters of path functionals; drives at stages and at a point */
-    real *yield;        /* where one first yields in a step */
+    real *yield;
 #endif /* PATHS */
     mask fine;                 /* lanes whose means are taken at FINE nodes */
     mask over;                 /* lanes that step over kinks: each stage chooses its branches */
@@ -763,7 +765,7 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
 #if defined(PATHS)
     PLACE(path, PARAMETERS * paths);
     PLACE(drive, (STAGES + 1) * m->drives);
-    PLACE(yield, 1);
+    PLACE(yield, YIELD);
 #endif /* PATHS */
     PLACE(fresh, m->slopes);
     PLACE(real_factor, MODEL(factor_size_real)(m));
@@ -804,28 +806,29 @@ static mask MODEL(choose)(long branches, const real *side, real *branch, mask wh
 }
 
 /*
- * Path functionals: what an element with an inner state z does while its coordinate C, whose rates
- * at the stages are its drive, follows a polynomial; computed lane by lane. Comes after gauss.c,
- * for models that have PATHS.
+ * A path functional: what an element with an inner state z does while its coordinate C, whose rates
+ * at the stages are its drive, follows a polynomial. Comes after gauss.c, for models that have
+ * PATHS.
  *
  * Stage i is given the means int_0^1 (l_i/b_i) ... dtau of the effort F, of the slip's rate
  * dC/dt - dz/dt and of the heat. So h sum_i b_i F_i C'_i is the work int F dC, and z ends where its
  * path ends, wherever it begins or ceases to yield.
  */
 
-/* At a single point, an inner state so near to its limit, relative to it, has reached it. */
-#define AT_LIMIT 1e-9
 /* Parts of a step: what happens before this is at its begin. */
 #define BEGUN 1e-6
+/* An inner state so near to its limit, relative to it, was put there by the step before. */
+#define PUT_THERE 1e-14
 
 /*
  * The path of a coordinate in a step: the coefficients of C(tau) - C(0) and of dC/dtau; its change
  * up to each stage and its rate there; a bound on |C(tau) - C(0)|. C is monotonic between turn[k]
- * and turn[k + 1]. `yields` is the first part of the step where z begins, or ceases, to yield.
+ * and turn[k + 1]. `yields` is the first part of the step where z begins, or ceases, to yield, as it
+ * does `times` times.
  */
 typedef struct {
     double gone[STAGES + 1], speed[STAGES], at_stage[STAGES], rate[STAGES], turn[STAGES + 1];
-    double h, most, yields;
+    double h, most, yields, times;
     long pieces;
 } MODEL(way);
 
@@ -862,7 +865,7 @@ static double MODEL(meets)(const double *a, long degree, double value, double lo
         at -= (sum - value) / slope;
         if (!(at > low && at < high))
             at = 0.5 * (low + high);
-        if (fabs(at - before) <= 1e-16)
+        if (fabs(at - before) <= 4e-16)
             break;
     }
     return at;
@@ -930,7 +933,7 @@ static void MODEL(add_piece)(const MODEL(way) *w, double low, double high, doubl
         const double effort = at_begin + k * MODEL(polynomial)(w->gone, STAGES, at);
         const double rate = MODEL(polynomial)(w->speed, STAGES - 1, at) / w->h;
         for (long i = 0; i < STAGES; ++i) {
-            double part = (high - low) * stage_weight[q] * stage_lead[i] / stage_weight[i];
+            double part = (high - low) * stage_weight[q] * (stage_lead[i] / stage_weight[i]);
             for (long j = 0; j < STAGES; ++j)
                 part *= j == i ? 1.0 : at - stage_at[j];
             mean[EFFORT][i] += part * effort;
@@ -948,7 +951,7 @@ static void MODEL(add_piece)(const MODEL(way) *w, double low, double high, doubl
  */
 static double MODEL(stop)(MODEL(way) *w, double z, double k, double r, MODEL(means) mean)
 {
-    const double begin = fmin(fmax(z, -r), r); /* r may have become less */
+    const double begin = z > r ? r : z < -r ? -r : z; /* r may have become less */
     double now = begin, heat = 0.5 * k * (z - begin) * (z + begin), moving = 0.0;
     double yielded = 0.0, slipped = 0.0;
     int yielding = 0;
@@ -964,15 +967,18 @@ static double MODEL(stop)(MODEL(way) *w, double z, double k, double r, MODEL(mea
         const double low = w->turn[n], high = w->turn[n + 1];
         const double from = MODEL(polynomial)(w->gone, STAGES, low);
         const double more = MODEL(polynomial)(w->gone, STAGES, high) - from;
-        const double limit = more > 0.0 ? r : -r, room = limit - now;
+        const double limit = more > 0.0 ? r : -r, left = limit - now;
+        const double room = fabs(left) <= PUT_THERE * r ? 0.0 : left;
         const int yields = fabs(more) > fabs(room);
         const double until = !yields ? high
             : room == 0.0            ? low
                                      : MODEL(meets)(w->gone, STAGES, from + room, low, high);
         MODEL(add_piece)(w, low, until, k * (now - from), k, 0, mean);
         const double place = yielding && until > low ? low : yields ? until : 1.0;
-        if (place > BEGUN)
-            w->yields = fmin(w->yields, place);
+        if (place > BEGUN && place < 1.0) {
+            w->yields = place < w->yields ? place : w->yields;
+            ++w->times;
+        }
         yielding = yields;
         moving += until - low;
         now = yields ? limit : now + more;
@@ -998,6 +1004,92 @@ static double MODEL(stop)(MODEL(way) *w, double z, double k, double r, MODEL(mea
 }
 
 /*
+ * What path functionals give to the stages of a step, and at a point. Comes after stop.c.
+ */
+
+/* At a single point, an inner state so near to its limit, relative to it, has reached it. */
+#define AT_LIMIT 1e-9
+
+/*
+ * What lanes of a bank with one drive have in common: the rates of their coordinate at the stages, its
+ * change up to each, and its least and its largest; where it does not turn, whether it rises.
+ */
+typedef struct {
+    real h, rate[STAGES], at_stage[STAGES], least, largest;
+    mask turns, rises;
+} MODEL(course);
+
+/* The course of a coordinate, whose ways are given in each lane of a number. */
+static MODEL(course) MODEL(course_of)(MODEL(way) *w, real h)
+{
+    MODEL(course) c = {.h = h, .least = zero, .largest = zero};
+    real pieces = zero;
+    for (int lane = 0; lane < REAL_WIDTH; ++lane, ++w) {
+        MODEL(find_turns)(w);
+        for (long i = 0; i < STAGES; ++i) {
+            OF(c.rate[i], lane) = w->rate[i];
+            OF(c.at_stage[i], lane) = w->at_stage[i];
+        }
+        for (long k = 1; k <= w->pieces; ++k) {
+            const double at = MODEL(polynomial)(w->gone, STAGES, w->turn[k]);
+            OF(c.least, lane) = at < OF(c.least, lane) ? at : OF(c.least, lane);
+            OF(c.largest, lane) = at > OF(c.largest, lane) ? at : OF(c.largest, lane);
+        }
+        OF(pieces, lane) = (double)w->pieces;
+    }
+    c.turns = pieces > 1.0;
+    c.rises = c.largest > 0.0;
+    return c;
+}
+
+/*
+ * The lanes of a bank in which z follows C all the way, or yields all the way: in closed form. The share
+ * of others becomes negative.
+ */
+static void MODEL(in_closed_form)(const MODEL(block) *m, const MODEL(course) *c, long lanes,
+                                  const real *restrict z, const real *restrict parameter,
+                                  real *restrict given, real *restrict rates)
+{
+    const real *const k = parameter + STIFFNESS * lanes, *const r = parameter + LIMIT * lanes;
+    const real side = chosen(c->rises, wide(1.0), wide(-1.0));
+    real *const share = given + SHARE * lanes;
+    for (long j = 0; j < lanes; ++j) {
+        const mask follows = (z[j] + c->largest <= r[j]) & (z[j] + c->least >= -r[j]);
+        const mask yields = (size_of(z[j] - side * r[j]) <= PUT_THERE * r[j]) & none_of(c->turns);
+        share[j] = chosen(follows, wide(1.0), chosen(yields, zero, wide(-1.0)));
+    }
+    for (long i = 0; i < STAGES; ++i) {
+        real *const row = given + i * m->given, *const rate = rates + i * m->n;
+        for (long j = 0; j < lanes; ++j) {
+            const mask yields = share[j] == 0.0;
+            const real limit = side * r[j], put = (limit - z[j]) / c->h;
+            const real effort = k[j] * chosen(yields, limit, z[j] + c->at_stage[i]);
+            row[EFFORT * lanes + j] = effort;
+            row[SLIP * lanes + j] = chosen(yields, c->rate[i] - put, zero);
+            row[HEAT * lanes + j] = chosen(yields, effort * c->rate[i], zero);
+            row[SHARE * lanes + j] = share[j];
+            rate[j] = chosen(yields, put, c->rate[i]);
+        }
+    }
+}
+
+/* Lane j of a path functional, in one lane of numbers. */
+static void MODEL(along_path)(const MODEL(block) *m, MODEL(way) *w, long j, long lanes, int lane,
+                              const real *z, const real *parameter, real *given, real *rates)
+{
+    MODEL(means) mean;
+    const double k = LANE(parameter, STIFFNESS * lanes + j, lane);
+    const double share =
+        MODEL(stop)(w, LANE(z, j, lane), k, LANE(parameter, LIMIT * lanes + j, lane), mean);
+    for (long i = 0; i < STAGES; ++i) {
+        for (long what = 0; what < SHARE; ++what)
+            LANE(given + i * m->given, what * lanes + j, lane) = mean[what][i];
+        LANE(given + i * m->given, SHARE * lanes + j, lane) = share;
+        LANE(rates, i * m->n + j, lane) = w->rate[i] - mean[SLIP][i];
+    }
+}
+
+/*
  * What path functionals give to the stages. Rates of inner states are set, not solved for: efforts
  * follow from the drives alone, and Newton's method takes them as stiffness * z.
  */
@@ -1006,7 +1098,8 @@ static void MODEL(along_paths)(const MODEL(block) *m, real h)
     const real *parameter = m->path;
     real *given = m->mean + m->means;
     long drive = 0;
-    *m->yield = wide(1.0);
+    m->yield[EARLIEST] = wide(1.0);
+    m->yield[HOW_OFTEN] = zero;
     for (long i = 0; i < STAGES; ++i) {
         MODEL(reach_of)(m, h, stage_reach[i], m->reached);
         MODEL(drives)(m->reached, m->mean + i * m->given, m->branch + i * m->branches,
@@ -1014,27 +1107,31 @@ static void MODEL(along_paths)(const MODEL(block) *m, real h)
     }
     for (long n = 0; n < PATHS; ++n) {
         const int *path = MODEL(path)[n];
-        const long lanes = path[BANK] < 0 ? 1 : m->lanes[path[BANK]];
+        const long lanes = path[BANK] < 0 ? 1 : m->lanes[path[BANK]], first = m->first[path[INNER]];
+        const real *const z = m->x + first;
+        real *const rates = m->rates + first;
+        const int together = !path[OWN] && lanes > 1;
+        MODEL(way) w[REAL_WIDTH];
         for (int lane = 0; lane < REAL_WIDTH; ++lane) {
-            MODEL(way) w;
-            MODEL(means) mean;
-            w.yields = 1.0;
-            for (long j = 0; j < lanes; ++j) {
-                const double z = LANE(m->x, m->first[path[INNER]] + j, lane);
-                const double k = LANE(parameter, STIFFNESS * lanes + j, lane);
-                const double limit = LANE(parameter, LIMIT * lanes + j, lane);
-                if (!j || path[OWN])
-                    MODEL(find_way)(m, OF(h, lane), drive + j, lane, &w);
-                const double share = MODEL(stop)(&w, z, k, limit, mean);
-                for (long i = 0; i < STAGES; ++i) {
-                    for (long what = 0; what < SHARE; ++what)
-                        LANE(given + i * m->given, what * lanes + j, lane) = mean[what][i];
-                    LANE(given + i * m->given, SHARE * lanes + j, lane) = share;
-                    LANE(m->rates, i * m->n + m->first[path[INNER]] + j, lane) =
-                        w.rate[i] - mean[SLIP][i];
-                }
-                LANE(m->yield, 0, lane) = fmin(LANE(m->yield, 0, lane), w.yields);
+            MODEL(find_way)(m, OF(h, lane), drive, lane, w + lane);
+            w[lane].yields = LANE(m->yield, EARLIEST, lane);
+            w[lane].times = LANE(m->yield, HOW_OFTEN, lane);
+        }
+        if (together) {
+            const MODEL(course) c = MODEL(course_of)(w, h);
+            MODEL(in_closed_form)(m, &c, lanes, z, parameter, given, rates);
+        }
+        for (long j = 0; j < lanes; ++j)
+            for (int lane = 0; lane < REAL_WIDTH; ++lane) {
+                if (together && LANE(given, SHARE * lanes + j, lane) >= 0.0)
+                    continue;
+                if (j && path[OWN])
+                    MODEL(find_way)(m, OF(h, lane), drive + j, lane, w + lane);
+                MODEL(along_path)(m, w + lane, j, lanes, lane, z, parameter, given, rates);
             }
+        for (int lane = 0; lane < REAL_WIDTH; ++lane) {
+            LANE(m->yield, EARLIEST, lane) = w[lane].yields;
+            LANE(m->yield, HOW_OFTEN, lane) = w[lane].times;
         }
         given += GIVEN * lanes, parameter += PARAMETERS * lanes;
         drive += path[OWN] ? lanes : 1;
@@ -1042,9 +1139,24 @@ static void MODEL(along_paths)(const MODEL(block) *m, real h)
 }
 
 /*
- * What path functionals give at a point: at an end of a step (`weight`), rates of inner states and
- * heat are extrapolated from the stages' means; elsewhere they follow from the drives there.
+ * Slip and heat at an end of a step, extrapolated from the stages' means; but for the part of the step in
+ * which it yields, slip follows the drive there: an inner state that does not move has no misfit.
  */
+static void MODEL(of_stages)(const MODEL(block) *m, const double *weight, long lanes, const real *drives,
+                             real *given)
+{
+    const real *mean = m->mean + (given - m->node);
+    const real yields = 1.0 - mean[SHARE * lanes];
+    real slip = yields * drives[STAGES * m->drives], heat = zero;
+    for (long i = 0; i < STAGES; ++i, mean += m->given) {
+        slip += weight[i] * (mean[SLIP * lanes] - yields * drives[i * m->drives]);
+        heat += weight[i] * mean[HEAT * lanes];
+    }
+    given[SLIP * lanes] = slip;
+    given[HEAT * lanes] = heat;
+}
+
+/* What path functionals give at a point: it follows from the drives there, or `of_stages` (`weight`). */
 static void MODEL(standing)(const MODEL(block) *m, const real *x, const real *branch, const real *u,
                             const double *weight)
 {
@@ -1063,14 +1175,11 @@ static void MODEL(standing)(const MODEL(block) *m, const real *x, const real *br
             const real rate = drives[STAGES * m->drives];
             const mask yields = (size_of(z) >= r * (1.0 - AT_LIMIT)) & ((z * rate > 0.0) | (r <= 0.0));
             given[EFFORT * lanes + j] = k * z;
-            given[SLIP * lanes + j] = weight ? rate : chosen(yields, rate, zero);
-            given[HEAT * lanes + j] = weight ? (real)zero : chosen(yields, k * z * rate, zero);
+            given[SLIP * lanes + j] = chosen(yields, rate, zero);
+            given[HEAT * lanes + j] = chosen(yields, k * z * rate, zero);
             given[SHARE * lanes + j] = chosen(yields, zero, wide(1.0));
-            for (long i = 0; weight && i < STAGES; ++i) {
-                const real *const mean = m->mean + i * m->given + (given - m->node) + j;
-                given[SLIP * lanes + j] += weight[i] * (mean[SLIP * lanes] - drives[i * m->drives]);
-                given[HEAT * lanes + j] += weight[i] * mean[HEAT * lanes];
-            }
+            if (weight)
+                MODEL(of_stages)(m, weight, lanes, drives, given + j);
         }
         given += GIVEN * lanes, parameter += PARAMETERS * lanes;
         drive += path[OWN] ? lanes : 1;

@@ -40,6 +40,7 @@ MASS = (
     'push = { kind = "force_source", at = "a", input = "F" }\n'
     'block = { kind = "mass", at = "a", mass = "m", state = "p" }\n'
 ) + STOP.format('stiffness = "k", limit = "F_c"')
+BLOCK = MASS.replace('stiffness = "k"', 'count = 5, stiffness = "k"')
 COIL = (
     'feed = { kind = "voltage_source", between = ["a", "gnd"], input = "V" }\n'
     'coil = { kind = "inductor", between = ["a", "b"], inductance = "L", state = "phi" }\n'
@@ -61,6 +62,7 @@ def model(name):
         "mass": (MASS, 3.0, ("F", "N")),
         "coil": (COIL, 3.0, ("V", "V")),
         "charged": (CHARGED, list(LIMITS), ("i", "A")),
+        "block": (BLOCK, list(LIMITS), ("F", "N")),
     }[name]
     names = {"name": f"stop_{name}", "limits": limits, "input": driven[0], "unit": driven[1]}
     head = (
@@ -228,16 +230,41 @@ def test_without_a_limit_there_is_no_force():
     assert np.abs(run.heat_stop.values).max() <= 1e-30
 
 
-def test_ten_thousand_stops_run():
+@pytest.mark.parametrize("steps", [{"step": 1e-3}, {"rtol": 1e-4}], ids=str)
+def test_ten_thousand_stops_run(steps):
     """After a large way they all stand at their limits, first at one, then at the other."""
     limits = np.linspace(1.0, 50.0, 10_000)
     given = {"stop_count": 10_000, "F_c": limits.tolist(), "k": 1e3}
     inputs, times = {"v": sine(5.0, 5.0)}, [0.0, 0.1, 0.2]
-    how = {"duration": 0.2, "parameters": given, "times": times, "step": 1e-3}
-    run = simulate(model("led"), inputs=inputs, **how)
+    how = {"duration": 0.2, "parameters": given, "times": times}
+    run = simulate(model("led"), inputs=inputs, **how, **steps)
     for n, sign in ((1, 1), (2, -1)):
-        assert run.z.values[n] == pytest.approx(sign * limits / 1e3, rel=1e-10)
+        near = steps.get("rtol", 1e-10)
+        assert run.z.values[n] == pytest.approx(sign * limits / 1e3, rel=near)
     balanced(run)
+
+
+@cache
+def block_on(n, rtol):
+    """Return a run of a mass on n stops."""
+    limits = (np.linspace(1.0, 40.0, n) / n).tolist() if n > 1 else 10.0
+    given = {"stop_count": n, "k": 3000.0 / n, "F_c": limits}
+    how = {"duration": 0.6, "times": 40, "inputs": {"F": sine(40.0, 1.7)}}
+    return simulate(model("block"), rtol=rtol, parameters=given, **how)
+
+
+@pytest.mark.parametrize("rtol", [1e-3, 1e-5, 1e-7])
+def test_steps_do_not_grow_with_the_number_of_stops(rtol):
+    """A yield is located where it matters: of many, each is a small part of the mass's force."""
+    steps = []
+    for n in (1, 20, 300):
+        run, exact = block_on(n, rtol), block_on(n, 1e-9)
+        for name in ("p", "z"):
+            error = np.abs(run[name] - exact[name]).max("time") / np.abs(exact[name]).max("time")
+            assert float(error.max()) <= 10 * rtol
+        balanced(run)
+        steps.append(run.attrs["accepted_steps"])
+    assert steps[2] <= 3 * steps[1] <= 15 * steps[0]
 
 
 def test_what_cannot_be_is_refused():

@@ -48,7 +48,7 @@ _LEFT_OUT = (
     r"#if LOSSY.*?#endif\n",
 )
 #: What few models need: kinks in energies, and path functionals; a step says so.
-_PARTS = {"BENDS": "bends.c", "PATHS": "stop.c"}
+_PARTS = {"BENDS": ("bends.c",), "PATHS": ("stop.c", "paths.c")}
 #: How the slope of a function is spelled.
 _SLOPE = Style(
     lambda value: (repr(float(value)), ATOM),
@@ -124,7 +124,7 @@ def steps_source(model: str, stages: int, layout: str, *, lossy: bool = False) -
     gaps = c_source("gaps.c")
     if lanes:
         gaps = f"#if defined(LANES)\n{c_source('gaps_at_once.c')}\n#else\n{gaps}\n#endif"
-    paths = ["#if defined(PATHS)", c_source("stop.c"), "#endif"]
+    paths = ["#if defined(PATHS)", c_source(*_PARTS["PATHS"]), "#endif"]
     rest = c_source(*_COLLOCATION, *(["loss.c"] * lossy))
     return "\n".join([*head, numbers, c_source("gauss.c", "bends.c"), *paths, gaps, rest])
 
@@ -151,8 +151,9 @@ def standalone_step(model: str, step: str) -> str:
 
     It is the engine's step of order two, for numbers of one run.
     """
-    needed = {word: file for word, file in _PARTS.items() if f"#define {word}" in step}
-    solver = c_source("gauss.c", *needed.values(), "gaps.c", "newton.c", "nodes.c")
+    needed = [word for word in _PARTS if f"#define {word}" in step]
+    parts = [file for word in needed for file in _PARTS[word]]
+    solver = c_source("gauss.c", *parts, "gaps.c", "newton.c", "nodes.c")
     others = (rf"#if defined\({w}\).*?#endif /\* {w} \*/\n" for w in _PARTS if w not in needed)
     for left_out in (*_LEFT_OUT, *others):
         solver = re.sub(left_out, "", solver, flags=re.DOTALL)

@@ -133,7 +133,7 @@ static void MODEL(judged)(MODEL(batch) *b, MODEL(dispatch) *t)
             if (!(error <= 1.0)) {
                 double part = fmax(0.1, l->refused > 1 ? fmin(l->longer, 0.5) : l->longer);
 #if defined(PATHS) /* most of the error may come from it */
-                const double first = LANE(b->m.yield, 0, lane);
+                const double first = LANE(b->m.yield, EARLIEST, lane);
                 if (first < YIELDS && first > 0.1 * part)
                     part = first;
 #endif

@@ -39,6 +39,11 @@
 #define REDUCED 2.5
 /* Factor on errors of steps that contain kinks, whose errors add up over a run. */
 #define KINKS_WITHIN (STAGES > 4 ? 1.3 : 1.8)
+/*
+ * The least part of an error that is left where path functionals begin, or cease, to yield in the step:
+ * at a kink no series decays. Their misfits add up; errors at the end have either sign.
+ */
+#define YIELDS_WITHIN(times) (1.0 / sqrt_of(times))
 
 /* The number of larger magnitude. */
 static inline real further(real a, real b)
@@ -46,6 +51,20 @@ static inline real further(real a, real b)
     const mask first = size_of(a) > size_of(b);
     return chosen(first, a, b);
 }
+
+#if defined(PATHS)
+/* Whether state k is an inner state of a path functional. */
+static int MODEL(is_inner)(const MODEL(block) *m, long k)
+{
+    for (long n = 0; n < PATHS; ++n) {
+        const int *path = MODEL(path)[n];
+        const long first = m->first[path[INNER]];
+        if (k >= first && k < first + (path[BANK] < 0 ? 1 : m->lanes[path[BANK]]))
+            return 1;
+    }
+    return 0;
+}
+#endif
 
 /*
  * The misfits of a step times `gamma`, in some_rate; and relative to the change of each rate over
@@ -66,7 +85,11 @@ static void MODEL(misfits)(const MODEL(batch) *b, real gamma)
         for (long j = 0; j < STAGES; ++j)
             most = largest_of(size_of(m->rates[j * m->n + k] - mean), most);
         const real smooth = least(size_of(last) / most, wide(1.0));
-        const real next = STAGES > 2 ? (real)(last * LIKE_THE_LAST(smooth)) : (real)zero;
+        real next = STAGES > 2 ? (real)(last * LIKE_THE_LAST(smooth)) : (real)zero;
+#if defined(PATHS)
+        if (MODEL(is_inner)(m, k)) /* exact on the path of its coordinate */
+            next = chosen(m->yield[HOW_OFTEN] > 0.0, zero, next);
+#endif
         const real misfit = further(further(low, high), next);
         b->some_share[k] = least(size_of(misfit) / most, wide(1.0));
         b->some_rate[k] = gamma * misfit;
@@ -105,10 +128,16 @@ static real MODEL(error)(const MODEL(batch) *b, real h)
         slow = largest_of(chosen(is_fast, zero, once[k]), slow);
     }
     const real pull = pulled / (filter * slow);
+#if defined(PATHS)
+    const real times = m->yield[HOW_OFTEN];
+    const real least_part = chosen(times > 0.0, YIELDS_WITHIN(times), zero);
+#else
+    const real least_part = zero;
+#endif
     for (long k = 0; k < m->n; ++k) {
         const real fast = b->some_rate[k], z = largest_of(fast, pull);
         const real left = least(SMOOTH(b->some_share[k]) + PULL(z), wide(1.0));
-        const real counts = chosen(m->over, wide(KINKS_WITHIN), left);
+        const real counts = chosen(m->over, wide(KINKS_WITHIN), largest_of(left, least_part));
         worst = largest_of(counts * once[k] * per_tolerance, worst);
     }
     return worst;

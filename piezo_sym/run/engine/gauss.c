@@ -53,6 +53,8 @@ typedef struct {
 enum { BANK, OWN, INNER };
 enum { EFFORT, SLIP, HEAT, SHARE, GIVEN };
 enum { STIFFNESS, LIMIT, PARAMETERS };
+/* The part of a step at which a path functional first begins, or ceases, to yield; and how often some do. */
+enum { EARLIEST, HOW_OFTEN, YIELD };
 #endif /* PATHS */
 
 /* The work space of a step in all lanes: sizes, states, and intermediate results. */
@@ -71,7 +73,7 @@ typedef struct {
 #if defined(PATHS)
     long drives;
     real *path, *drive; /* parameters of path functionals; drives at stages and at a point */
-    real *yield;        /* where one first yields in a step */
+    real *yield;
 #endif /* PATHS */
 #if defined(BENDS)
     long bends;
@@ -197,7 +199,7 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
 #if defined(PATHS)
     PLACE(path, PARAMETERS * paths);
     PLACE(drive, (STAGES + 1) * m->drives);
-    PLACE(yield, 1);
+    PLACE(yield, YIELD);
 #endif /* PATHS */
     PLACE(fresh, m->slopes);
     PLACE(real_factor, MODEL(factor_size_real)(m));

@@ -1,26 +1,27 @@
 /*
- * Path functionals: what an element with an inner state z does while its coordinate C, whose rates
- * at the stages are its drive, follows a polynomial; computed lane by lane. Comes after gauss.c,
- * for models that have PATHS.
+ * A path functional: what an element with an inner state z does while its coordinate C, whose rates
+ * at the stages are its drive, follows a polynomial. Comes after gauss.c, for models that have
+ * PATHS.
  *
  * Stage i is given the means int_0^1 (l_i/b_i) ... dtau of the effort F, of the slip's rate
  * dC/dt - dz/dt and of the heat. So h sum_i b_i F_i C'_i is the work int F dC, and z ends where its
  * path ends, wherever it begins or ceases to yield.
  */
 
-/* At a single point, an inner state so near to its limit, relative to it, has reached it. */
-#define AT_LIMIT 1e-9
 /* Parts of a step: what happens before this is at its begin. */
 #define BEGUN 1e-6
+/* An inner state so near to its limit, relative to it, was put there by the step before. */
+#define PUT_THERE 1e-14
 
 /*
  * The path of a coordinate in a step: the coefficients of C(tau) - C(0) and of dC/dtau; its change
  * up to each stage and its rate there; a bound on |C(tau) - C(0)|. C is monotonic between turn[k]
- * and turn[k + 1]. `yields` is the first part of the step where z begins, or ceases, to yield.
+ * and turn[k + 1]. `yields` is the first part of the step where z begins, or ceases, to yield, as it
+ * does `times` times.
  */
 typedef struct {
     double gone[STAGES + 1], speed[STAGES], at_stage[STAGES], rate[STAGES], turn[STAGES + 1];
-    double h, most, yields;
+    double h, most, yields, times;
     long pieces;
 } MODEL(way);
 
@@ -57,7 +58,7 @@ static double MODEL(meets)(const double *a, long degree, double value, double lo
         at -= (sum - value) / slope;
         if (!(at > low && at < high))
             at = 0.5 * (low + high);
-        if (fabs(at - before) <= 1e-16)
+        if (fabs(at - before) <= 4e-16)
             break;
     }
     return at;
@@ -125,7 +126,7 @@ static void MODEL(add_piece)(const MODEL(way) *w, double low, double high, doubl
         const double effort = at_begin + k * MODEL(polynomial)(w->gone, STAGES, at);
         const double rate = MODEL(polynomial)(w->speed, STAGES - 1, at) / w->h;
         for (long i = 0; i < STAGES; ++i) {
-            double part = (high - low) * stage_weight[q] * stage_lead[i] / stage_weight[i];
+            double part = (high - low) * stage_weight[q] * (stage_lead[i] / stage_weight[i]);
             for (long j = 0; j < STAGES; ++j)
                 part *= j == i ? 1.0 : at - stage_at[j];
             mean[EFFORT][i] += part * effort;
@@ -143,7 +144,7 @@ static void MODEL(add_piece)(const MODEL(way) *w, double low, double high, doubl
  */
 static double MODEL(stop)(MODEL(way) *w, double z, double k, double r, MODEL(means) mean)
 {
-    const double begin = fmin(fmax(z, -r), r); /* r may have become less */
+    const double begin = z > r ? r : z < -r ? -r : z; /* r may have become less */
     double now = begin, heat = 0.5 * k * (z - begin) * (z + begin), moving = 0.0;
     double yielded = 0.0, slipped = 0.0;
     int yielding = 0;
@@ -159,15 +160,18 @@ static double MODEL(stop)(MODEL(way) *w, double z, double k, double r, MODEL(mea
         const double low = w->turn[n], high = w->turn[n + 1];
         const double from = MODEL(polynomial)(w->gone, STAGES, low);
         const double more = MODEL(polynomial)(w->gone, STAGES, high) - from;
-        const double limit = more > 0.0 ? r : -r, room = limit - now;
+        const double limit = more > 0.0 ? r : -r, left = limit - now;
+        const double room = fabs(left) <= PUT_THERE * r ? 0.0 : left;
         const int yields = fabs(more) > fabs(room);
         const double until = !yields ? high
             : room == 0.0            ? low
                                      : MODEL(meets)(w->gone, STAGES, from + room, low, high);
         MODEL(add_piece)(w, low, until, k * (now - from), k, 0, mean);
         const double place = yielding && until > low ? low : yields ? until : 1.0;
-        if (place > BEGUN)
-            w->yields = fmin(w->yields, place);
+        if (place > BEGUN && place < 1.0) {
+            w->yields = place < w->yields ? place : w->yields;
+            ++w->times;
+        }
         yielding = yields;
         moving += until - low;
         now = yields ? limit : now + more;
@@ -193,84 +197,4 @@ static double MODEL(stop)(MODEL(way) *w, double z, double k, double r, MODEL(mea
 #endif
     }
     return moving;
-}
-
-/*
- * What path functionals give to the stages. Rates of inner states are set, not solved for: efforts
- * follow from the drives alone, and Newton's method takes them as stiffness * z.
- */
-static void MODEL(along_paths)(const MODEL(block) *m, real h)
-{
-    const real *parameter = m->path;
-    real *given = m->mean + m->means;
-    long drive = 0;
-    *m->yield = wide(1.0);
-    for (long i = 0; i < STAGES; ++i) {
-        MODEL(reach_of)(m, h, stage_reach[i], m->reached);
-        MODEL(drives)(m->reached, m->mean + i * m->given, m->branch + i * m->branches,
-                      m->u + i * m->inputs, &m->p, m->drive + i * m->drives);
-    }
-    for (long n = 0; n < PATHS; ++n) {
-        const int *path = MODEL(path)[n];
-        const long lanes = path[BANK] < 0 ? 1 : m->lanes[path[BANK]];
-        for (int lane = 0; lane < REAL_WIDTH; ++lane) {
-            MODEL(way) w;
-            MODEL(means) mean;
-            w.yields = 1.0;
-            for (long j = 0; j < lanes; ++j) {
-                const double z = LANE(m->x, m->first[path[INNER]] + j, lane);
-                const double k = LANE(parameter, STIFFNESS * lanes + j, lane);
-                const double limit = LANE(parameter, LIMIT * lanes + j, lane);
-                if (!j || path[OWN])
-                    MODEL(find_way)(m, OF(h, lane), drive + j, lane, &w);
-                const double share = MODEL(stop)(&w, z, k, limit, mean);
-                for (long i = 0; i < STAGES; ++i) {
-                    for (long what = 0; what < SHARE; ++what)
-                        LANE(given + i * m->given, what * lanes + j, lane) = mean[what][i];
-                    LANE(given + i * m->given, SHARE * lanes + j, lane) = share;
-                    LANE(m->rates, i * m->n + m->first[path[INNER]] + j, lane) =
-                        w.rate[i] - mean[SLIP][i];
-                }
-                LANE(m->yield, 0, lane) = fmin(LANE(m->yield, 0, lane), w.yields);
-            }
-        }
-        given += GIVEN * lanes, parameter += PARAMETERS * lanes;
-        drive += path[OWN] ? lanes : 1;
-    }
-}
-
-/*
- * What path functionals give at a point: at an end of a step (`weight`), rates of inner states and
- * heat are extrapolated from the stages' means; elsewhere they follow from the drives there.
- */
-static void MODEL(standing)(const MODEL(block) *m, const real *x, const real *branch, const real *u,
-                            const double *weight)
-{
-    const real *parameter = m->path;
-    real *given = m->node + m->means;
-    long drive = 0;
-    MODEL(path_parameters)(x, &m->p, m->path);
-    MODEL(drives)(x, m->node, branch, u, &m->p, m->drive + STAGES * m->drives);
-    for (long n = 0; n < PATHS; ++n) {
-        const int *path = MODEL(path)[n];
-        const long lanes = path[BANK] < 0 ? 1 : m->lanes[path[BANK]];
-        for (long j = 0; j < lanes; ++j) {
-            const real k = parameter[STIFFNESS * lanes + j], r = parameter[LIMIT * lanes + j];
-            const real inner = x[m->first[path[INNER]] + j], z = least(largest_of(inner, -r), r);
-            const real *const drives = m->drive + drive + path[OWN] * j;
-            const real rate = drives[STAGES * m->drives];
-            const mask yields = (size_of(z) >= r * (1.0 - AT_LIMIT)) & ((z * rate > 0.0) | (r <= 0.0));
-            given[EFFORT * lanes + j] = k * z;
-            given[SLIP * lanes + j] = weight ? rate : chosen(yields, rate, zero);
-            given[HEAT * lanes + j] = weight ? (real)zero : chosen(yields, k * z * rate, zero);
-            given[SHARE * lanes + j] = chosen(yields, zero, wide(1.0));
-            for (long i = 0; weight && i < STAGES; ++i) {
-                const real *const mean = m->mean + i * m->given + (given - m->node) + j;
-                given[SLIP * lanes + j] += weight[i] * (mean[SLIP * lanes] - drives[i * m->drives]);
-                given[HEAT * lanes + j] += weight[i] * mean[HEAT * lanes];
-            }
-        }
-        given += GIVEN * lanes, parameter += PARAMETERS * lanes;
-        drive += path[OWN] ? lanes : 1;
-    }
 }
