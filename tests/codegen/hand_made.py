@@ -104,7 +104,7 @@ class HandMade:
             ModuleFunction("heat", "Heat [W]", DRIVEN, tuple(row for row, _ in heated)),
             ModuleFunction("entropy_production", "Production [W/K]", DRIVEN, tuple(produced)),
         )
-        counts = {f"{name}_count": count for name, count in self.counts.items()}
+        defaults = {n: v for n, (v, _) in self._parameters()} | self.inputs
         return Program(
             name=self.name,
             title="",
@@ -118,7 +118,7 @@ class HandMade:
             processes=tuple(Described(r.slot.label, "W/K", "", r.slot.bank) for r, _ in heated),
             elements=(),
             bodies=tuple(Described(name, "K", "") for name in entropies),
-            defaults={**{n: v for n, (v, _) in self._parameters()}, **self.inputs, **counts},
+            defaults={name: as_printed(value) for name, value in defaults.items()},
             counts=self.counts,
             quantities=(*q.defined, *derivatives),
             functions=functions,
@@ -274,6 +274,11 @@ class _Quantities:
 def read(text):
     """Return a text of the law language as a tree; trees pass."""
     return parse_rule(text) if isinstance(text, str) else text
+
+
+def as_printed(value):
+    """Return a value, or one for each lane, as programs have them."""
+    return tuple(map(repr, value)) if isinstance(value, tuple) else repr(value)
 
 
 def _with_bank(given):
