@@ -44,6 +44,32 @@ from piezo_sym.spec.tables import bank_states, banks, conditions, greater, lane_
 TABLE = sp.Function("table")
 
 
+class Raised(sp.Function):  # type: ignore[misc]
+    """x**w for x >= 0, w > 0, which stays as it is written: a `Pow` may be taken apart."""
+
+    _imp_ = staticmethod(pow)
+    is_extended_real = True
+    is_extended_nonnegative = True
+
+    @classmethod
+    def eval(cls, x: sp.Expr, w: sp.Expr) -> sp.Expr | None:
+        """Return the power of numbers; none where it has no value."""
+        if not (x.is_number and w.is_number):
+            return None
+        return sp.Pow(x, w) if x.is_nonnegative and w.is_positive else sp.nan
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """Return the derivative by an argument, where x > 0."""
+        x, w = self.args
+        return self * (w / x if argindex == 1 else sp.log(x))
+
+    def _latex(self, printer: Any) -> str:
+        return str(printer.doprint(sp.Pow(*self.args, evaluate=False)))
+
+    def _sympystr(self, printer: Any) -> str:
+        return str(printer.doprint(sp.Pow(*self.args, evaluate=False)))
+
+
 @final
 @dataclass(frozen=True)
 class SymbolTable:
@@ -164,7 +190,7 @@ def to_sympy(node: Expr, table: Mapping[str, sp.Expr]) -> sp.Expr:
             if function in table:
                 return table[function](*parts)
             if RECORDS[function].smooth:
-                return getattr(sp, function)(*parts)
+                return getattr(sp, function, Raised)(*parts)
             return _by_branches(partial(_kinked, function), parts)
         case If(then, Cmp(op, left, right), other):
             choose = partial(_choice, op, to_sympy(then, table), to_sympy(other, table))

@@ -28,12 +28,13 @@ PAIRS = {
     "sin": f"{_EQUAL}; {_EQUAL.replace('a', '-a').replace('b', '-b')}",
 }
 #: Name, derivative, sign (that of x, or 1), the text on two values (a rising odd function, an even
-#: one, its own), facts.  The atan(1) is pi/4.
+#: one, its own), facts.  The atan(1) is pi/4; pow is |x|**z, the z > 0 of both the same.
 _SMOOTH = """
 exp  | y            | 1 | exp  | y > 0; y >= 1 + x; x <= 0: y <= 1; x <= 0: y <= 1 + x + x**2/2;
     x < 1: y*(1 - x) <= 1; x >= 0: y >= 1 + x + x**2/2 + x**3/6;
     x <= 0: y*(1 - x + x**2/2 - x**3/6) <= 1
 log  | 1/x          |   | log  | x > 0: y <= x - 1; x > 0: x*y >= x - 1; x > 0: x*y**2 <= (x - 1)**2
+pow  | z*y/x        | x | even | x >= 0: y >= 0; x > 0: y > 0; x >= 0: x <= 0: y <= 0
 sin  | cos(x)       |   | sin  | y <= 1; y >= -1; x >= 0: y <= x; x <= 0: y >= x;
     x >= 0: y >= x - x**3/6; x <= 0: y <= x - x**3/6
 cos  | -sin(x)      |   | even | y <= 1; y >= -1; y >= 1 - x**2/2; y <= 1 - x**2/2 + x**4/24

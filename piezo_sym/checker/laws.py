@@ -27,7 +27,8 @@ ARITHMETIC: dict[str, Callable[..., Any]] = {"*": operator.mul, "/": operator.tr
 ARITHMETIC |= {"neg": operator.neg, "+": lambda *terms: sum(terms[1:], terms[0])}
 #: The derivatives of operations on x and z, whose own are dx and dz.
 SLOPES = {"*": "dx*z + x*dz", "/": "dx/z - x*dz/z**2", "neg": "-dx"}
-ARGUMENTS = dict.fromkeys(SMOOTH, 1) | {n: 1 + ("z" in t) for n, t in KINKS.items() if t}
+_TEXTS = KINKS | {name: known.slope for name, known in SMOOTH.items()}
+ARGUMENTS = {name: 1 + ("z" in text) for name, text in _TEXTS.items() if text}
 
 
 class InputError(Exception):
@@ -162,8 +163,9 @@ def derivative(node: Node, by: Any) -> Node:
         return made("n*y*dx", n=num(node.value), y=Node("**", (x,), node.value - 1), dx=dx)
     if node.op == "/" and dz == num(0):
         return Node("/", (dx, z))
+    need(node.op != "pow" or dz == num(0), "an exponent changes")
     if node.op in SMOOTH:
-        return Node("*", (made(SMOOTH[node.op].slope, x=x, y=node), dx))
+        return Node("*", (made(SMOOTH[node.op].slope, x=x, y=node, z=z), dx))
     return made(SLOPES[node.op], x=x, z=z, dx=dx, dz=dz)
 
 
@@ -237,7 +239,12 @@ def _tree(node: ast.AST, text: str) -> Node:
 
 
 def _power(base: Node, exponent: Node) -> Node:
-    """Return a power; with a parameter in its exponent it is exp and log."""
+    """Return a power; with a parameter in its exponent it is exp and log, or may be of zero."""
+    parts = [base]
+    for part in parts:
+        parts += part.args[: {"*": 2, "/": 1}.get(part.op, 0)]
+    if symbols(exponent) and exponent.op != "neg" and any(p.op in ("if", *KINKS) for p in parts):
+        return Node("pow", (base, exponent))
     if symbols(exponent):
         return Node("exp", (Node("*", (exponent, Node("log", (base,)))),))
     power = _value(exponent)

@@ -49,7 +49,7 @@ class _Query:
         self.solver.setLogic("QF_NRA")
         for option, most in {"rlimit-per": EFFORT, "tlimit-per": MILLISECONDS}.items():
             self.solver.setOption(option, str(most))
-        self.known, self.calls = dict[Node, Any](), dict[str, list[tuple[Node, Node]]]()
+        self.known, self.calls = dict[Node, Any](), dict[Any, list[tuple[Node, Node]]]()
 
     def add(self, fact: Node, *premises: Node, holds: bool = True) -> None:
         """Assert a comparison, or its opposite, where premises hold."""
@@ -86,7 +86,7 @@ class _Query:
         if node.op == "/":
             self.add(compare(Node("*", (y, args[1])), "=", args[0]), compare(args[1], "!="))
         elif node.op in SMOOTH:
-            self._function(node.op, args[0], y)
+            self._function(node.op, y, *args)
         return self.term(y)
 
     def _power(self, x: Node, exponent: Fraction) -> Node:
@@ -99,11 +99,11 @@ class _Query:
         size = Node("*", (num(1), *[y] * abs(exponent.numerator)))
         return size if exponent >= 0 else Node("/", (num(1), size))
 
-    def _function(self, name: str, x: Node, y: Node) -> None:
+    def _function(self, name: str, y: Node, x: Node, *more: Node) -> None:
         """Assert what is known of a smooth function, alone and of two values of one."""
         if (name, x.op) in (("log", "exp"), ("exp", "log")):  # log(exp(a)) = a; a > 0 for the other
             self.add(compare(y, "=", x.args[0]), *[compare(x.args[0], ">")] * (name == "exp"))
-        others, known = self.calls.setdefault(name, []), SMOOTH[name]
+        others, known = self.calls.setdefault((name, *more), []), SMOOTH[name]
         pairs = [(known.pairs, {"a": a, "b": b}) for a, b in others[:MOST_PAIRS]]
         for texts, words in [(known.facts, dict[str, Node]()), *pairs]:
             for text in texts.split(";"):
@@ -152,7 +152,9 @@ def needed(node: Node) -> Iterator[Node]:
     """Yield what must hold of a function's arguments for it to have a value."""
     yield from increasing(node)
     power = Fraction({"/": -1, "**": node.value}.get(node.op, 1))
-    if node.op == "log" or power.denominator > 1:
+    if node.op == "pow":
+        yield compare(node.args[1], ">")
+    if node.op in ("log", "pow") or power.denominator > 1:
         yield compare(node.args[0], ">" if node.op == "log" or power < 0 else ">=")
     elif power < 0 and not (node.args[-1].op == "num" and node.args[-1].value):
         yield compare(node.args[-1], "!=")

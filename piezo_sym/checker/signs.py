@@ -51,7 +51,7 @@ class Signs:
         parts = [self.of(arg) for arg in node.args]
         power = Fraction(node.value if node.op == "**" else -1 if node.op == "/" else 1)
         good = (power >= 0 or 0 not in parts[-1]) and (power.denominator == 1 or -1 not in parts[0])
-        need(good and (node.op != "log" or parts == [{1}]), "it may have no value")
+        need(good and node.op != "pow" and (node.op != "log" or parts == [{1}]), "no value")
         if node.op == "**":
             found = frozenset(sign ** abs(power.numerator) for sign in parts[0])
         elif node.op == "+":

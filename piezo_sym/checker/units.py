@@ -80,7 +80,7 @@ def _dimension(node: Node, units: Mapping[Any, Dimension]) -> Dimension | None:
         need(all(part == x[0] for part in x), "the knots of a table have different units")
         parts = parts[2::2]
     known = [part for part in (parts[1:] if node.op == "if" else parts) if part is not None]
-    need(node.op not in SMOOTH or known in ([], [pure]), f"the argument of {node.op} has a unit")
+    need(node.op not in SMOOTH or {*known} <= {pure}, f"the argument of {node.op} has a unit")
     equal = node.op not in EQUAL or all(part == known[0] for part in known)
     need(equal, f"the terms of {node.op!r} have different units")
     if node.op in (*SMOOTH, "sign") or (node.op == "**" and node.value == 0):

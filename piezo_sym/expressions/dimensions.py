@@ -6,7 +6,7 @@ product of powers is linear in those of its names: `powers` gives the coefficien
 rule asks for is one linear equation.  The rules:
 
     a + b, min, max, deadzone, saturate, a if c else b, a < b     equal units
-    exp log sin cos tanh expm1                                    an argument without unit, no unit
+    exp log sin cos tanh expm1 pow                                arguments without unit, no unit
     sign                                                          any argument, no unit
     table(x, x_1, y_1, ...)                                       x as all x_k; value as all y_k
     abs, -a                                                       keep
@@ -166,8 +166,8 @@ def matches(node: Node) -> Iterator[Match]:
     for part in children(node):
         yield from matches(part)
     match node:
-        case Call(function, (arg,)) if RECORDS[function].units == "pure":
-            yield Match(node, arg)
+        case Call(function, args) if RECORDS[function].units == "pure":
+            yield from (Match(node, arg) for arg in args)
         case Add(parts):
             yield from _equal(node, parts)
         case Call(_, (x, *_)) if pairs := knots(node):

@@ -18,6 +18,7 @@ from typing import TypeAlias, final
 
 from piezo_sym.expressions.calculus import choices, increasing, rule
 from piezo_sym.expressions.functions import RECORDS, LawFunction
+from piezo_sym.expressions.parse import parse_rule
 from piezo_sym.expressions.tree import (
     Add,
     Call,
@@ -38,6 +39,9 @@ Interval: TypeAlias = tuple[Fraction, Fraction]
 LONGEST = 4096  # bits of a bound
 LARGEST, TINY = Fraction(sys.float_info.max), Fraction(sys.float_info.min)
 SLACK = Fraction(1, 2**40)
+
+
+_BY_LOG = parse_rule("exp(w*log(x))")
 
 
 @final
@@ -127,7 +131,21 @@ def _call(function: str, args: tuple[Expr, ...], values: Mapping[str, Interval])
         return Fraction(record.value(*lows)), Fraction(record.value(*highs))
     if record.power is not None:
         return _power((lows[0], highs[0]), record.power)
+    if function == "pow":
+        return _raised((lows[0], highs[0]), (lows[1], highs[1]))
     return _library(record, lows[0], highs[0])
+
+
+def _raised(base: Interval, exponent: Interval) -> Interval:
+    """Return the interval of powers of numbers >= 0 with positive exponents."""
+    if base[1] < 0 or exponent[1] <= 0:
+        msg = "a power of a negative number, or whose exponent is not positive"
+        raise ArithmeticError(msg)
+    if base[0] < 0 or exponent[0] <= 0:
+        raise UndecidedError
+    ends = ({"x": (end, end), "w": exponent} for end in base)
+    both = [interval_of(_BY_LOG, e) if e["x"][0] else (Fraction(0),) * 2 for e in ends]
+    return both[0][0], both[1][1]
 
 
 def _library(record: LawFunction, low: Fraction, high: Fraction) -> Interval:

@@ -15,7 +15,7 @@ from flint import arb, ctx, fmpq, fmpz
 
 from piezo_sym.expressions.calculus import choices, increasing
 from piezo_sym.expressions.functions import RECORDS, LawFunction
-from piezo_sym.expressions.parse import parse_rule
+from piezo_sym.expressions.parse import MAX_POWER, parse_rule
 from piezo_sym.expressions.tree import (
     Add,
     Call,
@@ -181,6 +181,17 @@ def _power(base: Value, exponent: Fraction) -> Value:
     return arb(base) ** arb(exact(exponent))
 
 
+def _raised(base: Value, exponent: Value) -> Value:
+    """Return a power of a number >= 0, the exponent positive."""
+    if _sign(exponent) != 1:
+        raise ValueError("a power whose exponent is not positive")
+    if _sign(base) < 0:
+        raise ValueError("a power of a negative number")
+    if isinstance(exponent, fmpq) and max(exponent.p, exponent.q) <= MAX_POWER:
+        return _power(base, Fraction(int(exponent.p), int(exponent.q)))
+    return arb(base) ** arb(exponent) if base != 0 else fmpq(0)
+
+
 def _call(function: str, args: list[Value]) -> Value:
     record, z = RECORDS[function], args[0]
     if function in {"min", "max"} and not all(isinstance(arg, fmpq) for arg in args):
@@ -189,6 +200,8 @@ def _call(function: str, args: list[Value]) -> Value:
         return _value(parse_rule(record.formula or record.choices), {"x": z, "w": args[-1]})
     if record.power is not None:
         return _power(z, record.power)
+    if function == "pow":
+        return _raised(z, args[1])
     if record.domain and _sign(z) != 1:
         raise ValueError(f"{function} of a number that is not positive")
     if not (record.domain or abs(z) <= LARGEST_ARGUMENT or _bounded_far_out(record, z)):

@@ -14,7 +14,7 @@ from functools import cache, lru_cache
 from typing import TypeVar
 
 from piezo_sym.errors import SpecError, nearest, quote
-from piezo_sym.expressions.functions import FUNCTIONS
+from piezo_sym.expressions.functions import FUNCTIONS, RECORDS
 from piezo_sym.expressions.lexer import (
     LANGUAGE,
     MAX_DEPTH,
@@ -211,12 +211,24 @@ LETTERS = frozenset({"i", "v", "f", "T"})
 def _power(base: Expr, exponent: Expr) -> Expr:
     if LETTERS & {*names(exponent)}:
         raise RefusedError("has a power that is not a number", "a small number, as in v**2")
+    if names(exponent) and not isinstance(exponent, Neg) and _may_vanish(base):
+        return Call("pow", (base, exponent))
     if names(exponent):  # of a positive base; of what has a unit, exp and log say so
         return Call("exp", (Mul(exponent, Call("log", (base,))),))
     value = _rational(exponent)
     if value is None or max(abs(value.numerator), value.denominator) > MAX_POWER:
         raise RefusedError("has too large a power", f"whole numbers or p/q up to {MAX_POWER}")
     return Pow(base, value)
+
+
+def _may_vanish(base: Expr) -> bool:
+    """Return whether a factor chooses, as abs(f/f_0) does: the power is 0 where its base is."""
+    match base:
+        case Mul(left, right):
+            return _may_vanish(left) or _may_vanish(right)
+        case Div(left, _):
+            return _may_vanish(left)
+    return isinstance(base, If) or (isinstance(base, Call) and not RECORDS[base.function].smooth)
 
 
 def _rational(node: Expr) -> Fraction | None:

@@ -161,6 +161,12 @@ def _spec_power(base: Piece, exponent: Fraction) -> Piece:
     return f"{enclose(base, ATOM)}**{power}", POWER
 
 
+def _spec_call(function: str, args: tuple[Piece, ...]) -> Piece:
+    if function == "pow":
+        return f"{enclose(args[0], ATOM)}**{enclose(args[1], ATOM)}", POWER
+    return f"{function}({', '.join(text for text, _ in args)})", ATOM
+
+
 def _spec_choice(then: Piece, test: str, other: Piece) -> Piece:
     return f"{enclose(then, SUM)} if {test} else {enclose(other, SUM)}", CHOICE
 
@@ -169,7 +175,7 @@ SPEC = Style(
     number=_spec_number,
     name=lambda name: (name, ATOM),
     power=_spec_power,
-    call=lambda function, args: (f"{function}({', '.join(text for text, _ in args)})", ATOM),
+    call=_spec_call,
     choose=_spec_choice,
     lane_sum=lambda arg, bank: (f"sum({arg[0]} over {bank})", ATOM),
 )

@@ -117,6 +117,10 @@ class Floats(dict[Expr, Approx]):
                 found = _each(partial(np.where, taken), self[then], self[other])
                 lost = found.lost | self[left].lost | self[right].lost
                 return Approx(found.value, found.size, lost)
+            case Call("pow", (base, exponent)):
+                a, w = self[base], self[exponent]
+                lost = a.lost | w.lost | (a.value < 0) | (w.value <= 0)
+                return self._plain(a.value**w.value, lost)
             case Call(function, (arg,)) if RECORDS[function].smooth:
                 return self._smooth(function, self[arg])
             case Call():

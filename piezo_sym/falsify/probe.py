@@ -230,7 +230,7 @@ def _edges(tree: Node) -> Iterator[Edge]:
                 yield from (Edge(add(c.left, neg(c.right)), kink=True) for c in kinks(node))
             case Call(function, (z,)) if RECORDS[function].units == "pure":
                 yield from (Edge(z), Edge(add(z, neg(ONE))), Edge(add(z, ONE)))
-            case Call(_, (z,)) | Pow(z, _) | Div(_, z):
+            case Call(_, (z, *_)) | Pow(z, _) | Div(_, z):
                 yield Edge(z)
             case Add():
                 yield Edge(node)

@@ -16,7 +16,7 @@ from typing import Any, TypeVar, final
 import numpy as np
 import numpy.typing as npt
 
-from piezo_sym.expressions.tree import Cmp, Num, Sym
+from piezo_sym.expressions.tree import Call, Cmp, Num, Sym, walk
 from piezo_sym.expressions.units import parse_unit
 from piezo_sym.falsify.claims import summed
 from piezo_sym.falsify.floats import Approx, Floats
@@ -266,9 +266,13 @@ class Seen:
 
     @cached_property
     def infinite(self) -> Mask:
-        """Which points have a law that overflows."""
-        laws = [self.law(*key).value for key in self.space.probe.laws]
-        found: Mask = np.isinf(np.concatenate(laws)).any(axis=0)
+        """Which points have a law that overflows, or a power in one, its exponent being large."""
+        laws, written = self.space.probe.laws, self.space.probe.written
+        sizes = np.concatenate([self.law(*key).value for key in laws])
+        found: Mask = np.isinf(sizes).any(axis=0)
+        parts = {part for row in laws.values() for part in walk(written(row)[0])}
+        for part in (part for part in parts if isinstance(part, Call) and part.function == "pow"):
+            found |= np.atleast_2d(np.isinf(self.values[part].value)).any(axis=0)
         return found
 
     def holed(self, element: str) -> Mask:

@@ -96,7 +96,7 @@ class Asked:
                 return True
             case Pow(base, _) if self.positive(base):
                 return True
-            case Call(function, (base,)) if RECORDS[function].sign and self.positive(base):
+            case Call(function, (base, *_)) if RECORDS[function].sign and self.positive(base):
                 return True
             case Add(terms) if all(map(self.nonnegative, terms)) and any(map(self.positive, terms)):
                 return True

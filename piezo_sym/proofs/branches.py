@@ -185,5 +185,6 @@ def partial(node: Node) -> Iterator[Cmp]:
                 yield Cmp(">=" if exponent > 0 else ">", base, ZERO)
             case Pow(base, exponent) if exponent < 0:
                 yield Cmp("!=", base, ZERO)
-            case Call(function, (arg,)) if function in RECORDS and RECORDS[function].domain:
+            case Call(function, (arg, *more)) if function in RECORDS and RECORDS[function].domain:
                 yield from clause(RECORDS[function].domain, arg, part)
+                yield from (Cmp(">", w, ZERO) for w in more)

@@ -17,31 +17,31 @@ from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Expr
 Clause = tuple[Cmp, ...]
 
 
-def facts_on(function: str, exponent: Fraction, x: Expr, y: Expr) -> Iterator[Clause]:
+def facts_on(function: str, exponent: Fraction | Expr, x: Expr, y: Expr) -> Iterator[Clause]:
     """Yield bounds on y = f(x) that hold for every real x, each with the function's own domain.
 
     Parameters
     ----------
-    function : ``exp`` ..., or ``root`` for the power `exponent` of x.
+    function : ``exp`` ..., or ``root`` for the power `exponent` of x; ``pow`` has it as a tree.
     """
-    if function == "root":
+    if isinstance(exponent, Fraction) and function == "root":
         yield from _of_root(exponent, x, y)
     elif function in RECORDS:
         yield from (clause(text, x, y) for text in RECORDS[function].facts)
 
 
 def facts_on_two(
-    function: str, exponent: Fraction, one: tuple[Expr, Expr], other: tuple[Expr, Expr]
+    function: str, exponent: Fraction | Expr, one: tuple[Expr, Expr], other: tuple[Expr, Expr]
 ) -> Iterator[Clause]:
     """Yield what relates the values of one function at two arguments.
 
     Parameters
     ----------
-    one, other : each an argument and its value.
+    one, other : each an argument and its value, the exponents being the same.
     """
     (x, y), (a, b) = one, other
     record = RECORDS.get(function)
-    rising = record.monotone if record else exponent > 0
+    rising = record.monotone if record else isinstance(exponent, Fraction) and exponent > 0
     op = "<=" if record else "<"
     limited = record.domain if record else True
     undefined = (Cmp(op, x, ZERO), Cmp(op, a, ZERO)) if limited else ()

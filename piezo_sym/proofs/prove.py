@@ -16,7 +16,7 @@ import sympy as sp
 from piezo_sym.expressions.calculus import mul
 from piezo_sym.expressions.exact_eval import TooCloseError, all_hold, value_of
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import ZERO, Cmp, Expr, Sym
+from piezo_sym.expressions.tree import ZERO, Cmp, Expr, Sym, names
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.asked import Asked, tried
 from piezo_sym.proofs.continuity import jumps, needed
@@ -65,6 +65,8 @@ def prove(
         verdict, witness, reason = _not_proved(values, known) or (verdict, witness, reason)
     if verdict is Verdict.REFUTED and obligation.sign:
         reason += _mended(obligation.sign, obligation.questions, iphs, asked)
+    if verdict is Verdict.REFUTED and obligation.id == "welldef":
+        reason += _declared(obligation.questions, iphs, reason)
     return Row(
         obligation.id,
         obligation.element,
@@ -254,6 +256,15 @@ def _mended(sign: SignOf, questions: tuple[Question, ...], iphs: IPHS, solver: A
     given = (Cmp(">=", law, ZERO) for law in found)
     mends = found and shown(sign.law, sign.letter, *given)
     return f"; '{as_text(found)}' in [domain] mends it" if mends else ""
+
+
+def _declared(questions: Iterable[Question], iphs: IPHS, reason: str) -> str:
+    """Return what parameters alone have to keep, as n > 0, where a law has no value for them."""
+    for claim in (question.original for question in questions):
+        own = reason.startswith(f"{spell(claim.left)} = ") and claim.op == ">"
+        if own and {*names(claim.left)} <= iphs.model.parameters.keys():
+            return f"; the condition '{condition_text(claim)}' in [domain] mends it"
+    return ""
 
 
 def _value(law: Expr, values: Mapping[str, Fraction]) -> str:

@@ -14,6 +14,7 @@ from fractions import Fraction
 import sympy as sp
 
 from piezo_sym.algebra.sums import SymbolicLaneSum
+from piezo_sym.algebra.symbols import Raised
 from piezo_sym.expressions.calculus import add, div, mul, power
 from piezo_sym.expressions.functions import FUNCTIONS as WRITTEN
 from piezo_sym.expressions.text import ATOM, SPEC, write
@@ -129,6 +130,8 @@ class _Trees:
                 return self._power(expr.base, expr.exp)
             case sp.Piecewise():
                 return self._choice(expr.args)
+        if isinstance(expr, Raised):
+            return Call("pow", tuple(map(self, expr.args)))
         if isinstance(expr, FUNCTIONS):
             return Call(type(expr).__name__, (self(expr.args[0]),))
         msg = f"{type(expr).__name__} is nothing that a system has"

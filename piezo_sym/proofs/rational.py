@@ -64,13 +64,14 @@ class Part:
     name, argument : symbols; the argument's value is `value`, free of functions.
     function : ``exp``, ..., ``root`` for the power `exponent` of the argument, or ``quotient``,
         whose value is the argument's.
+    exponent : of a root, or of ``pow``, as it is written.
     """
 
     name: str
     function: str
     argument: Expr
     value: Ratio
-    exponent: Fraction = Fraction(1)
+    exponent: Fraction | Expr = Fraction(1)
 
 
 @final
@@ -138,7 +139,7 @@ def parts_of(laws: Iterable[Expr], taken: frozenset[str]) -> Parts:
     return Parts(tuple(found), tuple(words.items()))
 
 
-def _quotient(node: Node) -> tuple[str, Expr, Fraction] | None:
+def _quotient(node: Node) -> tuple[str, Expr, Fraction | Expr] | None:
     """Return a quotient that is not by a number as (name, itself, 1), else None."""
     match node:
         case Div(_, Num(value)) if value != 0:
@@ -150,13 +151,13 @@ def _quotient(node: Node) -> tuple[str, Expr, Fraction] | None:
     return None
 
 
-def _function(node: Node) -> tuple[str, Expr, Fraction] | None:
+def _function(node: Node) -> tuple[str, Expr, Fraction | Expr] | None:
     """Return a function or root as (name, argument, exponent), else None."""
     match node:
         case Call(function, (arg,)) if (exponent := RECORDS[function].power) is not None:
             return "root", arg, exponent
-        case Call(function, (arg,)) if RECORDS[function].transcendental:
-            return function, arg, Fraction(1)
+        case Call(function, (arg, *more)) if RECORDS[function].transcendental:
+            return function, arg, more[0] if more else Fraction(1)
         case Pow(base, exponent) if exponent.denominator != 1:
             return "root", base, exponent
     return None

@@ -46,7 +46,7 @@ from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import Key, Proved
 from piezo_sym.translation.signs import reading
 
-_LIBRARY = (*(record.in_c for record in RECORDS.values() if record.smooth), "pow")
+_LIBRARY = tuple(record.in_c for record in RECORDS.values() if record.smooth)
 #: What the words of a step stand for, for numbers of one run; called functions have a line.
 MACROS = """\
 #if !defined(REAL_WIDTH) /* numbers of one run; run/engine has vectors of many */

@@ -18,7 +18,7 @@ from fractions import Fraction
 from typing import final
 
 from piezo_sym.translation.field import GeneratorField, NotShownError, Value
-from piezo_sym.translation.functions import call, power, size_of
+from piezo_sym.translation.functions import call, power, raised, size_of
 from piezo_sym.translation.signs import choose, compare, on_path, side_of
 
 MOST_MAGNITUDE = 300
@@ -233,9 +233,7 @@ class Expressions:
                 return self.apply("minimum", [self.apply("maximum", args[:2]), w])
             case "pow":
                 exponent = w.constant
-                if exponent is None:
-                    raise NotShownError("a power with an exponent that is no number")
-                return power(z, exponent)
+                return raised(z, w) if exponent is None else power(z, exponent)
             case "copysign":
                 unknown = field.generator("unknown", None, (f"copysign {len(field.gens)}", None, 0))
                 of_zero = compare("==", w, field.zero) * unknown

@@ -2,7 +2,7 @@
 
 Input: values.  Output: values.  What a function needs of its argument is noted in `Field.needs`.
 Identities used, and their premises:
-exp(a + b) = exp(a) exp(b); exp(c log x) = x**c; log(exp z) = z;
+exp(a + b) = exp(a) exp(b); exp(c log x) = x**c (of `raised` 0 where x = 0); log(exp z) = z;
 log(a b) = log a + log b and (a b)**c = a**c b**c for a, b > 0; (x**(1/n))**n = x for x >= 0;
 (x**2)**(1/2) = abs(x); f(-x) = -f(x) or f(x) where a record says that f is odd or even.
 """
@@ -15,7 +15,7 @@ from sympy import factorint
 
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.translation.field import Exponent, GeneratorField, Need, NotShownError, Value
-from piezo_sym.translation.signs import factors, lifted, primitive, side_of, sign, sign_of
+from piezo_sym.translation.signs import compare, factors, lifted, primitive, side_of, sign, sign_of
 
 MOST_FACTOR = 10**12
 
@@ -106,6 +106,18 @@ def _undefined(field: GeneratorField, kind: str) -> Value:
     return field.generator("name", None, (f"not {kind}", None, 0))
 
 
+def raised(base: Value, exponent: Value) -> Value:
+    """Return base**exponent of a base >= 0 with a positive exponent: 0 where the base is 0."""
+    return lifted(partial(_raised, exponent), base)
+
+
+def _raised(exponent: Value, base: Value) -> Value:
+    _needs("positive", exponent)
+    _needs("nonnegative", base)
+    above = compare(">", base, base.field.zero)
+    return above * call("exp", exponent * _log_of_product(base)) if above.terms else above
+
+
 def call(function: str, arg: Value) -> Value:
     """Return a smooth function of a value."""
     own = {"exp": _exp, "log": _log}.get(function)
@@ -129,7 +141,11 @@ def _log(arg: Value) -> Value:
     if not arg.terms:
         return _undefined(field, "positive")
     _needs("positive", arg)
-    (mono, c), *more = arg.terms.items()
+    return _log_of_product(arg)
+
+
+def _log_of_product(arg: Value) -> Value:
+    field, ((mono, c), *more) = arg.field, arg.terms.items()
     if more or c <= 0 or any(sign_of(field, g) < 2 for g, _ in mono):
         return field.generator("log", arg)
     whole = ((Fraction(c).numerator, 1), (Fraction(c).denominator, -1))

@@ -15,6 +15,7 @@ from sympy.logic.boolalg import Boolean
 
 from piezo_sym.algebra.lanes import LaneMatrix
 from piezo_sym.algebra.sums import SymbolicLaneSum
+from piezo_sym.algebra.symbols import Raised
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import Cmp, Expr, Num, names, walk
@@ -22,7 +23,7 @@ from piezo_sym.iphs import IPHS
 from piezo_sym.spec.elements.ports import Body
 from piezo_sym.spec.tables import bank_states, conditions, lane_parameters, law_fields, states
 from piezo_sym.translation.field import GeneratorField, NotShownError, Value
-from piezo_sym.translation.functions import call, power, size_of
+from piezo_sym.translation.functions import call, power, raised, size_of
 from piezo_sym.translation.signs import assume, compare, on_path, reading
 
 _RELATIONS = {sp.Gt: ">", sp.Ge: ">=", sp.Lt: "<", sp.Le: "<=", sp.Eq: "==", sp.Ne: "!="}
@@ -164,6 +165,8 @@ class SystemReader:
             return call("exp", args[1] * call("log", args[0]))
         if isinstance(expr, sp.Abs):
             return size_of(args[0])
+        if isinstance(expr, Raised):
+            return raised(*args)
         function = type(expr).__name__
         if function not in RECORDS or not RECORDS[function].transcendental:
             raise NotShownError(f"{function} in the proved system")

@@ -51,7 +51,7 @@ typedef REAL real;
 #define least(a, b) ((a) < (b) || (a) != (a) ? (a) : (b))
 #define OF(value, lane) (value)
 #endif"""
-_LIBRARY = (*(record.in_c for record in RECORDS.values() if record.smooth), "pow")
+_LIBRARY = tuple(record.in_c for record in RECORDS.values() if record.smooth)
 
 
 def c_step(program: Program, made: Collocation) -> str:

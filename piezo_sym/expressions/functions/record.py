@@ -40,7 +40,7 @@ class LawFunction:
     power : which power of its argument it is, if it is one.
     parity : f(-x, w) = -f(x, w) is ``odd``, f(-x, w) = f(x, w) ``even``.
     rises : 1 if a smooth function increases strictly (an even one: for x >= 0), else 0.
-    domain : where it has a value; "" is everywhere.
+    domain : where it has a value; "" is everywhere.  Of a smooth function of two, w > 0, too.
     sign : y > 0, or y >= 0 and zero at zero alone, wherever it has a value.
     known : a rational argument at which the value is rational, and that value.
     bounds : between which rational numbers the values lie.

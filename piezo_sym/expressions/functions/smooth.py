@@ -10,6 +10,14 @@ from piezo_sym.expressions.functions.record import INF, LawFunction
 
 _ONE = (Fraction(-1), Fraction(1))
 
+
+def _raised(x: float, w: float) -> float:
+    if x < 0 or w <= 0:
+        msg = "a power of a negative number, or one that may divide by zero"
+        raise ArithmeticError(msg)
+    return math.pow(x, w)
+
+
 SMOOTH = (
     LawFunction(
         "exp",
@@ -66,6 +74,16 @@ SMOOTH = (
         numpy="np.sqrt",
         about="the square root of x; also x**(1/2)",
         example="c*sqrt(v**2 + w**2)",
+    ),
+    LawFunction(  # x**w of an x that may be zero, as abs(f/f_0)**n: `parse` makes it
+        "pow",
+        _raised,
+        ("w*y/x if x > 0 else 0", "y*log(x) if x > 0 else 0"),  # infinite at 0 if w < 1
+        domain="x >= 0",
+        sign=">=",
+        facts=("x < 0 | y >= 0", "x <= 0 | y > 0", "x < 0 | x > 0 | y <= 0"),  # w > 0: 0**w = 0
+        numpy="np.power",
+        written=False,
     ),
     LawFunction(
         "sin",

@@ -86,7 +86,7 @@ def _total(condition: Cmp, positive: Positive) -> bool:
                 continue
             case Div(_, arg) if not positive(arg):
                 return False
-            case Call(function, (arg,)) if RECORDS[function].domain and not positive(arg):
+            case Call(function, args) if RECORDS[function].domain and not all(map(positive, args)):
                 return False
             case Pow(base, e) if (e < 0 or e.denominator != 1) and not positive(base):
                 return False

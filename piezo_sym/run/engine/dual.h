@@ -40,9 +40,10 @@ static inline real dual_of(real x, double y, double slope)
         return dual_of(a, y, slope);                                                               \
     }
 
-/* Powers with a constant exponent. */
 static inline real pow_of(real a, real b)
 {
     const double x = OF(a, 0), n = OF(b, 0);
-    return dual_of(a, pow(x, n), n * pow(x, n - 1.0));
+    real found = dual_of(a, pow(x, n), n * pow(x, n - 1.0));
+    OF(found, 1) += x > 0.0 ? OF(found, 0) * log(x) * OF(b, 1) : 0.0;
+    return found;
 }
