@@ -15,20 +15,7 @@ from typing import Any, NamedTuple
 from . import laws
 from .field import Field
 from .kinds import KINDS, REFERENCES, UNITS, Kind
-from .laws import (
-    InputError,
-    Node,
-    compare,
-    derivative,
-    made,
-    need,
-    num,
-    parse,
-    put,
-    sym,
-    symbols,
-    walk,
-)
+from .laws import InputError, Node, compare, made, need, num, sym, symbols
 from .parts import parts, slipping, whole
 from .units import Dimension, faults, unit
 
@@ -148,12 +135,12 @@ class _Reader:
         return dict(found)
 
     def _resolved(self, text: Any, words: Mapping[str, Symbol], compares: bool = False) -> Node:
-        tree = parse(text, compares=compares)
+        tree = laws.parse(text, compares=compares)
         for part in tree.args if compares else (tree,):
             Field().of(part)  # refuses what is too large to be written out
         unknown = [str(name)[:60] for name in symbols(tree) if name not in words]
         need(not unknown, f"{text[:60]!r} has unknown names: {', '.join(unknown)}")
-        return put(tree, {name: sym(words[name]) for name in symbols(tree)})
+        return laws.put(tree, {name: sym(words[name]) for name in symbols(tree)})
 
     def _element(self, name: str) -> Element:
         entry, kind = self.tables["elements"][name], self.kinds[name]
@@ -195,7 +182,7 @@ class _Reader:
         single = len(given) == 1 and ("rest" not in own or given[0] == first)
         need(kind.form not in ("law", "store") or single, f"elements.{name} needs exactly one law")
         if "energy" in own:
-            found = derivative(own["energy"], ("x", name))
+            found = laws.derivative(own["energy"], ("x", name))
             own |= {"temperature": found} if kind.form == "body" else {}
             return found
         if kind.form == "store" and given[0] != first:
@@ -255,7 +242,7 @@ class _Reader:
             if limit := self.limits.get(element.name):
                 words = {w: s for w, s in self.words.items() if s[0] == "p"}
                 yield compare(self._resolved(limit, words), ">=")
-        for part in (part for tree in trees for part in walk(tree)):
+        for part in (part for tree in trees for part in laws.walk(tree)):
             if part.op in ("deadzone", "saturate"):
                 given = any(role in "zr" for role, _ in symbols(part.args[1]))
                 need(not given, "a width depends on the law's letter")
