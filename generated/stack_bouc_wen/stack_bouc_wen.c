@@ -2,7 +2,7 @@
  * Piezoelectric stack with a Bouc-Wen hysteresis of its voltage: irreversible port-Hamiltonian system.
  *
  * Source:  Goldfarb, Celanovic (1997), IEEE Control Systems 17 (3), 69-79; Low, Guo (1995), J. Microelectromech. Syst. 4 (4), 230-237; PiezoDrive SA050536
- * Model:   stack_bouc_wen, spec sha256 6d1fa97b1e1ae2b0b12c6c21f4a293f798dc842b64329e1d3cc5bd2fe646a47f
+ * Model:   stack_bouc_wen, spec sha256 e2a36b0370a4f10c480774a0da3625681a35bff25473de3846b6632a73e4bfbf
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, continuous, rate-independent, sigma, exergy, environment, units, program PROVED
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
@@ -14,6 +14,11 @@
 #include "stack_bouc_wen.h"
 
 #include <math.h>
+
+static double pick(int condition, double a, double b)
+{
+    return condition ? a : b;
+}
 
 static double sign(double z)
 {
@@ -68,6 +73,7 @@ void stack_bouc_wen_rhs(const double *restrict x,
     const double V_h = p_->V_h;
     const double beta = p_->beta;
     const double gam = p_->gam;
+    const double n = p_->n;
     const double R = p_->R;
     const double c_0 = p_->c_0;
     const double lam = p_->lam;
@@ -94,7 +100,7 @@ void stack_bouc_wen_rhs(const double *restrict x,
     const double V_leads = -V_ceramic - V_hysteresis + V_in;
     /* dissipative laws */
     const double i_leads = V_leads/R;
-    const double slip_hysteresis = (beta*fabs(i_leads)*V_hysteresis + gam*i_leads*fabs(V_hysteresis))/V_h;
+    const double slip_hysteresis = (beta*fabs(i_leads)*sign(V_hysteresis) + gam*i_leads)*pow(fabs(V_hysteresis/V_h), n);
     /* heats */
     const double heat_damper = F_damper*v_mass;
     const double heat_hysteresis = slip_hysteresis*V_hysteresis;
@@ -232,6 +238,7 @@ void stack_bouc_wen_heat(const double *restrict x,
     const double V_h = p_->V_h;
     const double beta = p_->beta;
     const double gam = p_->gam;
+    const double n = p_->n;
     const double R = p_->R;
     const double p = x[1];
     const double Q = x[2];
@@ -247,7 +254,7 @@ void stack_bouc_wen_heat(const double *restrict x,
     const double V_leads = -V_ceramic - V_hysteresis + V_in;
     /* dissipative laws */
     const double i_leads = V_leads/R;
-    const double slip_hysteresis = (beta*fabs(i_leads)*V_hysteresis + gam*i_leads*fabs(V_hysteresis))/V_h;
+    const double slip_hysteresis = (beta*fabs(i_leads)*sign(V_hysteresis) + gam*i_leads)*pow(fabs(V_hysteresis/V_h), n);
     /* result */
     out[0] = F_damper*v_mass;
     out[1] = slip_hysteresis*V_hysteresis;
@@ -267,6 +274,7 @@ void stack_bouc_wen_entropy_production(const double *restrict x,
     const double V_h = p_->V_h;
     const double beta = p_->beta;
     const double gam = p_->gam;
+    const double n = p_->n;
     const double R = p_->R;
     const double c_0 = p_->c_0;
     const double T_0 = p_->T_0;
@@ -286,7 +294,7 @@ void stack_bouc_wen_entropy_production(const double *restrict x,
     const double V_leads = -V_ceramic - V_hysteresis + V_in;
     /* dissipative laws */
     const double i_leads = V_leads/R;
-    const double slip_hysteresis = (beta*fabs(i_leads)*V_hysteresis + gam*i_leads*fabs(V_hysteresis))/V_h;
+    const double slip_hysteresis = (beta*fabs(i_leads)*sign(V_hysteresis) + gam*i_leads)*pow(fabs(V_hysteresis/V_h), n);
     /* result */
     out[0] = F_damper*v_mass/T;
     out[1] = slip_hysteresis*V_hysteresis/T;
@@ -308,6 +316,7 @@ void stack_bouc_wen_elements(const double *restrict x,
     const double V_h = p_->V_h;
     const double beta = p_->beta;
     const double gam = p_->gam;
+    const double n = p_->n;
     const double R = p_->R;
     const double c_0 = p_->c_0;
     const double lam = p_->lam;
@@ -334,7 +343,7 @@ void stack_bouc_wen_elements(const double *restrict x,
     const double V_leads = -V_ceramic - V_hysteresis + V_in;
     /* dissipative laws */
     const double i_leads = V_leads/R;
-    const double slip_hysteresis = (beta*fabs(i_leads)*V_hysteresis + gam*i_leads*fabs(V_hysteresis))/V_h;
+    const double slip_hysteresis = (beta*fabs(i_leads)*sign(V_hysteresis) + gam*i_leads)*pow(fabs(V_hysteresis/V_h), n);
     /* heats */
     const double heat_damper = F_damper*v_mass;
     const double heat_hysteresis = slip_hysteresis*V_hysteresis;
@@ -397,7 +406,7 @@ void stack_bouc_wen_jacobian(const double *restrict x,
                              const stack_bouc_wen_parameters *restrict p_,
                              double *restrict out)
 {
-    const long n = 5;
+    const long n_ = 5;
     const double m = p_->m;
     const double k = p_->k;
     const double d = p_->d;
@@ -407,6 +416,7 @@ void stack_bouc_wen_jacobian(const double *restrict x,
     const double V_h = p_->V_h;
     const double beta = p_->beta;
     const double gam = p_->gam;
+    const double n = p_->n;
     const double R = p_->R;
     const double c_0 = p_->c_0;
     const double lam = p_->lam;
@@ -417,7 +427,7 @@ void stack_bouc_wen_jacobian(const double *restrict x,
     const double S = x[4];
     const double V_in = u[1];
     const double T_e = u[2];
-    for (long j = 0; j < n*n; ++j) {
+    for (long j = 0; j < n_*n_; ++j) {
         out[j] = 0.0;
     }
     /* co-states dU/dx */
@@ -433,7 +443,7 @@ void stack_bouc_wen_jacobian(const double *restrict x,
     const double V_leads = -V_ceramic - V_hysteresis + V_in;
     /* dissipative laws */
     const double i_leads = V_leads/R;
-    const double slip_hysteresis = (beta*fabs(i_leads)*V_hysteresis + gam*i_leads*fabs(V_hysteresis))/V_h;
+    const double slip_hysteresis = (beta*fabs(i_leads)*sign(V_hysteresis) + gam*i_leads)*pow(fabs(V_hysteresis/V_h), n);
     /* heats */
     const double heat_damper = F_damper*v_mass;
     const double heat_hysteresis = slip_hysteresis*V_hysteresis;
@@ -442,30 +452,30 @@ void stack_bouc_wen_jacobian(const double *restrict x,
     const double dF_damper_dp = d/m;
     const double dheat_damper_dp = v_mass*dF_damper_dp + F_damper/m;
     const double di_leads_dQ = -1.0/R/C;
-    const double dslip_hysteresis_dQ = (beta*sign(i_leads)*V_hysteresis + gam*fabs(V_hysteresis))/V_h*di_leads_dQ;
+    const double dslip_hysteresis_dQ = (beta*sign(i_leads)*sign(V_hysteresis) + gam)*pow(fabs(V_hysteresis/V_h), n)*di_leads_dQ;
     const double dheat_hysteresis_dQ = V_hysteresis*dslip_hysteresis_dQ;
     const double dheat_leads_dQ = V_leads*di_leads_dQ - i_leads/C;
     const double di_leads_dQ_h = -1.0/R/C_h;
-    const double dslip_hysteresis_dQ_h = (beta*sign(i_leads)*V_hysteresis + gam*fabs(V_hysteresis))/V_h*di_leads_dQ_h
-        + (beta*fabs(i_leads) + gam*i_leads*sign(V_hysteresis))/V_h/C_h;
+    const double dslip_hysteresis_dQ_h = (beta*sign(i_leads)*sign(V_hysteresis) + gam)*pow(fabs(V_hysteresis/V_h), n)*di_leads_dQ_h
+        + (beta*fabs(i_leads)*sign(V_hysteresis) + gam*i_leads)*n*pow(fabs(V_hysteresis/V_h), n)/pick(fabs(V_hysteresis/V_h) > 0.0, fabs(V_hysteresis/V_h), 1.0)*sign(V_hysteresis/V_h)/V_h/C_h;
     const double dheat_hysteresis_dQ_h = V_hysteresis*dslip_hysteresis_dQ_h
         + slip_hysteresis/C_h;
     const double dheat_leads_dQ_h = V_leads*di_leads_dQ_h - i_leads/C_h;
     const double dT_dS = T/c_0;
     /* result */
     out[1] = 1.0/m;
-    out[n + 0] = -k;
-    out[n + 1] = -dF_damper_dp;
-    out[n + 2] = alpha_transducer/C;
-    out[2*n + 1] = -alpha_transducer/m;
-    out[2*n + 2] = di_leads_dQ;
-    out[2*n + 3] = di_leads_dQ_h;
-    out[3*n + 2] = di_leads_dQ - dslip_hysteresis_dQ;
-    out[3*n + 3] = di_leads_dQ_h - dslip_hysteresis_dQ_h;
-    out[4*n + 1] = dheat_damper_dp/T;
-    out[4*n + 2] = dheat_hysteresis_dQ/T + dheat_leads_dQ/T;
-    out[4*n + 3] = dheat_hysteresis_dQ_h/T + dheat_leads_dQ_h/T;
-    out[4*n + 4] = (-(heat_damper + heat_hysteresis + heat_leads)/power_2(T) - lam*T_e/power_2(T))*dT_dS;
+    out[n_ + 0] = -k;
+    out[n_ + 1] = -dF_damper_dp;
+    out[n_ + 2] = alpha_transducer/C;
+    out[2*n_ + 1] = -alpha_transducer/m;
+    out[2*n_ + 2] = di_leads_dQ;
+    out[2*n_ + 3] = di_leads_dQ_h;
+    out[3*n_ + 2] = di_leads_dQ - dslip_hysteresis_dQ;
+    out[3*n_ + 3] = di_leads_dQ_h - dslip_hysteresis_dQ_h;
+    out[4*n_ + 1] = dheat_damper_dp/T;
+    out[4*n_ + 2] = dheat_hysteresis_dQ/T + dheat_leads_dQ/T;
+    out[4*n_ + 3] = dheat_hysteresis_dQ_h/T + dheat_leads_dQ_h/T;
+    out[4*n_ + 4] = (-(heat_damper + heat_hysteresis + heat_leads)/power_2(T) - lam*T_e/power_2(T))*dT_dS;
 }
 
 /* Margin of each condition of the domain; of a bank, the least over its lanes. */
@@ -483,21 +493,23 @@ void stack_bouc_wen_margins(const double *restrict x,
     const double V_h = p_->V_h;
     const double beta = p_->beta;
     const double gam = p_->gam;
+    const double n = p_->n;
     const double R = p_->R;
     const double c_0 = p_->c_0;
     const double lam = p_->lam;
     const double T_0 = p_->T_0;
     const double T_e = u[2];
     out[0] = beta - fabs(gam);
-    out[1] = V_h;
-    out[2] = d;
-    out[3] = R;
-    out[4] = lam;
-    out[5] = T_e;
-    out[6] = k;
-    out[7] = m;
-    out[8] = C;
-    out[9] = C_h;
-    out[10] = T_0;
-    out[11] = c_0;
+    out[1] = n;
+    out[2] = V_h;
+    out[3] = d;
+    out[4] = R;
+    out[5] = lam;
+    out[6] = T_e;
+    out[7] = k;
+    out[8] = m;
+    out[9] = C;
+    out[10] = C_h;
+    out[11] = T_0;
+    out[12] = c_0;
 }

@@ -2,7 +2,7 @@
  * Piezoelectric stack with a Bouc-Wen hysteresis of its voltage: irreversible port-Hamiltonian system.
  *
  * Source:  Goldfarb, Celanovic (1997), IEEE Control Systems 17 (3), 69-79; Low, Guo (1995), J. Microelectromech. Syst. 4 (4), 230-237; PiezoDrive SA050536
- * Model:   stack_bouc_wen, spec sha256 6d1fa97b1e1ae2b0b12c6c21f4a293f798dc842b64329e1d3cc5bd2fe646a47f
+ * Model:   stack_bouc_wen, spec sha256 e2a36b0370a4f10c480774a0da3625681a35bff25473de3846b6632a73e4bfbf
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, continuous, rate-independent, sigma, exergy, environment, units, program PROVED
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
@@ -29,6 +29,7 @@ typedef struct {
     double V_h; /* voltage at which it slips as fast as charge comes [V]; spec: 10.0 */
     double beta; /* share of the slip that opposes its voltage [1]; spec: 0.6 */
     double gam; /* share of the slip that goes with the current [1]; spec: 0.4 */
+    double n; /* how sharply it begins to slip [1]; spec: 1.0 */
     double R; /* resistance of leads and electrodes [ohm]; spec: 2.0 */
     double c_0; /* heat capacity, 7.1 g of 370 J/(kg K) [J/K]; spec: 2.6 */
     double lam; /* heat conductance to the air [W/K]; spec: 0.02 */
@@ -46,6 +47,7 @@ typedef struct {
     .V_h = 10.0, \
     .beta = 0.6, \
     .gam = 0.4, \
+    .n = 1.0, \
     .R = 2.0, \
     .c_0 = 2.6, \
     .lam = 0.02, \
@@ -57,7 +59,7 @@ enum {
     stack_bouc_wen_input_count = 3,
     stack_bouc_wen_output_count = 3,
     stack_bouc_wen_body_count = 1,
-    stack_bouc_wen_limit_count = 12,
+    stack_bouc_wen_limit_count = 13,
 };
 
 /*
@@ -195,17 +197,18 @@ void stack_bouc_wen_elements(const double *x,
  * u[stack_bouc_wen_input_count], read: F_ext [N], V_in [V], T_e [K]
  * out[stack_bouc_wen_limit_count], written; must not overlap another argument
  * out[0]: beta >= abs(gam); inside, >= 0
- * out[1]: V_h > 0; inside, > 0
- * out[2]: d >= 0; inside, >= 0
- * out[3]: R > 0; inside, > 0
- * out[4]: lam >= 0; inside, >= 0
- * out[5]: T_e > 0; inside, > 0
- * out[6]: k > 0; inside, > 0
- * out[7]: m > 0; inside, > 0
- * out[8]: C > 0; inside, > 0
- * out[9]: C_h > 0; inside, > 0
- * out[10]: T_0 > 0; inside, > 0
- * out[11]: c_0 > 0; inside, > 0
+ * out[1]: n > 0; inside, > 0
+ * out[2]: V_h > 0; inside, > 0
+ * out[3]: d >= 0; inside, >= 0
+ * out[4]: R > 0; inside, > 0
+ * out[5]: lam >= 0; inside, >= 0
+ * out[6]: T_e > 0; inside, > 0
+ * out[7]: k > 0; inside, > 0
+ * out[8]: m > 0; inside, > 0
+ * out[9]: C > 0; inside, > 0
+ * out[10]: C_h > 0; inside, > 0
+ * out[11]: T_0 > 0; inside, > 0
+ * out[12]: c_0 > 0; inside, > 0
  */
 void stack_bouc_wen_margins(const double *x,
                             const double *u,

@@ -1,7 +1,7 @@
 """Piezoelectric stack with a Bouc-Wen hysteresis of its voltage: irreversible port-Hamiltonian system.
 
 Source:  Goldfarb, Celanovic (1997), IEEE Control Systems 17 (3), 69-79; Low, Guo (1995), J. Microelectromech. Syst. 4 (4), 230-237; PiezoDrive SA050536
-Model:   stack_bouc_wen, spec sha256 6d1fa97b1e1ae2b0b12c6c21f4a293f798dc842b64329e1d3cc5bd2fe646a47f
+Model:   stack_bouc_wen, spec sha256 e2a36b0370a4f10c480774a0da3625681a35bff25473de3846b6632a73e4bfbf
 Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, continuous, rate-independent, sigma, exergy, environment, units, program PROVED
 
 Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 NAME = "stack_bouc_wen"
-SPEC_SHA256 = "6d1fa97b1e1ae2b0b12c6c21f4a293f798dc842b64329e1d3cc5bd2fe646a47f"
+SPEC_SHA256 = "e2a36b0370a4f10c480774a0da3625681a35bff25473de3846b6632a73e4bfbf"
 
 
 class Record(NamedTuple):
@@ -117,6 +117,7 @@ PARAMETERS = (
     Record("V_h", "V", "voltage at which it slips as fast as charge comes"),
     Record("beta", "1", "share of the slip that opposes its voltage"),
     Record("gam", "1", "share of the slip that goes with the current"),
+    Record("n", "1", "how sharply it begins to slip"),
     Record("R", "ohm", "resistance of leads and electrodes"),
     Record("c_0", "J/K", "heat capacity, 7.1 g of 370 J/(kg K)"),
     Record("lam", "W/K", "heat conductance to the air"),
@@ -125,6 +126,7 @@ PARAMETERS = (
 BANKS = ()
 DOMAIN = (
     Condition("beta >= abs(gam)", False),
+    Condition("n > 0", True),
     Condition("V_h > 0", True),
     Condition("d >= 0", False),
     Condition("R > 0", True),
@@ -152,6 +154,7 @@ class Parameters:
     V_h: float = 10.0
     beta: float = 0.6
     gam: float = 0.4
+    n: float = 1.0
     R: float = 2.0
     c_0: float = 2.6
     lam: float = 0.02
@@ -209,6 +212,7 @@ def _rates(x, u, p_, out, /):
     V_h = p_.V_h
     beta = p_.beta
     gam = p_.gam
+    n = p_.n
     R = p_.R
     c_0 = p_.c_0
     lam = p_.lam
@@ -235,7 +239,7 @@ def _rates(x, u, p_, out, /):
     V_leads = -V_ceramic - V_hysteresis + V_in
     # dissipative laws
     i_leads = V_leads/R
-    slip_hysteresis = (beta*np.abs(i_leads)*V_hysteresis + gam*i_leads*np.abs(V_hysteresis))/V_h
+    slip_hysteresis = (beta*np.abs(i_leads)*np.sign(V_hysteresis) + gam*i_leads)*np.power(np.abs(V_hysteresis/V_h), n)
     # heats
     heat_damper = F_damper*v_mass
     heat_hysteresis = slip_hysteresis*V_hysteresis
@@ -364,6 +368,7 @@ def heat(x, u, p_, /):
     V_h = p_.V_h
     beta = p_.beta
     gam = p_.gam
+    n = p_.n
     R = p_.R
     p = x[1]
     Q = x[2]
@@ -379,7 +384,7 @@ def heat(x, u, p_, /):
     V_leads = -V_ceramic - V_hysteresis + V_in
     # dissipative laws
     i_leads = V_leads/R
-    slip_hysteresis = (beta*np.abs(i_leads)*V_hysteresis + gam*i_leads*np.abs(V_hysteresis))/V_h
+    slip_hysteresis = (beta*np.abs(i_leads)*np.sign(V_hysteresis) + gam*i_leads)*np.power(np.abs(V_hysteresis/V_h), n)
     # result
     out = np.empty((3, *x.shape[1:]))
     out[0] = F_damper*v_mass
@@ -399,6 +404,7 @@ def entropy_production(x, u, p_, /):
     V_h = p_.V_h
     beta = p_.beta
     gam = p_.gam
+    n = p_.n
     R = p_.R
     c_0 = p_.c_0
     T_0 = p_.T_0
@@ -418,7 +424,7 @@ def entropy_production(x, u, p_, /):
     V_leads = -V_ceramic - V_hysteresis + V_in
     # dissipative laws
     i_leads = V_leads/R
-    slip_hysteresis = (beta*np.abs(i_leads)*V_hysteresis + gam*i_leads*np.abs(V_hysteresis))/V_h
+    slip_hysteresis = (beta*np.abs(i_leads)*np.sign(V_hysteresis) + gam*i_leads)*np.power(np.abs(V_hysteresis/V_h), n)
     # result
     out = np.empty((3, *x.shape[1:]))
     out[0] = F_damper*v_mass/T
@@ -440,6 +446,7 @@ def elements(x, u, p_, /):
     V_h = p_.V_h
     beta = p_.beta
     gam = p_.gam
+    n = p_.n
     R = p_.R
     c_0 = p_.c_0
     lam = p_.lam
@@ -466,7 +473,7 @@ def elements(x, u, p_, /):
     V_leads = -V_ceramic - V_hysteresis + V_in
     # dissipative laws
     i_leads = V_leads/R
-    slip_hysteresis = (beta*np.abs(i_leads)*V_hysteresis + gam*i_leads*np.abs(V_hysteresis))/V_h
+    slip_hysteresis = (beta*np.abs(i_leads)*np.sign(V_hysteresis) + gam*i_leads)*np.power(np.abs(V_hysteresis/V_h), n)
     # heats
     heat_damper = F_damper*v_mass
     heat_hysteresis = slip_hysteresis*V_hysteresis
@@ -537,6 +544,7 @@ def jacobian(x, u, p_, /):
     V_h = p_.V_h
     beta = p_.beta
     gam = p_.gam
+    n = p_.n
     R = p_.R
     c_0 = p_.c_0
     lam = p_.lam
@@ -560,7 +568,7 @@ def jacobian(x, u, p_, /):
     V_leads = -V_ceramic - V_hysteresis + V_in
     # dissipative laws
     i_leads = V_leads/R
-    slip_hysteresis = (beta*np.abs(i_leads)*V_hysteresis + gam*i_leads*np.abs(V_hysteresis))/V_h
+    slip_hysteresis = (beta*np.abs(i_leads)*np.sign(V_hysteresis) + gam*i_leads)*np.power(np.abs(V_hysteresis/V_h), n)
     # heats
     heat_damper = F_damper*v_mass
     heat_hysteresis = slip_hysteresis*V_hysteresis
@@ -569,13 +577,13 @@ def jacobian(x, u, p_, /):
     dF_damper_dp = d/m
     dheat_damper_dp = v_mass*dF_damper_dp + F_damper/m
     di_leads_dQ = -1/R/C
-    dslip_hysteresis_dQ = (beta*np.sign(i_leads)*V_hysteresis + gam*np.abs(V_hysteresis))/V_h*di_leads_dQ
+    dslip_hysteresis_dQ = (beta*np.sign(i_leads)*np.sign(V_hysteresis) + gam)*np.power(np.abs(V_hysteresis/V_h), n)*di_leads_dQ
     dheat_hysteresis_dQ = V_hysteresis*dslip_hysteresis_dQ
     dheat_leads_dQ = V_leads*di_leads_dQ - i_leads/C
     di_leads_dQ_h = -1/R/C_h
     dslip_hysteresis_dQ_h = (
-        (beta*np.sign(i_leads)*V_hysteresis + gam*np.abs(V_hysteresis))/V_h*di_leads_dQ_h
-        + (beta*np.abs(i_leads) + gam*i_leads*np.sign(V_hysteresis))/V_h/C_h
+        (beta*np.sign(i_leads)*np.sign(V_hysteresis) + gam)*np.power(np.abs(V_hysteresis/V_h), n)*di_leads_dQ_h
+        + (beta*np.abs(i_leads)*np.sign(V_hysteresis) + gam*i_leads)*n*np.power(np.abs(V_hysteresis/V_h), n)/np.where(np.abs(V_hysteresis/V_h) > 0, np.abs(V_hysteresis/V_h), 1)*np.sign(V_hysteresis/V_h)/V_h/C_h
     )
     dheat_hysteresis_dQ_h = V_hysteresis*dslip_hysteresis_dQ_h + slip_hysteresis/C_h
     dheat_leads_dQ_h = V_leads*di_leads_dQ_h - i_leads/C_h
@@ -610,22 +618,24 @@ def margins(x, u, p_, /):
     V_h = p_.V_h
     beta = p_.beta
     gam = p_.gam
+    n = p_.n
     R = p_.R
     c_0 = p_.c_0
     lam = p_.lam
     T_0 = p_.T_0
     T_e = u[2]
-    out = np.empty((12, *x.shape[1:]))
+    out = np.empty((13, *x.shape[1:]))
     out[0] = beta - np.abs(gam)
-    out[1] = V_h
-    out[2] = d
-    out[3] = R
-    out[4] = lam
-    out[5] = T_e
-    out[6] = k
-    out[7] = m
-    out[8] = C
-    out[9] = C_h
-    out[10] = T_0
-    out[11] = c_0
+    out[1] = n
+    out[2] = V_h
+    out[3] = d
+    out[4] = R
+    out[5] = lam
+    out[6] = T_e
+    out[7] = k
+    out[8] = m
+    out[9] = C
+    out[10] = C_h
+    out[11] = T_0
+    out[12] = c_0
     return out

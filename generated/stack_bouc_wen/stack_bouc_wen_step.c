@@ -2,7 +2,7 @@
  * Piezoelectric stack with a Bouc-Wen hysteresis of its voltage: irreversible port-Hamiltonian system.
  *
  * Source:  Goldfarb, Celanovic (1997), IEEE Control Systems 17 (3), 69-79; Low, Guo (1995), J. Microelectromech. Syst. 4 (4), 230-237; PiezoDrive SA050536
- * Model:   stack_bouc_wen, spec sha256 6d1fa97b1e1ae2b0b12c6c21f4a293f798dc842b64329e1d3cc5bd2fe646a47f
+ * Model:   stack_bouc_wen, spec sha256 e2a36b0370a4f10c480774a0da3625681a35bff25473de3846b6632a73e4bfbf
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, continuous, rate-independent, sigma, exergy, environment, units, program PROVED
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
@@ -30,6 +30,7 @@ typedef REAL real;
 #define wide(value) (value)
 #define chosen(condition, then, other) ((condition) ? (then) : (other))
 #define exp_of exp
+#define pow_of pow
 #define is_above(a, b) ((a) > (b))
 #define is_at_least(a, b) ((a) >= (b))
 #define least(a, b) ((a) < (b) || (a) != (a) ? (a) : (b))
@@ -47,6 +48,7 @@ typedef struct {
     real V_h;
     real beta;
     real gam;
+    real n;
     real R;
     real c_0;
     real lam;
@@ -96,6 +98,7 @@ static void stack_bouc_wen_stage(const real *restrict x,
     const real V_h = p_->V_h;
     const real beta = p_->beta;
     const real gam = p_->gam;
+    const real n = p_->n;
     const real R = p_->R;
     const real lam = p_->lam;
     const real q = x[0];
@@ -105,6 +108,8 @@ static void stack_bouc_wen_stage(const real *restrict x,
     const real T = g[0];
     const real branch_1 = b[0];
     const real branch_2 = b[1];
+    const real branch_3 = b[2];
+    const real branch_4 = b[3];
     const real F_ext = u[0];
     const real V_in = u[1];
     const real T_e = u[2];
@@ -123,14 +128,20 @@ static void stack_bouc_wen_stage(const real *restrict x,
     const real i_leads = V_leads/R;
     /* switching functions */
     const real switch_1 = i_leads;
-    const real switch_2 = V_hysteresis;
+    const real switch_2 = -V_hysteresis;
+    const real switch_3 = V_hysteresis;
+    const real switch_4 = V_hysteresis/V_h;
     /* dissipative laws */
     const real chosen_slip_hysteresis = chosen(is_above(branch_1, 0.0), i_leads, -i_leads);
     const real chosen_slip_hysteresis_ = chosen(
-        is_above(branch_2, 0.0),
-        V_hysteresis,
-        -V_hysteresis);
-    const real slip_hysteresis = (beta*chosen_slip_hysteresis*V_hysteresis + gam*i_leads*chosen_slip_hysteresis_)/V_h;
+        is_above(branch_3, 0.0),
+        wide(1.0),
+        chosen(is_above(branch_2, 0.0), wide(-1.0), wide(0.0)));
+    const real chosen_slip_hysteresis__ = chosen(
+        is_above(branch_4, 0.0),
+        V_hysteresis/V_h,
+        -V_hysteresis/V_h);
+    const real slip_hysteresis = (beta*chosen_slip_hysteresis*chosen_slip_hysteresis_ + gam*i_leads)*pow_of(chosen_slip_hysteresis__, n);
     /* heats */
     const real heat_damper = F_damper*v_mass;
     const real heat_hysteresis = slip_hysteresis*V_hysteresis;
@@ -138,6 +149,8 @@ static void stack_bouc_wen_stage(const real *restrict x,
     /* result */
     s[0] = switch_1;
     s[1] = switch_2;
+    s[2] = switch_3;
+    s[3] = switch_4;
     out[0] = v_mass;
     out[1] = alpha_transducer*V_ceramic - F_spring - F_damper + F_ext;
     out[2] = i_leads - alpha_transducer*v_mass;
@@ -173,6 +186,7 @@ static void stack_bouc_wen_slopes(const real *restrict x,
     const real V_h = p_->V_h;
     const real beta = p_->beta;
     const real gam = p_->gam;
+    const real n = p_->n;
     const real R = p_->R;
     const real c_0 = p_->c_0;
     const real lam = p_->lam;
@@ -183,6 +197,8 @@ static void stack_bouc_wen_slopes(const real *restrict x,
     const real S = x[4];
     const real branch_1 = b[0];
     const real branch_2 = b[1];
+    const real branch_3 = b[2];
+    const real branch_4 = b[3];
     const real V_in = u[1];
     const real T_e = u[2];
     /* co-states dU/dx */
@@ -200,10 +216,14 @@ static void stack_bouc_wen_slopes(const real *restrict x,
     const real i_leads = V_leads/R;
     const real chosen_slip_hysteresis = chosen(is_above(branch_1, 0.0), i_leads, -i_leads);
     const real chosen_slip_hysteresis_ = chosen(
-        is_above(branch_2, 0.0),
-        V_hysteresis,
-        -V_hysteresis);
-    const real slip_hysteresis = (beta*chosen_slip_hysteresis*V_hysteresis + gam*i_leads*chosen_slip_hysteresis_)/V_h;
+        is_above(branch_3, 0.0),
+        wide(1.0),
+        chosen(is_above(branch_2, 0.0), wide(-1.0), wide(0.0)));
+    const real chosen_slip_hysteresis__ = chosen(
+        is_above(branch_4, 0.0),
+        V_hysteresis/V_h,
+        -V_hysteresis/V_h);
+    const real slip_hysteresis = (beta*chosen_slip_hysteresis*chosen_slip_hysteresis_ + gam*i_leads)*pow_of(chosen_slip_hysteresis__, n);
     /* heats */
     const real heat_damper = F_damper*v_mass;
     const real heat_hysteresis = slip_hysteresis*V_hysteresis;
@@ -216,8 +236,8 @@ static void stack_bouc_wen_slopes(const real *restrict x,
         is_above(branch_1, 0.0),
         di_leads_dQ,
         -di_leads_dQ);
-    const real dslip_hysteresis_dQ = beta*V_hysteresis/V_h*dchosen_slip_hysteresis_dQ
-        + gam*chosen_slip_hysteresis_/V_h*di_leads_dQ;
+    const real dslip_hysteresis_dQ = beta*chosen_slip_hysteresis_*pow_of(chosen_slip_hysteresis__, n)*dchosen_slip_hysteresis_dQ
+        + gam*pow_of(chosen_slip_hysteresis__, n)*di_leads_dQ;
     const real dheat_hysteresis_dQ = V_hysteresis*dslip_hysteresis_dQ;
     const real dheat_leads_dQ = V_leads*di_leads_dQ - i_leads/C;
     const real di_leads_dQ_h = -1.0/R/C_h;
@@ -225,14 +245,10 @@ static void stack_bouc_wen_slopes(const real *restrict x,
         is_above(branch_1, 0.0),
         di_leads_dQ_h,
         -di_leads_dQ_h);
-    const real dchosen_slip_hysteresis__dQ_h = chosen(
-        is_above(branch_2, 0.0),
-        1.0/C_h,
-        -1.0/C_h);
-    const real dslip_hysteresis_dQ_h = beta*V_hysteresis/V_h*dchosen_slip_hysteresis_dQ_h
-        + beta*chosen_slip_hysteresis/V_h/C_h
-        + gam*chosen_slip_hysteresis_/V_h*di_leads_dQ_h
-        + gam*i_leads/V_h*dchosen_slip_hysteresis__dQ_h;
+    const real dchosen_slip_hysteresis___dQ_h = chosen(is_above(branch_4, 0.0), 1.0/V_h, -1.0/V_h)/C_h;
+    const real dslip_hysteresis_dQ_h = beta*chosen_slip_hysteresis_*pow_of(chosen_slip_hysteresis__, n)*dchosen_slip_hysteresis_dQ_h
+        + gam*pow_of(chosen_slip_hysteresis__, n)*di_leads_dQ_h
+        + (beta*chosen_slip_hysteresis*chosen_slip_hysteresis_ + gam*i_leads)*n*pow_of(chosen_slip_hysteresis__, n)/chosen(is_above(chosen_slip_hysteresis__, 0.0), chosen_slip_hysteresis__, wide(1.0))*dchosen_slip_hysteresis___dQ_h;
     const real dheat_hysteresis_dQ_h = V_hysteresis*dslip_hysteresis_dQ_h
         + slip_hysteresis/C_h;
     const real dheat_leads_dQ_h = V_leads*di_leads_dQ_h - i_leads/C_h;
@@ -259,7 +275,7 @@ static void stack_bouc_wen_sizes(const stack_bouc_wen_reals *p_, long *out)
     (void)p_;
     out[0] = 5; /* states */
     out[1] = 1; /* means */
-    out[2] = 2; /* branches */
+    out[2] = 4; /* branches */
     out[3] = 10; /* booked */
     out[4] = 3; /* processes */
     out[5] = 13; /* slopes */
@@ -292,6 +308,7 @@ static void stack_bouc_wen_give(stack_bouc_wen_reals *to, const stack_bouc_wen_p
     OF(to->V_h, lane) = from->V_h;
     OF(to->beta, lane) = from->beta;
     OF(to->gam, lane) = from->gam;
+    OF(to->n, lane) = from->n;
     OF(to->R, lane) = from->R;
     OF(to->c_0, lane) = from->c_0;
     OF(to->lam, lane) = from->lam;

@@ -64,7 +64,8 @@ class Raised(sp.Function):  # type: ignore[misc]
         return self * (w / x if argindex == 1 else sp.log(x))
 
     def _latex(self, printer: Any) -> str:
-        return str(printer.doprint(sp.Pow(*self.args, evaluate=False)))
+        base, exponent = map(printer.doprint, self.args)
+        return rf"\left({base}\right)^{{{exponent}}}"
 
     def _sympystr(self, printer: Any) -> str:
         return str(printer.doprint(sp.Pow(*self.args, evaluate=False)))
@@ -166,7 +167,7 @@ def _signs(model: Model) -> dict[str, dict[str, bool]]:
 def to_sympy(node: Expr, table: Mapping[str, sp.Expr]) -> sp.Expr:
     """Return a law's tree as a SymPy expression over the symbols in `table`.
 
-    A function of laws that is in `table`, where no symbol has its name, is what it says there.
+    A piecewise linear function that is in `table` is what it says there.
     """
     match node:
         case Num(value):
@@ -187,7 +188,7 @@ def to_sympy(node: Expr, table: Mapping[str, sp.Expr]) -> sp.Expr:
             return to_sympy(choices(node), table)
         case Call(function, args):
             parts = tuple(to_sympy(arg, table) for arg in args)
-            if function in table:
+            if knots(node):
                 return table[function](*parts)
             if RECORDS[function].smooth:
                 return getattr(sp, function, Raised)(*parts)

@@ -243,7 +243,8 @@ def _power(base: Node, exponent: Node) -> Node:
     parts = [base]
     for part in parts:
         parts += part.args[: {"*": 2, "/": 1}.get(part.op, 0)]
-    if symbols(exponent) and exponent.op != "neg" and any(p.op in ("if", *KINKS) for p in parts):
+    chooses = any(part.op in ("if", "pow", *KINKS) for part in parts)
+    if symbols(exponent) and exponent.op != "neg" and chooses:
         return Node("pow", (base, exponent))
     if symbols(exponent):
         return Node("exp", (Node("*", (exponent, Node("log", (base,)))),))

@@ -14,6 +14,7 @@ WIDTH = 100
 OPERATORS = (
     ("+ - * /", "as usual", "R*(1 + al*(T - T_0))"),
     ("**", "a power, by a whole number or a small fraction", "d*v**3"),
+    ("", "or by a parameter, which is > 0 where the base may be 0", "abs(f/f_0)**n"),
     ("if", "one comparison (< <= > >=) chooses", "k_1*q if q < g else k_2*q"),
 )
 

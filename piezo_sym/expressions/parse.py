@@ -228,7 +228,8 @@ def _may_vanish(base: Expr) -> bool:
             return _may_vanish(left) or _may_vanish(right)
         case Div(left, _):
             return _may_vanish(left)
-    return isinstance(base, If) or (isinstance(base, Call) and not RECORDS[base.function].smooth)
+    chooses = isinstance(base, Call) and not RECORDS[base.function].smooth
+    return chooses or isinstance(base, If) or (isinstance(base, Call) and base.function == "pow")
 
 
 def _rational(node: Expr) -> Fraction | None:

@@ -80,7 +80,8 @@ def sides_of(space: Space, roots: Roots) -> Sides:
     low, high = (space.at(roots.at(value)) for value in (roots.low, roots.high + step))
     near = space.kinks[roots.edge] & (roots.column >= space.inputs_at)
     near &= np.abs(roots.high) < EXTREME
-    near &= low.inside & high.inside & ~space.at(roots.base).extreme
+    base = space.at(roots.base)
+    near &= low.inside & high.inside & ~base.extreme & ~base.steep
     off = (
         (space.at(roots.at(roots.low - n * step)), space.at(roots.at(roots.high + n * step)))
         for n in OFF_A_JUMP

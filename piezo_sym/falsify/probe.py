@@ -113,6 +113,13 @@ class Probe:
             found.setdefault(element, []).extend([self.written(row)] if what != "effort" else [])
         return found
 
+    @cached_property
+    def powers(self) -> tuple[Call, ...]:
+        """The powers in laws of an exponent that is no number."""
+        parts = (part for row in self.laws.values() for part in walk(self.written(row)[0]))
+        calls = (part for part in parts if isinstance(part, Call) and part.function == "pow")
+        return tuple(dict.fromkeys(calls))
+
     def reach(self, tree: Expr) -> frozenset[str]:
         """Return all names that a tree depends on, directly or by way of others."""
         found, left = set[str](), {*names(tree)}

@@ -16,7 +16,7 @@ from typing import Any, TypeVar, final
 import numpy as np
 import numpy.typing as npt
 
-from piezo_sym.expressions.tree import Call, Cmp, Num, Sym, walk
+from piezo_sym.expressions.tree import Cmp, Num, Sym
 from piezo_sym.expressions.units import parse_unit
 from piezo_sym.falsify.claims import summed
 from piezo_sym.falsify.floats import Approx, Floats
@@ -30,6 +30,8 @@ Key = TypeVar("Key")
 
 #: Bounds on the absolute values of a point other than 0; beyond EXTREME products overflow.
 LEAST, LARGEST, EXTREME = 1e-300, 1e300, 1e30
+#: A power with a smaller exponent hardly changes over tens of decades of its base.
+STEEP = 0.01
 #: States times points that the module evaluates together; its `rhs` splits larger arrays.
 BLOCK = 100_000
 #: Of large systems fewer points together would cost as much; and points times columns squared.
@@ -267,12 +269,18 @@ class Seen:
     @cached_property
     def infinite(self) -> Mask:
         """Which points have a law that overflows, or a power in one, its exponent being large."""
-        laws, written = self.space.probe.laws, self.space.probe.written
-        sizes = np.concatenate([self.law(*key).value for key in laws])
-        found: Mask = np.isinf(sizes).any(axis=0)
-        parts = {part for row in laws.values() for part in walk(written(row)[0])}
-        for part in (part for part in parts if isinstance(part, Call) and part.function == "pow"):
-            found |= np.atleast_2d(np.isinf(self.values[part].value)).any(axis=0)
+        laws = [self.law(*key).value for key in self.space.probe.laws]
+        found: Mask = np.isinf(np.concatenate(laws)).any(axis=0)
+        for power in self.space.probe.powers:
+            found |= np.atleast_2d(np.isinf(self.values[power].value)).any(axis=0)
+        return found
+
+    @cached_property
+    def steep(self) -> Mask:
+        """Which points have a power whose exponent is so small that it seems to jump at zero."""
+        found: Mask = np.zeros(self.points.shape[1], dtype=bool)
+        for power in self.space.probe.powers:
+            found |= np.atleast_2d(self.values[power.args[1]].value < STEEP).any(axis=0)
         return found
 
     def holed(self, element: str) -> Mask:

@@ -61,9 +61,10 @@ def branchwise(questions: Iterable[Question], fixed: Collection[str], shown: Fol
         table = {name: sp.Symbol(name, real=True) for name in names(power)}
         parts = sp.factor_list(sp.Mul(*sp.fraction(sp.together(to_sympy(power, table)))))[1]
         own = [f for f, n in parts if n % 2 and {s.name for s in f.free_symbols} <= {*fixed}]
+        own = [f for f in own if f.is_polynomial()]
         factor = sp.Mul(*(f for f in own if not shown(_says(question, coefficient(f)))))
         for law in map(coefficient, (factor, -factor)):
-            if shown(_says(question, mul(power, law))):
+            if names(law) and shown(_says(question, mul(power, law))):
                 found[law] = None
                 break
     return list(found)

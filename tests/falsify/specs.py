@@ -29,6 +29,7 @@ NAMES = {
     "R": (2.0, "ohm"),
     "i_1": (0.5, "A"),
     "L": (1e-3, "H"),
+    "n": (1e-4, "1"),
 }
 BASE = ("M", "T_0", "c_0")
 MASS = '[elements.mass]\nkind = "mass"\nat = "tip"\nmass = "M"\nstate = "p"\n'

@@ -187,6 +187,22 @@ def test_a_steep_law_and_a_choice_of_parameters_are_no_jumps(tmp_path, law):
     assert attack.points >= 20_000
 
 
+SMALL = ("v_1 > 0", "n > 0", "n < 0.001")
+
+
+def test_a_power_with_a_small_exponent_is_no_jump_and_a_jump_beside_a_large_one_is_caught(tmp_path):
+    law, row = "F_1*sign(v)*abs(v/v_1)**n", ("continuous", "damper")
+    assert attacked(built(tmp_path, damper(law), *SMALL), row)[0].points >= 20_000
+    with pytest.raises(ContradictionError, match="its values differ by"):
+        attacked(built(tmp_path, damper(f"{law} + F_1*sign(v)"), *SMALL[:2]), row)
+
+
+def test_a_power_that_overflows_where_the_law_is_zero_is_no_rounding(tmp_path):
+    iphs = built(tmp_path, damper("a*v*abs(b/a_1)**n"), "a > 0", "a_1 > 0", "n > 0", n=1.5)
+    (attack,) = attacked(iphs, PASSIVE, points=100_000)
+    assert not attack.rounding
+
+
 @pytest.mark.parametrize(
     ("heat", "assume"),
     [

@@ -16,7 +16,7 @@ from piezo_sym.spec.load import parse
 
 SPECS = Path(__file__).with_name("specs")
 TEXT = (SPECS / "slips.toml").read_text(encoding="utf-8")
-WEN = "(beta*abs(v)*sign(f) + gam*v)*abs(f/f_0)**2"
+WEN = "(beta*abs(v)*sign(f) + gam*v)*abs(f/f_0)**n"
 DRIVE = {"F": sine(40, 1.1), "V": sine(12, 2.3)}
 
 DAHL = """[model]
@@ -95,9 +95,11 @@ def rows_of(text):
 def test_bouc_wen_is_refuted_beyond_its_condition_with_numbers():
     rows = rows_of(TEXT.replace('"beta >= abs(gam)"', '"beta >= 0"'))
     row = rows["passive", "wen"]
-    beta, gam, f, v, f_0 = (Fraction(row.witness[n]) for n in ("beta", "gam", "f", "v", "f_0"))
+    beta, gam, f, v, f_0, n = (
+        Fraction(row.witness[n]) for n in ("beta", "gam", "f", "v", "f_0", "n")
+    )
     sign = (f > 0) - (f < 0)
-    power = (beta * abs(v) * sign + gam * v) * (f / f_0) ** 2 * f
+    power = (beta * abs(v) * sign + gam * v) * abs(f / f_0) ** n * f
     assert row.verdict.value == "REFUTED"
     assert power < 0 <= beta < abs(gam)
     assert row.reason.split("= ")[1].split(";")[0] == str(power)

@@ -78,7 +78,7 @@ SMOOTH = (
     LawFunction(  # x**w of an x that may be zero, as abs(f/f_0)**n: `parse` makes it
         "pow",
         _raised,
-        ("w*y/x if x > 0 else 0", "y*log(x) if x > 0 else 0"),  # infinite at 0 if w < 1
+        ("w*y/(x if x > 0 else 1)", "y*log(x if x > 0 else 1)"),  # the first infinite at 0 if w < 1
         domain="x >= 0",
         sign=">=",
         facts=("x < 0 | y >= 0", "x <= 0 | y > 0", "x < 0 | x > 0 | y <= 0"),  # w > 0: 0**w = 0
