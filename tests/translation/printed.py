@@ -9,7 +9,7 @@ from piezo_sym.translation import program_rows
 from piezo_sym.translation.program import READ
 
 TEXTS = tuple(READ.values())
-CALLED = (*(name.removesuffix("_of") for name in REALS.values()), "pow")
+CALLED = tuple(name.removesuffix("_of") for name in REALS.values())
 LINES = "".join(f"#define {name}_of {name}\n" for name in CALLED)
 
 
