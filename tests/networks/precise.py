@@ -10,6 +10,8 @@ import operator
 import mpmath as mp
 import sympy as sp
 
+from piezo_sym.algebra.symbols import Raised
+
 DIGITS = 40
 RELATIONS = {sp.Lt: operator.lt, sp.Le: operator.le, sp.Gt: operator.gt, sp.Ge: operator.ge}
 
@@ -39,7 +41,7 @@ def _found(expr, values, known):
         return mp.fsum(v for v, _ in parts), mp.fsum(s for _, s in parts)
     if expr.is_Mul:
         return _product(parts)
-    if expr.is_Pow:
+    if expr.is_Pow or isinstance(expr, Raised):
         (base, size), (exponent, _) = parts
         value = base**exponent
         return value, abs(value) * (1 + (abs(exponent / base) * size if base else 0))
