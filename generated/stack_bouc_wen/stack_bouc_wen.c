@@ -2,7 +2,7 @@
  * Piezoelectric stack with a Bouc-Wen hysteresis of its voltage: irreversible port-Hamiltonian system.
  *
  * Source:  Goldfarb, Celanovic (1997), IEEE Control Systems 17 (3), 69-79; Low, Guo (1995), J. Microelectromech. Syst. 4 (4), 230-237; PiezoDrive SA050536
- * Model:   stack_bouc_wen, spec sha256 e2a36b0370a4f10c480774a0da3625681a35bff25473de3846b6632a73e4bfbf
+ * Model:   stack_bouc_wen, spec sha256 cb2f5eb9e9a940796689ce0b466f2aabc3f9c62f14ebd031e4298cc6395703ff
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, continuous, rate-independent, sigma, exergy, environment, units, program PROVED
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
@@ -100,7 +100,7 @@ void stack_bouc_wen_rhs(const double *restrict x,
     const double V_leads = -V_ceramic - V_hysteresis + V_in;
     /* dissipative laws */
     const double i_leads = V_leads/R;
-    const double slip_hysteresis = (beta*fabs(i_leads)*sign(V_hysteresis) + gam*i_leads)*pow(fabs(V_hysteresis/V_h), n);
+    const double slip_hysteresis = (beta*fabs(i_leads)*sign(V_hysteresis) + gam*i_leads)*pow(fabs(V_hysteresis)/V_h, n);
     /* heats */
     const double heat_damper = F_damper*v_mass;
     const double heat_hysteresis = slip_hysteresis*V_hysteresis;
@@ -254,7 +254,7 @@ void stack_bouc_wen_heat(const double *restrict x,
     const double V_leads = -V_ceramic - V_hysteresis + V_in;
     /* dissipative laws */
     const double i_leads = V_leads/R;
-    const double slip_hysteresis = (beta*fabs(i_leads)*sign(V_hysteresis) + gam*i_leads)*pow(fabs(V_hysteresis/V_h), n);
+    const double slip_hysteresis = (beta*fabs(i_leads)*sign(V_hysteresis) + gam*i_leads)*pow(fabs(V_hysteresis)/V_h, n);
     /* result */
     out[0] = F_damper*v_mass;
     out[1] = slip_hysteresis*V_hysteresis;
@@ -294,7 +294,7 @@ void stack_bouc_wen_entropy_production(const double *restrict x,
     const double V_leads = -V_ceramic - V_hysteresis + V_in;
     /* dissipative laws */
     const double i_leads = V_leads/R;
-    const double slip_hysteresis = (beta*fabs(i_leads)*sign(V_hysteresis) + gam*i_leads)*pow(fabs(V_hysteresis/V_h), n);
+    const double slip_hysteresis = (beta*fabs(i_leads)*sign(V_hysteresis) + gam*i_leads)*pow(fabs(V_hysteresis)/V_h, n);
     /* result */
     out[0] = F_damper*v_mass/T;
     out[1] = slip_hysteresis*V_hysteresis/T;
@@ -343,7 +343,7 @@ void stack_bouc_wen_elements(const double *restrict x,
     const double V_leads = -V_ceramic - V_hysteresis + V_in;
     /* dissipative laws */
     const double i_leads = V_leads/R;
-    const double slip_hysteresis = (beta*fabs(i_leads)*sign(V_hysteresis) + gam*i_leads)*pow(fabs(V_hysteresis/V_h), n);
+    const double slip_hysteresis = (beta*fabs(i_leads)*sign(V_hysteresis) + gam*i_leads)*pow(fabs(V_hysteresis)/V_h, n);
     /* heats */
     const double heat_damper = F_damper*v_mass;
     const double heat_hysteresis = slip_hysteresis*V_hysteresis;
@@ -443,7 +443,7 @@ void stack_bouc_wen_jacobian(const double *restrict x,
     const double V_leads = -V_ceramic - V_hysteresis + V_in;
     /* dissipative laws */
     const double i_leads = V_leads/R;
-    const double slip_hysteresis = (beta*fabs(i_leads)*sign(V_hysteresis) + gam*i_leads)*pow(fabs(V_hysteresis/V_h), n);
+    const double slip_hysteresis = (beta*fabs(i_leads)*sign(V_hysteresis) + gam*i_leads)*pow(fabs(V_hysteresis)/V_h, n);
     /* heats */
     const double heat_damper = F_damper*v_mass;
     const double heat_hysteresis = slip_hysteresis*V_hysteresis;
@@ -452,12 +452,12 @@ void stack_bouc_wen_jacobian(const double *restrict x,
     const double dF_damper_dp = d/m;
     const double dheat_damper_dp = v_mass*dF_damper_dp + F_damper/m;
     const double di_leads_dQ = -1.0/R/C;
-    const double dslip_hysteresis_dQ = (beta*sign(i_leads)*sign(V_hysteresis) + gam)*pow(fabs(V_hysteresis/V_h), n)*di_leads_dQ;
+    const double dslip_hysteresis_dQ = (beta*sign(i_leads)*sign(V_hysteresis) + gam)*pow(fabs(V_hysteresis)/V_h, n)*di_leads_dQ;
     const double dheat_hysteresis_dQ = V_hysteresis*dslip_hysteresis_dQ;
     const double dheat_leads_dQ = V_leads*di_leads_dQ - i_leads/C;
     const double di_leads_dQ_h = -1.0/R/C_h;
-    const double dslip_hysteresis_dQ_h = (beta*sign(i_leads)*sign(V_hysteresis) + gam)*pow(fabs(V_hysteresis/V_h), n)*di_leads_dQ_h
-        + (beta*fabs(i_leads)*sign(V_hysteresis) + gam*i_leads)*n*pow(fabs(V_hysteresis/V_h), n)/pick(fabs(V_hysteresis/V_h) > 0.0, fabs(V_hysteresis/V_h), 1.0)*sign(V_hysteresis/V_h)/V_h/C_h;
+    const double dslip_hysteresis_dQ_h = (beta*sign(i_leads)*sign(V_hysteresis) + gam)*pow(fabs(V_hysteresis)/V_h, n)*di_leads_dQ_h
+        + (beta*fabs(i_leads)*sign(V_hysteresis) + gam*i_leads)*n*pow(fabs(V_hysteresis)/V_h, n)/pick(fabs(V_hysteresis)/V_h > 0.0, fabs(V_hysteresis)/V_h, 1.0)*sign(V_hysteresis)/V_h/C_h;
     const double dheat_hysteresis_dQ_h = V_hysteresis*dslip_hysteresis_dQ_h
         + slip_hysteresis/C_h;
     const double dheat_leads_dQ_h = V_leads*di_leads_dQ_h - i_leads/C_h;

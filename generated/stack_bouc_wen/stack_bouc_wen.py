@@ -1,7 +1,7 @@
 """Piezoelectric stack with a Bouc-Wen hysteresis of its voltage: irreversible port-Hamiltonian system.
 
 Source:  Goldfarb, Celanovic (1997), IEEE Control Systems 17 (3), 69-79; Low, Guo (1995), J. Microelectromech. Syst. 4 (4), 230-237; PiezoDrive SA050536
-Model:   stack_bouc_wen, spec sha256 e2a36b0370a4f10c480774a0da3625681a35bff25473de3846b6632a73e4bfbf
+Model:   stack_bouc_wen, spec sha256 cb2f5eb9e9a940796689ce0b466f2aabc3f9c62f14ebd031e4298cc6395703ff
 Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, continuous, rate-independent, sigma, exergy, environment, units, program PROVED
 
 Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 NAME = "stack_bouc_wen"
-SPEC_SHA256 = "e2a36b0370a4f10c480774a0da3625681a35bff25473de3846b6632a73e4bfbf"
+SPEC_SHA256 = "cb2f5eb9e9a940796689ce0b466f2aabc3f9c62f14ebd031e4298cc6395703ff"
 
 
 class Record(NamedTuple):
@@ -239,7 +239,7 @@ def _rates(x, u, p_, out, /):
     V_leads = -V_ceramic - V_hysteresis + V_in
     # dissipative laws
     i_leads = V_leads/R
-    slip_hysteresis = (beta*np.abs(i_leads)*np.sign(V_hysteresis) + gam*i_leads)*np.power(np.abs(V_hysteresis/V_h), n)
+    slip_hysteresis = (beta*np.abs(i_leads)*np.sign(V_hysteresis) + gam*i_leads)*np.power(np.abs(V_hysteresis)/V_h, n)
     # heats
     heat_damper = F_damper*v_mass
     heat_hysteresis = slip_hysteresis*V_hysteresis
@@ -384,7 +384,7 @@ def heat(x, u, p_, /):
     V_leads = -V_ceramic - V_hysteresis + V_in
     # dissipative laws
     i_leads = V_leads/R
-    slip_hysteresis = (beta*np.abs(i_leads)*np.sign(V_hysteresis) + gam*i_leads)*np.power(np.abs(V_hysteresis/V_h), n)
+    slip_hysteresis = (beta*np.abs(i_leads)*np.sign(V_hysteresis) + gam*i_leads)*np.power(np.abs(V_hysteresis)/V_h, n)
     # result
     out = np.empty((3, *x.shape[1:]))
     out[0] = F_damper*v_mass
@@ -424,7 +424,7 @@ def entropy_production(x, u, p_, /):
     V_leads = -V_ceramic - V_hysteresis + V_in
     # dissipative laws
     i_leads = V_leads/R
-    slip_hysteresis = (beta*np.abs(i_leads)*np.sign(V_hysteresis) + gam*i_leads)*np.power(np.abs(V_hysteresis/V_h), n)
+    slip_hysteresis = (beta*np.abs(i_leads)*np.sign(V_hysteresis) + gam*i_leads)*np.power(np.abs(V_hysteresis)/V_h, n)
     # result
     out = np.empty((3, *x.shape[1:]))
     out[0] = F_damper*v_mass/T
@@ -473,7 +473,7 @@ def elements(x, u, p_, /):
     V_leads = -V_ceramic - V_hysteresis + V_in
     # dissipative laws
     i_leads = V_leads/R
-    slip_hysteresis = (beta*np.abs(i_leads)*np.sign(V_hysteresis) + gam*i_leads)*np.power(np.abs(V_hysteresis/V_h), n)
+    slip_hysteresis = (beta*np.abs(i_leads)*np.sign(V_hysteresis) + gam*i_leads)*np.power(np.abs(V_hysteresis)/V_h, n)
     # heats
     heat_damper = F_damper*v_mass
     heat_hysteresis = slip_hysteresis*V_hysteresis
@@ -568,7 +568,7 @@ def jacobian(x, u, p_, /):
     V_leads = -V_ceramic - V_hysteresis + V_in
     # dissipative laws
     i_leads = V_leads/R
-    slip_hysteresis = (beta*np.abs(i_leads)*np.sign(V_hysteresis) + gam*i_leads)*np.power(np.abs(V_hysteresis/V_h), n)
+    slip_hysteresis = (beta*np.abs(i_leads)*np.sign(V_hysteresis) + gam*i_leads)*np.power(np.abs(V_hysteresis)/V_h, n)
     # heats
     heat_damper = F_damper*v_mass
     heat_hysteresis = slip_hysteresis*V_hysteresis
@@ -577,13 +577,13 @@ def jacobian(x, u, p_, /):
     dF_damper_dp = d/m
     dheat_damper_dp = v_mass*dF_damper_dp + F_damper/m
     di_leads_dQ = -1/R/C
-    dslip_hysteresis_dQ = (beta*np.sign(i_leads)*np.sign(V_hysteresis) + gam)*np.power(np.abs(V_hysteresis/V_h), n)*di_leads_dQ
+    dslip_hysteresis_dQ = (beta*np.sign(i_leads)*np.sign(V_hysteresis) + gam)*np.power(np.abs(V_hysteresis)/V_h, n)*di_leads_dQ
     dheat_hysteresis_dQ = V_hysteresis*dslip_hysteresis_dQ
     dheat_leads_dQ = V_leads*di_leads_dQ - i_leads/C
     di_leads_dQ_h = -1/R/C_h
     dslip_hysteresis_dQ_h = (
-        (beta*np.sign(i_leads)*np.sign(V_hysteresis) + gam)*np.power(np.abs(V_hysteresis/V_h), n)*di_leads_dQ_h
-        + (beta*np.abs(i_leads)*np.sign(V_hysteresis) + gam*i_leads)*n*np.power(np.abs(V_hysteresis/V_h), n)/np.where(np.abs(V_hysteresis/V_h) > 0, np.abs(V_hysteresis/V_h), 1)*np.sign(V_hysteresis/V_h)/V_h/C_h
+        (beta*np.sign(i_leads)*np.sign(V_hysteresis) + gam)*np.power(np.abs(V_hysteresis)/V_h, n)*di_leads_dQ_h
+        + (beta*np.abs(i_leads)*np.sign(V_hysteresis) + gam*i_leads)*n*np.power(np.abs(V_hysteresis)/V_h, n)/np.where(np.abs(V_hysteresis)/V_h > 0, np.abs(V_hysteresis)/V_h, 1)*np.sign(V_hysteresis)/V_h/C_h
     )
     dheat_hysteresis_dQ_h = V_hysteresis*dslip_hysteresis_dQ_h + slip_hysteresis/C_h
     dheat_leads_dQ_h = V_leads*di_leads_dQ_h - i_leads/C_h

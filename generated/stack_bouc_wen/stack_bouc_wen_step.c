@@ -2,7 +2,7 @@
  * Piezoelectric stack with a Bouc-Wen hysteresis of its voltage: irreversible port-Hamiltonian system.
  *
  * Source:  Goldfarb, Celanovic (1997), IEEE Control Systems 17 (3), 69-79; Low, Guo (1995), J. Microelectromech. Syst. 4 (4), 230-237; PiezoDrive SA050536
- * Model:   stack_bouc_wen, spec sha256 e2a36b0370a4f10c480774a0da3625681a35bff25473de3846b6632a73e4bfbf
+ * Model:   stack_bouc_wen, spec sha256 cb2f5eb9e9a940796689ce0b466f2aabc3f9c62f14ebd031e4298cc6395703ff
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, continuous, rate-independent, sigma, exergy, environment, units, program PROVED
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
@@ -130,7 +130,7 @@ static void stack_bouc_wen_stage(const real *restrict x,
     const real switch_1 = i_leads;
     const real switch_2 = -V_hysteresis;
     const real switch_3 = V_hysteresis;
-    const real switch_4 = V_hysteresis/V_h;
+    const real switch_4 = V_hysteresis;
     /* dissipative laws */
     const real chosen_slip_hysteresis = chosen(is_above(branch_1, 0.0), i_leads, -i_leads);
     const real chosen_slip_hysteresis_ = chosen(
@@ -139,9 +139,9 @@ static void stack_bouc_wen_stage(const real *restrict x,
         chosen(is_above(branch_2, 0.0), wide(-1.0), wide(0.0)));
     const real chosen_slip_hysteresis__ = chosen(
         is_above(branch_4, 0.0),
-        V_hysteresis/V_h,
-        -V_hysteresis/V_h);
-    const real slip_hysteresis = (beta*chosen_slip_hysteresis*chosen_slip_hysteresis_ + gam*i_leads)*pow_of(chosen_slip_hysteresis__, n);
+        V_hysteresis,
+        -V_hysteresis);
+    const real slip_hysteresis = (beta*chosen_slip_hysteresis*chosen_slip_hysteresis_ + gam*i_leads)*pow_of(chosen_slip_hysteresis__/V_h, n);
     /* heats */
     const real heat_damper = F_damper*v_mass;
     const real heat_hysteresis = slip_hysteresis*V_hysteresis;
@@ -221,9 +221,9 @@ static void stack_bouc_wen_slopes(const real *restrict x,
         chosen(is_above(branch_2, 0.0), wide(-1.0), wide(0.0)));
     const real chosen_slip_hysteresis__ = chosen(
         is_above(branch_4, 0.0),
-        V_hysteresis/V_h,
-        -V_hysteresis/V_h);
-    const real slip_hysteresis = (beta*chosen_slip_hysteresis*chosen_slip_hysteresis_ + gam*i_leads)*pow_of(chosen_slip_hysteresis__, n);
+        V_hysteresis,
+        -V_hysteresis);
+    const real slip_hysteresis = (beta*chosen_slip_hysteresis*chosen_slip_hysteresis_ + gam*i_leads)*pow_of(chosen_slip_hysteresis__/V_h, n);
     /* heats */
     const real heat_damper = F_damper*v_mass;
     const real heat_hysteresis = slip_hysteresis*V_hysteresis;
@@ -236,8 +236,8 @@ static void stack_bouc_wen_slopes(const real *restrict x,
         is_above(branch_1, 0.0),
         di_leads_dQ,
         -di_leads_dQ);
-    const real dslip_hysteresis_dQ = beta*chosen_slip_hysteresis_*pow_of(chosen_slip_hysteresis__, n)*dchosen_slip_hysteresis_dQ
-        + gam*pow_of(chosen_slip_hysteresis__, n)*di_leads_dQ;
+    const real dslip_hysteresis_dQ = beta*chosen_slip_hysteresis_*pow_of(chosen_slip_hysteresis__/V_h, n)*dchosen_slip_hysteresis_dQ
+        + gam*pow_of(chosen_slip_hysteresis__/V_h, n)*di_leads_dQ;
     const real dheat_hysteresis_dQ = V_hysteresis*dslip_hysteresis_dQ;
     const real dheat_leads_dQ = V_leads*di_leads_dQ - i_leads/C;
     const real di_leads_dQ_h = -1.0/R/C_h;
@@ -245,10 +245,13 @@ static void stack_bouc_wen_slopes(const real *restrict x,
         is_above(branch_1, 0.0),
         di_leads_dQ_h,
         -di_leads_dQ_h);
-    const real dchosen_slip_hysteresis___dQ_h = chosen(is_above(branch_4, 0.0), 1.0/V_h, -1.0/V_h)/C_h;
-    const real dslip_hysteresis_dQ_h = beta*chosen_slip_hysteresis_*pow_of(chosen_slip_hysteresis__, n)*dchosen_slip_hysteresis_dQ_h
-        + gam*pow_of(chosen_slip_hysteresis__, n)*di_leads_dQ_h
-        + (beta*chosen_slip_hysteresis*chosen_slip_hysteresis_ + gam*i_leads)*n*pow_of(chosen_slip_hysteresis__, n)/chosen(is_above(chosen_slip_hysteresis__, 0.0), chosen_slip_hysteresis__, wide(1.0))*dchosen_slip_hysteresis___dQ_h;
+    const real dchosen_slip_hysteresis___dQ_h = chosen(
+        is_above(branch_4, 0.0),
+        1.0/C_h,
+        -1.0/C_h);
+    const real dslip_hysteresis_dQ_h = beta*chosen_slip_hysteresis_*pow_of(chosen_slip_hysteresis__/V_h, n)*dchosen_slip_hysteresis_dQ_h
+        + gam*pow_of(chosen_slip_hysteresis__/V_h, n)*di_leads_dQ_h
+        + (beta*chosen_slip_hysteresis*chosen_slip_hysteresis_ + gam*i_leads)*n*pow_of(chosen_slip_hysteresis__/V_h, n)/chosen(is_above(chosen_slip_hysteresis__/V_h, 0.0), chosen_slip_hysteresis__/V_h, wide(1.0))/V_h*dchosen_slip_hysteresis___dQ_h;
     const real dheat_hysteresis_dQ_h = V_hysteresis*dslip_hysteresis_dQ_h
         + slip_hysteresis/C_h;
     const real dheat_leads_dQ_h = V_leads*di_leads_dQ_h - i_leads/C_h;

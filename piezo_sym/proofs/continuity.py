@@ -133,12 +133,15 @@ def _apart(one: Branch, other: Branch, assumptions: Assumptions) -> bool:
 
 
 def _meeting(meeting: Meeting, assumptions: Assumptions) -> Iterator[Question]:
-    """Yield the questions whether two branches have values where they meet, and equal ones."""
+    """Yield the questions whether two branches have values where they meet, and equal ones.
+
+    What the domain says, or was asked of them before, is not asked again.
+    """
     one, other = meeting.sides
     where, border = assumptions.where, tuple(_border(one, other, assumptions.fixed))
     found: list[Question] = []
     for part in (*border, add(one.value, neg(other.value))):
-        found += parts_valued(part, where, assumptions)
+        found += (q for q in parts_valued(part, where, assumptions) if q.claim not in where)
         where = (*where, *partial(part), *((part,) if isinstance(part, Cmp) else ()))
     edge = next(c for c in border if c.op == "=")
     at = f"{spell(edge.left)} = {spell(edge.right)}"
