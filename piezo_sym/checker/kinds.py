@@ -19,16 +19,16 @@ R, frame, at, angular_velocity, omega, rad/s, torque, tau, N*m, inertia, inertia
 H, tank, between, pressure, dp, Pa, flow, flow, m**3/s, accumulator, capacitance, m**3/Pa V:m**3, inertance, inertance kg/m**4 G:Pa*s, x/inertance, orifice
 """  # noqa: E501
 _WITHIN = """
-{9}        | store  | {0} | {2}     | + | {10} {11}{16} | state? count? bank?{17} | x/{10}
-{12}       | store  | {0} | between | - | {13}{18}      | state? count? bank?{19} | {14}
-{15}       | law    | {0} | between | + | {3}? {5} {7}:{8} T:K; {6}? {8} {4}:{5} T:K | heats discontinuous? count? bank? |
+{9}        | store  | {0} | {2}     | + | {10} {11}{16} | state? count? bank? series?{17} | x/{10}
+{12}       | store  | {0} | between | - | {13}{18}      | state? count? bank? series?{19} | {14}
+{15}       | law    | {0} | between | + | {3}? {5} {7}:{8} T:K; {6}? {8} {4}:{5} T:K | heats discontinuous? count? bank? series? |
 {3}_source | source | {0} | {2}     | + | | input |
 {6}_source | source | {0} | {2}     | - | | input |
 ={3}       | store  | {0} | between | - | energy J @:{5}*s | state | energy
 ={6}       | store  | {0} | between | + | energy J @:{8}*s | state | energy
 """  # noqa: E501
 _TABLE = """
-hysteron       | hysteron | E   | between             | - | inductance H phi:Wb; voltage V i:A T:K | state? count? bank? heats discontinuous? | x/inductance
+hysteron       | hysteron | E   | between             | - | inductance H phi:Wb; voltage V i:A T:K | state? count? bank? series? heats discontinuous? | x/inductance
 transformer    | coupling | EE  | first second        | + | ratio 1                                | |
 lever          | coupling | MM  | first second        | + | ratio 1                                | |
 gear           | coupling | RR  | first second        | + | ratio 1                                | |

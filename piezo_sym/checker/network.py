@@ -13,11 +13,12 @@ from typing import Any, NamedTuple
 
 from .field import Field
 from .kinds import REFERENCES
-from .laws import Node, made, num, put, sym
+from .laws import Node, made, need, num, put, sym
 from .spec import Element, Spec
 
 Form = dict[Any, Any]
 Slot = tuple[str, int]
+FORMS = ("store", "law", "source", "coupling", "hysteron", "body")
 UNKNOWN = ("through", "across", "potential")
 
 
@@ -96,18 +97,24 @@ def relations(spec: Spec, counts: Mapping[str, int], algebra: Any) -> list[Form]
 
 def _all_branches(spec: Spec, counts: Mapping[str, int]) -> list[Branch]:
     found, users = list[Branch](), dict[Any, set[Any]]()
-    for e in spec.of("store", "law", "source", "coupling", "hysteron", "body"):
+    for e in spec.of(*FORMS):
         found += _branches(e, range(1, counts[e.lanes[0]] + 1) if e.lanes else (0,))
         for node in (node for pair in e.pairs for node in pair):
             users.setdefault(node, set()).add(e.lanes)
+        for node in e.chain or ():
+            users.setdefault(node, set()).add(None)
     own = {node for node, lanes in users.items() if len(lanes) == 1 and None not in lanes}
     own -= {*REFERENCES.values()}  # what elements of one bank alone name, each lane has for itself
 
-    def placed(nodes: tuple[Any, Any], lane: int) -> tuple[Any, Any]:
-        first, second = ((node, lane) if node in own else node for node in nodes)
-        return first, second
+    def placed(node: Any, branch: Branch) -> Any:
+        element = spec.elements[branch.element]
+        if element.chain and element.lanes and node in element.chain:
+            first = node == element.chain[0]
+            return ((element.lanes[0],), branch.lane) if first else REFERENCES["E"]
+        need(not element.chain or node in own or isinstance(node, tuple), "a chain has more ends")
+        return (node, branch.lane) if node in own else node
 
-    return [b._replace(nodes=placed(b.nodes, b.lane)) for b in found]
+    return [b._replace(nodes=(placed(b.nodes[0], b), placed(b.nodes[1], b))) for b in found]
 
 
 def _heat(spec: Spec, algebra: Any, found: Flows) -> None:
@@ -156,6 +163,14 @@ def _equations(spec: Spec, branches: list[Branch], algebra: Any) -> Iterator[For
                 fall["potential", node] = -sign
         yield fall
         yield _law(spec.elements[branch.element], branch, algebra)
+    for bank, ends in {e.lanes[0]: e.chain for e in spec.of(*FORMS) if e.lanes and e.chain}.items():
+        flow, fall = ("through", (bank,)), dict[Any, Any]()
+        for node, sign in zip(ends, (one, -one), strict=True):
+            if node not in REFERENCES.values():
+                balances.setdefault(node, {})[flow] = fall["potential", node] = sign
+        for node in [node for node in balances if node[0] == (bank,)]:
+            balances[node][flow], fall["potential", node] = -one, -algebra.like((bank, node[1]))
+        yield fall
     yield from balances.values()
 
 

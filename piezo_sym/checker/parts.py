@@ -43,7 +43,7 @@ def slipping(name: str, entry: Mapping[str, Any]) -> dict[str, Any]:
     given = {"kind": kind, "slip": slip, "discontinuous": True, "state": f"z_{name}"}
     others = {field: entry[field] for field in entry if field not in ("kind", "limit")}
     need(
-        {"between", "count", "bank", "heats", "state", size} >= set(others),
+        {"between", "count", "bank", "series", "heats", "state", size} >= set(others),
         f"{name} has a wrong key",
     )
     return given | others

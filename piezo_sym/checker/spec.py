@@ -28,8 +28,8 @@ class Element(NamedTuple):
     """An element: `laws` by field, `costate` dU/dx, a dissipative `law` of what it calls `letter`.
 
     What it imposes is `across` or not, or as its store `follows` another the opposite; `bodies` it
-    heats, reads T of, or conducts between; `lanes` a bank and its size.  Nodes ("T", body) are at
-    T, and draw entropy from it.
+    heats, reads T of, or conducts between; `lanes` a bank and its size, which are in series between
+    the ends of a `chain`.  Nodes ("T", body) are at T, and draw entropy from it.
     """
 
     name: str
@@ -44,6 +44,7 @@ class Element(NamedTuple):
     bodies: tuple[str, ...]
     input: str
     lanes: tuple[str, int] | None
+    chain: tuple[str, str] | None
     jumps: bool
     follows: bool = False
 
@@ -163,7 +164,11 @@ class _Reader:
         law, letter = (own[field], next(iter(kind.laws[field][1]))) if dissipates else (None, "")
         across = kind.across and (kind.form != "law" or field == next(iter(kind.laws)))
         source, lanes = entry.get("input", ""), self.lanes.get(("x", name))
-        known = "bank" not in entry if lanes is None else lanes[1] >= 1
+        known = not {"bank", "series"} & {*entry} if lanes is None else lanes[1] >= 1
+        alone = entry.get("between") if across and kind.form == "store" else None
+        ends_of = entry.get("series", None if "bank" in entry else alone) if lanes else None
+        known &= not ends_of or "at" not in entry
+        chain = (str(ends_of[0]), str(ends_of[1])) if ends_of else None
         need(known, f"elements.{name}.count is out of range")
         row = UNITS[ends[0][1]][kind.across] if kind.form == "source" else "KW"[kind.form == "heat"]
         if "input" in kind.fields and self.units["u", source] != unit(row)[1]:
@@ -172,7 +177,15 @@ class _Reader:
         hot: list[tuple[Any, Any]] = [(("T", name), REFERENCES["E"])] * (kind.form == "body")
         hot += [(("T", b), ("T", a)) for a, b in [bodies] * ("bodies" in kind.fields)]
         state = next((word for word, owner in self.states.items() if owner == name), "")
-        others = ((*pairs, *hot), across, bodies, source, lanes, entry.get("discontinuous", False))
+        others = (
+            (*pairs, *hot),
+            across,
+            bodies,
+            source,
+            lanes,
+            chain,
+            entry.get("discontinuous", False),
+        )
         return Element(name, kind, own, state, costate, law, letter, *others)
 
     def _costate(self, name: str, own: dict[str, Node]) -> Node | None:
