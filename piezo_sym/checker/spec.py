@@ -165,10 +165,10 @@ class _Reader:
         across = kind.across and (kind.form != "law" or field == next(iter(kind.laws)))
         source, lanes = entry.get("input", ""), self.lanes.get(("x", name))
         known = not {"bank", "series"} & {*entry} if lanes is None else lanes[1] >= 1
-        alone = entry.get("between") if across and kind.form == "store" else None
-        ends_of = entry.get("series", None if "bank" in entry else alone) if lanes else None
-        known &= not ends_of or "at" not in entry
-        chain = (str(ends_of[0]), str(ends_of[1])) if ends_of else None
+        alone = across and kind.form == "store" and "bank" not in entry
+        pair = entry.get("series", entry.get("between") if alone else None) if lanes else None
+        chain = (str(pair[0]), str(pair[1])) if pair and known and "at" not in entry else None
+        known &= bool(pair) == bool(chain)
         need(known, f"elements.{name}.count is out of range")
         row = UNITS[ends[0][1]][kind.across] if kind.form == "source" else "KW"[kind.form == "heat"]
         if "input" in kind.fields and self.units["u", source] != unit(row)[1]:
@@ -177,16 +177,9 @@ class _Reader:
         hot: list[tuple[Any, Any]] = [(("T", name), REFERENCES["E"])] * (kind.form == "body")
         hot += [(("T", b), ("T", a)) for a, b in [bodies] * ("bodies" in kind.fields)]
         state = next((word for word, owner in self.states.items() if owner == name), "")
-        others = (
-            (*pairs, *hot),
-            across,
-            bodies,
-            source,
-            lanes,
-            chain,
-            entry.get("discontinuous", False),
-        )
-        return Element(name, kind, own, state, costate, law, letter, *others)
+        others = ((*pairs, *hot), across, bodies, source, lanes, chain)
+        jumps = entry.get("discontinuous", False)
+        return Element(name, kind, own, state, costate, law, letter, *others, jumps)
 
     def _costate(self, name: str, own: dict[str, Node]) -> Node | None:
         """Return dU/dx by the one law that a store has, or by its energy."""

@@ -187,7 +187,7 @@ class Finding:
             tree = self.field.tree(letter)
             costates = {key: elements[key[1]].costate for key in symbols(tree) if key[0] == "E"}
             words = {key: costates.get(key) or sym(key[:2]) for key in symbols(tree)}
-            used = {(owners[k[0]][k[1]], k[2]) for k in words if k[2:]}
+            used = {(owners.get(k[0], {}).get(k[1], k[1]), k[2]) for k in words if k[2:]}
             if used <= {(self.banks.get(name), lane)}:
                 self.letters[name] = put(tree, words)
 

@@ -5,7 +5,7 @@ Input: a `Circuit`.  Output: nothing, or one `NetworkError` that names the node 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from piezo_sym.errors import NetworkError, listing, nearest, quote, with_article
 from piezo_sym.spec.circuit import LAST, Circuit, lane_ends
@@ -85,11 +85,11 @@ def check_nodes(circuit: Circuit) -> None:
         for node in branch:
             _check_domain(node, domain, where, domains)
             users.setdefault(node, []).append(element)
+    _check_chains(circuit, users)
     for node, own in users.items():
         if len(own) < 2 and not is_reference(node):
             raise _dangling(node, own[0], found)
     _check_ground(found)
-    _check_chains(circuit)
 
 
 def _check_domain(
@@ -136,9 +136,14 @@ def _dangling(
     return NetworkError(what, f"elements.{element}", "two elements at a node", remedy)
 
 
-def _check_chains(circuit: Circuit) -> None:
-    """Check that what is in a chain meets nothing else than its lane, and its ends."""
+def _check_chains(circuit: Circuit, users: Mapping[str, list[str]]) -> None:
+    """Check that what is in a chain meets nothing else than its lane, and both of its ends."""
     inner = inner_nodes(circuit)
+    for bank, pair in circuit.chains.items():
+        for node, end in zip(lane_ends(bank), pair, strict=True):
+            if len(users[node]) < 2:
+                what = f"no cell connects to {quote(end)}, an end of all in series"
+                raise NetworkError(what, f"banks.{bank}", "cells between both ends", "connect one")
     for placed in circuit.ports:
         if (ends := circuit.chains.get(placed.bank or "")) is None:
             continue

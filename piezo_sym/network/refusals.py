@@ -40,7 +40,8 @@ def _chain(bank: str, edges: list[Edge]) -> NetworkError:
     """Return that cells in series fix what they share."""
     port = _port(edges[0])
     word = port.domain.through.name.replace("_", " ")
-    what = f"{_listed([e.placed.element for e in edges])} fix the {word} that cells in series share"
+    names = _listed([e.placed.element for e in edges])
+    what = f"the {word} that cells in series share is fixed by {names}"
     loose = kind_of(Dissipation, port.domain).name
     remedy = f"put a {loose} in parallel to them in each cell, or write the cells one by one"
     return NetworkError(what, f"banks.{bank}", f"a {port.domain.across.name} of each cell", remedy)

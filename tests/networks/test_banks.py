@@ -1,5 +1,7 @@
 """Banks: `count` on an element and cells of several, against the network written out by hand."""
 
+import re
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -223,3 +225,45 @@ def test_kinks_of_a_bank_stay_in_sums_over_its_lanes():
     free = {s.name for row in iphs.rhs.explicit(sizes) for s in row.free_symbols}
     assert not {name for name in free if name.endswith("_j")}
     assert {"q_l_1", "q_l_2"} <= free
+
+
+#: Laws of a damper that gives energy away somewhere, in some lane, and what is assumed of it.
+FALSE = [
+    ("d_c*v", []),
+    ("-d_c*v", ["d_c > 0"]),
+    ("d_c*v*(q_c/x_0)", ["d_c > 0"]),
+    ("d_c*v*(1 + q_c/x_0)", ["d_c > 0"]),
+    ("d_c*v*(1 + q/x_0)", ["d_c > 0"]),
+    ("d_c*v*(0.9 + sin(q_c/x_0))", ["d_c > 0"]),
+    ("d_c*v*(T - T_0)/T_0", ["d_c > 0"]),
+    ("d_c*abs(v)", ["d_c > 0"]),
+    ("d_c*v - d_c*saturate(2*v, v_0)", ["d_c > 0", "v_0 > 0"]),
+    ("d_c*v - d_c*v_0/x_0*q_c", ["d_c > 0"]),
+    ("d_c*v*p_c/(m_c*v_0)", ["d_c > 0", "v_0 > 0"]),
+]
+
+
+@pytest.mark.parametrize("cell", [ABSORBER, KELVIN], ids=["parallel", "series"])
+@pytest.mark.parametrize(("law", "assume"), FALSE)
+def test_no_false_claim_of_a_bank_is_proved(law, assume, cell):
+    cell = dict(cell)
+    chained = cell is not ABSORBER and "mass" not in cell
+    if chained:
+        law = law.replace("p_c/(m_c*v_0)", "q_l/x_0").replace("v_0", "f_0")
+        law = re.sub(r"\bv\b", "f", law).replace("d_c", "1/d_c")
+    head, _, _ = cell["damper"].rpartition(", ")
+    field = "velocity" if chained else "force"
+    cell["damper"] = f'{head}, {field} = "{law}"'
+    lists = {name: [1.0, 2.0, 4.0] for name in ("k_c", "d_c", "m_c") if f"{name}@" in str(cell)}
+    text = banked_text(cell, {**lists, "d_c": [1.0, 2.0, 4.0]})
+    assumed = [line.replace("v_0", "f_0" if chained else "v_0") for line in [*assume, "x_0 > 0"]]
+    text = re.sub(r"assume = .*", f"assume = {assumed}", text)
+    text = text.replace(MORE, MORE + 'x_0 = { value = 1.0, unit = "m" }\n')
+    verdicts = {r.id: r.verdict for r in verify(derive(parse(text))).rows if r.id in CLAIMS}
+    assert set(verdicts) == CLAIMS
+    assert verdicts["sigma"] is not Verdict.PROVED
+    assert verdicts["passive"] is Verdict.REFUTED or "sin" in law
+    assert verdicts["passive"] is not Verdict.PROVED
+
+
+CLAIMS = {"passive", "sigma"}
