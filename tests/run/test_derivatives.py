@@ -125,6 +125,19 @@ def test_sensitivities_along_a_run_are_differences_of_runs():
     assert np.all(np.abs(by - wanted) <= 1e-6 * np.abs(wanted).max() + 1e-5 * np.abs(wanted))
 
 
+def test_a_sensitivity_by_the_exponent_of_a_power_is_a_difference_of_runs():
+    """Of Bouc-Wen's n, from rest: where the power is zero, so is its slope."""
+    slips = next(path for path in SPECS if path.stem == "slips")
+    ends = [taped(slips, 0.3, 1e-12, parameters={"n": 1.5 + e})[0].x for e in (1e-4, -1e-4)]
+    run, steps = taped(slips, 0.3, 1e-12, parameters={"n": 1.5})
+    by = np.zeros(steps[0].x.size)
+    for step in steps:
+        by = Derivatives(run, step, run.replay(step)).tangent(x=by, parameters={"n": 1.0}).end
+    wanted = (ends[0] - ends[1]) / 2e-4
+    assert np.abs(wanted).max() > 1e-3
+    assert np.all(np.abs(by - wanted) <= 1e-5 * np.abs(wanted).max())
+
+
 def test_the_time_of_an_event_moves_as_runs_say():
     inductance = 1e-3
     run, steps = taped("piezo_stack", 0.003, 1e-12, inputs=DRIVE, parameters={"L": inductance})
