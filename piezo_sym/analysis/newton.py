@@ -5,8 +5,8 @@ the body's entropy S repeats (`settled`), or the state in which all repeats (`fi
 
     P_fast(x_fast, S; f) = x_fast        P(x; f) = x
 
-A motion that neither grows nor decays, such as a current that circulates in a dead zone, stays as
-it is.
+What every motion conserves, such as the difference in length of parallel springs, stays as it is;
+so does a motion that neither grows nor decays, such as a current that circulates in a dead zone.
 """
 
 from dataclasses import dataclass
@@ -86,7 +86,7 @@ def settled(
             slope = None
         if slope is None or n in RENEWED:
             slope = _fast_slope(strobe, best, fast)
-        x = _step(best, slope, fast)
+        x = _step(strobe, best, slope, fast)
     what = f"nothing settles at {T:.6g} K and {strobe.frequency:g} Hz within {MOST_PERIODS} periods"
     raise RunError(what, strobe.where, remedy="give more steps a period")
 
@@ -108,11 +108,13 @@ def _updated(slope: FloatArray, now: Iterate, before: Iterate, fast: Rows) -> Fl
     return changed
 
 
-def _step(at: Iterate, slope: FloatArray, fast: Rows) -> FloatArray:
+def _step(strobe: Stroboscope, at: Iterate, slope: FloatArray, fast: Rows) -> FloatArray:
     """Return the state (n,) after a step of Newton's method, no longer than `LONGEST`."""
-    move = -_solved(slope, at.off)
+    size, kept = at.period.size[fast], strobe.conserved
+    only = ~kept[:, ~fast].any(axis=1)  # of the fast states alone
+    move = -_solved(slope, at.off, kept[only][:, fast] * size)
     x = at.x.copy()
-    x[fast] += move * min(1.0, LONGEST / np.max(np.abs(move), initial=FLOOR)) * at.period.size[fast]
+    x[fast] += move * min(1.0, LONGEST / np.max(np.abs(move), initial=FLOOR)) * size
     return x
 
 
@@ -133,11 +135,21 @@ def jacobian(strobe: Stroboscope, x: FloatArray) -> FloatArray:
     return np.array([end / size / (2 * DIFFERENCE) for end in ends]).T
 
 
-def _solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
-    """Return the smallest y with matrix y = right; neutral motions have no part in it."""
+def _solved(matrix: FloatArray, right: FloatArray, conserved: FloatArray) -> FloatArray:
+    """Return the smallest y with matrix y = right and conserved y = 0.
+
+    Other neutral motions have no part in it.
+    """
     if not right.size:
         return right
-    return np.asarray(np.linalg.lstsq(matrix, right, rcond=NEUTRAL)[0], dtype=float)
+    whole = np.vstack([matrix, unit_rows(conserved)])
+    right = np.append(right, np.zeros(len(conserved)))
+    return np.asarray(np.linalg.lstsq(whole, right, rcond=NEUTRAL)[0], dtype=float)
+
+
+def unit_rows(rows: FloatArray) -> FloatArray:
+    """Return orthogonal rows (k, n) of length 1 that span the same."""
+    return np.linalg.qr((rows / np.linalg.norm(rows, axis=1, keepdims=True)).T)[0].T
 
 
 def fixed_point(strobe: Stroboscope, x: FloatArray, slope: FloatArray) -> FloatArray:
@@ -149,7 +161,7 @@ def fixed_point(strobe: Stroboscope, x: FloatArray, slope: FloatArray) -> FloatA
     error = np.inf
     for _ in range(MOST_ITERATIONS):
         period = strobe.look(x)
-        move = _solved(matrix, (period.end - x) / period.size)
+        move = _solved(matrix, (period.end - x) / period.size, strobe.conserved * period.size)
         if np.max(np.abs(move)) >= error:
             break
         error = float(np.max(np.abs(move)))

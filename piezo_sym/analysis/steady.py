@@ -251,6 +251,12 @@ def _refuse_residual(strobe: Stroboscope, found: SteadyState, rtol: float) -> No
         raise RunError(what, where, remedy="simulate until it settles")
 
 
+def _largest_multiplier(slope: FloatArray, conserved: FloatArray) -> float:
+    """Return the largest multiplier of motions that leave alone what is conserved."""
+    free = np.linalg.svd(conserved)[2][len(conserved) :] if len(conserved) else np.eye(len(slope))
+    return float(np.max(np.abs(np.linalg.eigvals(free @ slope @ free.T)), initial=0.0))
+
+
 def _described(strobe: Stroboscope, x: FloatArray, slope: FloatArray) -> SteadyState:
     orbit = strobe.run(x, times=SAMPLES + 1, rtol=ORBIT_RTOL)
     states = strobe.states_of(orbit)
@@ -258,7 +264,7 @@ def _described(strobe: Stroboscope, x: FloatArray, slope: FloatArray) -> SteadyS
     mean, coldest, hottest = over_period(T)
     size = strobe.look(x).size
     heats = [orbit[f"heat_{name}"] for name in {r.name: None for r in strobe.module.PROCESSES}]
-    multiplier = float(np.max(np.abs(np.linalg.eigvals(slope))))
+    multiplier = _largest_multiplier(slope, strobe.conserved * size)
     return SteadyState(
         frequency=strobe.frequency,
         temperature=mean,

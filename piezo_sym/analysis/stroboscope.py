@@ -38,6 +38,10 @@ if TYPE_CHECKING:
 SAMPLES = 16  # of a period, for the sizes of states and the mean temperature
 FLOOR = 1e-15  # so that no size is 0
 LARGEST_RATIO = 1.01  # of two temperatures in a difference quotient
+SPREAD = (-1.0, 2.0)  # powers of ten of the sizes of states that are drawn
+WARMER = 1e-2  # of the size of the entropy
+NOTHING = 1e-12  # of a change in units of the greatest: round-off
+PARTLESS = 1e-9  # a smaller share of a state in what is conserved is none
 LSODA_RTOL = 1e-9  # where there is no compiler
 
 
@@ -149,6 +153,32 @@ class Stroboscope:
         """The state (n,) that a run starts from."""
         u = self.inputs.segments[0].at(0.0)
         return read_initial(self.module, self.values, u, self.initial)
+
+    @cached_property
+    def conserved(self) -> FloatArray:
+        """Linear functions (k, n) of the state that no motion changes, by rates at random states.
+
+        States are drawn from small to large, so that no law rests at all of them; the body stays
+        about as warm as it is, for its temperature may be an exponential.
+        """
+        try:
+            size = self.look(self.start).size
+        except RunError:  # the start lies outside the domain
+            size = self._system.scale(np.abs(self.start))
+        rng, many = np.random.default_rng(0), 2 * size.size + 16
+        far = 10 ** rng.uniform(*SPREAD, many) * np.ones((size.size, 1))
+        far[self.entropy_row(self.start)] = WARMER
+        x = self.start[:, None] + size[:, None] * far * rng.normal(size=far.shape)
+        u = self.inputs.segments[0].at(0.0)[:, None] * rng.uniform(0.5, 2.0, many)
+        with np.errstate(all="ignore"):
+            rates: FloatArray = self.module.rhs(x, u, self.values)
+            rates = rates[:, np.isfinite(rates).all(axis=0)]
+            rates = np.nan_to_num(rates / np.linalg.norm(rates, axis=0))
+        rows = np.maximum(np.abs(rates).max(axis=1, initial=0.0), FLOOR)[:, None]
+        left, sizes, _ = np.linalg.svd(rates / rows)
+        none = np.append(sizes, np.zeros(len(left) - sizes.size)) < NOTHING
+        found: FloatArray = np.where(np.abs(left) < PARTLESS, 0.0, left)[:, none].T / rows.T
+        return found
 
     def temperature(self, x: FloatArray) -> float:
         """Return the body's temperature in the state x (n,); inf where it overflows."""

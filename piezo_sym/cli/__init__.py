@@ -5,6 +5,7 @@ property is not proved or a generated file is out of date, 2 the spec or the com
 """
 
 import os
+import signal
 import sys
 from typing import Annotated, Any
 
@@ -63,7 +64,8 @@ def _options(
 
 
 def main() -> None:
-    """Run the command line, and leave with its exit code."""
+    """Run the command line, and leave with its exit code; a batch queue stops it like a user."""
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     sys.exit(run(sys.argv[1:]))
 
 

@@ -39,6 +39,7 @@ T0 = "When the run starts [s]; 0, or where it goes on."
 OUTPUTS = "Quantities of elements: all, or spring,damper.heat,..."
 #: After so many seconds a run without a bar says that it goes on.
 PATIENCE = 20.0
+CONTINUE = "Go on from the end of this run (.nc or .zarr)."
 INITIAL = "STATE=NUMBER or T_<body>=KELVIN at t = 0; SI; repeat."
 SIGNALS = "NAME=NUMBER, NAME=sine(100,100) or NAME=@FILE.csv; SI; repeat."
 
@@ -60,9 +61,7 @@ def simulate(
     inputs: Annotated[Words, option(SIGNALS, "--input", "-i")] = None,
     parameters: Annotated[Words, option("PARAMETER=NUMBER; SI; repeat.", "--set", "-p")] = None,
     initial: Annotated[Words, option(INITIAL, "--initial")] = None,
-    continued: Annotated[
-        File, option("Go on from the end of this run (.nc or .zarr).", "--continue")
-    ] = None,
+    continued: Annotated[File, option(CONTINUE, "--continue")] = None,
     t0: Annotated[Number, option(T0, "--t0")] = None,
     rtol: Annotated[Number, option("Relative tolerance; 1e-5 if left out.")] = None,
     step: Annotated[Number, option("A fixed step [s] instead of --rtol.")] = None,
@@ -202,7 +201,8 @@ def _print(result: xarray.Dataset) -> None:
     end = float(result.time.values[-1])
     columns = table(f"{result.attrs['model']} at t = {end:.6g} s", "", "value", "unit", "")
     for name, variable in result.data_vars.items():
-        last = variable.values[-1].reshape(-1)
+        values = variable.values[-1] if "time" in variable.dims else variable.values
+        last = values.reshape(-1)  # of an event, at its hits
         value = ", ".join(f"{v:.6g}" for v in last[:4])
         more = ", ..." if last.size > 4 else ""
         unit, about = (str(variable.attrs.get(key, "")) for key in ("units", "long_name"))

@@ -174,9 +174,7 @@ def simulate(
     named = read_start(dissipative_start, named)
     length = positive(duration, "simulate.duration")
     start, state, given = start_of(module, t0, initial, parameters)
-    if not abs(start) * RESOLVED < length:
-        what = f"times from t0 = {start:g} s on cannot be told apart in a run of {length:g} s"
-        raise UsageError(what, "simulate.t0", remedy="begin nearer to 0")
+    check_resolved(start, length)
     samples = sample_times(times, every, step, length, start)
     values = read_parameters(module, given)
     chosen = choose_method(module, named, step)
@@ -186,6 +184,13 @@ def simulate(
         return streamed(request, start, samples, state, (events, stop), store)
     planned = request.planned(start, length, state)
     return planned.dataset(samples, read_watched(planned.system, events, stop, step))
+
+
+def check_resolved(start: float, length: float) -> None:
+    """Raise `UsageError` if times of a run that starts so late cannot be told apart."""
+    if not abs(start) * RESOLVED < length:
+        what = f"times from t0 = {start:g} s on cannot be told apart in a run of {length:g} s"
+        raise UsageError(what, "simulate.t0", remedy="begin nearer to 0")
 
 
 def stages_of(options: Mapping[str, Any]) -> int | None:

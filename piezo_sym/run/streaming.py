@@ -7,10 +7,13 @@ what they had come to.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import signal
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from itertools import pairwise
 from os import PathLike, fspath
 from pathlib import Path
+from threading import current_thread, main_thread
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -49,31 +52,38 @@ def streamed(
         what = "events of a run into a store are not kept"
         raise UsageError(what, "simulate.events", "none", "leave out store, or take stop")
     path = _new(store)
+    written: xarray.Dataset | None = None
+    try:
+        for window in _windows(request, samples):
+            begin = start if written is None else float(window[0])
+            planned = request.planned(begin, float(window[-1]) - begin, state)
+            window = np.minimum(window, planned.system.inputs.end)  # by round-off
+            found = planned.dataset(window, read_watched(planned.system, None, stop, request.step))
+            with held_back():
+                written = _append(path, found, written)
+            last_state = found.isel(time=-1)
+            state = {r.name: last_state[r.name].values for r in request.module.STATES}
+            if "stopped" in found.attrs:
+                break
+    except (RunError, KeyboardInterrupt) as stopped:
+        rest = getattr(stopped, "partial", None)
+        if rest is not None:
+            with held_back():
+                written = _append(path, rest, written)
+        if written is not None:
+            vars(stopped)["partial"] = _opened(path, written)
+        raise
+    assert written is not None  # there is a window at least
+    return _opened(path, written)
+
+
+def _windows(request: Request, samples: FloatArray) -> Iterator[FloatArray]:
+    """Yield the sample times of each window; one begins with the last of the one before."""
     rows = row_count(request.module.STATES, request.parameters) + len(request.module.OUTPUTS)
     rows += row_count(request.module.ELEMENTS, request.parameters) if request.outputs else 0
     most = max(2, WINDOW // (PER_ROW * rows))
-    edges = [*range(0, samples.size - 1, most), samples.size - 1]
-    before: xarray.Dataset | None = None
-    for first, last in pairwise(edges):
-        window = samples[first : last + 1]
-        begin = float(window[0]) if first else start
-        planned = request.planned(begin, float(window[-1]) - begin, state)
-        window = np.minimum(window, planned.system.inputs.end)  # by round-off
-        try:
-            found = planned.dataset(window, read_watched(planned.system, None, stop, request.step))
-        except (RunError, KeyboardInterrupt) as stopped:
-            partial = getattr(stopped, "partial", None)
-            if partial is not None:
-                _append(path, _added(partial, before), first=before is None)
-                vars(stopped)["partial"] = _opened(path, partial)
-            raise
-        before = _added(found, before)
-        _append(path, before, first=first == 0)
-        last_state = found.isel(time=-1)
-        state = {r.name: last_state[r.name].values for r in request.module.STATES}
-        if "stopped" in found.attrs:
-            break
-    return _opened(path, found)
+    for first, last in pairwise([*range(0, samples.size - 1, most), samples.size - 1]):
+        yield samples[first : last + 1]
 
 
 def _new(store: object) -> Path:
@@ -106,14 +116,33 @@ def _added(found: xarray.Dataset, before: xarray.Dataset | None) -> xarray.Datas
     return whole.isel(time=slice(1, None)).assign_attrs(work)
 
 
-def _append(path: Path, part: xarray.Dataset, *, first: bool) -> None:
+def _append(path: Path, found: xarray.Dataset, before: xarray.Dataset | None) -> xarray.Dataset:
+    """Write a window after the one before, and return it as written."""
+    part = _added(found, before)
     try:
-        if first:
+        if before is None:
             part.to_zarr(path, mode="w-", zarr_format=3, consolidated=False)
         else:
             part.to_zarr(path, append_dim="time", consolidated=False)
     except OSError as cause:
         raise FileError(f"cannot be written: {cause.strerror}", path_text(path)) from cause
+    return part
+
+
+@contextmanager
+def held_back() -> Iterator[None]:
+    """Hold Ctrl-C back to the end of the block, of which half would be left otherwise."""
+    if current_thread() is not main_thread():
+        yield
+        return
+    asked: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda number, _: asked.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+    for number in asked:
+        signal.raise_signal(number)
 
 
 def _opened(path: Path, part: xarray.Dataset) -> xarray.Dataset:

@@ -21,6 +21,7 @@ from piezo_sym.analysis.newton import settled
 from piezo_sym.analysis.stroboscope import stroboscope
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.engine import EngineWarning
+from piezo_sym.spec.load import parse
 
 HEATER = """
 [model]
@@ -410,3 +411,45 @@ def test_what_does_not_settle_is_said(stack):
     assert any(issubclass(one.category, SteadyWarning) for one in caught)
     assert "nothing settles at" in str(caught[0].message)
     assert [round(state.temperature) for state in found] == [354]
+
+
+PARALLEL = """
+[model]
+name = "parallel"
+[parameters]
+m   = { value = 0.2,  unit = "kg" }
+k   = { value = 800.0, unit = "N/m" }
+k_c = { value = 1e5,  unit = "N/m" }
+gap = { value = 5e-3, unit = "m" }
+d   = { value = 30.0, unit = "N*s/m" }
+T_0 = { value = 293.15, unit = "K" }
+c   = { value = 30.0, unit = "J/K" }
+lam = { value = 0.5,  unit = "W/K" }
+[inputs]
+F   = { unit = "N" }
+T_e = { unit = "K", default = 293.15 }
+[domain]
+assume = ["d >= 0", "lam >= 0", "T_e > 0"]
+[elements]
+spring = { kind = "spring", between = ["tip", "wall"], stiffness = "k", state = "x" }
+stop = { kind = "spring", between = ["tip", "wall"], force = "k_c*max(q - gap, 0)" }
+mass = { kind = "mass", at = "tip", mass = "m", state = "p" }
+damper = { kind = "damper", between = ["tip", "wall"], force = "d*v", heats = "body" }
+body = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }
+air = { kind = "ambient", body = "body", conductance = "lam", input = "T_e" }
+load = { kind = "force_source", at = "tip", input = "F" }
+"""
+
+
+@pytest.mark.usefixtures("cache")
+@pytest.mark.parametrize("start", [0.0, 2e-3])
+def test_what_every_motion_conserves_stays_as_it_was(start):
+    """Springs in parallel keep the difference of their lengths, as in a run."""
+    model = parse(PARALLEL)
+    drive = {"F": sine(50, 10)}
+    found = periodic_steady_state(model, inputs=drive, frequency=10, initial={"x": start})
+    assert found.initial["x"] - found.initial["q_stop"] == pytest.approx(start, abs=1e-8)
+    assert found.multiplier < 1 - 1e-4
+
+    run = simulate(model, duration=1.0, inputs=drive, initial=found.initial, rtol=1e-9)
+    assert run.x[-1] == pytest.approx(found.initial["x"], abs=1e-7)

@@ -447,3 +447,10 @@ def test_a_long_run_says_so_once(capsys):
     told(2e-3)
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("still running, at t = 0.001 s after 0 s; Ctrl-C ends it")
+
+
+@pytest.mark.parametrize(("event", "hits"), [("q - 5", 0), ("q - 1e-9", 1)])
+def test_events_are_printed_however_often_they_happen(call, event, hits):
+    answer = call(*DRIVEN, "--event", f"hit={event}")
+    assert answer.code == 0
+    assert f"event hit, {hits} in all" in answer.out

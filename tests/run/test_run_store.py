@@ -1,5 +1,6 @@
 """Runs into a store: the same as in memory, in memory that does not grow, nothing overwritten."""
 
+import signal
 import subprocess
 import sys
 
@@ -10,6 +11,7 @@ import xarray
 from piezo_sym import simulate, sine
 from piezo_sym.errors import FileError, UsageError
 from piezo_sym.run import streaming
+from piezo_sym.run.streaming import held_back
 
 pytest.importorskip("zarr")
 DRIVE = {"V_in": sine(100, 100)}
@@ -90,3 +92,17 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
         done = subprocess.run(words, capture_output=True, text=True, check=True)
         peaks.append(int(done.stdout) / 1e3)
     assert peaks[1] < peaks[0] + 32
+
+
+def test_ctrl_c_waits_for_what_is_being_written():
+    done = []
+
+    def write():
+        with held_back():
+            signal.raise_signal(signal.SIGINT)
+            done.append("written")
+
+    with pytest.raises(KeyboardInterrupt):
+        write()
+    assert done == ["written"]
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
