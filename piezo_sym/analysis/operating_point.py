@@ -143,7 +143,8 @@ def _refuse_open_bodies(
     for body, moves in zip(module.BODIES, moved != still, strict=True):
         if np.any(moves):
             what = f"rest leaves the temperature of '{body.name}' open: it depends on the way there"
-            remedy = f"hold it: temperatures={{'{body.name}': ...}}, or simulate() until it rests"
+            held = f"operating_point(..., temperatures={{'{body.name}': ...}})"
+            remedy = f"hold it: {held}, for linearize as 'at'; or simulate() until it rests"
             raise RunError(what, f"model '{module.NAME}'", remedy=remedy)
 
 

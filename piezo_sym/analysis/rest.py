@@ -160,7 +160,9 @@ class RestSearch:
         remedy = "give other inputs"
         if self.module.BODIES:
             body = self.module.BODIES[0].name
-            remedy += f", or hold a body that heats: temperatures={{'{body}': ...}}"
+            remedy += (
+                f", or hold a body that heats: operating_point(..., temperatures={{'{body}': ...}})"
+            )
         return RunError(what, self._model, remedy=remedy)
 
     @property

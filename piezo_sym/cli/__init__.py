@@ -79,8 +79,9 @@ def run(words: list[str]) -> int:
     except CommandError as error:
         message = one_line(error.format_message()).rstrip(".")
         message = message.replace(", unable to parse string as a number", ", such as 0.1")
+        command = f" {error.ctx.info_name}" if error.ctx and error.ctx.parent else ""
         python = "; sweeps are made in Python: help(piezo_sym.sweep)" * ("'sweep'" in message)
-        return _failed(f"{message}{python}; see `piezo-sym --help`", 2)
+        return _failed(f"{message}{python}; see `piezo-sym{command} --help`", 2)
     except BrokenPipeError:  # who reads has seen enough; what is written lies on the disk
         sys.stdout = open(os.devnull, "w")  # noqa: SIM115 - so that the exit has no more to say
         return CLOSED

@@ -23,12 +23,12 @@ def kinds(
     kind: Annotated[str | None, typer.Argument(metavar="[KIND]", help="One kind, whole.")] = None,
 ) -> None:
     """List the kinds of elements, or show one: its fields, units, signs, an example."""
-    from piezo_sym.errors import UsageError, nearest, quote
+    from piezo_sym.errors import UsageError, quote
     from piezo_sym.spec.elements import KINDS
     from piezo_sym.spec.schema import schema
 
     if kind is not None and kind not in KINDS:
-        raise UsageError(f"{quote(kind)} is no kind", "KIND", remedy=nearest(kind, KINDS))
+        raise UsageError(f"{quote(kind)} is no kind", "KIND", remedy=_meant(kind))
     known = schema()["$defs"]
     if kind is not None:
         _show(kind, known[KINDS[kind].__name__])
@@ -37,6 +37,16 @@ def kinds(
     for name, element in KINDS.items():
         row(made, name, known[element.__name__]["description"].partition("\n")[0])
     console().print(made)
+
+
+def _meant(kind: str) -> str:
+    """Return how what is no kind is written, or the kind with a name like it."""
+    if kind.replace("_", "") in {"endstop", "contact"}:
+        return 'write a spring with force = "k_c*max(q - gap, 0)"'
+    from piezo_sym.errors import nearest
+    from piezo_sym.spec.elements import KINDS
+
+    return nearest(kind, KINDS)
 
 
 def _show(kind: str, known: dict[str, Any]) -> None:

@@ -161,6 +161,8 @@ def _start(path: Path | None, initial: Mapping[str, Any]) -> Any:
         return initial
     if initial:
         raise UsageError("--initial is given too", "--continue", "one of them")
+    if not path.exists():
+        raise FileError("there is no such file or store", path_text(path))
     try:
         if _is_store(path):
             zarr_library("--continue")

@@ -66,7 +66,9 @@ def from_file(path: str, where: str) -> Any:
     columns = [column for column, _ in column_headers(path)]
     if len(columns) > 2 and name not in columns[1:]:
         what = f"{path_text(Path(path))} has no column {quote(name)} beside its times"
-        raise UsageError(what, where, remedy=f"columns: {listing(columns)}")
+        raise UsageError(
+            what, where, remedy=f"columns: {listing(columns)}; name one like the input"
+        )
     return samples_from_csv(path, name if name in columns[1:] else None)
 
 

@@ -16,6 +16,8 @@ REMEDIES = {
     "|": "write abs(v)",
     "&": "write each condition as one of its own",
 }
+#: Operators that go by elements elsewhere: a law is one number already.
+DOTTED = {".*": "*", "./": "/", ".^": "**"}
 MAX_DEPTH = 40
 MAX_DIGITS = 40
 MAX_LENGTH = 1000
@@ -59,7 +61,7 @@ def check_tokens(text: str) -> None:
         match = TOKEN.match(text, position)
         if match is None:
             what = f"has {quote(text[position])} at column {position + 1}"
-            raise RefusedError(what, LANGUAGE, REMEDIES.get(text[position], ""))
+            raise RefusedError(what, LANGUAGE, _remedy(text[position : position + 2]))
         token = match.group()
         depth += (token == "(") - (token == ")")
         prefixes = _prefixes(prefixes, match)
@@ -68,6 +70,13 @@ def check_tokens(text: str) -> None:
         if match.lastgroup == "number":
             _check_number(token, text[match.end() : match.end() + 1])
         position = match.end()
+
+
+def _remedy(odd: str) -> str:
+    """Return what to write instead of two characters of which the first is no token."""
+    if odd in DOTTED:
+        return f"write {DOTTED[odd]} for {odd}"
+    return REMEDIES.get(odd[0], "")
 
 
 def _prefixes(count: int, match: re.Match[str]) -> int:

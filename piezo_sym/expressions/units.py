@@ -141,7 +141,9 @@ def _terms(text: str, where: str) -> list[tuple[str, Fraction]]:
     if read is None or read[1] != len(text) or any(_most(power) > 9 for _, power in read[0]):
         expected = "names joined by * and /, with powers up to 9, such as 'N*s/m', 'm**2'"
         expected += " or 'N/(m/s)**(1/2)'"
-        raise SpecError(f"{quote(text)} is not a unit", where, expected)
+        meant = re.sub(r"(?<=[A-Za-z])[. ](?=[A-Za-z])", "*", text.replace("%", "percent"))
+        remedy = f"write {quote(meant)}" if meant != text and _product(meant, 0, MAX_DEPTH) else ""
+        raise SpecError(f"{quote(text)} is not a unit", where, expected, remedy)
     return read[0]
 
 
@@ -220,7 +222,7 @@ def _named(name: str, where: str, value: float | None, alone: bool = True) -> Un
         powers = (*COHERENT[name], *(0,) * len(BASES))[: len(BASES)]
         return Unit(name, name, Fraction(1), tuple(map(Fraction, powers)))
     if not any(root in UNITS for _, root, _ in _registry().parse_unit_name(name)):
-        raise SpecError(f"unknown unit {quote(name)}", where, remedy=nearest(name, COMMON))
+        raise SpecError(f"unknown unit {quote(name)}", where, remedy=_meant(name))
     try:
         factor, base = _registry().get_base_units(name)
         origin = _registry().Quantity(Fraction(0), name).to_base_units().magnitude
@@ -238,6 +240,13 @@ def _named(name: str, where: str, value: float | None, alone: bool = True) -> Un
     if left:
         raise SpecError(f"unit {quote(name)} is not physical", where, remedy=nearest(name, COMMON))
     return Unit(name, _bare(name, Fraction(factor), dimension), Fraction(factor), dimension)
+
+
+def _meant(name: str) -> str:
+    """Return what to write for a name that is none: N*m for Nm, else one that is like it."""
+    cuts = ((name[:n], name[n:]) for n in range(1, len(name)))
+    two = next((f"{a}*{b}" for a, b in cuts if a in COMMON and b in COMMON), "")
+    return f"write {quote(two)}" if two else nearest(name, COMMON)
 
 
 def _bare(name: str, factor: Fraction, dimension: tuple[Fraction, ...]) -> str:

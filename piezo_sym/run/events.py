@@ -20,6 +20,7 @@ import numpy as np
 
 from piezo_sym.errors import PiezoError, UsageError, nearest, quote
 from piezo_sym.expressions.parse import parse_condition, parse_law
+from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import Add, Expr, Neg, evaluate, names
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.dataset import Known, described
@@ -77,9 +78,10 @@ def read_watched(system: DrivenModule, events: object, stop: object, step: objec
     for name, text in given.items():
         where = f"simulate.events.{name}"
         if not isinstance(name, str) or not name.isidentifier() or name in {*known, "time"}:
-            what = f"{quote(name)} cannot name an event"
+            why = ": the run has a quantity of that name" if name in {*known, "time"} else ""
+            what = f"{quote(name)} cannot name an event{why}"
             raise UsageError(what, "simulate.events", "a new name of letters, digits and _")
-        found[name] = _known(_read(parse_law, text, where, '"q - 1e-3"'), known, where)
+        found[name] = _known(_event(text, where), known, where)
     if stop is None:
         return Watched(found, None)
     condition: Any = _read(parse_condition, stop, "simulate.stop", '"T_body > 350"')
@@ -87,6 +89,18 @@ def read_watched(system: DrivenModule, events: object, stop: object, step: objec
     sides = condition.left, condition.right
     more, less = sides if condition.op in {">", ">="} else sides[::-1]
     return Watched(found, Add((more, Neg(less))), str(stop))
+
+
+def _event(text: object, where: str) -> Expr:
+    """Return the law of an event; of a comparison, say which law changes its sign there."""
+    try:
+        law: Expr = _read(parse_law, text, where, '"q - 1e-3"')
+    except UsageError as error:
+        with suppress(PiezoError, TypeError):
+            sides = parse_condition(str(text), where)
+            error.remedy = f"write {quote(spell(Add((sides.left, Neg(sides.right)))))}"
+        raise
+    return law
 
 
 def _read(read: Callable[[str, str], Any], text: object, where: str, such: str) -> Any:

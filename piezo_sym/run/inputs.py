@@ -150,7 +150,8 @@ def read_signal(value: object, where: str, span: tuple[float, float], unit: str)
         from piezo_sym.expressions.units import parse_unit
 
         if parse_unit(signal.unit).dimension != parse_unit(unit).dimension:
-            raise UsageError(f"the samples are in {signal.unit}", where, f"samples in {unit}")
+            what = f"the samples are in {signal.unit}{signal.source and f' ({signal.source})'}"
+            raise UsageError(what, where, f"samples in {unit}")
     if isinstance(signal, Samples) and not signal.covers(*span):
         what = f"samples span {signal.times[0]:g} s to {signal.times[-1]:g} s"
         raise UsageError(what, where, f"samples that cover {span[0]:g} s to {span[1]:g} s")

@@ -7,7 +7,7 @@ to go on from.  Output: the module's frozen `Parameters`, the state x (n,) at t 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -37,7 +37,7 @@ CLOSE = 1e-12
 SAMPLES = 1001
 MOST_LANES = 10_000_000
 #: A run of more steps would take days, and they would be shorter than round-off.
-MOST_STEPS = 1e12
+MOST_STEPS = 1e11
 
 
 def read_parameters(module: GeneratedModule, given: Mapping[str, LaneValue] | None) -> Any:
@@ -91,6 +91,8 @@ def read_initial(
     module: GeneratedModule, parameters: Any, u: FloatArray, given: Mapping[str, LaneValue] | None
 ) -> FloatArray:
     """Return the state (n,) at t = 0, with inputs u (m,): the module's own, and what is given."""
+    given = getattr(given, "initial", given)  # that of an OperatingPoint
+    _refuse_lanes(module, parameters, given or ())
     names, places = [record.name for record in module.STATES], others(module, "initial")
     hot = {f"T_{record.name}": n for n, record in enumerate(module.BODIES)}
     values = known_keys(given, [*names, *hot], "simulate.initial", places)
@@ -109,6 +111,19 @@ def read_initial(
     return x
 
 
+def _refuse_lanes(module: GeneratedModule, parameters: Any, given: Iterable[str]) -> None:
+    """Refuse one lane of a bank's state, and say how all of them are given."""
+    found = {record.name: record.bank for record in module.STATES if record.bank}
+    for word in map(str, given):
+        base, _, lane = word.rpartition("_")
+        if base in found and lane.isdigit():
+            size = lanes(parameters, found[base])
+            remedy = (
+                f"give {base} one number, or a list of {size}, on a command line {base}=1,2,..."
+            )
+            raise UsageError(f"{quote(word)} is one lane of a bank", WHERE, "all lanes", remedy)
+
+
 def own_initial(module: GeneratedModule, parameters: Any, u: FloatArray) -> FloatArray:
     """Return the module's initial state; outside the domain it may hold nan."""
     try:
@@ -124,7 +139,7 @@ def sample_times(
 ) -> FloatArray:
     """Return the times (nt,) of the samples [s], from what a user said of `times` and `every`."""
     if step is not None and not duration / step <= MOST_STEPS:
-        what = f"{step:g} s is too short a step for {duration:g} s: a run of over 10^12 steps"
+        what = f"{step:g} s is too short a step for {duration:g} s: a run of over 10^11 steps"
         raise UsageError(what, "simulate.step", f"at least {duration / MOST_STEPS:.1g} s")
     if step is not None and step > duration * (1 + CLOSE):
         what = f"{step:g} s is longer than the run"
@@ -180,14 +195,16 @@ def start_of(
     start = None if t0 is None else number(t0, "simulate.t0")
     run: Any = initial
     if not hasattr(run, "data_vars"):  # no Dataset: xarray is not loaded to ask
-        return start or 0.0, run, parameters
+        own = getattr(run, "parameters", None)  # of an OperatingPoint
+        return start or 0.0, run, {**own, **(parameters or {})} if own else parameters
     model, sha256 = (str(run.attrs.get(key, "")) for key in ("model", "spec_sha256"))
     if "time" not in run.dims or not model:
         raise UsageError("this Dataset is no run of simulate()", WHERE)
     if (model, sha256) != (module.NAME, module.SPEC_SHA256):
         what = f"this is a run of model {quote(model)}, spec {sha256[:12]}"
         expected = f"one of model '{module.NAME}', spec {module.SPEC_SHA256[:12]}"
-        raise UsageError(what, WHERE, expected)
+        remedy = "give the run's own spec, and what has changed as parameters (--set)"
+        raise UsageError(what, WHERE, expected, remedy if model == module.NAME else "")
     last = run.isel(time=-1)
     state: dict[str, Any] = {}
     for record in module.STATES:

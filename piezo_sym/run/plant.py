@@ -56,7 +56,9 @@ class Plant:
             raise UsageError(what, "Stepper.sample", f"a whole number of steps of {step:g} s")
         self._delay = whole(delay, "Stepper.delay", 0)
         self._wanted = self._waiting()
-        sizes = known_keys(resolution, self.outputs, "Stepper.resolution")
+        ports = {f"y_{name}": name for name in self.outputs}
+        known = known_keys(resolution, (*self.outputs, *ports), "Stepper.resolution")
+        sizes = {ports.get(name, name): value for name, value in known.items()}
         named = ((name, sizes.get(name, 0.0)) for name in self.outputs)
         checked = [positive(v, f"Stepper.resolution.{name}") if v else 0.0 for name, v in named]
         self._resolution = np.array(checked)[:, None]

@@ -7,7 +7,7 @@ Output: a frozen `Samples`, in SI.
 import csv
 import re
 import warnings
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from math import inf, isfinite
@@ -29,6 +29,8 @@ HEADER = re.compile(r"(?P<name>.*?)\s*\[(?P<unit>[^\[\]]*)\]")  # a name and its
 OTHERWISE = re.compile(  # t (ms), t/ms
     r"(?P<name>.*?)\s*(?:\((?P<unit>[^()]+)\)|/\s*(?P<over>[^/()]+))"
 )
+#: Ends of names that are meant as units.
+TIMES, VALUES = ("ns", "us", "ms", "min"), ("mV", "kV", "uA", "mA", "um", "mm", "mN", "kN", "degC")
 SLACK = 1e-9  # of the duration: a last sample may fall short by rounding
 
 
@@ -38,13 +40,15 @@ class Samples(Signal):
     """Straight lines between samples; see `samples`.
 
     Of those from a file, `unit` is the SI unit that its header says of the values, and `assumed`
-    what was taken because it says nothing: "t in s and V in the input's SI unit".
+    what was taken because it says nothing: "t in s and V in the input's SI unit"; `source` is the
+    file, and the column.
     """
 
     times: FloatArray
     values: FloatArray
     unit: str = ""
     assumed: str = ""
+    source: str = ""
 
     def _values(self, t: FloatArray | float) -> FloatArray:
         return np.asarray(np.interp(t, self.times, self.values))
@@ -91,6 +95,9 @@ def read_samples(times: object, values: object, where: str) -> Samples:
     """Return `samples(times, values)`; its errors name `where`."""
     t = vector(times, f"{where}.times")
     twice = np.flatnonzero(t[:-1] == t[1:])
+    if t[:2].size == 2 and t[0] == t[1]:
+        what = f"the first time, {t[0]:g} s, stands twice"
+        raise UsageError(what, f"{where}.times", "a value before a jump", "leave out the first row")
     t[twice] = np.nextafter(t[twice], -inf)  # a jump: from the number before this time
     t = increasing(t, f"{where}.times")
     x = vector(values, f"{where}.values")
@@ -130,9 +137,12 @@ def samples_from_csv(
     factor, unit = _factor(headers[x], f"{path}, header")
     values = values * factor + (ZERO_CELSIUS if headers[x][1] in CELSIUS else 0.0)
     words = (t, "s"), (x, "the input's SI unit")
+    for n, ends in ((t, TIMES), (x, VALUES)):
+        _refuse_suffix(*headers[n], ends, f"{path}, header")
     taken = [f"{headers[n][0]} in {unit}" for n, unit in words if not headers[n][1]]
     found = read_samples(times * seconds, values, str(path))
-    return replace(found, unit=unit, assumed=" and ".join(taken))
+    source = f"{path}, column {quote(headers[x][0])}"
+    return replace(found, unit=unit, assumed=" and ".join(taken), source=source)
 
 
 def header_of(name: object, unit: str) -> str:
@@ -236,6 +246,14 @@ def _factor(header: tuple[str, str], where: str, expected: str = "") -> tuple[fl
     return float(unit.factor), unit.si
 
 
+def _refuse_suffix(name: str, unit: str, ends: Collection[str], where: str) -> None:
+    """Refuse a header that says no unit, but whose name ends in one, as t_ms does."""
+    start, _, end = name.rpartition("_")
+    if start and not unit and end in ends:
+        what = f"{quote(name)} is a name without a unit that ends in one"
+        raise UsageError(what, where, remedy=f"write {quote(f'{start} [{end}]')}, or another name")
+
+
 def _position(headers: Sequence[tuple[str, str]], wanted: str, where: str) -> int:
     """Return the position of the one column named `wanted`, with or without its unit."""
     name, said = _named(wanted.strip())
@@ -254,7 +272,8 @@ def _other_column(headers: Sequence[tuple[str, str]], t: int, path: object) -> i
     if len(others) != 1:
         named = listing([headers[n][0] for n in others])
         what = f"{len(others)} columns beside the times: {named}"
-        raise UsageError(what, str(path), "one", "say column=...")
+        remedy = "name one like the input, or, in Python, say column=..."
+        raise UsageError(what, str(path), "one", remedy)
     return others[0]
 
 

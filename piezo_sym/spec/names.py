@@ -59,7 +59,7 @@ def check_name(word: str, where: str) -> str:
     return word
 
 
-def check_symbol(word: str, where: str) -> str:
+def check_symbol(word: str, where: str, taken: Collection[str] = ()) -> str:
     """Return `word` if it can be a symbol: a parameter, an input or a state.
 
     Raises
@@ -69,7 +69,8 @@ def check_symbol(word: str, where: str) -> str:
     """
     check_name(word, where)
     if word in KEYWORDS:
-        remedy = f"call it '{OFFERS.get(word, word + '_0')}'"
+        offers = OFFERS.get(word, f"{word}_0"), *(f"{word}_{n}" for n in range(len(taken) + 1))
+        remedy = f"call it '{next(offer for offer in offers if offer not in taken)}'"
         what = f"{quote(word)} is a keyword of Python, C, MATLAB or Modelica"
         raise SpecError(what, where, remedy=remedy)
     if word == IMPORT or word in FUNCTIONS:

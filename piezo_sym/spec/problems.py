@@ -91,6 +91,11 @@ def _number(value: object) -> str:
 
 
 def _expected(detail: ErrorDetails) -> str:
+    if detail["type"] == "tuple_type" and detail["loc"][-1] == "assume":
+        return f'a list of conditions, such as ["{detail["input"]}"]'
+    if detail["type"] == "string_type" and isinstance(detail["input"], int | float):
+        key, value = detail["loc"][-1], detail["input"]
+        return f'text: {key} = "a", where [parameters] has a = {{ value = {value}, unit = ... }}'
     if detail["type"] in {"tuple_type", "too_long"} and detail["loc"][-1] != "assume":
         return "a list of two names, such as ['a', 'b']"
     if detail["type"] == "value_error":

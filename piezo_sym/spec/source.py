@@ -51,6 +51,8 @@ def find(spec: str | Path) -> Path:
     path = Path(spec)
     if path.suffix != ".toml" and NAME.fullmatch(text) and not os.path.exists(path):
         remedy = f"{nearest(text, shipped())}; or give the path of a .toml file"
+        beside = os.path.exists(f"{text}.toml")
+        remedy = f"did you mean the file {quote(f'{text}.toml')}?" if beside else remedy
         raise FileError(f"no shipped spec is called {quote(text)}", remedy=remedy)
     return path
 

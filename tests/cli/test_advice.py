@@ -2,10 +2,11 @@
 
 import pytest
 
-from piezo_sym import Stepper
+from piezo_sym import Stepper, operating_point, simulate
 from piezo_sym.cli import run
 from piezo_sym.errors import PiezoError
 from piezo_sym.expressions.parse import parse_condition, parse_law
+from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.load import parse
 
 SPEC = """
@@ -29,6 +30,8 @@ body = { kind = "thermal_mass", temperature = "T_0*exp(S)" }
         (parse_law, "np.tanh(v)", "by its name alone, as in tanh(v)"),
         (parse_law, "d*|v|", "write abs(v)"),
         (parse_law, "d*v^2", "write ** for a power"),
+        (parse_law, "d.*v", "write * for .*"),
+        (parse_law, "d.^2", "write ** for .^"),
         (parse_condition, "d => 0", "write >= or <="),
         (parse_condition, "d > 0 and k > 0", "each condition as one of its own"),
         (parse_condition, "d > 0 & k > 0", "each condition as one of its own"),
@@ -64,3 +67,88 @@ def test_a_stepper_says_what_it_is():
 def test_a_sweep_is_made_in_python(capsys):
     assert run(["sweep", "oscillator"]) == 2
     assert "help(piezo_sym.sweep)" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("unit", "advice"),
+    [("Nm", "'N*m'"), ("Ns/m", "'N*s'"), ("%/K", "'percent/K'"), ("N m", "'N*m'")],
+)
+def test_a_unit_as_others_write_it(unit, advice):
+    with pytest.raises(PiezoError) as error:
+        parse_unit(unit)
+    assert error.value.remedy == f"write {advice}"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "advice"),
+    [
+        ('"LAW"', '"sin(t)"', "time enters through an input"),
+        ('"LAW"', "0.5", 'force = "a", where [parameters] has a = { value = 0.5, unit = '),
+        ("[elements]", "[domain]\nassume = 'm > 1'\n[elements]", 'such as ["m > 1"]'),
+        ("m = {", 'lam = { value = 1, unit = "1" }\nlambda = {', "call it 'lambda_0'"),
+    ],
+)
+def test_a_spec_in_another_language(old, new, advice):
+    with pytest.raises(PiezoError) as error:
+        parse(SPEC.replace(old, new).replace("LAW", "m*v"))
+    assert advice in str(error.value)
+
+
+SHORT = ["simulate", "oscillator", "--duration", "1"]
+
+
+@pytest.mark.parametrize(
+    ("words", "advice"),
+    [
+        (["kinds", "end_stop"], 'write a spring with force = "k_c*max(q - gap, 0)"'),
+        (["simulate", "oscillator"], "see `piezo-sym simulate --help`"),
+        (["simulate", "mine", "--duration", "1"], "did you mean the file 'mine.toml'?"),
+        ([*SHORT, "--continue", "nofile.nc"], "there is no such file"),
+        ([*SHORT, "--event", "k=q"], "the run has a quantity of that name"),
+        ([*SHORT, "--event", "hit=q>0.005"], "write 'q - 0.005'"),
+        ([*SHORT, "--step", "1e-12"], "simulate.step: 1e-12 s is too short a step"),
+        (
+            ["simulate", "stack_maxwell", "--duration", "1", "--initial", "z_1=1"],
+            "on a command line z=1,2,...",
+        ),
+    ],
+)
+def test_a_command_line(refused, spec_file, tmp_path, monkeypatch, words, advice):
+    spec_file()
+    monkeypatch.chdir(tmp_path)
+    assert advice in refused(*words)
+
+
+@pytest.mark.parametrize(
+    ("text", "advice"),
+    [
+        ("t,F,F_kN\n0,1,1\n0,2,1\n1,3,1\n", "the first time, 0 s, stands twice"),
+        ("t,F [A]\n0,1\n1,3\n", "in A (drive.csv, column 'F'); expected samples in N"),
+        ("t_ms,F\n0,1\n1000,3\n", "write 't [ms]', or another name"),
+        ("t,F_kN\n0,1\n1,3\n", "write 'F [kN]', or another name"),
+        ("t,a,b\n0,1,2\n1,3,4\n", "columns: t, a, b; name one like the input"),
+    ],
+)
+def test_a_table_of_samples(refused, tmp_path, monkeypatch, text, advice):
+    (tmp_path / "drive.csv").write_text(text, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    assert advice in refused(*SHORT, "-i", "F=@drive.csv")
+
+
+def test_an_operating_point_is_a_start():
+    point = operating_point(
+        "oscillator", inputs={"F": 1.0}, parameters={"k": 8.0}, temperatures={"body": 300.0}
+    )
+    run = simulate("oscillator", initial=point, inputs={"F": 1.0}, duration=1.0)
+    assert (float(run.q[-1]), run.attrs["parameter_k"]) == (pytest.approx(0.125), 8.0)
+    assert Stepper("oscillator", step=1e-3, initial=point).x[0] == pytest.approx(0.125)
+
+
+def test_a_resolution_has_a_port_or_its_output():
+    assert Stepper("oscillator", step=1e-3, resolution={"y_hand": 0.5}).step([0.0]) == [0.0]
+
+
+def test_a_run_of_an_edited_spec(spec_file):
+    run = simulate(spec_file(), duration=1e-4)
+    with pytest.raises(PiezoError, match="what has changed as parameters"):
+        simulate(spec_file("value = 3.5e-3", "value = 4e-3"), duration=1e-4, initial=run)

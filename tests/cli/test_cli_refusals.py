@@ -22,7 +22,7 @@ EDITS = {
         ('"d*v"', '"d*table(v, 1, 2, 0, 3)"', "knots of a table do not increase; expected '1 < 0'"),
     ],
     "names": [
-        ('state = "phi"', 'state = "lambda"', "call it 'lam'"),
+        ('state = "phi"', 'state = "lambda"', "call it 'lambda_0'"),
         ("[elements.damper]", '[elements."../up"]', "is not a name"),
         ('name   = "mine"', 'name   = "../mine"', "model.name: '../mine' is not a name"),
         ('name   = "mine"', 'name   = "/etc/mine"', "model.name: '/etc/mine' is not a name"),

@@ -389,7 +389,8 @@ def test_units_of_a_file_are_read_or_said_to_be_assumed(call, refused, tmp_path)
     said = "V_in: its file names no units; read t in s and V_in in the input's SI unit\n"
     assert call(*words, f"V_in=@{path}").out.endswith(said)
     path.write_text("t [ms],V_in [A]\n0,0\n10,0.1\n")
-    assert "the samples are in A; expected samples in V" in refused(*words, f"V_in=@{path}")
+    message = refused(*words, f"V_in=@{path}")
+    assert message.endswith("d.csv, column 'V_in'); expected samples in V")
 
 
 def test_a_run_stops_and_another_goes_on(call, refused, tmp_path):
@@ -407,7 +408,8 @@ def test_a_run_stops_and_another_goes_on(call, refused, tmp_path):
     with xarray.open_dataset(second) as run:
         assert (float(run.time[0]), float(run.T_body[0])) == (end, pytest.approx(298.4, rel=1e-14))
     words = (*drive, "--duration", "0.01", "--continue")
-    assert "is no run that can go on" in refused(*words, tmp_path / "none.nc")
+    assert "there is no such file" in refused(*words, tmp_path / "none.nc")
+    assert "is no run that can go on" in refused(*words, __file__)
     assert "--initial is given too" in refused(*words, first, "--initial", "q=0")
     no_place = refused(*drive, "--duration", "0.1", *found, "--out", "run.csv")
     assert "'run.csv', a table over time, has no place for events" in no_place

@@ -158,7 +158,7 @@ def test_an_inputs_name_is_checked():
 def test_a_states_name_is_checked():
     message = refused_edit(('state = "phi"', 'state = "lambda"'))
     assert message.startswith("spec: elements.hysteron: 'lambda' is a keyword")
-    assert message.endswith("call it 'lam'")
+    assert message.endswith("call it 'lambda_0'")
 
 
 def test_a_greek_look_alike_in_a_spec_is_refused():

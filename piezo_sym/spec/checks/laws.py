@@ -73,6 +73,10 @@ def _input_unit(element: Element) -> str:
     return next(p.input_unit for p in ports if isinstance(p, Source | Exchange | HeatInput))
 
 
+#: What a law may not name: it enters through inputs.
+TIME = ("t", "time")
+
+
 def check_laws(spec: Tables) -> None:
     """Parse every law, initial value and condition, and check the names in them."""
     one_body = len(bodies(spec)) == 1
@@ -165,7 +169,9 @@ def _check_words(
                 remedy = _states_of_letter(spec, word, words)
             raise SpecError(f"{quote(word)} has no meaning here", where, expected, remedy)
         near = nearest(word, [*letters, *words])
-        if not near.startswith("did you mean"):
+        if word in TIME:
+            near = "time enters through an input: declare one, and give the run sine(...) for it"
+        elif not near.startswith("did you mean"):
             near = f"declare it in [parameters] with its value and unit; {near}"
         remedy = remedy or near
         raise SpecError(f"unknown name {quote(word)}", where, remedy=remedy)

@@ -28,8 +28,9 @@ def check_names(spec: Tables) -> None:
     _check_banks(spec)
     _check_case((*spec.elements, *banks(spec)))
     symbols = list(_symbols(spec))
+    taken = {symbol for symbol, _ in symbols}
     for symbol, where in symbols:
-        check_symbol(symbol, where)
+        check_symbol(symbol, where, taken)
     _check_unique(symbols)
     _check_kept(spec, symbols)
     for name, parameter in spec.parameters.items():

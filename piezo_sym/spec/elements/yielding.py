@@ -65,7 +65,8 @@ class Yielding(Form):
             f"{kinds[0].upper()}{kinds[1:]}, whose magnitude never exceeds `limit`: what would go "
             "beyond it slips, and co-state times slip `heats` a body. Steps are exact along their "
             "own path; `rhs` at the limit is the projected rate. The Jenkins element, the stop "
-            "operator, a cell of Maxwell-slip."
+            "operator, a cell of Maxwell-slip. It is no end stop: that is a spring with "
+            'force = "k_c*max(q - gap, 0)".'
         )
 
     def _store(self, element: Any) -> Store:
