@@ -17,7 +17,7 @@ from types import ModuleType
 
 from piezo_sym.errors import FileError
 from piezo_sym.files import path_text, read_text, temporary_folder, write_text, write_together
-from piezo_sym.spec.values import Template, from_json
+from piezo_sym.spec.values import Template, from_text
 from piezo_sym.version import VERSION
 
 PACKAGE = Path(__file__).parent
@@ -54,14 +54,14 @@ def template(name: str, shape: str) -> Template | None:
     """Return the proved texts of a spec's shape, if they are in the cache."""
     with suppress(FileError):
         text = read_text(_path(name, shape, SHAPE).with_suffix(".json"))
-        return None if text is None else from_json(text)
+        return None if text is None else from_text(text)
     return None
 
 
 def keep_template(name: str, shape: str, made: Template) -> None:
     """Put the proved texts of a spec's shape into the cache, if it can be written."""
     with suppress(FileError):
-        write_text(_path(name, shape, SHAPE).with_suffix(".json"), made.to_json())
+        write_text(_path(name, shape, SHAPE).with_suffix(".json"), made.to_text())
 
 
 def _path(name: str, sha256: str, kind: str = "") -> Path:

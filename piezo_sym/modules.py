@@ -10,7 +10,7 @@ from __future__ import annotations
 import filecmp
 import warnings
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from threading import Thread
@@ -156,7 +156,10 @@ def _with_values(name: str, sha256: str, data: Mapping[str, Any]) -> ModuleType 
     found = template(name, shape_hash(data))
     if found is None or not found.quick:
         return None
-    texts = found.filled(data)
+    try:
+        texts = found.filled(data)
+    except OverflowError:
+        return None
     trial = written(temporary_folder() / sha256, name, texts)
     return kept(name, sha256, texts) if _starts_inside(trial) else None
 
@@ -184,7 +187,7 @@ def _generated(model: Model, stages: int | None) -> ModuleType:
     found = template(model.name, shape)
     if found is None:
         found = blank_texts(iphs)
-        with _meanwhile(model.name, found.filled(data), stages):
+        with _meanwhile(model.name, shape, found.filled(data), stages):
             report = verify(iphs)
         found = replace(found, verdict=verdict_line(report))
         if report.failures and (module := _all_the_same(model, found.filled(data))):
@@ -195,17 +198,19 @@ def _generated(model: Model, stages: int | None) -> ModuleType:
 
 
 @contextmanager
-def _meanwhile(name: str, texts: Mapping[str, str], stages: int | None) -> Iterator[None]:
+def _meanwhile(
+    name: str, shape: str, texts: Mapping[str, str], stages: int | None
+) -> Iterator[None]:
     """Compile what a run needs, and import what its result is, while a module is proved.
 
-    An error does not wait for it: it ends with the process.
+    Where the proof fails, nobody waits for the compiler.
     """
     if stages is None:
         yield
         return
     from piezo_sym.run.collocation import compile_ahead
 
-    module = written(temporary_folder() / "ahead", name, texts)
+    module = written(temporary_folder() / f"{shape}-ahead", name, texts)
     compiling = Thread(target=compile_ahead, args=(module, stages), daemon=True)
     threads = compiling, Thread(target=_import_results, daemon=True)
     for thread in threads:
@@ -216,7 +221,8 @@ def _meanwhile(name: str, texts: Mapping[str, str], stages: int | None) -> Itera
 
 
 def _import_results() -> None:
-    import xarray  # noqa: F401
+    with suppress(ImportError):  # the run says so
+        import xarray  # noqa: F401
 
 
 def _all_the_same(model: Model, texts: Mapping[str, str]) -> ModuleType | None:

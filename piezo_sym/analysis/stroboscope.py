@@ -28,7 +28,7 @@ from piezo_sym.run.engine import Engine
 from piezo_sym.run.guard import check_inputs, check_start
 from piezo_sym.run.inputs import Inputs, read_inputs
 from piezo_sym.run.method import choose_method
-from piezo_sym.run.module import GeneratedModule, by_name, checked
+from piezo_sym.run.module import GeneratedModule, by_name, checked, held
 from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
 from piezo_sym.run.system import DrivenModule
 
@@ -38,10 +38,12 @@ if TYPE_CHECKING:
 SAMPLES = 16  # of a period, for the sizes of states and the mean temperature
 FLOOR = 1e-15  # so that no size is 0
 LARGEST_RATIO = 1.01  # of two temperatures in a difference quotient
-SPREAD = (-1.0, 2.0)  # powers of ten of the sizes of states that are drawn
-WARMER = 1e-2  # of the size of the entropy
-NOTHING = 1e-12  # of a change in units of the greatest: round-off
-PARTLESS = 1e-9  # a smaller share of a state in what is conserved is none
+SPREAD = (-2.0, 2.0)  # powers of ten of the sizes of states that are drawn
+ENTROPY_SPREAD = 1e-2  # of the size of the entropy
+SPARE = 16  # states that are drawn beyond the least number
+RANK_TOLERANCE = 1e-12  # singular values below it are round-off
+SHARE_TOLERANCE = 1e-9  # a smaller share of a state in what is conserved is none
+CONSTANT = 1e-9  # of the sizes of states: what changes less over a period does not change
 LSODA_RTOL = 1e-9  # where there is no compiler
 
 
@@ -156,29 +158,42 @@ class Stroboscope:
 
     @cached_property
     def conserved(self) -> FloatArray:
-        """Linear functions (k, n) of the state that no motion changes, by rates at random states.
+        """Linear functions (k, n) of the state that no motion changes; none where that is in doubt.
 
-        States are drawn from small to large, so that no law rests at all of them; the body stays
-        about as warm as it is, for its temperature may be an exponential.
+        They are zero on the rates at random states of the domain, and constant over a period.
         """
+        none = np.empty((0, self.start.size))
         try:
-            size = self.look(self.start).size
+            states = self._period(self.start)
         except RunError:  # the start lies outside the domain
-            size = self._system.scale(np.abs(self.start))
-        rng, many = np.random.default_rng(0), 2 * size.size + 16
-        far = 10 ** rng.uniform(*SPREAD, many) * np.ones((size.size, 1))
-        far[self.entropy_row(self.start)] = WARMER
-        x = self.start[:, None] + size[:, None] * far * rng.normal(size=far.shape)
+            return none
+        size = self._system.scale(np.abs(states).max(axis=1))
+        rates = self._random_rates(size) / size[:, None]
+        rates = rates[:, np.isfinite(rates).all(axis=0) & rates.any(axis=0)]
+        if rates.shape[1] < size.size + SPARE:
+            return none
+        rates /= np.linalg.norm(rates, axis=0)
+        rows = np.maximum(np.abs(rates).max(axis=1), FLOOR)[:, None]
+        left, sizes, _ = np.linalg.svd(rates / rows, full_matrices=False)
+        shares = np.where(np.abs(left) < SHARE_TOLERANCE, 0.0, left)[:, sizes < RANK_TOLERANCE].T
+        found = shares / rows.T / size
+        values = found @ states
+        kept = np.ptp(values, axis=1) <= CONSTANT * (np.abs(found) @ size)
+        return np.asarray(found[kept])
+
+    def _random_rates(self, size: FloatArray) -> FloatArray:
+        """Return rates (n, many) at states from near to far, so that no law rests at all of them.
+
+        The body stays about as warm as it is: its temperature may be an exponential.
+        """
+        rng, many = np.random.default_rng(0), 4 * (size.size + SPARE)
+        spread = 10 ** rng.uniform(*SPREAD, many) * np.ones((size.size, 1))
+        spread[self.entropy_row(self.start)] = ENTROPY_SPREAD
+        x = self.start[:, None] + size[:, None] * spread * rng.normal(size=spread.shape)
         u = self.inputs.segments[0].at(0.0)[:, None] * rng.uniform(0.5, 2.0, many)
         with np.errstate(all="ignore"):
-            rates: FloatArray = self.module.rhs(x, u, self.values)
-            rates = rates[:, np.isfinite(rates).all(axis=0)]
-            rates = np.nan_to_num(rates / np.linalg.norm(rates, axis=0))
-        rows = np.maximum(np.abs(rates).max(axis=1, initial=0.0), FLOOR)[:, None]
-        left, sizes, _ = np.linalg.svd(rates / rows)
-        none = np.append(sizes, np.zeros(len(left) - sizes.size)) < NOTHING
-        found: FloatArray = np.where(np.abs(left) < PARTLESS, 0.0, left)[:, none].T / rows.T
-        return found
+            inside = held(self.module, self.module.margins(x, u, self.values)).all(axis=0)
+            return np.asarray(self.module.rhs(x, u, self.values))[:, inside]
 
     def temperature(self, x: FloatArray) -> float:
         """Return the body's temperature in the state x (n,); inf where it overflows."""

@@ -15,7 +15,7 @@ from typing import Any, TypeAlias, final
 import numpy as np
 from numpy.typing import NDArray
 
-from piezo_sym.errors import EngineError, RunError, UsageError, listing, quote
+from piezo_sym.errors import PiezoError, RunError, UsageError, listing, quote
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.engine.batch import Batch, Stepping, collocation_library
 from piezo_sym.run.engine.engine import Engine, engine_of
@@ -211,7 +211,7 @@ def layout_of(runs: int, states: int, *, side_by_side: bool) -> Layout:
 def compile_ahead(module: GeneratedModule, stages: int) -> None:
     """Compile what one run of a module needs with steps of so many stages, if that can be done."""
     layout = layout_of(1, row_count(module.STATES, module.Parameters()), side_by_side=True)
-    with suppress(EngineError):
+    with suppress(PiezoError, OSError):  # the run says so
         collocation_library(engine_of(module), stages, layout)
 
 

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     import xarray
 
 WHERE = "simulate.store"
+#: Signals that end a process.
+ENDINGS = (signal.SIGINT, signal.SIGTERM)
 #: Numbers of a window, of which a sample has a few per state, port and process.
 WINDOW, PER_ROW = 4_000_000, 6
 #: How the names of integrals begin, or end.
@@ -131,16 +133,17 @@ def _append(path: Path, found: xarray.Dataset, before: xarray.Dataset | None) ->
 
 @contextmanager
 def held_back() -> Iterator[None]:
-    """Hold Ctrl-C back to the end of the block, of which half would be left otherwise."""
+    """Hold back what ends a process to the end of the block, of which half would be left."""
     if current_thread() is not main_thread():
         yield
         return
     asked: list[int] = []
-    before = signal.signal(signal.SIGINT, lambda number, _: asked.append(number))
+    before = {n: signal.signal(n, lambda number, _: asked.append(number)) for n in ENDINGS}
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        for held, handler in before.items():
+            signal.signal(held, handler or signal.SIG_DFL)
     for number in asked:
         signal.raise_signal(number)
 

@@ -7,8 +7,8 @@ an edit of a value without loading them.
 
 from __future__ import annotations
 
+import hashlib
 import json
-import math
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
@@ -19,8 +19,11 @@ from piezo_sym.expressions.units import scaled
 from piezo_sym.spec.write import MAX_SIZE, spec_hash
 
 Texts: TypeAlias = dict[str, str]
-#: Where numbers stand in a spec, and what a number is called there.
-TABLES = {"parameters": "value", "inputs": "default"}
+#: Where numbers stand in a spec, what a number is called there, and what it is if it is left out.
+TABLES: dict[str, tuple[str, float | None]] = {
+    "parameters": ("value", None),
+    "inputs": ("default", 0.0),
+}
 #: The places of a spec's hash and of its verdict in a template; no parameter has these names.
 HASH, VERDICT = "#", "!"
 #: What stands in a template for a value or the hash; no text of a spec holds such characters.
@@ -56,7 +59,13 @@ class Template:
     verdict: str = ""
 
     def filled(self, data: Mapping[str, Any]) -> Texts:
-        """Return the texts for the values of a spec, which has the template's `shape_hash`."""
+        """Return the texts for the values of a spec, which has the template's `shape_hash`.
+
+        Raises
+        ------
+        OverflowError
+            If a value is beyond all numbers in coherent SI, as loading refuses it.
+        """
         values = {place(name): text for name, text in _number_texts(data, self.factors)}
         values |= {place(HASH): spec_hash(data), place(VERDICT): self.verdict}
         return {
@@ -64,31 +73,36 @@ class Template:
             for ending, text in self.files.items()
         }
 
-    def to_json(self) -> str:
-        """Return the template as JSON."""
-        return json.dumps(asdict(self))
+    def to_text(self) -> str:
+        """Return the template as JSON, after its digest."""
+        text = json.dumps(asdict(self))
+        return f"{_digest(text)}\n{text}"
 
 
-def from_json(text: str) -> Template | None:
-    """Return a template; None if the text is none."""
-    try:
-        return Template(**json.loads(text))
-    except (ValueError, TypeError):
-        return None
+def from_text(text: str) -> Template | None:
+    """Return a template; None if the text is not as it was written."""
+    digest, _, content = text.partition("\n")
+    return Template(**json.loads(content)) if digest == _digest(content) else None
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def shape_hash(data: Mapping[str, Any]) -> str:
     """Return the SHA-256 of a spec without its values: of what its proofs and programs hold for."""
-    tables = {name: _without_values(data.get(name, {}), key) for name, key in TABLES.items()}
+    tables = {
+        name: {word: _without_value(entry, *TABLES[name]) for word, entry in data[name].items()}
+        for name in TABLES.keys() & data.keys()
+    }
     return spec_hash({**data, **tables})
 
 
-def _without_values(table: Mapping[str, Any], key: str) -> dict[str, Any]:
-    """Return a table in which every number is 1; what is no number stays, and is refused later."""
-    return {
-        name: {**entry, key: _unit(entry.get(key, 0.0))} if isinstance(entry, Mapping) else entry
-        for name, entry in table.items()
-    }
+def _without_value(entry: Any, key: str, default: float | None) -> Any:
+    """Return an entry whose number is 1; what is none, or missing, stays and is refused later."""
+    if not isinstance(entry, Mapping) or (value := entry.get(key, default)) is None:
+        return entry
+    return {**entry, key: _unit(value)}
 
 
 def _unit(value: Any) -> Any:
@@ -99,16 +113,20 @@ def _unit(value: Any) -> Any:
 
 def _is_number(value: Any) -> bool:
     number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    return number and math.isfinite(value) and abs(value) <= MAX_SIZE
+    return number and abs(value) <= MAX_SIZE  # so it is finite
 
 
 def _number_texts(data: Mapping[str, Any], factors: Mapping[str, str]) -> Iterator[tuple[str, str]]:
     """Yield what stands for every value of a spec, in coherent SI."""
-    for table, key in TABLES.items():
+    for table, (key, default) in TABLES.items():
         for name, entry in data.get(table, {}).items():
             factor = Fraction(factors[name])
-            for word, value in _named(name, entry.get(key, 0.0)):
-                yield word, repr(scaled(float(value), factor))
+            for word, value in _named(name, entry.get(key, default)):
+                si = scaled(float(value), factor)
+                if si and not 1 / MAX_SIZE <= abs(si) <= MAX_SIZE:
+                    msg = f"{name} is beyond all numbers"
+                    raise OverflowError(msg)
+                yield word, repr(si)
 
 
 def _named(name: str, value: Any) -> Iterator[tuple[str, float]]:

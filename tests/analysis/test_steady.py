@@ -1,6 +1,7 @@
 """Periodic steady states against a closed form, against long runs, and what is refused."""
 
 import warnings
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,7 +19,7 @@ from piezo_sym import (
 from piezo_sym.analysis import loops, steady
 from piezo_sym.analysis.balance import SteadyWarning
 from piezo_sym.analysis.newton import settled
-from piezo_sym.analysis.stroboscope import stroboscope
+from piezo_sym.analysis.stroboscope import Stroboscope, stroboscope
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.engine import EngineWarning
 from piezo_sym.spec.load import parse
@@ -453,3 +454,34 @@ def test_what_every_motion_conserves_stays_as_it_was(start):
 
     run = simulate(model, duration=1.0, inputs=drive, initial=found.initial, rtol=1e-9)
     assert run.x[-1] == pytest.approx(found.initial["x"], abs=1e-7)
+
+
+@pytest.mark.parametrize("pair", [False, True])
+@pytest.mark.parametrize("many", [4, 9, 13])
+def test_only_what_is_surely_conserved_counts(many, pair):
+    """Laws that are defined where their state is positive: few states that are drawn lie there."""
+
+    def rhs(x, u, _):
+        rates = u - x - np.log(x)
+        rates[-1] = rates[0] if pair else rates[-1]
+        return rates
+
+    class Stub(SimpleNamespace):
+        _random_rates = Stroboscope._random_rates
+
+    stub = Stub(
+        start=np.ones(many),
+        _period=lambda x: x[:, None] * np.array([1.0, 1.1, 1.2]),
+        _system=SimpleNamespace(scale=lambda x: x),
+        entropy_row=lambda _: 0,
+        values=None,
+        inputs=SimpleNamespace(segments=[SimpleNamespace(at=lambda _: np.ones(1))]),
+        module=SimpleNamespace(
+            rhs=rhs,
+            margins=lambda x, *_: x,
+            DOMAIN=[SimpleNamespace(strict=True)] * many,
+        ),
+    )
+    found = Stroboscope.conserved.func(stub)
+    assert len(found) <= pair
+    assert all(abs(row[0] + row[-1]) <= 1e-9 * abs(row[0]) for row in found)

@@ -99,6 +99,16 @@ def test_an_edited_module_is_what_the_edited_spec_generates(spec):
         assert (folder / f"mine{ending}").read_text(encoding="utf-8").startswith(text)
 
 
+def test_a_damaged_template_is_made_again(spec, cache):
+    spec["model"]["name"] = "mine"
+    path = written(spec)
+    module_of(path)
+    (template,) = cache.rglob("*.json")
+    template.write_text(template.read_text().replace("mine", "mime", 3))
+    edited(path, "0.0035", "0.0036")
+    assert module_of(path).Parameters().M == 0.0036
+
+
 def test_a_list_of_values_is_edited_lane_by_lane(spec):
     spec["model"]["name"] = "mine"
     spec["parameters"]["L"]["value"] = [1e-3, 2e-3]
@@ -116,6 +126,9 @@ def test_a_list_of_values_is_edited_lane_by_lane(spec):
         ("value = 5.0", "value = nan"),
         ("default = 298.15", "default = 290.0"),
         ("value = 296.15", "value = 0.0"),
+        ("value = 400.0, ", ""),
+        ("value = 400.0", "value = " + "9" * 400),
+        ('value = 400.0, unit = "N*s/m"', 'value = 1e299, unit = "GN*s/m"'),
         ("value = 0.0035", "value = true"),
         ("value = 0.0035", 'value = "3e-3"'),
         ("value = 0.0035", "value = 1e301"),

@@ -94,15 +94,17 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
     assert peaks[1] < peaks[0] + 32
 
 
-def test_ctrl_c_waits_for_what_is_being_written():
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_ctrl_c_waits_for_what_is_being_written(number):
     done = []
+    before = signal.signal(number, signal.default_int_handler)
 
     def write():
         with held_back():
-            signal.raise_signal(signal.SIGINT)
+            signal.raise_signal(number)
             done.append("written")
 
     with pytest.raises(KeyboardInterrupt):
         write()
     assert done == ["written"]
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    assert signal.signal(number, before) is signal.default_int_handler
