@@ -24,7 +24,7 @@ PACKAGE = Path(__file__).parent
 #: Of the package's own sources.
 SOURCES = (".py", ".c", ".h")
 #: What folders are called besides their hash: of a module that is not proved, and of a template.
-UNPROVED, SHAPE = "-unproved", "-shape"
+UNPROVED_FOLDER, SHAPE_FOLDER = "-unproved", "-shape"
 
 
 def cached(name: str, sha256: str, kind: str = "") -> ModuleType | None:
@@ -53,7 +53,7 @@ def written(folder: Path, name: str, texts: Mapping[str, str]) -> ModuleType:
 def template(name: str, shape: str) -> Template | None:
     """Return the proved texts of a spec's shape, if they are in the cache."""
     with suppress(FileError):
-        text = read_text(_path(name, shape, SHAPE).with_suffix(".json"))
+        text = read_text(_path(name, shape, SHAPE_FOLDER).with_suffix(".json"))
         return None if text is None else from_text(text)
     return None
 
@@ -61,7 +61,7 @@ def template(name: str, shape: str) -> Template | None:
 def keep_template(name: str, shape: str, made: Template) -> None:
     """Put the proved texts of a spec's shape into the cache, if it can be written."""
     with suppress(FileError):
-        write_text(_path(name, shape, SHAPE).with_suffix(".json"), made.to_text())
+        write_text(_path(name, shape, SHAPE_FOLDER).with_suffix(".json"), made.to_text())
 
 
 def _path(name: str, sha256: str, kind: str = "") -> Path:

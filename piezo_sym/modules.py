@@ -23,7 +23,7 @@ from piezo_sym.errors import UsageError, quote
 from piezo_sym.files import path_text, temporary_folder
 from piezo_sym.module_cache import (
     PACKAGE,
-    UNPROVED,
+    UNPROVED_FOLDER,
     cached,
     keep_template,
     kept,
@@ -31,8 +31,7 @@ from piezo_sym.module_cache import (
     template,
     written,
 )
-from piezo_sym.run.module import UNPROVED as NOT_PROVED
-from piezo_sym.run.module import held, verdict_of
+from piezo_sym.run.module import UNPROVED, held, verdict_of
 from piezo_sym.spec.names import MAX_NAME
 from piezo_sym.spec.source import data, find, read, shipped
 from piezo_sym.spec.values import shape_hash
@@ -78,7 +77,7 @@ def module_of(spec: str | Path | Model, stages: int | None = None) -> ModuleType
         model = content if isinstance(content, Model) else load(spec)  # type: ignore[arg-type]
         module = _known(model.name, model.sha256) or _generated(model, stages)
     verdict = verdict_of(module)
-    if verdict.startswith(NOT_PROVED):
+    if verdict.startswith(UNPROVED):
         text = f"model '{module.NAME}' is {verdict}: its runs may break a law of thermodynamics"
         warnings.warn(text, ModuleWarning, stacklevel=3)
     elif not _is_current(module):
@@ -144,7 +143,7 @@ def _known(name: str, sha256: str) -> ModuleType | None:
         return None
     if found := _own(name, sha256) or cached(name, sha256):
         return found
-    found = cached(name, sha256, UNPROVED) if (GENERATED / name).is_dir() else None
+    found = cached(name, sha256, UNPROVED_FOLDER) if (GENERATED / name).is_dir() else None
     return found if found and _is_current(found) else None
 
 
@@ -229,7 +228,7 @@ def _all_the_same(model: Model, texts: Mapping[str, str]) -> ModuleType | None:
     """Return a module that is not proved, if the working folder has the same."""
     if not (GENERATED / model.name).is_dir():
         return None
-    module = kept(model.name, model.sha256, texts, UNPROVED)
+    module = kept(model.name, model.sha256, texts, UNPROVED_FOLDER)
     return module if _is_current(module) else None
 
 

@@ -111,8 +111,8 @@ def _updated(slope: FloatArray, now: Iterate, before: Iterate, fast: Rows) -> Fl
 def _step(strobe: Stroboscope, at: Iterate, slope: FloatArray, fast: Rows) -> FloatArray:
     """Return the state (n,) after a step of Newton's method, no longer than `LONGEST`."""
     size, kept = at.period.size[fast], strobe.conserved
-    only = ~kept[:, ~fast].any(axis=1)  # of the fast states alone
-    move = -_solved(slope, at.off, kept[only][:, fast] * size)
+    fast_only = ~kept[:, ~fast].any(axis=1)
+    move = -_solved(slope, at.off, kept[fast_only][:, fast] * size)
     x = at.x.copy()
     x[fast] += move * min(1.0, LONGEST / np.max(np.abs(move), initial=FLOOR)) * size
     return x

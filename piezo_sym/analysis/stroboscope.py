@@ -190,7 +190,7 @@ class Stroboscope:
         spread = 10 ** rng.uniform(*SPREAD, many) * np.ones((size.size, 1))
         spread[self.entropy_row(self.start)] = ENTROPY_SPREAD
         x = self.start[:, None] + size[:, None] * spread * rng.normal(size=spread.shape)
-        u = self.inputs.segments[0].at(0.0)[:, None] * rng.uniform(0.5, 2.0, many)
+        u = self.inputs.at_samples(np.sort(rng.uniform(0.0, self.duration, many)))
         with np.errstate(all="ignore"):
             inside = held(self.module, self.module.margins(x, u, self.values)).all(axis=0)
             return np.asarray(self.module.rhs(x, u, self.values))[:, inside]

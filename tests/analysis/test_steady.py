@@ -475,7 +475,8 @@ def test_only_what_is_surely_conserved_counts(many, pair):
         _system=SimpleNamespace(scale=lambda x: x),
         entropy_row=lambda _: 0,
         values=None,
-        inputs=SimpleNamespace(segments=[SimpleNamespace(at=lambda _: np.ones(1))]),
+        inputs=SimpleNamespace(at_samples=lambda times: np.ones((1, times.size))),
+        duration=1.0,
         module=SimpleNamespace(
             rhs=rhs,
             margins=lambda x, *_: x,
