@@ -6,7 +6,7 @@ what that returns for the module.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from functools import update_wrapper
 from inspect import signature
 from pathlib import Path
@@ -17,8 +17,6 @@ from piezo_sym.analysis import operating_point as rest
 from piezo_sym.modules import module_of
 from piezo_sym.progress import watch_of
 from piezo_sym.run import simulate as run
-from piezo_sym.run.parameters import LaneValue
-from piezo_sym.run.plant import Plant
 from piezo_sym.run.simulate import stages_of
 from piezo_sym.run.stepper import Stepper as Steps
 
@@ -42,7 +40,7 @@ def of_spec(
     def call(model: Spec, *args: P.args, **given: P.kwargs) -> R:
         return run(module_of(model, stages(given)), *args, **given)
 
-    made: Any = update_wrapper(call, run)
+    made: Any = update_wrapper(call, run, updated=())
     first, *others = signature(run).parameters.values()
     first = first.replace(name="model", annotation=Spec)
     made.__signature__ = signature(run).replace(parameters=[first, *others])
@@ -70,79 +68,4 @@ def _with_bar(run: Callable[P, R]) -> Callable[P, R]:
 
 simulate = of_spec(_with_bar(run), stages_of)
 
-
-def Stepper(
-    model: Spec,
-    *,
-    step: float,
-    order: int = 2,
-    parameters: Mapping[str, LaneValue] | Sequence[Mapping[str, LaneValue]] | None = None,
-    initial: Mapping[str, LaneValue] | None = None,
-    inputs: Mapping[str, float] | None = None,
-    sample: float | None = None,
-    delay: int = 0,
-    resolution: Mapping[str, float] | None = None,
-) -> Any:
-    """Return a model that goes step by step, with inputs that the caller decides.
-
-    A PI controller of the actuator's position (q is the first state), 0.1 mm within 1 s:
-
-    >>> from piezo_sym import Stepper
-    >>> h, target, integral = 2e-5, 1e-4, 0.0
-    >>> actuator = Stepper("piezo_stack", step=h)
-    >>> for _ in range(50_000):
-    ...     error = target - actuator.x[0]
-    ...     integral += error * h
-    ...     y = actuator.step([0.0, 2e4 * error + 4e7 * integral, 298.15])  # F_ext, V_in, T_e
-    >>> print(f"q = {actuator.x[0] * 1e6:.2f} um at t = {actuator.time:.2f} s")
-    q = 100.00 um at t = 1.00 s
-
-    Three of them side by side, sampled at 5 kHz, with one sample of delay, drawn over time:
-
-    >>> import numpy as np
-    >>> from matplotlib import pyplot
-    >>> dampings = [{"d": 300.0}, {"d": 400.0}, {"d": 500.0}]
-    >>> plant = Stepper("piezo_stack", step=2e-5, sample=2e-4, delay=1, parameters=dampings)
-    >>> integral, path = np.zeros(3), []
-    >>> for _ in range(5000):
-    ...     error = target - plant.x[0]
-    ...     integral += error * 2e-4
-    ...     voltage = 2e4 * error + 4e7 * integral
-    ...     y = plant.step([np.zeros(3), voltage, np.full(3, 298.15)])
-    ...     path.append(plant.x[0])
-    >>> lines = pyplot.plot(np.array(path) * 1e6)
-
-    Parameters
-    ----------
-    model : the name of a shipped spec, the path of a spec file, or a `Model`.
-    step : length of a step [s]; the step is halved inside where it has to be.
-    order : 2, 4, 6, 8 or 10: by which power of the step its error falls, where all is smooth.
-    parameters, initial, inputs : as for `simulate`; `inputs` are those at t = 0, numbers only. A
-        list of parameters makes as many plants side by side: u is (inputs, plants) or the same for
-        all, y is (ports, plants), x (states, plants).
-    sample : the time that inputs are held [s], a multiple of `step`; one step when left out.
-    delay : whole samples from a call until its inputs act; `inputs` act until then.
-    resolution : port -> its measurement is rounded to multiples of this, SI units.
-
-    Returns
-    -------
-    Stepper or Plant
-        With ``.step(u) -> y``, ``.x``, ``.time``, ``.reset()``, and the names ``.states``,
-        ``.inputs``, ``.outputs``: a `piezo_sym.run.stepper.Stepper`, with ``.ledger``; or, of
-        several, or with sample, delay or resolution, a `piezo_sym.run.plant.Plant`, with
-        ``.ledgers``.
-
-    Raises
-    ------
-    UsageError, EngineError, RunError
-        If an option is wrong, there is no compiler, or the start is outside the domain.
-    """
-    given: Any = {"step": step, "order": order, "initial": initial, "inputs": inputs}
-    module: Any = module_of(model, stages_of({"step": step, "order": order}))
-
-    def made(parameters: Mapping[str, LaneValue] | None) -> Steps:
-        return Steps(module, parameters=parameters, **given)
-
-    if isinstance(parameters, Sequence) or sample is not None or delay or resolution:
-        return Plant(made, parameters, step, sample, delay, resolution)
-    return made(parameters)
+Stepper = of_spec(Steps, stages_of)

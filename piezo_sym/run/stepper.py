@@ -58,7 +58,26 @@ def _refuse_signals(module: GeneratedModule, known: Inputs) -> None:
 
 @final
 class Stepper:
-    """A model that goes step by step, its inputs given anew for each step: see `piezo_sym.Stepper`.
+    """A model that goes step by step, with inputs that the caller decides.
+
+    A PI controller of the actuator's position (q is the first state), 0.1 mm within 1 s:
+
+    >>> from piezo_sym import Stepper
+    >>> h, target, integral = 2e-5, 1e-4, 0.0
+    >>> actuator = Stepper("piezo_stack", step=h)
+    >>> for _ in range(50_000):
+    ...     error = target - actuator.x[0]
+    ...     integral += error * h
+    ...     y = actuator.step([0.0, 2e4 * error + 4e7 * integral, 298.15])  # F_ext, V_in, T_e
+    >>> print(f"q = {actuator.x[0] * 1e6:.2f} um at t = {actuator.time:.2f} s")
+    q = 100.00 um at t = 1.00 s
+
+    Parameters
+    ----------
+    module : a generated module; `piezo_sym.Stepper` takes a model, a name or a path.
+    step : length of a step [s]; the step is halved inside where it has to be.
+    order : 2, 4, 6, 8 or 10: by which power of the step its error falls, where all is smooth.
+    parameters, initial, inputs : as for `simulate`; `inputs` are those at t = 0, numbers only.
 
     Attributes
     ----------
@@ -66,6 +85,11 @@ class Stepper:
     x : the state (n,), a copy, banks spread.
     time : the time [s] after the steps taken.
     ledger : what ports and processes did since t = 0, by the names of `simulate`'s Dataset.
+
+    Raises
+    ------
+    UsageError, EngineError, RunError
+        If an option is wrong, there is no compiler, or the start is outside the domain.
     """
 
     def __init__(
@@ -128,11 +152,6 @@ class Stepper:
         """The state, shape (n,)."""
         x: FloatArray = self._batch.x[0].copy()
         return x
-
-    @property
-    def initial_inputs(self) -> FloatArray:
-        """The inputs at t = 0, shape (m,)."""
-        return self._system.inputs.segments[0].at(0.0)
 
     @property
     def time(self) -> float:

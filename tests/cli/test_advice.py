@@ -144,10 +144,6 @@ def test_an_operating_point_is_a_start():
     assert Stepper("oscillator", step=1e-3, initial=point).x[0] == pytest.approx(0.125)
 
 
-def test_a_resolution_has_a_port_or_its_output():
-    assert Stepper("oscillator", step=1e-3, resolution={"y_hand": 0.5}).step([0.0]) == [0.0]
-
-
 def test_a_run_of_an_edited_spec(spec_file):
     run = simulate(spec_file(), duration=1e-4)
     with pytest.raises(PiezoError, match="what has changed as parameters"):

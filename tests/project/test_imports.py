@@ -133,17 +133,15 @@ def test_an_unknown_public_name_is_an_attribute_error():
 def test_public_functions_take_what_their_homes_take(name, home):
     """All but the first argument, a model there and a module here: names, defaults, types.
 
-    A bar is shown to those who ask for one there, not here; and a Stepper may be a plant.
+    A bar is shown to those who ask for one there, not here.
     """
     public = getattr(importlib.import_module("piezo_sym"), name)
     own = getattr(sys.modules[home], name)
     (first, *taken), (_, *wanted) = (signature(f).parameters.values() for f in (public, own))
     assert first.name == "model"
-    wider = {"progress", "parameters"} if name == "Stepper" else {"progress"}
-    shared = [one for one in taken if one.name not in {"sample", "delay", "resolution"}]
     for n, parameter in enumerate(wanted):
-        if parameter.name in wider:
+        if parameter.name == "progress":
             wanted[n] = parameter.replace(annotation=taken[n].annotation)
-    assert shared == wanted
+    assert taken == wanted
     for parameter in taken:
         assert re.search(rf"\b{parameter.name}\b", public.__doc__) or "as for" in public.__doc__
