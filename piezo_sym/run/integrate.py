@@ -1,21 +1,19 @@
-"""Integration of dx/dt = rhs(x, u(t)) by SciPy's solvers, step by step, restarted at input breaks.
+"""Integration of dx/dt = rhs(x, u(t)) by SciPy's solvers, step by step.
 
-Input: a `DrivenModule`, the state x (n,) at t = 0, the sample times and a `Tolerance`.  Output:
-batches of accepted steps, each with its interpolant, the samples that lie in it, and its end.
+Input: a `DrivenModule`, a segment of its inputs, the state x (n,) at its start and a `Tolerance`.
+Output: the solver after each step that it accepts.
 """
 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from piezo_sym.errors import PiezoError, RunError
+from piezo_sym.errors import RunError
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.inputs import Segment
 from piezo_sym.run.system import DrivenModule
@@ -25,8 +23,6 @@ if TYPE_CHECKING:
 
 METHODS = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
 IMPLICIT = ("Radau", "BDF", "LSODA")
-BATCH_NUMBERS = 100_000  # numbers of state that one batch may hold at its stops
-MOST_STOPS = 512
 MOST_STILL = 20  # steps in a row that do not change the time
 SHORTEST = 1e-12  # of a segment: no step shorter than this is tried again
 
@@ -39,97 +35,6 @@ class Tolerance:
     method: str
     rtol: float
     atol: FloatArray
-
-
-@final
-@dataclass(frozen=True)
-class Stretch:
-    """Part of an accepted step: from `start` through its `stops` (k,), the samples and the end.
-
-    `samples` (k,) is the place of each stop among the sample times, -1 for none; `path` maps
-    times (k,) to states (n, k).
-    """
-
-    start: float
-    stops: FloatArray
-    samples: NDArray[np.intp]
-    path: Callable[[FloatArray], FloatArray]
-
-    def cut(self, most: int) -> Iterator[Stretch]:
-        """Yield this stretch in pieces of at most `most` stops."""
-        edges = [*range(0, self.stops.size, most), self.stops.size]
-        for i, j in pairwise(edges):
-            start = self.stops[i - 1] if i else self.start
-            yield Stretch(start, self.stops[i:j], self.samples[i:j], self.path)
-
-
-@final
-@dataclass(frozen=True)
-class Stretches:
-    """Consecutive stretches of one segment, and the work they took."""
-
-    segment: Segment
-    stretches: tuple[Stretch, ...]
-    steps: int
-    evaluations: int
-
-
-def batches(
-    system: DrivenModule, x: FloatArray, times: FloatArray, tolerance: Tolerance
-) -> Iterator[Stretches]:
-    """Yield the run from the state x (n,) at t = 0, batch by batch.
-
-    The start of each segment is a batch of its own, so that its state and inputs are looked at
-    before a solver is.
-    """
-    for segment in system.inputs.segments:
-        yield Stretches(segment, (start_stretch(segment, x, times),), 0, 0)
-        x = yield from segment_batches(system, segment, x, times, tolerance)
-
-
-def segment_batches(
-    system: DrivenModule, segment: Segment, x: FloatArray, times: FloatArray, tolerance: Tolerance
-) -> Generator[Stretches, None, FloatArray]:
-    """Yield the accepted steps of one segment in batches; return the state at its end."""
-    most = max(1, min(MOST_STOPS, BATCH_NUMBERS // x.size))
-    pending: list[Stretch] = []
-    steps = held = counted = spent = 0
-    try:
-        for solver in accepted(system, segment, x, tolerance):
-            x, spent, steps = solver.y.copy(), solver.nfev, steps + 1
-            for stretch in step_stretch(segment, solver, times).cut(most):
-                pending.append(stretch)
-                held += stretch.stops.size
-                if held >= most:
-                    yield Stretches(segment, tuple(pending), steps, spent - counted)
-                    pending, held, steps, counted = [], 0, 0, spent
-    except PiezoError:
-        yield Stretches(segment, tuple(pending), steps, spent - counted)
-        raise
-    yield Stretches(segment, tuple(pending), steps, spent - counted)
-    return x
-
-
-def start_stretch(segment: Segment, x: FloatArray, times: FloatArray) -> Stretch:
-    """Return the start of a segment as a stretch of no length."""
-    at = int(np.searchsorted(times, segment.start))
-    sampled = at < times.size and times[at] == segment.start
-    stops, samples = np.array([segment.start]), np.array([at if sampled else -1])
-    return Stretch(segment.start, stops, samples, lambda t: np.tile(x[:, None], t.size))
-
-
-def step_stretch(segment: Segment, solver: OdeSolver, times: FloatArray) -> Stretch:
-    """Return the solver's last step: samples in it, then its end.
-
-    A sample at the end of a segment is taken again at the next one's start, with its inputs.
-    """
-    end = segment.stop if solver.status == "finished" else float(solver.t)
-    first, last = np.searchsorted(times, [solver.t_old, end], side="right")
-    inner = times[first:last]
-    samples = np.arange(first, last)
-    if not inner.size or inner[-1] < end:
-        inner, samples = np.append(inner, end), np.append(samples, -1)
-    return Stretch(float(solver.t_old), inner, samples, solver.dense_output())
 
 
 def accepted(

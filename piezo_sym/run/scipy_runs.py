@@ -3,25 +3,40 @@
 Input: a `DrivenModule` and the state x (n,) at t = 0.  Output: a `Trajectory` and what it took; the
 largest magnitude of each state, so that absolute tolerances fit its unit; or the error that says
 why a run in C stopped.
+
+The ledger is integrated by Gauss-Legendre quadrature on the solver's interpolants, between any two
+ends of steps and samples.  Some steps are looked at together, so memory grows with the samples, not
+with the steps.
 """
 
-from collections.abc import Iterator
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import partial
 from itertools import islice
+from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 
 from piezo_sym.errors import PiezoError, RunError
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.collocation import Watch
+from piezo_sym.run.guard import crossing, domain_error, rate_error
 from piezo_sym.run.inputs import Segment
-from piezo_sym.run.integrate import Stretches, Tolerance, accepted, batches
-from piezo_sym.run.ledger import Trajectory, record
+from piezo_sym.run.integrate import Tolerance, accepted
+from piezo_sym.run.ledger import Trajectory
 from piezo_sym.run.system import DrivenModule
+
+if TYPE_CHECKING:
+    pass
 
 #: Absolute tolerances: this part of rtol times the scale of each state.
 ATOL_FACTOR = 1e-3
+NODES = 4  # of the quadrature, exact to degree 7: above every interpolant's own order
+#: Times looked at together, and numbers of state at them.
+MOST_STOPS, MOST_NUMBERS = 512, 100_000
 #: Of the coarse run; ATOL is a part of the scale known so far.
 RTOL, ATOL = 1e-3, 1e-2
 GROWTH = 10.0  # a state that outgrows its scale so much gets a new one
@@ -31,6 +46,27 @@ TRUSTED = 0.9
 #: How a run in C that stopped is looked at again: to find the cause, not to take its place.
 LOOK_RTOL, LOOK_ATOL = 1e-8, 1e-11
 MOST_LOOKED = 20_000
+
+
+@final
+@dataclass(frozen=True)
+class Path:
+    """Accepted steps in one segment, from edge to edge; or its start alone, the only edge."""
+
+    segment: Segment
+    edges: FloatArray
+    states: Callable[[FloatArray], FloatArray]  # times (k,) to states (n, k)
+    steps: int = 0
+    evaluations: int = 0
+
+    def stops(self, times: FloatArray) -> FloatArray:
+        """Return the ends of its steps, and those of some times that lie in them."""
+        inner = times[(times > self.edges[0]) & (times <= self.edges[-1])]
+        return np.union1d(self.edges[1:], inner) if self.edges.size > 1 else self.edges
+
+    def point(self, t: float) -> tuple[FloatArray, FloatArray]:
+        """Return the state (n,) and the inputs (m,) at one time."""
+        return self.states(np.array([t]))[:, 0], self.segment.at(t)
 
 
 def by_scipy(
@@ -44,7 +80,7 @@ def by_scipy(
     """Return a run of one of SciPy's methods, and what it took; `watch` is told the time."""
     scale, spent = magnitudes(system, x)
     tolerance = Tolerance(method, rtol, rtol * ATOL_FACTOR * scale)
-    trajectory = record(system, x, batches(system, x, samples, tolerance), samples, watch)
+    trajectory = recorded(system, x, paths(system, x, tolerance), samples, watch)
     work = {
         "method": method,
         "rtol": rtol,
@@ -53,6 +89,107 @@ def by_scipy(
         "scale_evaluations": spent,
     }
     return trajectory, work
+
+
+def recorded(
+    system: DrivenModule,
+    start: FloatArray,
+    run: Iterator[Path],
+    times: FloatArray,
+    watch: Watch | None = None,
+) -> Trajectory:
+    """Return the trajectory at `times` (nt,) of a run from `start` (n,).
+
+    An error holds what was reached; `watch` is told the time that each path begins from.
+    """
+    found = Trajectory.blank(system, start, times.size)
+    total, most = np.zeros(len(found.integrals)), stops_together(start)
+    try:
+        for path in run:
+            taken = found.steps + path.steps, found.evaluations + path.evaluations
+            found = replace(found, steps=taken[0], evaluations=taken[1])
+            since = float(path.edges[0])
+            if watch:
+                watch(since)
+            every = path.stops(times)
+            for stops in np.split(every, range(most, every.size, most)):
+                sums = total[:, None] + np.cumsum(increments(system, path, since, stops), axis=1)
+                good = inside(system, path, stops)
+                kept = np.isin(stops, times) & (np.cumsum(~good) == 0)
+                places = np.searchsorted(times, stops[kept])
+                found.states[:, places] = path.states(stops)[:, kept]
+                found.inputs[:, places] = path.segment.over(stops)[:, kept]
+                found.integrals[:, places] = sums[:, kept]
+                if not good.all():
+                    raise left(system, path, np.append(since, stops[: np.argmin(good) + 1]))
+                total, since = sums[:, -1], float(stops[-1])
+    except (RunError, KeyboardInterrupt) as stopped:
+        vars(stopped)["reached"] = found.until(times)
+        raise
+    return found
+
+
+def stops_together(x: FloatArray) -> int:
+    """Return at how many times a run of states x (n,) is looked at together."""
+    return max(1, min(MOST_STOPS, MOST_NUMBERS // x.size))
+
+
+def inside(system: DrivenModule, path: Path, stops: FloatArray) -> np.ndarray[Any, Any]:
+    """Return whether a run is in the domain, and has rates, at some times (k,)."""
+    x, u = path.states(stops), path.segment.over(stops)
+    violated = np.any(system.violated(x, u), axis=0)
+    return np.asarray(~violated & np.all(system.finite(x, u), axis=0))
+
+
+def left(system: DrivenModule, path: Path, stops: FloatArray) -> RunError:
+    """Return the error of a run that is not inside at the last of these times."""
+    before, t = float(stops[-2]), float(stops[-1])
+    if not np.any(system.violated(*path.point(t))):
+        return rate_error(system, t, *path.point(t))
+    t = crossing(system, before, t, path.point)
+    return domain_error(system, t, *path.point(t))
+
+
+def increments(system: DrivenModule, path: Path, since: float, stops: FloatArray) -> FloatArray:
+    """Return the integrals from one time to the next, (integrals, k), the first from `since`."""
+    nodes, weights = np.polynomial.legendre.leggauss(NODES)
+    starts = np.append(since, stops[:-1])
+    t = starts[:, None] + (stops - starts)[:, None] * (nodes + 1) / 2
+    x = path.states(t.ravel()).reshape(-1, *t.shape)
+    mean = np.dot(system.rates(x, path.segment.over(t)), weights / 2)
+    return np.asarray((stops - starts) * mean)
+
+
+def paths(system: DrivenModule, x: FloatArray, tolerance: Tolerance) -> Iterator[Path]:
+    """Yield a run from the state x (n,) at t = 0, some steps at once.
+
+    The start of each segment is a path of its own, so that its state and inputs are looked at
+    before a solver is.
+    """
+    from scipy.integrate import OdeSolution
+
+    most = stops_together(x)
+    for segment in system.inputs.segments:
+        still = partial(lambda x, t: np.repeat(x, t.size, axis=1), x[:, None])
+        yield Path(segment, np.array([segment.start]), still)
+        solvers = accepted(system, segment, x, tolerance)
+        end, spent, failed = segment.start, 0, None
+        while end < segment.stop and not failed:
+            edges, parts, taken, before = [end], [], 0, spent
+            try:
+                for solver in islice(solvers, most):
+                    x, spent, taken = solver.y.copy(), solver.nfev, taken + 1
+                    end = segment.stop if solver.status == "finished" else float(solver.t)
+                    if end > edges[-1]:  # no step that stands still
+                        edges.append(end)
+                        parts.append(solver.dense_output())
+            except RunError as error:
+                failed = error
+            if parts:
+                solution = OdeSolution(edges, parts)
+                yield Path(segment, np.array(edges), solution, taken, spent - before)
+        if failed:
+            raise failed
 
 
 def magnitudes(
@@ -110,20 +247,18 @@ def cause(system: DrivenModule, x: FloatArray, samples: FloatArray, stopped: Run
     scale, _ = magnitudes(system, x, MOST_LOOKED)
     tolerance = Tolerance("LSODA", LOOK_RTOL, LOOK_ATOL * scale)
     try:
-        record(system, x, going(batches(system, x, samples, tolerance)), samples)
+        recorded(system, x, going(paths(system, x, tolerance)), samples)
     except RunError as found:
         return found
     return stopped
 
 
-def going(parts: Iterator[Stretches]) -> Iterator[Stretches]:
-    """Yield batches for as long as a solver goes on, and not too long."""
+def going(run: Iterator[Path]) -> Iterator[Path]:
+    """Yield a run for as long as its solver goes on, and not too long."""
     steps = 0
-    try:
-        for part in parts:
-            yield part
-            steps += part.steps
+    with suppress(RunError):
+        for path in run:
+            yield path
+            steps += path.steps
             if steps > MOST_LOOKED:
                 return
-    except RunError:
-        return

@@ -19,7 +19,8 @@ from piezo_sym.run.checks import FloatArray, is_number
 from piezo_sym.run.collocation import Runs
 from piezo_sym.run.dataset import Known
 from piezo_sym.run.engine.engine import Engine, Members
-from piezo_sym.run.ledger import Trajectory, row_counts
+from piezo_sym.run.ledger import Trajectory
+from piezo_sym.run.module import row_count
 from piezo_sym.run.system import DrivenModule
 
 #: Quantities of many runs by name, over `MEMBER` first.
@@ -32,12 +33,9 @@ KINDS = "a Dataset, a DataArray, a number, or a mapping of names to DataArrays a
 
 def layout(system: DrivenModule) -> Quantities:
     """Return every quantity of a run, in order, at one sample and without values."""
-    n, m, k = row_counts(system)
-    states, inputs, integrals = (np.full((size, 1), np.nan) for size in (n, m, k))
+    start = np.full(row_count(system.module.STATES, system.parameters), np.nan)
     with np.errstate(all="ignore"):
-        return of_trajectory(
-            system, Trajectory(np.full(n, np.nan), states, inputs, integrals, 0, 0)
-        )
+        return of_trajectory(system, Trajectory.blank(system, start, 1))
 
 
 def of_trajectory(system: DrivenModule, trajectory: Trajectory) -> Quantities:

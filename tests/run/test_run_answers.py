@@ -9,7 +9,6 @@ from scipy.integrate import quad, simpson
 from piezo_sym import chirp, ramp, samples, sine, step, triangle
 from piezo_sym.run import simulate
 from piezo_sym.run.inputs import as_signal, read_inputs
-from piezo_sym.run.integrate import Stretch
 from piezo_sym.run.scipy_runs import magnitudes
 from piezo_sym.run.system import DrivenModule
 
@@ -197,16 +196,6 @@ def test_implicit_methods_use_the_jacobian(piezo, variant, method):
     coarse = len(seen)
     simulate(spied, inputs={"V_in": 50.0}, duration=2e-3, method="RK23")
     assert coarse > len(seen) - coarse  # RK23 needs it in the coarse run only
-
-
-@pytest.mark.parametrize("most", [1, 2, 3, 7, 100])
-def test_cut_stretches_are_the_whole(most):
-    whole = Stretch(0.5, np.arange(1.0, 8.0), np.arange(7), np.sin)
-    parts = list(whole.cut(most))
-    assert max(part.stops.size for part in parts) == min(most, 7)
-    assert np.array_equal(np.concatenate([part.stops for part in parts]), whole.stops)
-    assert np.array_equal(np.concatenate([part.samples for part in parts]), whole.samples)
-    assert [part.start for part in parts] == [0.5, *(part.stops[-1] for part in parts[:-1])]
 
 
 def test_long_steps_with_many_samples_are_cut(store):
