@@ -4,8 +4,7 @@
     parse        text to a tree; `lexer` and `size` refuse what is too long or too deep
     calculus     sums, products, derivatives; `integrals`, `energies` their antiderivatives
     dimensions   which parts must have equal units
-    enclosure    where a value lies, for certain
-    exact_eval   the value itself: a rational, or a ball
+    exact_eval   the value for certain: a rational, or a ball
     text         a tree to text, in the language of a `Style`
 
 Input and output: each file says its own.  Nothing here knows of elements or models.

@@ -59,11 +59,6 @@ class Exact:
                         return f"{name} = {text(value)}"
         return None
 
-    def has_value(self, claim: Claim, space: Space, point: Array) -> bool:
-        """Return whether a law that is nan in floating point has a value at a point inside."""
-        at = self.at(space, point.tolist())
-        return bool(at.inside) and not at.undefined(claim.element)
-
 
 @final
 class Point:

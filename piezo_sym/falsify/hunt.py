@@ -63,7 +63,6 @@ class Track:
     claim: Claim
     points: int = 0
     worst: dict[str, list[tuple[float, Space, Array]]] = field(default_factory=dict)
-    lost: tuple[Space, Array] | None = None
 
     def see(self, kind: str, seen: Seen) -> None:
         """Evaluate the claim at points inside the domain."""
@@ -87,11 +86,8 @@ class Track:
             if not self.claim.climbs and not (value < -TOLERANCE * scale).any():
                 continue
             ratio = np.clip(value / scale, -1, 1)
-            odd = np.isnan(ratio)
-            if odd.any():
-                lost = np.isnan(value)
-                ratio = np.where(odd, np.where(lost, 2, np.sign(value)), ratio)
-                self._lose(seen, lost & says)
+            told = np.where(np.isnan(value), 2, np.sign(value))
+            ratio = np.where(np.isnan(ratio), told, ratio)
             if not self.claim.climbs:
                 ratio = np.where(ratio < -TOLERANCE, ratio, 1)
             least = np.minimum(least, np.where(value == 0, ZERO if strict else 2, ratio))
@@ -105,12 +101,6 @@ class Track:
         known += [(float(key[n]), seen.space, seen.points[:, n]) for n in first]
         known.sort(key=itemgetter(0))
         del known[KEPT:]
-
-    def _lose(self, seen: Seen, lost: Mask) -> None:
-        """Keep a point where a law is nan though nothing overflowed."""
-        if self.claim.climbs and self.lost is None and lost.any():
-            place = np.flatnonzero(lost & ~seen.out_of_range & ~seen.infinite)
-            self.lost = (seen.space, seen.points[:, place[0]]) if len(place) else None
 
 
 @final
@@ -216,8 +206,6 @@ class Hunt:
             if key < ZERO and claim.numbers and not rounding:
                 plain = not space.at(point[:, None]).out_of_range[0]
                 rounding = (space, point) if plain else None  # an underflow is not reported
-        if track.lost and rounding is None and exact.has_value(claim, *track.lost):
-            rounding = track.lost
         if claim.id == "continuous":
             found = jump(claim, self.space, self.sides, exact)
             if found:

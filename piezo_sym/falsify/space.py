@@ -267,15 +267,6 @@ class Seen:
         return found
 
     @cached_property
-    def infinite(self) -> Mask:
-        """Which points have a law that overflows, or a power in one, its exponent being large."""
-        laws = [self.law(*key).value for key in self.space.probe.laws]
-        found: Mask = np.isinf(np.concatenate(laws)).any(axis=0)
-        for power in self.space.probe.powers:
-            found |= np.atleast_2d(np.isinf(self.values[power].value)).any(axis=0)
-        return found
-
-    @cached_property
     def steep(self) -> Mask:
         """Which points have a power whose exponent is so small that it seems to jump at zero."""
         found: Mask = np.zeros(self.points.shape[1], dtype=bool)

@@ -166,7 +166,7 @@ def passive(law: Law, assumptions: Assumptions) -> Obligation:
         r"W_k z_k \ge 0",
         assumptions.texts,
         rests_on=(("welldef", law.element),),
-        sign=SignOf(law.tree, law.letter, assumptions.where, law.rate),
+        sign=SignOf(law.tree, law.letter, assumptions.where),
     )
     claim = Cmp(">=", mul(law.tree, Sym(law.letter)), ZERO)
     question = assumptions.question(f"{power} >= 0", claim)

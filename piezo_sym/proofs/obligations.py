@@ -188,13 +188,11 @@ class SignOf:
     ----------
     letter : empty for a conductance, which must not be negative itself.
     where : what is assumed at every point: the domain, and what ties names; no branch's conditions.
-    rate : of a slip, the letter of its rate.
     """
 
     law: Expr
     letter: str
     where: tuple[Cmp, ...] = ()
-    rate: str = ""
 
 
 @final

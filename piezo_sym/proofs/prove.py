@@ -21,10 +21,9 @@ from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.asked import Asked, tried
 from piezo_sym.proofs.continuity import jumps, needed
 from piezo_sym.proofs.laws import on_branches
-from piezo_sym.proofs.mending import as_text, branchwise, mending
+from piezo_sym.proofs.mending import mending
 from piezo_sym.proofs.obligations import Obligation, Question, Residual, SignOf
 from piezo_sym.proofs.report import Row, Verdict
-from piezo_sym.proofs.sigma_counterexample import negative_total
 from piezo_sym.proofs.sign_analysis import whole_sign
 from piezo_sym.proofs.signs.certificate import Case
 from piezo_sym.proofs.solvers import Answer, Asks, opinions
@@ -64,7 +63,7 @@ def prove(
         values = {(row.id, row.element) for row in known} & {("welldef", obligation.element)}
         verdict, witness, reason = _not_proved(values, known) or (verdict, witness, reason)
     if verdict is Verdict.REFUTED and obligation.sign:
-        reason += _mended(obligation.sign, obligation.questions, iphs, asked)
+        reason += _mended(obligation.sign, obligation.questions, asked)
     if verdict is Verdict.REFUTED and obligation.id == "welldef":
         reason += _declared(obligation.questions, iphs, reason)
     return Row(
@@ -97,8 +96,6 @@ def _decide(obligation: Obligation, iphs: IPHS, before: tuple[Row, ...], solver:
         failed = _by_numbers(obligation, solver) or failed
     proved: Found = (Verdict.PROVED, None, "")
     failed = failed or _not_proved(obligation.rests_on, before)
-    if failed and obligation.id == "sigma" and (total := negative_total(iphs, before, solver)):
-        failed = Verdict.REFUTED, total[0], f"sigma = {total[1]}"
     return *(failed or proved), method, () if failed else certificate
 
 
@@ -240,22 +237,16 @@ def _broken(question: Question, values: Mapping[str, Fraction]) -> Found:
     return Verdict.REFUTED, {name: str(value) for name, value in values.items()}, reason
 
 
-def _mended(sign: SignOf, questions: tuple[Question, ...], iphs: IPHS, solver: Asks) -> str:
+def _mended(sign: SignOf, questions: tuple[Question, ...], solver: Asks) -> str:
     """Return the condition that mends a refuted law, as the end of a reason."""
 
-    def shown(law: Expr, letter: str, *given: Cmp) -> bool:
+    def shown(law: Expr, letter: str) -> bool:
         claim = Cmp(">=", mul(law, Sym(letter)) if letter else law, ZERO)
-        asked = Question("", questions[0].order, (*sign.where, *given), claim, claim)
+        asked = Question("", questions[0].order, sign.where, claim, claim)
         return _asked(on_branches(law, asked, letter), solver) is None
 
-    if not sign.rate:
-        condition = mending(sign.law, sign.letter, shown)
-        return f"; the condition '{condition}' in [domain] mends it" * bool(condition)
-    asked = (q for q in questions if q.original == questions[0].original)
-    found = branchwise(asked, iphs.model.parameters, lambda q: _asked((q,), solver) is None)
-    given = (Cmp(">=", law, ZERO) for law in found)
-    mends = found and shown(sign.law, sign.letter, *given)
-    return f"; '{as_text(found)}' in [domain] mends it" if mends else ""
+    condition = mending(sign.law, sign.letter, shown)
+    return f"; the condition '{condition}' in [domain] mends it" * bool(condition)
 
 
 def _declared(questions: Iterable[Question], iphs: IPHS, reason: str) -> str:

@@ -119,13 +119,6 @@ def test_a_true_law_that_rounds_below_zero_is_no_contradiction(tmp_path, law):
     assert float(attack.worst["p"]) != 0
 
 
-def test_a_law_that_is_nan_where_it_has_a_value_is_rounding(tmp_path):
-    law = "F_1*v/v_1*exp(v/v_1)/(1 + exp(v/v_1))"
-    (attack,) = attacked(built(tmp_path, damper(law), *of_names(law)), PASSIVE)
-    assert attack.rounding
-    assert float(attack.worst["p"]) / float(attack.worst["M"]) / float(attack.worst["v_1"]) > 700
-
-
 @pytest.mark.parametrize(
     ("law", "assume"),
     [

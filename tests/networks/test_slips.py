@@ -103,13 +103,8 @@ def test_bouc_wen_is_refuted_beyond_its_condition_with_numbers():
     assert row.verdict.value == "REFUTED"
     assert power < 0 <= beta < abs(gam)
     assert row.reason.split("= ")[1].split(";")[0] == str(power)
-    assert row.reason.endswith("; 'beta >= abs(gam)' in [domain] mends it")
     assert rows["rate-independent", "wen"].verdict.value == "PROVED"
-    total = rows["sigma", ""]
-    at = {name: Fraction(value) for name, value in total.witness.items()}
-    assert total.verdict.value == "REFUTED"
-    assert Fraction(total.reason.split("= ")[1]) < 0
-    assert at["v_mass"] * at["F_wen"] != 0
+    assert rows["sigma", ""].reason == "it rests on passive of wen, which is REFUTED"
 
 
 GOES_BY_MORE = {

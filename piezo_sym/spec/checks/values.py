@@ -1,17 +1,18 @@
 """Values of a spec: lanes of the right number, starts that exist, all inside the domain.
 
 Parameters and the inputs' defaults are what their doubles are, exactly; initial states and
-temperatures are intervals.  A condition that is then neither true nor false refuses nothing here.
+temperatures may be balls.  A condition that these do not decide refuses nothing here.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from typing import TypeAlias
 
 from piezo_sym.errors import SpecError, quote
-from piezo_sym.expressions.enclosure import Interval, UndecidedError, holds_surely, interval_of
+from piezo_sym.expressions.exact_eval import TooCloseError, Value, holds, value_of
 from piezo_sym.expressions.tree import Expr, names
 from piezo_sym.spec.elements.ports import Body
 from piezo_sym.spec.fields import Tables
@@ -29,14 +30,14 @@ from piezo_sym.spec.tables import (
 )
 
 #: The value of a name, or its values, one per lane of a bank.
-Values: TypeAlias = tuple[Interval, ...]
+Values: TypeAlias = tuple[Value, ...]
 
 
 def check_values(spec: Tables) -> None:
     """Check lists against banks, then knots and conditions of the domain, lane by lane."""
     _check_lists(spec)
-    lanes: dict[str, Values] = {n: (_exactly(entry.si),) for n, entry in spec.inputs.items()}
-    lanes |= {name: tuple(map(_exactly, p.lanes)) for name, p in spec.parameters.items()}
+    lanes: dict[str, Values] = {n: (Fraction(entry.si),) for n, entry in spec.inputs.items()}
+    lanes |= {name: tuple(map(Fraction, p.lanes)) for name, p in spec.parameters.items()}
     for order in orders(spec):
         _check_condition(order, lanes, "the knots of a table do not increase", "sort the knots")
     lanes |= {symbol: tuple(_starts(spec, symbol, lanes)) for symbol in states(spec)}
@@ -62,11 +63,7 @@ def _of_starts(spec: Tables) -> Iterator[Condition]:
         yield from (Condition(f"elements.{name}", test) for test in element.starts(name))
 
 
-def _exactly(value: float) -> Interval:
-    return Fraction(value), Fraction(value)
-
-
-def _at(lane: int, words: Iterable[str], lanes: Mapping[str, Values]) -> dict[str, Interval]:
+def _at(lane: int, words: Iterable[str], lanes: Mapping[str, Values]) -> dict[str, Value]:
     """Return the values that names have in a lane, counted from 0."""
     here = {word: lanes[word] for word in words}
     return {word: values[lane if len(values) > 1 else 0] for word, values in here.items()}
@@ -91,7 +88,7 @@ def _check_lists(spec: Tables) -> None:
             raise SpecError(f"a list of {count} values is given", where, expected)
 
 
-def _starts(spec: Tables, symbol: str, lanes: Mapping[str, Values]) -> Iterator[Interval]:
+def _starts(spec: Tables, symbol: str, lanes: Mapping[str, Values]) -> Iterator[Value]:
     """Yield the initial values of a state, one, or one per lane where lanes differ."""
     parts = starts(spec, symbol)
     for n, tree in enumerate(parts):
@@ -100,12 +97,16 @@ def _starts(spec: Tables, symbol: str, lanes: Mapping[str, Values]) -> Iterator[
             yield _value(tree, _at(lane, words, lanes), f"initial.{symbol}")
 
 
-def _value(tree: Expr, values: Mapping[str, Interval], where: str) -> Interval:
+def _value(tree: Expr, values: Mapping[str, Value], where: str) -> Value:
     try:
-        return interval_of(tree, values)
-    except (ArithmeticError, ValueError, UndecidedError):
+        found = value_of(tree, values)
+        finite = math.isfinite(float(found))
+    except (ArithmeticError, ValueError):
+        finite = False
+    if not finite:
         remedy = "check the values of its parameters"
-        raise SpecError("has no finite real value", where, remedy=remedy) from None
+        raise SpecError("has no finite real value", where, remedy=remedy)
+    return found
 
 
 def _check_condition(
@@ -119,11 +120,13 @@ def _check_condition(
     for lane in range(count):
         values = _at(lane, words, lanes)
         try:
-            outside = holds_surely(condition.tree, values) is False
+            outside = not holds(condition.tree, values)
+        except TooCloseError:
+            outside = False
         except (ArithmeticError, ValueError):
             outside = True
         if outside:
-            given = ", ".join(f"{word} = {float(low):.6g}" for word, (low, _) in values.items())
+            given = ", ".join(f"{word} = {float(value):.6g}" for word, value in values.items())
             what += f": {given}" * bool(given)
             at = f" in lane {lane + 1}" if count > 1 else ""
             expected = quote(condition_text(condition.tree)) + at
