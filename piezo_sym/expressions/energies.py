@@ -6,13 +6,14 @@ and F_2 + F_1(e) - F_2(e) on the other, which is continuous.
 """
 
 from collections.abc import Callable, Collection
+from contextlib import suppress
 from fractions import Fraction
 from functools import reduce
 from itertools import islice
 from math import prod
 
 from piezo_sym.expressions.calculus import add, compared, derivative, div, inserted, mul, neg
-from piezo_sym.expressions.integrals import MAX_PARTS, by_rules, divided, slope_of
+from piezo_sym.expressions.integrals import MAX_PARTS, NoFormError, by_rules, divided, slope_of
 from piezo_sym.expressions.tree import (
     ONE,
     ZERO,
@@ -56,9 +57,8 @@ def antiderivative(
     otherwise : is asked for those of smooth branches of other forms.
     positive : names that are; they decide how some edges are ordered.
     """
-    found = by_rules(node, name)
-    if found is not None:
-        return found
+    with suppress(NoFormError):
+        return by_rules(node, name)
     if isinstance(node, Add):
         parts = [antiderivative(term, name, positive=positive) for term in node.terms]
         known = [part for part in parts if part is not None]

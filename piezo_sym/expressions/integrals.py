@@ -1,9 +1,11 @@
 """Antiderivatives of laws without choices, by rules.
 
-Input: a tree and a name.  Output: a tree, or None where there is none of a simple form.
+Input: a tree and a name.  Output: a tree, or a `NoFormError` where there is none of a simple form.
 """
 
+from collections.abc import Iterable
 from fractions import Fraction
+from functools import reduce
 from math import comb
 
 from piezo_sym.expressions.calculus import (
@@ -33,137 +35,129 @@ from piezo_sym.expressions.tree import (
     walk,
 )
 
+#: The coefficients of a polynomial, by power.
+Polynomial = dict[int, Expr]
+
 #: Products of polynomials are written out up to this size; beyond, no energy is found.
 MAX_PARTS = 20_000
 
 
-def by_rules(node: Expr, name: str) -> Expr | None:
-    """Return an antiderivative of `node` by `name`, or None where there is none of a simple form.
+class NoFormError(Exception):
+    """A law has no antiderivative by rules, or is no polynomial."""
+
+
+def by_rules(node: Expr, name: str) -> Expr:
+    """Return an antiderivative of `node` by `name`.
 
     Known forms: polynomials, also as x/(a/(1 + x**2)), and sums of c*(a*x + b)**n and
     c*f(a*x + b), c, a, b free of x.
+
+    Raises
+    ------
+    NoFormError
+        Where there is none of a simple form.
     """
     if name not in names(node):
         return mul(node, Sym(name))
     match node:
         case Neg(arg):
-            inner = by_rules(arg, name)
-            return None if inner is None else neg(inner)
+            return neg(by_rules(arg, name))
         case Add(terms) if not _divides_well(slope_of(node, name)):
-            parts = [by_rules(term, name) for term in terms]
-            known = [part for part in parts if part is not None]
-            return add(*known) if len(known) == len(parts) else None
+            return add(*(by_rules(term, name) for term in terms))
         case Mul(left, right) if name not in names(left):
-            inner = by_rules(right, name)
-            return None if inner is None else mul(left, inner)
+            return mul(left, by_rules(right, name))
         case Mul(left, right) if name not in names(right):
-            inner = by_rules(left, name)
-            return None if inner is None else mul(right, inner)
+            return mul(right, by_rules(left, name))
         case Div(left, right) if name not in names(right):
-            inner = by_rules(left, name)
-            return None if inner is None else _over(inner, right)
+            return _over(by_rules(left, name), right)
         case Div(left, Div(top, bottom)) if name not in names(top):  # phi/(L/(1 + phi**2))
             return by_rules(div(mul(left, bottom), top), name)
         case Call(function, (arg, *rest)) if RECORDS[function].integral:
             arg, *rest = (*rest, arg) if rest and name not in names(arg) else (arg, *rest)
             slope = None if any(name in names(w) for w in rest) else slope_of(arg, name)
+            if slope is None:
+                raise NoFormError
             whole = rule(RECORDS[function].integral, arg, rest[0] if rest else ZERO, node)
-            return None if slope is None else divided(whole, slope)
-    found = _power_rule(node, name)
-    return _polynomial_rule(node, name) if found is None else found
+            return divided(whole, slope)
+    return _power_rule(node, name)
 
 
-def _polynomial_rule(node: Expr, name: str) -> Expr | None:
+def _power_rule(node: Expr, name: str) -> Expr:
+    base, exponent = (node.base, node.exponent) if isinstance(node, Pow) else (node, Fraction(1))
+    slope = slope_of(base, name)
+    if slope is None or exponent == -1:
+        return _polynomial_rule(node, name)
+    raised = power(base, exponent + 1)
+    match slope:
+        case Div(Num(value), bottom):
+            return Div(mul(bottom, raised), Num((exponent + 1) * value))
+    return Div(raised, mul(Num(exponent + 1), slope))
+
+
+def _polynomial_rule(node: Expr, name: str) -> Expr:
     """Return the integral of a polynomial that is not written as a sum of powers."""
     terms = _polynomial(node, name)
-    if terms is None:
-        return None
     raised = {n: mul(terms[n], power(Sym(name), Fraction(n + 1))) for n in sorted(terms)}
     return add(*(_shared(term, n + 1) for n, term in raised.items()))
 
 
 def _shared(term: Expr, number: int) -> Expr:
     """Return ``term/number`` written as a quotient, the sign in front."""
-    match term:
-        case Neg(arg):
-            return neg(_shared(arg, number))
+    if isinstance(term, Neg):
+        return neg(_shared(term.arg, number))
     return term if number == 1 else Div(term, Num(Fraction(number)))
 
 
-def _polynomial(node: Expr, name: str) -> dict[int, Expr] | None:
-    """Return the coefficients of a polynomial in `name`, by power, or None if it is none."""
+def _polynomial(node: Expr, name: str) -> Polynomial:
+    """Return the coefficients of a polynomial in `name`, by power."""
     if name not in names(node):
         return {0: node}
     match node:
         case Sym():
             return {1: ONE}
         case Neg(arg):
-            inner = _polynomial(arg, name)
-            return None if inner is None else {n: neg(c) for n, c in inner.items()}
+            return {n: neg(c) for n, c in _polynomial(arg, name).items()}
         case Add(terms):
-            return _sum_of([_polynomial(term, name) for term in terms])
+            return _sum_of(_polynomial(term, name) for term in terms)
         case Mul(left, right):
             return _product_of(_polynomial(left, name), _polynomial(right, name))
         case Div(left, right) if name not in names(right):
-            inner = _polynomial(left, name)
-            return None if inner is None else {n: div(c, right) for n, c in inner.items()}
+            return {n: div(c, right) for n, c in _polynomial(left, name).items()}
         case Pow(base, exponent) if exponent.denominator == 1 and exponent > 0:
             return _raised(_polynomial(base, name), exponent.numerator)
-    return None
+    raise NoFormError
 
 
-def _raised(part: dict[int, Expr] | None, times: int) -> dict[int, Expr] | None:
+def _raised(part: Polynomial, times: int) -> Polynomial:
     """Return a power of a polynomial, one of two terms by the binomial theorem."""
-    if part is None or len(part) != 2:
-        total = part
-        for _ in range(times - 1):
-            total = _product_of(total, part)
-        return total
+    if len(part) != 2:
+        return reduce(_product_of, [part] * times)
     (low, a), (high, b) = part.items()
     return {
         low * (times - k) + high * k: mul(
-            Num(Fraction(comb(times, k))), mul(_whole(a, times - k), _whole(b, k))
+            Num(Fraction(comb(times, k))),
+            mul(power(a, Fraction(times - k)), power(b, Fraction(k))),
         )
         for k in range(times + 1)
     }
 
 
-def _whole(base: Expr, times: int) -> Expr:
-    return power(base, Fraction(times)) if times else ONE
-
-
-def _sum_of(parts: list[dict[int, Expr] | None]) -> dict[int, Expr] | None:
-    total: dict[int, Expr] = {}
+def _sum_of(parts: Iterable[Polynomial]) -> Polynomial:
+    total: Polynomial = {}
     for part in parts:
-        if part is None:
-            return None
         for n, coefficient in part.items():
             total[n] = add(total.get(n, ZERO), coefficient)
     return total
 
 
-def _product_of(
-    left: dict[int, Expr] | None, right: dict[int, Expr] | None
-) -> dict[int, Expr] | None:
-    if left is None or right is None or _size(left) * _size(right) > MAX_PARTS:
-        return None
-    return _sum_of([{n + m: mul(a, b)} for n, a in left.items() for m, b in right.items()])
+def _product_of(left: Polynomial, right: Polynomial) -> Polynomial:
+    if _size(left) * _size(right) > MAX_PARTS:
+        raise NoFormError
+    return _sum_of({n + m: mul(a, b)} for n, a in left.items() for m, b in right.items())
 
 
-def _size(polynomial: dict[int, Expr]) -> int:
+def _size(polynomial: Polynomial) -> int:
     return sum(1 for coefficient in polynomial.values() for _ in walk(coefficient))
-
-
-def _power_rule(node: Expr, name: str) -> Expr | None:
-    base, exponent = (node.base, node.exponent) if isinstance(node, Pow) else (node, Fraction(1))
-    slope = slope_of(base, name)
-    if slope is None or exponent == -1:
-        return None
-    raised = power(base, exponent + 1)
-    match slope:
-        case Div(Num(value), bottom):
-            return Div(mul(bottom, raised), Num((exponent + 1) * value))
-    return Div(raised, mul(Num(exponent + 1), slope))
 
 
 def _over(top: Expr, bottom: Expr) -> Expr:

@@ -155,21 +155,14 @@ def knots(node: Node) -> tuple[tuple[Expr, Expr], ...]:
 
 def children(node: Node) -> tuple[Node, ...]:
     """Return the direct parts of `node`, from left to right."""
-    match node:
-        case Num() | Sym():
-            return ()
-        case Neg(arg) | LaneSum(arg, _):
-            return (arg,)
-        case Add(terms):
-            return terms
-        case Mul(left, right) | Div(left, right) | Cmp(_, left, right):
-            return (left, right)
-        case Pow(base, _):
-            return (base,)
-        case Call(_, args):
-            return args
-        case If(then, condition, other):
-            return (then, condition, other)
+    found: list[Node] = []
+    for field in node.__slots__:
+        part = getattr(node, field)
+        if isinstance(part, _Tree):
+            found.append(cast(Node, part))
+        elif isinstance(part, tuple):
+            found += part
+    return tuple(found)
 
 
 def walk(node: Node) -> Iterator[Node]:
@@ -189,25 +182,17 @@ def names(node: Node) -> tuple[str, ...]:
 
 def rebuild(node: Expr, change: Callable[[Expr], Expr]) -> Expr:
     """Return `node` with `change` applied to each of its direct parts."""
-    match node:
-        case Num() | Sym():
-            return node
-        case Neg(arg):
-            return Neg(change(arg))
-        case LaneSum(arg, bank):
-            return LaneSum(change(arg), bank)
-        case Add(terms):
-            return Add(tuple(change(term) for term in terms))
-        case Mul(left, right):
-            return Mul(change(left), change(right))
-        case Div(left, right):
-            return Div(change(left), change(right))
-        case Pow(base, exponent):
-            return Pow(change(base), exponent)
-        case Call(function, args):
-            return Call(function, tuple(change(arg) for arg in args))
-        case If(then, Cmp(op, left, right), other):
-            return If(change(then), Cmp(op, change(left), change(right)), change(other))
+
+    def changed(part: Any) -> Any:
+        if isinstance(part, Cmp):
+            return Cmp(part.op, change(part.left), change(part.right))
+        if isinstance(part, _Tree):
+            return change(cast(Expr, part))
+        return tuple(map(change, part)) if isinstance(part, tuple) else part
+
+    if isinstance(node, Num | Sym):
+        return node
+    return type(node)(*(changed(getattr(node, field)) for field in node.__slots__))
 
 
 def replace(node: Expr, mapping: Mapping[str, Expr]) -> Expr:

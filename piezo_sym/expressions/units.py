@@ -1,24 +1,32 @@
-"""Unit strings: a grammar of our own, then pint.
+"""Unit strings: products of powers in the law language, of names that pint knows.
 
 Input: text such as ``N*s/m``.  Output: a `Unit`, its exact factor to coherent SI and its dimension.
-The grammar knows names, ``*``, ``/``, parentheses and powers up to 9, whole (``m**2``) or rational
-(``N/(m/s)**(1/2)``); ``1`` is the unit of a pure number.  pint sees names alone.
+Powers are up to 9, whole (``m**2``) or rational (``N/(m/s)**(1/2)``); ``1`` is the unit of a pure
+number.
 """
 
 import re
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, lru_cache
 from typing import Any, final
 
+from flint import fmpz
+
 from piezo_sym.errors import SpecError, nearest, quote
 from piezo_sym.expressions.dimensions import BASES
+from piezo_sym.expressions.lexer import RefusedError
+from piezo_sym.expressions.parse import parse_rule
+from piezo_sym.expressions.tree import Div, Expr, Mul, Num, Pow, Sym
+
+#: Names and their powers.
+Terms = list[tuple[str, Fraction]]
 
 MAX_UNIT = 60
-ATOM = r"[A-Za-z]+"
-POWER = re.compile(r"(?:\*\*|\^)(?P<power>-?[1-9]|\(-?[1-9]/[2-9]\))")
-MAX_DEPTH = 2
+ATOM = "[A-Za-z]+"
+PLAIN = re.compile(r"[A-Za-z0-9*/^()-]+")
 #: How letters beyond ASCII are written: micro (two letters that look alike), ohm (two), degrees.
 ASCII = str.maketrans(
     {"\u00b5": "u", "\u03bc": "u", "\u03a9": "ohm", "\u2126": "ohm", "\u00b0": "deg"}
@@ -38,21 +46,9 @@ _UNITS = """meter gram second ampere kelvin mole candela hertz newton pascal jou
     liter bar metric_ton inch foot pound electron_volt degree_Celsius degree_Fahrenheit decibel
     neper count percent"""
 UNITS = frozenset(_UNITS.split())
-DIMENSIONS = dict(
-    zip(
-        BASES,
-        (
-            "[mass]",
-            "[length]",
-            "[time]",
-            "[current]",
-            "[temperature]",
-            "[substance]",
-            "[luminosity]",
-        ),
-        strict=True,
-    )
-)
+#: What pint calls the dimensions of the base units.
+_DIMENSIONS = "mass length time current temperature substance luminosity"
+DIMENSIONS = dict(zip(BASES, (f"[{name}]" for name in _DIMENSIONS.split()), strict=True))
 
 
 @final
@@ -124,7 +120,7 @@ def _read(text: str, where: str, value: float | None) -> Unit:
     return Unit(text, si, factor, tuple(dimension))
 
 
-def _spelled(terms: list[tuple[str, Fraction]]) -> str:
+def _spelled(terms: Terms) -> str:
     text = ""
     for name, power in terms:
         if re.search("[*/]", name):  # a product of base units
@@ -136,71 +132,53 @@ def _spelled(terms: list[tuple[str, Fraction]]) -> str:
     return text
 
 
-def _terms(text: str, where: str) -> list[tuple[str, Fraction]]:
-    read = _product(text, 0, MAX_DEPTH) if len(text) <= MAX_UNIT else None
-    if read is None or read[1] != len(text) or any(_most(power) > 9 for _, power in read[0]):
+def _terms(text: str, where: str) -> Terms:
+    """Return the names in a unit with their powers, in their order."""
+    try:
+        return _parsed(text)
+    except RefusedError:
         expected = "names joined by * and /, with powers up to 9, such as 'N*s/m', 'm**2'"
         expected += " or 'N/(m/s)**(1/2)'"
-        meant = re.sub(r"(?<=[A-Za-z])[. ](?=[A-Za-z])", "*", text.replace("%", "percent"))
-        remedy = f"write {quote(meant)}" if meant != text and _product(meant, 0, MAX_DEPTH) else ""
-        raise SpecError(f"{quote(text)} is not a unit", where, expected, remedy)
-    return read[0]
+        meant, remedy = re.sub(r"(?<=[A-Za-z])[. ](?=[A-Za-z])", "*", text), ""
+        meant = meant.replace("%", "percent")
+        with suppress(RefusedError):
+            remedy = f"write {quote(meant)}" if meant != text and _parsed(meant) else ""
+        raise SpecError(f"{quote(text)} is not a unit", where, expected, remedy) from None
 
 
-def _most(power: Fraction) -> int:
-    return max(abs(power.numerator), power.denominator)
+def _parsed(text: str) -> Terms:
+    """Read a unit as a law; names are marked, for `in` and `as` are words of Python."""
+    if len(text) > MAX_UNIT or not PLAIN.fullmatch(text):
+        raise RefusedError("is not a unit")
+    found = _powers(parse_rule(re.sub(ATOM, r"_\g<0>", text.replace("^", "**"))))
+    if any(max(abs(power.numerator), power.denominator) > 9 for _, power in found):
+        raise RefusedError("has too large a power")
+    return found
 
 
-def _product(text: str, at: int, depth: int) -> tuple[list[tuple[str, Fraction]], int] | None:
-    """Return names with their powers, and where the product ends; None if there is none.
-
-    Parentheses are for a power of what stands in them.
-    """
-    sign, terms = 1, list[tuple[str, Fraction]]()
-    while True:
-        read = _factor(text, at, depth)
-        if read is None:
-            return None
-        inner, at = read
-        match = POWER.match(text, at)
-        if text[at - 1] == ")" and not match:
-            return None
-        power = sign * (Fraction(match["power"].strip("()")) if match else Fraction(1))
-        terms += [(name, own * power) for name, own in inner]
-        at = match.end() if match else at
-        if text[at : at + 1] not in {"*", "/"}:
-            return terms, at
-        sign, at = (1 if text[at] == "*" else -1), at + 1
-
-
-def _factor(text: str, at: int, depth: int) -> tuple[list[tuple[str, Fraction]], int] | None:
-    """Return a name, or what stands in parentheses, and where it ends."""
-    name = re.compile(rf"{ATOM}|1").match(text, at)
-    if name:
-        return [(name.group(), Fraction(1))], name.end()
-    inner = _product(text, at + 1, depth - 1) if depth and text[at : at + 1] == "(" else None
-    if inner is None or text[inner[1] : inner[1] + 1] != ")":
-        return None
-    return inner[0], inner[1] + 1
+def _powers(tree: Expr) -> Terms:
+    match tree:
+        case Num(value) if value == 1:
+            return [("1", Fraction(1))]
+        case Sym(name) if re.fullmatch(f"_{ATOM}", name):
+            return [(name[1:], Fraction(1))]
+        case Mul(left, right):
+            return _powers(left) + _powers(right)
+        case Div(left, right):
+            return _powers(left) + [(name, -power) for name, power in _powers(right)]
+        case Pow(base, exponent) if exponent:
+            return [(name, power * exponent) for name, power in _powers(base)]
+    raise RefusedError("is not a product of powers")
 
 
 def _raised(factor: Fraction, power: Fraction, text: str, where: str) -> Fraction:
     """Return a power of a factor, which has to be a rational number."""
     order, size = power.denominator, factor**power.numerator
-    parts = [_root(number, order) for number in (size.numerator, size.denominator)]
-    if None in parts:
+    found = Fraction(*(int(fmpz(n).root(order)) for n in (size.numerator, size.denominator)))
+    if found**order != size:
         what = f"unit {quote(text)} has a root of {factor}, which is no exact number"
         raise SpecError(what, where, "a root of coherent SI units", "give the value in those")
-    return Fraction(*(number or 0 for number in parts))
-
-
-def _root(number: int, order: int) -> int | None:
-    """Return the whole root of a whole number, by halving, or None if it has none."""
-    low, high = 0, number
-    while low < high:
-        middle = (low + high + 1) // 2
-        low, high = (middle, high) if middle**order <= number else (low, middle - 1)
-    return low if low**order == number else None
+    return found
 
 
 @cache
