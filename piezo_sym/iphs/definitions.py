@@ -24,7 +24,6 @@ from piezo_sym.network import Junction, Slope, port_order
 from piezo_sym.spec.circuit import Circuit
 from piezo_sym.spec.elements import kind_of
 from piezo_sym.spec.elements.domains import PowerVariable
-from piezo_sym.spec.elements.forms import Store
 from piezo_sym.spec.elements.ports import (
     Body,
     Conductor,
@@ -191,7 +190,7 @@ def check_stops(
         rate = named[symbols[port.rate]].xreplace(known)
         for other in sorted(efforts.keys() & rate.free_symbols, key=str):
             given = port.domain.variable(port.imposes)
-            name = kind_of(Store, port.domain, port.imposes).name
+            name = kind_of("store", port.domain, port.imposes).name
             where = "in series" if port.imposes is PowerVariable.THROUGH else "at its node"
             raise NetworkError(
                 f"the {given.name} of stop {quote(placed.element)} depends on the "

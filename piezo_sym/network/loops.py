@@ -28,7 +28,6 @@ from piezo_sym.network.inverse import slope_of
 from piezo_sym.network.kirchhoff import Laws
 from piezo_sym.spec.elements import kind_of
 from piezo_sym.spec.elements.domains import PowerVariable
-from piezo_sym.spec.elements.forms import Store
 from piezo_sym.spec.elements.ports import DissipativePort
 from piezo_sym.spec.names import fresh
 
@@ -138,7 +137,7 @@ def _slopes(laws: Laws, group: tuple[int, ...], taken: set[str]) -> Iterator[Slo
     names = listing(quote(placed.element) for placed, _ in members)
     what = f"{names} determine each other's flow"
     domain = next(p.domain for _, p in members if isinstance(p, DissipativePort))
-    store = kind_of(Store, domain, PowerVariable.ACROSS).name
+    store = kind_of("store", domain, PowerVariable.ACROSS).name
     between = f"put {with_article(store)} at the node between them"
     if len(group) > MOST:
         remedy = f"join those in series or in parallel, or {between}"

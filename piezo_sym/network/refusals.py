@@ -16,7 +16,6 @@ from piezo_sym.network.nodes import branches, is_inner, is_reference
 from piezo_sym.spec.circuit import Placed
 from piezo_sym.spec.elements import kind_of
 from piezo_sym.spec.elements.domains import THERMAL, PhysicalDomain, PowerVariable
-from piezo_sym.spec.elements.forms import Dissipation, Store
 from piezo_sym.spec.elements.ports import Body, Coupling, DissipativePort, Source, Storage
 
 Imposing = Storage | DissipativePort | Source | Body
@@ -42,7 +41,7 @@ def _chain(bank: str, edges: list[Edge]) -> NetworkError:
     word = port.domain.through.name.replace("_", " ")
     names = _listed([e.placed.element for e in edges])
     what = f"the {word} that cells in series share is fixed by {names}"
-    loose = kind_of(Dissipation, port.domain).name
+    loose = kind_of("dissipation", port.domain).name
     remedy = f"put a {loose} in parallel to them in each cell, or write the cells one by one"
     return NetworkError(what, f"banks.{bank}", f"a {port.domain.across.name} of each cell", remedy)
 
@@ -101,11 +100,11 @@ def _apart(ports: list[Imposing], mixed: bool) -> str:
     """Return what to put between givens of one variable of a domain, or of several."""
     domains = list(dict.fromkeys(port.domain for port in ports if port.domain != THERMAL))
     if mixed:
-        loose, stores = _kinds(Dissipation, domains), _kinds(Store, domains, ACROSS)
+        loose, stores = _kinds("dissipation", domains), _kinds("store", domains, ACROSS)
         return f"put {loose} between two of them, or {stores} at a node"
     (domain,) = domains
-    inertia, spring = (kind_of(Store, domain, which) for which in (ACROSS, THROUGH))
-    loose, at = kind_of(Dissipation, domain).name, "at" in inertia.fields
+    inertia, spring = (kind_of("store", domain, which) for which in (ACROSS, THROUGH))
+    loose, at = kind_of("dissipation", domain).name, "at" in inertia.fields
     if ports[0].imposes is ACROSS:
         if at:
             return f"merge them into one, or put a {spring.name} or {loose} between them"
@@ -116,13 +115,9 @@ def _apart(ports: list[Imposing], mixed: bool) -> str:
     return f"merge those in series into one, or put {with_article(inertia.name)} {place}"
 
 
-def _kinds(
-    form: type[Store | Dissipation],
-    domains: Iterable[PhysicalDomain],
-    imposes: PowerVariable | None = None,
-) -> str:
+def _kinds(role: str, domains: Iterable[PhysicalDomain], *imposes: PowerVariable) -> str:
     """Return the kinds of a form in some domains, as "a mass or capacitor"."""
-    return with_article(" or ".join(kind_of(form, domain, imposes).name for domain in domains))
+    return with_article(" or ".join(kind_of(role, domain, *imposes).name for domain in domains))
 
 
 def _fixed(laws: Laws, edges: list[Edge]) -> list[tuple[str, DissipativePort]]:
@@ -170,7 +165,7 @@ def _undetermined(laws: Laws, singular: SingularError) -> NetworkError:
     known = list(branches(laws.circuit))
     own = [domain for _, branch, domain in known if not loose or loose[0] in branch]
     domain = own[0]
-    store, resistor = _kinds(Store, (domain,), ACROSS), kind_of(Dissipation, domain).name
+    store, resistor = _kinds("store", (domain,), ACROSS), kind_of("dissipation", domain).name
     law = domain.across.name
     remedy = f"connect {store}, a source, or a {resistor} with a law for its {law} there"
     return NetworkError(f"nothing determines {at}", "network", remedy=remedy)

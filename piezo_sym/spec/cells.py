@@ -16,7 +16,7 @@ from piezo_sym.spec.elements.base import Element
 from piezo_sym.spec.elements.domains import REFERENCES
 from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.names import check_name
-from piezo_sym.spec.rename import renamed
+from piezo_sym.spec.rename import Renaming
 
 
 def cells(spec: Tables, outside: set[str]) -> Iterator[tuple[str, dict[str, Any], str]]:
@@ -42,7 +42,8 @@ def cells(spec: Tables, outside: set[str]) -> Iterator[tuple[str, dict[str, Any]
             _check(element, place, where)
             node = partial(_node, bank, outside | {*(table.series or ())}, place)
             more = {"bank": bank, "count": table.count, "series": table.series}
-            yield f"{bank}_{name}", renamed(element, {}, str, node) | more, place
+            fields = Renaming({}, node=node).fields(element, name)
+            yield f"{bank}_{name}", fields | more, place
 
 
 def nodes_of(element: Element) -> Iterator[str]:

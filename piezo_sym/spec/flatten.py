@@ -11,7 +11,6 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import chain
 from typing import Any, final
 
 from piezo_sym.errors import SpecError
@@ -19,10 +18,10 @@ from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.tree import names
 from piezo_sym.spec.cells import cells, nodes_of
 from piezo_sym.spec.checks.components import check_component
-from piezo_sym.spec.elements.base import Element, state_symbol
+from piezo_sym.spec.elements.base import Element
 from piezo_sym.spec.elements.domains import REFERENCES
 from piezo_sym.spec.fields import Component, Tables
-from piezo_sym.spec.rename import renamed, reworded, started
+from piezo_sym.spec.rename import Renaming
 from piezo_sym.spec.tables import bodies, states, temperatures
 
 #: About as many elements as fit into the text of a spec.
@@ -69,38 +68,29 @@ def flattened(spec: Tables, models: Iterable[Tables]) -> Flat:
     """
     pairs = zip(spec.components.items(), models, strict=True)
     parts = [Part(name, component, model) for (name, component), model in pairs]
-    count = len(spec.elements) + sum(len(part.model.elements) for part in parts)
-    count += sum(len(bank.elements) for bank in spec.banks.values())
+    tables = [spec.elements, *(part.model.elements for part in parts)]
+    count = sum(map(len, (*tables, *(bank.elements for bank in spec.banks.values()))))
     if count > MOST_ELEMENTS:
         expected = f"at most {MOST_ELEMENTS}"
         raise SpecError(f"would be {count} elements, written out", "components", expected)
     for part in parts:
-        check_component(spec, part.where, part.component, part.model)
+        check_component(spec, f"components.{part.name}", part.component, part.model)
     flat = Flat({"model": spec.model})
-    for table in ("parameters", "inputs"):
-        flat.add(table, _own(spec, table))
-        flat.add(table, chain.from_iterable(part.rows(table) for part in parts))
-    for table in ("initial", "elements"):
-        flat.add(table, chain.from_iterable(part.rows(table) for part in parts))
-        flat.add(table, _own(spec, table), over=table == "initial")
+    for table in ("parameters", "inputs", "initial", "elements"):
+        own = [(name, row, f"{table}.{name}") for name, row in getattr(spec, table).items()]
+        theirs = [row for part in parts for row in part.rows(table)]
+        first, last = (own, theirs) if table in ("parameters", "inputs") else (theirs, own)
+        flat.add(table, first)
+        flat.add(table, last, over=table == "initial")
     outside = {node for element in spec.elements.values() for node in nodes_of(element)}
-    outside |= {
-        part.node(node) for part in parts for e in part.kept.values() for node in nodes_of(e)
-    }
+    outside |= {part.node(n) for part in parts for e in part.kept.values() for n in nodes_of(e)}
     flat.add("elements", cells(spec, outside))
-    assumed = [*((text, "") for text in spec.domain.assume), *_all_assumed(parts)]
+    assumed = [(text, "") for text in spec.domain.assume]
+    assumed += [row for part in parts for row in part.assumed()]
     flat.tables["domain"] = {"assume": [text for text, _ in assumed]}
     written = enumerate(where for _, where in assumed)
     flat.origins.update({f"domain.assume[{n}]": where for n, where in written if where})
     return flat
-
-
-def _own(spec: Tables, table: str) -> Iterator[Row]:
-    return ((name, value, f"{table}.{name}") for name, value in getattr(spec, table).items())
-
-
-def _all_assumed(parts: Iterable[Part]) -> Iterator[tuple[str, str]]:
-    return chain.from_iterable(part.assumed() for part in parts)
 
 
 @final
@@ -112,22 +102,17 @@ class Part:
     component: Component
     model: Tables
 
-    @property
-    def where(self) -> str:
-        """Its place in the spec around it."""
-        return f"components.{self.name}"
-
     def rows(self, table: str) -> Iterator[Row]:
         """Yield what it adds to a table."""
         made = getattr(self, f"_{table}")()
-        return ((new, value, f"{self.where}: {table}.{old}") for old, new, value in made)
+        return ((new, row, f"components.{self.name}: {table}.{old}") for old, new, row in made)
 
     def assumed(self) -> Iterator[tuple[str, str]]:
         """Yield the conditions of its domain, and their places; without those on what is gone."""
         for n, text in enumerate(self.model.domain.assume):
             used = names(parse_condition(text, "domain.assume"))
             if self.gone.isdisjoint(used):
-                yield reworded(text, self.words), f"{self.where}: domain.assume[{n}]"
+                yield self.renaming.text(text), f"components.{self.name}: domain.assume[{n}]"
 
     @cached_property
     def kept(self) -> Mapping[str, Element]:
@@ -147,15 +132,16 @@ class Part:
         return frozenset(gone | (_inputs_of(self.model.elements.values()) - used))
 
     @cached_property
-    def words(self) -> Mapping[str, str]:
-        """What its symbols become."""
+    def renaming(self) -> Renaming:
+        """What its names become."""
         front, given = f"{self.name}_", self.component.parameters
         own = {word: front + word for word in (*self.model.inputs, *states(self.model))}
         hot = temperatures(self.model) | {f"T_{body}": body for body in bodies(self.model)}
         values = {word: given.get(word) for word in self.model.parameters}
         replaced = {w: v if isinstance(v, str) else front + w for w, v in values.items()}
         temperature = {word: f"T_{front}{body}" for word, body in hot.items()}
-        return {**temperature, **own, **self.component.inputs, **replaced}
+        words = {**temperature, **own, **self.component.inputs, **replaced}
+        return Renaming(words, lambda name: front + name, self.node)
 
     def node(self, node: str) -> str:
         """Return what one of its nodes is called outside."""
@@ -166,26 +152,22 @@ class Part:
         for name, parameter in self.model.parameters.items():
             given = self.component.parameters.get(name, parameter.value)
             if not isinstance(given, str):
-                yield name, self.words[name], parameter.model_copy(update={"value": given})
+                made = parameter.model_copy(update={"value": given})
+                yield name, self.renaming.words[name], made
 
     def _inputs(self) -> Iterator[tuple[str, str, Any]]:
         for name, entry in self.model.inputs.items():
             if name not in self.component.inputs and name not in self.gone:
-                yield name, self.words[name], entry
+                yield name, self.renaming.words[name], entry
 
     def _initial(self) -> Iterator[tuple[str, str, Any]]:
         for name, start in self.model.initial.items():
             if name not in self.gone:
-                yield name, self.words[name], started(start, self.words)
+                yield name, self.renaming.words[name], self.renaming.start(start)
 
     def _elements(self) -> Iterator[tuple[str, str, Any]]:
         for name, element in self.kept.items():
-            made = renamed(element, self.words, lambda body: f"{self.name}_{body}", self.node)
-            if bank := made.get("bank"):
-                made["bank"] = f"{self.name}_{bank}"
-            if element.letter:
-                made["state"] = self.words[state_symbol(element, name)]
-            yield name, f"{self.name}_{name}", made
+            yield name, f"{self.name}_{name}", self.renaming.fields(element, name)
 
 
 def _inputs_of(elements: Iterable[Element]) -> set[str]:

@@ -14,9 +14,11 @@ from typing import Any
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.spec.load import load
 from piezo_sym.spec.model import Model
+from piezo_sym.spec.rename import Renaming
+from piezo_sym.spec.tables import states
 
-WHOLE = "piezo_stack"
-Fields = dict[str, Any]
+#: What a stack has once: the environment is at both ends.
+ONCE = ("ambient", "load", "supply")
 
 
 def layered(n: int) -> Model:
@@ -39,7 +41,7 @@ def layered(n: int) -> Model:
     """
     if isinstance(n, bool) or not isinstance(n, int) or n < 1:
         raise UsageError(f"{quote(n)} is no number of layers", "layered", "1, 2, 3 ...")
-    whole = load(WHOLE)
+    whole = load("piezo_stack")
     title = f"Piezoelectric stack of {n} layers that conduct heat"
     source = f"{whole.model.source}, cut into layers; conductance between them: a choice"
     hot = ["T > T_0"] if n == 1 else [f"T_body_{j} > T_0" for j in range(1, n + 1)]
@@ -49,7 +51,7 @@ def layered(n: int) -> Model:
         inputs=whole.inputs,
         domain={"assume": [*hot, *whole.domain.assume[1:], "lam_l >= 0"]},
         initial={f"S_{j}": whole.initial["S"] for j in range(1, n + 1)},
-        elements=dict(_elements(n)),
+        elements=dict(_elements(whole, n)),
     )
 
 
@@ -80,31 +82,25 @@ def _times(whole: Model, name: str, share: Fraction | int) -> float:
     return float(Fraction(repr(whole.parameters[name].value)) * share)
 
 
-def _elements(n: int) -> Iterator[tuple[str, Fields]]:
+def _elements(whole: Model, n: int) -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield the layers from the wall to the tip, what joins their bodies, and the ends."""
     for j in range(1, n + 1):
-        yield from _layer(j, (f"x_{j}", f"x_{j - 1}" if j > 1 else "wall"))
+        layer = _layer(whole, j)
+        for name in (name for name in whole.elements if name not in ONCE):
+            fields = layer.fields(whole.elements[name], name).items()
+            yield layer.element(name), {k: v for k, v in fields if k not in ("count", "rest")}
     for j in range(1, n):
         pair = (f"body_{j}", f"body_{j + 1}")
         yield f"contact_{j}", {"kind": "conduction", "between": pair, "conductance": "lam_l"}
-    for name, j in (("base", 1), ("top", n)):
-        given = {"conductance": "lam", "input": "T_e"}
-        yield name, {"kind": "ambient", "body": f"body_{j}", **given}
-    yield "load", {"kind": "force_source", "at": f"x_{n}", "input": "F_ext"}
-    yield "supply", {"kind": "voltage_source", "between": ("in", "gnd"), "input": "V_in"}
+    once = {name: dict(whole.elements[name]) for name in ONCE}
+    yield "base", once["ambient"] | {"body": "body_1"}
+    yield "top", once["ambient"] | {"body": f"body_{n}"}
+    yield "load", once["load"] | {"at": f"x_{n}"}
+    yield "supply", once["supply"]
 
 
-def _layer(j: int, ends: tuple[str, str]) -> Iterator[tuple[str, Fields]]:
-    body, cap = f"body_{j}", f"cap_{j}"
-    across, law = (cap, "gnd"), "rho/(T - T_0)*deadzone(i, i_0)"
-    hysteron = {"inductance": "L", "voltage": law, "heats": body, "state": f"phi_{j}"}
-    heat = {"temperature": "T_0*exp(S/c_0)", "state": f"S_{j}"}
-    pairs = {"electrical": across, "mechanical": ends, "temperature": body}
-    yield f"spring_{j}", {"kind": "spring", "between": ends, "stiffness": "k", "state": f"q_{j}"}
-    yield f"mass_{j}", {"kind": "mass", "at": ends[0], "mass": "M", "state": f"p_{j}"}
-    capacitor = {"between": across, "capacitance": "C", "state": f"Q_{j}"}
-    yield f"capacitor_{j}", {"kind": "capacitor", **capacitor}
-    yield f"hysteron_{j}", {"kind": "hysteron", "between": ("in", cap), **hysteron}
-    yield f"damper_{j}", {"kind": "damper", "between": ends, "force": "d*v", "heats": body}
-    yield f"transducer_{j}", {"kind": "transducer", **pairs, "ratio": "a*T/T_0"}
-    yield body, {"kind": "thermal_mass", **heat}
+def _layer(whole: Model, j: int) -> Renaming:
+    """Return what layer j calls what is its own."""
+    nodes = {"tip": f"x_{j}", "wall": f"x_{j - 1}" if j > 1 else "wall", "cap": f"cap_{j}"}
+    words = {symbol: f"{symbol.removesuffix('_C')}_{j}" for symbol in states(whole)}
+    return Renaming(words, lambda name: f"{name}_{j}", lambda node: nodes.get(node, node))

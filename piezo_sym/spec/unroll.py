@@ -6,18 +6,17 @@ other; it shows explicit matrices, and checks the derivation that keeps sizes sy
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from piezo_sym.errors import UsageError, nearest, quote
 from piezo_sym.expressions.parse import parse_condition
 from piezo_sym.expressions.tree import names
 from piezo_sym.spec.cells import nodes_of
-from piezo_sym.spec.elements.base import Element, state_symbol
 from piezo_sym.spec.elements.domains import REFERENCES
 from piezo_sym.spec.elements.ports import Branch
 from piezo_sym.spec.model import Model
-from piezo_sym.spec.rename import renamed, reworded, started
+from piezo_sym.spec.rename import Renaming
 from piezo_sym.spec.tables import bank_of, bank_states, banks, lane_parameters
 
 
@@ -33,19 +32,69 @@ def unroll(model: Model, counts: Mapping[str, int]) -> Model:
         If `counts` names no bank, or a size below 1.
     """
     _check_counts(model, counts)
-    sizes = {**banks(model), **counts}
-    owners = lane_parameters(model)
-    split = {
-        name: sizes[owners[name]]
-        for name, p in model.parameters.items()
-        if isinstance(p.value, tuple)
-    }
+    sizes, owners, inner = {**banks(model), **counts}, bank_of(model), _inner(model)
+    listed, values = lane_parameters(model), model.parameters.items()
+    of_lanes = bank_states(model) | {n: listed[n] for n, p in values if isinstance(p.value, tuple)}
+    lanes = {symbol: sizes[bank] for symbol, bank in of_lanes.items()}
+
+    def parameter(name: str, lane: int) -> Any:
+        own = model.parameters[name]
+        return own.model_copy(update={"value": _of_lane(own.value, lane, lanes[name])})
+
+    def element(name: str, lane: int) -> dict[str, Any]:
+        own, bank = model.elements[name], owners[name]
+        nodes = {node: f"{node}.{lane}" for node in inner}
+        nodes |= _link(own.chain, bank, lane, sizes[bank])
+        made = _in_lane(lanes, lane, lambda node: nodes.get(node, node)).fields(own, name)
+        return made | {"count": None, "bank": None, "series": None}
+
+    def start(symbol: str, lane: int) -> Any:
+        given = _of_lane(model.initial[symbol], lane, lanes[symbol])
+        return _in_lane(lanes, lane).start(given)
+
     data = model.model_dump()
-    data["parameters"] = _apart(_parameters(model, split))
-    data["elements"] = _apart(_elements(model, sizes, split))
-    data["initial"] = dict(_initial(model, sizes, split))
-    data["domain"] = {"assume": tuple(_assumptions(model, sizes, split))}
+    data["parameters"] = _spread(model.parameters, lanes, parameter)
+    in_bank = {name: sizes[bank] for name, bank in owners.items()}
+    data["elements"] = _spread(model.elements, in_bank, element)
+    data["initial"] = _spread(model.initial, lanes, start)
+    data["domain"] = {"assume": tuple(_assumed(model, lanes))}
     return Model(**data)
+
+
+def _in_lane(lanes: Iterable[str], lane: int, node: Callable[[str], str] = str) -> Renaming:
+    """Return the names of a lane's own symbols, lanes counted from 1."""
+    return Renaming({symbol: f"{symbol}_{lane}" for symbol in lanes}, node=node)
+
+
+def _assumed(model: Model, lanes: Mapping[str, int]) -> Iterator[str]:
+    for text in model.domain.assume:
+        used = names(parse_condition(text, "domain.assume"))
+        count = max((lanes[word] for word in used if word in lanes), default=0)
+        yield from (_in_lane(lanes, lane).text(text) for lane in range(1, count + 1))
+        if not count:
+            yield text
+
+
+def _spread(
+    table: Mapping[str, Any], sizes: Mapping[str, int], made: Callable[[str, int], Any]
+) -> dict[str, Any]:
+    """Return a table with a row for each lane; refuse a lane under a name that is taken."""
+    rows: dict[str, Any] = {}
+    for name, row in table.items():
+        lanes = range(1, sizes.get(name, 0) + 1)
+        for own, value in [(f"{name}_{n}", made(name, n)) for n in lanes] or [(name, row)]:
+            if own in rows:
+                what = f"a lane would be called {quote(own)}, and that name is taken"
+                raise UsageError(what, "expand", remedy=f"rename '{own}' in the spec")
+            rows[own] = value
+    return rows
+
+
+def _of_lane(values: Any, lane: int, size: int) -> Any:
+    """Return what a lane has of the values of a bank."""
+    if not isinstance(values, tuple):
+        return values
+    return values[lane - 1] if len(values) == size else values[0]
 
 
 def _check_counts(model: Model, counts: Mapping[str, int]) -> None:
@@ -55,51 +104,6 @@ def _check_counts(model: Model, counts: Mapping[str, int]) -> None:
             raise UsageError(f"{quote(name)} is no bank of '{model.name}'", "expand", remedy=known)
         if isinstance(count, bool) or not isinstance(count, int) or count < 1:
             raise UsageError(f"{quote(count)} is no size", f"expand: {name}", "1, 2, 3 ...")
-
-
-def _apart(rows: Any) -> dict[str, Any]:
-    """Return the rows as a table; refuse a lane under a name that something else has."""
-    table: dict[str, Any] = {}
-    for name, row in rows:
-        if name in table:
-            what = f"a lane would be called {quote(name)}, and that name is taken"
-            raise UsageError(what, "expand", remedy=f"rename '{name}' in the spec")
-        table[name] = row
-    return table
-
-
-def _parameters(model: Model, split: Mapping[str, int]) -> Any:
-    for name, parameter in model.parameters.items():
-        if name not in split:
-            yield name, parameter
-            continue
-        values = parameter.value if isinstance(parameter.value, tuple) else (parameter.value,)
-        for lane in range(split[name]):
-            value = values[lane] if len(values) == split[name] else values[0]
-            yield f"{name}_{lane + 1}", parameter.model_copy(update={"value": value})
-
-
-def _elements(model: Model, sizes: Mapping[str, int], split: Mapping[str, int]) -> Any:
-    owners, symbols = bank_of(model), bank_states(model)
-    inner = _inner(model)
-    for name, element in model.elements.items():
-        if name not in owners:
-            yield name, element
-            continue
-        words = {*split, *(s for s, bank in symbols.items() if bank == owners[name])}
-        for lane in range(1, sizes[owners[name]] + 1):
-            nodes = {node: f"{node}.{lane}" for node in inner}
-            nodes |= _link(element.chain, owners[name], lane, sizes[owners[name]])
-            yield f"{name}_{lane}", _lane(name, element, _words(lane, words), nodes)
-
-
-def _lane(
-    name: str, element: Element, words: Mapping[str, str], nodes: Mapping[str, str]
-) -> dict[str, Any]:
-    """Return the fields of an element in one lane; `nodes` are those that the lane calls so."""
-    made = renamed(element, words, str, lambda node: nodes.get(node, node))
-    made |= {"count": None, "bank": None, "series": None}
-    return made | ({"state": words[state_symbol(element, name)]} if element.letter else {})
 
 
 def _link(chain: Branch | None, bank: str, lane: int, size: int) -> dict[str, str]:
@@ -120,32 +124,3 @@ def _inner(model: Model) -> set[str]:
         for node in nodes_of(element):
             users.setdefault(node, set()).add(element.bank_of(name))
     return {n for n, own in users.items() if len(own) == 1 and None not in own} - {*REFERENCES}
-
-
-def _words(lane: int, split: Iterable[str]) -> dict[str, str]:
-    """Return the names of a lane's own symbols, lanes counted from 1."""
-    return {symbol: f"{symbol}_{lane}" for symbol in split}
-
-
-def _initial(model: Model, sizes: Mapping[str, int], split: Mapping[str, int]) -> Any:
-    lanes = bank_states(model)
-    for symbol, start in model.initial.items():
-        size = sizes.get(lanes.get(symbol, ""))
-        if size is None:
-            yield symbol, start
-            continue
-        starts = start if isinstance(start, tuple) else (start,)
-        for lane in range(1, size + 1):
-            own = starts[lane - 1] if len(starts) == size else starts[0]
-            yield f"{symbol}_{lane}", started(own, _words(lane, split))
-
-
-def _assumptions(model: Model, sizes: Mapping[str, int], split: Mapping[str, int]) -> Any:
-    lanes = {s: sizes[bank] for s, bank in bank_states(model).items()}
-    lanes |= split
-    for text in model.domain.assume:
-        used = names(parse_condition(text, "domain.assume"))
-        count = max((lanes[word] for word in used if word in lanes), default=0)
-        yield from (reworded(text, _words(lane, lanes)) for lane in range(1, count + 1))
-        if not count:
-            yield text

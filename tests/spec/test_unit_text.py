@@ -10,9 +10,7 @@ from spec_laws import steady
 from piezo_sym.expressions.dimensions import NONE, times
 from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.elements import KINDS, kind_of
-from piezo_sym.spec.elements.couplings import PairCoupling
 from piezo_sym.spec.elements.domains import DOMAINS, PowerVariable
-from piezo_sym.spec.elements.forms import Store
 from piezo_sym.spec.elements.kinds import TABLE
 from piezo_sym.spec.elements.marks import Letters
 from piezo_sym.spec.unit_text import PARTS, QUANTITIES, quantity, unit_text
@@ -93,16 +91,18 @@ def test_the_product_of_a_co_state_and_a_state_is_an_energy():
 @pytest.mark.parametrize("domain", DOMAINS, ids=lambda domain: domain.name)
 def test_the_size_of_a_store_has_the_unit_of_its_law(domain):
     for imposes in PowerVariable:
-        form, costate = kind_of(Store, domain, imposes).forms[0], domain.variable(imposes)
+        kind, costate = kind_of("store", domain, imposes), domain.variable(imposes)
         state, out = (parse_unit(u).dimension for u in (costate.state_unit, costate.unit))
-        size = times(out, state, -1) if form.stiff else times(state, out, -1)
-        assert parse_unit(form.unit).dimension == size
+        size = times(out, state, -1) if "rest" in kind.fields else times(state, out, -1)
+        own = marks(kind.name)[kind.one_of[0][0]]
+        assert parse_unit(own.unit).dimension == size
 
 
 def test_a_ratio_has_the_unit_of_its_domains():
+    assert sum(len(form.ratios) for kind in TABLE for form in kind.forms) == 10
     for kind in TABLE:
-        for form in (form for form in kind.forms if isinstance(form, PairCoupling)):
-            given = form.first[1].through if form.gyrates else form.first[1].across
-            for _, domain, unit in form.second:
-                sizes = [parse_unit(u).dimension for u in (given.unit, domain.across.unit)]
+        for form in kind.forms:
+            for first, second, unit in form.ratios:
+                given = first.through if form.role == ("gyrator",) else first.across
+                sizes = [parse_unit(u).dimension for u in (given.unit, second.across.unit)]
                 assert parse_unit(unit).dimension == times(*sizes, -1)

@@ -1,12 +1,12 @@
 """The kinds of elements, by the name that a spec gives them: a type each, made of its row."""
 
 from collections.abc import Iterator, Mapping
+from typing import Any
 
 from piezo_sym.expressions.dimensions import Dimension
 from piezo_sym.expressions.units import parse_unit
-from piezo_sym.spec.elements.base import Element, Form, Kind
-from piezo_sym.spec.elements.couplings import PairCoupling
-from piezo_sym.spec.elements.domains import DOMAINS, PhysicalDomain, PowerVariable
+from piezo_sym.spec.elements.base import Element, Kind
+from piezo_sym.spec.elements.domains import DOMAINS
 from piezo_sym.spec.elements.kinds import TABLE
 from piezo_sym.spec.elements.ports import Coupling
 
@@ -17,26 +17,16 @@ LETTERS = frozenset(v.letter for d in DOMAINS for v in (d.across, d.through)) | 
 LETTERS |= {kind.letter for kind in TABLE}
 
 
-def kind_of(form: type[Form], domain: PhysicalDomain, imposes: PowerVariable | None = None) -> Kind:
-    """Return the first kind that is one form in a domain, such as its store or its resistor."""
-    return next(
-        kind
-        for kind in TABLE
-        if len(kind.forms) == 1
-        and isinstance(own := kind.forms[0], form)
-        and getattr(own, "domain", None) == domain
-        and imposes in (None, getattr(own, "imposes", None))
-    )
+def kind_of(*role: Any) -> Kind:
+    """Return the kind that is one form of some role, such as the store of a domain."""
+    return next(kind for kind in TABLE if len(kind.forms) == 1 and kind.forms[0].role == role)
 
 
 def with_ratio_in(unit: Dimension, element: Element) -> Iterator[Kind]:
     """Yield the kinds that couple the same domains as an element, with a ratio of some unit."""
-    port = element.ports("")[0] if len(element.row.forms) == 1 else None
-    if not isinstance(port, Coupling):
-        return
+    couplings = (port for port in element.ports("") if isinstance(port, Coupling))
+    pairs = [{port.first_domain, port.second_domain} for port in couplings]
     for kind in TABLE:
-        for form in kind.forms:
-            if isinstance(form, PairCoupling):
-                own = form.unit_between(port.first_domain, port.second_domain)
-                if own and parse_unit(own).dimension == unit:
-                    yield kind
+        for one, other, own in (row for form in kind.forms for row in form.ratios):
+            if {one, other} in pairs and parse_unit(own).dimension == unit:
+                yield kind

@@ -4,8 +4,7 @@ Input: a row of the table of kinds.  Output: a pydantic type whose values state 
 kind is made of `Form`s, which say its fields, its docstring and its ports; see `forms`.
 """
 
-from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, ClassVar, Literal, Self, cast, final
@@ -14,6 +13,7 @@ from pydantic import BaseModel, ConfigDict, create_model, model_validator
 
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import ZERO, Cmp, Expr
+from piezo_sym.spec.elements.domains import PhysicalDomain, PowerVariable
 from piezo_sym.spec.elements.marks import (
     BankName,
     Count,
@@ -23,12 +23,15 @@ from piezo_sym.spec.elements.marks import (
     Refers,
     StateName,
 )
-from piezo_sym.spec.elements.ports import Branch, Port
+from piezo_sym.spec.elements.ports import Branch, Port, Storage
 
 _LANES = (
     "With `count` it is a bank of lanes j = 1..count: in parallel; in series if they give an "
     "across variable, as capacitors that slip, or stand in a chain between the nodes `series`."
 )
+ACROSS, ENTROPY_UNIT = PowerVariable.ACROSS, "J/K"
+#: A place in an element, what is wrong there, what is expected, and the remedy.
+Fault = tuple[str, str, str, str]
 #: Where types of elements are found by their names, when they are unpickled.
 MODULE = "piezo_sym.spec.elements"
 
@@ -42,72 +45,49 @@ class Frozen(BaseModel):
 @final
 @dataclass(frozen=True)
 class State:
-    """A state of an element: its symbol, its unit, and whether it is the entropy of a body."""
+    """A state of an element: its symbol and its unit."""
 
     symbol: str
     unit: str
-    is_entropy: bool = False
+
+    @property
+    def is_entropy(self) -> bool:
+        """Whether it is the entropy of a body."""
+        return self.unit == ENTROPY_UNIT
 
 
-class Form(ABC):
+@final
+@dataclass(frozen=True, eq=False)
+class Form:
     """A part of a kind: a store, a dissipation, a coupling, a source, a body ...; see `forms`.
 
-    What `has_lanes` may stand for many of its kind, a bank.
+    Attributes
+    ----------
+    fields : what a spec says of it; nodes first.
+    doc : its law, state and signs, in words.
+    ports : the ports of an element called `name` that stands in a branch.
+    role : what `kind_of` finds it by.
+    one_of : fields of which exactly one is to be given, such as a law and its inverse.
+    letter, unit : of its state; empty for those without one.
+    fault : what is wrong with fields taken together.
+    requires : the conditions that it adds to the domain.
+    starts : the conditions on where the states of an element called `name` start.
+    has_lanes : whether it may stand for many of its kind, a bank.
+    ratios : of a coupling, the domains that it couples and the unit of its ratio.
     """
 
-    has_lanes: ClassVar[bool] = False
-
-    @property
-    def one_of(self) -> tuple[str, ...]:
-        """Fields of which exactly one is to be given, such as a law and its inverse."""
-        return ()
-
-    @property
-    def letter(self) -> str:
-        """The letter of its state; empty for those without one."""
-        return ""
-
-    @property
-    @abstractmethod
-    def fields(self) -> Fields:
-        """What a spec says of it; nodes first."""
-
-    @property
-    @abstractmethod
-    def doc(self) -> str:
-        """Its law, state and signs, in words."""
-
-    @abstractmethod
-    def port(self, element: Any, name: str, branch: Branch) -> Port:
-        """Return the first port of an element called `name`; `branch` is where it stands."""
-
-    def ports(self, element: Any, name: str, branch: Branch) -> tuple[Port, ...]:
-        """Return all of its ports."""
-        return (self.port(element, name, branch),)
-
-    def states(self, element: Any, name: str) -> tuple[State, ...]:
-        """Return the states of an element called `name`."""
-        del element, name
-        return ()
-
-    def fault(self, element: Any) -> tuple[str, str, str, str] | None:
-        """Return what is wrong with fields taken together: place, what, expected, remedy."""
-        del element
-        return None
-
-    def in_series(self, _: Any) -> bool:
-        """Return whether lanes of an element are in series, if it has some."""
-        return False
-
-    def requires(self, element: Any) -> tuple[Cmp, ...]:
-        """Return the conditions that this part of an element adds to the domain."""
-        del element
-        return ()
-
-    def starts(self, element: Any, name: str) -> tuple[Cmp, ...]:
-        """Return the conditions on where the states of an element called `name` start."""
-        del element, name
-        return ()
+    fields: Fields
+    doc: str
+    ports: Callable[[Any, str, Branch], tuple[Port, ...]]
+    role: tuple[Any, ...] = ()
+    one_of: tuple[str, ...] = ()
+    letter: str = ""
+    unit: Callable[[Any], str] = lambda _: ""
+    fault: Callable[[Any], Fault | None] = lambda _: None
+    requires: Callable[[Any], tuple[Cmp, ...]] = lambda _: ()
+    starts: Callable[[Any, str], tuple[Cmp, ...]] = lambda *_: ()
+    has_lanes: bool = False
+    ratios: tuple[tuple[PhysicalDomain, PhysicalDomain, str], ...] = ()
 
 
 @final
@@ -118,13 +98,13 @@ class Kind:
     Attributes
     ----------
     name : as a spec gives it.
-    forms : its parts; two are in series.
     about : what it is, on one line.
+    forms : its parts; two are in series.
     """
 
     name: str
-    forms: tuple[Form, ...]
     about: str
+    forms: tuple[Form, ...]
 
     @property
     def has_lanes(self) -> bool:
@@ -204,7 +184,9 @@ class Element(Frozen):
 
     def own_states(self, name: str) -> tuple[State, ...]:
         """Return the states of this element, called `name` in its spec, in order."""
-        return tuple(state for form in self.row.forms for state in form.states(self, name))
+        forms = (form for form in self.row.forms if form.letter)
+        own = (State(state_symbol(self, name), form.unit(self)) for form in forms)
+        return *own, *(State(word, s.unit) for word, s in getattr(self, "states", {}).items())
 
     def requires(self) -> tuple[Cmp, ...]:
         """Return the conditions that this element adds to the domain."""
@@ -228,7 +210,8 @@ class Element(Frozen):
         if getattr(self, "count", None) is None:
             return None
         alone = getattr(self, "bank", None) is None
-        own = alone and any(form.in_series(self) for form in self.row.forms)
+        across = (p for p in self.ports("") if isinstance(p, Storage) and p.imposes is ACROSS)
+        own = alone and any(across)
         return getattr(self, "series", None) or (getattr(self, "between", None) if own else None)
 
     @property

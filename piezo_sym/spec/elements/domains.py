@@ -48,6 +48,11 @@ class PhysicalVariable:
     state_unit: str
     state_letter: str
 
+    @property
+    def word(self) -> str:
+        """Its name in a sentence."""
+        return self.name.replace("_", " ")
+
 
 @final
 @dataclass(frozen=True)

@@ -3,8 +3,7 @@
 A new kind is a row here, a row in ``tests/networks/kinds.py`` and a line in the checker's table.
 """
 
-from piezo_sym.spec.elements.base import Kind
-from piezo_sym.spec.elements.couplings import PairCoupling
+from piezo_sym.spec.elements.base import Form, Kind
 from piezo_sym.spec.elements.domains import (
     ELECTRICAL,
     HYDRAULIC,
@@ -13,16 +12,10 @@ from piezo_sym.spec.elements.domains import (
     PhysicalDomain,
     PowerVariable,
 )
-from piezo_sym.spec.elements.forms import Dissipation, Imposed, Store
-from piezo_sym.spec.elements.storage import SharedEnergy
-from piezo_sym.spec.elements.thermal import (
-    Ambient,
-    Conduction,
-    HeatSource,
-    ThermalMass,
-    Thermocouple,
-)
-from piezo_sym.spec.elements.yielding import Yielding
+from piezo_sym.spec.elements.forms import coupling, dissipation, imposed
+from piezo_sym.spec.elements.storage import SHARED_ENERGY
+from piezo_sym.spec.elements.stores import Store, store, yielding
+from piezo_sym.spec.elements.thermal import AMBIENT, BODY, CONDUCTION, HEAT_SOURCE, THERMOCOUPLE
 
 ACROSS, THROUGH = PowerVariable.ACROSS, PowerVariable.THROUGH
 _SPRING = Store(TRANSLATION, THROUGH, "stiffness", "N/m", "k", stiff=True, slips=True)
@@ -30,195 +23,177 @@ _CAPACITOR = Store(ELECTRICAL, ACROSS, "capacitance", "F", "C", slips=True)
 _INDUCTOR = Store(ELECTRICAL, THROUGH, "inductance", "H", "L")
 
 
-def _within(domain: PhysicalDomain) -> tuple[PairCoupling]:
+def _kind(name: str, about: str, *forms: Form) -> Kind:
+    return Kind(name, about, forms)
+
+
+def _within(domain: PhysicalDomain) -> Form:
     """Return the coupling of two pairs of one domain."""
-    return (PairCoupling("ratio", "n", ("first", domain), (("second", domain, "1"),)),)
-
-
-def _pair(domain: PhysicalDomain, unit: str) -> tuple[str, PhysicalDomain, str]:
-    """Return the second pair of a coupling that goes by its domain, and the unit of the ratio."""
-    return (domain.name, domain, unit)
+    return coupling("ratio", "n", ("first", domain), ("second", domain, "1"))
 
 
 TABLE = (
-    Kind(
+    _kind(
         "spring",
-        (_SPRING,),
         "A spring between two nodes, eqs. (9), (10) and the fourth term of (6).",
+        store(_SPRING),
     ),
-    Kind(
+    _kind(
         "mass",
-        (Store(TRANSLATION, ACROSS, "mass", "kg", "M", at=True),),
         "A mass at a node, eq. (10) and the third term of (6).",
+        store(Store(TRANSLATION, ACROSS, "mass", "kg", "M", at=True)),
     ),
-    Kind(
+    _kind(
         "damper",
-        (Dissipation(TRANSLATION, (THROUGH, ACROSS), "d*v"),),
         "A damper between two nodes, the damping term of eq. (10).",
+        dissipation(TRANSLATION, "d*v", THROUGH, ACROSS),
     ),
-    Kind(
+    _kind(
         "stop",
-        (Yielding((_SPRING, _CAPACITOR)),),
         "An elastic-plastic element between two nodes, with hysteresis of any slowness.",
+        yielding(_SPRING, _CAPACITOR),
     ),
-    Kind("lever", _within(TRANSLATION), "An ideal lever between two pairs of nodes."),
-    Kind(
+    _kind("lever", "An ideal lever between two pairs of nodes.", _within(TRANSLATION)),
+    _kind(
         "force_source",
-        (Imposed(TRANSLATION, THROUGH, "F_ext", at=True),),
         "A force on a node, F_ext of eq. (10).",
+        imposed(TRANSLATION, THROUGH, "F_ext", at=True),
     ),
-    Kind(
+    _kind(
         "velocity_source",
-        (Imposed(TRANSLATION, ACROSS, "v_in", at=True),),
         "A velocity given to a node.",
+        imposed(TRANSLATION, ACROSS, "v_in", at=True),
     ),
-    Kind(
+    _kind(
         "capacitor",
-        (_CAPACITOR,),
         "A capacitor between two nodes, eq. (11) and the first term of (6).",
+        store(_CAPACITOR),
     ),
-    Kind(
+    _kind(
         "inductor",
-        (_INDUCTOR,),
         "An inductor between two nodes, the storage half of a hysteron, eq. (12).",
+        store(_INDUCTOR),
     ),
-    Kind(
+    _kind(
         "resistor",
-        (Dissipation(ELECTRICAL, (ACROSS, THROUGH), "R*i"),),
         "A resistor between two nodes, V_R of section 3.2.",
+        dissipation(ELECTRICAL, "R*i", ACROSS, THROUGH),
     ),
-    Kind(
+    _kind(
         "hysteron",
-        (_INDUCTOR, Dissipation(ELECTRICAL, (ACROSS,), "rho/(T - T_0)*deadzone(i, i_0)")),
         "A hysteron, an inductor and a resistor in series: eq. (12), Assumption 2.",
+        store(_INDUCTOR),
+        dissipation(ELECTRICAL, "rho/(T - T_0)*deadzone(i, i_0)", ACROSS),
     ),
-    Kind("transformer", _within(ELECTRICAL), "An ideal transformer between two pairs of nodes."),
-    Kind(
+    _kind("transformer", "An ideal transformer between two pairs of nodes.", _within(ELECTRICAL)),
+    _kind(
         "voltage_source",
-        (Imposed(ELECTRICAL, ACROSS, "V_in"),),
         "A voltage between two nodes, V_in of eq. (12).",
+        imposed(ELECTRICAL, ACROSS, "V_in"),
     ),
-    Kind(
-        "current_source",
-        (Imposed(ELECTRICAL, THROUGH, "i_in"),),
-        "A current given into a node.",
-    ),
-    Kind(
+    _kind("current_source", "A current given into a node.", imposed(ELECTRICAL, THROUGH, "i_in")),
+    _kind(
         "inertia",
-        (Store(ROTATION, ACROSS, "inertia", "kg*m**2", "I", at=True),),
         "A moment of inertia at a node, the rotor of a machine.",
+        store(Store(ROTATION, ACROSS, "inertia", "kg*m**2", "I", at=True)),
     ),
-    Kind(
+    _kind(
         "torsion_spring",
-        (Store(ROTATION, THROUGH, "stiffness", "N*m/rad", "k", stiff=True),),
         "A torsion spring between two nodes, an elastic shaft.",
+        store(Store(ROTATION, THROUGH, "stiffness", "N*m/rad", "k", stiff=True)),
     ),
-    Kind(
+    _kind(
         "rotational_damper",
-        (Dissipation(ROTATION, (THROUGH, ACROSS), "d*omega"),),
         "A rotational damper between two nodes, a bearing.",
+        dissipation(ROTATION, "d*omega", THROUGH, ACROSS),
     ),
-    Kind("gear", _within(ROTATION), "An ideal gear between two pairs of nodes."),
-    Kind(
-        "torque_source",
-        (Imposed(ROTATION, THROUGH, "tau_load", at=True),),
-        "A torque on a node.",
-    ),
-    Kind(
+    _kind("gear", "An ideal gear between two pairs of nodes.", _within(ROTATION)),
+    _kind("torque_source", "A torque on a node.", imposed(ROTATION, THROUGH, "tau_load", at=True)),
+    _kind(
         "angular_velocity_source",
-        (Imposed(ROTATION, ACROSS, "omega_in", at=True),),
         "An angular velocity given to a node.",
+        imposed(ROTATION, ACROSS, "omega_in", at=True),
     ),
-    Kind(
+    _kind(
         "accumulator",
-        (Store(HYDRAULIC, ACROSS, "capacitance", "m**3/Pa", "C"),),
         "A hydraulic accumulator between two nodes, or the compressibility of a volume.",
+        store(Store(HYDRAULIC, ACROSS, "capacitance", "m**3/Pa", "C")),
     ),
-    Kind(
+    _kind(
         "inertance",
-        (Store(HYDRAULIC, THROUGH, "inertance", "Pa*s**2/m**3", "L"),),
         "A hydraulic inertance between two nodes, the fluid in a line that moves.",
+        store(Store(HYDRAULIC, THROUGH, "inertance", "Pa*s**2/m**3", "L")),
     ),
-    Kind(
+    _kind(
         "orifice",
-        (Dissipation(HYDRAULIC, (THROUGH, ACROSS), "c*dp"),),
         "An orifice between two nodes, a valve or the friction of a line.",
+        dissipation(HYDRAULIC, "c*dp", THROUGH, ACROSS),
     ),
-    Kind("flow_source", (Imposed(HYDRAULIC, THROUGH, "Q_in"),), "A flow given into a node."),
-    Kind(
-        "pressure_source",
-        (Imposed(HYDRAULIC, ACROSS, "p_in"),),
-        "A pressure between two nodes.",
-    ),
-    Kind(
+    _kind("flow_source", "A flow given into a node.", imposed(HYDRAULIC, THROUGH, "Q_in")),
+    _kind("pressure_source", "A pressure between two nodes.", imposed(HYDRAULIC, ACROSS, "p_in")),
+    _kind(
         "transducer",
-        (
-            PairCoupling(
-                "ratio",
-                "a*T/T_0",
-                ("electrical", ELECTRICAL),
-                (_pair(TRANSLATION, "C/m"), ("mechanical", TRANSLATION, "C/m")),
-                gyrates=True,
-                warm=True,
-            ),
-        ),
         "A piezoelectric transducer, the relations of Assumption 2: F = ratio*V, i = ratio*v.",
+        coupling(
+            "ratio",
+            "a*T/T_0",
+            ("electrical", ELECTRICAL),
+            ("translation", TRANSLATION, "C/m"),
+            ("mechanical", TRANSLATION, "C/m"),
+            gyrates=True,
+            warm=True,
+        ),
     ),
-    Kind(
+    _kind(
         "motor",
-        (
-            PairCoupling(
-                "constant",
-                "k",
-                ("electrical", ELECTRICAL),
-                (_pair(TRANSLATION, "V*s/m"), _pair(ROTATION, "V*s/rad")),
-            ),
-        ),
         "A voice coil or an electrical machine, without its coil, resistance and rotor.",
+        coupling(
+            "constant",
+            "k",
+            ("electrical", ELECTRICAL),
+            ("translation", TRANSLATION, "V*s/m"),
+            ("rotation", ROTATION, "V*s/rad"),
+        ),
     ),
-    Kind(
+    _kind(
         "rack",
-        (PairCoupling("radius", "r", ("translation", TRANSLATION), (_pair(ROTATION, "m"),)),),
         "A rack and pinion, or a drum with its rope.",
+        coupling("radius", "r", ("translation", TRANSLATION), ("rotation", ROTATION, "m")),
     ),
-    Kind(
+    _kind(
         "cylinder",
-        (
-            PairCoupling(
-                "area", "A", ("hydraulic", HYDRAULIC), (_pair(TRANSLATION, "m**2"),), gyrates=True
-            ),
-        ),
         "A hydraulic cylinder: the pressure pushes its piston.",
-    ),
-    Kind(
-        "pump",
-        (
-            PairCoupling(
-                "displacement",
-                "D",
-                ("rotation", ROTATION),
-                (_pair(HYDRAULIC, "m**3/rad"),),
-                gyrates=True,
-            ),
+        coupling(
+            "area",
+            "A",
+            ("hydraulic", HYDRAULIC),
+            ("translation", TRANSLATION, "m**2"),
+            gyrates=True,
         ),
+    ),
+    _kind(
+        "pump",
         "A displacement pump, or a hydraulic motor.",
+        coupling(
+            "displacement",
+            "D",
+            ("rotation", ROTATION),
+            ("hydraulic", HYDRAULIC, "m**3/rad"),
+            gyrates=True,
+        ),
     ),
-    Kind(
+    _kind(
         "storage",
-        (SharedEnergy(),),
         "A store with one energy of several states: variable inductance, gas and the like.",
+        SHARED_ENERGY,
     ),
-    Kind("thermal_mass", (ThermalMass(),), "A body with a temperature, eqs. (8), (13)."),
-    Kind("conduction", (Conduction(),), "Heat conduction between two bodies, a heat exchanger."),
-    Kind(
+    _kind("thermal_mass", "A body with a temperature, eqs. (8), (13).", BODY),
+    _kind("conduction", "Heat conduction between two bodies, a heat exchanger.", CONDUCTION),
+    _kind(
         "thermoelectric",
-        (Thermocouple(),),
         "Thermoelectric couples, a Peltier cooler or a generator, without resistance.",
+        THERMOCOUPLE,
     ),
-    Kind(
-        "ambient",
-        (Ambient(),),
-        "Heat exchange with the environment: the third input, eq. (8).",
-    ),
-    Kind("heat_source", (HeatSource(),), "Heat into a body, a heater or a heat sink."),
+    _kind("ambient", "Heat exchange with the environment: the third input, eq. (8).", AMBIENT),
+    _kind("heat_source", "Heat into a body, a heater or a heat sink.", HEAT_SOURCE),
 )

@@ -5,16 +5,15 @@ states is an entropy; the element then is a body.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Annotated, Any, final
 
 from pydantic import AfterValidator, Field, StrictStr
 
 from piezo_sym.expressions.energies import slope
 from piezo_sym.expressions.tree import Expr, names
-from piezo_sym.spec.elements.base import Form, Frozen, State
+from piezo_sym.spec.elements.base import ENTROPY_UNIT, Fault, Form, Frozen
 from piezo_sym.spec.elements.domains import DOMAINS, PhysicalDomain, PowerVariable
-from piezo_sym.spec.elements.marks import Fields, Law, Letters, Pair
+from piezo_sym.spec.elements.marks import Law, Letters, Pair
 from piezo_sym.spec.elements.ports import Body, Branch, Port, Storage
 from piezo_sym.spec.table import Table
 
@@ -48,99 +47,17 @@ class StateOf(Frozen):
     between: Annotated[Pair | None, Field(description="Two nodes; none for the entropy.")] = None
 
     @property
-    def is_entropy(self) -> bool:
-        """Whether it is the entropy of a body."""
-        return bool(self.rate == ENTROPY)
-
-    @property
     def unit(self) -> str:
         """Its unit."""
-        if self.is_entropy:
-            return "J/K"
+        if self.rate == ENTROPY:
+            return ENTROPY_UNIT
         domain, imposes = RATES[self.rate]
         return domain.variable(imposes).state_unit
 
 
-@final
-@dataclass(frozen=True)
-class SharedEnergy(Form):
-    """One energy of several states."""
-
-    @property
-    def fields(self) -> Fields:
-        """Its energy and its states."""
-        sample = {
-            "phi": {"rate": "voltage", "between": ["coil", "gnd"]},
-            "x": {"rate": "velocity", "between": ["armature", "wall"]},
-        }
-        states = Annotated[
-            Table[StateOf],
-            Field(
-                min_length=1,
-                description="Its states, by symbol, in order.",
-                json_schema_extra={"minProperties": 1},
-            ),
-        ]
-        energy = Annotated[Law, Letters({}, "J", own=True)]
-        return {
-            "energy": (energy, ..., "phi**2*(g + x)/(2*mu*A*N**2)"),
-            "states": (states, ..., sample),
-        }
-
-    @property
-    def doc(self) -> str:
-        """States, co-states, signs."""
-        rates = ", ".join(RATES)
-        return (
-            "Its energy U [J] is a law of all of its states. Each has a rate, the across variable "
-            "of its branch (`between`: first node relative to second) or the through variable "
-            f"inside it, from the first node to the second: {rates}; its co-state dU/dx is the "
-            "conjugate variable of the branch. A state with the rate entropy makes it a body with "
-            "the temperature T = dU/dS, which others may heat; there is one at most."
-        )
-
-    def port(self, element: Any, name: str, branch: Branch) -> Port:
-        """Return the port of its first state."""
-        return self.ports(element, name, branch)[0]
-
-    def ports(self, element: Any, name: str, branch: Branch) -> tuple[Port, ...]:
-        """Return a port for each state; all share the energy."""
-        del branch
-        energy = element.law("energy")
-        states = element.states.items()
-        return tuple(_port(element, name, symbol, state, energy) for symbol, state in states)
-
-    def states(self, element: Any, name: str) -> tuple[State, ...]:
-        """Return its states."""
-        del name
-        states = element.states.items()
-        return tuple(State(symbol, s.unit, is_entropy=s.is_entropy) for symbol, s in states)
-
-    def fault(self, element: Any) -> tuple[str, str, str, str] | None:
-        """Return that it has more than one entropy, or a state no branch, or not this energy."""
-        states = element.states
-        entropies = [symbol for symbol, state in states.items() if state.is_entropy]
-        if len(entropies) > 1:
-            what = f"{' and '.join(map(repr, entropies))} are both entropies"
-            remedy = "leave one out, or make a thermal_mass of it"
-            return ".states", what, "one state with the rate entropy at most", remedy
-        used = names(element.law("energy"))
-        for symbol, state in states.items():
-            where = f".states.{symbol}"
-            if state.is_entropy and state.between:
-                remedy = "leave between out: its heat comes from elements that say heats = '...'"
-                return where, "an entropy has no branch", "rate alone", remedy
-            if not state.is_entropy and not state.between:
-                return where, "is on no branch", "two nodes", "add between = ['first', 'second']"
-            if symbol not in used:
-                remedy = f"use {symbol} in the energy, or leave the state out"
-                return where, "the energy does not depend on it", "an energy of every state", remedy
-        return None
-
-
 def _port(element: Any, name: str, symbol: str, state: StateOf, energy: Expr) -> Port:
     law = slope(energy, symbol)
-    if state.is_entropy or state.between is None:
+    if state.rate == ENTROPY or state.between is None:
         return Body(symbol, law, f"T_{name}", f"entropy of {element.kind} '{name}'", energy)
     domain, imposes = RATES[state.rate]
     costate = domain.variable(imposes)
@@ -155,3 +72,58 @@ def _port(element: Any, name: str, symbol: str, state: StateOf, energy: Expr) ->
         doc=f"{costate.state} of {element.kind} '{name}'",
         energy=energy,
     )
+
+
+def _ports(element: Any, name: str, _: Branch) -> tuple[Port, ...]:
+    """Return a port for each state; all share the energy."""
+    energy, states = element.law("energy"), element.states.items()
+    return tuple(_port(element, name, symbol, state, energy) for symbol, state in states)
+
+
+def _fault(element: Any) -> Fault | None:
+    """Return that it has more than one entropy, or a state no branch, or not this energy."""
+    states = element.states
+    entropies = [symbol for symbol, state in states.items() if state.rate == ENTROPY]
+    if len(entropies) > 1:
+        what = f"{' and '.join(map(repr, entropies))} are both entropies"
+        remedy = "leave one out, or make a thermal_mass of it"
+        return ".states", what, "one state with the rate entropy at most", remedy
+    used = names(element.law("energy"))
+    for symbol, state in states.items():
+        where = f".states.{symbol}"
+        if state.rate == ENTROPY and state.between:
+            remedy = "leave between out: its heat comes from elements that say heats = '...'"
+            return where, "an entropy has no branch", "rate alone", remedy
+        if state.rate != ENTROPY and not state.between:
+            return where, "is on no branch", "two nodes", "add between = ['first', 'second']"
+        if symbol not in used:
+            remedy = f"use {symbol} in the energy, or leave the state out"
+            return where, "the energy does not depend on it", "an energy of every state", remedy
+    return None
+
+
+_STATES = Annotated[
+    Table[StateOf],
+    Field(
+        min_length=1,
+        description="Its states, by symbol, in order.",
+        json_schema_extra={"minProperties": 1},
+    ),
+]
+_SAMPLE = {
+    "phi": {"rate": "voltage", "between": ["coil", "gnd"]},
+    "x": {"rate": "velocity", "between": ["armature", "wall"]},
+}
+SHARED_ENERGY = Form(
+    fields={
+        "energy": (Annotated[Law, Letters({}, "J", own=True)], ..., "phi**2*(g + x)/(2*mu*A*N**2)"),
+        "states": (_STATES, ..., _SAMPLE),
+    },
+    doc="Its energy U [J] is a law of all of its states. Each has a rate, the across variable "
+    "of its branch (`between`: first node relative to second) or the through variable "
+    f"inside it, from the first node to the second: {', '.join(RATES)}; its co-state dU/dx is the "
+    "conjugate variable of the branch. A state with the rate entropy makes it a body with "
+    "the temperature T = dU/dS, which others may heat; there is one at most.",
+    ports=_ports,
+    fault=_fault,
+)
