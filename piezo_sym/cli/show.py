@@ -80,12 +80,11 @@ def _where(element: Element) -> str:
 def _laws(model: Model, name: str, element: Element) -> Iterator[str]:
     """Yield each law, and its value where parameters alone decide it."""
     from piezo_sym.expressions.tree import Num, evaluate, names
-    from piezo_sym.spec.tables import law_fields
 
     numbers = {word: entry.si for word, entry in model.parameters.items()}
-    for law in law_fields(name, element):
+    for law in element.laws(name):
         used = {word: numbers.get(word) for word in names(law.tree)}
-        text = f"{law.where.rpartition('.')[2]} = {law.text}"
+        text = f"{law.field} = {law.text}"
         plain = {word: value for word, value in used.items() if isinstance(value, float)}
         if len(plain) == len(used) and not isinstance(law.tree, Num):
             with suppress(ArithmeticError, ValueError):  # no value: the proofs say so

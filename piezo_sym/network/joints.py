@@ -37,7 +37,7 @@ from piezo_sym.network.kirchhoff import Laws
 from piezo_sym.spec.circuit import Circuit, Placed
 from piezo_sym.spec.elements.ports import Coupling, Storage
 from piezo_sym.spec.model import Model
-from piezo_sym.spec.tables import conditions, law_fields, starts
+from piezo_sym.spec.tables import conditions, laws, starts
 
 #: Co-states of initial values agree to this, relative to their terms.
 CLOSE = 1e-9
@@ -225,9 +225,7 @@ def _beyond_rest(joint: Joint, n: int) -> Expr:
 def _check_uses(model: Model, joint: Joint) -> None:
     """Refuse laws and conditions that use the state of a store that is not kept."""
     used = [(c.where, {*names(c.tree)}) for c in conditions(model)]
-    for name, element in model.elements.items():
-        laws = law_fields(name, element)
-        used += [(law.where, {*names(law.tree)}.difference(law.letters)) for law in laws]
+    used += [(law.where, {*names(law.tree)}.difference(law.letters)) for law in laws(model)]
     for store in (member.store for member in joint.followers):
         for where, words in used:
             if store.state in words:

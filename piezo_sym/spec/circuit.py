@@ -30,7 +30,7 @@ from piezo_sym.spec.elements.ports import (
 )
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.names import fresh
-from piezo_sym.spec.tables import bank_of, banks, in_words, law_fields, temperatures
+from piezo_sym.spec.tables import bank_of, banks, in_words, temperatures
 
 #: How the last node of a lane in a chain ends (no spec can write the colon).
 LAST = ":last"
@@ -141,8 +141,8 @@ def _in_lane(name: str, element: Element, port: Port) -> Port:
 
 def _laws(model: Model, name: str, heat: Mapping[str, str]) -> Iterator[tuple[str, Expr]]:
     """Yield the laws of an element by field, in the words of [domain]."""
-    for law in law_fields(name, model.elements[name]):
-        yield law.field, in_words(model, name, law, heat)
+    for law in model.elements[name].laws(name):
+        yield law.field, in_words(model, law, heat)
 
 
 def _named(

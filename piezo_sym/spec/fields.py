@@ -5,6 +5,7 @@ Input: TOML data or Python arguments.  Output: `Header`, `Parameter`, `Input`, `
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Annotated, Any, Union, final
 
@@ -41,24 +42,19 @@ def _number(value: Any) -> float:
     return float(value)
 
 
-def _values(value: Any) -> float | tuple[float, ...]:
-    if isinstance(value, (list, tuple)) and value:
-        return tuple(_number(item) for item in value)
-    return _number(value)
-
-
-def _replacement(value: Any) -> str | float | tuple[float, ...]:
-    return value if isinstance(value, str) else _values(value)
-
-
 def _law_or_number(value: Any) -> str | float:
     return value if isinstance(value, str) else _number(value)
 
 
-def _start(value: Any) -> str | float | tuple[str | float, ...]:
-    if isinstance(value, (list, tuple)) and value:
-        return tuple(_law_or_number(item) for item in value)
-    return _law_or_number(value)
+def _listed(read: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    """Return what reads a value or a list of such."""
+    return lambda value: (
+        tuple(map(read, value)) if isinstance(value, (list, tuple)) and value else read(value)
+    )
+
+
+def _replacement(value: Any) -> str | float | tuple[float, ...]:
+    return value if isinstance(value, str) else _listed(_number)(value)
 
 
 def _one_or_list(item: Schema) -> Schema:
@@ -79,7 +75,9 @@ LAW_OR_NUMBER: Schema = NUMBER | {"type": ["number", "string"]}
 
 Number = Annotated[float, BeforeValidator(_number), WithJsonSchema(NUMBER)]
 Values = Annotated[
-    float | tuple[float, ...], BeforeValidator(_values), WithJsonSchema(_one_or_list(NUMBER))
+    float | tuple[float, ...],
+    BeforeValidator(_listed(_number)),
+    WithJsonSchema(_one_or_list(NUMBER)),
 ]
 Replacement = Annotated[
     str | float | tuple[float, ...],
@@ -88,7 +86,7 @@ Replacement = Annotated[
 ]
 Start = Annotated[
     str | float | tuple[str | float, ...],
-    BeforeValidator(_start),
+    BeforeValidator(_listed(_law_or_number)),
     WithJsonSchema(_one_or_list(LAW_OR_NUMBER)),
 ]
 Text = Annotated[StrictStr, StringConstraints(max_length=MAX_TEXT), AfterValidator(_plain)]

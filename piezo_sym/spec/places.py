@@ -12,9 +12,10 @@ from piezo_sym.expressions.dimensions import Dimension, Match, matches
 from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.tree import Cmp, Expr, Node, Sym
 from piezo_sym.expressions.units import parse_unit
+from piezo_sym.spec.elements.base import LawField
 from piezo_sym.spec.elements.ports import Exchange, HeatInput, Source
 from piezo_sym.spec.fields import Tables
-from piezo_sym.spec.tables import bodies, law_fields, temperatures
+from piezo_sym.spec.tables import bodies, temperatures
 
 
 @final
@@ -59,21 +60,17 @@ def places(spec: Tables) -> Iterator[Place]:
     parameters = {name: p.dimension.dimension for name, p in spec.parameters.items()}
     given = parameters | {name: u.dimension.dimension for name, u in spec.inputs.items()}
     seen = state_dimensions(spec) | _temperatures(spec)
-    for name in spec.elements:
-        yield from _laws(spec, name, parameters, seen)
+    for name, element in spec.elements.items():
+        yield from (_law(law, parameters, seen) for law in element.laws(name))
         yield from _inputs(spec, name, given)
     yield from _conditions(spec, given)
     yield from _starts(spec, given)
 
 
-def _laws(
-    spec: Tables, name: str, given: Mapping[str, Dimension], seen: Mapping[str, Dimension]
-) -> Iterator[Place]:
-    for law in law_fields(name, spec.elements[name]):
-        letters = {letter: _dimension(unit) for letter, unit in law.mark.units.items()}
-        fixed = {**(seen if law.mark.sees else {}), **letters}
-        unit = law.mark.unit
-        yield Place(law.where, name, law.tree, given, fixed, _dimension(unit), unit)
+def _law(law: LawField, given: Mapping[str, Dimension], seen: Mapping[str, Dimension]) -> Place:
+    letters = {letter: _dimension(unit) for letter, unit in law.mark.units.items()}
+    fixed, unit = {**(seen if law.mark.sees else {}), **letters}, law.mark.unit
+    return Place(law.where, law.element, law.tree, given, fixed, _dimension(unit), unit)
 
 
 def _inputs(spec: Tables, name: str, given: Mapping[str, Dimension]) -> Iterator[Place]:

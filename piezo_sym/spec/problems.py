@@ -5,23 +5,14 @@ dotted path, what was expected there and, for unknown words, the nearest known o
 """
 
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import Any, get_args
 
-from pydantic import BaseModel, ValidationError
+from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from piezo_sym.errors import SpecError, listing, nearest, quote
 from piezo_sym.spec.elements import KINDS
-from piezo_sym.spec.fields import Bank, Component, Domain, Header, Input, Parameter, Tables
-
-TABLES: Mapping[str, type[BaseModel]] = {
-    "model": Header,
-    "parameters": Parameter,
-    "inputs": Input,
-    "domain": Domain,
-    "components": Component,
-    "banks": Bank,
-}
+from piezo_sym.spec.fields import Tables
 
 ENTRIES = {  # what stands for a name in a table
     "parameters": '{{ value = {value}, unit = "N/m" }}, with its own unit; "1" is none',
@@ -106,12 +97,10 @@ def _expected(detail: ErrorDetails) -> str:
 
 def _known(place: list[str]) -> Iterable[str]:
     """Return the keys that are known where `place` points."""
-    if len(place) <= 1:
-        return tuple(Tables.model_fields)
+    kind: Any = Tables
     if "elements" in place[:3:2] and len(place) > (at := place.index("elements") + 2):
-        return _fields(KINDS.get(place[at]))
-    return _fields(TABLES.get(place[0]))
-
-
-def _fields(kind: Any) -> Iterable[str]:
-    return tuple(kind.model_fields) if kind is not None else ()
+        kind = KINDS.get(place[at])
+    elif len(place) > 1:
+        table = Tables.model_fields.get(place[0])
+        kind = table and next(iter(get_args(table.annotation)), table.annotation)
+    return tuple(getattr(kind, "model_fields", ()))

@@ -65,8 +65,8 @@ class Renaming:
         """
         hot = any(to == "thermal_mass" for _, to, _ in element.references())
         made = {}
-        for field, text, mark in element.laws():
-            letters = set() if mark.own else {*mark.names} - (set() if hot else {"T"})
+        for law in element.laws(""):
+            letters = set() if law.mark.own else {*law.letters} - (set() if hot else {"T"})
             words = {word: self.words[word] for word in self.words.keys() - letters}
-            made[field] = Renaming(words).text(text)
+            made[law.field] = Renaming(words).text(law.text)
         return made

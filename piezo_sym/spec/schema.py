@@ -5,11 +5,9 @@ every run, that accepts every spec which `load` accepts and refuses unknown keys
 values of the wrong type.  What holds between tables (names, laws, units) is left to `load`.
 """
 
-import warnings
-from collections.abc import Mapping
-from typing import Any
+from typing import Any, final
 
-from pydantic.json_schema import PydanticJsonSchemaWarning
+from pydantic.json_schema import GenerateJsonSchema
 
 from piezo_sym.spec.elements import KINDS
 from piezo_sym.spec.elements.base import Element
@@ -30,11 +28,43 @@ TABLES = {
 Schema = dict[str, Any]
 
 
+@final
+class _Generator(GenerateJsonSchema):
+    """Schemas without what TOML cannot say, null, and what some editors do not read."""
+
+    ignored_warning_kinds = {"non-serializable-default"}  # noqa: RUF012 - of empty tables
+
+    def field_title_should_be_set(self, schema: Any) -> bool:
+        del schema
+        return False
+
+    def nullable_schema(self, schema: Any) -> Schema:
+        return self.generate_inner(schema["schema"])
+
+    def default_schema(self, schema: Any) -> Schema:
+        made = super().default_schema(schema)
+        return {key: value for key, value in made.items() if (key, value) != ("default", None)}
+
+    def tuple_schema(self, schema: Any) -> Schema:
+        """Return one schema for all items that are alike, which every draft has."""
+        made = super().tuple_schema(schema)
+        items = made.get("prefixItems", [None])
+        if None in items or any(item != items[0] for item in items):
+            return made
+        del made["prefixItems"]
+        return made | {"items": items[0]}
+
+    def model_schema(self, schema: Any) -> Schema:
+        """Return a schema whose description is a docstring's, each paragraph on one line."""
+        made = super().model_schema(schema)
+        del made["title"]
+        about = made.get("description", "").partition("\n\nAttributes\n")[0].split("\n\n")
+        return made | {"description": "\n\n".join(" ".join(part.split()) for part in about)}
+
+
 def schema() -> Schema:
     """Return the JSON Schema of a spec."""
-    with warnings.catch_warnings():  # an empty table is a default that JSON Schema does not need
-        warnings.simplefilter("ignore", PydanticJsonSchemaWarning)
-        made = _tidy(Model.model_json_schema())
+    made = Model.model_json_schema(schema_generator=_Generator)
     for name, description in TABLES.items():
         made["properties"][name] |= {"description": description, "propertyNames": NAMES}
     definitions = made.pop("$defs")
@@ -79,45 +109,3 @@ def _union() -> Schema:
 
 def _is_of(kind: str) -> Schema:
     return {"properties": {"kind": {"const": kind}}, "required": ["kind"]}
-
-
-def _tidy(node: Any) -> Any:
-    """Return a schema without what TOML cannot say (null) and what some editors do not read."""
-    if isinstance(node, list):
-        return [_tidy(part) for part in node]
-    if not isinstance(node, Mapping):
-        return node
-    made = {key: _tidy(value) for key, value in node.items() if not _idle(key, value)}
-    if isinstance(made.get("description"), str):
-        made["description"] = _flowing(made["description"])
-    return _alike(_present(made))
-
-
-def _idle(key: str, value: Any) -> bool:
-    """Return whether an entry says nothing: a title made from a name, null where a key is left."""
-    return (key == "title" and isinstance(value, str)) or (key == "default" and value is None)
-
-
-def _flowing(text: str) -> str:
-    """Return a docstring's description: each paragraph on one line, the sections left out."""
-    about = text.partition("\n\nAttributes\n")[0]
-    return "\n\n".join(" ".join(part.split()) for part in about.split("\n\n"))
-
-
-def _present(made: Schema) -> Schema:
-    """Return the schema of a field that may be left out: of what it is when it is there."""
-    parts = made.get("anyOf", [])
-    kept = [part for part in parts if part != {"type": "null"}]
-    if len(kept) == len(parts):
-        return made
-    rest = {key: value for key, value in made.items() if key != "anyOf"}
-    return {**kept[0], **rest} if len(kept) == 1 else {**rest, "anyOf": kept}
-
-
-def _alike(made: Schema) -> Schema:
-    """Return the schema of a tuple of like items with one schema for all, which every draft has."""
-    items = made.get("prefixItems")
-    if not items or any(item != items[0] for item in items):
-        return made
-    rest = {key: value for key, value in made.items() if key != "prefixItems"}
-    return {**rest, "items": items[0]}

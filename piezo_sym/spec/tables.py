@@ -14,34 +14,8 @@ from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.text import SPEC, write_comparison
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, Expr, Node, Num, names, rename, walk
-from piezo_sym.spec.elements.base import Element, state_symbol
-from piezo_sym.spec.elements.marks import Letters
+from piezo_sym.spec.elements.base import LawField, state_symbol
 from piezo_sym.spec.fields import Tables
-
-
-@final
-@dataclass(frozen=True)
-class LawField:
-    """A law of an element: its place in the spec, its text and what its kind says of it."""
-
-    where: str
-    text: str
-    mark: Letters
-
-    @property
-    def letters(self) -> tuple[str, ...]:
-        """The letters it may use besides parameters."""
-        return self.mark.names
-
-    @property
-    def tree(self) -> Expr:
-        """The parsed law."""
-        return parse_law(self.text, self.where)
-
-    @property
-    def field(self) -> str:
-        """The field that it stands in."""
-        return self.where.rpartition(".")[2]
 
 
 @final
@@ -53,10 +27,9 @@ class Condition:
     tree: Cmp
 
 
-def law_fields(name: str, element: Element) -> Iterator[LawField]:
-    """Yield the laws of one element."""
-    for field, text, mark in element.laws():
-        yield LawField(f"elements.{name}.{field}", text, mark)
+def laws(spec: Tables) -> Iterator[LawField]:
+    """Yield the laws of all elements."""
+    return (law for name, element in spec.elements.items() for law in element.laws(name))
 
 
 def states(spec: Tables) -> dict[str, str]:
@@ -117,25 +90,22 @@ def seen(spec: Tables) -> Iterator[str]:
     yield from (f"T_{body}" for body in bodies(spec))
 
 
-def in_words(spec: Tables, name: str, law: LawField, hot: Mapping[str, str]) -> Expr:
-    """Return a law of an element in the words of [domain]; a dissipative law keeps its letter.
+def in_words(spec: Tables, law: LawField, hot: Mapping[str, str]) -> Expr:
+    """Return a law in the words of [domain], `hot` being the temperature symbol of each body.
 
-    Parameters
-    ----------
-    name : of the element.
-    hot : the temperature symbol of each body.
+    A dissipative law keeps its letter.
     """
-    return rename(law.tree, meanings(spec, name, law, hot))
+    return rename(law.tree, meanings(spec, law, hot))
 
 
-def meanings(spec: Tables, name: str, law: LawField, hot: Mapping[str, str]) -> dict[str, str]:
+def meanings(spec: Tables, law: LawField, hot: Mapping[str, str]) -> dict[str, str]:
     """Return what names in a law are called in [domain], if they are called differently there."""
-    element = spec.elements[name]
+    element = spec.elements[law.element]
     named = [hot[given] for _, to, given in element.references() if to == "thermal_mass"]
     named = named or list(hot.values())[: len(hot) == 1]
     found = dict(zip(("T_1", "T_2"), named, strict=False)) | dict(zip("T", named, strict=False))
     if element.letter:
-        found[element.letter] = state_symbol(element, name)
+        found[element.letter] = state_symbol(element, law.element)
     if hasattr(element, "input"):
         found["T_e"] = element.input
     found = {letter: word for letter, word in found.items() if letter in law.letters}
@@ -174,10 +144,8 @@ def _not_negative(
     spec: Tables, hot: Mapping[str, str], assumed: list[Condition]
 ) -> Iterator[Condition]:
     """Yield that each half width is >= 0, in laws, assumptions and initial values."""
-    for name, element in spec.elements.items():
-        for law in law_fields(name, element):
-            for width in _widths(in_words(spec, name, law, hot)):
-                yield Condition(law.where, width)
+    for law in laws(spec):
+        yield from (Condition(law.where, width) for width in _widths(in_words(spec, law, hot)))
     for where, node in [*((c.where, c.tree) for c in assumed), *_starts(spec)]:
         yield from (Condition(where, width) for width in _widths(node))
 
@@ -193,8 +161,8 @@ def _widths(law: Node) -> Iterator[Cmp]:
 
 def orders(spec: Tables) -> Iterator[Condition]:
     """Yield that the knots of each table increase, wherever it stands in the spec."""
-    laws = ((law.where, law.tree) for n, e in spec.elements.items() for law in law_fields(n, e))
-    places = [*laws, *((c.where, c.tree) for c in conditions(spec)), *_starts(spec)]
+    parts: list[LawField | Condition] = [*laws(spec), *conditions(spec)]
+    places = [*((part.where, part.tree) for part in parts), *_starts(spec)]
     found = (Condition(where, order) for where, tree in places for order in increasing(tree))
     yield from dict.fromkeys(found)
 
@@ -220,10 +188,9 @@ def lane_parameters(spec: Tables) -> dict[str, str]:
     """Return the bank of each parameter that only this bank uses: it may have a value per lane."""
     users: dict[str, set[str | None]] = {}
     owners, lanes = bank_of(spec), bank_states(spec)
-    for name, element in spec.elements.items():
-        for law in law_fields(name, element):
-            for word in set(names(law.tree)) - set(law.letters):
-                users.setdefault(word, set()).add(owners.get(name))
+    for law in laws(spec):
+        for word in set(names(law.tree)) - set(law.letters):
+            users.setdefault(word, set()).add(owners.get(law.element))
     for where, tree in _starts(spec):
         for word in names(tree):
             users.setdefault(word, set()).add(lanes.get(where.removeprefix("initial.")))

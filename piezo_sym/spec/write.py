@@ -16,9 +16,8 @@ NOTHING: tuple[Any, ...] = (None, False, "", "0", [])
 
 def to_toml(data: Mapping[str, Any]) -> str:
     """Return spec data as TOML: parameters and inputs a line each, elements a table each."""
-    blocks = [_table("model", data["model"])]
-    blocks += [_lines(name, data[name]) for name in ("parameters", "inputs") if data.get(name)]
-    blocks += [_table(name, data[name]) for name in ("domain", "initial") if data.get(name)]
+    single = ("model", "parameters", "inputs", "domain", "initial")
+    blocks = [_table(name, data[name]) for name in single if data.get(name)]
     for kind in ("components", "elements", "banks"):
         blocks += [_table(f"{kind}.{name}", row) for name, row in data.get(kind, {}).items()]
     return "\n".join(blocks)
@@ -26,10 +25,6 @@ def to_toml(data: Mapping[str, Any]) -> str:
 
 def _table(name: str, fields: Mapping[str, Any]) -> str:
     return "\n".join([f"[{name}]", *_pairs(fields), ""])
-
-
-def _lines(name: str, rows: Mapping[str, Mapping[str, Any]]) -> str:
-    return "\n".join([f"[{name}]", *_pairs(rows), ""])
 
 
 def _pairs(row: Mapping[str, Any]) -> list[str]:

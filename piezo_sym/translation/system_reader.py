@@ -21,7 +21,7 @@ from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import Cmp, Expr, Num, names, walk
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.elements.ports import Body
-from piezo_sym.spec.tables import bank_states, conditions, lane_parameters, law_fields, states
+from piezo_sym.spec.tables import bank_states, conditions, lane_parameters, laws, states
 from piezo_sym.translation.field import GeneratorField, NotShownError, Value
 from piezo_sym.translation.functions import call, power, raised, size_of
 from piezo_sym.translation.signs import assume, compare, on_path, reading
@@ -202,7 +202,7 @@ class SystemReader:
 def rounded(iphs: IPHS) -> Iterator[tuple[float, Fraction]]:
     """Yield the numbers of a spec that no short decimal is, with the nearest machine number."""
     model = iphs.model
-    trees = [law.tree for name, e in model.elements.items() for law in law_fields(name, e)]
+    trees = [law.tree for law in laws(model)]
     trees += [energy.law for energy in iphs.energies]
     trees += [side for c in conditions(model) for side in (c.tree.left, c.tree.right)]
     starts = (s if isinstance(s, tuple) else (s,) for s in model.initial.values())

@@ -12,9 +12,10 @@ from piezo_sym.errors import SpecError, quote
 from piezo_sym.expressions.energies import antiderivative
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import names, replace
+from piezo_sym.spec.elements.base import LawField
 from piezo_sym.spec.elements.ports import Body, Storage
 from piezo_sym.spec.fields import Tables
-from piezo_sym.spec.tables import LawField, law_fields, temperatures
+from piezo_sym.spec.tables import temperatures
 
 
 def check_energies(spec: Tables) -> None:
@@ -26,17 +27,17 @@ def check_energies(spec: Tables) -> None:
             if fault := form.fault(element):
                 field, what, expected, remedy = fault
                 raise SpecError(what, f"elements.{name}{field}", expected, remedy)
-        for law in law_fields(name, element):
+        for law in element.laws(name):
             if element.letter and law.letters == (element.letter,) and not element.is_body:
-                _check_law(spec, name, law, hot)
+                _check_law(spec, law, hot)
 
 
-def _check_law(spec: Tables, name: str, law: LawField, hot: Mapping[str, str]) -> None:
+def _check_law(spec: Tables, law: LawField, hot: Mapping[str, str]) -> None:
     """Refuse a law of a store that depends on a temperature; `hot`: the body of each."""
     word = next((w for w in names(law.tree) if w in hot and w not in spec.parameters), "")
     if not word:
         return
-    letter = spec.elements[name].letter
+    name, letter = law.element, spec.elements[law.element].letter
     what = f"the {law.field} depends on {quote(word)}, and then is no energy of {letter}"
     remedy = "let it depend on parameters and its own state"
     if hot[word]:

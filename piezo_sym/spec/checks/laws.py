@@ -9,19 +9,17 @@ from piezo_sym.errors import SpecError, listing, nearest, quote
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import Node, names
 from piezo_sym.spec.elements import KINDS, LETTERS
-from piezo_sym.spec.elements.base import Element, state_symbol
+from piezo_sym.spec.elements.base import Element, LawField, state_symbol
 from piezo_sym.spec.elements.ports import Exchange, HeatInput, Source
 from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.names import NAME
 from piezo_sym.spec.tables import (
     Condition,
-    LawField,
     bank_of,
     bank_states,
     banks,
     bodies,
     conditions,
-    law_fields,
     meanings,
     orders,
     seen,
@@ -87,12 +85,12 @@ def check_laws(spec: Tables) -> None:
     for name, element in spec.elements.items():
         own = {state_symbol(element, name): None} if element.letter else {}
         own = own | cells.get(owners.get(name, ""), {})
-        for law in law_fields(name, element):
+        for law in element.laws(name):
             words: Collection[str] = ChainMap(own, every) if law.mark.sees else spec.parameters
             _check_words(spec, law.tree, law.where, law.letters, words, name)
             if {"T"} & {*law.letters} & {*names(law.tree)} and not one_body:
                 _check_body(element, law)
-            _check_letters(law, words, meanings(spec, name, law, hot))
+            _check_letters(law, words, meanings(spec, law, hot))
     _check_initial(spec)
     for order in orders(spec):
         _check_words(spec, order.tree, f"a knot of a table in {order.where}", (), spec.parameters)

@@ -22,7 +22,6 @@ from piezo_sym.spec.tables import (
     condition_text,
     conditions,
     lane_parameters,
-    law_fields,
     orders,
     starts,
     states,
@@ -43,7 +42,7 @@ def check_values(spec: Tables) -> None:
     lanes |= {symbol: tuple(_starts(spec, symbol, lanes)) for symbol in states(spec)}
     for symbol, body in temperatures(spec).items():
         element = spec.elements[body]
-        ports, field = element.ports(body), next(law.field for law in law_fields(body, element))
+        ports, field = element.ports(body), next(law.field for law in element.laws(body))
         law = next(port.law for port in ports if isinstance(port, Body))
         values = _at(0, names(law), lanes)
         lanes[symbol] = (_value(law, values, f"elements.{body}.{field}"),)

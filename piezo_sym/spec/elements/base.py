@@ -57,6 +57,32 @@ class State:
 
 
 @final
+@dataclass(frozen=True)
+class LawField:
+    """A law of an element: its text and what its kind says of it."""
+
+    element: str
+    field: str
+    text: str
+    mark: Letters
+
+    @property
+    def where(self) -> str:
+        """Its place in the spec."""
+        return f"elements.{self.element}.{self.field}"
+
+    @property
+    def letters(self) -> tuple[str, ...]:
+        """The letters it may use besides parameters."""
+        return self.mark.names
+
+    @property
+    def tree(self) -> Expr:
+        """The parsed law."""
+        return parse_law(self.text, self.where)
+
+
+@final
 @dataclass(frozen=True, eq=False)
 class Form:
     """A part of a kind: a store, a dissipation, a coupling, a source, a body ...; see `forms`.
@@ -228,13 +254,13 @@ class Element(Frozen):
         """Return the tree of a law field."""
         return parse_law(getattr(self, field), field)
 
-    def laws(self) -> Iterator[tuple[str, str, Letters]]:
-        """Yield (field, text, letters and units) of each law that is given."""
+    def laws(self, name: str) -> Iterator[LawField]:
+        """Yield each law that is given of this element, called `name` in its spec."""
         for field, info in type(self).model_fields.items():
             text = getattr(self, field)
             for mark in info.metadata:
                 if isinstance(mark, Letters) and text is not None:
-                    yield field, text, mark.of(self)
+                    yield LawField(name, field, text, mark.of(self))
 
     def references(self) -> Iterator[tuple[str, str, str]]:
         """Yield (field, 'input' or 'thermal_mass', the name given)."""
