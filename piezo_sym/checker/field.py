@@ -34,30 +34,24 @@ class Ratio:
         self.top, self.bottom = top, bottom
 
     def __add__(self, other: "Ratio") -> "Ratio":
-        """Return the sum."""
         if self.bottom == other.bottom:
             return Ratio(self.top + other.top, self.bottom)
         tops = _product(self.top, other.bottom) + _product(other.top, self.bottom)
         return Ratio(tops, _product(self.bottom, other.bottom))
 
     def __neg__(self) -> "Ratio":
-        """Return the negative."""
         return Ratio(-self.top, self.bottom)
 
     def __sub__(self, other: "Ratio") -> "Ratio":
-        """Return the difference."""
         return self + -other
 
     def __mul__(self, other: "Ratio") -> "Ratio":
-        """Return the product."""
         return Ratio(_product(self.top, other.top), _product(self.bottom, other.bottom))
 
     def __truediv__(self, other: "Ratio") -> "Ratio":
-        """Return the quotient."""
         return self * Ratio(other.bottom, other.top)
 
     def __pow__(self, power: int) -> "Ratio":
-        """Return a whole power."""
         if power < 0:
             return Ratio(self.bottom, self.top) ** -power
         terms = max(len(self.top), len(self.bottom))
@@ -65,13 +59,11 @@ class Ratio:
         return Ratio(self.top**power, self.bottom**power)
 
     def __eq__(self, other: object) -> bool:
-        """Return whether both are one quotient, or a number."""
         if isinstance(other, Ratio):
             return bool(self.top == other.top and self.bottom == other.bottom)
         return bool(self.bottom.is_one() and self.top == other)
 
     def __hash__(self) -> int:
-        """Return the hash of both polynomials."""
         return hash((str(self.top), str(self.bottom)))
 
 

@@ -7,7 +7,7 @@ like one.  Output: `Flows`.  Unknown are the through and the across variable of 
 the potential of every node; a law linear in its letter is an equation, in either causality.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -18,6 +18,8 @@ from .spec import Element, Spec
 
 Form = dict[Any, Any]
 Slot = tuple[str, int]
+#: A rank, and the unknown to solve a row for; None if it has none.
+Choice = tuple[tuple[int, ...], Any]
 FORMS = ("store", "law", "source", "coupling", "hysteron", "body")
 UNKNOWN = ("through", "across", "potential")
 
@@ -54,7 +56,7 @@ class Flows(NamedTuple):
 def flows(spec: Spec, counts: Mapping[str, int], algebra: Any) -> Flows:
     """Return what flows in a network; raises `SingularError` if its laws do not tell."""
     branches, zero = _all_branches(spec, counts), algebra.one - algebra.one
-    unknowns, pivots, left = _solved(list(_equations(spec, branches, algebra)))
+    unknowns, pivots, left = solved(_equations(spec, branches, algebra))
     if left:
         raise SingularError("the laws of the network have no single solution")
     found = Flows({}, {}, {}, {}, pivots)
@@ -91,7 +93,7 @@ def flows(spec: Spec, counts: Mapping[str, int], algebra: Any) -> Flows:
 
 def relations(spec: Spec, counts: Mapping[str, int], algebra: Any) -> list[Form]:
     """Return the combinations of what is given that the laws force to be zero."""
-    *_, left = _solved(list(_equations(spec, _all_branches(spec, counts), algebra)))
+    *_, left = solved(_equations(spec, _all_branches(spec, counts), algebra))
     return [row for row in left if row]
 
 
@@ -190,10 +192,23 @@ def _law(element: Element, branch: Branch, algebra: Any) -> Form:
     return {imposed: one, given: one if branch.role == "source" and not branch.across else -one}
 
 
-def _solved(left: list[Form]) -> tuple[dict[Any, Form], list[Any], list[Form]]:
-    """Return each unknown by what is given, the pivots, and the rows that have no unknown."""
-    rows, solved, pivots = dict(enumerate(left)), dict[Any, Form](), list[Any]()
-    choices = {n: _choice(n, row) for n, row in rows.items()}
+def _choice(n: int, row: Form) -> Choice:
+    """Return the best unknown to solve a row for: factors 1 and -1, what falls, short rows."""
+    known = [(x, factor) for x, factor in row.items() if x[0] in UNKNOWN and factor != 0]
+    size = len(row), n
+    ranks = [((int(f not in (1, -1)), int(x[0] != "across"), *size), x) for x, f in known]
+    return min(ranks, key=lambda choice: choice[0], default=((2, 0, *size), None))
+
+
+def solved(
+    left: Iterable[Form], choose: Callable[[int, Form], Choice] = _choice
+) -> tuple[dict[Any, Form], list[Any], list[Form]]:
+    """Return each unknown by what is given, the pivots, and the rows that have no unknown.
+
+    Of what `choose` says of each row, the least is solved for first.
+    """
+    rows, found, pivots = dict(enumerate(left)), dict[Any, Form](), list[Any]()
+    choices = {n: choose(n, row) for n, row in rows.items()}
     while rows:
         (*_, n), label = min(choices.values(), key=lambda choice: choice[0])
         if label is None:
@@ -201,25 +216,17 @@ def _solved(left: list[Form]) -> tuple[dict[Any, Form], list[Any], list[Form]]:
         row = rows.pop(n)
         del choices[n]
         pivots.append(pivot := row.pop(label))
-        solved[label] = {key: -factor / pivot for key, factor in row.items()}
-        for name, form in (*rows.items(), *solved.items()):
+        found[label] = {key: -factor / pivot for key, factor in row.items()}
+        for name, form in (*rows.items(), *found.items()):
             if label in form:
                 factor = form.pop(label)
-                for key, value in solved[label].items():
+                for key, value in found[label].items():
                     form[key] = form[key] + factor * value if key in form else factor * value
                     if (form[key] == 0) is True:  # an enclosure of zero is not
                         del form[key]
                 if name in rows:
-                    choices[name] = _choice(name, form)
-    return solved, pivots, [*rows.values()]
-
-
-def _choice(n: int, row: Form) -> tuple[tuple[int, int, int, int], Any]:
-    """Return the best unknown to solve a row for: factors 1 and -1, what falls, short rows."""
-    known = [(x, factor) for x, factor in row.items() if x[0] in UNKNOWN and factor != 0]
-    size = len(row), n
-    ranks = [((int(f not in (1, -1)), int(x[0] != "across"), *size), x) for x, f in known]
-    return min(ranks, key=lambda choice: choice[0], default=((2, 0, *size), None))
+                    choices[name] = choose(name, form)
+    return found, pivots, [*rows.values()]
 
 
 @cache

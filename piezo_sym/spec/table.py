@@ -25,11 +25,9 @@ class Table(Mapping[str, Value], Generic[Value]):
         self._items = dict(items or {})
 
     def __getitem__(self, name: str) -> Value:
-        """Return the value of `name`."""
         return self._items[name]
 
     def __iter__(self) -> Iterator[str]:
-        """Iterate over the names in order."""
         return iter(self._items)
 
     def items(self) -> ItemsView[str, Value]:
@@ -37,21 +35,17 @@ class Table(Mapping[str, Value], Generic[Value]):
         return self._items.items()
 
     def __len__(self) -> int:
-        """Return the number of names."""
         return len(self._items)
 
     def __eq__(self, other: object) -> bool:
-        """Return whether `other` has equal items in the same order."""
         if not isinstance(other, Mapping):
             return NotImplemented
         return list(self.items()) == list(other.items())
 
     def __hash__(self) -> int:
-        """Return a hash of the items in order."""
         return hash(tuple(self._items.items()))
 
     def __repr__(self) -> str:
-        """Return the table as a call that makes it."""
         return f"Table({self._items!r})"
 
     @classmethod
