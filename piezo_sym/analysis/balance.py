@@ -12,10 +12,13 @@ temperature goes between zeros, and its slope at a zero whether that state is st
 
 import warnings
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
+from scipy.optimize import brentq, minimize_scalar
 
 from piezo_sym.analysis.newton import Settled, settled
 from piezo_sym.analysis.stroboscope import Stroboscope
@@ -25,7 +28,7 @@ from piezo_sym.run.checks import FloatArray, span_of
 HOTTEST = 20.0  # times the temperature at the start: upper end of the range if none is given
 FIRST_RISE = 1e-4  # of the coldest temperature: the first step of a scan
 POINTS = 40
-MOST_ITERATIONS = 60
+TURNING = 12  # states looked at around a least drift
 ZERO = 1e-10  # relative width of a bracket that counts as a zero
 
 
@@ -37,15 +40,13 @@ def scan(
     strobe: Stroboscope, temperatures: Sequence[float], near: FloatArray
 ) -> Iterator[Settled | None]:
     """Yield the settled state at each temperature, each found from the one before, or None."""
-    slope: FloatArray | None = None
     for T in temperatures:
         try:
-            found = settled(strobe, T, near, slope)
+            found = settled(strobe, T, near)
         except RunError:
-            slope = None
             yield None
         else:
-            near, slope = found.x, found.slope
+            near = found.x
             yield found
 
 
@@ -77,68 +78,39 @@ def between(a: Settled, b: Settled) -> str:
 def zeros(strobe: Stroboscope, known: Sequence[Settled]) -> list[Settled]:
     """Return the zeros of the drift between settled states in order of temperature.
 
-    Where |drift| has a minimum without a change of sign, states at the vertex of a parabola
-    through three of them are added, so that two zeros close together are found.
+    Where |drift| has a minimum without a change of sign, it is searched, so that two zeros close
+    together are found.  Where nothing settles on the way to a zero, for the settled state jumps
+    there, a warning says so.
     """
     for a, b in pairwise(known):
         if a.drift == b.drift == 0:
             what = f"any temperature from {a.temperature:.6g} K to {b.temperature:.6g} K is steady"
             remedy = "let an ambient cool the body, or drive it so that it heats"
             raise RunError(what, strobe.where, remedy=remedy)
-    points = list(known)
+    states = {np.log(state.temperature): state for state in known}
+
+    def drift(log_T: float) -> float:
+        nearest = min(states, key=lambda other: abs(other - log_T))
+        if nearest != log_T:
+            states[log_T] = settled(strobe, float(np.exp(log_T)), states[nearest].x)
+        return states[log_T].drift
+
     for a, b, c in zip(known, known[1:], known[2:], strict=False):
         least = abs(b.drift) < min(abs(a.drift), abs(c.drift))
         if least and a.drift * b.drift > 0 < b.drift * c.drift:
-            points += _turning(strobe, a, b, c)
-    points.sort(key=lambda point: point.temperature)
-    changes = [(a, b) for a, b in pairwise(points) if a.drift * b.drift < 0]
-    found = [point for point in points if point.drift == 0]
-    found += filter(None, (_zero(strobe, a, b) for a, b in changes))
-    return sorted(found, key=lambda point: point.temperature)
-
-
-def _turning(strobe: Stroboscope, a: Settled, b: Settled, c: Settled) -> list[Settled]:
-    """Return states around the least |drift| between a and c, until its sign changes."""
-    found: list[Settled] = []
-    for _ in range(6):
-        t = np.log([a.temperature, b.temperature, c.temperature]) - np.log(b.temperature)
-        curve = np.polyfit(t, [a.drift, b.drift, c.drift], 2)
-        top = float(np.clip(-curve[1] / (2 * curve[0]), t[0] * 0.9, t[2] * 0.9))
-        if abs(top) < 1e-6:
-            break
-        T = b.temperature * float(np.exp(top))
-        try:
-            new = settled(strobe, T, b.x, b.slope)
-        except RunError:  # the settled state jumps here: keep what is found
-            break
-        found.append(new)
-        if new.drift * b.drift <= 0:
-            break
-        inner, outer = (new, b) if abs(new.drift) < abs(b.drift) else (b, new)
-        above = outer.temperature > inner.temperature
-        a, b, c = (a, inner, outer) if above else (outer, inner, c)
-    return found
-
-
-def _zero(strobe: Stroboscope, a: Settled, b: Settled) -> Settled | None:
-    """Return the zero of the drift between two states, by false position (Illinois).
-
-    None, with a warning, if nothing settles on the way: the settled state jumps there, and with it
-    the drift.
-    """
-    weight_a, weight_b = a.drift, b.drift
-    for _ in range(MOST_ITERATIONS):
-        x, y = np.log(a.temperature), np.log(b.temperature)
-        T = float(np.exp((x * weight_b - y * weight_a) / (weight_b - weight_a)))
-        near = a if abs(a.drift) < abs(b.drift) else b
-        try:
-            new = settled(strobe, T, near.x, near.slope)
-        except RunError as error:
-            warnings.warn(f"{error}; a steady state there may be missed", SteadyWarning, 2)
-            return None
-        a, weight_a = (b, weight_b) if new.drift * b.drift < 0 else (a, weight_a / 2)
-        close = abs(new.temperature - b.temperature) < ZERO * T
-        b, weight_b = new, new.drift
-        if close or new.drift == 0:
-            return new
-    return b
+            low, high = np.log([a.temperature, c.temperature])
+            with suppress(RunError):  # the settled state jumps there: keep what is found
+                how: Any = {"bounds": (low, high), "method": "bounded"}
+                how |= {"options": {"xatol": 1e-6, "maxiter": TURNING}}
+                minimize_scalar(lambda log_T: abs(drift(log_T)), **how)
+    found = [state for state in states.values() if state.drift == 0]
+    for (x, a), (y, b) in pairwise(sorted(states.items())):
+        if a.drift * b.drift < 0:
+            try:
+                root = brentq(drift, x, y, xtol=ZERO)
+            except RunError as error:
+                text = f"{error}; a steady state there may be missed"
+                warnings.warn(text, SteadyWarning, stacklevel=3)
+            else:
+                found.append(states[min(states, key=lambda other: abs(other - root))])
+    return sorted(found, key=lambda state: state.temperature)

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import TypeAlias, final
 
 import numpy as np
+from scipy.optimize import minimize_scalar
 
 from piezo_sym.analysis.balance import SteadyWarning
 from piezo_sym.analysis.newton import Settled, settled
@@ -28,6 +29,7 @@ DIFFERENCE = 1e-5  # in log T, for a difference quotient
 FIRST = 1e-4  # step of the secant method where the slope is unknown
 EXACT = 1e-8  # in log f and log T
 MOST_SECANTS = 20
+FOLD = 1e-5  # in log T: a fold is flat there
 
 
 @final
@@ -125,13 +127,13 @@ def _corrected(
     for n in range(MOST_SECANTS):
         place = guess + s * across
         strobe = strobe.at(float(np.exp(place[0])))
-        state = settled(strobe, float(np.exp(place[1])), near.x, near.slope)
+        state = settled(strobe, float(np.exp(place[1])), near.x)
         rate = state.drift * strobe.frequency
         if n:
             steepness = (rate - before[1]) / (s - before[0])
         move = -rate / steepness if steepness else FIRST
         if (n and abs(move) <= EXACT) or rate == 0:
-            beside = settled(strobe, state.temperature * (1 + DIFFERENCE), state.x, state.slope)
+            beside = settled(strobe, state.temperature * (1 + DIFFERENCE), state.x)
             rising = (beside.drift - state.drift) * strobe.frequency / DIFFERENCE
             return CurvePoint(strobe.frequency, state, rising, steepness, place)
         before, near = (s, rate), state
@@ -149,18 +151,15 @@ def folds(strobe: Stroboscope, curve: Curve) -> Iterator[tuple[int, CurvePoint, 
 
 
 def _fold(strobe: Stroboscope, a: CurvePoint, b: CurvePoint, c: CurvePoint) -> CurvePoint:
-    """Return the point of extreme frequency between three, by parabolas of log f over log T."""
-    for _ in range(3):
-        x = np.array([p.place[1] - b.place[1] for p in (a, b, c)])
-        y = np.array([p.place[0] - b.place[0] for p in (a, b, c)])
-        curve = np.polyfit(x, y, 2)
-        top = float(np.clip(-curve[1] / (2 * curve[0]), min(x), max(x)))
-        if abs(top) < 1e-7:
-            break
-        guess = b.place + np.array([np.polyval(curve, top), top])
-        new = _corrected(strobe, guess, np.array([1.0, 0.0]), b.state)
-        if (new.place[0] - b.place[0]) * curve[0] > 0:  # not beyond b
-            break
-        a, c = (b, c) if (new.place[1] - b.place[1]) * (c.place[1] - b.place[1]) > 0 else (a, b)
-        b = new
-    return b
+    """Return the point of extreme frequency between three, by log f over log T."""
+    points = [b]
+    way = 1.0 if b.place[0] > a.place[0] else -1.0
+
+    def beyond(log_T: float) -> float:
+        guess = np.array([b.place[0], log_T])
+        points.append(_corrected(strobe, guess, np.array([1.0, 0.0]), b.state))
+        return float(-way * points[-1].place[0])
+
+    low, high = sorted([a.place[1], c.place[1]])
+    minimize_scalar(beyond, bounds=(low, high), method="bounded", options={"xatol": FOLD})
+    return max(points, key=lambda point: float(way * point.place[0]))

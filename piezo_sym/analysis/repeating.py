@@ -1,10 +1,10 @@
 """Checks of periodic inputs: do they repeat, and how many steps per period resolve them.
 
 Input: the inputs of a module by name, their frequency.  Output: an error for an input that does not
-repeat; the number of steps per period between which every input is nearly a straight line.
+repeat; the number of steps per period that resolve every input.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import TypeAlias
 
 import numpy as np
@@ -13,7 +13,6 @@ from piezo_sym.errors import UsageError, quote
 from piezo_sym.run.inputs import Inputs, InputValue, as_signal, read_inputs
 from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.samples import Samples
-from piezo_sym.run.signals import Signal
 
 Driven: TypeAlias = Callable[[float], Mapping[str, InputValue]]
 
@@ -21,8 +20,7 @@ SAME = 1e-6  # of an input's size: a value that differs by less repeats
 GOLDEN = 0.6180339887498949
 #: Where inputs are evaluated, as parts of a period; irregular, so that no harmonic is missed.
 PROBES = np.sort(np.r_[0.0, np.modf(np.arange(1, 64) * GOLDEN)[0]])
-MOST_BENT = 0.01  # of an input's range: mean distance from straight lines between steps
-MOST_STEPS = 1 << 14  # per period: they resolve a sine of 1300 cycles in it
+MOST_STEPS = 1 << 14  # per period: they resolve a sine of 2048 cycles in it
 COMMON = "give the frequency that the inputs have in common"
 FREQUENCIES = 33  # at which a range of frequencies is checked, its ends included
 FOLLOW = "let the inputs follow the frequency"
@@ -66,28 +64,18 @@ def any_varies(inputs: Inputs) -> bool:
     return any(bool(np.ptp(np.asarray(signal(times)))) for signal in inputs.signals)
 
 
-def steps_needed(inputs: Mapping[str, InputValue], frequency: float, steps: int) -> int:
-    """Return `steps` per period, doubled until every input is nearly straight between them.
+def steps_needed(inputs: Inputs, names: Iterable[str], steps: int) -> int:
+    """Return `steps` per period, doubled until they resolve every input.
 
     A sine of 512 cycles per period is 0 at each of 256 steps, and of 512: a run would miss it.
     """
-    for name, value in (inputs or {}).items():
-        where = f"periodic_steady_state.inputs.{name}"
-        signal = as_signal(value, where)
-        while _bend(signal, 1 / frequency, steps) > MOST_BENT:
+    period = inputs.duration
+    for name, signal in zip(names, inputs.signals, strict=True):
+        while steps * signal.max_step(period) < period:
             steps *= 2
             if steps > MOST_STEPS:
-                what = f"{quote(name)} needs more than {MOST_STEPS} steps in {1 / frequency:g} s"
+                what = f"{quote(name)} needs more than {MOST_STEPS} steps in {period:g} s"
+                where = f"periodic_steady_state.inputs.{name}"
                 remedy = "give the greatest frequency that the inputs have in common"
                 raise UsageError(what, where, "an input that moves less in a period", remedy)
     return steps
-
-
-def _bend(signal: Signal, period: float, steps: int) -> float:
-    """Return the mean distance of an input from straight lines between steps, over its range."""
-    times = np.linspace(0.0, period, steps + 1)
-    ends = np.asarray(signal(times))
-    between = np.asarray(signal(times[:-1] + GOLDEN * period / steps))
-    straight = (1 - GOLDEN) * ends[:-1] + GOLDEN * ends[1:]
-    span = float(np.ptp(np.concatenate([ends, between])))
-    return float(np.mean(np.abs(between - straight))) / span if span else 0.0

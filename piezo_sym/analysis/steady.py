@@ -122,6 +122,7 @@ def periodic_steady_state(
     UsageError : an argument is wrong, an input does not repeat or varies too fast for the period,
         or the model has not exactly one body.
     RunError : no steady state lies in the range; the message says which way the body drifts.
+    EngineError : there is no C compiler.
     """
     strobe = _strobe(module, inputs, frequency, parameters, initial)
     accuracy = _accuracy(rtol)
@@ -225,7 +226,7 @@ def _first(strobe: Stroboscope, known: list[Settled]) -> Settled:
 
 def _state(strobe: Stroboscope, zero: Settled, rtol: float) -> SteadyState:
     """Return the steady state at a zero of the heat balance, to the accuracy asked for."""
-    slope = jacobian(strobe, zero.x)
+    slope = jacobian(strobe, zero.x, zero.period.size)
     x, error = zero.x, np.inf
     while error > rtol:
         before = x

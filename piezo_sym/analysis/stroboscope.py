@@ -24,27 +24,25 @@ from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run import simulate
 from piezo_sym.run.checks import FloatArray, known_keys
 from piezo_sym.run.collocation import METHOD, FixedStep, collocate
-from piezo_sym.run.engine import Engine
+from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.guard import check_inputs, check_start
 from piezo_sym.run.inputs import Inputs, read_inputs
-from piezo_sym.run.method import choose_method
 from piezo_sym.run.module import GeneratedModule, by_name, checked, held
 from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
 from piezo_sym.run.system import DrivenModule
+from piezo_sym.run.temperatures import entropy_row, put_temperature
 
 if TYPE_CHECKING:
     import xarray
 
 SAMPLES = 16  # of a period, for the sizes of states and the mean temperature
 FLOOR = 1e-15  # so that no size is 0
-LARGEST_RATIO = 1.01  # of two temperatures in a difference quotient
 SPREAD = (-2.0, 2.0)  # powers of ten of the sizes of states that are drawn
 ENTROPY_SPREAD = 1e-2  # of the size of the entropy
 SPARE = 16  # states that are drawn beyond the least number
 RANK_TOLERANCE = 1e-12  # singular values below it are round-off
 SHARE_TOLERANCE = 1e-9  # a smaller share of a state in what is conserved is none
 CONSTANT = 1e-9  # of the sizes of states: what changes less over a period does not change
-LSODA_RTOL = 1e-9  # where there is no compiler
 
 
 @final
@@ -99,13 +97,24 @@ class Stroboscope:
         return Period(states[:, -1], size, *over_period(T))
 
     def _period(self, x: FloatArray) -> FloatArray:
-        """Return the states (n, SAMPLES + 1) of one period; no Dataset is built, for speed."""
-        if self.engine is None:
-            return self.states_of(self.run(x, times=SAMPLES + 1, rtol=LSODA_RTOL))
+        """Return the states (n, SAMPLES + 1) of one period."""
+        return np.asarray(self._periods(x[None], SAMPLES + 1)[0])
+
+    def ends(self, x: FloatArray) -> FloatArray:
+        """Return the states (many, n) a period after those at t = 0, x (many, n)."""
+        return np.asarray(self._periods(x, 2)[..., -1])
+
+    def _periods(self, x: FloatArray, samples: int) -> FloatArray:
+        """Return the states (many, n, samples) of periods from x (many, n).
+
+        No Dataset is built, for speed.
+        """
         system, step = self._system, FixedStep(self.duration / self.steps)
-        check_start(system, x)
-        times = np.linspace(0.0, self.duration, SAMPLES + 1)
-        return collocate([system], self.engine, x[None], times, step).trajectory(0).states
+        for one in x:
+            check_start(system, one)
+        times = np.linspace(0.0, self.duration, samples)
+        runs = collocate([system] * len(x), engine_of(self.module), x, times, step)
+        return np.array([runs.trajectory(k).states for k in range(len(x))])
 
     @cached_property
     def inputs(self) -> Inputs:
@@ -127,7 +136,7 @@ class Stroboscope:
             duration=self.duration,
             parameters=self.parameters,
             initial=self.named(x),
-            method=METHOD if self.engine else "LSODA",
+            method=METHOD,
             **options,
         )
 
@@ -139,11 +148,6 @@ class Stroboscope:
     def named(self, x: FloatArray) -> dict[str, LaneValue]:
         """Return a state x (n,) by name, as `simulate` takes it."""
         return by_name(self.module.STATES, self.values, x)
-
-    @cached_property
-    def engine(self) -> Engine | None:
-        """The module in C; None without a compiler: LSODA then runs each period, slowly."""
-        return choose_method(self.module, None, None).engine
 
     @cached_property
     def values(self) -> Any:
@@ -201,39 +205,14 @@ class Stroboscope:
             return float(self.module.temperatures(x, self.values)[0])
 
     def entropy_row(self, x: FloatArray) -> int:
-        """Return the row of the body's entropy: the only state that its temperature depends on."""
-        T = self.temperature(x)
-        for row in range(x.size):
-            if self.temperature(_moved(x, row, 1e-3 * max(1.0, abs(x[row])))) != T:
-                return row
-        what = f"the temperature of '{self.module.BODIES[0].name}' depends on no state"
-        raise RunError(what, self.where, "a temperature that rises with entropy")
+        """Return the row of the body's entropy."""
+        return entropy_row(self.module, self.values, x, 0)
 
     def at_temperature(self, x: FloatArray, T: float) -> FloatArray:
-        """Return the state x (n,) with the body's entropy changed so that its temperature is T.
-
-        By Newton's method on log T: it is proved to increase with the entropy, and linear in it
-        for an exponential law.
-        """
-        found, row = x.copy(), self.entropy_row(x)
-        step = 1e-3 * max(1.0, abs(x[row]))
-        for _ in range(100):
-            now = self.temperature(found)
-            while not self.temperature(_moved(found, row, step)) < now * LARGEST_RATIO:
-                step /= 10
-            ahead = self.temperature(_moved(found, row, step))
-            move = np.log(T / now) * step / np.log(ahead / now)
-            found[row] += move
-            if abs(move) <= 1e-14 * max(step, abs(found[row])):
-                break
+        """Return the state x (n,) with the body's entropy changed so that its temperature is T."""
+        found = x.copy()
+        put_temperature(self.module, self.values, found, 0, T, self.where)
         return found
-
-
-def _moved(x: FloatArray, row: int, by: float) -> FloatArray:
-    """Return the state x (n,) with one row changed."""
-    moved = x.copy()
-    moved[row] += by
-    return moved
 
 
 def stroboscope(
@@ -254,9 +233,9 @@ def stroboscope(
         remedy = "simulate until it settles"
         raise UsageError(what, "periodic_steady_state.model", "a model with one body", remedy)
     refuse_unperiodic(module, inputs_at(frequency), frequency)
-    steps = steps_needed(inputs_at(frequency), frequency, steps)
+    inputs = read_inputs(module, inputs_at(frequency), 1 / frequency)
+    steps = steps_needed(inputs, (record.name for record in module.INPUTS), steps)
     known_keys(initial, [record.name for record in module.STATES], "periodic_steady_state.initial")
     strobe = Stroboscope(module, inputs_at, frequency, parameters or {}, initial or {}, steps)
-    accuracy = {"step": strobe.duration / steps} if strobe.engine else {"rtol": LSODA_RTOL}
-    strobe.run(strobe.start, times=2, **accuracy)  # raises what a run says of these arguments
+    strobe.run(strobe.start, times=2, step=strobe.duration / steps)  # raises what a run says
     return strobe

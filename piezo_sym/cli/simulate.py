@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import sys
-import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
@@ -37,8 +36,6 @@ EVENTS = "NAME=EXPRESSION, located where its sign changes; repeat."
 STOP = "A comparison, such as 'T_body > 350', that ends the run."
 T0 = "When the run starts [s]; 0, or where it goes on."
 OUTPUTS = "Quantities of elements: all, or spring,damper.heat,..."
-#: After so many seconds a run without a bar says that it goes on.
-PATIENCE = 20.0
 CONTINUE = "Go on from the end of this run (.nc or .zarr)."
 INITIAL = "STATE=NUMBER or T_<body>=KELVIN at t = 0; SI; repeat."
 SIGNALS = "NAME=NUMBER, NAME=sine(100,100) or NAME=@FILE.csv; SI; repeat."
@@ -68,7 +65,6 @@ def simulate(
     order: Annotated[Count, option(ORDER)] = None,
     method: Annotated[Word, option(METHODS)] = None,
     times: Annotated[Count, option(TIMES)] = None,
-    every: Annotated[Count, option("With --step: a sample every so many steps.")] = None,
     events: Annotated[Words, option(EVENTS, "--event")] = None,
     stop: Annotated[Word, option(STOP)] = None,
     outputs: Annotated[Word, option(OUTPUTS)] = None,
@@ -88,7 +84,7 @@ def simulate(
     """
     _check_ending(out, events)
     signals = dict(pairs(inputs or (), "--input", signal))
-    when = {"duration": duration, "t0": t0, "times": times, "every": every, "stop": stop}
+    when = {"duration": duration, "t0": t0, "times": times, "stop": stop}
     how = {"rtol": rtol, "step": step, "order": order, "method": method, "outputs": outputs}
     result = _run(
         spec,
@@ -113,26 +109,12 @@ def _run(spec: str, out: Path | None, **options: Any) -> xarray.Dataset:
     if _is_store(out):
         options["store"] = out
     with warnings_as_lines(), keeping(out), of_spec:
-        return run(spec, **options, progress=True if sys.stderr.isatty() else patience())
+        return run(spec, **options, progress=sys.stderr.isatty())
 
 
 def _is_store(out: Path | None) -> bool:
     """Return whether a result is a store, which the run itself writes as it goes."""
     return out is not None and out.suffix == STORE
-
-
-def patience(seconds: float = PATIENCE) -> Callable[[float], None]:
-    """Return what is told the time that a run has reached, and says once that it takes long."""
-    began, said = time.monotonic(), False
-
-    def told(reached: float) -> None:
-        nonlocal said
-        if not said and time.monotonic() - began > seconds:
-            said = True
-            what = f"still running, at t = {reached:.3g} s after {seconds:g} s"
-            typer.echo(f"{what}; Ctrl-C ends it, and keeps what there is", err=True)
-
-    return told
 
 
 def _report(result: xarray.Dataset, inputs: Mapping[str, Any], out: Path | None) -> None:

@@ -23,7 +23,7 @@ from piezo_sym.run.engine.library import Layout
 from piezo_sym.run.inputs import Inputs, Segment
 from piezo_sym.run.ledger import Trajectory
 from piezo_sym.run.module import GeneratedModule, row_count
-from piezo_sym.run.system import DrivenModule, DrivenModules
+from piezo_sym.run.system import DrivenModule
 
 METHOD = "discrete_gradient"
 #: Told the time that runs have reached, now and then; what it raises ends them.
@@ -61,7 +61,7 @@ class FixedStep:
 class Runs:
     """Runs of some systems, and why those that did not come through stopped."""
 
-    systems: DrivenModules  # with equal inputs and sizes
+    systems: Sequence[DrivenModule]  # with equal inputs and sizes
     start: FloatArray  # their states (runs, n) at t = 0
     times: FloatArray  # of samples (nt,)
     states: FloatArray  # (runs, nt, n)
@@ -84,7 +84,7 @@ class Runs:
         return Trajectory(
             start=self.start[k],
             states=self.states[k].T,
-            inputs=self.systems.inputs.at_samples(self.times),
+            inputs=self.systems[0].inputs.at_samples(self.times),
             integrals=sums[:-2] if self.numerical else sums,
             steps=steps,
             evaluations=evaluations,
@@ -94,7 +94,7 @@ class Runs:
 
 
 def collocate(
-    systems: Sequence[DrivenModule] | DrivenModules,
+    systems: Sequence[DrivenModule],
     engine: Engine,
     x: FloatArray,
     times: FloatArray,
@@ -114,11 +114,12 @@ def collocate(
     cheapest for it, when left out; `starts`: the first fixed step after a jump of the inputs is
     dissipative; `side_by_side`: runs of few states lie in the lanes of vectors.
     """
-    known = DrivenModules.of(systems)
-    first = known[0]
+    first = systems[0]
     how = stepping(first, accuracy, stages)
     lying, extra = layout_of(*x.shape, side_by_side=side_by_side), 2 if starts else 0
-    batch = Batch(engine, known.parameters, x, first.inputs, times, how, lying, extra=extra)
+    batch = Batch(
+        engine, [one.parameters for one in systems], x, first.inputs, times, how, lying, extra=extra
+    )
     try:
         if starts:
             go_dissipatively(batch, how, first.inputs, times, watch)
@@ -127,9 +128,9 @@ def collocate(
             batch.largest[:] = first.scale(batch.largest)
         through(batch, watch)
     except KeyboardInterrupt as stopped:
-        vars(stopped)["reached"] = results(batch, known, x, times).so_far(0).until(times)
+        vars(stopped)["reached"] = results(batch, systems, x, times).so_far(0).until(times)
         raise
-    return results(batch, known, x, times)
+    return results(batch, systems, x, times)
 
 
 def go_dissipatively(
@@ -153,7 +154,9 @@ def through(batch: Batch, watch: Watch | None = None) -> None:
             watch(float(np.mean(batch.records["t"])))
 
 
-def results(batch: Batch, systems: DrivenModules, x: FloatArray, times: FloatArray) -> Runs:
+def results(
+    batch: Batch, systems: Sequence[DrivenModule], x: FloatArray, times: FloatArray
+) -> Runs:
     """Return the results of runs that began at x (runs, n)."""
     records = batch.records
     work = np.stack([records[n] for n in ("steps", "iterations", "rejected")], axis=1)

@@ -13,7 +13,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from math import nextafter, prod
 from typing import Any, TypeAlias, final
 
 import numpy as np
@@ -32,10 +31,8 @@ from piezo_sym.run.system import DrivenModule
 Sampler: TypeAlias = Callable[[FloatArray], tuple[FloatArray, Trajectory]]
 #: Looked at: so many times per step, so many at least and at most.
 PER_STEP, LEAST, MOST = 4, 1000, 20_000
-#: Times in a bracket that one pass looks at: even ones, and a guess made from so many values, with
-#: parts of the bracket on either side of it.
-EVEN, BESIDE, NEAR = 15, (1e-9, 1e-6, 1e-3), 4
-ROUNDS = 16
+#: Even times in a bracket that one pass looks at, and how many passes there are at most.
+EVEN, ROUNDS = 63, 16
 
 
 @final
@@ -167,10 +164,10 @@ def look(
             what = f"the condition holds at t = {times[0]:g} s already"
             raise UsageError(what, "simulate.stop", "one that does not hold at the start")
         first = np.flatnonzero(margin > 0)[:1].tolist()
-        brackets += [_Bracket("", watched.stop, times[[k - 1, k]], ()) for k in first]
+        brackets += [_Bracket("", watched.stop, times[[k - 1, k]]) for k in first]
     for name, tree in watched.event.items():
         places = _crossings(values_of(system, tree, seen))
-        brackets += [_Bracket(name, tree, times[[k - 1, k]], ()) for k in places]
+        brackets += [_Bracket(name, tree, times[[k - 1, k]]) for k in places]
     found = [(b.name, float(b.times[1])) for b in _narrowed(system, brackets, run)]
     end = next((t for name, t in found if not name), None)
     kept = [(name, t) for name, t in found if end is None or t <= end]
@@ -194,40 +191,24 @@ def _crossings(values: FloatArray) -> list[int]:
 @final
 @dataclass(frozen=True)
 class _Bracket:
-    """Two times [s] between which an expression changes its sign, and its values near them."""
+    """Two times [s] between which an expression changes its sign."""
 
     name: str
     tree: Expr
     times: FloatArray
-    near: tuple[tuple[float, float], ...]
 
     def inner(self) -> FloatArray:
-        """Return the times between the two that are worth looking at."""
-        a, b = self.times.tolist()
-        guess, width = self._guess(), b - a
-        points = {*np.linspace(a, b, EVEN + 2).tolist()}
-        points |= {guess, nextafter(guess, a), nextafter(guess, b)}
-        points |= {guess + sign * part * width for part in BESIDE for sign in (-1, 1)}
-        return np.array(sorted(t for t in points if a < t < b))
-
-    def _guess(self) -> float:
-        """Return where a polynomial for the time over the value has the value zero."""
-        middle = 0.5 * float(self.times.sum())
-        shift = 0.0 if len({v for _, v in self.near}) == len(self.near) else np.nan
-        for t, v in self.near:
-            factors = (w / (w - v) for _, w in self.near if w != v)
-            shift += (t - middle) * prod(factors)
-        return middle + shift if np.isfinite(shift) else middle
+        """Return the times between the two that are looked at next."""
+        first, last = self.times.tolist()
+        times = np.unique(np.linspace(first, last, EVEN + 2))
+        return np.asarray(times[(times > first) & (times < last)])
 
     def narrowed(self, times: FloatArray, values: FloatArray) -> _Bracket:
-        """Return the bracket between two of these times, with what is nearest to it."""
+        """Return the bracket between two of these times."""
         first, last = np.searchsorted(times, self.times)
-        times, values = times[first : last + 1], values[first : last + 1]
-        signs = _signs(values)
-        k = int(np.argmax(signs == signs[-1])) or values.size - 1
-        nearest = np.argsort(np.abs(times - times[k]), kind="stable")[:NEAR]
-        near = tuple((float(times[n]), float(values[n])) for n in nearest.tolist())
-        return replace(self, times=times[[k - 1, k]], near=near)
+        times, signs = times[first : last + 1], _signs(values[first : last + 1])
+        k = int(np.argmax(signs == signs[-1])) or times.size - 1
+        return replace(self, times=times[[k - 1, k]])
 
 
 def _narrowed(system: DrivenModule, brackets: list[_Bracket], run: Sampler) -> list[_Bracket]:

@@ -135,21 +135,21 @@ def own_initial(module: GeneratedModule, parameters: Any, u: FloatArray) -> Floa
 
 
 def sample_times(
-    times: object, every: object, step: float | None, duration: float, start: float = 0.0
+    times: object, step: float | None, duration: float, start: float = 0.0
 ) -> FloatArray:
-    """Return the times (nt,) of the samples [s], from what a user said of `times` and `every`."""
+    """Return the times (nt,) of the samples [s]; left out, with `step`, they are ends of steps."""
     if step is not None and not duration / step <= MOST_STEPS:
         what = f"{step:g} s is too short a step for {duration:g} s: a run of over 10^11 steps"
         raise UsageError(what, "simulate.step", f"at least {duration / MOST_STEPS:.1g} s")
     if step is not None and step > duration * (1 + CLOSE):
         what = f"{step:g} s is longer than the run"
         raise UsageError(what, "simulate.step", f"at most {duration:g} s")
-    if every is not None:
-        return read_every(every, times, step, duration, start)
-    if times is None and step is not None:
-        steps = int(np.ceil(duration / step * (1 - CLOSE)))
-        return read_every(-(-steps // (SAMPLES - 1)), None, step, duration, start)
-    return read_times(times, duration, start)
+    if times is not None or step is None:
+        return read_times(times, duration, start)
+    steps = int(np.ceil(duration / step * (1 - CLOSE)))
+    apart = -(-steps // (SAMPLES - 1)) * step
+    even = apart * np.arange(int(duration / apart * (1 - CLOSE)) + 1)
+    return np.append(start + even, start + duration)
 
 
 def read_times(given: object, duration: float, start: float = 0.0) -> FloatArray:
@@ -166,19 +166,6 @@ def read_times(given: object, duration: float, start: float = 0.0) -> FloatArray
         span = f"times span {times[0]:g} s to {times[-1]:g} s" if times.size else "no times"
         raise UsageError(span, where, f"times within {start:g} s to {end:g} s")
     return times
-
-
-def read_every(
-    every: object, times: object, step: float | None, duration: float, start: float
-) -> FloatArray:
-    """Return the times (nt,) of samples every so many steps, and the end [s]."""
-    where = "simulate.every"
-    if step is None or times is not None:
-        what = "times are given too" if step else "there is no fixed step"
-        raise UsageError(what, where, "step, and no times", "leave out every, or give step alone")
-    apart = whole(every, where, 1) * step
-    even = apart * np.arange(int(duration / apart * (1 - CLOSE)) + 1)
-    return np.append(start + even, start + duration)
 
 
 WHERE = "simulate.initial"

@@ -33,8 +33,6 @@ from piezo_sym.run.system import DrivenModule
 if TYPE_CHECKING:
     import xarray
 
-#: Of a step: one that is shorter by less is rounded, not cut.
-SAME = 1e-6
 #: No better accuracy is asked for: round-off is all that would be left.
 LEAST_RTOL = 1e-12
 
@@ -145,8 +143,7 @@ def compiled_run(
     accuracy: dict[str, object] = {"rtol": rtol, "order": 2 * choice(rtol)[0]}
     try:
         if step:
-            shortest = shortest_step(system, samples, step.length)
-            accuracy = {"step": step.length, "order": step.order, "shortest_step": shortest}
+            accuracy = {"step": step.length, "order": step.order}
         given = [system], engine, x[None], samples, step or rtol, request.watch
         trajectory = collocate(*given, starts=request.starts).trajectory(0)
     except RunError as stopped:
@@ -170,17 +167,3 @@ def _check_dissipative(engine: Engine, step: FixedStep | None) -> None:
     if step is None:
         what = "a run with a tolerance follows what a jump sets off, and damps nothing"
         raise UsageError(what, where, "False", "leave it out, or give step")
-
-
-def shortest_step(system: DrivenModule, samples: FloatArray, step: float) -> float:
-    """Return the shortest step [s] of a run with a fixed one, but for halvings.
-
-    Steps end at samples and at breaks of inputs; those between two of them are equal.
-    """
-    segments = system.inputs.segments
-    inner = samples[(samples > segments[0].start) & (samples < segments[-1].stop)]
-    edges = [segment.start for segment in segments] + [segments[-1].stop]
-    widths = np.diff(np.union1d(inner, edges))
-    rounding = 4 * np.finfo(float).eps * edges[-1] / step
-    taken = float(np.min(widths / np.maximum(1, np.ceil(widths / step - rounding))))
-    return step if taken > step * (1 - SAME) else taken

@@ -50,7 +50,6 @@ def simulate(
     t0: float | None = None,
     method: str | None = None,
     times: int | ArrayLike | None = None,
-    every: int | None = None,
     events: Mapping[str, str] | None = None,
     stop: str | None = None,
     outputs: str | Sequence[str] | None = None,
@@ -67,25 +66,24 @@ def simulate(
     a jump, or go over kinks where many lanes have some and rtol is 1e-6 or more. Errors of steps
     add up where nothing damps them: what oscillates for hundreds of periods is off in phase by more
     than rtol; and what is much faster than the steps may keep, after a jump, some tens of rtol. A
-    sample is the end of a step of its own, which the run does not go by: other `times` change no
-    number at those that both have, but where that step, from where the run's begins, would show
-    less heat or entropy produced than the sample before, and is taken from there. With `step` the
-    error falls with that power of the step that `order` says, where laws and inputs are smooth;
-    steps go over kinks; and what is much faster than a step rings from one to the next after a
-    jump, see `dissipative_start`.
+    sample is the end of a step of its own, so that other `times` change no number at those that
+    both have, but where it would show less heat or entropy produced than the sample before. With
+    `step` the error falls with that power of the step that `order` says, where laws and inputs are
+    smooth; steps go over kinks; and what is much faster than a step rings from one to the next
+    after a jump, see `dissipative_start`.
 
     SciPy's methods hold the error of each step below rtol*|x| + atol. atol is rtol*1e-3 times the
     scale of the state, which is the largest magnitude that the state (for a bank: any of its
-    lanes) has in a coarse first run with rtol 1e-3, or 1e-15 if that is larger; a coarse run that
-    stops early never fails the run, and counts up to nine tenths of the time it reached.
+    lanes) has in a coarse first run with rtol 1e-3, or 1e-15 if that is larger; of a coarse run
+    that stops early, the first nine tenths count.
 
     Steps end at every jump or corner of an input (samples: while they are at most 1000). With
     rtol, none is longer than a quarter of the run, than half a period of a sine or chirp (SciPy's:
     an eighth), an eighth of one of a triangle, than the median distance of more than 1000 samples,
     or than 1/500 of the run where an input is a function. A function is asked some thousand times
     before the run, with an array where it takes one: for its jumps, and for polynomials that take
-    its place. A pulse that is shorter than 1/2000 of the run is seen only by
-    chance: give a signal, or (t, values).
+    its place. A pulse that is shorter than 1/2000 of the run is seen only by chance: give a
+    signal, or (t, values).
 
     Parameters
     ----------
@@ -97,51 +95,46 @@ def simulate(
     rtol : relative tolerance, 1e-13 to 0.1; 1e-5 when left out. The discrete gradient takes less
         than 1e-12 as 1e-12, for below that there is only round-off.
     step : a fixed step [s] instead of rtol, for the discrete gradient alone. Steps end at samples,
-        at breaks of inputs and at the end of the run: where the step does not divide what lies
-        between two of these, steps there are equal and shorter, the attribute `shortest_step` the
-        shortest.
+        at breaks of inputs and at the end of the run: what lies between two of these is divided
+        into equal steps that are no longer.
     order : 2, 4, 6, 8 or 10, with `step` alone; 2 when left out.
     parameters : name -> number, for a bank's parameter also a list of one number per lane; and
         `<bank>_count` -> number of lanes. SI units.
-    initial : state -> number, for a bank's state also a list of one number per lane. SI units.
-        A body's temperature may stand for its entropy: {"T_body": 320.0}.
-        Those left out keep the module's initial state. Stores that are joined have one state, as
-        `show` says. Or a Dataset of this model: the run goes on from its last state, with its
-        parameters but for those given; integrals begin at 0 again.
+    initial : state -> number, for a bank's state also a list of one number per lane, SI units; a
+        body's temperature may stand for its entropy: {"T_body": 320.0}. Those left out keep the
+        module's initial state; stores that are joined have one state, as `show` says. Or a Dataset
+        of this model: the run goes on from its last state, with its parameters but for those
+        given; integrals begin at 0 again.
     t0 : the time at which the run starts [s]; when left out, 0, or the last time of a Dataset.
     method : discrete_gradient when left out, or one of SciPy's: RK23, RK45, DOP853, Radau, BDF,
         LSODA. Left out, a module without C beside it runs by LSODA; and so does one whose C cannot
         be compiled here, with one `EngineWarning`.
     times : the samples: a number of even ones, or increasing times [s]. When left out, 1001 even
         ones; with `step`, as many ends of steps, equally far apart, as 1001 allow, and the end.
-    every : with `step`, instead of `times`: a sample every so many steps, and at the end.
     events : name -> expression, such as ``{"hit": "q - 1e-3"}``: the times at which it changes its
         sign, to round-off, are the coordinate of that name, and `<quantity>_at_<name>` is what
         states, inputs, outputs and temperatures are then. Expressions are texts in the language of
         laws, of states (a lane as ``phi_1``), inputs, `y_<port>`, `T_<body>` and parameters, in SI.
         Looked at are the samples, and four times per step, 1,000 to 20,000 in all: of changes that
-        come in pairs between two of them, none is seen. Not with `step`, whose steps end at every
-        time that is looked at.
+        come in pairs between two of them, none is seen. Not with `step`.
     stop : a comparison, such as ``"T_body > 350"``: the run ends when it first holds, which is its
         last sample; the attribute `stopped` says so.
     outputs : "all", or a list such as ``["spring", "damper.heat"]``: quantities of elements beside
         the rest, named ``<element>.effort``, `.flow`, `.power` (into the element: of a source, the
         negative of what it supplies), `.energy` of what stores and `.heat` of what dissipates it.
-        Efforts are voltages, forces, torques, pressures and temperatures. Couplings have
-        `.effort_1` ... `.flow_2`, and the power from branch 1 to 2; a storage, `.effort_<state>`.
+        Couplings have `.effort_1` ... `.flow_2`, and the power from branch 1 to 2; a storage,
+        `.effort_<state>`.
     store : a path, ``"run.zarr"``: the run goes into a new Zarr store, window after window, and the
         Dataset is read from there when it is asked for. Steps end where windows of some 100,000
-        samples do. An existing store is refused. Needs `piezo_sym[store]`.
+        samples do. Needs `piezo_sym[store]`.
     progress : a function, told the time [s] reached, now and then; True, for a bar.
-    dissipative_start : for discrete_gradient with `step`. It reduces the error that a jump of an
-        input leaves in the states where a step is much longer than the fastest time constant: they
-        ring from step to step, for a long time. The first step after t = 0, and after each jump,
-        is made of four quarters that damp what is much faster than they are. What they lose on the
-        way is heat of the first thermal_mass, `heat_numerical` and `produced_numerical`; both
-        balances stay exact. On piezo_stack, the largest error of any state 2 ms after V_in jumps to
-        100 V, each as a part of the state's size under load (2 mm for q), falls from 1.1e-2 to
-        1.3e-4 with steps of 0.2 ms, from 2.8e-4 to 3.8e-5 with 0.1 ms. With 5 us, less than the
-        fastest time constant of 9 us, nothing rings and it grows, from 7e-7 to 4e-6.
+    dissipative_start : for discrete_gradient with `step`. The first step after t = 0, and after
+        each jump of an input, is made of four quarters that damp what is much faster than they are,
+        and would ring from step to step for a long time. What they lose is heat of the first
+        thermal_mass, `heat_numerical` and `produced_numerical`; both balances stay exact. It helps
+        where steps are longer than the fastest time constant, and harms where they are not: on
+        piezo_stack, 2 ms after V_in jumps to 100 V, steps of 0.2 ms are off by 1.3e-4 instead of
+        1.1e-2 of the states' sizes; steps of 5 us by 4e-6 instead of 7e-7.
 
     Returns
     -------
@@ -153,9 +146,9 @@ def simulate(
         `entropy_residual` = S - S(0) - entropy produced - entropy exchanged: round-off with the
         discrete gradient, the error of solver and quadrature with SciPy's. At a jump, inputs
         have their value after it, but at the end of the run their value before it. Attributes:
-        units, model, parameters; `method`, `rtol`, or `step` and `shortest_step`, `order` of the
-        collocation, `engine` (its compiler, or why there is none), the work (`accepted_steps`,
-        `newton_iterations`, `halvings`: steps refused; for SciPy `rhs_evaluations`).
+        units, model, parameters; `method`, `rtol` or `step`, `order`, `engine` (its compiler, or
+        why there is none), the work (`accepted_steps`, `newton_iterations`, `halvings`: steps
+        refused; for SciPy `rhs_evaluations`).
 
     Raises
     ------
@@ -175,7 +168,7 @@ def simulate(
     length = positive(duration, "simulate.duration")
     start, state, given = start_of(module, t0, initial, parameters)
     check_resolved(start, length)
-    samples = sample_times(times, every, step, length, start)
+    samples = sample_times(times, step, length, start)
     values = read_parameters(module, given)
     chosen = choose_method(module, named, step)
     asked, how = read_outputs(module, outputs), (dissipative_start, progress)

@@ -1,15 +1,13 @@
 """A run's fixed parts: the module, its parameters and inputs, and its functions of x and u alone.
 
-Input: a generated module, `Parameters`, `Inputs`.  Output: `DrivenModule`; of many runs
-`DrivenModules`, whose parameters are columns of a `ParameterTable`.
+Input: a generated module, `Parameters`, `Inputs`.  Output: `DrivenModule`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from operator import attrgetter
-from typing import Any, TypeAlias, final
+from typing import Any, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,68 +15,6 @@ from numpy.typing import NDArray
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.inputs import Inputs, Segment
 from piezo_sym.run.module import GeneratedModule, Record, exchanges, held, rows
-
-Column: TypeAlias = Sequence[Any] | NDArray[Any]
-
-
-@final
-@dataclass(frozen=True, eq=False)  # a key by identity: what C has of it is kept as long as it
-class ParameterTable:
-    """The parameters of many runs, of equal sizes: those of run k are `table[k]`."""
-
-    base: Any  # those of one run
-    size: int
-    columns: Mapping[str, Column]  # of each in which runs differ, one value per run; never written
-
-    def __post_init__(self) -> None:
-        """Refuse columns of another length."""
-        for name, column in self.columns.items():
-            if len(column) != self.size:
-                msg = f"column {name} has {len(column)} values for {self.size} runs"
-                raise ValueError(msg)
-
-    @staticmethod
-    def of(parameters: Sequence[Any] | ParameterTable) -> ParameterTable:
-        """Return the parameters of some runs as a table."""
-        if isinstance(parameters, ParameterTable):
-            return parameters
-        base = parameters[0]
-        names = vars(base) if len(parameters) > 1 else ()
-        columns = {name: list(map(attrgetter(name), parameters)) for name in names}
-        return ParameterTable(base, len(parameters), columns)
-
-    def __len__(self) -> int:
-        """Return the number of runs."""
-        return self.size
-
-    def __iter__(self) -> Iterator[Any]:
-        """Yield the parameters of each run."""
-        return (self[k] for k in range(self.size))
-
-    def __getitem__(self, k: int) -> Any:
-        """Return the parameters of one run: made in a tenth of the time of `replace`."""
-        run = range(self.size)[k]
-        if not self.columns:
-            return self.base
-        found = object.__new__(type(self.base))
-        change = {
-            name: column[run].item() if isinstance(column, np.ndarray) else column[run]
-            for name, column in self.columns.items()
-        }
-        vars(found).update(vars(self.base), **change)
-        return found
-
-    def some(self, runs: Sequence[int]) -> ParameterTable:
-        """Return the parameters of some of the runs; the table itself for all in their order."""
-        runs = list(runs)
-        if runs == list(range(self.size)):
-            return self
-        parts = {
-            name: column[runs] if isinstance(column, np.ndarray) else [column[k] for k in runs]
-            for name, column in self.columns.items()
-        }
-        return ParameterTable(self.base, len(runs), parts)
-
 
 FLOOR = 1e-15  # so that no tolerance is 0
 
@@ -138,37 +74,3 @@ class DrivenModule:
             supply = m.supply(x, u, p)
             brought = supply[exchanging] / m.outputs(x, u, p)[exchanging]
             return np.concatenate([supply, m.heat(x, u, p), m.entropy_production(x, u, p), brought])
-
-
-@final
-@dataclass(frozen=True, eq=False)
-class DrivenModules:
-    """Systems of one module with equal inputs and sizes, `systems[k]` made when asked for."""
-
-    module: GeneratedModule
-    parameters: ParameterTable
-    inputs: Inputs
-
-    @staticmethod
-    def of(systems: Sequence[DrivenModule] | DrivenModules) -> DrivenModules:
-        """Return systems with equal inputs as one value."""
-        if isinstance(systems, DrivenModules):
-            return systems
-        first, table = systems[0], ParameterTable.of([one.parameters for one in systems])
-        return DrivenModules(first.module, table, first.inputs)
-
-    def __len__(self) -> int:
-        """Return the number of systems."""
-        return len(self.parameters)
-
-    def __iter__(self) -> Iterator[DrivenModule]:
-        """Yield each system."""
-        return (self[k] for k in range(len(self)))
-
-    def __getitem__(self, k: int) -> DrivenModule:
-        """Return one system."""
-        return DrivenModule(self.module, self.parameters[k], self.inputs)
-
-    def some(self, runs: Sequence[int]) -> DrivenModules:
-        """Return some of the systems."""
-        return DrivenModules(self.module, self.parameters.some(runs), self.inputs)

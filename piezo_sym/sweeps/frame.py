@@ -1,36 +1,39 @@
 """The Dataset of a sweep: coordinates, inputs, attributes, and results as they come in memory.
 
 Input: a `Plan`, its module; `Result` records.  Output: a Dataset with all but the results and their
-errors; and with them.  `store` collects results on disk: it has the three methods of `Memory`.
+errors; and `Results`, which give it with them: in `Memory`, or in a store on disk (`store`).
 """
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator
-from typing import Any, final
+from typing import Any, TypeAlias, final
 
 import numpy as np
 import pandas
 import xarray
-from numpy.typing import NDArray
 
 from piezo_sym.errors import UsageError
 from piezo_sym.run.dataset import coordinates, described, model_attrs, spread
 from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.parameters import read_parameters
 from piezo_sym.run.system import DrivenModule
-from piezo_sym.sweeps.group import inputs_at_point
 from piezo_sym.sweeps.plan import Plan, Region
 from piezo_sym.sweeps.reduce import layout, refuse_other_names, refuse_other_sizes, weights
 from piezo_sym.sweeps.run import Result
 
+Shape: TypeAlias = tuple[int, ...]
 NOT_RUN = "not run"
 ERROR_ATTRS = described("1", "why a run failed; empty where it did not") | {"missing": NOT_RUN}
 
 
 def frame_of(plan: Plan, module: GeneratedModule) -> xarray.Dataset:
     """Return the frame of a sweep; time and banks only where its results have them."""
-    system, own = widest(plan, module), callable(plan.reduce)
+    sizes = {f"{bank}_count": size for bank, size in plan.largest_banks.items()}
+    base = read_parameters(module, {**plan.parameters, **sizes})
+    system = DrivenModule(module, base, plan.inputs_at(module, plan.points[0]))
+    own = callable(plan.reduce)
     inputs = dict(inputs_of(plan, module, system))
     coords = dict(coordinates(system, plan.samples))
     taken = {*coords, *inputs, "error", *(() if own else layout(system))}
@@ -48,18 +51,6 @@ def frame_of(plan: Plan, module: GeneratedModule) -> xarray.Dataset:
     return xarray.Dataset({} if own else inputs, needed, attrs_of(plan, system))
 
 
-def widest(plan: Plan, module: GeneratedModule) -> DrivenModule:
-    """Return a system whose banks have the most lanes that the sweep gives them."""
-    sizes = {f"{bank}_count": size for bank, size in plan.largest_banks.items()}
-    base = read_parameters(module, {**plan.parameters, **sizes})
-    return DrivenModule(module, base, inputs_at_point(plan, module, origin(plan)))
-
-
-def origin(plan: Plan) -> NDArray[np.intp]:
-    """Return the first point of the grid."""
-    return np.zeros(len(plan.axes), dtype=np.intp)
-
-
 def inputs_of(
     plan: Plan, module: GeneratedModule, system: DrivenModule
 ) -> Iterator[tuple[str, xarray.Variable]]:
@@ -72,13 +63,10 @@ def inputs_of(
         if name not in swept:
             yield name, reduced(plan, xarray.Variable(dims, wave, attrs))
             continue
-        step = origin(plan)
-        step[swept[name]] = 1
-        along = [
-            inputs_at_point(plan, module, k * step).at_samples(plan.samples)[row]
-            for k in range(plan.shape[swept[name]])
-        ]
-        over = (plan.dims[swept[name]], *dims)
+        axis = swept[name]
+        points = np.arange(plan.shape[axis])[:, None] * np.eye(len(plan.axes), dtype=int)[axis]
+        along = [plan.inputs_at(module, point).at_samples(plan.samples)[row] for point in points]
+        over = (plan.dims[axis], *dims)
         yield f"u_{name}", reduced(plan, xarray.Variable(over, np.array(along), attrs))
 
 
@@ -102,42 +90,70 @@ def attrs_of(plan: Plan, system: DrivenModule) -> dict[str, Any]:
     return {**attrs, **done, "engine": plan.engine}
 
 
-def write(array: Any, region: Region, name: str, one: xarray.Variable) -> None:
-    """Write a quantity of a box into an array over the grid."""
-    refuse_other_sizes(name, array.shape[len(region) :], one.shape[len(region) :])
-    array[region] = one.values
+class Results(ABC):
+    """Results of a sweep as they come, in arrays over the grid."""
+
+    _arrays: Any  # by name, the errors among them
+
+    def __init__(self, plan: Plan) -> None:
+        self._plan = plan
+        self._names: list[str] = []  # of quantities, once there are some
+
+    def take(self, region: Region, result: Result) -> None:
+        """Keep the result of a box; its errors last."""
+        grid, found = len(region), result.quantities
+        if self._names and found:
+            refuse_other_names(self._names, found)
+        for name, one in result.coords.items():
+            if name not in self._arrays:
+                self._add(name, one, one.shape, one.shape)
+                self._arrays[name][...] = one.values
+        for name, one in found.items():
+            own = one.shape[grid:]
+            if name not in self._arrays:
+                shapes = self._plan.shape, self._plan.box_shape
+                self._add(name, one, *((*shape, *own) for shape in shapes))
+            refuse_other_sizes(name, self._arrays[name].shape[grid:], own)
+            self._arrays[name][region] = one.values
+        self._names = self._names or list(found)
+        self._arrays["error"][region] = result.errors
+
+    @abstractmethod
+    def _add(self, name: str, one: xarray.Variable, shape: Shape, chunks: Shape) -> None:
+        """Add an array for a quantity like this one, nan where nothing is written."""
+
+    @abstractmethod
+    def missing(self) -> Iterable[Region]:
+        """Return the boxes without results."""
+
+    @abstractmethod
+    def dataset(self) -> xarray.Dataset:
+        """Return all results; only errors, if the reduction never ran."""
 
 
 @final
-class Memory:
-    """Keeps results in arrays over the grid."""
+class Memory(Results):
+    """Keeps results in memory."""
 
     def __init__(self, plan: Plan, frame: xarray.Dataset) -> None:
-        self._plan, self._frame = plan, frame
-        self._errors = np.full(plan.shape, "", dtype=object)
-        self._found: dict[str, xarray.Variable] = {}
-        self._coords: dict[str, xarray.Variable] = {}
+        super().__init__(plan)
+        self._frame = frame
+        errors = np.full(plan.shape, "", dtype=object)
+        self._arrays = {"error": errors}
+        self._variables = {"error": xarray.Variable(plan.dims, errors, ERROR_ATTRS)}
+
+    def _add(self, name: str, one: xarray.Variable, shape: Shape, chunks: Shape) -> None:  # noqa: ARG002
+        room = np.full(shape, np.nan if one.dtype.kind == "f" else 0, one.dtype)
+        self._arrays[name] = room
+        self._variables[name] = xarray.Variable(one.dims, room, one.attrs)
 
     def missing(self) -> Iterable[Region]:
         """Return all boxes."""
         return self._plan.regions()
 
-    def take(self, region: Region, result: Result) -> None:
-        """Keep the result of a box."""
-        self._errors[region] = result.errors
-        self._coords = result.coords or self._coords
-        if self._found and result.quantities:
-            refuse_other_names(self._found, result.quantities)
-        for name, one in result.quantities.items():
-            if name not in self._found:
-                shape = (*self._plan.shape, *one.shape[len(region) :])
-                # a function that fails for a whole box leaves nan
-                room = np.full(shape, np.nan) if callable(self._plan.reduce) else np.empty(shape)
-                self._found[name] = xarray.Variable(one.dims, room, one.attrs)
-            write(self._found[name].values, region, name, one)
-
     def dataset(self) -> xarray.Dataset:
-        """Return all results; only errors, if the reduction never ran."""
-        errors = xarray.Variable(self._plan.dims, self._errors, ERROR_ATTRS)
-        found = self._frame.assign_coords(self._coords).assign({**self._found, "error": errors})
-        return found[[*self._found, *self._frame.data_vars, "error"]]
+        """Return all results."""
+        coords = {n: v for n, v in self._variables.items() if n not in (*self._names, "error")}
+        found = {name: self._variables[name] for name in (*self._names, "error")}
+        whole = self._frame.assign_coords(coords).assign(found)
+        return whole[[*self._names, *self._frame.data_vars, "error"]]

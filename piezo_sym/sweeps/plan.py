@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from piezo_sym.errors import PiezoError, UsageError, listing, quote
 from piezo_sym.run.checks import FloatArray, positive
 from piezo_sym.run.collocation import METHOD, FixedStep
-from piezo_sym.run.inputs import read_inputs
+from piezo_sym.run.inputs import Inputs, read_inputs
 from piezo_sym.run.method import checked_method, choose_method
 from piezo_sym.run.module import GeneratedModule, lanes
 from piezo_sym.run.parameters import (
@@ -33,7 +33,7 @@ from piezo_sym.run.parameters import (
     read_sizes,
     sample_times,
 )
-from piezo_sym.run.signals import Signal
+from piezo_sym.run.signals import Constant, Signal
 from piezo_sym.run.simulate import read_rtol, read_step
 from piezo_sym.sweeps.axes import Axis, read_axes, single_numbers
 from piezo_sym.sweeps.targets import Target
@@ -140,6 +140,25 @@ class Plan:
             for target in axis.targets:
                 yield n, target
 
+    def values_at(self, kind: str, point: NDArray[np.intp]) -> dict[str, Any]:
+        """Return the values at a point of what is swept of a kind, but for sizes."""
+        swept = ((n, t) for n, t in self.swept() if t.kind == kind and not t.is_size)
+        return {target.name: target.values[point[n]] for n, target in swept}
+
+    def inputs_at(self, module: GeneratedModule, point: NDArray[np.intp]) -> Inputs:
+        """Return the inputs of the runs at a point."""
+        swept = self.values_at("inputs", point)
+        named = zip(module.INPUTS, self.signals, strict=True)
+        values = (swept.get(record.name, signal) for record, signal in named)
+        return Inputs(
+            tuple(v if isinstance(v, Signal) else Constant(float(v)) for v in values), self.duration
+        )
+
+    def base_at(self, module: GeneratedModule, point: NDArray[np.intp]) -> Any:
+        """Return the parameters of the runs at a point: swept sizes, but no other swept values."""
+        sizes = {t.name: int(t.values[point[n]]) for n, t in self.swept() if t.is_size}
+        return read_parameters(module, {**self.parameters, **sizes})
+
     def names(self) -> Iterator[str]:
         """Yield the names of the swept dimensions and their coordinates."""
         for axis in self.axes:
@@ -164,12 +183,12 @@ def read_plan(
 
     `runs` is what `simulate` takes, as `sweep` lists it.
     """
-    inputs, duration, rtol, step, order, parameters, initial, method, times, every = runs
+    inputs, duration, rtol, step, order, parameters, initial, method, times = runs
     with named_sweep():
         named, bound = checked_method(method), read_rtol(rtol)
         fixed, end = read_step(step, order, named, rtol), positive(duration, "sweep.duration")
-        only_end = reduce == "last" and times is every is step is None
-        samples = sample_times(2 if only_end else times, every, step, end)
+        only_end = reduce == "last" and times is step is None
+        samples = sample_times(2 if only_end else times, step, end)
         signals = read_inputs(module, inputs, end)
         axes = read_axes(module, over, end, read_sizes(module, parameters))
         for target in (target for axis in axes for target in axis.targets):

@@ -51,7 +51,7 @@ def as_variables(known: Known) -> Quantities:
 def of_runs(runs: Runs, engine: Engine, u: FloatArray, kept: slice) -> Quantities:
     """Return every quantity of runs in C; `u` (m, nt) at all samples, of which some are kept."""
     system = runs.systems[0]
-    module, call = system.module, Members(engine, runs.systems.parameters)
+    module, call = system.module, Members(engine, [one.parameters for one in runs.systems])
     x, u = np.ascontiguousarray(runs.states[:, kept]), np.ascontiguousarray(u[:, kept].T)
     first = np.ascontiguousarray(runs.start[:, None])
     with np.errstate(all="ignore"):

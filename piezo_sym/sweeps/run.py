@@ -1,10 +1,11 @@
 """Run one box of a sweep: the work of one task, in a thread or in another process.
 
 Input: the `Plan` of a box, its module.  Output: a `Result`: the quantities kept of each run, and
-the error of each that failed.
+the error of each that failed.  Runs with equal inputs and sizes form a `Group`.
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any, final
 
 import numpy as np
@@ -15,12 +16,12 @@ from piezo_sym.errors import PiezoError, RunError
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.collocation import METHOD, Watch, collocate
 from piezo_sym.run.dataset import coordinates, spread
-from piezo_sym.run.engine.engine import Engine, engine_of
-from piezo_sym.run.guard import check_inputs, inputs_move
-from piezo_sym.run.module import GeneratedModule
+from piezo_sym.run.engine.engine import Engine, Members, engine_of
+from piezo_sym.run.guard import check_inputs, check_start, inputs_move
+from piezo_sym.run.module import GeneratedModule, row_count
+from piezo_sym.run.parameters import own_initial, read_initial
 from piezo_sym.run.scipy_runs import by_scipy, cause
-from piezo_sym.run.system import DrivenModules
-from piezo_sym.sweeps.group import Group, group_at
+from piezo_sym.run.system import DrivenModule
 from piezo_sym.sweeps.plan import Plan
 from piezo_sym.sweeps.reduce import (
     MEMBER,
@@ -47,6 +48,58 @@ class Result:
     errors: NDArray[Any]  # why each run failed, or ""
     quantities: Quantities  # nan where a run failed; none if a function's runs all failed
     coords: Quantities  # of dimensions that a function created
+
+
+@final
+@dataclass(frozen=True)
+class Group:
+    """Runs with equal inputs and sizes."""
+
+    systems: Sequence[DrivenModule]
+    start: FloatArray  # states (runs, n) at t = 0, nan where a run has none
+    errors: list[str]  # of each run, why it failed, or ""
+
+
+def group_at(
+    plan: Plan, module: GeneratedModule, engine: Engine | None, points: NDArray[np.intp]
+) -> Group:
+    """Return the runs at points (runs, axes), which have equal inputs and sizes.
+
+    A run that cannot start has the same error as from `simulate`.
+    """
+    inputs, base = plan.inputs_at(module, points[0]), plan.base_at(module, points[0])
+    values = ({**vars(base), **plan.values_at("parameters", point)} for point in points)
+    systems = [DrivenModule(module, replace(base, **one), inputs) for one in values]
+    u = inputs.segments[0].at(0.0)
+    start = np.full((len(points), row_count(module.STATES, base)), np.nan)
+    errors = [""] * len(points)
+    for k, system in enumerate(systems):
+        p, given = system.parameters, {**plan.initial, **plan.values_at("initial", points[k])}
+        try:
+            x = read_initial(module, p, u, given) if given else own_initial(module, p, u)
+            start[k] = x
+        except PiezoError as error:
+            errors[k] = str(error)
+    check_starts(systems, engine, start, errors)
+    return Group(systems, start, errors)
+
+
+def check_starts(
+    systems: Sequence[DrivenModule], engine: Engine | None, start: FloatArray, errors: list[str]
+) -> None:
+    """Fill in the errors of runs whose start is outside the domain; C finds them."""
+    fine = np.zeros(len(systems), dtype=bool)
+    if engine:
+        first = systems[0].inputs.segments[0]
+        u = np.ascontiguousarray(first.at(first.start)[None])
+        x = np.ascontiguousarray(start[:, None])
+        fine = Members(engine, [one.parameters for one in systems]).inside(x, u)[:, 0]
+    for k in np.flatnonzero(~fine).tolist():
+        if not errors[k]:
+            try:
+                check_start(systems[k], start[k])
+            except PiezoError as error:
+                errors[k] = str(error)
 
 
 def run_box(plan: Plan, module: GeneratedModule, watch: Watch) -> Result:
@@ -96,10 +149,8 @@ def group_result(
     plan: Plan, group: Group, engine: Engine | None, points: NDArray[np.intp], watch: Watch
 ) -> tuple[Quantities, Quantities]:
     """Return the quantities kept of a group, and a function's coordinates; fill in its errors."""
-    u = group.systems.inputs.at_samples(plan.samples)
+    u = group.systems[0].inputs.at_samples(plan.samples)
     found = in_c(plan, group, engine, u, watch) if engine else one_by_one(plan, group, watch)
-    if any(group.errors):
-        found = with_failed(plan, group, found)
     if plan.reduce is None:
         return found, {}
     if isinstance(plan.reduce, str):
@@ -112,27 +163,26 @@ def group_result(
     return as_quantities(made)
 
 
-def with_failed(plan: Plan, group: Group, found: Quantities) -> Quantities:
-    """Return quantities of all runs from those of the successful ones; the others are nan."""
-    through = [not error for error in group.errors]
-    size, whole = (len(through), plan.samples[plan.kept].size), {}
-    for name, one in layout(group.systems[0]).items():
-        values = np.full((*size, *one.shape[1:]), np.nan)
-        if found:
-            values[through] = found[name].values
-        whole[name] = xarray.Variable((MEMBER, *one.dims), values, one.attrs)
-    return whole
+def no_results(plan: Plan, group: Group) -> Quantities:
+    """Return every quantity of a group's runs, all of them nan."""
+    size = len(group.systems), plan.samples[plan.kept].size
+    return {
+        name: xarray.Variable(
+            (MEMBER, *one.dims), np.full((*size, *one.shape[1:]), np.nan), one.attrs
+        )
+        for name, one in layout(group.systems[0]).items()
+    }
 
 
 def in_c(plan: Plan, group: Group, engine: Engine, u: FloatArray, watch: Watch) -> Quantities:
-    """Return every quantity of the runs that succeed in C; fill in the errors of the others.
+    """Return every quantity of runs in C; fill in the errors of those that fail.
 
     As with `simulate`, a run whose inputs leave the domain is an error.
     """
     started = [k for k, error in enumerate(group.errors) if not error]
     if not started:
-        return {}
-    systems, x = group.systems.some(started), group.start[started]
+        return no_results(plan, group)
+    systems, x = [group.systems[k] for k in started], group.start[started]
     outside = input_errors(systems, x, plan.samples)
     given = systems, engine, x, plan.samples, plan.step or plan.rtol, watch
     runs = collocate(*given, side_by_side=plan.side_by_side)
@@ -141,12 +191,16 @@ def in_c(plan: Plan, group: Group, engine: Engine, u: FloatArray, watch: Watch) 
         error = outside[n] or (stopped and cause(systems[n], x[n], plan.samples, stopped))
         group.errors[k] = str(error or "")
     found = of_runs(runs, engine, u, plan.kept)
-    through = [not group.errors[k] for k in started]
-    return found if all(through) else {name: one[through] for name, one in found.items()}
+    if not any(group.errors):
+        return found
+    whole, good = no_results(plan, group), np.array([not error for error in group.errors])
+    for name, one in found.items():
+        whole[name].values[good] = one.values[good[started]]
+    return whole
 
 
 def input_errors(
-    systems: DrivenModules, x: FloatArray, samples: FloatArray
+    systems: Sequence[DrivenModule], x: FloatArray, samples: FloatArray
 ) -> list[RunError | None]:
     """Return the errors of inputs that leave the domain after t = 0, where starts are checked."""
     found: list[RunError | None] = [None] * len(systems)
@@ -159,8 +213,8 @@ def input_errors(
 
 
 def one_by_one(plan: Plan, group: Group, watch: Watch) -> Quantities:
-    """Return every quantity of the runs that succeed in SciPy; fill in the errors of the others."""
-    parts = []
+    """Return every quantity of runs by SciPy; fill in the errors of those that fail."""
+    found = no_results(plan, group)
     for k, system in enumerate(group.systems):
         if group.errors[k]:
             continue
@@ -170,11 +224,8 @@ def one_by_one(plan: Plan, group: Group, watch: Watch) -> Quantities:
         except PiezoError as error:
             group.errors[k] = str(error)
         else:
-            parts.append(of_trajectory(system, run))
-    found = {}
-    for name, one in parts[0].items() if parts else ():
-        values = np.stack([part[name].values[plan.kept] for part in parts])
-        found[name] = xarray.Variable((MEMBER, *one.dims), values, one.attrs)
+            for name, one in of_trajectory(system, run).items():
+                found[name].values[k] = one.values[plan.kept]
     return found
 
 

@@ -21,11 +21,11 @@ from typing import Any, final
 import numpy as np
 import xarray
 
-from piezo_sym.errors import FileError, listing
+from piezo_sym.errors import FileError
 from piezo_sym.files import path_text, zarr_library
-from piezo_sym.sweeps.frame import ERROR_ATTRS, NOT_RUN, write
+from piezo_sym.run.streaming import held_back
+from piezo_sym.sweeps.frame import ERROR_ATTRS, NOT_RUN, Results, Shape
 from piezo_sym.sweeps.plan import Plan, Region
-from piezo_sym.sweeps.reduce import refuse_other_names
 from piezo_sym.sweeps.run import Result
 
 #: Fields that say how runs are divided and executed, not which runs they are.
@@ -115,26 +115,10 @@ def store_at(path: Path, plan: Plan, frame: xarray.Dataset, spec_sha256: str) ->
     if MARK not in group.attrs:
         raise FileError("is no store of a sweep", path_text(path), remedy=FRESH)
     if group.attrs[MARK] != mark:
-        what = f"holds another sweep: {difference(group, frame, plan.dims)}"
-        raise FileError(what, path_text(path), "a store of this very sweep", FRESH)
+        expected = "a store of this very sweep"
+        raise FileError("holds another sweep", path_text(path), expected, FRESH)
     plan = replace(plan, most=int(str(group.attrs[BOX])))
     return plan, Store(path, group, plan)
-
-
-def difference(group: Any, frame: xarray.Dataset, dims: tuple[str, ...]) -> str:
-    """Return how the sweep in a store differs from this one, as far as the store shows it."""
-    stored, ours = {MARK, BOX, RESULTS}, frame.attrs
-    other = [name for name in ours if not np.array_equal(group.attrs.get(name), ours[name])]
-    other += [name for name in group.attrs if name not in {*ours, *stored}]
-    swept = group["error"].metadata.dimension_names or ()
-    other += sorted(set(swept) ^ set(dims))
-    for name, one in frame.coords.items():
-        if name in group and set(one.dims) <= set(dims):
-            other += [] if np.array_equal(group[name][...], one.values) else [str(name)]
-    names = [name for name in dict.fromkeys(other) if name != "engine"]
-    if not names:
-        return "its inputs, samples, initial values or functions are others"
-    return f"others are {listing(name.removeprefix('parameter_') for name in names)}"
 
 
 def create(path: Path, plan: Plan, frame: xarray.Dataset, marks: dict[str, object]) -> None:
@@ -167,49 +151,39 @@ def consolidate(path: Path) -> None:
 
 
 @final
-class Store:
+class Store(Results):
     """Writes results into arrays over the grid, one chunk per box."""
 
     def __init__(self, path: Path, group: Any, plan: Plan) -> None:
-        self._path, self._group, self._plan = path, group, plan
+        super().__init__(plan)
+        self._path, self._arrays = path, group
+        self._names = json.loads(str(group.attrs.get(RESULTS, "[]")))
 
     def missing(self) -> Iterator[Region]:
         """Yield the boxes that are not written completely."""
         for region in self._plan.regions():
             try:
-                done = not np.any(np.asarray(self._group["error"][region]) == NOT_RUN)
+                done = not np.any(np.asarray(self._arrays["error"][region]) == NOT_RUN)
             except UNREADABLE:  # the process ended while it was written
                 done = False
             if not done:
                 yield region
 
     def take(self, region: Region, result: Result) -> None:
-        """Write the result of a box; its errors last."""
-        known, found = self._group.attrs.get(RESULTS), result.quantities
-        if known is not None and found:
-            refuse_other_names(json.loads(str(known)), found)
+        """Write the result of a box."""
+        known = self._names
         try:
-            for name, one in result.coords.items():
-                if name not in self._group:
-                    self._add(name, one, one.shape, one.shape)[...] = one.values
-            for name, one in found.items():
-                if name not in self._group:
-                    own, plan = one.shape[len(region) :], self._plan
-                    self._add(name, one, (*plan.shape, *own), (*plan.box_shape, *own))
-                write(self._group[name], region, name, one)
-            self._group["error"][region] = result.errors
-            if known is None and found:
-                self._group.attrs[RESULTS] = json.dumps(list(found))
-                consolidate(self._path)
+            with held_back():
+                super().take(region, result)
+                if not known and self._names:
+                    self._arrays.attrs[RESULTS] = json.dumps(self._names)
+                    consolidate(self._path)
         except OSError as cause:
             what = f"cannot be written: {cause.strerror}"
             raise FileError(what, path_text(self._path)) from cause
 
-    def _add(
-        self, name: str, one: xarray.Variable, shape: tuple[int, ...], chunks: tuple[int, ...]
-    ) -> Any:
-        """Add an array of a variable's type and attributes, nan where nothing is written."""
-        return self._group.create_array(
+    def _add(self, name: str, one: xarray.Variable, shape: Shape, chunks: Shape) -> None:
+        self._arrays.create_array(
             name,
             shape=shape,
             chunks=tuple(max(1, size) for size in chunks),

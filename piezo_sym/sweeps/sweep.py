@@ -28,7 +28,7 @@ from piezo_sym.run.checks import whole
 from piezo_sym.run.inputs import InputValue
 from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.parameters import LaneValue
-from piezo_sym.sweeps.frame import Memory, frame_of
+from piezo_sym.sweeps.frame import Memory, Results, frame_of
 from piezo_sym.sweeps.plan import Plan, Reduction, read_plan
 from piezo_sym.sweeps.pool import SENT_AT_ONCE, Submit, processors, results, sender, threads_for
 
@@ -36,7 +36,6 @@ if TYPE_CHECKING:
     import xarray
 
     from piezo_sym.spec.model import Model
-    from piezo_sym.sweeps.store import Store
 
 
 class SweepWarning(UserWarning):
@@ -56,7 +55,6 @@ def sweep(
     initial: Mapping[str, LaneValue] | None = None,
     method: str | None = None,
     times: int | ArrayLike | None = None,
-    every: int | None = None,
     reduce: Reduction | None = None,
     reduce_by: Literal["run", "chunk"] = "run",
     executor: Executor | None = None,
@@ -79,7 +77,7 @@ def sweep(
         A mapping of labels (numbers or texts) to values gives the dimension these labels. A tuple
         of names -> a list of tuples, or an array (points, names): values that go together, one
         dimension "L_T_e", with coordinates L and T_e along it.
-    inputs, duration, rtol, step, order, parameters, initial, times, every : of all runs, as for
+    inputs, duration, rtol, step, order, parameters, initial, times : of all runs, as for
         `simulate`: 1001 samples when `times` is left out, each of which costs steps of its own;
         with `reduce="last"` and a tolerance the end alone.
     method : as for `simulate`; discrete_gradient when left out, and without a compiler LSODA.
@@ -124,7 +122,7 @@ def sweep(
     count = processors() if threads is None else whole(threads, "sweep.threads", 1)
     refuse_executor(executor, threads)
     module: Any = module_of(model)
-    runs = (inputs, duration, rtol, step, order, parameters, initial, method, times, every)
+    runs = (inputs, duration, rtol, step, order, parameters, initial, method, times)
     plan = read_plan(module, over, runs, reduce, reduce_by)
     plan, sink = sink_of(plan, module, store, count)
     with ExitStack() as stack:
@@ -138,9 +136,7 @@ def sweep(
     return found
 
 
-def run_missing(
-    sink: Memory | Store, submit: Submit, at_once: int, progress: object, total: int
-) -> None:
+def run_missing(sink: Results, submit: Submit, at_once: int, progress: object, total: int) -> None:
     """Run the boxes that are missing, and keep the results as they are completed."""
     boxes = list(sink.missing())
     done = total - sum(prod(part.stop - part.start for part in box) for box in boxes)
@@ -164,7 +160,7 @@ def refuse_executor(executor: object, threads: object) -> None:
 
 def sink_of(
     plan: Plan, module: GeneratedModule, store: str | Path | None, threads: int
-) -> tuple[Plan, Memory | Store]:
+) -> tuple[Plan, Results]:
     """Return what collects the results, and the plan with its boxes."""
     frame = frame_of(plan, module)
     plan = replace(plan, most=max(1, min(plan.most, -(-plan.size // (2 * threads)))))

@@ -94,7 +94,7 @@ def _plan(family: Family, rtol: float) -> Plan:
     problem, end = family.problem, [family.problem.duration]
     stepping = rtol, None, None
     start = problem.counts, None, METHOD
-    runs = problem.inputs, problem.duration, *stepping, *start, end, None
+    runs = problem.inputs, problem.duration, *stepping, *start, end
     return read_plan(problem.module, {family.name: family.values}, runs, "last", "run")
 
 

@@ -14,7 +14,6 @@ import xarray
 
 import piezo_sym
 from piezo_sym import sine
-from piezo_sym.cli.simulate import patience
 
 ROOT = Path(__file__).parents[2]
 
@@ -441,14 +440,6 @@ def test_a_run_begins_at_a_temperature(call, tmp_path, monkeypatch):
     twice = call(*run, "--initial", "S=0.1")
     assert twice.code == 2
     assert "'S' is given too; expected one of them" in twice.err
-
-
-def test_a_long_run_says_so_once(capsys):
-    told = patience(seconds=0.0)
-    told(1e-3)
-    told(2e-3)
-    (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith("still running, at t = 0.001 s after 0 s; Ctrl-C ends it")
 
 
 @pytest.mark.parametrize(("event", "hits"), [("q - 5", 0), ("q - 1e-9", 1)])

@@ -1,14 +1,12 @@
 """The engine: compiled once, whoever asks; without a compiler one line."""
 
 import ctypes
-import gc
 import os
 import re
 import shutil
 import subprocess
 import sys
 import threading
-import weakref
 from pathlib import Path
 
 import numpy as np
@@ -20,8 +18,6 @@ from piezo_sym.run.engine import Engine, EngineWarning, compiler
 from piezo_sym.run.engine import library as libraries
 from piezo_sym.run.engine.compiler import compilers, processor
 from piezo_sym.run.engine.engine import Members, engine_of
-from piezo_sym.run.engine.records import ParameterRecords
-from piezo_sym.run.system import ParameterTable
 from tests.conftest import full_disk, write_script
 
 ROOT = Path(__file__).parents[2]
@@ -82,26 +78,12 @@ def test_a_source_that_changes_is_compiled_again(module):
 
 
 def test_runs_have_the_parameters_that_they_are_given(module):
-    """What C has of a table is kept as long as it: another table of as many runs is another."""
     engine, state = engine_of(module), STATE[None, None]
-    tables = [
-        ParameterTable(module.Parameters(), 2, {"M": np.array(masses)})
-        for masses in ([3.5e-3, 7e-3], [1e-3, 2e-3], [1e-3, 4e-3])
-    ]
-    for table in tables * 2:
-        found = Members(engine, table)("rhs", np.repeat(state, 2, 0), 6, INPUTS[None])
-        for row, p in zip(found[:, 0], table, strict=True):
+    for masses in ([3.5e-3, 7e-3], [1e-3, 2e-3], [1e-3, 4e-3]) * 2:
+        parameters = [module.Parameters(M=mass) for mass in masses]
+        found = Members(engine, parameters)("rhs", np.repeat(state, 2, 0), 6, INPUTS[None])
+        for row, p in zip(found[:, 0], parameters, strict=True):
             assert np.array_equal(row, module.rhs(STATE, INPUTS, p))
-
-
-def test_what_c_has_of_a_table_goes_with_it(module):
-    layout = ParameterRecords(module)
-    table = ParameterTable(module.Parameters(), 2, {"M": np.array([1e-3, 2e-3])})
-    kept = weakref.ref(layout.many(table))
-    assert layout.many(table) is kept()
-    del table
-    gc.collect()
-    assert kept() is None
 
 
 @pytest.mark.parametrize("what", ["source", "flags", "version", "processor"])

@@ -10,7 +10,6 @@ import xarray
 
 from piezo_sym import progress, sine
 from piezo_sym import simulate as simulate_shipped
-from piezo_sym import step as signal
 from piezo_sym.errors import UsageError
 from piezo_sym.run import simulate
 
@@ -131,22 +130,6 @@ def test_a_run_leaves_the_symbolic_libraries_alone():
     assert run.stdout.strip() == "[] [] True", run.stderr
 
 
-def test_samples_every_so_many_steps():
-    run = simulate_shipped("piezo_stack", duration=1e-4, step=1e-6, every=30)
-    assert run.time.values == pytest.approx([0, 3e-5, 6e-5, 9e-5, 1e-4], abs=1e-18)
-    assert run.attrs["accepted_steps"] == 100
-    run = simulate_shipped("piezo_stack", duration=9e-5, step=1e-6, every=30)
-    assert run.time.values == pytest.approx([0, 3e-5, 6e-5, 9e-5], abs=1e-18)
-
-
-@pytest.mark.parametrize(
-    "options", [{"every": 3}, {"every": 3, "step": 1e-6, "times": 5}, {"every": 0.5, "step": 1e-6}]
-)
-def test_every_needs_a_step_alone(options):
-    with pytest.raises(UsageError, match=r"simulate\.every"):
-        simulate_shipped("piezo_stack", duration=1e-4, **options)
-
-
 @pytest.mark.parametrize(
     ("duration", "step", "samples", "apart"),
     [
@@ -163,26 +146,6 @@ def test_samples_of_a_fixed_step_are_ends_of_its_steps(duration, step, samples, 
     assert (times.size, times[0], times[-1]) == (samples, 0, duration)
     assert np.diff(times)[:-1] == pytest.approx(apart, rel=1e-9)
     assert run.attrs["accepted_steps"] == int(np.ceil(duration / step - 1e-9))
-
-
-@pytest.mark.parametrize(
-    ("more", "shortest"),
-    [
-        ({}, 1e-5),
-        ({"duration": 1.004e-3}, 4e-6),
-        ({"times": 2}, 1e-5),
-        ({"times": 51}, 1e-5),
-        ({"times": 41}, 2.5e-5 / 3),
-        ({"times": [1e-4, 3.7e-4, 1e-3]}, 1e-5),
-        ({"times": [1e-4, 3.71e-4, 1e-3]}, 271e-6 / 28),
-        ({"times": 2, "inputs": {"V_in": signal(4.2e-4, 0, 1)}}, 1e-5),
-        ({"times": 2, "inputs": {"V_in": signal(4.25e-4, 0, 1)}}, 425e-6 / 43),
-    ],
-)
-def test_a_run_tells_its_shortest_step(more, shortest):
-    run = simulate_shipped("piezo_stack", **{"duration": 1e-3, "step": 1e-5, **more})
-    assert run.attrs["step"] == 1e-5
-    assert run.attrs["shortest_step"] == pytest.approx(shortest, rel=1e-9)
 
 
 def test_progress_is_shown_as_a_bar(capsys, monkeypatch):

@@ -214,3 +214,9 @@ def test_lists_of_another_size_than_the_specs_go_with_a_size_that_is_given():
     found = sweep(STARTER, over={"i_0": [[1e-3, 2e-3, 3e-3], 2e-3]}, **how, **BASE)
     run = single(STARTER, parameters={"hysteron_count": 3, "i_0": [1e-3, 2e-3, 3e-3]})
     np.testing.assert_array_equal(found.phi.values[0], run.phi.values)
+
+
+def test_runs_start_at_a_temperature():
+    given = {"initial": {"T_body": 320.0}, "duration": 1e-3, "times": 2}
+    found = sweep("piezo_stack", over={"L": [1e-3]}, **given)
+    assert found.T_body.values[0, 0] == pytest.approx(320.0)

@@ -19,7 +19,6 @@ from piezo_sym.run.engine.library import Layout, read_source, shared_library
 from piezo_sym.run.engine.records import DOUBLE, LONG, addresses, at, c_record, record_dtype
 from piezo_sym.run.engine.signals import InputRecords
 from piezo_sym.run.inputs import Inputs
-from piezo_sym.run.system import ParameterTable
 
 #: Vectors lie at multiples of so many bytes.
 ALIGNED = 64
@@ -88,7 +87,7 @@ class Batch:
     def __init__(
         self,
         engine: Engine,
-        parameters: Sequence[Any] | ParameterTable,
+        parameters: Sequence[Any],
         x: FloatArray,
         inputs: Inputs,
         times: FloatArray,

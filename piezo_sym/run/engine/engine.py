@@ -22,7 +22,6 @@ from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.engine.library import CACHE, Sources, read_source, shared_library
 from piezo_sym.run.engine.records import INT, LONG, POINTER, ParameterRecords, at
 from piezo_sym.run.module import GeneratedModule, held, row_count
-from piezo_sym.run.system import ParameterTable
 
 #: Of which records each function of a module gives rows; of none: one number.
 _ROWS = {
@@ -158,7 +157,7 @@ def _place(out: FloatArray | None, shape: tuple[int, ...]) -> FloatArray:
 class Members:
     """The functions of a module for some runs of equal sizes, each with parameters of its own."""
 
-    def __init__(self, engine: Engine, parameters: Sequence[Any] | ParameterTable) -> None:
+    def __init__(self, engine: Engine, parameters: Sequence[Any]) -> None:
         self._engine = engine
         self._kept = engine.structure.many(parameters)
 

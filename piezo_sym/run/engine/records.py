@@ -1,6 +1,6 @@
 """Records of C for Python: those that the files of this folder declare, and a model's parameters.
 
-Input: the declarations, and a module's `Parameters` or a `ParameterTable` of many.  Output: ctypes
+Input: the declarations, and a module's `Parameters`, of one run or of many.  Output: ctypes
 structures, their addresses, and what their pointers point into.
 """
 
@@ -10,7 +10,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from typing import Any, final
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +17,6 @@ from numpy.typing import NDArray
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.engine.c_sources import c_source
 from piezo_sym.run.module import GeneratedModule, lanes
-from piezo_sym.run.system import Column, ParameterTable
 
 POINTER, LONG, INT, DOUBLE = ctypes.c_void_p, ctypes.c_long, ctypes.c_int, ctypes.c_double
 _DECLARED = ("trajectory.c", "batch.c", "step_once.c", "derivatives.c")
@@ -106,7 +104,6 @@ class ParameterRecords:
         none = [("none", ctypes.c_char)]
         self._kind = type("Parameters", (ctypes.Structure,), {"_fields_": fields or none})
         self._remembered = lru_cache(maxsize=REMEMBERED)(self._made)
-        self._tables: WeakKeyDictionary[ParameterTable, Structures] = WeakKeyDictionary()
 
     def __call__(self, p: Any) -> Structure:
         """Return the structure of one run."""
@@ -128,43 +125,22 @@ class ParameterRecords:
         values += [lanes(p, bank) for bank in self._module.BANKS]
         return Structure(self._kind(*values), tuple(arrays))
 
-    def many(self, parameters: Sequence[Any] | ParameterTable) -> Structures:
-        """Return the structures of runs whose banks have equal sizes.
-
-        Those of a `ParameterTable` are made once, and go with it.
-        """
-        if len(parameters) == 1:
-            one = self(parameters[0])
-            return Structures(np.array([ctypes.addressof(one.value)], dtype=np.uintp), (one,))
-        table = ParameterTable.of(parameters)
-        found = self._tables.get(table)
-        if found is None:
-            found = self._tables[table] = self._together(table)
-        return found
-
-    def _together(self, table: ParameterTable) -> Structures:
-        base = self(table.base)
-        records = np.full(len(table), np.frombuffer(memoryview(base.value), np.dtype(self._kind)))
-        kept: list[object] = [base, records]
+    def many(self, parameters: Sequence[Any]) -> Structures:
+        """Return the structures of runs whose banks have equal sizes."""
+        first = self(parameters[0])
+        records = np.full(
+            len(parameters), np.frombuffer(memoryview(first.value), np.dtype(self._kind))
+        )
+        kept: list[object] = [first, records]
         for n, record in enumerate(self._module.PARAMETERS):
-            column = table.columns.get(record.name)
-            if column is not None and record.bank:
-                kept.append(rows := _rows(column, lanes(table.base, record.bank)))
+            values = [getattr(p, record.name) for p in parameters]
+            if record.bank and any(value is not values[0] for value in values):
+                count = lanes(parameters[0], record.bank)
+                kept.append(rows := np.array([_spread(value, count) for value in values]))
                 records[f"field_{n}"] = addresses(rows)
-            elif column is not None:
-                records[f"field_{n}"] = column
+            elif not record.bank:
+                records[f"field_{n}"] = values
         return Structures(addresses(records), tuple(kept))
-
-
-def _rows(values: Column, count: int) -> FloatArray:
-    """Return one number per lane, a row each; a value is a number or one per lane."""
-    try:
-        array = np.array(values, dtype=float)  # all of them numbers, or all one per lane
-    except ValueError:
-        return np.array([_spread(value, count) for value in values])
-    if array.ndim == 1:
-        array = array[:, None]
-    return np.ascontiguousarray(np.broadcast_to(array, (len(values), count)))
 
 
 def _spread(value: Any, count: int) -> FloatArray:
