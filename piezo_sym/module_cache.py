@@ -27,7 +27,7 @@ SOURCES = (".py", ".c", ".h")
 UNPROVED_FOLDER, SHAPE_FOLDER = "-unproved", "-shape"
 
 
-def cached(name: str, sha256: str, kind: str = "") -> ModuleType | None:
+def cached_module(name: str, sha256: str, kind: str = "") -> ModuleType | None:
     """Return a module from the cache; None if it is not there, or cannot be loaded."""
     path = _path(name, sha256, kind)
     with suppress(FileError):
@@ -35,22 +35,22 @@ def cached(name: str, sha256: str, kind: str = "") -> ModuleType | None:
     return None
 
 
-def kept(name: str, sha256: str, texts: Mapping[str, str], kind: str = "") -> ModuleType:
+def cache_module(name: str, sha256: str, texts: Mapping[str, str], kind: str = "") -> ModuleType:
     """Return a module from its texts, which go to the cache."""
     folder = _path(name, sha256, kind).parent
     try:
-        return written(folder, name, texts)
+        return write_module(folder, name, texts)
     except FileError:  # a read-only cache: the module and its C live as long as the process
-        return written(temporary_folder() / folder.name, name, texts)
+        return write_module(temporary_folder() / folder.name, name, texts)
 
 
-def written(folder: Path, name: str, texts: Mapping[str, str]) -> ModuleType:
+def write_module(folder: Path, name: str, texts: Mapping[str, str]) -> ModuleType:
     """Return a module from its texts, which are written to a folder."""
     write_together({folder / f"{name}{ending}": text.encode() for ending, text in texts.items()})
     return load_module(folder / f"{name}.py")
 
 
-def template(name: str, shape: str) -> Template | None:
+def cached_template(name: str, shape: str) -> Template | None:
     """Return the proved texts of a spec's shape, if they are in the cache."""
     with suppress(FileError):
         text = read_text(_path(name, shape, SHAPE_FOLDER).with_suffix(".json"))
@@ -58,7 +58,7 @@ def template(name: str, shape: str) -> Template | None:
     return None
 
 
-def keep_template(name: str, shape: str, made: Template) -> None:
+def cache_template(name: str, shape: str, made: Template) -> None:
     """Put the proved texts of a spec's shape into the cache, if it can be written."""
     with suppress(FileError):
         write_text(_path(name, shape, SHAPE_FOLDER).with_suffix(".json"), made.to_text())

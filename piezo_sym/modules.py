@@ -24,12 +24,12 @@ from piezo_sym.files import path_text, temporary_folder
 from piezo_sym.module_cache import (
     PACKAGE,
     UNPROVED_FOLDER,
-    cached,
-    keep_template,
-    kept,
+    cache_module,
+    cache_template,
+    cached_module,
+    cached_template,
     load_module,
-    template,
-    written,
+    write_module,
 )
 from piezo_sym.run.module import UNPROVED, held, verdict_of
 from piezo_sym.spec.names import MAX_NAME
@@ -63,10 +63,10 @@ def module_of(spec: str | Path | Model, stages: int | None = None) -> ModuleType
     UsageError
         If `spec` is none of these.
     """
-    name, sha256, content = _identified(spec)
-    module = _known(name, sha256)
+    name, sha256, content = _identity(spec)
+    module = _available(name, sha256)
     if module is None and isinstance(content, dict):
-        module = _with_values(name, sha256, content)
+        module = _refilled(name, sha256, content)
     if module is None:
         from piezo_sym.verification.process import started
 
@@ -75,12 +75,12 @@ def module_of(spec: str | Path | Model, stages: int | None = None) -> ModuleType
         from piezo_sym.spec.model import Model
 
         model = content if isinstance(content, Model) else load(spec)  # type: ignore[arg-type]
-        module = _known(model.name, model.sha256) or _generated(model, stages)
+        module = _available(model.name, model.sha256) or _derived(model, stages)
     verdict = verdict_of(module)
     if verdict.startswith(UNPROVED):
         text = f"model '{module.NAME}' is {verdict}: its runs may break a law of thermodynamics"
         warnings.warn(text, ModuleWarning, stacklevel=3)
-    elif not _is_current(module):
+    elif not _matches_folder(module):
         path, again = path_text(GENERATED / module.NAME), _command(spec)
         text = (
             f"{path} is not what the spec generates and is not used; replace it by `{again}`, "
@@ -90,7 +90,7 @@ def module_of(spec: str | Path | Model, stages: int | None = None) -> ModuleType
     return module
 
 
-def _identified(spec: str | Path | Model) -> tuple[str, str, Model | dict[str, Any] | None]:
+def _identity(spec: str | Path | Model) -> tuple[str, str, Model | dict[str, Any] | None]:
     """Return the name and the hash of a spec, and a model or plain data of a spec's shape.
 
     The spec's types are loaded only in doubt.
@@ -106,7 +106,7 @@ def _identified(spec: str | Path | Model) -> tuple[str, str, Model | dict[str, A
     if {"components", "banks"} & content.keys():  # as they are written out
         from piezo_sym.spec.load import load
 
-        return _identified(load(spec))
+        return _identity(load(spec))
     header = content.get("model")
     name = header.get("name") if isinstance(header, dict) else None
     known = isinstance(name, str) and name.isidentifier() and len(name) <= MAX_NAME
@@ -122,7 +122,7 @@ def _command(spec: str | Path | Model) -> str:
     return f"piezo-sym generate {spec if str(spec) in shipped() else find(spec)}"
 
 
-def _own(name: str, sha256: str) -> ModuleType | None:
+def _packaged(name: str, sha256: str) -> ModuleType | None:
     """Return the module of exactly this spec that came with the package, or with its checkout."""
     checkout = PACKAGE.parent / GENERATED
     for folder in (PACKAGE / GENERATED, checkout):
@@ -134,33 +134,33 @@ def _own(name: str, sha256: str) -> ModuleType | None:
     return None
 
 
-def _known(name: str, sha256: str) -> ModuleType | None:
+def _available(name: str, sha256: str) -> ModuleType | None:
     """Return the module of exactly this spec: the package's own, or from the user's cache.
 
     One that is not proved only if the working folder has the same.
     """
     if not name:
         return None
-    if found := _own(name, sha256) or cached(name, sha256):
+    if found := _packaged(name, sha256) or cached_module(name, sha256):
         return found
-    found = cached(name, sha256, UNPROVED_FOLDER) if (GENERATED / name).is_dir() else None
-    return found if found and _is_current(found) else None
+    found = cached_module(name, sha256, UNPROVED_FOLDER) if (GENERATED / name).is_dir() else None
+    return found if found and _matches_folder(found) else None
 
 
-def _with_values(name: str, sha256: str, data: Mapping[str, Any]) -> ModuleType | None:
+def _refilled(name: str, sha256: str, data: Mapping[str, Any]) -> ModuleType | None:
     """Return the module of a spec that differs by values from a known one; None if it is not so.
 
     What else loading would say of the values, the module's conditions say: in doubt, None.
     """
-    found = template(name, shape_hash(data))
+    found = cached_template(name, shape_hash(data))
     if found is None or not found.quick:
         return None
     try:
         texts = found.filled(data)
     except OverflowError:
         return None
-    trial = written(temporary_folder() / sha256, name, texts)
-    return kept(name, sha256, texts) if _starts_inside(trial) else None
+    trial = write_module(temporary_folder() / sha256, name, texts)
+    return cache_module(name, sha256, texts) if _starts_inside(trial) else None
 
 
 def _starts_inside(module: Any) -> bool:
@@ -175,7 +175,7 @@ def _starts_inside(module: Any) -> bool:
     return all(np.isfinite(one).all() for one in found) and bool(held(module, found[-1]).all())
 
 
-def _generated(model: Model, stages: int | None) -> ModuleType:
+def _derived(model: Model, stages: int | None) -> ModuleType:
     """Return the module of a model, generated into the user's cache, with its template."""
     from piezo_sym.build import blank_texts, verdict_line
     from piezo_sym.derivation import derive
@@ -183,21 +183,21 @@ def _generated(model: Model, stages: int | None) -> ModuleType:
 
     data = model.flatten().model_dump()
     shape, iphs = shape_hash(data), derive(model)
-    found = template(model.name, shape)
+    found = cached_template(model.name, shape)
     if found is None:
         found = blank_texts(iphs)
-        with _meanwhile(model.name, shape, found.filled(data), stages):
+        with _compiling_ahead(model.name, shape, found.filled(data), stages):
             report = verify(iphs)
         found = replace(found, verdict=verdict_line(report))
-        if report.failures and (module := _all_the_same(model, found.filled(data))):
+        if report.failures and (module := _unproved(model, found.filled(data))):
             return module
         report.raise_if_not_proved()
-        keep_template(model.name, shape, found)
-    return kept(model.name, model.sha256, found.filled(data))
+        cache_template(model.name, shape, found)
+    return cache_module(model.name, model.sha256, found.filled(data))
 
 
 @contextmanager
-def _meanwhile(
+def _compiling_ahead(
     name: str, shape: str, texts: Mapping[str, str], stages: int | None
 ) -> Iterator[None]:
     """Compile what a run needs, and import what its result is, while a module is proved.
@@ -209,7 +209,7 @@ def _meanwhile(
         return
     from piezo_sym.run.collocation import compile_ahead
 
-    module = written(temporary_folder() / f"{shape}-ahead", name, texts)
+    module = write_module(temporary_folder() / f"{shape}-ahead", name, texts)
     compiling = Thread(target=compile_ahead, args=(module, stages), daemon=True)
     threads = compiling, Thread(target=_import_results, daemon=True)
     for thread in threads:
@@ -224,15 +224,15 @@ def _import_results() -> None:
         import xarray  # noqa: F401
 
 
-def _all_the_same(model: Model, texts: Mapping[str, str]) -> ModuleType | None:
+def _unproved(model: Model, texts: Mapping[str, str]) -> ModuleType | None:
     """Return a module that is not proved, if the working folder has the same."""
     if not (GENERATED / model.name).is_dir():
         return None
-    module = kept(model.name, model.sha256, texts, UNPROVED_FOLDER)
-    return module if _is_current(module) else None
+    module = cache_module(model.name, model.sha256, texts, UNPROVED_FOLDER)
+    return module if _matches_folder(module) else None
 
 
-def _is_current(module: ModuleType) -> bool:
+def _matches_folder(module: ModuleType) -> bool:
     """Return whether ``generated/`` of the working folder has this very module, or none."""
     folder, own = GENERATED / module.NAME, Path(str(module.__file__)).parent
     names = [f"{module.NAME}{ending}" for ending in (".py", ".h", ".c", "_step.h", "_step.c")]

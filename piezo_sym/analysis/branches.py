@@ -17,9 +17,8 @@ from typing import final
 
 import numpy as np
 
-from piezo_sym.analysis.balance import grid, scan, temperature_range, zeros
+from piezo_sym.analysis.balance import grid, scan, settled, temperature_range, zeros
 from piezo_sym.analysis.curves import Curve, CurvePoint, folds, traced
-from piezo_sym.analysis.newton import settled
 from piezo_sym.analysis.repeating import Driven, refuse_not_following
 from piezo_sym.analysis.stroboscope import Stroboscope, stroboscope
 from piezo_sym.run.checks import FloatArray, span_of

@@ -16,8 +16,7 @@ from typing import TypeAlias, final
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from piezo_sym.analysis.balance import SteadyWarning
-from piezo_sym.analysis.newton import Settled, settled
+from piezo_sym.analysis.balance import Settled, SteadyWarning, settled
 from piezo_sym.analysis.stroboscope import Stroboscope
 from piezo_sym.errors import RunError
 from piezo_sym.run.checks import FloatArray

@@ -23,8 +23,13 @@ from piezo_sym.analysis.rest import ROUND_OFF, RestSearch
 from piezo_sym.errors import RunError
 from piezo_sym.run.checks import FloatArray, known_keys, number
 from piezo_sym.run.module import GeneratedModule, by_name, checked, row_name
-from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
-from piezo_sym.run.temperatures import entropy_row, put_temperature
+from piezo_sym.run.parameters import (
+    LaneValue,
+    entropy_row,
+    put_temperature,
+    read_initial,
+    read_parameters,
+)
 
 WHERE = "operating_point"
 

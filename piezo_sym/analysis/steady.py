@@ -22,14 +22,16 @@ from typing import TYPE_CHECKING, final
 import numpy as np
 
 from piezo_sym.analysis.balance import (
+    Settled,
     SteadyWarning,
     between,
+    fixed_point,
     grid,
+    jacobian,
     scan,
     temperature_range,
     zeros,
 )
-from piezo_sym.analysis.newton import Settled, fixed_point, jacobian
 from piezo_sym.analysis.repeating import any_varies
 from piezo_sym.analysis.stroboscope import Stroboscope, over_period, stroboscope
 from piezo_sym.errors import RunError, UsageError

@@ -28,9 +28,14 @@ from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.guard import check_inputs, check_start
 from piezo_sym.run.inputs import Inputs, read_inputs
 from piezo_sym.run.module import GeneratedModule, by_name, checked, held
-from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
+from piezo_sym.run.parameters import (
+    LaneValue,
+    entropy_row,
+    put_temperature,
+    read_initial,
+    read_parameters,
+)
 from piezo_sym.run.system import DrivenModule
-from piezo_sym.run.temperatures import entropy_row, put_temperature
 
 if TYPE_CHECKING:
     import xarray

@@ -35,7 +35,7 @@ def reproduce(
 
 
 def _write(module: ModuleType, out: Path) -> None:
-    """Write each figure once its curves are computed, and print its summary at the end."""
+    """Write each figure once its curves are computed."""
     from piezo_sym.analysis.figures import FIGURES
     from piezo_sym.analysis.style import save
 
@@ -48,4 +48,3 @@ def _write(module: ModuleType, out: Path) -> None:
                 continue
             data = figure.joined(done[figure])
             lines += map(str, save(figure.draw(data), data, out, figure.name))
-            lines.append(figure.summary(data))

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any, TypeAlias, final
 import numpy as np
 from numpy.typing import NDArray
 
-from piezo_sym.errors import UsageError, quote
-from piezo_sym.run.checks import FloatArray
+from piezo_sym.errors import UsageError, listing, nearest, quote
+from piezo_sym.run.checks import FloatArray, is_vector
 from piezo_sym.run.ledger import Trajectory
-from piezo_sym.run.module import Record, exchanges, lanes, verdict_of
+from piezo_sym.run.module import GeneratedModule, Record, exchanges, lanes, verdict_of
 from piezo_sym.run.system import DrivenModule
 
 if TYPE_CHECKING:
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 Variable: TypeAlias = tuple[tuple[str, ...], "NDArray[Any] | pandas.Index[Any]", dict[str, Any]]
 Named: TypeAlias = tuple[str, Variable]
+#: Where quantities of elements are asked for, and the word for all of them.
+OUTPUTS, EVERY = "simulate.outputs", "all"
 
 
 @final
@@ -160,3 +162,42 @@ def coordinates(system: DrivenModule, times: FloatArray) -> Iterator[Named]:
 def described(unit: str, long_name: str) -> dict[str, Any]:
     """Return the attributes of a variable."""
     return {"units": unit, "long_name": long_name}
+
+
+def read_outputs(module: GeneratedModule, outputs: object) -> tuple[str, ...]:
+    """Return the quantities that are asked for, in the module's order; raise `UsageError`."""
+    names = tuple(record.name for record in module.ELEMENTS)
+    if outputs is None:
+        return ()
+    if outputs == EVERY:
+        return names
+    if not is_vector(outputs):
+        expected = f"'{EVERY}', or a list of elements and quantities such as 'damper.heat'"
+        raise UsageError(f"{quote(outputs)} is no list of names", OUTPUTS, expected)
+    wanted = set[str]()
+    for asked in outputs:  # type: ignore[attr-defined]  # a vector
+        found = [name for name in names if asked in (name, name.rpartition(".")[0])]
+        if not found:
+            raise UsageError(f"unknown name {quote(asked)}", OUTPUTS, remedy=_remedy(asked, names))
+        wanted.update(found)
+    return tuple(name for name in names if name in wanted)
+
+
+def _remedy(asked: object, names: tuple[str, ...]) -> str:
+    element = str(asked).rpartition(".")[0]
+    own = [name.rpartition(".")[2] for name in names if name.rpartition(".")[0] == element]
+    if own:
+        return f"'{element}' has {listing(own)}"
+    return nearest(str(asked), (*dict.fromkeys(name.rpartition(".")[0] for name in names), *names))
+
+
+def element_variables(
+    system: DrivenModule, run: Trajectory, names: tuple[str, ...]
+) -> Iterator[Named]:
+    """Yield the quantities of elements over a run that have these names."""
+    if names:
+        module = system.module
+        values = module.elements(run.states, run.inputs, system.parameters)
+        for name, variable in spread(system, ("time",), module.ELEMENTS, values):
+            if name in names:
+                yield name, variable

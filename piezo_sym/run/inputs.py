@@ -42,11 +42,7 @@ class Segment:
 
     def at(self, t: float) -> FloatArray:
         """Return the inputs u (m,) at one time."""
-        inner = min(max(t, self.low), self.high)
-        u = self.base.copy()
-        for row, signal in self.varying:
-            u[row] = signal(inner)
-        return u
+        return self.over(np.asarray(t))
 
     def over(self, t: FloatArray) -> FloatArray:
         """Return the inputs u (m, *shape of t) at many times."""

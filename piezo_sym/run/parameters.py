@@ -21,11 +21,11 @@ from piezo_sym.run.checks import (
     is_vector,
     known_keys,
     number,
+    positive,
     vector,
     whole,
 )
 from piezo_sym.run.module import GeneratedModule, lanes, others, row_names, rows
-from piezo_sym.run.temperatures import put_temperature
 
 if TYPE_CHECKING:
     import xarray
@@ -203,3 +203,46 @@ def start_of(
             word = str(name).removeprefix(PARAMETER)
             used[word] = int(value) if word.endswith("_count") else np.asarray(value).tolist()
     return float(last.time) if start is None else start, state, {**used, **(parameters or {})}
+
+
+def put_temperature(
+    module: GeneratedModule, p: Any, x: FloatArray, body: int, value: object, where: str
+) -> int:
+    """Put the entropy at which a body has a temperature [K] into x (n,), and return its row.
+
+    Raises
+    ------
+    UsageError
+        If the temperature is not positive, or no entropy gives it.
+    """
+    T = positive(value, where)
+    row = entropy_row(module, p, x, body)
+    x[row] = _entropy_at(module, p, x, body, row, T, where)
+    return row
+
+
+def entropy_row(module: GeneratedModule, p: Any, x: FloatArray, body: int) -> int:
+    """Return the row that moves a body's temperature most, for equal relative moves."""
+    step = 1e-6 * np.maximum(np.abs(x), 1.0)
+    moved = module.temperatures(x[:, None] + np.diag(step), p)[body]
+    return int(np.argmax(np.abs(moved - module.temperatures(x, p)[body])))
+
+
+def _entropy_at(
+    module: GeneratedModule, p: Any, x: FloatArray, body: int, row: int, T: float, where: str
+) -> float:
+    """Return the entropy [J/K] at which a body has the temperature T; it rises with the entropy."""
+    from scipy.optimize import brentq  # loads slowly, and few runs ask for it
+
+    def excess(entropy: float) -> float:
+        y = x.copy()
+        y[row] = entropy
+        with np.errstate(over="ignore", divide="ignore"):
+            return float(np.log(module.temperatures(y, p)[body] / T))
+
+    middle, reach = float(x[row]), 1e-9 * max(1.0, abs(float(x[row])))  # a capacity may be tiny
+    while excess(middle - reach) > 0 or excess(middle + reach) < 0:
+        reach *= 4
+        if not np.isfinite(reach):
+            raise UsageError(f"{T:g} K is out of the body's reach", where)
+    return float(brentq(excess, middle - reach, middle + reach, xtol=1e-300, rtol=1e-15))

@@ -16,8 +16,7 @@ import numpy as np
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.collocation import METHOD, FixedStep, Watch, choice, collocate
-from piezo_sym.run.dataset import to_dataset
-from piezo_sym.run.elements import element_variables
+from piezo_sym.run.dataset import element_variables, to_dataset
 from piezo_sym.run.engine.batch import is_lossy
 from piezo_sym.run.engine.engine import Engine
 from piezo_sym.run.events import Watched, event_variables, look

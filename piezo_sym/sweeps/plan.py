@@ -35,8 +35,7 @@ from piezo_sym.run.parameters import (
 )
 from piezo_sym.run.signals import Constant, Signal
 from piezo_sym.run.simulate import read_rtol, read_step
-from piezo_sym.sweeps.axes import Axis, read_axes, single_numbers
-from piezo_sym.sweeps.targets import Target
+from piezo_sym.sweeps.axes import Axis, Target, read_axes, single_numbers
 
 Reduction: TypeAlias = Literal["last", "mean"] | Callable[[Any], object]
 #: Where a box is in the grid: a slice for each axis.

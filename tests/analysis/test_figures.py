@@ -98,11 +98,6 @@ def test_files_are_the_same_in_every_run(drawn, tmp_path):
     assert "<dc:date>" not in svg
 
 
-def test_it_says_what_it_shows(drawn):
-    figure, data, _ = drawn
-    assert "[" in figure.summary(data)
-
-
 def test_figure_4_draws_stable_states_solid_and_jumps(drawn):
     figure, _, picture = drawn
     if figure is not figure_4.FIGURE_4:

@@ -17,8 +17,7 @@ from piezo_sym import (
     triangle,
 )
 from piezo_sym.analysis import loops, steady
-from piezo_sym.analysis.balance import SteadyWarning
-from piezo_sym.analysis.newton import settled
+from piezo_sym.analysis.balance import SteadyWarning, settled
 from piezo_sym.analysis.stroboscope import Stroboscope, stroboscope
 from piezo_sym.errors import EngineError, RunError, UsageError
 from piezo_sym.spec.load import parse

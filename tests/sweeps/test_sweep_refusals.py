@@ -8,7 +8,7 @@ import pytest
 from piezo_sym import ramp, simulate, sine, step, sweep
 from piezo_sym.errors import FileError, RunError, UsageError
 from piezo_sym.sweeps import SweepWarning
-from piezo_sym.sweeps.targets import Target, find
+from piezo_sym.sweeps.axes import Target, find
 
 NAN, INF = float("nan"), float("inf")
 
@@ -76,7 +76,7 @@ def test_wrong_arguments_are_refused_in_one_line(options, message):
 
 def test_a_name_of_two_things_has_to_be_spelled_out(monkeypatch):
     two = (Target("parameters", "x", "1", "", None), Target("initial", "x", "1", "", None))
-    monkeypatch.setattr("piezo_sym.sweeps.targets.targets", lambda _: iter(two))
+    monkeypatch.setattr("piezo_sym.sweeps.axes.targets", lambda _: iter(two))
     with pytest.raises(UsageError, match=r"'x' is a parameter and a state; write 'param"):
         find(None, "x", "sweep.over")
     assert find(None, "initial.x", "sweep.over") == two[1]

@@ -33,7 +33,6 @@ class PaperFigure:
     units: str
     curve: Callable[[GeneratedModule, float], xarray.Dataset]
     draw: Callable[[xarray.Dataset], Figure]
-    summary: Callable[[xarray.Dataset], str]
 
     def joined(self, curves: list[xarray.Dataset]) -> xarray.Dataset:
         """Return the data of all curves, in the order of `values`."""

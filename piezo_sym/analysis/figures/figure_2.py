@@ -51,11 +51,4 @@ def draw(data: xarray.Dataset) -> Figure:
     return figure
 
 
-def summary(data: xarray.Dataset) -> str:
-    """Return the slopes of the operator outside its dead zone, for a log."""
-    rise = data.w_T.isel(i=-1) - data.w_T.isel(i=-2)
-    slopes = (rise / (data.i.isel(i=-1) - data.i.isel(i=-2))).values
-    return "resistance outside the dead zone [ohm]: " + ", ".join(f"{s:.3g}" for s in slopes)
-
-
-FIGURE_2 = PaperFigure("figure_2", "T", TEMPERATURES, "degC", curve, draw, summary)
+FIGURE_2 = PaperFigure("figure_2", "T", TEMPERATURES, "degC", curve, draw)

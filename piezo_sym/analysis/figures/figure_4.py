@@ -119,11 +119,4 @@ def _draw_jumps(axes: Axes, one: xarray.Dataset, look: dict[str, Any]) -> None:
         axes.plot(f, start, linestyle="", **look)
 
 
-def summary(data: xarray.Dataset) -> str:
-    """Return where the temperature jumps, for a log."""
-    at = [one.frequency.values[~np.isnan(one.jumps_to.values)] for _, one in data.groupby("L")]
-    shown = ", ".join("/".join(f"{f:.1f}" for f in each) or "nowhere" for each in at)
-    return f"runaway from [Hz], by inductance: {shown}"
-
-
-FIGURE_4 = PaperFigure("figure_4", "L", INDUCTANCES, "mH", curve, draw, summary)
+FIGURE_4 = PaperFigure("figure_4", "L", INDUCTANCES, "mH", curve, draw)

@@ -68,10 +68,4 @@ def draw(data: xarray.Dataset) -> Figure:
     return figure
 
 
-def summary(data: xarray.Dataset) -> str:
-    """Return where the tip comes to rest, for a log."""
-    ends = ", ".join(f"{q * 1e3:.4f}" for q in data.q.isel(time=-1).values)
-    return f"displacement at the end [mm]: {ends}"
-
-
-FIGURE_5 = PaperFigure("figure_5", "T_e", TEMPERATURES, "degC", curve, draw, summary)
+FIGURE_5 = PaperFigure("figure_5", "T_e", TEMPERATURES, "degC", curve, draw)

@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from piezo_sym.analysis import loops
 from piezo_sym.analysis.figures.figure import (
     AMPLITUDE,
     CELSIUS,
@@ -69,13 +68,6 @@ def last_periods(data: xarray.Dataset) -> xarray.Dataset:
     return data.isel({"time" if "time" in data.dims else "turn": slice(-SAMPLES - 1, None)})
 
 
-def measured(data: xarray.Dataset, over: str) -> list[loops.Loop]:
-    """Return the measures of displacement [m] over voltage [V] in the last period of each run."""
-    last = last_periods(data)
-    each = (last.sel({over: value}) for value in data[over].values)
-    return [loops.measure(one.V_in.values, one.q.values) for one in each]
-
-
 def _drawn(data: xarray.Dataset, over: str, unit: str) -> tuple[Figure, Axes]:
     """Return a figure with the last period of each run, and its axes."""
     figure, axes = column_figure()
@@ -100,19 +92,5 @@ def draw_6(data: xarray.Dataset) -> Figure:
     return figure
 
 
-def slopes(data: xarray.Dataset) -> str:
-    """Return the slopes of the loops of Figure 3, for a log."""
-    found = ", ".join(f"{one.slope * 1e6:.3f}" for one in measured(data, "T_e"))
-    return f"slope of the loops, tenth period [um/V]: {found}"
-
-
-def widths(data: xarray.Dataset) -> str:
-    """Return widths and slopes of the loops of Figure 6, for a log."""
-    found = measured(data, "frequency")
-    widths = ", ".join(f"{one.width * 1e3:.3f}" for one in found)
-    slopes = ", ".join(f"{one.slope * 1e6:.2f}" for one in found)
-    return f"width of the loops at 0 V, tenth period [mm]: {widths}; slope [um/V]: {slopes}"
-
-
-FIGURE_3 = PaperFigure("figure_3", "T_e", TEMPERATURES, "degC", run, draw_3, slopes)
-FIGURE_6 = PaperFigure("figure_6", "frequency", FREQUENCIES, "Hz", over_turns, draw_6, widths)
+FIGURE_3 = PaperFigure("figure_3", "T_e", TEMPERATURES, "degC", run, draw_3)
+FIGURE_6 = PaperFigure("figure_6", "frequency", FREQUENCIES, "Hz", over_turns, draw_6)
