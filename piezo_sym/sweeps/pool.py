@@ -1,16 +1,23 @@
 """Boxes run side by side: in threads, or by any executor of `concurrent.futures`.
 
-Input: boxes, and a function that submits one.  Output: results in the order of the boxes.  Few
-boxes are submitted at once, so that results do not accumulate.
+Input: boxes, and a function that submits one.  Output: results as they are completed; those that
+complete together in the order of the boxes.  Few boxes are submitted at once, so that results do
+not accumulate.
 """
 
 from __future__ import annotations
 
 import os
 import pickle
-from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
-from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    Executor,
+    Future,
+    ThreadPoolExecutor,
+    wait,
+)
 from contextlib import contextmanager
 from pathlib import Path
 from threading import Event
@@ -104,28 +111,33 @@ def ignore(_: float) -> None:
 def results(
     submit: Submit, boxes: Iterable[Region], at_once: int
 ) -> Generator[tuple[Region, Result], None, None]:
-    """Yield boxes and results in their order; if the caller stops, cancel the others."""
-    pending: deque[tuple[Region, Future[Result]]] = deque()
+    """Yield boxes and results as they are completed; if the caller stops, cancel the others."""
+    pending: dict[Future[Result], Region] = {}
     try:
         for box in boxes:
-            pending.append((box, submit(box)))
+            pending[submit(box)] = box
             if len(pending) >= at_once:
-                yield taken(pending)
+                yield from arrivals(pending)
         while pending:
-            yield taken(pending)
+            yield from arrivals(pending)
     except BrokenExecutor as cause:
         what = f"a process of the executor died: {one_line(str(cause))}"
         remedy = "with store=..., start again: what is done is kept"
         raise RunError(what, "sweep.executor", remedy=remedy) from cause
     finally:
-        for _, future in pending:
+        for future in pending:
             future.cancel()
 
 
-def taken(pending: deque[tuple[Region, Future[Result]]]) -> tuple[Region, Result]:
-    """Wait for the first, and return it; nothing else keeps its result."""
-    box, future = pending.popleft()
-    return box, future.result()
+def arrivals(
+    pending: dict[Future[Result], Region],
+) -> Generator[tuple[Region, Result], None, None]:
+    """Wait, and yield what is completed, in the order submitted."""
+    still = wait(pending, return_when=FIRST_COMPLETED).not_done
+    ready = [(f, pending.pop(f)) for f in reversed(list(pending)) if f not in still]
+    while ready:  # drops each result before the next is waited for
+        future, box = ready.pop()
+        yield box, future.result()
 
 
 def processors() -> int:
