@@ -11,9 +11,8 @@ which are the chain rule of the generated Jacobian, for inputs and outputs, too.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
-from math import fsum
 from pathlib import Path
 from typing import Any, final
 
@@ -24,14 +23,16 @@ from piezo_sym.codegen.differences import sharp_program
 from piezo_sym.codegen.functions import functions_of
 from piezo_sym.codegen.jacobian import jacobian_of
 from piezo_sym.codegen.lower import program_of
-from piezo_sym.codegen.program import Entry, Names, Program, bank_of
+from piezo_sym.codegen.numpy.module import numpy_module
+from piezo_sym.codegen.program import Names
 from piezo_sym.codegen.quantities import quantities_of
 from piezo_sym.derivation import derive
 from piezo_sym.errors import RunError, UsageError, quote
-from piezo_sym.expressions.tree import Expr, LaneSum, evaluate, names
+from piezo_sym.files import temporary_folder
+from piezo_sym.module_cache import write_module
 from piezo_sym.modules import module_of
 from piezo_sym.run.checks import FloatArray, known_keys
-from piezo_sym.run.module import GeneratedModule, by_name, lanes, row_names, rows
+from piezo_sym.run.module import GeneratedModule, row_names
 from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
 from piezo_sym.spec.load import load
 from piezo_sym.spec.model import Model
@@ -125,40 +126,51 @@ def linearize(
         raise UsageError(f"{quote(at)} is no state", f"{WHERE}.at", expected)
     p = read_parameters(module, parameters)
     u = read_constants(module, inputs, f"{WHERE}.inputs")
-    return _linear(module, _program(model), p, read_initial(module, p, u, initial), u)
+    return _linear(module, _derivatives(model), p, read_initial(module, p, u, initial), u)
 
 
 @lru_cache(maxsize=32)
-def _program(model: Model) -> Program:
-    """Return a program whose Jacobian has the rows of rates, then outputs; by states, then inputs.
+def _derivatives(model: Model) -> Any:
+    """Return a module whose Jacobian has the rows of rates, inputs, outputs, and these columns.
 
-    Its `states` are both.
+    Only the rows of rates and outputs, and the columns of states and inputs, are not zero.
     """
     q = quantities_of(derive(model))
     found = {function.name: function.rows for function in functions_of(q)}
     program, new = program_of(q, ()), Names(q.taken)
-    variables = (*program.states, *program.inputs)
-    made = (*found["rhs"], *found["outputs"])
-    entries, derivatives = jacobian_of(made, variables, q.defined, q.lanes, new, q.temperatures)
-    quantities = (*q.defined, *derivatives)
-    return sharp_program(
-        replace(program, quantities=quantities, jacobian=entries, states=variables)
+    n, m = len(program.states), len(program.inputs)
+    entries, derivatives = jacobian_of(
+        (*found["rhs"], *found["outputs"]),
+        (*program.states, *program.inputs),
+        *(q.defined, q.lanes, new, q.temperatures),
     )
+    outputs = (replace(field, name=new(f"y_{field.name}")) for field in program.outputs)
+    made = replace(
+        program,
+        states=(*program.states, *program.inputs, *outputs),
+        inputs=(),
+        quantities=(*q.defined, *derivatives),
+        jacobian=tuple(replace(e, row=e.row + m * (e.row >= n)) for e in entries),
+        taken=frozenset(new.taken),
+    )
+    folder = temporary_folder() / f"{model.sha256}-linear"
+    return write_module(folder, model.name, {".py": numpy_module(sharp_program(made))})
 
 
 def _linear(
-    module: GeneratedModule, program: Program, p: Any, x: FloatArray, u: FloatArray
+    module: GeneratedModule, derivatives: Any, p: Any, x: FloatArray, u: FloatArray
 ) -> LinearModel:
-    try:
-        matrix = _matrix(module, program, p, x, u)
-    except (ArithmeticError, ValueError) as cause:
-        what = f"the rates and outputs have no derivative there: {cause}"
-        remedy = "give another 'at', or other inputs"
-        raise RunError(what, f"model '{module.NAME}'", remedy=remedy) from cause
     parts = module.STATES, module.INPUTS, module.OUTPUTS
     states, inputs, outputs = (row_names(records, p) for records in parts)
     outputs = [f"y_{name}" for name in outputs]
-    n = len(states)
+    n, m = len(states), len(inputs)
+    point = np.concatenate([x, u, np.zeros(len(outputs))])
+    with np.errstate(all="ignore"):
+        matrix = derivatives.jacobian(point, np.empty(0), p)
+    if not np.isfinite(matrix).all():
+        what = "the rates and outputs have no derivative there"
+        remedy = "give another 'at', or other inputs"
+        raise RunError(what, f"model '{module.NAME}'", remedy=remedy)
     units = {
         name: record.unit
         for records, prefix in zip(parts, ("", "", "y_"), strict=True)
@@ -166,78 +178,7 @@ def _linear(
         for name in (f"{prefix}{row}" for row in row_names([record], p))
     }
     return LinearModel(
-        *(matrix[:n, :n], matrix[:n, n:], matrix[n:, :n], matrix[n:, n:]),
+        *(matrix[:n, :n], matrix[:n, n : n + m], matrix[n + m :, :n], matrix[n + m :, n : n + m]),
         *(tuple(states), tuple(inputs), tuple(outputs), units),
         *(x, u, module.outputs(x, u, p), module.rhs(x, u, p)),
     )
-
-
-def _matrix(
-    module: GeneratedModule, program: Program, p: Any, x: FloatArray, u: FloatArray
-) -> FloatArray:
-    """Return the derivative of rates and outputs by states and inputs, banks spread."""
-    values = _Values.at(module, program, p, x, u)
-    down = rows((*module.STATES, *module.OUTPUTS), p)
-    across = rows((*module.STATES, *module.INPUTS), p)
-    fields = (*module.STATES, *module.OUTPUTS)
-    out = np.zeros((down[-1].stop, across[-1].stop))
-    for entry in program.jacobian:
-        pair = fields[entry.row].bank, program.states[entry.col].bank
-        out[down[entry.row], across[entry.col]] = _block(entry, pair, values)
-    return out
-
-
-def _block(entry: Entry, banks: tuple[str | None, str | None], values: _Values) -> FloatArray:
-    """Return the part of the matrix that an entry stands for."""
-    row, col = banks
-    value = values.of(entry.value)
-    if row and row == col:
-        block = np.diag(np.broadcast_to(value, values.counts[row]))
-    else:
-        block = np.reshape(value, (-1, 1) if row else (1, -1))
-    for outer in entry.outer:
-        block = block + np.reshape(values.of(outer.left), (-1, 1)) * values.of(outer.right)
-    return block
-
-
-@final
-@dataclass(frozen=True)
-class _Values:
-    """The value of every name at a point, for a bank one per lane, (count,)."""
-
-    lanes: Mapping[str, str]
-    counts: Mapping[str, int]
-    known: dict[str, Any] = field(default_factory=dict)
-
-    @staticmethod
-    def at(
-        module: GeneratedModule, program: Program, p: Any, x: FloatArray, u: FloatArray
-    ) -> _Values:
-        """Compute all quantities of a program."""
-        counts = {bank: lanes(p, bank) for bank in module.BANKS}
-        found = _Values(program.lane_names(), counts)
-        found.known.update({f"{bank}_count": count for bank, count in counts.items()})
-        for record in module.PARAMETERS:
-            value = getattr(p, record.name)
-            found.known[record.name] = (
-                np.broadcast_to(value, counts[record.bank]) if record.bank else value
-            )
-        found.known.update(by_name(module.STATES, p, x) | by_name(module.INPUTS, p, u))
-        for quantity in program.quantities:
-            found.known[quantity.name] = found.of(quantity.value)
-        return found
-
-    def of(self, node: Expr) -> Any:
-        """Return the value of an expression, or one per lane, (count,)."""
-        if isinstance(node, LaneSum):
-            return fsum(self._each(node.arg, self.counts[node.bank]))
-        bank = bank_of(node, self.lanes)
-        return np.array([*self._each(node, self.counts[bank])]) if bank else self._one(node)
-
-    def _each(self, node: Expr, count: int) -> Iterator[float]:
-        return (self._one(node, lane) for lane in range(count))
-
-    def _one(self, node: Expr, lane: int = 0) -> float:
-        used = {name: self.known[name] for name in names(node)}
-        own = {n: float(v[lane] if np.ndim(v) else v) for n, v in used.items()}
-        return evaluate(node, own)

@@ -250,12 +250,3 @@ int MODEL(go)(MODEL(batch) *b, long steps)
     }
     return 1;
 }
-
-/* The current states of lanes, (lanes, n). */
-void MODEL(here)(const MODEL(batch) *b, double *out);
-void MODEL(here)(const MODEL(batch) *b, double *out)
-{
-    for (int lane = 0; lane < REAL_WIDTH; ++lane)
-        for (long k = 0; k < b->m.n; ++k)
-            out[lane * b->m.n + k] = LANE(b->m.x, k, lane);
-}

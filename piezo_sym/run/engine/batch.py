@@ -175,12 +175,6 @@ class Batch:
         """Take at most so many steps in each lane; return whether there is more to do."""
         return bool(self.call("go", LONG(steps)))
 
-    def here(self) -> FloatArray:
-        """Return the current state of the run in each lane, (lanes, n)."""
-        found = np.empty((1, self.x.shape[1]))
-        self.call("here", at(found))
-        return found
-
     def call(self, word: str, *more: Any) -> Any:
         """Call one of the functions of C on the batch; raise what an input has raised."""
         found = self.function(word)(self.address, *more)
