@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 
 from piezo_sym.errors import PiezoError, RunError, UsageError, listing, quote
 from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.dataset import Trajectory
 from piezo_sym.run.engine.batch import Batch, Stepping, collocation_library
 from piezo_sym.run.engine.engine import Engine, engine_of
 from piezo_sym.run.engine.library import Layout
 from piezo_sym.run.inputs import Inputs, Segment
-from piezo_sym.run.ledger import Trajectory
 from piezo_sym.run.module import GeneratedModule, row_count
 from piezo_sym.run.system import DrivenModule
 

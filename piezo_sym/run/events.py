@@ -22,8 +22,7 @@ from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import Add, Expr, Neg, evaluate, names
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.dataset import Known, described
-from piezo_sym.run.ledger import Trajectory
+from piezo_sym.run.dataset import Known, Trajectory, described
 from piezo_sym.run.module import row_names
 from piezo_sym.run.system import DrivenModule
 

@@ -16,13 +16,12 @@ import numpy as np
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.collocation import METHOD, FixedStep, Watch, choice, collocate
-from piezo_sym.run.dataset import element_variables, to_dataset
+from piezo_sym.run.dataset import Trajectory, element_variables, to_dataset
 from piezo_sym.run.engine.batch import is_lossy
 from piezo_sym.run.engine.engine import Engine
 from piezo_sym.run.events import Watched, event_variables, look
 from piezo_sym.run.guard import check_inputs, check_start
 from piezo_sym.run.inputs import InputValue, read_inputs
-from piezo_sym.run.ledger import Trajectory
 from piezo_sym.run.method import ChosenMethod
 from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.parameters import LaneValue, read_initial

@@ -23,10 +23,10 @@ import numpy as np
 from piezo_sym.errors import PiezoError, RunError
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.collocation import Watch
+from piezo_sym.run.dataset import Trajectory
 from piezo_sym.run.guard import crossing, domain_error, rate_error
 from piezo_sym.run.inputs import Segment
 from piezo_sym.run.integrate import Tolerance, accepted
-from piezo_sym.run.ledger import Trajectory
 from piezo_sym.run.system import DrivenModule
 
 if TYPE_CHECKING:

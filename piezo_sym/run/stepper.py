@@ -18,13 +18,12 @@ import numpy as np
 from piezo_sym.errors import PiezoError, RunError, UsageError, listing, quote
 from piezo_sym.run.checks import FloatArray, number, positive, vector
 from piezo_sym.run.collocation import layout_of, read_order
-from piezo_sym.run.dataset import Known
+from piezo_sym.run.dataset import Known, Trajectory
 from piezo_sym.run.engine.batch import Batch, Stepping
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.engine.records import POINTER, at, c_record
 from piezo_sym.run.guard import check_start, domain_error, input_conditions
 from piezo_sym.run.inputs import Inputs, read_inputs
-from piezo_sym.run.ledger import Trajectory
 from piezo_sym.run.module import GeneratedModule, checked, row_names
 from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
 from piezo_sym.run.signals import Constant

@@ -17,9 +17,8 @@ import xarray
 from piezo_sym.errors import UsageError, listing, quote
 from piezo_sym.run.checks import FloatArray, is_number
 from piezo_sym.run.collocation import Runs
-from piezo_sym.run.dataset import Known
+from piezo_sym.run.dataset import Known, Trajectory
 from piezo_sym.run.engine.engine import Engine, Members
-from piezo_sym.run.ledger import Trajectory
 from piezo_sym.run.module import row_count
 from piezo_sym.run.system import DrivenModule
 
