@@ -140,7 +140,6 @@ def drift(
 
 
 def _compare(path: Path, data: bytes) -> Iterator[Drift]:
-    """Yield how a file differs from what it should hold."""
     odd = _is_odd(path) or path.is_dir()
     present = None if odd else read_bytes(path)
     if present is None:
@@ -154,7 +153,6 @@ def _compare(path: Path, data: bytes) -> Iterator[Drift]:
 
 
 def _is_odd(path: Path) -> bool:
-    """Return whether something is there that is neither a regular file nor a folder."""
     return path.is_symlink() or (path.exists() and not (path.is_file() or path.is_dir()))
 
 

@@ -116,7 +116,6 @@ def _identity(spec: str | Path | Model) -> tuple[str, str, Model | dict[str, Any
 
 
 def _command(spec: str | Path | Model) -> str:
-    """Return what generates a spec's module in the working folder."""
     if not isinstance(spec, str | Path):
         return f"piezo_sym.generate(model) for '{spec.name}'"
     return f"piezo-sym generate {spec if str(spec) in shipped() else find(spec)}"

@@ -168,7 +168,6 @@ def _jump(strobe: Stroboscope, curves: Sequence[Curve], fold: CurvePoint, upward
 
 
 def _crossings(curves: Sequence[Curve], log_f: float) -> Iterator[tuple[float, float]]:
-    """Yield log T at t = 0 and mean T of the stable states at a frequency, interpolated."""
     for curve in curves:
         for a, b in pairwise(curve):
             if a.stable and b.stable and (a.place[0] - log_f) * (b.place[0] - log_f) <= 0:

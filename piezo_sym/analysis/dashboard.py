@@ -95,7 +95,6 @@ def refuse_others(run: xarray.Dataset) -> None:
 
 
 def _panels(run: xarray.Dataset) -> Iterator[Panel]:
-    """Yield the label of each panel, and the function that draws it."""
     for unit, names in _by_unit(run).items():
         shown = ", ".join(names[:3]) + (", ..." if len(names) > 3 else "")
         yield f"{shown} [{unit}]", partial(_lines, run=run, names=names)
@@ -112,7 +111,6 @@ def _panels(run: xarray.Dataset) -> Iterator[Panel]:
 
 
 def _by_unit(run: xarray.Dataset) -> dict[str, list[str]]:
-    """Return the names of states, inputs, outputs and temperatures, by unit."""
     found: dict[str, list[str]] = {}
     for name in map(str, run.data_vars):
         doubled = name.startswith("y_") and run[name].attrs.get("units") == "K"  # a body's T

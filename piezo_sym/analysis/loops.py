@@ -156,7 +156,6 @@ def drawn(run: xarray.Dataset, port: str) -> xarray.DataArray:
 
 
 def _loop(x: ArrayLike, y: ArrayLike) -> tuple[FloatArray, FloatArray]:
-    """Return the samples of a loop as two arrays, checked."""
     a, b = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     if a.ndim != 1 or a.shape != b.shape or a.size < FEWEST:
         what = f"x has shape {a.shape} and y {b.shape}"

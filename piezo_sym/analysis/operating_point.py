@@ -138,7 +138,6 @@ def _held(
 def _refuse_open_bodies(
     module: GeneratedModule, p: Any, x: FloatArray, undetermined: list[int]
 ) -> None:
-    """Raise `RunError` if rest leaves the temperature of a free body open."""
     if not undetermined:
         return
     step = np.zeros((x.size, len(undetermined)))

@@ -153,7 +153,6 @@ class RestSearch:
         return [int(row) for row in self.free[np.any(np.abs(open_) > UNDETERMINED, axis=0)]]
 
     def _none(self, rates: FloatArray, size: FloatArray) -> RunError:
-        """Return the error that nothing comes to rest, with the state that moves most."""
         row = int(self.free[int(np.argmax(np.abs(rates) / np.where(size > 0, size, np.inf)))])
         name = row_name(self.module.STATES, self.parameters, row)
         what = f"no state of rest is found: '{name}' goes on and on"
@@ -171,5 +170,4 @@ class RestSearch:
 
 
 def _part(move: FloatArray, size: FloatArray) -> float:
-    """Return the largest of the moves, as a part of the states' sizes."""
     return float(np.max(np.abs(move) / np.where(size > 0, size, 1.0), initial=0.0))

@@ -203,7 +203,6 @@ def _known(strobe: Stroboscope, given: tuple[float, float] | None) -> list[Settl
 
 
 def _first(strobe: Stroboscope, known: list[Settled]) -> Settled:
-    """Return the zero in the direction of the drift at the start."""
     T = strobe.temperature(strobe.start)
     if not known:
         what = f"nothing settles at {T:.6g} K or anywhere in the range"

@@ -102,7 +102,6 @@ class Stroboscope:
         return Period(states[:, -1], size, *over_period(T))
 
     def _period(self, x: FloatArray) -> FloatArray:
-        """Return the states (n, SAMPLES + 1) of one period."""
         return np.asarray(self._periods(x[None], SAMPLES + 1)[0])
 
     def ends(self, x: FloatArray) -> FloatArray:

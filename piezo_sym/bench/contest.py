@@ -158,7 +158,6 @@ def _row(group: str, pair: Pair, times: dict[Contestant, Times], measure: str) -
 
 
 def _duration(spread: Spread | None) -> str:
-    """Return a median time in the unit that fits it."""
     if spread is None:
         return "-"
     size, unit = next((pair for pair in UNITS if spread.median >= pair[0]), UNITS[-1])
@@ -166,5 +165,4 @@ def _duration(spread: Spread | None) -> str:
 
 
 def _error(value: float | None) -> str:
-    """Return an error with one digit."""
     return "-" if value is None else f"{value:.0e}"

@@ -140,7 +140,6 @@ def _rates(
 
 
 def _precise(problem: Problem, x: FloatArray) -> list[float]:
-    """Return the rates of one state, computed in 30 digits."""
     values = zip(problem.states, x, strict=True)
     known = {state: sp.Float(float(value), DIGITS) for state, value in values}
     return [float(rate.xreplace(known).evalf(DIGITS)) for rate in problem.at_instant]

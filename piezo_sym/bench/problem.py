@@ -10,14 +10,15 @@ usual way to solve it without this package: lambdified, integrated by SciPy's so
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from math import pi
 from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 import sympy as sp
+from scipy.integrate import solve_ivp
 
 from piezo_sym.derivation import derive
 from piezo_sym.errors import UsageError, quote
@@ -32,10 +33,6 @@ from piezo_sym.spec.load import load
 
 if TYPE_CHECKING:
     from piezo_sym.spec.model import Model
-from collections.abc import Callable
-from functools import partial
-
-from scipy.integrate import solve_ivp
 
 TIME = sp.Symbol("t", real=True)
 #: Time [s] at which the rates of many states are compared.

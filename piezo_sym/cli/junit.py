@@ -50,7 +50,6 @@ def _suite(root: ET.Element, name: str, tests: int, failures: int, errors: int) 
 
 
 def _rechecked(root: ET.Element, report: Report, second: Recheck) -> None:
-    """Add the suite of the second program's verdicts."""
     faults = len(second.faults(report.information))
     tests, name = len(second.rows) + bool(second.failed), f"{report.model}, rechecked"
     suite = _suite(root, name, tests, faults, 0)

@@ -50,7 +50,6 @@ def _meant(kind: str) -> str:
 
 
 def _show(kind: str, known: dict[str, Any]) -> None:
-    """Print a kind's description, its fields and its example."""
     *about, example = known["description"].split("\n\n")
     for part in about:
         typer.echo("\n".join(wrap(part, WIDTH)) + "\n")

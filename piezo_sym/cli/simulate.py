@@ -136,7 +136,6 @@ def _report(result: xarray.Dataset, inputs: Mapping[str, Any], out: Path | None)
 
 
 def _start(path: Path | None, initial: Mapping[str, Any]) -> Any:
-    """Return where a run begins: states by name, or the run that it goes on from."""
     import xarray
 
     if path is None:

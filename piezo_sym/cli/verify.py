@@ -69,7 +69,6 @@ def _show(found: dict[str, Report], second: dict[str, Recheck], *, as_json: bool
 
 
 def _reports(specs: list[str]) -> tuple[dict[str, Report], list[PiezoError]]:
-    """Return the reports of the specs that load, and the errors of the others."""
     from piezo_sym.verification.process import examined_model, started
 
     started()
@@ -89,7 +88,6 @@ def _reports(specs: list[str]) -> tuple[dict[str, Report], list[PiezoError]]:
 
 
 def _rechecked(spec: str, report: Report) -> Recheck:
-    """Return the second program's verdicts on a spec."""
     from piezo_sym.proofs import proofs_json
     from piezo_sym.spec.load import load
     from piezo_sym.spec.source import find, read

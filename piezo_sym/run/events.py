@@ -117,7 +117,6 @@ def _known(tree: Any, words: Sequence[str], where: str) -> Any:
 
 
 def _words(system: DrivenModule) -> list[str]:
-    """Return what expressions may use."""
     module, p = system.module, system.parameters
     return [
         *row_names(module.STATES, p),
@@ -129,7 +128,6 @@ def _words(system: DrivenModule) -> list[str]:
 
 
 def _rows(system: DrivenModule, trajectory: Trajectory) -> dict[str, list[float]]:
-    """Return the values of all words at every sample."""
     module, p = system.module, system.parameters
     x, u = trajectory.states, trajectory.inputs
     fixed = [getattr(p, record.name) for record in module.PARAMETERS if not record.bank]
@@ -181,7 +179,6 @@ def _signs(values: FloatArray) -> FloatArray:
 
 
 def _crossings(values: FloatArray) -> list[int]:
-    """Return the places at which the sign is another than before."""
     signs = _signs(values)
     changed = (signs[1:] != signs[:-1]) & (signs[:-1] != 0)
     return (np.flatnonzero(changed) + 1).tolist()

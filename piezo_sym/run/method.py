@@ -65,7 +65,6 @@ def choose_method(module: GeneratedModule, method: str | None, step: object) -> 
 
 
 def _found(module: GeneratedModule) -> Engine | EngineError:
-    """Return a module's engine, or why there is none."""
     if not _own(module):
         what = "is no module loaded from a file, so no C source is its own"
         return EngineError(what, f"model '{module.NAME}'")
@@ -80,7 +79,6 @@ def _found(module: GeneratedModule) -> Engine | EngineError:
 
 
 def _compiler(engine: Engine) -> str:
-    """Return the compiler of an engine, as the library itself says."""
     text = ctypes.c_char.in_dll(engine.library, f"{engine.module.NAME}_compiler")
     return one_line(ctypes.string_at(ctypes.addressof(text)).decode(errors="replace").strip())
 

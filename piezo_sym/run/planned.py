@@ -100,7 +100,6 @@ class PlannedRun:
         return to_dataset(self.system, times, trajectory, told, asked)
 
     def _watched(self, samples: FloatArray, watched: Watched) -> xarray.Dataset:
-        """Return the run with its events, until it stops."""
         failed: list[RunError] = []
         work: dict[str, object] = {}
 

@@ -58,7 +58,6 @@ class Samples(Signal):
         return self.times[(self.times > 0) & (self.times < duration)]
 
     def _corners(self, duration: float) -> Iterable[float]:
-        """Return the times of the samples when they are few, otherwise those of jumps."""
         knots = self.knots(duration)
         if knots.size <= MOST_CORNERS:
             return knots
@@ -255,7 +254,6 @@ def _refuse_suffix(name: str, unit: str, ends: Collection[str], where: str) -> N
 
 
 def _position(headers: Sequence[tuple[str, str]], wanted: str, where: str) -> int:
-    """Return the position of the one column named `wanted`, with or without its unit."""
     name, said = _named(wanted.strip())
     names = [f"{name} [{unit}]" if said and unit else name for name, unit in headers]
     wanted = f"{name} [{said}]" if said else wanted
@@ -267,7 +265,6 @@ def _position(headers: Sequence[tuple[str, str]], wanted: str, where: str) -> in
 
 
 def _other_column(headers: Sequence[tuple[str, str]], t: int, path: object) -> int:
-    """Return the position of the only column beside the times."""
     others = [n for n in range(len(headers)) if n != t]
     if len(others) != 1:
         named = listing([headers[n][0] for n in others])
@@ -278,7 +275,6 @@ def _other_column(headers: Sequence[tuple[str, str]], t: int, path: object) -> i
 
 
 def _cell(row: Sequence[str], at: int, path: Path, line: int) -> float:
-    """Return one cell as a finite float; raise `FileError` otherwise."""
     text = row[at].strip() if at < len(row) else ""
     where = f"{path}, line {line}"
     try:

@@ -48,7 +48,6 @@ class Limits:
 
 
 def _refuse_signals(module: GeneratedModule, known: Inputs) -> None:
-    """Raise `UsageError` if an input at t = 0 is no number."""
     for record, signal in zip(module.INPUTS, known.signals, strict=True):
         if not isinstance(signal, Constant):
             where, remedy = f"Stepper.inputs.{record.name}", "give the others to step(u)"
@@ -236,7 +235,6 @@ class Stepper:
         self._taken = 0
 
     def _no_inputs(self, u: object) -> UsageError:
-        """Return the error of something that is not one number per input."""
         if isinstance(u, Sequence) and not isinstance(u, str) and len(u) == len(self.inputs):
             for name, value in zip(self.inputs, u, strict=True):
                 number(value, f"Stepper.step: input {quote(name)}")
@@ -244,7 +242,6 @@ class Stepper:
         return UsageError("these are no inputs", "Stepper.step", expected)
 
     def _refusal(self, u: Sequence[float] | FloatArray) -> PiezoError:
-        """Return why there is no step with inputs of the right number."""
         for name, value in zip(self.inputs, u, strict=True):
             number(value, f"Stepper.step: input {quote(name)}")
         if not self._limits.hold():

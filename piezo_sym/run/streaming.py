@@ -89,7 +89,6 @@ def _windows(request: Request, samples: FloatArray) -> Iterator[FloatArray]:
 
 
 def _new(store: object) -> Path:
-    """Return the path of a store that is not there yet."""
     if not isinstance(store, str | PathLike):
         raise UsageError(f"{quote(store)} is no path", WHERE, "a path such as 'run.zarr'")
     path = Path(fspath(store))

@@ -12,7 +12,7 @@ import hashlib
 import json
 import tempfile
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 from types import CodeType, ModuleType
@@ -54,48 +54,42 @@ def parts(value: object, met: dict[int, object] | None = None) -> Iterator[bytes
         yield f"{array.dtype.str}{array.shape}".encode()
         yield array.tobytes() if array.dtype.kind != "O" else repr(array.tolist()).encode()
         return
-    if id(value) in met:
-        return
-    met[id(value)] = value  # kept alive, so that no other object gets its id
-    for part in held(value):
-        yield from parts(part, met)
+    if id(value) not in met:
+        met[id(value)] = value  # kept alive, so that no other object gets its id
+        for part in held(value):
+            yield from parts(part, met)
 
 
-def held(value: object) -> Iterator[object]:
-    """Yield the contents of a container, a record, or a user's object."""
-    if isinstance(value, Mapping):
-        for key in sorted(value, key=repr):
-            yield from (key, value[key])
-    elif isinstance(value, frozenset):
-        yield from sorted(value, key=repr)
-    elif isinstance(value, tuple | list):
-        yield from value
-    elif is_dataclass(value):
-        yield from (getattr(value, field.name) for field in fields(value))
-    elif isinstance(value, CodeType):
-        yield from (value.co_code, value.co_names, value.co_consts)
-    elif not isinstance(value, ModuleType):
-        yield from held_by_callable(value)
-
-
-def held_by_callable(value: object) -> Iterator[object]:
-    """Yield the contents of a function or of another object of a user.
-
-    Of a function: its code, the object it is bound to, defaults, closure and globals that it reads.
-    """
-    yield str(getattr(value, "__qualname__", ""))
-    code = getattr(value, "__code__", None)
+def held(value: object) -> Iterable[object]:
+    """Return the contents of a container, a record, a function or another object of a user."""
+    match value:
+        case Mapping():
+            return [part for key in sorted(value, key=repr) for part in (key, value[key])]
+        case frozenset():
+            return sorted(value, key=repr)
+        case tuple() | list():
+            return value
+        case CodeType():
+            return value.co_code, value.co_names, value.co_consts
+        case ModuleType():
+            return ()
+    if is_dataclass(value):
+        return [getattr(value, field.name) for field in fields(value)]
+    code, name = getattr(value, "__code__", None), str(getattr(value, "__qualname__", ""))
+    words = ("func", "args", "keywords", "__self__", "__defaults__", "__kwdefaults__")
+    own = [name, code, *(getattr(value, word, None) for word in words)]
     if not isinstance(code, CodeType):
-        yield dict(getattr(value, "__dict__", None) or {})
-        yield from (getattr(value, name, None) for name in ("func", "args", "keywords"))
-        return
-    yield from (code, getattr(value, "__self__", None))
-    yield from (getattr(value, "__defaults__", None), getattr(value, "__kwdefaults__", None))
-    yield from (cell.cell_contents for cell in getattr(value, "__closure__", None) or ())
+        return [*own, dict(getattr(value, "__dict__", None) or {})]
+    cells = (cell.cell_contents for cell in getattr(value, "__closure__", None) or ())
     known = getattr(value, "__globals__", {})
-    for one in (known[name] for name in code.co_names if name in known):
-        own = getattr(one, "__module__", None) in (None, getattr(value, "__module__", None))
-        yield one if own else f"{one.__module__}.{getattr(one, '__qualname__', '')}"
+    read = (known[name] for name in code.co_names if name in known)
+    return [*own, *cells, *(_global(one, getattr(value, "__module__", None)) for one in read)]
+
+
+def _global(value: Any, module: str | None) -> object:
+    """Return what a function reads; by its name alone, if it is of another module."""
+    own = getattr(value, "__module__", None) in (None, module)
+    return value if own else f"{value.__module__}.{getattr(value, '__qualname__', '')}"
 
 
 MARK, BOX, RESULTS = "sweep_fingerprint", "sweep_box", "sweep_results"

@@ -85,7 +85,6 @@ def draw(data: xarray.Dataset) -> Figure:
 
 
 def _draw_all(axes: Axes, data: xarray.Dataset) -> None:
-    """Draw the curves and jumps of all inductances."""
     axes.axhspan(VALID - T_E, MOST, color="0.9", linewidth=0, zorder=0)
     for n, (millihenry, colour) in enumerate(zip(data.L.values, COLOURS, strict=False)):
         one = data.sel(L=millihenry).dropna("point", subset=["frequency"])
@@ -110,7 +109,6 @@ def _draw_curve(axes: Axes, curve: xarray.Dataset, label: str, look: dict[str, A
 
 
 def _draw_jumps(axes: Axes, one: xarray.Dataset, look: dict[str, Any]) -> None:
-    """Draw an arrow from each fold to where the temperature goes."""
     for n in np.flatnonzero(~np.isnan(one.jumps_to.values)):
         f, start = float(one.frequency[n]), float(one.temperature[n]) - T_E
         end = min(float(one.jumps_to[n]) - T_E, axes.get_ylim()[1])

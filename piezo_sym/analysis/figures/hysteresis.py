@@ -69,7 +69,6 @@ def last_periods(data: xarray.Dataset) -> xarray.Dataset:
 
 
 def _drawn(data: xarray.Dataset, over: str, unit: str) -> tuple[Figure, Axes]:
-    """Return a figure with the last period of each run, and its axes."""
     figure, axes = column_figure()
     last = last_periods(data)
     draw_lines(axes, last.V_in, last.q * 1e3, over, unit)

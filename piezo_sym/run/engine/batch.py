@@ -36,7 +36,7 @@ class Stepping:
     fixed : the longest step [s], where steps divide what lies between samples and breaks evenly,
         and go over kinks; 0 if errors decide.
     first, longest : the length of the first step, and of the longest [s].
-    kinks : whether steps end there, or go over them; or, with many switches, what is faster.
+    kinks : steps end there; or, with many switches, go over them where that is faster.
     lossy : whether steps are dissipative, of one stage; one that does not succeed is not halved.
     """
 
@@ -45,7 +45,7 @@ class Stepping:
     first: float
     longest: float
     fixed: float = 0.0
-    kinks: Literal["end", "over", "either"] = "either"
+    kinks: Literal["end", "either"] = "either"
     lossy: bool = False
 
 
@@ -124,7 +124,7 @@ class Batch:
         self._load(stepping)
         t = self.records["t"].min(where=self.records["failed"] == 0, initial=stop)
         self.records["segments"] = self.inputs.address(t)
-        over = stepping.kinks == "over" or bool(stepping.fixed > 0)
+        over = bool(stepping.fixed > 0)
         task = c_record("task")(
             runs=ctypes.addressof(self._runs),
             times=at(self._times),

@@ -169,5 +169,4 @@ def standalone_step(model: str, step: str) -> str:
 
 
 def _prefix(model: str) -> str:
-    """Return the macro by which files of this folder name what belongs to a model."""
     return f"#define MODEL(name) {model}_##name"

@@ -90,7 +90,6 @@ def _found(text: str) -> tuple[str, ...]:
 
 @lru_cache(maxsize=16)
 def _version(command: tuple[str, ...]) -> str:
-    """Return what a compiler says of itself, or nothing if it does not start."""
     try:
         done = _call([*command, "--version"], VERSION_SECONDS)
     except EngineError:
@@ -134,7 +133,6 @@ def _call(words: Sequence[str], seconds: float) -> subprocess.CompletedProcess[s
 
 
 def _end(running: subprocess.Popen[str]) -> None:
-    """End a command and all that it has started."""
     if sys.platform == "win32":
         running.kill()
     else:
@@ -149,22 +147,10 @@ def processor() -> str:
     try:
         cpuinfo = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace")
     except OSError:
-        return "\n".join([*found, *_cpu_of_macos()])
+        return "\n".join(found)
     known: dict[str, str] = {}  # of the first processor listed
     for line in cpuinfo.splitlines():
         key, _, value = line.partition(":")
         if key.strip().lower() in _INSTRUCTIONS:
             known.setdefault(key.strip().lower(), value.strip())
     return "\n".join([*found, *(f"{key}: {value}" for key, value in sorted(known.items()))])
-
-
-def _cpu_of_macos() -> list[str]:
-    """Return what macOS says of its processor; nothing elsewhere."""
-    if sys.platform != "darwin":
-        return []
-    try:
-        words = ["/usr/sbin/sysctl", "machdep.cpu", "hw.optional"]
-        done = subprocess.run(words, capture_output=True, text=True, timeout=10, check=False)
-    except (OSError, subprocess.SubprocessError):
-        return []
-    return done.stdout.splitlines()

@@ -144,7 +144,6 @@ def _array(value: ArrayLike, rows: int, what: str) -> FloatArray:
 
 
 def _place(out: FloatArray | None, shape: tuple[int, ...]) -> FloatArray:
-    """Return where results go: `out`, if it is fit for them."""
     if out is None:
         return np.empty(shape)
     if out.shape != shape or out.dtype != float or not out.flags.carray:

@@ -144,7 +144,6 @@ class ParameterRecords:
 
 
 def _spread(value: Any, count: int) -> FloatArray:
-    """Return one number per lane."""
     array = np.array(value, dtype=float)
     if array.ndim and array.shape != (count,):
         msg = f"a parameter of a bank of {count} lanes has {array.size} values"

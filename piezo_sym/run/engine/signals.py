@@ -56,7 +56,6 @@ class InputRecords:
         return c_record("segment")(stop=segment.stop, signals=ctypes.addressof(found))
 
     def _signal(self, signal: Signal, low: float, high: float) -> Any:
-        """Return a signal within [low, high]."""
         wave = c_record("signal")
         match signal:
             case Constant(value):
