@@ -6,16 +6,16 @@ ports and processes.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.codegen.program import ModuleFunction, Names, OutputRow, Quantity, bank_of
 from piezo_sym.codegen.quantities import Quantities
-from piezo_sym.expressions.calculus import add, div, mul, neg
+from piezo_sym.expressions.calculus import add, div, inserted, mul, neg
 from piezo_sym.expressions.text import signed
-from piezo_sym.expressions.tree import ONE, Expr, Sym
+from piezo_sym.expressions.tree import ONE, Expr, Sym, names
 from piezo_sym.iphs import IPHS
-from piezo_sym.iphs.elements import ElementRow, Parts, element_rows
+from piezo_sym.iphs.elements import ElementRow, element_rows, follower_rates, in_words
 from piezo_sym.spec.elements.ports import (
     Body,
     Conductor,
@@ -74,42 +74,41 @@ def functions_of(q: Quantities) -> tuple[ModuleFunction, ...]:
 
 def elements_of(
     q: Quantities, rates: tuple[OutputRow, ...], new: Names
-) -> tuple[tuple[ElementRow[Expr], ...], tuple[Quantity, ...]]:
+) -> tuple[tuple[ElementRow, ...], tuple[Quantity, ...]]:
     """Return the quantities of all elements, and the rates that they name."""
     iphs, named, values = q.iphs, list[Quantity](), list[Expr]()
     for row in rates:
         if not isinstance(row.value, Sym):
             named.append(Quantity(new(f"rate_{row.slot.label}"), row.value, row.slot.bank, "rates"))
         values.append(row.value if isinstance(row.value, Sym) else Sym(named[-1].name))
-
-    def couplings(followers: Sequence[Expr]) -> list[Expr]:
-        blocks = zip("EWuR", (q.costates, q.outputs, q.inputs, followers), strict=True)
-        given = [(iphs.junction.couplings[kind], factors) for kind, factors in blocks]
-        count = len(given[0][0].rows)
-        return [
-            add(*(t for block, factors in given for t in q.product(block, n, factors)))
-            for n in range(count)
-        ]
-
-    parts = Parts(
-        costates=q.costates,
-        rates=values,
-        outputs=q.outputs,
-        drives=q.drives,
-        heats=q.heats,
-        inputs=[_brought(p.port, u, q) for p, u in zip(q.ports, q.inputs, strict=True)],
-        ports=[row.value for row in _outputs(q)],
-        supplies=[row.value for row in supply_of(q)],
-        couplings=couplings,
-        law=lambda tree: tree,
-        total=add,
-        product=mul,
-        negative=neg,
+    words = in_words(
+        {
+            "rate": values,
+            "drive": q.drives,
+            "heat": q.heats,
+            "input": [_brought(p.port, u, q) for p, u in zip(q.ports, q.inputs, strict=True)],
+            "output": [row.value for row in _outputs(q)],
+            "supply": [row.value for row in supply_of(q)],
+        }
     )
-    return element_rows(iphs, parts), tuple(named)
+    followers = [inserted(rate, words) for rate in follower_rates(iphs)]
+    blocks = zip("EWuR", (q.costates, q.outputs, q.inputs, followers), strict=True)
+    given = [(iphs.junction.couplings[kind], factors) for kind, factors in blocks]
+    answers = [
+        add(*(t for block, factors in given for t in q.product(block, n, factors)))
+        for n in range(len(given[0][0].rows))
+    ]
+    words |= in_words({"answer": answers})
+    found = (row._replace(value=_inserted(row.value, words)) for row in element_rows(iphs))
+    return tuple(found), tuple(named)
 
 
-def element_function(elements: Iterable[ElementRow[Expr]]) -> ModuleFunction:
+def _inserted(value: Expr, words: Mapping[str, Expr]) -> Expr:
+    """Return a row of an element; a law, which has no such words, keeps its spelling."""
+    return value if words.keys().isdisjoint(names(value)) else inserted(value, words)
+
+
+def element_function(elements: Iterable[ElementRow]) -> ModuleFunction:
     """Return the function of the quantities of all elements."""
     rows = tuple(OutputRow(Slot(row.name, row.bank), row.value) for row in elements)
     return ModuleFunction("elements", *FUNCTIONS["elements"], rows)

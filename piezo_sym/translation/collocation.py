@@ -12,9 +12,10 @@ that do not depend on the state; and of each stop the means of effort, slip and 
 where effort times slip does in the system, and a share that serves Newton's method alone.
 """
 
-from collections.abc import Iterator, Mapping
-from fractions import Fraction
+from collections.abc import Iterator
 from typing import TypeAlias
+
+import sympy as sp
 
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.expressions.calculus import derivative, div, is_affine
@@ -27,10 +28,8 @@ from piezo_sym.spec.elements.ports import Body, DissipativePort, Exchange, HeatI
 from piezo_sym.spec.tables import conditions
 from piezo_sym.translation.change import spelled
 from piezo_sym.translation.field import NotShownError, Value
-from piezo_sym.translation.functions import power
 from piezo_sym.translation.known import Key, Proved
 from piezo_sym.translation.reference import margins_of, of_system
-from piezo_sym.translation.signs import on_path
 from piezo_sym.translation.system_reader import SystemReader
 
 Stop: TypeAlias = tuple[Placed, Storage, DissipativePort]
@@ -58,14 +57,13 @@ def proved_step(iphs: IPHS) -> Proved:
     for n, limit in enumerate(limits):
         values["strict", n] = read.field.number("=" not in limit.op)
     slots |= dict.fromkeys(("margins", "strict"), tuple(Slot(str(n)) for n in range(len(limits))))
-    listed = of_system(read)
+    listed = of_system(read, dict(_heats(read, stops)))
     ledger = dict(_ledger(read, listed))
-    heats = {_key(read, stop): read.names[f"heat of {stop[0].element}"] for stop in stops}
     slots |= {"rhs": iphs.system.states, "ledger": tuple(ledger)}
     slots["g"] = (*slots["integrands"], *given_paths)
     paths = tuple(_paths(read, stops, slots, values))
     for function, rows in {"rhs": listed["rhs"], "ledger": ledger.values()}.items():
-        values |= {(function, n): _with_heats(value, heats) for n, value in enumerate(rows)}
+        values |= {(function, n): value for n, value in enumerate(rows)}
     functions = {slot.label: value for slot, value in means.values()}
     needs = tuple(read.field.needs)
     found = (iphs, read.field, read.names, read.banks, slots, values, needs, domain, functions)
@@ -96,38 +94,12 @@ def _given(
         yield slot
 
 
-def _key(read: SystemReader, stop: Stop) -> tuple[int, int]:
-    """Return the generators of a stop's effort and slip."""
-    names = (read.names[f"{what} of {stop[0].element}"] for what in ("effort", "slip"))
-    (effort,), (slip,) = (name.generators() for name in names)
-    return effort, slip
-
-
-def _with_heats(value: Value, heats: Mapping[tuple[int, int], Value]) -> Value:
-    """Return a row with the means of heats where a stop's effort times its slip stands."""
-    field, moved = value.field, {slip for _, slip in heats}
-    if value.parts.isdisjoint(moved):
-        return value
-    parts = []
-    with on_path(field, None):
-        for mono, c in value.terms.items():
-            left, term = dict(mono), field.number(c)
-            for (effort, slip), heat in heats.items():
-                if left.get(effort) == left.get(slip) == 1:
-                    del left[effort], left[slip]
-                    term = term * heat
-            for g, e in left.items():
-                gen = field.gens[g]
-                factor = Value(field, {((g, 1),): 1})
-                if gen.arg is not None and not gen.arg.parts.isdisjoint(moved):
-                    arg = _with_heats(gen.arg, heats)
-                    if gen.kind not in ("sum", "letter"):
-                        raise NotShownError("a slip in a function of the proved system")
-                    summed = gen.kind == "sum"
-                    factor = field.lane_sum(arg, str(gen.mark)) if summed else field.letter(arg)
-                term = term * power(factor, Fraction(e))
-            parts.append(term)
-        return field.total(parts)
+def _heats(read: SystemReader, stops: tuple[Stop, ...]) -> Iterator[tuple[sp.Expr, sp.Symbol]]:
+    """Yield the product of each stop's effort and slip, and what the mean of it is written by."""
+    for placed, store, slip in stops:
+        heat = sp.Dummy("heat", real=True)
+        read.known[heat] = read.names[f"heat of {placed.element}"]
+        yield read.iphs.symbols[store.costate] * read.iphs.symbols[slip.output], heat
 
 
 def _paths(

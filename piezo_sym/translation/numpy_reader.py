@@ -153,36 +153,30 @@ class _Function:
     # Rows
 
     def _write(self, place: ast.expr, value: ast.expr, *, added: bool) -> None:
-        if self.name == "jacobian":
-            self._entry(place, value, added=added)
-            return
-        n, bank = self._row(place, self.written.layout)
-        if isinstance(value, ast.Tuple) and bank and self.name == "initial_state":
+        name, rows = self.name, self.written
+        key, banks = self._key(place)
+        if isinstance(value, ast.Tuple) and banks and name == "initial_state":
             for lane, part in enumerate(value.elts):
-                self.written.keep((self.name, n, lane), self._of(part), added=added)
-        elif self.name == "margins" and (least := self._least(value)):
-            self.written.keep((self.name, n, LEAST), least, added=added)
+                rows.keep((*key, lane), self._of(part), added=added)
+        elif name == "margins" and (least := self._least(value)):
+            rows.keep((*key, LEAST), least, added=added)
         else:
-            shapes = [Shape("lanes", bank), Shape("maybe", bank)] if bank else []
-            self.written.keep((self.name, n), self._of(value, shapes), added=added)
+            shapes = [Shape(kind, bank) for bank in banks for kind in ("lanes", "maybe")]
+            if len(banks) == 2:
+                shapes = [Shape("row", banks[0]), Shape("column", banks[1]), Shape("pair", *banks)]
+            rows.keep(key, self._of(value, shapes), added=added)
 
-    def _entry(self, place: ast.expr, value: ast.expr, *, added: bool) -> None:
-        if not isinstance(place, ast.Tuple) or len(place.elts) != 2:
-            raise refused(place, "a place in a matrix")
-        layout, shapes = self.written.layout, list[Shape]()
-        equal = [_first(part) in self.lanes for part in place.elts]
-        if all(equal):
-            (row, rows), (col, cols) = map(self._index_array, place.elts)
-            if rows != cols:
-                raise refused(place, "equal lanes of two banks")
-        else:
-            (row, rows), (col, cols) = (self._row(part, layout) for part in place.elts)
-        if rows and cols and not all(equal):
-            shapes = [Shape("row", rows), Shape("column", cols), Shape("pair", rows, cols)]
-        elif bank := rows or cols:
-            shapes = [Shape("lanes", bank), Shape("maybe", bank)]
-        key = ("jacobian", row, col, SAME if all(equal) else ALL)
-        self.written.keep(key, self._of(value, shapes), added=added)
+    def _key(self, place: ast.expr) -> tuple[Key, tuple[str, ...]]:
+        """Return which row or entry stands at a place, and the banks whose lanes it is of."""
+        parts = place.elts if isinstance(place, ast.Tuple) else [place]
+        matrix = self.name == "jacobian"
+        equal = matrix and all(_first(part) in self.lanes for part in parts)
+        found = [self._slot(part, self.written.layout, equal=equal) for part in parts]
+        banks = tuple(bank for _, bank in found if bank)
+        if len(parts) != 1 + matrix or (equal and len({*banks}) > 1):
+            raise refused(place, "a place of another row")
+        kind = [SAME if equal else ALL] if matrix else []
+        return (self.name, *(n for n, _ in found), *kind), banks[:1] if equal else banks
 
     def _of(self, node: ast.expr, shapes: Sequence[Shape] = ()) -> Value:
         """Return an expression that has one of some shapes, or the same value for all lanes."""
@@ -204,25 +198,22 @@ class _Function:
 
     # Places
 
-    def _row(self, node: ast.expr, layout: Layout) -> tuple[int, str | None]:
-        """Return the slot of an index or of a slice, and its bank."""
-        if not isinstance(node, ast.Slice):
-            return layout.at(self.read.whole(node), bank=False), None
-        if node.lower is None or node.upper is None or node.step is not None:
-            raise refused(node, "a slice")
-        n = layout.at(self.read.whole(node.lower), bank=True)
-        if self.read.whole(node.upper) != layout.places[n + 1]:
-            raise refused(node, "a slice")
-        return n, layout.slots[n].bank
-
-    def _index_array(self, node: ast.expr) -> tuple[int, str | None]:
-        """Return the slot of ``lanes`` or of ``lanes + (second - (first))``, and its bank."""
-        shift = self.field.zero
-        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
-            shift, node = self.read.whole(node.right), node.left
-        layout, (first, last) = self.written.layout, self.lanes[_first(node)]
-        n = layout.at(first + shift, bank=True)
-        if not isinstance(node, ast.Name) or last + shift != layout.places[n + 1]:
+    def _slot(
+        self, node: ast.expr, layout: Layout, *, equal: bool = False
+    ) -> tuple[int, str | None]:
+        """Return the slot of an index, a slice or (`equal`) an array of lanes, and its bank."""
+        match node:
+            case ast.Slice(lower, upper, None) if lower and upper:
+                first, last = self.read.whole(lower), self.read.whole(upper)
+            case ast.Name(name) if equal:
+                first, last = self.lanes[name]
+            case ast.BinOp(ast.Name(name), ast.Add(), right) if equal:
+                shift = self.read.whole(right)
+                first, last = (end + shift for end in self.lanes[name])
+            case _:
+                return layout.at(self.read.whole(node), bank=False), None
+        n = layout.at(first, bank=True)
+        if last != layout.places[n + 1]:
             raise refused(node, "lanes of another bank")
         return n, layout.slots[n].bank
 
@@ -237,7 +228,7 @@ class _Function:
                 return value, WHOLE if whole else PLAIN
             case ast.Subscript(ast.Name(x), place) if self.roles.get(x) in {"x", "u"}:
                 layout = self.known.layouts[self.roles[x]]
-                n, bank = self._row(place, layout)
+                n, bank = self._slot(place, layout)
                 value = self.known.names[layout.slots[n].label]
                 return value, Shape("lanes", bank) if bank else PLAIN
             case ast.Subscript(arg, place):

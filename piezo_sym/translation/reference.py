@@ -8,13 +8,14 @@ A parameter of a bank is one number per lane, as it is in printed modules; the p
 co-states and laws of one lane, so they hold for lanes that differ.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from types import MappingProxyType
 
 import sympy as sp
 
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.iphs import IPHS
-from piezo_sym.iphs.elements import ElementRow, Parts, element_rows
+from piezo_sym.iphs.elements import element_rows, follower_rates, in_words
 from piezo_sym.spec.elements.ports import Body
 from piezo_sym.spec.tables import conditions
 from piezo_sym.translation.change import across, derivative, in_exponentials
@@ -31,10 +32,10 @@ def proved(iphs: IPHS) -> Proved:
     domain = read.assume(condition.tree for condition in conditions(iphs.model))
     read.assume_temperatures()
     slots = _slots(iphs)
-    elements = elements_of(read)
-    slots["elements"] = tuple(Slot(row.name, row.bank) for row in elements)
+    elements = tuple(elements_of(read))
+    slots["elements"] = tuple(slot for slot, _ in elements)
     values = dict(_values(read, slots))
-    values |= {("elements", n): row.value for n, row in enumerate(elements)}
+    values |= {("elements", n): value for n, (_, value) in enumerate(elements)}
     needs = tuple(read.field.needs)
     return Proved(iphs, read.field, read.names, read.banks, slots, values, needs, domain, {})
 
@@ -48,50 +49,47 @@ def _slots(iphs: IPHS) -> dict[str, tuple[Slot, ...]]:
     return found | dict.fromkeys(("energy", "entropy"), (Slot(""),))
 
 
-def of_system(read: SystemReader) -> dict[str, list[Value]]:
-    """Return the rows of rates, outputs, supplied power, heats and entropy production."""
+def of_system(
+    read: SystemReader, instead: Mapping[sp.Expr, sp.Expr] = MappingProxyType({})
+) -> dict[str, list[Value]]:
+    """Return the rows of rates, outputs, supplied power, heats and entropy production.
+
+    Parameters
+    ----------
+    instead : what stands for some products.
+    """
     system = read.iphs.system
-    outputs, inputs = read.rows(system.y), read.rows(system.u)
-    heats = zip(read.rows(system.W), read.rows(system.drive), strict=True)
-    produced = zip(read.rows(system.R), read.rows(system.z), strict=True)
-    return {
-        "rhs": read.rows(system.rhs),
-        "outputs": outputs,
-        "supply": [y * u for y, u in zip(outputs, inputs, strict=True)],
-        "heat": [w * z for w, z in heats],
-        "entropy_production": [r * z for r, z in produced],
+    found: dict[str, Iterable[sp.Expr]] = {
+        "rhs": system.rhs,
+        "outputs": system.y,
+        "supply": map(sp.Mul, system.y, system.u),
+        "heat": map(sp.Mul, system.W, system.drive),
+        "entropy_production": map(sp.Mul, system.R, system.z),
     }
+    return {name: [read(term.subs(instead)) for term in terms] for name, terms in found.items()}
 
 
-def elements_of(read: SystemReader) -> tuple[ElementRow[Value], ...]:
-    """Return the quantities of all elements."""
-    iphs, system, rows = read.iphs, read.iphs.system, of_system(read)
-    blocks = iphs.junction.couplings
-    given = (blocks["E"] @ system.E + blocks["W"] @ system.W, blocks["u"] @ system.u)
-    answers = [one + other for one, other in zip(*map(read.rows, given), strict=True)]
-
-    def couplings(followers: Sequence[Value]) -> list[Value]:
-        found = list(answers)
-        for (n, m), share, _ in blocks["R"].entries():
-            found[n] = found[n] + read(share) * followers[m]
-        return found
-
-    parts = Parts(
-        costates=read.rows(system.E),
-        rates=rows["rhs"],
-        outputs=read.rows(system.W),
-        drives=read.rows(system.drive),
-        heats=rows["heat"],
-        inputs=read.rows(system.u),
-        ports=rows["outputs"],
-        supplies=rows["supply"],
-        couplings=couplings,
-        law=lambda tree: read(iphs.symbols.law(tree, {})),
-        total=lambda *terms: read.field.total(terms),
-        product=lambda left, right: left * right,
-        negative=lambda value: read.field.zero - value,
+def elements_of(read: SystemReader) -> Iterator[tuple[Slot, Value]]:
+    """Yield the quantities of all elements."""
+    iphs, system = read.iphs, read.iphs.system
+    law, blocks = iphs.symbols.law, iphs.junction.couplings
+    words = in_words(
+        {
+            "rate": [*system.rhs],
+            "drive": [*system.drive],
+            "heat": [*map(sp.Mul, system.W, system.drive)],
+            "input": [*system.u],
+            "output": [*system.y],
+            "supply": [*map(sp.Mul, system.y, system.u)],
+        }
     )
-    return element_rows(iphs, parts)
+    answers = [*(blocks["E"] @ system.E + blocks["W"] @ system.W + blocks["u"] @ system.u)]
+    followers = [law(rate, words) for rate in follower_rates(iphs)]
+    for (n, m), share, _ in blocks["R"].entries():
+        answers[n] += share * followers[m]
+    words |= in_words({"answer": answers})
+    for row in element_rows(iphs):
+        yield Slot(row.name, row.bank), read(law(row.value, words))
 
 
 def margins_of(values: Sequence[Value]) -> Iterator[tuple[Key, Value]]:

@@ -13,7 +13,6 @@ from typing import final
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
-from piezo_sym.algebra.lanes import LaneMatrix
 from piezo_sym.algebra.sums import SymbolicLaneSum
 from piezo_sym.algebra.symbols import Raised
 from piezo_sym.expressions.functions import RECORDS
@@ -39,6 +38,7 @@ class SystemReader:
     names : parameters, inputs and states, in lane 0 where they have one per lane.
     banks : the bank of each of these that has.
     costates : those that are names, by what the spec calls them.
+    known : the value of each symbol that is a name, or a definition that was read.
     """
 
     def __init__(self, iphs: IPHS) -> None:
@@ -54,8 +54,8 @@ class SystemReader:
         own = (self.names[slot.label].parts for slot in system.states)
         self.field.states = frozenset().union(*own)
         self._read = list[sp.Symbol]()  # definitions among what is known
-        self._known = {symbols[name]: value for name, value in self.names.items()}
-        self._known |= {s: self.field.count(bank) for bank, s in iphs.symbols.counts.items()}
+        self.known = {symbols[name]: value for name, value in self.names.items()}
+        self.known |= {s: self.field.count(bank) for bank, s in iphs.symbols.counts.items()}
         groups = (*iphs.named, iphs.costates)
         self._definitions = {symbol: expr for group in groups for symbol, expr in group}
 
@@ -68,7 +68,7 @@ class SystemReader:
         self._forget()
         symbol = self.iphs.symbols[costate]
         del self._definitions[symbol]
-        self._known[symbol] = self.costates[costate] = self._name(name, symbol, bank)
+        self.known[symbol] = self.costates[costate] = self._name(name, symbol, bank)
         return self.costates[costate]
 
     # The domain
@@ -104,7 +104,7 @@ class SystemReader:
         used = dict.fromkeys(name for tree in trees for name in names(tree))
         found = {name: self.costates.get(name, self.names.get(name)) for name in used}
         unsigned = {name: sp.Dummy(name, real=True) for name, value in found.items() if value}
-        self._known |= {letter: found[name] for name, letter in unsigned.items()}
+        self.known |= {letter: found[name] for name, letter in unsigned.items()}
         with reading(self.field, "margins"):
             yield unsigned
         self._forget()
@@ -118,24 +118,20 @@ class SystemReader:
     def _forget(self) -> None:
         """Forget definitions that were read when less, or more, was known of signs."""
         for symbol in self._read:
-            del self._known[symbol]
+            del self.known[symbol]
         self._read.clear()
 
     # Expressions
-
-    def rows(self, matrix: LaneMatrix) -> list[Value]:
-        """Return the rows of a vector."""
-        return [self(entry) for entry in matrix]
 
     def __call__(self, expr: sp.Expr) -> Value:
         """Return an expression in normal form."""
         field = self.field
         if isinstance(expr, sp.Symbol):
-            if expr not in self._known:
+            if expr not in self.known:
                 with on_path(field, field.one):
-                    self._known[expr] = field.letter(self(self._definitions[expr]))
+                    self.known[expr] = field.letter(self(self._definitions[expr]))
                 self._read.append(expr)
-            return self._known[expr]
+            return self.known[expr]
         if isinstance(expr, sp.Rational):
             return field.number(Fraction(int(expr.p), int(expr.q)))
         if isinstance(expr, sp.Piecewise):

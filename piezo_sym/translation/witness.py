@@ -7,27 +7,31 @@ lanes per bank, at which ball arithmetic shows that the difference is not zero; 
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import islice
 from math import isfinite
 from typing import Any, final
 
-from flint import arb, ctx, fmpq
+from flint import arb, ctx
 
-from piezo_sym.expressions.functions import RECORDS
-from piezo_sym.translation.field import Value
+from piezo_sym.expressions.exact_eval import BITS, TooCloseError, evaluated, exact, holds
+from piezo_sym.expressions.tree import ZERO, Call, Cmp, Pow, Sym
+from piezo_sym.translation.field import Generator, Value
 from piezo_sym.translation.known import Proved
 
 POINTS = 30
 #: Terms that are worked out at all points together.
 MOST_TERMS = 3_000
-PRECISION = 160
-MOST_EXPONENT = 10_000
 #: A smaller part of the proved value could come from the rounding of printed numbers.
 LEAST_SHARE = 1e-12
 FACTORS = tuple(map(Fraction, ("1/2", "3/4", "1", "5/4", "2")))
+#: A value has no number at a point, or balls are too wide; or a name has no number, as 1/0 has.
+UNDECIDED = ArithmeticError, ValueError, KeyError
+#: The comparison with zero that each sign stands for.
+OPERATORS: Mapping[Hashable, str] = {1: ">", 0: "=", -1: "<"}
+X = Sym("x")
 
 
 @final
@@ -40,10 +44,6 @@ class Witness:
     proved: str
 
 
-class UndecidedError(Exception):
-    """A value is not defined at a point, or the intervals are too wide."""
-
-
 def witness(printed: Value, wanted: Value, known: Proved) -> Witness | None:
     """Return a point of the domain at which two values differ."""
     difference = printed - wanted
@@ -54,7 +54,7 @@ def witness(printed: Value, wanted: Value, known: Proved) -> Witness | None:
                 continue
             found = point.value(difference, {})
             one, other = point.value(printed, {}), point.value(wanted, {})
-        except UndecidedError:
+        except UNDECIDED:
             continue
         if abs(found) > LEAST_SHARE * abs(other):
             return Witness(point.texts(), f"{float(one):.9g}", f"{float(other):.9g}")
@@ -82,7 +82,7 @@ def _points(known: Proved) -> Iterator[WitnessPoint]:
             yield WitnessPoint(
                 known, numbers | _means(WitnessPoint(known, numbers), known, n, chance)
             )
-        except UndecidedError:
+        except UNDECIDED:
             continue
 
 
@@ -96,7 +96,7 @@ def _means(
         lanes = [{bank: j} for j in range(len(point.numbers[name]))] if bank else [{}]
         values = [float(point.value(costate, lane)) for lane in lanes]
         if not all(map(isfinite, values)):
-            raise UndecidedError
+            raise TooCloseError
         factors = [chance.choice(FACTORS) if n % 2 else Fraction(1) for _ in lanes]
         found[name] = tuple(Fraction(v) * f for v, f in zip(values, factors, strict=True))
     return found
@@ -115,7 +115,7 @@ class WitnessPoint:
     """Numbers for names, one per lane where they have lanes; values at them, as balls."""
 
     def __init__(self, known: Proved, numbers: Mapping[str, Sequence[Fraction]]) -> None:
-        self.known, self.numbers, self.gens = known, numbers, known.field.gens
+        self.numbers, self.gens = numbers, known.field.gens
         self.found: dict[tuple[object, ...], Any] = {}
         self.size = max(2, *map(len, numbers.values()))
 
@@ -125,16 +125,16 @@ class WitnessPoint:
 
     def value(self, value: Value, lanes: Mapping[str, int]) -> Any:
         """Return a ball around a value; a row's lane is the first, a column's the second."""
-        with ctx.workprec(PRECISION):
+        with ctx.workprec(BITS):
             return self._value(value, lanes)
 
     def _value(self, value: Value, lanes: Mapping[str, int]) -> Any:
         total = arb(0)
         for mono, c in value.terms.items():
-            term = _ball(Fraction(c))
+            term = exact(Fraction(c))
             for g, e in mono:
                 own = self._generator(g, lanes)
-                term = term * (own if e == 1 else _power(own, Fraction(e)))
+                term = term * (own if e == 1 else evaluated(Pow(X, Fraction(e)), {"x": own}))
             total = total + term
         return total
 
@@ -143,46 +143,23 @@ class WitnessPoint:
         banks = {bank for bank, _ in self.gens[g].lanes}
         key = g, *sorted((bank, n) for bank, n in lanes.items() if bank in banks)
         if key not in self.found:
-            self.found[key] = self._made(g, lanes)
+            self.found[key] = self._made(self.gens[g], lanes)
         return self.found[key]
 
-    def _made(self, g: int, lanes: Mapping[str, int]) -> Any:
-        gen = self.gens[g]
+    def _made(self, gen: Generator, lanes: Mapping[str, int]) -> Any:
         if gen.arg is None:
             assert isinstance(gen.mark, tuple)
             name, bank, lane = gen.mark
             if lane == -1:
                 return arb(self.size)
-            if name not in self.numbers:
-                raise UndecidedError
             values = self.numbers[name]
-            return _ball(values[lanes.get(bank, lane) % len(values) if bank else 0])
+            return arb(exact(values[lanes.get(bank, lane) % len(values) if bank else 0]))
         if gen.kind == "sum":
             bank = str(gen.mark)
             return sum(self._value(gen.arg, {**lanes, bank: n}) for n in range(self.size))
         arg = self._value(gen.arg, lanes)
         if gen.kind == "sign":
-            side = 1 if arg > 0 else -1 if arg < 0 else 0
-            if not side and not arg.is_exact():
-                raise UndecidedError
-            return arb(int(side == gen.mark))
+            return arb(int(holds(Cmp(OPERATORS[gen.mark], X, ZERO), {"x": arg})))
         if gen.kind in {"power", "letter"}:
             return arg
-        outside = RECORDS[gen.kind].domain and not arg > 0
-        if outside or not abs(arg) <= MOST_EXPONENT:
-            raise UndecidedError
-        return getattr(arg, gen.kind)()
-
-
-def _ball(value: Fraction) -> Any:
-    return arb(fmpq(value.numerator, value.denominator))
-
-
-def _power(base: Any, e: Fraction) -> Any:
-    outside = not base > 0 if e.denominator > 1 else e < 0 and base.contains(0)
-    if outside:
-        raise UndecidedError
-    found = base ** _ball(e)
-    if not found.is_finite():
-        raise UndecidedError
-    return found
+        return evaluated(Call(gen.kind, (X,)), {"x": arg})
