@@ -3,6 +3,9 @@
 Input: the tables of a spec, and of the models of its components.  Output: the tables of a spec
 without components, in which all that was a component's has its name in front: ``left_q``,
 ``left_body``, ``T_left_body``, ``left.cap``; and where each of them stands as the user wrote it.
+The elements of a bank of cells say which bank they are in: ``creep_spring`` of bank ``creep``,
+between ``tip`` and ``creep.inside``, one for each lane.  A node that no element outside of [banks]
+names is a cell's own.
 """
 
 from __future__ import annotations
@@ -10,17 +13,17 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, final
 
-from piezo_sym.errors import SpecError
+from piezo_sym.errors import SpecError, quote
 from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.tree import names
-from piezo_sym.spec.cells import cells, nodes_of
 from piezo_sym.spec.checks.components import check_component
 from piezo_sym.spec.elements.base import Element
 from piezo_sym.spec.elements.domains import REFERENCES
 from piezo_sym.spec.fields import Component, Tables
+from piezo_sym.spec.names import check_name
 from piezo_sym.spec.rename import Renaming
 from piezo_sym.spec.tables import bodies, states, temperatures
 
@@ -177,3 +180,57 @@ def _inputs_of(elements: Iterable[Element]) -> set[str]:
 def _texts(start: Any) -> Iterator[str]:
     parts = start if isinstance(start, tuple) else (start,)
     return (part for part in parts if isinstance(part, str))
+
+
+def cells(spec: Tables, outside: set[str]) -> Iterator[tuple[str, dict[str, Any], str]]:
+    """Yield the name, the fields and the place of each element of a cell.
+
+    Parameters
+    ----------
+    outside : the nodes of the elements that are in no cell.
+
+    Raises
+    ------
+    SpecError
+        If a bank has no elements, or one that cannot be in a cell, or a node has two meanings.
+    """
+    for bank, table in spec.banks.items():
+        where = f"banks.{bank}"
+        check_name(bank, where)
+        if not table.elements:
+            raise SpecError("has no elements", where, "at least one, in its table elements")
+        for name, element in table.elements.items():
+            place = f"{where}.elements.{name}"
+            check_name(name, place)
+            _check(element, place, where)
+            node = partial(_node, bank, outside | {*(table.series or ())}, place)
+            more = {"bank": bank, "count": table.count, "series": table.series}
+            fields = Renaming({}, node=node).fields(element, name)
+            yield f"{bank}_{name}", fields | more, place
+
+
+def nodes_of(element: Element) -> Iterator[str]:
+    """Yield the nodes that an element names."""
+    return (node for _, to, node in element.named() if to == "node")
+
+
+def _check(element: Element, place: str, where: str) -> None:
+    if not element.row.has_lanes:
+        what = f"a {element.kind} is in no cell of a bank"
+        remedy = f"write it in [elements], with nodes that cells of {where} name, too"
+        raise SpecError(what, place, "a store, a dissipative element, a stop or hysteron", remedy)
+    for key in ("count", "bank", "series"):
+        if getattr(element, key) is not None:
+            expected = f"count and series in [{where}]"
+            raise SpecError(f"{key} is given in a cell", f"{place}.{key}", expected, "leave it out")
+
+
+def _node(bank: str, outside: set[str], place: str, node: str) -> str:
+    """Return what a cell's node is called: its own name, where it stands outside of cells, too."""
+    if node in REFERENCES or node in outside:
+        return node
+    own = f"{bank}.{node}"
+    if own in outside:
+        what = f"{quote(own)} is what node {quote(node)} of a cell of {quote(bank)} is called"
+        raise SpecError(what, place, "one meaning of a node", f"rename {quote(node)} here")
+    return own

@@ -8,8 +8,7 @@ from pathlib import Path
 
 from piezo_sym.errors import SpecError, quote
 from piezo_sym.spec.checks.names import check_model_name
-from piezo_sym.spec.components import Reader
-from piezo_sym.spec.model import Model
+from piezo_sym.spec.model import Model, Reader
 from piezo_sym.spec.source import find, shipped
 
 STARTER = Path(__file__).with_name("starter.toml")
@@ -32,7 +31,7 @@ def load(spec: str | Path) -> Model:
     UsageError
         If `spec` is neither text nor a path.
     """
-    return Reader(Model).file(find(spec))
+    return Reader().file(find(spec))
 
 
 def parse(text: str, source: str = "spec") -> Model:
@@ -43,7 +42,7 @@ def parse(text: str, source: str = "spec") -> Model:
     SpecError
         If the text is not a spec; the message begins with `source`.
     """
-    return Reader(Model).text(text, source, None)
+    return Reader().text(text, source, None)
 
 
 def starter(name: str, where: str = "name") -> str:

@@ -2,25 +2,34 @@
 
 Input: TOML data, or Python arguments of the same shape.  Output: a `Model`, immutable, hashable,
 and equal to another exactly if both say the same in the same order.  What its components and banks
-are, written out, is `flatten`'s; the later stages know of neither.
+are, written out, is `flatten`'s; the later stages know of neither.  A component is a shipped name,
+a path below the folder of the spec that names it, or, in Python, a `Model`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, cast, final
 
 from pydantic import PrivateAttr, ValidationError, model_validator
 
-from piezo_sym.errors import PiezoError
+from piezo_sym.errors import PiezoError, SpecError, quote
 from piezo_sym.spec.checks.energies import check_energies
 from piezo_sym.spec.checks.laws import check_laws, check_references
 from piezo_sym.spec.checks.names import check_names
 from piezo_sym.spec.checks.values import check_values
-from piezo_sym.spec.components import Reader
-from piezo_sym.spec.fields import Tables
+from piezo_sym.spec.fields import Included, Tables
 from piezo_sym.spec.flatten import flattened
+from piezo_sym.spec.names import MAX_NAME
 from piezo_sym.spec.problems import first_problem
+from piezo_sym.spec.source import component_file, data, read, real
 from piezo_sym.spec.write import spec_hash, to_toml
+
+#: Each model around another makes its names two characters longer, at least.
+MOST_DEEP = MAX_NAME // 2
+Chain = tuple[Path, ...]
 
 
 @final
@@ -45,10 +54,10 @@ class Model(Tables):
 
     _flat: Model | None = PrivateAttr(None)
 
-    def __init__(self, /, **data: Any) -> None:
+    def __init__(self, /, **tables: Any) -> None:
         """Check the data; a fault becomes one `SpecError`."""
         try:
-            super().__init__(**Reader(Model).complete(data))
+            super().__init__(**Reader().complete(tables))
         except ValidationError as error:
             raise first_problem(error) from None
 
@@ -102,11 +111,70 @@ class Model(Tables):
         """
         if not all(component.spec.text for component in self.components.values()):
             return self.flatten().to_toml()
-        data = self.model_dump(exclude_defaults=True)
-        for name, element in self.elements.items():
-            data["elements"][name] = {"kind": element.kind} | data["elements"][name]
-        for name, bank in self.banks.items():
-            rows = data["banks"][name]["elements"]
-            for own, element in bank.elements.items():
-                rows[own] = {"kind": element.kind} | rows[own]
-        return to_toml(data)
+        return to_toml(self.model_dump(exclude_defaults=True))
+
+
+@final
+@dataclass(frozen=True)
+class Reader:
+    """Reads specs with the models of their components, each file once."""
+
+    _known: dict[Path, Model] = field(default_factory=dict)
+
+    def file(self, path: Path, chain: Chain = ()) -> Model:
+        """Return the model of a file; `chain` are the files around it."""
+        key = real(path)
+        if key in chain:
+            names = " -> ".join(p.name for p in (*chain[chain.index(key) :], key))
+            raise SpecError(f"{quote(path.name)} is a component of itself: {names}")
+        if len(chain) > MOST_DEEP:
+            expected = f"at most {MOST_DEEP} models around another"
+            raise SpecError(f"{quote(path.name)} is too deep inside", expected=expected)
+        if key not in self._known:
+            self._known[key] = self.text(read(path), path.name, path.parent, (*chain, key))
+        return self._known[key]
+
+    def text(self, text: str, source: str, folder: Path | None, chain: Chain = ()) -> Model:
+        """Return the model of a text; messages begin with `source`."""
+        try:
+            return Model(**self.complete(data(text), folder, chain))
+        except PiezoError as error:
+            _put_around(error, source)
+            raise
+
+    def complete(
+        self, content: Mapping[str, Any], folder: Path | None = None, chain: Chain = ()
+    ) -> dict[str, Any]:
+        """Return the tables of a spec with the models of its components.
+
+        Raises
+        ------
+        FileError, SpecError
+            If a component cannot be read, is no spec, has itself as a part, or lies elsewhere.
+        """
+        table = content.get("components")
+        if not isinstance(table, Mapping):
+            return dict(content)
+        made = {}
+        for name, row in table.items():
+            given = row.get("spec") if isinstance(row, Mapping) else None
+            if given is not None and not isinstance(given, Included):
+                where = f"components.{name}"
+                row = {**row, "spec": self._included(given, where, folder, chain)}
+            made[name] = row
+        return {**content, "components": made}
+
+    def _included(self, given: object, where: str, folder: Path | None, chain: Chain) -> Included:
+        if isinstance(given, Tables):
+            return Included(given)
+        path = component_file(given, f"{where}.spec", folder)
+        try:
+            return Included(self.file(path, chain), str(given))
+        except PiezoError as error:
+            _put_around(error, where)
+            raise
+
+
+def _put_around(error: PiezoError, where: str) -> None:
+    """Put a place around that of an error."""
+    error.where = f"{where}: {error.where}" if error.where else where

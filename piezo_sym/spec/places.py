@@ -12,7 +12,7 @@ from piezo_sym.expressions.dimensions import Dimension, Match, matches
 from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.tree import Cmp, Expr, Node, Sym
 from piezo_sym.expressions.units import parse_unit
-from piezo_sym.spec.elements.base import LawField
+from piezo_sym.spec.elements.marks import LawField
 from piezo_sym.spec.elements.ports import Exchange, HeatInput, Source
 from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.tables import bodies, temperatures

@@ -10,7 +10,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from piezo_sym.errors import FileError, SpecError, UsageError, nearest, quote
+from piezo_sym.errors import FileError, SpecError, UsageError, listing, nearest, quote
 from piezo_sym.spec.names import NAME
 
 MAX_BYTES = 500_000
@@ -55,6 +55,43 @@ def find(spec: str | Path) -> Path:
         remedy = f"did you mean the file {quote(f'{text}.toml')}?" if beside else remedy
         raise FileError(f"no shipped spec is called {quote(text)}", remedy=remedy)
     return path
+
+
+def component_file(given: object, where: str, folder: Path | None) -> Path:
+    """Return the file of a component of a spec in a folder.
+
+    Raises
+    ------
+    SpecError
+        If it is none below the folder of the spec.
+    """
+    expected = "a shipped name, or a path in this file's folder"
+    if not isinstance(given, str):
+        raise SpecError(f"{quote(given)} is no spec", where, expected)
+    if given in shipped():
+        return find(given)
+    if folder is None:
+        remedy = (
+            f"shipped: {listing(shipped())}; or in Python a Model, such as load({quote(given)})"
+        )
+        raise SpecError(f"{quote(given)} is no shipped spec", where, remedy=remedy)
+    own, path = Path(given), folder / given
+    inside = real(path).is_relative_to(real(folder))
+    if not inside or ".." in own.parts or own.is_absolute():
+        remedy = "move or copy the file there"
+        raise SpecError(f"{quote(given)} leads out of the spec's folder", where, expected, remedy)
+    if not os.path.isfile(path):
+        known = nearest(given, shipped()).replace("known", "shipped")
+        raise SpecError(f"{quote(given)} is no file there, and not shipped", where, expected, known)
+    return path
+
+
+def real(path: Path) -> Path:
+    """Return where a path leads; itself, if it has a character that no path has."""
+    try:
+        return Path(os.path.realpath(path))
+    except ValueError:
+        return path
 
 
 def read(path: Path) -> str:

@@ -14,7 +14,8 @@ from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.text import SPEC, write_comparison
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, Expr, Node, Num, names, rename, walk
-from piezo_sym.spec.elements.base import LawField, state_symbol
+from piezo_sym.spec.elements.base import state_symbol
+from piezo_sym.spec.elements.marks import LawField
 from piezo_sym.spec.fields import Tables
 
 
@@ -119,13 +120,11 @@ def _by_body(node: Node, hot: Mapping[str, str]) -> dict[str, str]:
 
 def conditions(spec: Tables) -> tuple[Condition, ...]:
     """Return the domain: what the spec assumes, then what its kinds and half widths need."""
-    hot = {body: word for word, body in temperatures(spec).items()}
-    trees = {f"domain.assume[{n}]": text for n, text in enumerate(spec.domain.assume)}
-    assumed = [
-        Condition(where, _renamed(tree, _by_body(tree, hot)))
-        for where, text in trees.items()
-        for tree in (parse_condition(text, where),)
-    ]
+    hot, assumed = {body: word for word, body in temperatures(spec).items()}, list[Condition]()
+    for n, text in enumerate(spec.domain.assume):
+        tree = parse_condition(text, where := f"domain.assume[{n}]")
+        left, right = (rename(side, _by_body(side, hot)) for side in (tree.left, tree.right))
+        assumed.append(Condition(where, Cmp(tree.op, left, right)))
     found: dict[Cmp, Condition] = {}
     for condition in [*assumed, *_needed(spec), *_not_negative(spec, hot, assumed)]:
         found.setdefault(condition.tree, condition)
@@ -133,11 +132,8 @@ def conditions(spec: Tables) -> tuple[Condition, ...]:
 
 
 def _needed(spec: Tables) -> Iterator[Condition]:
-    """Yield what the kinds of the elements need."""
     for name, element in spec.elements.items():
-        for condition in element.requires():
-            words = {element.letter: state_symbol(element, name)}
-            yield Condition(f"elements.{name}", _renamed(condition, words))
+        yield from (Condition(f"elements.{name}", need) for need in element.requires(name))
 
 
 def _not_negative(
@@ -146,7 +142,7 @@ def _not_negative(
     """Yield that each half width is >= 0, in laws, assumptions and initial values."""
     for law in laws(spec):
         yield from (Condition(law.where, width) for width in _widths(in_words(spec, law, hot)))
-    for where, node in [*((c.where, c.tree) for c in assumed), *_starts(spec)]:
+    for where, node in [*((c.where, c.tree) for c in assumed), *initial_laws(spec)]:
         yield from (Condition(where, width) for width in _widths(node))
 
 
@@ -162,13 +158,9 @@ def _widths(law: Node) -> Iterator[Cmp]:
 def orders(spec: Tables) -> Iterator[Condition]:
     """Yield that the knots of each table increase, wherever it stands in the spec."""
     parts: list[LawField | Condition] = [*laws(spec), *conditions(spec)]
-    places = [*((part.where, part.tree) for part in parts), *_starts(spec)]
+    places = [*((part.where, part.tree) for part in parts), *initial_laws(spec)]
     found = (Condition(where, order) for where, tree in places for order in increasing(tree))
     yield from dict.fromkeys(found)
-
-
-def _renamed(condition: Cmp, words: Mapping[str, str]) -> Cmp:
-    return Cmp(condition.op, rename(condition.left, words), rename(condition.right, words))
 
 
 def greater(condition: Cmp) -> Cmp:
@@ -191,7 +183,7 @@ def lane_parameters(spec: Tables) -> dict[str, str]:
     for law in laws(spec):
         for word in set(names(law.tree)) - set(law.letters):
             users.setdefault(word, set()).add(owners.get(law.element))
-    for where, tree in _starts(spec):
+    for where, tree in initial_laws(spec):
         for word in names(tree):
             users.setdefault(word, set()).add(lanes.get(where.removeprefix("initial.")))
     single = {word: next(iter(found)) for word, found in users.items() if len(found) == 1}
@@ -202,7 +194,7 @@ def lane_parameters(spec: Tables) -> dict[str, str]:
     return {word: bank for word, bank in own.items() if word not in mixed}
 
 
-def _starts(spec: Tables) -> Iterator[tuple[str, Expr]]:
+def initial_laws(spec: Tables) -> Iterator[tuple[str, Expr]]:
     """Yield the laws in initial values, each with its place."""
     for symbol in spec.initial:
         yield from ((f"initial.{symbol}", tree) for tree in starts(spec, symbol))

@@ -12,9 +12,9 @@ from typing import Any
 from piezo_sym.errors import UsageError, nearest, quote
 from piezo_sym.expressions.parse import parse_condition
 from piezo_sym.expressions.tree import names
-from piezo_sym.spec.cells import nodes_of
 from piezo_sym.spec.elements.domains import REFERENCES
 from piezo_sym.spec.elements.ports import Branch
+from piezo_sym.spec.flatten import nodes_of
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.rename import Renaming
 from piezo_sym.spec.tables import bank_of, bank_states, banks, lane_parameters

@@ -28,16 +28,17 @@ def _table(name: str, fields: Mapping[str, Any]) -> str:
 
 
 def _pairs(row: Mapping[str, Any]) -> list[str]:
-    return [f"{_key(key)} = {_value(value)}" for key, value in row.items()]
+    return [f"{_key(key)} = {inline(value)}" for key, value in row.items()]
 
 
 def _key(key: str) -> str:
     return _dumped({key: 0}).partition(" =")[0]
 
 
-def _value(value: Any) -> str:
+def inline(value: Any) -> str:
+    """Return a value as TOML on one line."""
     if isinstance(value, (list, tuple)):
-        return f"[{', '.join(_value(item) for item in value)}]"
+        return f"[{', '.join(inline(item) for item in value)}]"
     if isinstance(value, Mapping):
         return f"{{ {', '.join(_pairs(value))} }}"
     return _dumped({"value": value}).partition("= ")[2]

@@ -12,7 +12,7 @@ from piezo_sym.errors import SpecError, quote
 from piezo_sym.expressions.energies import antiderivative
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import names, replace
-from piezo_sym.spec.elements.base import LawField
+from piezo_sym.spec.elements.marks import LawField
 from piezo_sym.spec.elements.ports import Body, Storage
 from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.tables import temperatures

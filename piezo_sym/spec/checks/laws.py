@@ -6,10 +6,10 @@ from collections import ChainMap
 from collections.abc import Collection, Mapping
 
 from piezo_sym.errors import SpecError, listing, nearest, quote
-from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import Node, names
 from piezo_sym.spec.elements import KINDS, LETTERS
-from piezo_sym.spec.elements.base import Element, LawField, state_symbol
+from piezo_sym.spec.elements.base import Element, state_symbol
+from piezo_sym.spec.elements.marks import LawField
 from piezo_sym.spec.elements.ports import Exchange, HeatInput, Source
 from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.names import NAME
@@ -20,6 +20,7 @@ from piezo_sym.spec.tables import (
     banks,
     bodies,
     conditions,
+    initial_laws,
     meanings,
     orders,
     seen,
@@ -140,10 +141,8 @@ def _check_initial(spec: Tables) -> None:
                 f"{count} values, one per lane" if count else "one value: no bank has this state"
             )
             raise SpecError(f"{len(start)} values are given", where, expected)
-        for part in start if isinstance(start, tuple) else (start,):
-            if isinstance(part, str):
-                tree = parse_law(part, where)
-                _check_words(spec, tree, where, (), words)
+    for where, tree in initial_laws(spec):
+        _check_words(spec, tree, where, (), words)
 
 
 def _check_words(

@@ -9,7 +9,14 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, ClassVar, Literal, Self, cast, final
 
-from pydantic import BaseModel, ConfigDict, create_model, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    SerializerFunctionWrapHandler,
+    create_model,
+    model_serializer,
+    model_validator,
+)
 
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import ZERO, Cmp, Expr
@@ -19,11 +26,13 @@ from piezo_sym.spec.elements.marks import (
     Count,
     Ends,
     Fields,
+    LawField,
     Letters,
     Refers,
     StateName,
 )
 from piezo_sym.spec.elements.ports import Branch, Port, Storage
+from piezo_sym.spec.write import inline
 
 _LANES = (
     "With `count` it is a bank of lanes j = 1..count: in parallel; in series if they give an "
@@ -57,32 +66,6 @@ class State:
 
 
 @final
-@dataclass(frozen=True)
-class LawField:
-    """A law of an element: its text and what its kind says of it."""
-
-    element: str
-    field: str
-    text: str
-    mark: Letters
-
-    @property
-    def where(self) -> str:
-        """Its place in the spec."""
-        return f"elements.{self.element}.{self.field}"
-
-    @property
-    def letters(self) -> tuple[str, ...]:
-        """The letters it may use besides parameters."""
-        return self.mark.names
-
-    @property
-    def tree(self) -> Expr:
-        """The parsed law."""
-        return parse_law(self.text, self.where)
-
-
-@final
 @dataclass(frozen=True, eq=False)
 class Form:
     """A part of a kind: a store, a dissipation, a coupling, a source, a body ...; see `forms`.
@@ -96,8 +79,8 @@ class Form:
     one_of : fields of which exactly one is to be given, such as a law and its inverse.
     letter, unit : of its state; empty for those without one.
     fault : what is wrong with fields taken together.
-    requires : the conditions that it adds to the domain.
-    starts : the conditions on where the states of an element called `name` start.
+    requires : the conditions that an element called `name` adds to the domain.
+    starts : the conditions on where its states start.
     has_lanes : whether it may stand for many of its kind, a bank.
     ratios : of a coupling, the domains that it couples and the unit of its ratio.
     """
@@ -110,7 +93,7 @@ class Form:
     letter: str = ""
     unit: Callable[[Any], str] = lambda _: ""
     fault: Callable[[Any], Fault | None] = lambda _: None
-    requires: Callable[[Any], tuple[Cmp, ...]] = lambda _: ()
+    requires: Callable[[Any, str], tuple[Cmp, ...]] = lambda *_: ()
     starts: Callable[[Any, str], tuple[Cmp, ...]] = lambda *_: ()
     has_lanes: bool = False
     ratios: tuple[tuple[PhysicalDomain, PhysicalDomain, str], ...] = ()
@@ -168,8 +151,7 @@ class Kind:
     def example(self) -> str:
         """An element of this kind, as a line of [elements]."""
         given = {name: sample for name, (*_, sample) in self.fields.items() if sample}
-        pairs = {"kind": self.name, **given}.items()
-        return f"{self.name} = {{ {', '.join(f'{key} = {_toml(v)}' for key, v in pairs)} }}"
+        return f"{self.name} = {inline({'kind': self.name, **given})}"
 
     def made(self) -> "type[Element]":
         """Return the type of its elements."""
@@ -200,6 +182,10 @@ class Element(Frozen):
                 raise ValueError(message)
         return self
 
+    @model_serializer(mode="wrap")
+    def _with_kind(self, fields: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        return {"kind": self.kind, **fields(self)}
+
     def ports(self, name: str) -> tuple[Port, ...]:
         """Return the ports of this element, called `name` in its spec."""
         first, last = getattr(self, "between", ("", ""))
@@ -214,13 +200,13 @@ class Element(Frozen):
         own = (State(state_symbol(self, name), form.unit(self)) for form in forms)
         return *own, *(State(word, s.unit) for word, s in getattr(self, "states", {}).items())
 
-    def requires(self) -> tuple[Cmp, ...]:
-        """Return the conditions that this element adds to the domain."""
-        return tuple(condition for form in self.row.forms for condition in form.requires(self))
+    def requires(self, name: str) -> tuple[Cmp, ...]:
+        """Return the conditions that this element, called `name`, adds to the domain."""
+        return tuple(c for form in self.row.forms for c in form.requires(self, name))
 
     def starts(self, name: str) -> tuple[Cmp, ...]:
         """Return the conditions on where the states of this element, called `name`, start."""
-        return tuple(condition for form in self.row.forms for condition in form.starts(self, name))
+        return tuple(c for form in self.row.forms for c in form.starts(self, name))
 
     def bank_of(self, name: str) -> str | None:
         """Return the bank that this element, called `name`, has one lane of: its own, or a cell's.
@@ -286,12 +272,3 @@ def positive(law: Expr) -> Cmp:
 def state_symbol(element: Element, name: str) -> str:
     """Return the symbol of an element's state: as given, else its kind's letter and its name."""
     return getattr(element, "state", None) or f"{element.letter}_{name}"
-
-
-def _toml(value: Any) -> str:
-    """Return a text, a list or a table of such, as TOML."""
-    if isinstance(value, str):
-        return f'"{value}"'
-    if isinstance(value, dict):
-        return f"{{ {', '.join(f'{key} = {_toml(v)}' for key, v in value.items())} }}"
-    return f"[{', '.join(map(_toml, value))}]"

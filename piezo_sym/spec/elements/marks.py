@@ -17,6 +17,8 @@ from pydantic import (
 )
 from pydantic_core import CoreSchema
 
+from piezo_sym.expressions.parse import parse_law
+from piezo_sym.expressions.tree import Expr
 from piezo_sym.spec.elements.domains import DOMAINS
 
 MAX_COUNT = 1_000_000
@@ -65,6 +67,32 @@ class Letters:
         more = ", states and temperatures T_<body>" if self.sees else ""
         text = f"A law in {self.unit}{others}, as text, of parameters{more}{also}."
         return {**handler(schema), "description": text}
+
+
+@final
+@dataclass(frozen=True)
+class LawField:
+    """A law of an element: its text and what its kind says of it."""
+
+    element: str
+    field: str
+    text: str
+    mark: Letters
+
+    @property
+    def where(self) -> str:
+        """Its place in the spec."""
+        return f"elements.{self.element}.{self.field}"
+
+    @property
+    def letters(self) -> tuple[str, ...]:
+        """The letters it may use besides parameters."""
+        return self.mark.names
+
+    @property
+    def tree(self) -> Expr:
+        """The parsed law."""
+        return parse_law(self.text, self.where)
 
 
 @final

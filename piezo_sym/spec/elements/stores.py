@@ -72,13 +72,13 @@ def store(own: Store) -> Form:
         slips = getattr(element, "slip", None) is not None
         return _slipping(own, element, port, name) if slips else (port,)
 
-    def requires(element: Any) -> tuple[Cmp, ...]:
+    def requires(element: Any, name: str) -> tuple[Cmp, ...]:
         """Return that its size is positive, if it is given, and no quotient like sinh(q)/q."""
         if getattr(element, own.size) is None:
             return ()
-        law = _costate(own, element, letter)
-        plain = without_common_factors(law, letter) == law
-        return (positive(element.law(own.size)),) if plain else ()
+        state = state_symbol(element, name)
+        law, size = _costate(own, element, state), rename(element.law(own.size), {letter: state})
+        return (positive(size),) if without_common_factors(law, state) == law else ()
 
     return Form(
         fields=_fields(own),
@@ -111,7 +111,7 @@ def yielding(*stores: Store) -> Form:
         law = _costate(own, element, state_symbol(element, name))
         return _slipping(own, element, _storage(own, element, name, branch, law), name)
 
-    def requires(element: Any) -> tuple[Cmp, ...]:
+    def requires(element: Any, _: str) -> tuple[Cmp, ...]:
         limit = Cmp(">=", element.law("limit"), ZERO)
         return positive(element.law(meant(element).size)), limit
 

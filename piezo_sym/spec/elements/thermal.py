@@ -24,7 +24,7 @@ def _body(element: Any, name: str, _: Branch) -> tuple[Port, ...]:
     return (Body(state, law, f"T_{name}", doc),)
 
 
-def _all_positive(element: Any) -> tuple[Cmp, ...]:
+def _all_positive(element: Any, _: str) -> tuple[Cmp, ...]:
     """Return that every parameter of the temperature law is positive."""
     words = names(element.law("temperature"))
     return tuple(positive(Sym(word)) for word in words if word != element.letter)
