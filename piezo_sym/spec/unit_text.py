@@ -9,8 +9,10 @@ from fractions import Fraction
 from functools import cache
 from itertools import combinations, product
 
+from piezo_sym.errors import with_article
 from piezo_sym.expressions.dimensions import BASES, Dimension
 from piezo_sym.expressions.units import base_units, parse_unit, raised
+from piezo_sym.spec.elements.domains import DOMAINS
 
 #: What is spelled like this although a text of fewer units exists.
 USUAL = ("N*s/m", "N/m", "kg*m/s", "C/m")
@@ -21,36 +23,29 @@ PARTS = ("V", "A", "N", "W", "J", "C", "ohm", "F", "H", "Wb", "Pa", "m", "s", "k
 MOST_PARTS = 3
 SMALL, LARGE = (1, -1, 2, -2), (1, -1, 2, -2, 3, -3, 4, -4)
 
+_VARIABLES = [variable for domain in DOMAINS for variable in (domain.across, domain.through)]
 #: What a quantity in a unit is called; of one dimension, the first unless the unit is said.
 QUANTITIES: Mapping[str, str] = {
-    "V": "a voltage",
-    "A": "a current",
-    "N": "a force",
-    "m/s": "a velocity",
+    "J": "an energy",
+    "J*s": "an action",
+    "1": "a number without unit",
+    "1/s": "a rate",
+    **{variable.unit: with_article(variable.word) for variable in _VARIABLES},
+    **{variable.state_unit: with_article(variable.state) for variable in _VARIABLES},
+    "m": "a length",
+    "rad": "an angle",
     "K": "a temperature",
     "J/K": "an entropy",
-    "C": "a charge",
-    "Wb": "a flux linkage",
-    "m": "a length",
+    "W/K": "a heat conductance",
     "s": "a time",
     "kg": "a mass",
-    "kg*m/s": "a momentum",
     "N/m": "a stiffness",
     "F": "a capacitance",
     "H": "an inductance",
     "ohm": "a resistance",
     "C/m": "a transducer ratio",
     "V/K": "a Seebeck coefficient",
-    "W/K": "a heat conductance",
     "W": "a power",
-    "1": "a number without unit",
-    "J": "an energy",
-    "J*s": "an action",
-    "1/s": "a rate",
-    "Pa": "a pressure",
-    "m**3/s": "a flow",
-    "m**3": "a volume",
-    "Pa*s": "a pressure impulse",
     "m**3/Pa": "a hydraulic capacitance",
     "Pa*s**2/m**3": "an inertance",
     "m**2": "an area",
@@ -58,10 +53,6 @@ QUANTITIES: Mapping[str, str] = {
     "kg*m**2": "a moment of inertia",
     "V*s/m": "a motor constant",
     "V*s/rad": "a motor constant",
-    "rad": "an angle",
-    "rad/s": "an angular velocity",
-    "N*m": "a torque",
-    "N*m*s": "an angular momentum",
     "N*m/rad": "a torsional stiffness",
 }
 

@@ -99,7 +99,7 @@ def test_the_size_of_a_store_has_the_unit_of_its_law(domain):
 
 
 def test_a_ratio_has_the_unit_of_its_domains():
-    assert sum(len(form.ratios) for kind in TABLE for form in kind.forms) == 10
+    assert sum(len(form.ratios) for kind in TABLE for form in kind.forms) == 9
     for kind in TABLE:
         for form in kind.forms:
             for first, second, unit in form.ratios:

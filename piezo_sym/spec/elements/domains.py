@@ -75,6 +75,11 @@ class PhysicalDomain:
     through: PhysicalVariable
     effort: PowerVariable = PowerVariable.ACROSS
 
+    @property
+    def mechanical(self) -> bool:
+        """Whether its inertias and sources stand at one node, the other being the reference."""
+        return self.effort is PowerVariable.THROUGH
+
     def variable(self, which: PowerVariable) -> PhysicalVariable:
         """Return what the across or through variable is in this domain."""
         return self.across if which is PowerVariable.ACROSS else self.through

@@ -70,11 +70,9 @@ def dissipation(domain: PhysicalDomain, symbol: str, *gives: PowerVariable) -> F
     )
 
 
-def imposed(
-    domain: PhysicalDomain, imposes: PowerVariable, symbol: str, *, at: bool = False
-) -> Form:
+def imposed(domain: PhysicalDomain, imposes: PowerVariable, symbol: str) -> Form:
     """Return a variable of a branch that an input gives; `symbol` is one, in the example."""
-    given, output = domain.variable(imposes), domain.variable(imposes.other)
+    given, output, at = domain.variable(imposes), domain.variable(imposes.other), domain.mechanical
     across, node = imposes is PowerVariable.ACROSS, "its node" if at else "its first node"
     relative = f"is that of {node}{'' if at else ' relative to its second'}"
     verb = relative if across else f"is given into {node}"
@@ -95,60 +93,65 @@ def imposed(
 def coupling(
     ratio: str,
     symbol: str,
-    first: tuple[str, PhysicalDomain],
-    *second: tuple[str, PhysicalDomain, str],
+    first: PhysicalDomain,
+    *second: tuple[PhysicalDomain, str],
+    alias: str = "",
     gyrates: bool = False,
     warm: bool = False,
 ) -> Form:
-    """Return a coupling of two pairs of nodes.
+    """Return a coupling of two pairs of nodes, named by their domains.
 
     Parameters
     ----------
     ratio, symbol : the field of its ratio, and a law for it in the example.
-    first : the field of its first pair, and the domain.
-    second : the same of the second, with the unit of the ratio; of several, one is to be given.
+    first : the domain of its first pair.
+    second : that of the second, with the unit of the ratio; of several, one is to be given.
+    alias : another name of the second pair.
     gyrates : whether through_1 = ratio*across_2, not across_1 = ratio*across_2.
     warm : whether the ratio may depend on the temperature of a body.
     """
-    choices = tuple(field for field, *_ in second) if len(second) > 1 else ()
+    inside, unit = first == second[0][0], second[0][1]
+    one = "first" if inside else first.name
+    pairs = [("second" if inside else domain.name, domain, own) for domain, own in second]
+    pairs += [(alias, *second[0])] if alias else []
+    choices = tuple(field for field, *_ in pairs) if len(pairs) > 1 else ()
     fields: Fields = {}
-    for field, domain in (first, *(pair[:2] for pair in second)):
+    for field, domain in ((one, first), *(pair[:2] for pair in pairs)):
         sample = [f"{domain.node}_{len(fields) + 1}", domain.reference] * (len(fields) < 2)
         fields[field] = (OptionalPair, None, sample) if field in choices else (Pair, ..., sample)
-    unit = second[0][2]
-    instead = {field: other for field, _, other in second if other != unit}
+    instead = {field: other for field, _, other in pairs if other != unit}
     fields[ratio] = law_field(unit, {"T": "K"} if warm else {}, symbol, sees=True, **instead)
     if warm:
         fields["temperature"] = (OptionalBody, None, "body")
-    equations = {
-        domain: _equations(ratio, first, field, domain, gyrates)
-        for field, domain, _ in reversed(second)
-    }
 
     def ports(element: Any, name: str, _: Branch) -> tuple[Port, ...]:
-        pairs = ((getattr(element, field), domain) for field, domain, _ in second)
-        other, domain = next(pair for pair in pairs if pair[0] is not None)
-        own, law = getattr(element, first[0]), element.law(ratio)
+        given = ((getattr(element, field), domain) for field, domain, _ in pairs)
+        other, domain = next(pair for pair in given if pair[0] is not None)
+        own, law = getattr(element, one), element.law(ratio)
         named = f"{'alpha' if gyrates else 'n'}_{name}"
-        return (Coupling(own, first[1], other, domain, law, ratio, named, gyrates),)
+        return (Coupling(own, first, other, domain, law, ratio, named, gyrates),)
 
+    equations = (_equations(ratio, (one, first), pair, gyrates) for pair in pairs[: len(second)])
     return Form(
         fields=fields,
-        doc="\n\n".join(reversed(equations.values())),
+        doc="\n\n".join(equations),
         ports=ports,
         role=("gyrator" if gyrates else "transformer",),
         one_of=choices,
-        ratios=tuple((first[1], domain, unit) for _, domain, unit in second),
+        ratios=tuple((first, domain, own) for domain, own in second),
     )
 
 
 def _equations(
-    ratio: str, first: tuple[str, PhysicalDomain], field: str, two: PhysicalDomain, gyrates: bool
+    ratio: str,
+    first: tuple[str, PhysicalDomain],
+    second: tuple[str, PhysicalDomain, str],
+    gyrates: bool,
 ) -> str:
-    one = first[1]
+    one, two = first[1], second[1]
     given, taken = (one.through, one.across) if gyrates else (one.across, one.through)
     return (
-        f"With the pairs `{first[0]}` (1) and `{field}` (2): "
+        f"With the pairs `{first[0]}` (1) and `{second[0]}` (2): "
         f"{given.prefix}_1 = {ratio}*{two.across.prefix}_2 and "
         f"{two.through.prefix}_2 = -{ratio}*{taken.prefix}_1. {one.through.prefix}_1 and "
         f"{two.through.prefix}_2 run from the first to the second node of their pair inside "

@@ -9,179 +9,124 @@ from piezo_sym.spec.elements.domains import (
     HYDRAULIC,
     ROTATION,
     TRANSLATION,
-    PhysicalDomain,
     PowerVariable,
 )
 from piezo_sym.spec.elements.forms import coupling, dissipation, imposed
 from piezo_sym.spec.elements.storage import SHARED_ENERGY
-from piezo_sym.spec.elements.stores import Store, store, yielding
+from piezo_sym.spec.elements.stores import Size, store, yielding
 from piezo_sym.spec.elements.thermal import AMBIENT, BODY, CONDUCTION, HEAT_SOURCE, THERMOCOUPLE
 
 ACROSS, THROUGH = PowerVariable.ACROSS, PowerVariable.THROUGH
-_SPRING = Store(TRANSLATION, THROUGH, "stiffness", "N/m", "k", stiff=True, slips=True)
-_CAPACITOR = Store(ELECTRICAL, ACROSS, "capacitance", "F", "C", slips=True)
-_INDUCTOR = Store(ELECTRICAL, THROUGH, "inductance", "H", "L")
+_STIFFNESS = Size(TRANSLATION, THROUGH, "stiffness", "N/m", "k", stiff=True, slips=True)
+_CAPACITANCE = Size(ELECTRICAL, ACROSS, "capacitance", "F", "C", slips=True)
+_TORSION = Size(ROTATION, THROUGH, "stiffness", "N*m/rad", "k", stiff=True)
+_SPRING, _CAPACITOR, _TORSION_SPRING = map(store, (_STIFFNESS, _CAPACITANCE, _TORSION))
+_STOP = yielding(_STIFFNESS, _CAPACITANCE)
+_MASS = store(Size(TRANSLATION, ACROSS, "mass", "kg", "M"))
+_INDUCTOR = store(Size(ELECTRICAL, THROUGH, "inductance", "H", "L"))
+_INERTIA = store(Size(ROTATION, ACROSS, "inertia", "kg*m**2", "I"))
+_ACCUMULATOR = store(Size(HYDRAULIC, ACROSS, "capacitance", "m**3/Pa", "C"))
+_INERTANCE = store(Size(HYDRAULIC, THROUGH, "inertance", "Pa*s**2/m**3", "L"))
+_DAMPER = dissipation(TRANSLATION, "d*v", THROUGH, ACROSS)
+_RESISTOR = dissipation(ELECTRICAL, "R*i", ACROSS, THROUGH)
+_HYSTERESIS = dissipation(ELECTRICAL, "rho/(T - T_0)*deadzone(i, i_0)", ACROSS)
+_BEARING = dissipation(ROTATION, "d*omega", THROUGH, ACROSS)
+_ORIFICE = dissipation(HYDRAULIC, "c*dp", THROUGH, ACROSS)
+_FORCE, _VELOCITY = imposed(TRANSLATION, THROUGH, "F_ext"), imposed(TRANSLATION, ACROSS, "v_in")
+_CURRENT, _VOLTAGE = imposed(ELECTRICAL, THROUGH, "i_in"), imposed(ELECTRICAL, ACROSS, "V_in")
+_TORQUE = imposed(ROTATION, THROUGH, "tau_load")
+_ANGULAR_VELOCITY = imposed(ROTATION, ACROSS, "omega_in")
+_FLOW, _PRESSURE = imposed(HYDRAULIC, THROUGH, "Q_in"), imposed(HYDRAULIC, ACROSS, "p_in")
+_LEVER = coupling("ratio", "n", TRANSLATION, (TRANSLATION, "1"))
+_TRANSFORMER = coupling("ratio", "n", ELECTRICAL, (ELECTRICAL, "1"))
+_GEAR = coupling("ratio", "n", ROTATION, (ROTATION, "1"))
+_TRANSDUCER = coupling(
+    "ratio",
+    "a*T/T_0",
+    ELECTRICAL,
+    (TRANSLATION, "C/m"),
+    alias="mechanical",
+    gyrates=True,
+    warm=True,
+)
+_MOTOR = coupling("constant", "k", ELECTRICAL, (TRANSLATION, "V*s/m"), (ROTATION, "V*s/rad"))
+_RACK = coupling("radius", "r", TRANSLATION, (ROTATION, "m"))
+_CYLINDER = coupling("area", "A", HYDRAULIC, (TRANSLATION, "m**2"), gyrates=True)
+_PUMP = coupling("displacement", "D", ROTATION, (HYDRAULIC, "m**3/rad"), gyrates=True)
 
 
 def _kind(name: str, about: str, *forms: Form) -> Kind:
     return Kind(name, about, forms)
 
 
-def _within(domain: PhysicalDomain) -> Form:
-    """Return the coupling of two pairs of one domain."""
-    return coupling("ratio", "n", ("first", domain), ("second", domain, "1"))
-
-
 TABLE = (
     _kind(
-        "spring",
-        "A spring between two nodes, eqs. (9), (10) and the fourth term of (6).",
-        store(_SPRING),
+        "spring", "A spring between two nodes, eqs. (9), (10) and the fourth term of (6).", _SPRING
     ),
-    _kind(
-        "mass",
-        "A mass at a node, eq. (10) and the third term of (6).",
-        store(Store(TRANSLATION, ACROSS, "mass", "kg", "M", at=True)),
-    ),
-    _kind(
-        "damper",
-        "A damper between two nodes, the damping term of eq. (10).",
-        dissipation(TRANSLATION, "d*v", THROUGH, ACROSS),
-    ),
+    _kind("mass", "A mass at a node, eq. (10) and the third term of (6).", _MASS),
+    _kind("damper", "A damper between two nodes, the damping term of eq. (10).", _DAMPER),
     _kind(
         "stop",
         "An elastic-plastic element between two nodes, with hysteresis of any slowness.",
-        yielding(_SPRING, _CAPACITOR),
+        _STOP,
     ),
-    _kind("lever", "An ideal lever between two pairs of nodes.", _within(TRANSLATION)),
-    _kind(
-        "force_source",
-        "A force on a node, F_ext of eq. (10).",
-        imposed(TRANSLATION, THROUGH, "F_ext", at=True),
-    ),
-    _kind(
-        "velocity_source",
-        "A velocity given to a node.",
-        imposed(TRANSLATION, ACROSS, "v_in", at=True),
-    ),
+    _kind("lever", "An ideal lever between two pairs of nodes.", _LEVER),
+    _kind("force_source", "A force on a node, F_ext of eq. (10).", _FORCE),
+    _kind("velocity_source", "A velocity given to a node.", _VELOCITY),
     _kind(
         "capacitor",
         "A capacitor between two nodes, eq. (11) and the first term of (6).",
-        store(_CAPACITOR),
+        _CAPACITOR,
     ),
     _kind(
         "inductor",
         "An inductor between two nodes, the storage half of a hysteron, eq. (12).",
-        store(_INDUCTOR),
+        _INDUCTOR,
     ),
-    _kind(
-        "resistor",
-        "A resistor between two nodes, V_R of section 3.2.",
-        dissipation(ELECTRICAL, "R*i", ACROSS, THROUGH),
-    ),
+    _kind("resistor", "A resistor between two nodes, V_R of section 3.2.", _RESISTOR),
     _kind(
         "hysteron",
         "A hysteron, an inductor and a resistor in series: eq. (12), Assumption 2.",
-        store(_INDUCTOR),
-        dissipation(ELECTRICAL, "rho/(T - T_0)*deadzone(i, i_0)", ACROSS),
+        _INDUCTOR,
+        _HYSTERESIS,
     ),
-    _kind("transformer", "An ideal transformer between two pairs of nodes.", _within(ELECTRICAL)),
+    _kind("transformer", "An ideal transformer between two pairs of nodes.", _TRANSFORMER),
+    _kind("voltage_source", "A voltage between two nodes, V_in of eq. (12).", _VOLTAGE),
+    _kind("current_source", "A current given into a node.", _CURRENT),
+    _kind("inertia", "A moment of inertia at a node, the rotor of a machine.", _INERTIA),
     _kind(
-        "voltage_source",
-        "A voltage between two nodes, V_in of eq. (12).",
-        imposed(ELECTRICAL, ACROSS, "V_in"),
+        "torsion_spring", "A torsion spring between two nodes, an elastic shaft.", _TORSION_SPRING
     ),
-    _kind("current_source", "A current given into a node.", imposed(ELECTRICAL, THROUGH, "i_in")),
-    _kind(
-        "inertia",
-        "A moment of inertia at a node, the rotor of a machine.",
-        store(Store(ROTATION, ACROSS, "inertia", "kg*m**2", "I", at=True)),
-    ),
-    _kind(
-        "torsion_spring",
-        "A torsion spring between two nodes, an elastic shaft.",
-        store(Store(ROTATION, THROUGH, "stiffness", "N*m/rad", "k", stiff=True)),
-    ),
-    _kind(
-        "rotational_damper",
-        "A rotational damper between two nodes, a bearing.",
-        dissipation(ROTATION, "d*omega", THROUGH, ACROSS),
-    ),
-    _kind("gear", "An ideal gear between two pairs of nodes.", _within(ROTATION)),
-    _kind("torque_source", "A torque on a node.", imposed(ROTATION, THROUGH, "tau_load", at=True)),
-    _kind(
-        "angular_velocity_source",
-        "An angular velocity given to a node.",
-        imposed(ROTATION, ACROSS, "omega_in", at=True),
-    ),
+    _kind("rotational_damper", "A rotational damper between two nodes, a bearing.", _BEARING),
+    _kind("gear", "An ideal gear between two pairs of nodes.", _GEAR),
+    _kind("torque_source", "A torque on a node.", _TORQUE),
+    _kind("angular_velocity_source", "An angular velocity given to a node.", _ANGULAR_VELOCITY),
     _kind(
         "accumulator",
         "A hydraulic accumulator between two nodes, or the compressibility of a volume.",
-        store(Store(HYDRAULIC, ACROSS, "capacitance", "m**3/Pa", "C")),
+        _ACCUMULATOR,
     ),
     _kind(
         "inertance",
         "A hydraulic inertance between two nodes, the fluid in a line that moves.",
-        store(Store(HYDRAULIC, THROUGH, "inertance", "Pa*s**2/m**3", "L")),
+        _INERTANCE,
     ),
-    _kind(
-        "orifice",
-        "An orifice between two nodes, a valve or the friction of a line.",
-        dissipation(HYDRAULIC, "c*dp", THROUGH, ACROSS),
-    ),
-    _kind("flow_source", "A flow given into a node.", imposed(HYDRAULIC, THROUGH, "Q_in")),
-    _kind("pressure_source", "A pressure between two nodes.", imposed(HYDRAULIC, ACROSS, "p_in")),
+    _kind("orifice", "An orifice between two nodes, a valve or the friction of a line.", _ORIFICE),
+    _kind("flow_source", "A flow given into a node.", _FLOW),
+    _kind("pressure_source", "A pressure between two nodes.", _PRESSURE),
     _kind(
         "transducer",
         "A piezoelectric transducer, the relations of Assumption 2: F = ratio*V, i = ratio*v.",
-        coupling(
-            "ratio",
-            "a*T/T_0",
-            ("electrical", ELECTRICAL),
-            ("translation", TRANSLATION, "C/m"),
-            ("mechanical", TRANSLATION, "C/m"),
-            gyrates=True,
-            warm=True,
-        ),
+        _TRANSDUCER,
     ),
     _kind(
         "motor",
         "A voice coil or an electrical machine, without its coil, resistance and rotor.",
-        coupling(
-            "constant",
-            "k",
-            ("electrical", ELECTRICAL),
-            ("translation", TRANSLATION, "V*s/m"),
-            ("rotation", ROTATION, "V*s/rad"),
-        ),
+        _MOTOR,
     ),
-    _kind(
-        "rack",
-        "A rack and pinion, or a drum with its rope.",
-        coupling("radius", "r", ("translation", TRANSLATION), ("rotation", ROTATION, "m")),
-    ),
-    _kind(
-        "cylinder",
-        "A hydraulic cylinder: the pressure pushes its piston.",
-        coupling(
-            "area",
-            "A",
-            ("hydraulic", HYDRAULIC),
-            ("translation", TRANSLATION, "m**2"),
-            gyrates=True,
-        ),
-    ),
-    _kind(
-        "pump",
-        "A displacement pump, or a hydraulic motor.",
-        coupling(
-            "displacement",
-            "D",
-            ("rotation", ROTATION),
-            ("hydraulic", HYDRAULIC, "m**3/rad"),
-            gyrates=True,
-        ),
-    ),
+    _kind("rack", "A rack and pinion, or a drum with its rope.", _RACK),
+    _kind("cylinder", "A hydraulic cylinder: the pressure pushes its piston.", _CYLINDER),
+    _kind("pump", "A displacement pump, or a hydraulic motor.", _PUMP),
     _kind(
         "storage",
         "A store with one energy of several states: variable inductance, gas and the like.",

@@ -1,6 +1,6 @@
 """The forms of stores: with one state, with a slip, and with a slip that a limit makes.
 
-Input: a `Store`, that is a size in a domain, and an element.  Output: `Form`s, their ports.  With
+Input: a `Size` and an element.  Output: `Form`s, their ports.  With
 q' = v - slip(f, v) a spring slips in series, with Q' = i - slip(v, i) a capacitor in parallel; the
 product of co-state and slip heats a body.  What yields has a set-valued slip: below its limit
 nothing slips, at the limit all that would go beyond it does.  As a law of effort and rate, this is
@@ -23,15 +23,15 @@ from piezo_sym.spec.elements.ports import Branch, DissipativePort, Port, Storage
 
 @final
 @dataclass(frozen=True)
-class Store:
-    """An energy store that imposes its co-state.
+class Size:
+    """What makes an energy store of a domain: its stiffness, capacitance, mass ...
 
     Attributes
     ----------
-    size, unit : the field that is its stiffness, capacitance, mass ...
+    imposes : which variable its co-state is.
+    size, unit : the field.
     symbol : a parameter for it, in the example.
     stiff : whether the co-state is the size times the extension beyond `rest`, not state over size.
-    at : whether it stands at one node; the other is the reference.
     slips : whether it may have a slip, in series with a spring, in parallel to a capacitor.
     """
 
@@ -41,8 +41,12 @@ class Store:
     unit: str
     symbol: str
     stiff: bool = False
-    at: bool = False
     slips: bool = False
+
+    @property
+    def at(self) -> bool:
+        """Whether it stands at one node; the other is the reference."""
+        return self.domain.mechanical and self.imposes is PowerVariable.ACROSS
 
     @property
     def out(self) -> PhysicalVariable:
@@ -55,7 +59,7 @@ class Store:
         return self.domain.variable(self.imposes.other)
 
 
-def store(own: Store) -> Form:
+def store(own: Size) -> Form:
     """Return the form of a kind that is one store."""
     out, letter = own.out, own.out.state_letter
     one_of = (own.size, out.name, "energy")
@@ -94,7 +98,7 @@ def store(own: Store) -> Form:
     )
 
 
-def yielding(*stores: Store) -> Form:
+def yielding(*stores: Size) -> Form:
     """Return the form of a spring or capacitor, one of `stores`, that yields at a limit."""
     first = stores[0]
     sizes = {
@@ -103,7 +107,7 @@ def yielding(*stores: Store) -> Form:
     }
     others: dict[str, Any] = {own.size: own.out.unit for own in stores[1:]}
 
-    def meant(element: Any) -> Store:
+    def meant(element: Any) -> Size:
         return next(own for own in stores if getattr(element, own.size) is not None)
 
     def ports(element: Any, name: str, branch: Branch) -> tuple[Port, ...]:
@@ -134,7 +138,7 @@ def yielding(*stores: Store) -> Form:
     )
 
 
-def _fields(own: Store) -> Fields:
+def _fields(own: Size) -> Fields:
     out, letters = own.out, {own.out.state_letter: own.out.state_unit}
     fields = {
         **places(own.domain, own.at),
@@ -151,7 +155,7 @@ def _fields(own: Store) -> Fields:
     return fields
 
 
-def _store_doc(own: Store) -> str:
+def _store_doc(own: Size) -> str:
     out, driven, letter = own.out, own.driven, own.out.state_letter
     slip = (
         f" With `slip` [{driven.unit}], a law of {out.letter}, its {out.name}, and of "
@@ -168,7 +172,7 @@ def _store_doc(own: Store) -> str:
     )
 
 
-def _stop_doc(stores: tuple[Store, ...]) -> str:
+def _stop_doc(stores: tuple[Size, ...]) -> str:
     kinds = ", or ".join(
         f"with `{own.size}` a store of the co-state {own.out.prefix} = "
         f"{f'{own.size}*z' if own.stiff else f'z/{own.size}'} [{own.out.unit}]"
@@ -183,7 +187,7 @@ def _stop_doc(stores: tuple[Store, ...]) -> str:
     )
 
 
-def _costate(own: Store, element: Any, state: str) -> Expr:
+def _costate(own: Size, element: Any, state: str) -> Expr:
     """Return the co-state that a size gives; it may be 0/0 where its limit has a value."""
     size = rename(element.law(own.size), {own.out.state_letter: state})
     if not own.stiff:
@@ -192,7 +196,7 @@ def _costate(own: Store, element: Any, state: str) -> Expr:
     return Mul(size, add(Sym(state), neg(rest)))
 
 
-def _storage(own: Store, element: Any, name: str, branch: Branch, law: Expr) -> Storage:
+def _storage(own: Size, element: Any, name: str, branch: Branch, law: Expr) -> Storage:
     return Storage(
         state=state_symbol(element, name),
         law=law,
@@ -205,7 +209,7 @@ def _storage(own: Store, element: Any, name: str, branch: Branch, law: Expr) -> 
     )
 
 
-def _slipping(own: Store, element: Any, port: Storage, name: str) -> tuple[Port, ...]:
+def _slipping(own: Size, element: Any, port: Storage, name: str) -> tuple[Port, ...]:
     """Return a store beside its slip, which is in series if it gives a through variable."""
     (first, last), inner = port.branch, f"{name}:inner"
     series = own.imposes is PowerVariable.THROUGH
@@ -229,14 +233,14 @@ def _slipping(own: Store, element: Any, port: Storage, name: str) -> tuple[Port,
     return replace(port, branch=here), slip
 
 
-def _projected(own: Store, limit: Expr) -> Expr:
+def _projected(own: Size, limit: Expr) -> Expr:
     """Return the slip of what yields: all of the rate that would lead beyond the limit."""
     f, v = Sym(own.out.letter), Sym(own.driven.letter)
     forth, back = Cmp(">=", f, limit), Cmp("<=", f, neg(limit))
     return If(If(v, forth, ZERO), Cmp(">", v, ZERO), If(v, back, ZERO))
 
 
-def _fault(own: Store, element: Any) -> Fault | None:
+def _fault(own: Size, element: Any) -> Fault | None:
     """Return that slip and heat, or rest and stiffness, belong together, or lanes are one."""
     slip = getattr(element, "slip", None)
     if own.slips and (slip is None) != (element.heats is None):
