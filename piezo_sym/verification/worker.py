@@ -1,19 +1,19 @@
 """The process in which systems are examined: ``python -m piezo_sym.verification.worker``.
 
-Input: subjects on stdin, each after its length.  Output: messages on stdout in the same form, until
-``end``.  What is written to stdout by anything else goes to stderr.
+Input: subjects on stdin, one per line.  Output: messages on stdout in the same form, then an empty
+line.  What is written to stdout by anything else goes to stderr.
 """
 
 from __future__ import annotations
 
+import base64
 import gc
 import pickle
 import resource
 import signal
 import sys
-from itertools import count
 
-from piezo_sym.verification.process import answer, read, write
+from piezo_sym.verification.process import END, answer, packed
 
 #: Bytes of address space; no system that is decided in time needs as much.
 MEMORY = 8 << 30
@@ -30,15 +30,14 @@ def main() -> None:
     sys.stdout = sys.stderr
     import piezo_sym.verification.examine  # noqa: F401  # while the caller still reads its spec
 
-    for number in count():
-        try:
-            subject = pickle.loads(read(given))
-        except EOFError:
-            return
-        for message in answer(subject):
-            write(out, pickle.dumps(message))
+    for number, line in enumerate(given):
+        for message in answer(pickle.loads(base64.b64decode(line))):
+            out.write(packed(message) + b"\n")
+            out.flush()
+        out.write(END)
+        out.flush()
         if number == 0:  # imported modules stay: later collections skip them
-            del subject, message
+            del message
             gc.collect()
             gc.freeze()
 

@@ -111,12 +111,16 @@ def _answer_here() -> None:
     """Let z3 and cvc5 answer in this process: it is one that may hang or end."""
     from piezo_sym.proofs import solvers, worker
 
-    class Here(solvers.Solver):
-        def _exchange(self, request: str) -> str:
-            return worker.answered(self.name, request, worker.prepared(self.name)) + "\n"
+    class Here:
+        def __init__(self, name: str) -> None:
+            self.name = name
+
+        def ask(self, request: bytes, _: float) -> tuple[bytes]:
+            line = worker.answered(self.name, request.decode(), worker.prepared(self.name))
+            return (line.encode(),)
 
     worker.Z3_LIMIT = LIMIT
-    solvers.solver = lambda name, *_: Here(name, ())
+    solvers.solver = lambda name, *_: solvers.Solver(name, Here(name))
 
 
 def checked(text: str, proofs: str) -> Said:

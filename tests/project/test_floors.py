@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[2]
 PACKAGE = ROOT / "piezo_sym"
 GENERATED = sorted((ROOT / "generated").rglob("*.py"))
 
-GROUND = {"version", "errors", "files"}
+GROUND = {"version", "errors", "files", "processes"}
 TOP = ({"cli"}, {"__main__"})
 PROVING = (
     GROUND,

@@ -15,6 +15,7 @@ import pytest
 from piezo_sym import derive, load
 from piezo_sym.expressions.parse import parse_condition
 from piezo_sym.expressions.tree import Cmp, Num, Sym, names
+from piezo_sym.processes import Worker
 from piezo_sym.proofs import Verdict, decide, obligations, proofs_json, prove, solvers
 from piezo_sym.proofs.query import Query, query
 from piezo_sym.proofs.rational import cleared
@@ -73,12 +74,12 @@ def made(tmp_path):
         script = tmp_path / "fake.py"
         mark = str(tmp_path / "mark")
         script.write_text(FIRST_TIME.format(mark=mark, fault=fault))
-        running.append(Solver("fake", (sys.executable, str(script)), patience))
+        running.append(Solver("fake", Worker(str(script)), patience))
         return running[-1]
 
     yield make
     for one in running:
-        one.close()
+        one.worker.close()
 
 
 @pytest.mark.parametrize("fault", FAULTS.values(), ids=FAULTS)
@@ -91,27 +92,28 @@ def test_a_faulty_solver_proves_nothing_and_the_next_question_works(made, fault)
     assert decided(fake).verdict is Verdict.PROVED
 
 
-@pytest.mark.parametrize("command", [("/nowhere/z3",), (sys.executable, "/nowhere.py")])
-def test_a_solver_that_is_not_there_proves_nothing(command):
-    absent = Solver("absent", command)
+@pytest.mark.parametrize("interpreter", ["/nowhere/python", sys.executable])
+def test_a_solver_that_is_not_there_proves_nothing(interpreter, monkeypatch):
+    monkeypatch.setattr(sys, "executable", interpreter)
+    absent = Solver("absent", Worker("/nowhere.py"))
     row = decided(absent)
     assert row.verdict is Verdict.OPEN
     assert "absent stopped" in row.reason
-    absent.close()
+    absent.worker.close()
 
 
 def test_a_library_that_is_not_installed_is_named(tmp_path):
     """The worker runs, but there is no z3: its import fails as that of any missing library."""
     hidden = tmp_path / "z3.py"
     hidden.write_text("raise ModuleNotFoundError('No module named z3')")
-    worker = solver("z3").command[2]
+    worker = solver("z3").worker.arguments[1]
     start = f"import sys, runpy; sys.path.insert(0, {str(tmp_path)!r}); sys.argv = ['w', 'z3']; "
     start += f"runpy.run_path({worker!r}, run_name='__main__')"
-    asked = Solver("z3", (sys.executable, "-c", start))
+    asked = Solver("z3", Worker("-c", start))
     assert asked.ask(claim("x**2 >= 0")) == Answer(
         "unknown", reason="z3 failed: ModuleNotFoundError"
     )
-    asked.close()
+    asked.worker.close()
 
 
 def test_a_query_that_is_none_does_not_end_the_solver():
@@ -127,9 +129,9 @@ def test_a_query_that_is_none_does_not_end_the_solver():
 
 
 def test_a_solver_killed_in_the_middle_is_started_again():
-    asked = Solver("z3", solver("z3").command)
+    asked = Solver("z3", Worker(*solver("z3").worker.arguments))
     assert asked.ask(claim("x**2 >= 0")).result == "unsat"
-    process = asked._process
+    process = asked.worker.process
     killer = threading.Timer(0.5, os.kill, (process.pid, signal.SIGKILL))
     killer.start()
     answer = asked.ask(claim(HARD))
@@ -138,24 +140,18 @@ def test_a_solver_killed_in_the_middle_is_started_again():
     assert "stopped" in answer.reason
     assert process.returncode == -signal.SIGKILL  # it was waited for
     assert asked.ask(claim("x**2 + 1 >= 0")).result == "unsat"
-    process = asked._process
-    asked.close()
+    process = asked.worker.process
+    asked.worker.close()
     assert process.returncode is not None
 
 
-def test_an_answer_that_was_not_waited_for_is_not_taken_for_the_next(made, monkeypatch):
+def test_an_answer_that_was_not_waited_for_is_not_taken_for_the_next(made):
     """Ctrl-C while a solver works: its answer is still on its way when the next question comes."""
-    fake = made("time.sleep(0.3)", patience=10)
-    real = solvers._read
-
-    def interrupted(_):
-        monkeypatch.setattr(solvers, "_read", real)
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(solvers, "_read", interrupted)
+    fake = made("time.sleep(1)", patience=10)
+    threading.Timer(0.5, signal.raise_signal, (signal.SIGINT,)).start()
     with pytest.raises(KeyboardInterrupt):
         fake.ask(claim("x**2 >= 0"))
-    assert fake._process is None
+    assert fake.worker.process is None
     assert fake.ask(claim("x**2 >= 0")).result == "unsat"
 
 
@@ -165,7 +161,7 @@ from piezo_sym.proofs.solvers import solver
 from tests.proofs.test_solvers import HARD, claim
 asked = solver("z3")
 asked.ask(claim("x**2 >= 0"))
-print(asked._process.pid, flush=True)
+print(asked.worker.process.pid, flush=True)
 {last}
 """
 
@@ -246,9 +242,9 @@ def test_work_is_limited_and_the_limit_is_said():
 def test_the_same_query_has_the_same_answer_twice(name, text, given, result):
     query = replace(claim(text, *given), witness=True)
     first, again = solver(name).ask(query), solver(name).ask(query)
-    fresh = Solver(name, solver(name).command)
+    fresh = Solver(name, Worker(*solver(name).worker.arguments))
     assert first == again == fresh.ask(query)
-    fresh.close()
+    fresh.worker.close()
     assert first.result == result
     if name == "z3" and result == "sat":
         assert {*first.model} == {*query.variables}
@@ -312,7 +308,7 @@ def test_without_cvc5_z3_is_asked_alone(monkeypatch):
 
 def test_a_report_does_not_depend_on_the_process():
     first = decide(derive(load("piezo_stack")))
-    solver("z3").close()
+    solver("z3").worker.close()
     second = decide(derive(load("piezo_stack")))
     model = load("piezo_stack")
     assert json.loads(proofs_json(first, model, "")) == json.loads(proofs_json(second, model, ""))
@@ -320,7 +316,7 @@ def test_a_report_does_not_depend_on_the_process():
 
 def test_a_solver_that_never_ends_its_line_is_stopped():
     endless = "import os\nwhile True: os.write(1, b'no end ' * 100)"
-    talker = Solver("talker", (sys.executable, "-c", endless), patience=1.0)
+    talker = Solver("talker", Worker("-c", endless), patience=1.0)
     started = time.monotonic()
     assert (
         talker.ask(Query("never", (), (), Cmp("<", Num(Fraction(1)), Num(Fraction(0))))).result

@@ -6,16 +6,17 @@ import pytest
 
 from piezo_sym import PiezoError, derive, load, verify
 from piezo_sym.errors import SpecError
-from piezo_sym.proofs import Verdict
+from piezo_sym.processes import Worker
+from piezo_sym.proofs import Report, Verdict
 from piezo_sym.spec.load import parse
 from piezo_sym.verification import process
-from piezo_sym.verification.process import Examiner, examined_model
+from piezo_sym.verification.process import examined_model, messages
 from tests.proofs.test_false_proofs import MASS
 
 
 @pytest.fixture
 def examiner():
-    made = Examiner()
+    made = Worker("-m", "piezo_sym.verification.worker", group=True)
     yield made
     made.close()
 
@@ -31,9 +32,8 @@ def test_a_report_is_that_of_the_system():
 
 def test_what_takes_too_long_is_stopped_and_the_next_one_is_answered(examiner):
     model = load("piezo_stack")
-    assert list(examiner.ask(model, 0.01)) == [("late", "not decided in 0.01 s")]
-    kinds = [kind for kind, _ in examiner.ask(model, 60.0)]
-    assert set(kinds) == {"report"}
+    assert list(messages(examiner, model, 0.01)) == ["not decided in 0.01 s"]
+    assert {type(message) for message in messages(examiner, model, 60.0)} == {Report}
 
 
 def test_what_is_not_decided_in_time_is_open(monkeypatch):
@@ -52,8 +52,8 @@ def test_an_error_of_the_derivation_comes_back_as_it_is(examiner):
     )
     with pytest.raises(PiezoError) as wanted:
         derive(broken)
-    ((kind, error),) = examiner.ask(broken, 60.0)
-    assert kind == "error"
+    (error,) = messages(examiner, broken, 60.0)
+    assert isinstance(error, PiezoError)
     assert str(error) == str(wanted.value)
 
 

@@ -1,0 +1,118 @@
+"""Processes that answer requests: one may crash, hang or run out of memory, and nothing else does.
+
+Input: a command, and requests of one line.  Output: the lines of an answer, in time or not at all.
+"""
+
+from __future__ import annotations
+
+import atexit
+import os
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from typing import final
+
+#: No line is longer; of a process that never ends its line no more is read.
+LONGEST = 1 << 28
+#: Makes glibc keep freed memory for the next request: to get it from the system again takes longer
+#: than most answers.
+KEEP_MEMORY = {"MALLOC_TRIM_THRESHOLD_": "256000000", "MALLOC_MMAP_THRESHOLD_": "256000000"}
+
+
+@final
+class Worker:
+    """A process that answers one request after the other, started when it is first asked.
+
+    Parameters
+    ----------
+    arguments : of this interpreter.
+    group : whether it has a group of its own, which is stopped with it.
+    """
+
+    def __init__(self, *arguments: str, group: bool = False) -> None:
+        self.arguments, self.group = arguments, group
+        self.process: subprocess.Popen[bytes] | None = None
+        self._lock = threading.Lock()
+        atexit.register(self.close)
+
+    def ask(
+        self, request: bytes, seconds: float, is_last: Callable[[bytes], bool] = lambda _: True
+    ) -> Iterator[bytes]:
+        """Yield the lines of an answer; a process that does not give all of them is stopped.
+
+        Raises
+        ------
+        TimeoutError
+            If the answer takes longer than `seconds`.
+        EOFError, OSError
+            If the process ends, or cannot be started.
+        """
+        late = threading.Event()
+        with self._lock:
+            try:
+                self._start()
+                watch = threading.Timer(seconds, self._kill, (late,))
+                watch.start()
+                try:
+                    yield from self._exchange(request, is_last)
+                finally:
+                    watch.cancel()
+            except BaseException:  # what comes later would be taken for the next request's answer
+                self.close()
+                if late.is_set():
+                    raise TimeoutError from None
+                raise
+
+    def start(self) -> None:
+        """Start the process, unless it runs."""
+        with self._lock:
+            self._start()
+
+    def close(self) -> None:
+        """Stop the process; the next request starts another."""
+        if self.process is None:
+            return
+        self._kill(threading.Event())
+        self.process.wait()
+        for pipe in (self.process.stdin, self.process.stdout):
+            with suppress(OSError):  # of what was not sent
+                pipe and pipe.close()
+        self.process = None
+
+    def _start(self) -> None:
+        if self.process is None or self.process.poll() is not None:
+            self.close()
+            path = os.pathsep.join(path for path in sys.path if path)
+            self.process = subprocess.Popen(
+                (sys.executable, *self.arguments),
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                start_new_session=self.group,
+                env={**os.environ, **KEEP_MEMORY, "PYTHONPATH": path},
+            )
+
+    def _exchange(self, request: bytes, is_last: Callable[[bytes], bool]) -> Iterator[bytes]:
+        assert self.process is not None
+        to, back = self.process.stdin, self.process.stdout
+        assert to is not None
+        assert back is not None
+        to.write(request + b"\n")
+        to.flush()
+        while True:
+            line = back.readline(LONGEST)
+            if not line.endswith(b"\n"):
+                raise EOFError
+            yield line
+            if is_last(line):
+                return
+
+    def _kill(self, done: threading.Event) -> None:
+        done.set()
+        assert self.process is not None
+        with suppress(ProcessLookupError):
+            if self.group:
+                os.killpg(self.process.pid, signal.SIGKILL)
+            self.process.kill()
