@@ -1,7 +1,7 @@
 """A suspicious point evaluated again, exactly: rationals where all is, else enclosures that decide.
 
 Input: a `Probe`, and numbers for parameters, inputs and states (floats are rationals).  Output: a
-`Point`, whose quantities are nan where 8192 bits do not tell them; what breaks a row there, as text
+`Point`, whose quantities are nan where `BITS` do not tell them; what breaks a row there, as text
 (`Exact`).
 """
 
@@ -21,7 +21,8 @@ from piezo_sym.falsify.probe import Probe
 from piezo_sym.falsify.space import Array, Space
 from piezo_sym.spec.tables import conditions
 
-BITS, PRECISIONS = 1024, (128, 512, 2048, 8192)
+#: Precision of enclosures: the numbers of a point may be 600 decades apart.
+BITS = 4096
 #: A point of more lanes is not computed; two at a time are attacked as well.
 MOST_LANES = 64
 #: Rationals of more bits become enclosures.
@@ -69,24 +70,17 @@ class Point:
         self.system, self.probe, self.counts = system, system.probe, space.counts
         self.numbers = {name: numbers[columns] for name, columns in space.columns_of.items()}
         self.banks = space.banks
-        self._lanes: dict[int, list[_Lane]] = {}
+        self._lanes = [_Lane(self, n) for n in range(max(self.counts.values(), default=1))]
 
-    def lanes(self, bank: str | None, bits: int) -> list[_Lane]:
-        """Return the lanes of a bank at a precision; without a bank, the first."""
-        if bits not in self._lanes:
-            most = max(self.counts.values(), default=1)
-            self._lanes[bits] = [_Lane(self, n, bits) for n in range(most)]
-        return self._lanes[bits][: self.counts[bank] if bank else 1]
+    def lanes(self, bank: str | None) -> list[_Lane]:
+        """Return the lanes of a bank; without a bank, the first."""
+        return self._lanes[: self.counts[bank] if bank else 1]
 
     def get(self, what: str, name: str) -> list[tuple[Any, Any]]:
         """Return the values of a quantity, each with the size 0, for nothing is rounded."""
         rows = self.probe.of(what, name)
-        found: list[Any] = []
-        for bits in PRECISIONS:
-            with ctx.workprec(bits):
-                found = [lane.told(tree) for tree, bank in rows for lane in self.lanes(bank, bits)]
-            if all(isinstance(value, fmpq) or value.is_finite() for value in found):
-                break
+        with ctx.workprec(BITS):
+            found = [lane.told(tree) for tree, bank in rows for lane in self.lanes(bank)]
         return [(value, 0) for value in found or [NAN]]
 
     def total(self, what: str) -> tuple[Any, Any]:
@@ -104,14 +98,12 @@ class Point:
     def _holds(self, condition: Cmp) -> bool | None:
         """Return whether a condition holds, in every lane; None if it cannot be told."""
         bank = next(filter(None, map(self.bank, names(condition))), None)
-        for bits in PRECISIONS:
-            try:
-                return all(holds(condition, lane, bits) for lane in self.lanes(bank, bits))
-            except TooCloseError:
-                continue
-            except (ArithmeticError, ValueError):
-                return False
-        return None
+        try:
+            return all(holds(condition, lane, BITS) for lane in self.lanes(bank))
+        except TooCloseError:
+            return None
+        except (ArithmeticError, ValueError):
+            return False
 
     def bank(self, name: str) -> str | None:
         """Return the bank of a name that has a value per lane."""
@@ -120,16 +112,16 @@ class Point:
     def undefined(self, element: str) -> bool:
         """Return whether a law of an element has no value; without a name, one of the junction."""
         laws = self.probe.of_element(element)
-        return any(lane.lost(tree) for tree, bank in laws for lane in self.lanes(bank, BITS))
+        return any(lane.lost(tree) for tree, bank in laws for lane in self.lanes(bank))
 
 
 @final
 class _Lane(dict[Any, Any]):
     """What a name, or a sum over lanes, is worth in one lane; computed when it is asked for."""
 
-    def __init__(self, point: Point, number: int, bits: int) -> None:
+    def __init__(self, point: Point, number: int) -> None:
         super().__init__()
-        self.point, self.number, self.bits = point, number, bits
+        self.point, self.number = point, number
 
     def __missing__(self, key: str | LaneSum) -> Any:
         """Return a value, which is kept."""
@@ -139,18 +131,17 @@ class _Lane(dict[Any, Any]):
     def _made(self, key: str | LaneSum) -> Any:
         point = self.point
         if isinstance(key, LaneSum):
-            lanes = point.lanes(key.bank, self.bits)
-            return sum((lane.told(key.arg) for lane in lanes), start=fmpq(0))
+            return sum((lane.told(key.arg) for lane in point.lanes(key.bank)), start=fmpq(0))
         if key in point.numbers:
             return point.numbers[key][self.number % len(point.numbers[key])]
         if self.number and point.bank(key) is None:
-            return point.lanes(None, self.bits)[0][key]
+            return point.lanes(None)[0][key]
         return self.told(point.probe.defined[key][0])
 
     def told(self, tree: Expr) -> Any:
         """Return the value of a tree; nan if it has none or it cannot be told."""
         try:
-            found = evaluated(tree, self, self.bits)
+            found = evaluated(tree, self, BITS)
         except (ArithmeticError, ValueError):
             return NAN
         return arb(found) if isinstance(found, fmpq) and found.height_bits() > MOST_BITS else found
@@ -158,7 +149,7 @@ class _Lane(dict[Any, Any]):
     def lost(self, tree: Expr) -> bool:
         """Return whether a tree has certainly no value."""
         try:
-            evaluated(tree, self, self.bits)
+            evaluated(tree, self, BITS)
         except TooCloseError:
             return False
         except (ArithmeticError, ValueError):

@@ -21,8 +21,8 @@ from piezo_sym.falsify.space import EXTREME, LARGEST, LEAST, Array, Mask, Seen, 
 
 #: Between neighbouring floats a law may change by this part of its size.
 JUMP = 1e-6
-#: At these multiples of the distance of two floats from a jump, a law has not changed by more.
-OFF_A_JUMP = (10, 100)
+#: Of the kinks at which a law changes by more, so many are looked at exactly.
+MOST_LOOKED_AT = 6
 #: A difference that has shrunk to this part of the largest is no jump.
 FADED = Fraction(1, 10**6)
 #: Two sides of a jump are brought together to these relative distances, and differ as before.
@@ -50,7 +50,7 @@ def _suspects(claim: Claim, space: Space, sides: Sides) -> Iterator[tuple[Array,
     for what in space.probe.kinds.get(claim.element, ()):
         leap, size = _leap((what, claim.element), sides)
         big = np.where(sides.near, leap / size, 0)
-        for n in np.argsort(-big, kind="stable")[:2]:
+        for n in np.argsort(-big, kind="stable")[:MOST_LOOKED_AT]:
             if big[n] > JUMP:
                 change = float(leap[n]) if leap[n] < LARGEST else 0.0
                 yield ends[0].points[:, n], ends[1].points[:, n], change
@@ -65,12 +65,10 @@ class Sides:
     ----------
     near : which kinks are in states and inputs, and inside the domain.
     ends : next to the kinks.
-    off : farther off, on either side.
     """
 
     near: Mask
     ends: tuple[Seen, Seen]
-    off: tuple[tuple[Seen, Seen], ...]
 
 
 def sides_of(space: Space, roots: Roots) -> Sides:
@@ -82,24 +80,15 @@ def sides_of(space: Space, roots: Roots) -> Sides:
     near &= np.abs(roots.high) < EXTREME
     base = space.at(roots.base)
     near &= low.inside & high.inside & ~base.extreme & ~base.steep
-    off = (
-        (space.at(roots.at(roots.low - n * step)), space.at(roots.at(roots.high + n * step)))
-        for n in OFF_A_JUMP
-    )
-    return Sides(near, (low, high), tuple(off))
+    return Sides(near, (low, high))
 
 
 def _leap(law: tuple[str, str], sides: Sides) -> tuple[Array, Array]:
-    """Return by how much a law changes, 0 if farther off it changes more, and its size."""
+    """Return by how much a law changes, and its size."""
     low, high = (end.law(*law) for end in sides.ends)
     with np.errstate(all="ignore"):
         leap = np.nan_to_num(np.abs(high.value - low.value), nan=0, posinf=LARGEST)
         size = np.minimum(low.size + high.size, LARGEST)
-        for off in sides.off:
-            for seen, other in zip(off, (high, low), strict=True):
-                there = seen.law(*law).value
-                far = np.nan_to_num(np.abs(there - other.value), nan=LARGEST, posinf=LARGEST)
-                leap = np.where(far > 1.25 * leap, 0, leap)
     most = leap.max(axis=0, initial=0)
     return most, np.where(leap == most, size, 0).max(axis=0, initial=LEAST)
 

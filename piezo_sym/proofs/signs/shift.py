@@ -16,6 +16,7 @@ from typing import TypeAlias
 import sympy as sp
 
 from piezo_sym.algebra.symbols import to_sympy
+from piezo_sym.expressions.calculus import derivative, inserted
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.tree import (
     ZERO,
@@ -31,6 +32,7 @@ from piezo_sym.expressions.tree import (
     Sym,
     children,
     rebuild,
+    walk,
 )
 
 #: The coefficients of constant + slope*t.
@@ -89,28 +91,17 @@ def _written(affine: Affine) -> Expr:
 
 
 def _affine(tree: Expr) -> Affine | None:
-    """Return the coefficients of a tree whose parts are written; None if it is not affine."""
-    match tree:
-        case Num(value):
-            return value, Fraction(0)
-        case Sym():
-            return Fraction(0), Fraction(1)
-        case Neg(arg):
-            return _scaled(arg, Fraction(-1))
-        case Mul(Num(value), arg) | Mul(arg, Num(value)):
-            return _scaled(arg, value)
-        case Div(arg, Num(value)) if value != 0:
-            return _scaled(arg, 1 / value)
-        case Add((left, right)):
-            first, second = _affine(left), _affine(right)
-            if first is not None and second is not None:
-                return first[0] + second[0], first[1] + second[1]
+    """Return the coefficients of a tree; None if it is not affine, or is no polynomial by form."""
+    for part in walk(tree):
+        if not isinstance(part, Num | Sym | Neg | Add | Mul):
+            match part:
+                case Div(_, Num(value)) if value != 0:
+                    continue
+            return None
+    slope, constant = derivative(tree, T.name), inserted(tree, {T.name: ZERO})
+    if isinstance(slope, Num) and isinstance(constant, Num):
+        return constant.value, slope.value
     return None
-
-
-def _scaled(arg: Expr, factor: Fraction) -> Affine | None:
-    affine = _affine(arg)
-    return None if affine is None else (affine[0] * factor, affine[1] * factor)
 
 
 #: A function of larger numbers, or of others than rational ones, is only equal to itself.
