@@ -18,7 +18,7 @@ from piezo_sym.algebra.sums import LaneSymbol, SymbolicLaneSum
 from piezo_sym.errors import SpecError, quote
 from piezo_sym.expressions.calculus import choices
 from piezo_sym.expressions.functions import RECORDS
-from piezo_sym.expressions.parse import parse_rule
+from piezo_sym.expressions.grammar import parse_rule
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import (
     ZERO,

@@ -79,7 +79,8 @@ def _where(element: Element) -> str:
 
 def _laws(model: Model, name: str, element: Element) -> Iterator[str]:
     """Yield each law, and its value where parameters alone decide it."""
-    from piezo_sym.expressions.tree import Num, evaluate, names
+    from piezo_sym.expressions.exact_eval import evaluate
+    from piezo_sym.expressions.tree import Num, names
 
     numbers = {word: entry.si for word, entry in model.parameters.items()}
     for law in element.laws(name):

@@ -10,7 +10,7 @@ from fractions import Fraction
 from itertools import pairwise
 
 from piezo_sym.expressions.functions import RECORDS
-from piezo_sym.expressions.parse import parse_clause, parse_rule
+from piezo_sym.expressions.grammar import parse_clause, parse_rule
 from piezo_sym.expressions.tree import (
     ONE,
     ZERO,

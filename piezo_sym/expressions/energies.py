@@ -7,12 +7,12 @@ and F_2 + F_1(e) - F_2(e) on the other, which is continuous.
 
 from collections.abc import Callable, Collection
 from contextlib import suppress
-from fractions import Fraction
 from functools import reduce
 from itertools import islice
 from math import prod
 
 from piezo_sym.expressions.calculus import add, compared, derivative, div, inserted, mul, neg
+from piezo_sym.expressions.exact_eval import OUTCOMES
 from piezo_sym.expressions.integrals import MAX_PARTS, NoFormError, by_rules, divided, slope_of
 from piezo_sym.expressions.tree import (
     ONE,
@@ -29,7 +29,6 @@ from piezo_sym.expressions.tree import (
     Pow,
     Sym,
     children,
-    holds,
     names,
     rebuild,
     walk,
@@ -138,7 +137,7 @@ def _settled(node: Expr, positive: Collection[str]) -> Expr:
         case If(then, Cmp(op, left, right), other):
             sign = _sign(add(left, neg(right)), positive)
             if sign is not None:
-                return then if holds(Cmp(op, Num(Fraction(sign)), ZERO), {}) else other
+                return then if OUTCOMES[op](sign) else other
         case Pow(Neg(arg), exponent) if exponent % 2 == 0:
             return Pow(arg, exponent)
     return inner

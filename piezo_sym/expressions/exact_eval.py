@@ -6,6 +6,7 @@ arithmetic is rigorous.  A witness is shown only after its law has been evaluate
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -15,7 +16,7 @@ from flint import arb, ctx, fmpq, fmpz
 
 from piezo_sym.expressions.calculus import choices, increasing
 from piezo_sym.expressions.functions import RECORDS, LawFunction
-from piezo_sym.expressions.parse import MAX_POWER, parse_rule
+from piezo_sym.expressions.grammar import MAX_POWER, parse_rule
 from piezo_sym.expressions.tree import (
     Add,
     Call,
@@ -61,6 +62,20 @@ def value_of(node: Expr, values: Mapping[str, Value]) -> Value:
     """Return the value of a law; see `evaluated`."""
     found = evaluated(node, values)
     return Fraction(int(found.p), int(found.q)) if isinstance(found, fmpq) else found
+
+
+def evaluate(node: Expr, values: Mapping[str, float]) -> float:
+    """Return the value of a law in floating point.
+
+    Raises
+    ------
+    ArithmeticError, ValueError
+        Where the law has no finite real value (1/0, log(0), an overflow).
+    """
+    value = float(value_of(node, values))
+    if not math.isfinite(value):
+        raise OverflowError("no finite value")
+    return value
 
 
 def evaluated(node: Expr, values: Mapping[Any, Value], bits: int = BITS) -> Value:

@@ -1,56 +1,20 @@
 """Text of a law to a checked tree.
 
-Input: text from a user, trusted in nothing.  Output: a tree, or a `SpecError` that says what is
-wrong, where, what is expected and what to do.  Length, characters and nesting are checked first;
-then Python's own parser reads the text, and only the nodes of the law language pass.  Numbers are
-taken from the source text as exact rationals.  Python evaluates none of it.
+Input: text from a user.  Output: a tree, or a `SpecError` that says what is wrong, where, what is
+expected and what to do.
 """
 
-import ast
-import re
 from collections.abc import Callable
-from fractions import Fraction
-from functools import cache, lru_cache
+from functools import lru_cache
 from typing import TypeVar
 
-from piezo_sym.errors import SpecError, nearest, quote
-from piezo_sym.expressions.functions import FUNCTIONS, RECORDS
-from piezo_sym.expressions.lexer import (
-    LANGUAGE,
-    MAX_DEPTH,
-    MAX_MAGNITUDE,
-    TOKEN,
-    RefusedError,
-    check_letters,
-    check_tokens,
-)
+from piezo_sym.errors import SpecError, quote
+from piezo_sym.expressions.exact_eval import evaluate
+from piezo_sym.expressions.grammar import read_condition, read_law
+from piezo_sym.expressions.lexer import RefusedError
 from piezo_sym.expressions.size import check_size
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import (
-    Add,
-    Call,
-    Cmp,
-    Div,
-    Expr,
-    If,
-    Mul,
-    Neg,
-    Num,
-    Pow,
-    Sym,
-    children,
-    evaluate,
-    names,
-)
-
-MAX_KNOTS = 64
-MAX_POWER = 16
-#: What functions are called elsewhere.
-ELSEWHERE = {"ln": "log", "arctan": "atan", "sgn": "sign", "fabs": "abs"}
-LARGEST = Fraction(10) ** MAX_MAGNITUDE
-SMALLEST = 1 / LARGEST
-
-COMPARE: dict[type[ast.cmpop], str] = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
+from piezo_sym.expressions.tree import Cmp, Div, Expr, Sym, children, names
 
 Tree = TypeVar("Tree", Expr, Cmp)
 
@@ -82,19 +46,6 @@ def parse_condition(text: str, where: str) -> Cmp:
     return _located(_condition, text, where)
 
 
-@cache
-def parse_rule(text: str) -> Expr:
-    """Return the tree of a rule in a function's record, which needs no check of its size."""
-    return _expression(_parsed(text), text)
-
-
-@cache
-def parse_clause(text: str) -> tuple[Cmp, ...]:
-    """Return the comparisons of a fact in a function's record, of which one holds."""
-    parts = (part.strip() for part in text.split("|"))
-    return tuple(_condition(part) for part in parts)
-
-
 def _located(read: Callable[[str], Tree], text: str, where: str) -> Tree:
     try:
         return read(text)
@@ -105,10 +56,7 @@ def _located(read: Callable[[str], Tree], text: str, where: str) -> Tree:
 
 @lru_cache(maxsize=16384)
 def _law(text: str) -> Expr:
-    body = _parsed(text)
-    if isinstance(body, ast.Compare):
-        raise RefusedError("is a comparison", "a law", "write 'a if x < y else b'")
-    tree = _expression(body, text)
+    tree = read_law(text)
     check_size(tree)
     _check_constants(tree)
     return tree
@@ -116,158 +64,11 @@ def _law(text: str) -> Expr:
 
 @lru_cache(maxsize=16384)
 def _condition(text: str) -> Cmp:
-    body = _parsed(text)
-    if not isinstance(body, ast.Compare):
-        remedy = "write each condition as one of its own" * isinstance(body, ast.BoolOp)
-        raise RefusedError("is not a comparison", "one of < <= > >=, as in 'T > T_0'", remedy)
-    tree = _comparison(body, text)
+    tree = read_condition(text)
     for side in (tree.left, tree.right):
         check_size(side)
         _check_constants(side)
     return tree
-
-
-def _parsed(text: str) -> ast.expr:
-    """Return Python's own parse of a text that has passed the checks on its letters."""
-    check_letters(text)
-    check_tokens(text)
-    try:
-        return ast.parse(text.strip(), mode="eval").body
-    except (SyntaxError, ValueError, MemoryError, RecursionError):
-        beside = re.search(r"[\w)] +[\w(]", text) and not re.search(
-            r"\b(if|else|and|or|not)\b", text
-        )
-        remedy = "write * between factors, as in d*v" * bool(beside)
-        raise RefusedError("is not a complete law", LANGUAGE, remedy) from None
-
-
-def _expression(node: ast.expr, text: str, depth: int = 0) -> Expr:
-    """Return the tree of an allowed node; anything else is refused by what it is."""
-    if depth > MAX_DEPTH:
-        raise RefusedError("is nested too deeply", f"at most {MAX_DEPTH} levels")
-    match node:
-        case ast.Constant():
-            return Num(_number(ast.get_source_segment(text.strip(), node) or ""))
-        case ast.Name(name):
-            return Sym(name)
-        case ast.UnaryOp(ast.USub(), operand):
-            return Neg(_expression(operand, text, depth + 1))
-        case ast.UnaryOp(ast.UAdd(), operand):
-            return _expression(operand, text, depth + 1)
-        case ast.BinOp(left, operator, right):
-            return _binary(left, operator, right, text, depth + 1)
-        case ast.IfExp(ast.Compare() as test, then, other):
-            parts = _expression(then, text, depth + 1), _expression(other, text, depth + 1)
-            return If(parts[0], _comparison(test, text, depth + 1), parts[1])
-        case ast.IfExp():
-            raise RefusedError("chooses by no comparison", "'a if x < y else b'")
-        case ast.Call(ast.Name(function), args, []):
-            return _call(function, args, text, depth + 1)
-        case ast.Compare():
-            raise RefusedError("uses a comparison as a number", "'a if x < y else b'")
-    raise RefusedError("is not of the law language", LANGUAGE)
-
-
-def _number(source: str) -> Fraction:
-    match = TOKEN.fullmatch(source)
-    if match is None or match.lastgroup != "number":
-        raise RefusedError(f"has {quote(source)} where a number should be", "0.5 or 1e-3")
-    value = Fraction(source)
-    if value and not SMALLEST <= value <= LARGEST:
-        raise RefusedError(f"has the number {quote(source)}", f"1e+-{MAX_MAGNITUDE} at most")
-    return value
-
-
-def _binary(left: ast.expr, op: ast.operator, right: ast.expr, text: str, depth: int) -> Expr:
-    match op:
-        case ast.Add() | ast.Sub():
-            return _sum(left, op, right, text, depth)
-        case ast.Mult():
-            return Mul(_expression(left, text, depth), _expression(right, text, depth))
-        case ast.Div():
-            return Div(_expression(left, text, depth), _expression(right, text, depth))
-        case ast.Pow():
-            return _power(_expression(left, text, depth), _expression(right, text, depth))
-    raise RefusedError("uses an operator that laws do not have", LANGUAGE)
-
-
-def _sum(left: ast.expr, op: ast.operator, right: ast.expr, text: str, depth: int) -> Expr:
-    """Return ``a + b - c ...`` as one sum, without recursion: its length is no nesting."""
-    backwards: list[Expr] = []
-    while True:
-        term = _expression(right, text, depth)
-        backwards.append(Neg(term) if isinstance(op, ast.Sub) else term)
-        if not (isinstance(left, ast.BinOp) and isinstance(left.op, (ast.Add, ast.Sub))):
-            break
-        op, right, left = left.op, left.right, left.left
-    backwards.append(_expression(left, text, depth))
-    return Add(tuple(reversed(backwards)))
-
-
-#: Letters that no parameter can be meant by: a power of these is none of parameters alone.
-LETTERS = frozenset({"i", "v", "f", "T"})
-
-
-def _power(base: Expr, exponent: Expr) -> Expr:
-    if LETTERS & {*names(exponent)}:
-        raise RefusedError("has a power that is not a number", "a small number, as in v**2")
-    if names(exponent) and not isinstance(exponent, Neg) and _may_vanish(base):
-        return Call("pow", (base, exponent))
-    if names(exponent):  # of a positive base; of what has a unit, exp and log say so
-        return Call("exp", (Mul(exponent, Call("log", (base,))),))
-    value = _rational(exponent)
-    if value is None or max(abs(value.numerator), value.denominator) > MAX_POWER:
-        raise RefusedError("has too large a power", f"whole numbers or p/q up to {MAX_POWER}")
-    return Pow(base, value)
-
-
-def _may_vanish(base: Expr) -> bool:
-    """Return whether a factor chooses, as abs(f/f_0) does: the power is 0 where its base is."""
-    match base:
-        case Mul(left, right):
-            return _may_vanish(left) or _may_vanish(right)
-        case Div(left, _):
-            return _may_vanish(left)
-    chooses = isinstance(base, Call) and not RECORDS[base.function].smooth
-    return chooses or isinstance(base, If) or (isinstance(base, Call) and base.function == "pow")
-
-
-def _rational(node: Expr) -> Fraction | None:
-    """Return the exact value of a constant exponent built from + - * / of numbers, else None."""
-    match node:
-        case Num(value):
-            return value
-        case Neg(arg):
-            inner = _rational(arg)
-            return None if inner is None else -inner
-        case Div(left, right):
-            top, bottom = _rational(left), _rational(right)
-            return top / bottom if top is not None and bottom else None
-    return None
-
-
-def _comparison(node: ast.Compare, text: str, depth: int = 0) -> Cmp:
-    if len(node.ops) != 1:
-        raise RefusedError("chains comparisons", "one comparison at a time")
-    op = COMPARE.get(type(node.ops[0]))
-    if op is None:
-        raise RefusedError("compares in a way that laws do not have", "one of < <= > >=")
-    left = _expression(node.left, text, depth + 1)
-    return Cmp(op, left, _expression(node.comparators[0], text, depth + 1))
-
-
-def _call(function: str, args: list[ast.expr], text: str, depth: int) -> Expr:
-    if function not in FUNCTIONS:
-        known = nearest(ELSEWHERE.get(function, function), FUNCTIONS)
-        raise RefusedError(f"calls {quote(function)}, which laws do not have", remedy=known)
-    count, what = len(FUNCTIONS[function].slopes), f"gives {function} {len(args)} arguments"
-    if FUNCTIONS[function].knots:
-        if len(args) % 2 == 0 or not 2 <= len(args) // 2 <= MAX_KNOTS:
-            expected = f"{function}(x, x_1, y_1, x_2, y_2, ...) with 2 to {MAX_KNOTS} knots"
-            raise RefusedError(what, expected, "give each x_k its y_k")
-    elif len(args) != count:
-        raise RefusedError(what, f"{count}")
-    return Call(function, tuple(_expression(arg, text, depth) for arg in args))
 
 
 def _check_constants(node: Expr | Cmp) -> bool:

@@ -1,20 +1,19 @@
 """The small tree in which laws are kept, from the spec to the printers.
 
 Input: nothing; these are the types.  Output: frozen nodes, and the walks that every stage shares:
-which names occur, renaming, replacement, the numeric value.  A tree is data: it cannot execute.
+which names occur, renaming, replacement.  A tree is data: it cannot execute.
 `LaneSum` never comes from a spec; lowering makes it for the sums over a bank's lanes.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from typing import Any, TypeVar, cast, dataclass_transform, final
 
-from piezo_sym.expressions.functions import FUNCTIONS, RECORDS
+from piezo_sym.expressions.functions import FUNCTIONS
 
 Kind = TypeVar("Kind")
 
@@ -205,65 +204,3 @@ def replace(node: Expr, mapping: Mapping[str, Expr]) -> Expr:
 def rename(node: Expr, mapping: Mapping[str, str]) -> Expr:
     """Return `node` with names replaced by other names, all at once."""
     return replace(node, {old: Sym(new) for old, new in mapping.items()})
-
-
-COMPARISONS: Mapping[str, Callable[[float, float], bool]] = {
-    "<": lambda a, b: a < b,
-    "<=": lambda a, b: a <= b,
-    ">": lambda a, b: a > b,
-    ">=": lambda a, b: a >= b,
-}
-
-
-def holds(condition: Cmp, values: Mapping[str, float]) -> bool:
-    """Return whether a comparison holds for the given values of its names."""
-    left, right = evaluate(condition.left, values), evaluate(condition.right, values)
-    return COMPARISONS[condition.op](left, right)
-
-
-def evaluate(node: Expr, values: Mapping[str, float]) -> float:
-    """Return the floating-point value of `node` for the given values of its names.
-
-    Raises
-    ------
-    ArithmeticError, ValueError
-        Where the law has no finite real value (1/0, log(0), an overflow).
-    """
-    value = _evaluate(node, values)
-    if not math.isfinite(value):
-        msg = "no finite value"
-        raise ArithmeticError(msg)
-    return value
-
-
-def _evaluate(node: Expr, values: Mapping[str, float]) -> float:
-    match node:
-        case Num(value):
-            return float(value)
-        case Sym(name):
-            return values[name]
-        case Neg(arg):
-            return -_evaluate(arg, values)
-        case Add(terms):
-            return math.fsum(_evaluate(term, values) for term in terms)
-        case Mul(left, right):
-            return _evaluate(left, values) * _evaluate(right, values)
-        case Div(left, right):
-            return _evaluate(left, values) / _evaluate(right, values)
-        case Pow(base, exponent):
-            return _power(_evaluate(base, values), exponent)
-        case Call(function, args):
-            return float(RECORDS[function].value(*(_evaluate(arg, values) for arg in args)))
-        case If(then, condition, other):
-            return _evaluate(then if holds(condition, values) else other, values)
-        case LaneSum():
-            raise TypeError("a sum over lanes has no value outside a program")
-
-
-def _power(base: float, exponent: Fraction) -> float:
-    if exponent.denominator == 1:
-        return float(base**exponent.numerator)
-    if base < 0:
-        msg = "fractional power of a negative number"
-        raise ArithmeticError(msg)
-    return float(base ** float(exponent))

@@ -6,6 +6,7 @@ there is a bank.  Output: an `Approx`.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -162,6 +163,5 @@ def _each(operation: Callable[..., Any], a: Approx, b: Approx) -> Approx:
 
 @cache
 def _function(name: str) -> Callable[[Any], Any]:
-    record = RECORDS[name]
-    own = getattr(np, record.numpy.removeprefix("np."), None)
-    return own or np.vectorize(record.value, otypes=[float])
+    own = getattr(np, RECORDS[name].numpy.removeprefix("np."), None)
+    return own or np.vectorize(getattr(math, name), otypes=[float])

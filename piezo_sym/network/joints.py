@@ -19,6 +19,7 @@ import sympy as sp
 from piezo_sym.algebra.coefficients import coefficient
 from piezo_sym.errors import NetworkError, SpecError, listing, quote
 from piezo_sym.expressions.calculus import add, div, inserted, mul, neg, power
+from piezo_sym.expressions.exact_eval import evaluate
 from piezo_sym.expressions.tree import (
     ONE,
     ZERO,
@@ -29,7 +30,6 @@ from piezo_sym.expressions.tree import (
     Neg,
     Num,
     Sym,
-    evaluate,
     names,
 )
 from piezo_sym.network.inverse import constant_slope

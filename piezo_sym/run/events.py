@@ -18,9 +18,10 @@ from typing import Any, TypeAlias, final
 import numpy as np
 
 from piezo_sym.errors import PiezoError, UsageError, nearest, quote
+from piezo_sym.expressions.exact_eval import evaluate
 from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import Add, Expr, Neg, evaluate, names
+from piezo_sym.expressions.tree import Add, Expr, Neg, names
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.dataset import Known, Trajectory, described
 from piezo_sym.run.module import row_names

@@ -26,7 +26,7 @@ from piezo_sym.codegen.program import (
 )
 from piezo_sym.codegen.switches import switched
 from piezo_sym.expressions.calculus import add, compared, derivative, div, is_affine, mul
-from piezo_sym.expressions.parse import parse_rule
+from piezo_sym.expressions.grammar import parse_rule
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, If, LaneSum, Num, Sym, names, rebuild
 from piezo_sym.expressions.tree import replace as put
 from piezo_sym.module_cache import load_module

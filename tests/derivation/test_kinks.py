@@ -10,8 +10,9 @@ from hypothesis import assume, given
 from piezo_sym import derive
 from piezo_sym.algebra.symbols import to_sympy
 from piezo_sym.errors import SpecError
+from piezo_sym.expressions.exact_eval import evaluate
 from piezo_sym.expressions.parse import parse_law
-from piezo_sym.expressions.tree import evaluate, names
+from piezo_sym.expressions.tree import names
 from piezo_sym.spec.load import parse
 from piezo_sym.spec.source import MODELS
 

@@ -9,10 +9,10 @@ import sympy as sp
 from piezo_sym.algebra.symbols import to_sympy
 from piezo_sym.codegen.numpy.style import numpy_text
 from piezo_sym.expressions.calculus import derivative
-from piezo_sym.expressions.exact_eval import value_of
+from piezo_sym.expressions.exact_eval import evaluate, value_of
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import Call, Sym, evaluate
+from piezo_sym.expressions.tree import Call, Sym
 from piezo_sym.falsify.floats import Floats
 
 POWER = Call("pow", (Sym("x"), Sym("w")))

@@ -12,10 +12,10 @@ from piezo_sym.algebra.symbols import to_sympy
 from piezo_sym.errors import SpecError
 from piezo_sym.expressions.calculus import choices, derivative, increasing
 from piezo_sym.expressions.dimensions import faults, matches
-from piezo_sym.expressions.exact_eval import value_of
+from piezo_sym.expressions.exact_eval import evaluate, value_of
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import Cmp, If, Sym, evaluate, walk
+from piezo_sym.expressions.tree import Cmp, If, Sym, walk
 
 V = sp.Symbol("v", real=True)
 QUARTERS = st.integers(-200, 200).map(lambda n: n / 4)

@@ -11,9 +11,10 @@ from spec_laws import laws, precise, steady
 
 from piezo_sym.expressions.calculus import derivative
 from piezo_sym.expressions.energies import antiderivative
+from piezo_sym.expressions.exact_eval import evaluate
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import ZERO, evaluate, names
+from piezo_sym.expressions.tree import ZERO, names
 
 STEP = mpmath.mpf("1e-20")
 ODD = st.integers(-3000, 3000).map(lambda n: mpmath.mpf(2 * n + 1) / 1999)

@@ -6,9 +6,10 @@ from spec_tools import refused_edit, refused_law
 
 from piezo_sym.algebra.symbols import to_sympy
 from piezo_sym.expressions.calculus import derivative
+from piezo_sym.expressions.exact_eval import evaluate
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import evaluate, names
+from piezo_sym.expressions.tree import names
 
 DEEP = {
     "functions": "tanh(" * 8 + "x" + ")" * 8,

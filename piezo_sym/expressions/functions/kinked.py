@@ -3,39 +3,14 @@
 Input: nothing.  Output: `KINKED`, a record each; see `record` for what it says, and in which words.
 """
 
-from bisect import bisect
-from itertools import pairwise
-
 from piezo_sym.expressions.functions.record import LawFunction
 
 _NAN = "not a number stays so"
 
 
-def _saturate(z: float, w: float) -> float:
-    return min(max(z, -w), w)
-
-
-def _deadzone(z: float, w: float) -> float:
-    return max(z - w, 0.0) + min(z + w, 0.0)
-
-
-def _sign(z: float) -> float:
-    return float((z > 0) - (z < 0))
-
-
-def _table(z: float, *knots: float) -> float:
-    x, y = knots[::2], knots[1::2]
-    if any(a >= b for a, b in pairwise(x)):
-        msg = "the knots do not increase"
-        raise ArithmeticError(msg)
-    k = min(bisect(x, z, 1), len(x) - 1)
-    return y[k - 1] + (y[k] - y[k - 1]) / (x[k] - x[k - 1]) * (z - x[k - 1])
-
-
 KINKED = (
     LawFunction(
         "abs",
-        abs,
         ("sign(x)",),
         units="equal",
         choices="x if x >= 0 else -x",
@@ -51,7 +26,6 @@ KINKED = (
     ),
     LawFunction(
         "sign",
-        _sign,
         ("0",),
         units="none",
         choices="1 if x > 0 else (-1 if x < 0 else 0)",
@@ -66,7 +40,6 @@ KINKED = (
     ),
     LawFunction(
         "min",
-        min,
         ("1 if x <= w else 0", "0 if x <= w else 1"),
         units="equal",
         choices="x if x <= w else w",
@@ -79,7 +52,6 @@ KINKED = (
     ),
     LawFunction(
         "max",
-        max,
         ("1 if x >= w else 0", "0 if x >= w else 1"),
         units="equal",
         choices="x if x >= w else w",
@@ -92,7 +64,6 @@ KINKED = (
     ),
     LawFunction(
         "saturate",
-        _saturate,
         ("0 if abs(x) > w else 1", "sign(x) if abs(x) > w else 0"),
         units="equal",
         choices="w if x > w else (-w if x < -w else x)",
@@ -108,7 +79,6 @@ KINKED = (
     ),
     LawFunction(
         "deadzone",
-        _deadzone,
         ("1 if abs(x) > w else 0", "-sign(x) if abs(x) > w else 0"),
         units="equal",
         choices="x - w if x > w else (x + w if x < -w else 0)",
@@ -125,7 +95,6 @@ KINKED = (
     ),
     LawFunction(
         "table",
-        _table,
         (),
         units="equal",
         knots=True,

@@ -9,7 +9,6 @@ the function's domain alone has as first comparison that the argument is outside
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal, final
@@ -25,7 +24,6 @@ class LawFunction:
     Attributes
     ----------
     name : in laws, C and SymPy, and of its method of FLINT's balls, where nothing else is said.
-    value : in floating point.
     slopes : its derivatives by its arguments; at a kink, those of one of its sides.
     units : ``pure`` (neither argument nor value has one), ``equal`` (of all arguments and value;
         those of a table's x, and of its y),
@@ -56,7 +54,6 @@ class LawFunction:
     """
 
     name: str
-    value: Callable[..., float]
     slopes: tuple[str, ...]
     units: Literal["pure", "equal", "none", "power"] = "pure"
     choices: str = ""

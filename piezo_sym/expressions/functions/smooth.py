@@ -3,7 +3,6 @@
 Input: nothing.  Output: `SMOOTH`, a record each; see `record` for what it says, and in which words.
 """
 
-import math
 from fractions import Fraction
 
 from piezo_sym.expressions.functions.record import INF, LawFunction
@@ -11,17 +10,9 @@ from piezo_sym.expressions.functions.record import INF, LawFunction
 _ONE = (Fraction(-1), Fraction(1))
 
 
-def _raised(x: float, w: float) -> float:
-    if x < 0 or w <= 0:
-        msg = "a power of a negative number, or one that may divide by zero"
-        raise ArithmeticError(msg)
-    return math.pow(x, w)
-
-
 SMOOTH = (
     LawFunction(
         "exp",
-        math.exp,
         ("y",),
         rises=1,
         sign=">",
@@ -42,7 +33,6 @@ SMOOTH = (
     ),
     LawFunction(  # lowering makes it, for exp(x) - 1 without cancellation
         "expm1",
-        math.expm1,
         ("exp(x)",),
         rises=1,
         known=(0, 0),
@@ -51,7 +41,6 @@ SMOOTH = (
     ),
     LawFunction(
         "log",
-        math.log,
         ("1/x",),
         rises=1,
         domain="x > 0",
@@ -64,7 +53,6 @@ SMOOTH = (
     ),
     LawFunction(
         "sqrt",
-        math.sqrt,
         ("0.5/y",),
         units="power",
         power=Fraction(1, 2),
@@ -77,7 +65,6 @@ SMOOTH = (
     ),
     LawFunction(  # x**w of an x that may be zero, as abs(f/f_0)**n: `parse` makes it
         "pow",
-        _raised,
         ("w*y/(x if x > 0 else 1)", "y*log(x if x > 0 else 1)"),  # the first infinite at 0 if w < 1
         domain="x >= 0",
         sign=">=",
@@ -87,7 +74,6 @@ SMOOTH = (
     ),
     LawFunction(
         "sin",
-        math.sin,
         ("cos(x)",),
         parity="odd",
         known=(0, 0),
@@ -109,7 +95,6 @@ SMOOTH = (
     ),
     LawFunction(
         "cos",
-        math.cos,
         ("-sin(x)",),
         parity="even",
         known=(0, 1),
@@ -122,7 +107,6 @@ SMOOTH = (
     ),
     LawFunction(
         "tanh",
-        math.tanh,
         ("1 - y**2",),
         parity="odd",
         rises=1,
@@ -143,7 +127,6 @@ SMOOTH = (
     ),
     LawFunction(
         "atan",
-        math.atan,
         ("1/(1 + x**2)",),
         parity="odd",
         rises=1,
@@ -164,7 +147,6 @@ SMOOTH = (
     ),
     LawFunction(
         "sinh",
-        math.sinh,
         ("cosh(x)",),
         parity="odd",
         rises=1,
@@ -185,7 +167,6 @@ SMOOTH = (
     ),
     LawFunction(
         "cosh",
-        math.cosh,
         ("sinh(x)",),
         parity="even",
         rises=1,
@@ -205,7 +186,6 @@ SMOOTH = (
     ),
     LawFunction(
         "erf",
-        math.erf,
         ("exp(-x**2)/sqrt(atan(1))",),  # atan(1) = pi/4
         parity="odd",
         rises=1,

@@ -13,7 +13,7 @@ from functools import reduce
 from typing import TypeAlias
 
 from piezo_sym.expressions.functions import RECORDS
-from piezo_sym.expressions.parse import parse_rule
+from piezo_sym.expressions.grammar import parse_rule
 from piezo_sym.expressions.tree import Add, Call, Div, Mul, Neg, Node, Num, Pow, Sym, children
 from piezo_sym.proofs.signs import intervals as iv
 from piezo_sym.proofs.signs.intervals import Interval
