@@ -240,7 +240,7 @@ def test_numbers_are_exact_and_read_back(number):
 
 
 def test_a_sum_over_lanes_has_no_value_in_a_spec():
-    with pytest.raises(TypeError):
+    with pytest.raises(KeyError):
         evaluate(LaneSum(Sym("x"), "bank"), {"x": 1.0})
 
 
