@@ -5,7 +5,7 @@ arithmetic finds a row false at a point, `ContradictionError` is raised.
 
 stage    from -> to                              in
 probe    IPHS -> laws and edges, as trees        probe
-space    module, probe -> columns of points      space, floats, edges
+space    module, probe -> columns of points      space, floats
 points   Space -> points inside the domain       points
 claims   row -> numbers, negative where false    claims
 hunt     points -> the worst ones of each row    hunt

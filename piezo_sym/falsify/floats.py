@@ -52,7 +52,7 @@ class Approx:
     ----------
     value : of the law.
     size : the sum of the absolute values of its terms, so that value/size tells cancellation from a
-        change of sign; None where sizes are not wanted, and `lost` says nothing.
+        change of sign.
     lost : where it has no value on the branch taken.
     """
 
@@ -70,19 +70,13 @@ class Floats(dict[Expr, Approx]):
     given : the values of names.
     defined : what other names stand for.
     counts : the size of each bank.
-    sized : whether sizes are wanted, too.
     """
 
     def __init__(
-        self,
-        given: Mapping[str, Any],
-        defined: Mapping[str, Row],
-        counts: Mapping[str, int],
-        *,
-        sized: bool = True,
+        self, given: Mapping[str, Any], defined: Mapping[str, Row], counts: Mapping[str, int]
     ) -> None:
         super().__init__()
-        self.given, self.defined, self.counts, self.sized = given, defined, counts, sized
+        self.given, self.defined, self.counts = given, defined, counts
 
     def __missing__(self, node: Expr) -> Approx:
         """Return what was not computed yet, and keep it."""
@@ -92,14 +86,14 @@ class Floats(dict[Expr, Approx]):
     def _made(self, node: Expr) -> Approx:
         match node:
             case Num(number):
-                return self._plain(np.float64(number))
+                return _plain(np.float64(number))
             case Sym(name):
                 known = name in self.given
-                return self._plain(self.given[name] if known else self[self.defined[name][0]].value)
+                return _plain(self.given[name] if known else self[self.defined[name][0]].value)
             case LaneSum(arg, bank):
                 own = self[arg].value
                 shape = self.counts[bank], *np.shape(own)[-1:]
-                return self._plain(np.broadcast_to(own, shape).sum(axis=0))
+                return _plain(np.broadcast_to(own, shape).sum(axis=0))
             case Neg(arg):
                 inner = self[arg]
                 return Approx(-inner.value, inner.size, inner.lost)
@@ -109,10 +103,9 @@ class Floats(dict[Expr, Approx]):
                 return _each(np.multiply, self[left], self[right])
             case Div(left, right):
                 b = self[right]
-                lost = b.lost | (b.value == 0) if self.sized else False
-                return _each(np.divide, self[left], self._plain(b.value, lost))
+                return _each(np.divide, self[left], _plain(b.value, b.lost | (b.value == 0)))
             case Pow(base, exponent):
-                return self._power(self[base], exponent)
+                return _power(self[base], exponent)
             case If(then, Cmp(op, left, right), other):
                 taken = COMPARED[op](self[left].value, self[right].value)
                 found = _each(partial(np.where, taken), self[then], self[other])
@@ -121,9 +114,9 @@ class Floats(dict[Expr, Approx]):
             case Call("pow", (base, exponent)):
                 a, w = self[base], self[exponent]
                 lost = a.lost | w.lost | (a.value < 0) | (w.value <= 0)
-                return self._plain(a.value**w.value, lost)
+                return _plain(a.value**w.value, lost)
             case Call(function, (arg,)) if RECORDS[function].smooth:
-                return self._smooth(function, self[arg])
+                return _smooth(function, self[arg])
             case Call():
                 return self._kinked(node)
         raise TypeError(f"{type(node).__name__} is no law")
@@ -133,29 +126,28 @@ class Floats(dict[Expr, Approx]):
         inner = self[rule(formula, node.args[0], node.args[-1]) if formula else choices(node)]
         order = (self[c.left].value < self[c.right].value for c in increasing(node))
         lost = reduce(lambda out, rises: out | ~rises, order, inner.lost)
-        return self._plain(inner.value, lost, inner.size if knots(node) else None)
+        return _plain(inner.value, lost, inner.size if knots(node) else None)
 
-    def _power(self, a: Approx, exponent: Fraction) -> Approx:
-        whole = exponent.denominator == 1
-        e = exponent.numerator if whole else float(exponent)
-        lost = a.lost | (a.value == 0 if e < 0 else False) | (False if whole else a.value < 0)
-        return self._plain(a.value**e, lost, a.size**e if self.sized and whole and e > 0 else None)
 
-    def _smooth(self, function: str, a: Approx) -> Approx:
-        domain = RECORDS[function].domain
-        outside = (a.value < 0 if "=" in domain else a.value <= 0) if domain else False
-        return self._plain(_function(function)(a.value), a.lost | outside)
+def _power(a: Approx, exponent: Fraction) -> Approx:
+    whole = exponent.denominator == 1
+    e = exponent.numerator if whole else float(exponent)
+    lost = a.lost | (a.value == 0 if e < 0 else False) | (False if whole else a.value < 0)
+    return _plain(a.value**e, lost, a.size**e if whole and e > 0 else None)
 
-    def _plain(self, value: Any, lost: Any = False, size: Any = None) -> Approx:
-        if not self.sized:
-            return Approx(value, None)
-        return Approx(value, np.abs(value) if size is None else size, lost)
+
+def _smooth(function: str, a: Approx) -> Approx:
+    domain = RECORDS[function].domain
+    outside = (a.value < 0 if "=" in domain else a.value <= 0) if domain else False
+    return _plain(_function(function)(a.value), a.lost | outside)
+
+
+def _plain(value: Any, lost: Any = False, size: Any = None) -> Approx:
+    return Approx(value, np.abs(value) if size is None else size, lost)
 
 
 def _each(operation: Callable[..., Any], a: Approx, b: Approx) -> Approx:
     """Return an operation on values and sizes; a choice chooses where there is no value, too."""
-    if a.size is None:
-        return Approx(operation(a.value, b.value), None)
     chosen = isinstance(operation, partial)
     lost = operation(a.lost, b.lost) if chosen else a.lost | b.lost
     return Approx(operation(a.value, b.value), operation(a.size, b.size), lost)

@@ -15,7 +15,6 @@ from typing import final
 
 import numpy as np
 
-from piezo_sym.falsify.edges import Edges
 from piezo_sym.falsify.space import LARGEST, LEAST, Array, Index, Space
 
 #: With fewer points than these, drawn ones are added to those that walks start from.
@@ -75,7 +74,6 @@ class Draw:
         scales = [[1.0, *row] for row in np.abs(self.known).tolist()]
         for one, other in self.space.pairs.tolist():
             scales[one] += np.abs(self.known[other]).tolist()
-        self.edges = Edges(self.space)
         self.scales = [sorted({s for s in row if s > 0})[:24] for row in scales]
 
     def inside(self, points: Array) -> Array:
@@ -111,15 +109,14 @@ class Draw:
         ]
         found: list[tuple[Index, Index, Index, Array, Array]] = []
         for column, ladder in enumerate(steps):
-            rows = self.edges.on[self.space.columns[column][0]]
-            signs = np.sign(self.edges.along(bases, column, ladder, rows))
-            signs = signs.reshape(-1, count, len(ladder))
+            points = np.repeat(bases, len(ladder), axis=1)
+            points[column] = np.tile(ladder, count)
+            signs = np.sign(self.space.at(points).edges).reshape(-1, count, len(ladder))
             first, second = signs[..., :-1], signs[..., 1:]
             edge, base, step = np.nonzero((first != second) & np.isfinite(first * second))
             rising = first[edge, base, step] != 0
             low = np.where(rising, ladder[step], ladder[step + 1])
             high = np.where(rising, ladder[step + 1], ladder[step])
-            edge = rows[edge]
             found.append((edge, np.full_like(edge, column), base, low, high))
         edges, columns, at, lows, highs = map(np.concatenate, zip(*found, strict=True))
         order = np.argsort(self.rng.random(len(edges)) - 0.5 * (columns >= self.space.inputs_at))
@@ -131,17 +128,18 @@ class Draw:
 
     def _bisected(self, roots: Roots) -> Roots:
         """Return brackets narrowed to neighbouring floats."""
-        here, needed = np.arange(len(roots.edge)), frozenset(roots.edge.tolist())
+
+        def signs(value: Array) -> Array:
+            edges = self.space.at(roots.at(value)).edges
+            return np.sign(edges[roots.edge, np.arange(len(value))])
+
         low, high = _key(roots.low), _key(roots.high)
-        given = self.space.at(roots.at(roots.low)).given
-        sign = np.sign(self.edges.values(given, needed, len(here))[roots.edge, here])
+        sign = signs(roots.low)
         for _ in range(64):
             middle = _middle(low, high)
             if ((middle == low) | (middle == high)).all():
                 break
-            given = self.space.at(roots.at(_float(middle))).given
-            seen = self.edges.values(given, needed, len(here))
-            same = np.sign(seen[roots.edge, here]) == sign
+            same = signs(_float(middle)) == sign
             low, high = np.where(same, middle, low), np.where(same, high, middle)
         ends = np.array([_float(low), _float(high)])
         ends = np.where(np.abs(ends).max(axis=0) < LEAST, [[-TINY], [TINY]], ends)

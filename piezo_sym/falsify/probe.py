@@ -120,15 +120,6 @@ class Probe:
         calls = (part for part in parts if isinstance(part, Call) and part.function == "pow")
         return tuple(dict.fromkeys(calls))
 
-    def reach(self, tree: Expr) -> frozenset[str]:
-        """Return all names that a tree depends on, directly or by way of others."""
-        found, left = set[str](), {*names(tree)}
-        while left:
-            found |= left
-            defined = (self.defined[name][0] for name in left if name in self.defined)
-            left = {name for tree in defined for name in names(tree)} - found
-        return frozenset(found)
-
     def written(self, row: Row) -> Row:
         """Return what a name stands for; others as they are."""
         tree, _ = row

@@ -196,14 +196,20 @@ class Seen:
     @cached_property
     def values(self) -> Floats:
         """Trees at the points."""
-        return Floats(self.given, self.space.probe.defined, self.space.counts)
+        at, banks = self.space.columns_of, self.space.banks
+        given = {n: self.points[at[n] if bank else at[n].start] for n, bank in banks.items()}
+        return Floats(given, self.space.probe.defined, self.space.counts)
 
     @cached_property
-    def given(self) -> Mapping[str, Array]:
-        """The values of parameters, inputs and states, by name."""
-        at = self.space.columns_of
-        banks = self.space.banks
-        return {n: self.points[at[n] if bank else at[n].start] for n, bank in banks.items()}
+    def edges(self) -> Array:
+        """The values of edges; one with a value per lane has a row for each."""
+        edges, count = self.space.probe.edges, self.points.shape[1]
+        with np.errstate(all="ignore"):
+            rows = [
+                np.broadcast_to(self.values[edge.tree].value, (self.space.lanes(edge.bank), count))
+                for edge in edges
+            ]
+        return np.concatenate([np.empty((0, count)), *rows])
 
     def law(self, what: str, element: str) -> Approx:
         """Return a law, of shape (lanes, points)."""

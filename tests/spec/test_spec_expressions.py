@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from spec_laws import laws, python_value, steady
 
 from piezo_sym.algebra.symbols import to_sympy
-from piezo_sym.expressions.exact_eval import evaluate
+from piezo_sym.expressions.exact_eval import evaluate, holds
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import (
@@ -22,7 +22,6 @@ from piezo_sym.expressions.tree import (
     Num,
     Pow,
     Sym,
-    holds,
     names,
     rename,
     replace,
